@@ -1,4 +1,4 @@
-//! Acceptance: the built `tankops`, its plugins and its terminal, as a user meets them.
+//! Acceptance tests: the built `tankops`, its plugins and its terminal, from the user's point of view.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 

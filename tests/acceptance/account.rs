@@ -1,4 +1,4 @@
-//! One account of the floor: whoever prints a share prints the same one, to the last digit.
+//! One account of the floor: every output prints the same shares, to the last digit.
 
 use crate::bench::{Bench, scenario};
 use account::{Fold, Percent, Shares};
@@ -22,7 +22,7 @@ fn cover() -> Vec<PathBuf> {
     files
 }
 
-/// The four parts of a floor and what is guaranteed of it, as they are printed.
+/// The four parts of a floor and its guaranteed part, as printed.
 type Printed = [String; 5];
 
 fn of_json(percent: &Value) -> Printed {
@@ -30,7 +30,7 @@ fn of_json(percent: &Value) -> Printed {
     ["scanned", "missed", "unreachable", "margin", "guaranteed"].map(part)
 }
 
-/// What a line of the text says; parts without anything are left out there.
+/// The shares in a line of the text, which omits empty parts.
 fn of_text(text: &str, floor: &str) -> Printed {
     let line =
         text.lines().find(|line| line.contains(&format!(" {floor} ")) && line.contains(" m²: ")).unwrap();
@@ -41,7 +41,7 @@ fn of_text(text: &str, floor: &str) -> Printed {
     ["scanned", "missed", "unreachable", "shell margin", "guaranteed"].map(part)
 }
 
-/// The cells of the row of a table of HTML that begins with a name.
+/// The cells of the row of an HTML table that begins with a name.
 fn of_html(html: &str, floor: &str) -> Printed {
     let row = html
         .split("<tr")
@@ -64,12 +64,12 @@ fn of_csv(csv: &str, floor: &str) -> Printed {
 /// The properties of the recording.
 fn of_recording(run: &Path, floor: &str) -> Printed {
     let figures = recording::inspect(&run.join(RECORDING_FILE)).unwrap().figures;
-    // The reachable floor has neither of the other two.
+    // The reachable floor has neither unreachable floor nor shell margin.
     let part = |part: &str| format!("{:.1}", figures.get(&format!("{floor}_{part}_percent")).unwrap_or(&0.0));
     ["scanned", "missed", "unreachable", "margin", "guaranteed"].map(part)
 }
 
-/// What the console's pane shows when the run is over.
+/// The contents of the console's pane after the end of the run.
 fn of_pane(run: &Path) -> [Percent; 2] {
     let mut model = Run::default();
     for event in JournalReader::open(&run.join(JOURNAL_FILE)).unwrap() {
@@ -79,7 +79,7 @@ fn of_pane(run: &Path) -> [Percent; 2] {
     [raster.whole(), raster.reachable()].map(|Shares { percent, .. }| percent)
 }
 
-/// The shares of a floor in every file that a report is written to.
+/// The shares of a floor in every file format of a report.
 struct Files {
     text: String,
     json: Value,
@@ -103,7 +103,8 @@ impl Files {
         }
     }
 
-    /// Makes sure that all of them print the same shares, which sum to 100.0; gives them. `name`: as text and CSV call the floor.
+    /// Checks that all outputs print the same shares, which sum to 100.0, and returns them. `name` is the name of the
+    /// floor in text and CSV.
     fn agree(&self, name: &str, of: &Value, json: &Value) -> Printed {
         let printed = of_json(&of["percent"]);
         let parts: f64 = printed[..4].iter().map(|part| part.parse::<f64>().unwrap()).sum();
@@ -153,7 +154,7 @@ fn console_text_json_html_csv_and_recording_have_the_same_shares_of_every_cover_
             let html = rows.find(|row| row.contains(&format!(">{name}</td>")));
             assert!(html.unwrap().contains(&row), "{file} {name}, HTML: {html:?} has not {row}");
         }
-        // Every gap says why with a number, and what is guaranteed was scanned.
+        // Every gap has a reason with a number, and all guaranteed floor was scanned.
         let floor = &flown["floor"];
         for kind in ["missed", "unreachable"] {
             floor[kind].as_array().unwrap().iter().for_each(|area| assert_explained(area, &area["causes"]));
@@ -166,7 +167,7 @@ fn console_text_json_html_csv_and_recording_have_the_same_shares_of_every_cover_
     }
 }
 
-/// Flies a scan that is held several times until the robot stands, and ended early; gives its run.
+/// Flies a scan that is held several times until the robot stands, and then ended early; returns its run.
 fn held_scan(bench: &Bench) -> PathBuf {
     let holds: Vec<String> = (1..=4)
         .map(|percent| {

@@ -1,4 +1,4 @@
-//! Answers that come late, are cut short or never come: the run continues or ends, and can still be verified.
+//! Answers that arrive late, are cut short or never arrive: the run continues or ends, and can still be verified.
 
 use crate::bench::{Bench, Ended, first_of, journal, of_kind, scenario};
 use rustix::process::{Pid, Signal, kill_process};
@@ -10,7 +10,7 @@ use std::{
 
 const PATIENCE: Duration = Duration::from_mins(1);
 
-/// A mission under way, flown by the planner that misbehaves.
+/// A mission in progress, flown by the misbehaving planner.
 struct Flying {
     bench: Bench,
     child: Child,
@@ -27,7 +27,7 @@ impl Flying {
         command.args(more).stdout(Stdio::piped()).stderr(Stdio::piped());
         let child = command.spawn().unwrap();
         let flying = Self { bench, child };
-        // Before that, workers only list what plugins offer.
+        // Before that, workers only list the contents of plugins.
         flying.until("the journal", |flying| {
             let begun =
                 |run: &PathBuf| run.join("events.jsonl.zst").metadata().is_ok_and(|file| file.len() > 100);
@@ -79,7 +79,7 @@ fn signal_it(worker: i32, signal: Signal) {
     kill_process(Pid::from_raw(worker).unwrap(), signal).unwrap();
 }
 
-/// Interferes with the driving planner's process after some time, and proves the run.
+/// Interferes with the active planner's process after some time, and verifies the run.
 fn interfere(signal: Signal, after_ms: u64, fallback: bool) {
     let settings = ["fault=dawdle", "at_step=0", "planner.fallback.id=apf"];
     let flying = Flying::start(if fallback { &settings } else { &settings[..2] }, &[]);
@@ -168,7 +168,7 @@ fn a_plan_that_ran_out_of_time_is_proven_without_waiting_again() {
         let verified = bench.verify(&run, more);
         let took = began.elapsed();
         assert!(verified.code == Some(0) && verified.out.contains("equal: "), "{verified:?}");
-        // The flight waited for the budget of the plan, 5 s.
+        // The flight waited for the plan's whole budget of 5 s.
         assert!(took < flight, "verify took {took:?}, the flight {flight:?}");
     }
 }

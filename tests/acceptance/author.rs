@@ -1,4 +1,4 @@
-//! A planner's author, with nothing but `tankops` and a compiler.
+//! The author of a planner, who has only `tankops` and a compiler.
 
 use crate::bench::{Bench, Ended, journal_text, workspace};
 use std::{
@@ -7,7 +7,7 @@ use std::{
     sync::Mutex,
 };
 
-/// A new planner, and the file that comes of building it as the guide says.
+/// A new planner, and the file produced by building it as in the guide.
 fn built(bench: &Bench, lang: &str) -> PathBuf {
     let created = bench.tankops(&["new-planner", "my-own", "--lang", lang]);
     assert_eq!(created.code, Some(0), "{created:?}");
@@ -22,13 +22,13 @@ fn built(bench: &Bench, lang: &str) -> PathBuf {
     folder.join("libplanner_my_own.so")
 }
 
-/// Builds the planner in Rust, in a folder that all tests share, since its dependencies take long: one at a time, each with its own
-/// copy of what comes of it.
+/// Builds the planner in Rust, in a folder that all tests share, because its dependencies take long to build. Only
+/// one test builds at a time, and each gets its own copy of the result.
 fn built_in_rust(bench: &Bench) -> PathBuf {
     static BUILDING: Mutex<()> = Mutex::new(());
     let _one_at_a_time = BUILDING.lock().unwrap();
-    // Cargo takes the planners of all tests for one and looks at times alone: a source older than what another test built would count
-    // as built.
+    // Cargo treats the planners of all tests as one crate and compares only times: a source older than the output of
+    // a different test would count as already built.
     let source = bench.path().join("my-own/src/lib.rs");
     std::fs::write(&source, std::fs::read(&source).unwrap()).unwrap();
     let made = Command::new(env!("CARGO"))

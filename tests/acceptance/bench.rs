@@ -1,4 +1,4 @@
-//! Starting `tankops` and reading what it leaves.
+//! Starting `tankops` and reading its output and files.
 
 use recording::{JOURNAL_FILE, PLAIN_JOURNAL_FILE};
 use serde_json::Value;
@@ -14,12 +14,12 @@ pub(crate) fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap()
 }
 
-/// A scenario that is shipped.
+/// A shipped scenario.
 pub(crate) fn scenario(name: &str) -> PathBuf {
     workspace().join("scenarios").join(name)
 }
 
-/// Says that a test is passed over, and why; the check of the project lists these lines at its end.
+/// Reports that a test is skipped, with the reason; `.ci/run` lists these lines at its end.
 #[allow(clippy::print_stderr, reason = "a test that is passed over says so")]
 pub(crate) fn passed_over(why: &str) {
     let line = format!("passed over: {why}");
@@ -29,7 +29,7 @@ pub(crate) fn passed_over(why: &str) {
     writeln!(list.unwrap(), "{line}").unwrap();
 }
 
-/// A fresh folder for runs and files, and the command to work in it.
+/// A new folder for runs and files, and the command to work in it.
 pub(crate) struct Bench {
     folder: TempDir,
 }
@@ -45,23 +45,23 @@ impl Bench {
         self.folder.path()
     }
 
-    /// Writes a file and gives its path.
+    /// Writes a file and returns its path.
     pub(crate) fn file(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
         let path = self.path().join(name);
         std::fs::write(&path, content).unwrap();
         path
     }
 
-    /// `tankops` in this folder; test-only plugins lie in `deps` beside it.
+    /// `tankops` in this folder; test-only plugins are in `deps` beside the program.
     pub(crate) fn command(&self) -> Command {
         self.command_of(Path::new(env!("CARGO_BIN_EXE_tankops")))
     }
 
-    /// The same with another build of it.
+    /// The same command with a different build of `tankops`.
     pub(crate) fn command_of(&self, program: &Path) -> Command {
         let mut command = Command::new(program);
         command.current_dir(self.path()).env_remove("TANKOPS_PLUGIN_PATH");
-        // The developer's own settings do not matter to the tests.
+        // Keeps the developer's own settings from affecting the tests.
         command.env("XDG_CONFIG_HOME", self.path()).env("XDG_STATE_HOME", self.path());
         command.env("XDG_CACHE_HOME", env!("CARGO_TARGET_TMPDIR"));
         command.arg("--plugin-dir").arg(Path::new(env!("CARGO_BIN_EXE_tankops")).with_file_name("deps"));
@@ -73,24 +73,24 @@ impl Bench {
         Ended::from(self.command().args(arguments).output().unwrap())
     }
 
-    /// Flies a scenario headless and gives the report.
+    /// Flies a scenario headless and returns the report.
     pub(crate) fn fly(&self, scenario: &Path, more: &[&str]) -> Ended {
         let mut command = self.command();
         command.arg("run").arg(scenario).arg("--json").args(more);
         Ended::from(command.output().unwrap())
     }
 
-    /// Computes a run again.
+    /// Verifies a run.
     pub(crate) fn verify(&self, run: &Path, more: &[&str]) -> Ended {
         Ended::from(self.command().arg("verify").arg(run).args(more).output().unwrap())
     }
 
-    /// Makes sure that a run is computed again equally, with the planners asked again and without.
+    /// Checks that recomputing a run gives the same journal, with and without asking the planners again.
     pub(crate) fn prove(&self, run: &Path) {
         self.prove_with(run, &[]);
     }
 
-    /// The same, with more options.
+    /// The same check, with more options.
     pub(crate) fn prove_with(&self, run: &Path, options: &[&str]) {
         for more in [&[][..], &["--from-journal"]] {
             let verified = self.verify(run, &[more, options].concat());
@@ -108,7 +108,7 @@ impl Bench {
     }
 }
 
-/// What a finished `tankops` left.
+/// The output of a finished `tankops`.
 #[derive(Debug)]
 pub(crate) struct Ended {
     pub code: Option<i32>,
@@ -130,17 +130,17 @@ impl Ended {
     }
 }
 
-/// The lines of a journal as they are written.
+/// The lines of a journal as text.
 pub(crate) fn journal_text(run: &Path) -> String {
     let file = std::fs::File::open(run.join(JOURNAL_FILE));
     let Ok(file) = file else { return std::fs::read_to_string(run.join(PLAIN_JOURNAL_FILE)).unwrap() };
     let mut bytes = Vec::new();
-    // The journal of a killed writer stops within a frame, which is an error after what can be read.
+    // The journal of a killed writer ends within a frame, which is an error after the readable part.
     let _ = zstd::Decoder::new(file).unwrap().read_to_end(&mut bytes);
     String::from_utf8(bytes).unwrap()
 }
 
-/// Puts another journal in the place of that of a run, without compressing it.
+/// Replaces the journal of a run with an uncompressed one.
 pub(crate) fn change_journal(run: &Path, text: &str) {
     let _ = std::fs::remove_file(run.join(JOURNAL_FILE));
     std::fs::write(run.join(PLAIN_JOURNAL_FILE), text).unwrap();
@@ -156,7 +156,7 @@ pub(crate) fn of_kind<'a>(events: &'a [Value], kind: &str) -> Vec<&'a Value> {
     events.iter().filter(|event| event["event"] == kind).collect()
 }
 
-/// Where the first event of a kind stands in a journal.
+/// The index of the first event of a kind in a journal.
 pub(crate) fn first_of(events: &[Value], kind: &str) -> Option<usize> {
     events.iter().position(|event| event["event"] == kind)
 }

@@ -1,4 +1,4 @@
-//! Campaigns: the same table whoever flies which part of it, and however often somebody is killed on the way.
+//! Campaigns: the table is the same, whichever worker flies which part and however often workers are killed.
 
 use crate::bench::{Bench, Ended, scenario};
 use std::{
@@ -8,7 +8,7 @@ use std::{
     time::Duration,
 };
 
-/// Two scenarios, two planners, two values, some seeds: about 0.1 s a mission.
+/// Two scenarios, two planners, two values, some seeds: about 0.1 s per mission.
 pub(crate) fn plan(bench: &Bench, name: &str, head: &str, seeds: u32) -> PathBuf {
     let of = |name: &str| format!("\"{}\"", scenario(name).display());
     let scenarios = [of("goto-single-obstacle.toml"), of("papers/yang-case3.toml")].join(", ");
@@ -20,14 +20,14 @@ pub(crate) fn plan(bench: &Bench, name: &str, head: &str, seeds: u32) -> PathBuf
     bench.file(name, text)
 }
 
-/// `tankops campaign` with words and paths.
+/// Runs `tankops campaign` with words and paths.
 pub(crate) fn campaign(bench: &Bench, words: &str, paths: &[&Path]) -> Ended {
     let mut command = bench.command();
     command.arg("campaign").args(words.split_whitespace()).args(paths);
     Ended::from(command.output().unwrap())
 }
 
-/// Merges a campaign and gives the bytes of its table.
+/// Merges a campaign and returns the bytes of its table.
 pub(crate) fn table(bench: &Bench, folder: &str) -> Vec<u8> {
     let merged = campaign(bench, "merge", &[Path::new(folder)]);
     assert_eq!(merged.code, Some(0), "{merged:?}");
@@ -103,7 +103,7 @@ fn whoever_is_killed_loses_only_the_blocks_that_were_open() {
     killed.kill().unwrap();
     killed.wait().unwrap();
     other.wait().unwrap();
-    // The claim of the killed one is void after ten minutes; who is asked by number asks nobody.
+    // The claim of the killed worker is void after ten minutes; a worker that is given a block number ignores claims.
     works(&bench, "--threads 2", "pulled");
     assert!(table(&bench, "pulled") == table(&bench, "quiet"), "pulled by two of which one was killed");
 }
@@ -168,7 +168,7 @@ fn a_mission_of_the_table_is_flown_again_by_its_command() {
     assert!(worst["what"].as_str().unwrap().starts_with(&what), "{worst} but {what}");
 }
 
-/// The program as another build would be: other bytes that do the same.
+/// A copy of the program that acts as a different build: different bytes, same behaviour.
 fn other_build(bench: &Bench) -> PathBuf {
     let program = bench.path().join("tankops");
     let mut bytes = std::fs::read(env!("CARGO_BIN_EXE_tankops")).unwrap();

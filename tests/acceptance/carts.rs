@@ -1,18 +1,18 @@
-//! Missions among carts that cross the way.
+//! Missions among carts that cross the robot's way.
 
 use crate::bench::{Bench, scenario};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::fmt::Write;
 
-/// Layouts on which nothing was tuned.
+/// Seeds of layouts that were not used for tuning.
 const SEEDS: std::ops::Range<u64> = 9101..9141;
 /// Speed of the robot, metres per second, and radius of the tank, metres.
 const ROBOT_M_PER_S: f64 = 0.4;
 const TANK_M: f64 = 10.0;
 
-/// Five carts, at most as fast as the robot, on straight ways that cross its own about when it would be there undisturbed,
-/// and a column; none of the carts is on the drawing.
+/// Five carts and a column. The carts are at most as fast as the robot and drive on straight lines that cross its
+/// path at about the time when it would be there undisturbed; none of the carts is on the drawing.
 fn carts(seed: u64) -> String {
     let mut random = Pcg64::seed_from_u64(seed);
     let mut text = String::new();

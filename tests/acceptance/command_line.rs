@@ -1,10 +1,10 @@
-//! The command line as scripts use it: exit codes, JSON, clear refusals.
+//! The command line from the point of view of scripts: exit codes, JSON, clear refusals.
 
 use crate::bench::{Bench, scenario};
 
 const EVADES: &str = "evades moving obstacles";
 const STANDING: &str = "treats moving obstacles as stationary";
-/// What planners say about what moves.
+/// The statements of planners about moving obstacles.
 const ABOUT_WHAT_MOVES: [(&str, &str); 14] = [
     ("apf", EVADES),
     ("tapf", EVADES),

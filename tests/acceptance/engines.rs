@@ -1,4 +1,4 @@
-//! The lines of the guide that hand a campaign to another engine, as they stand in it.
+//! The lines of the guide that run a campaign with a different engine, exactly as printed there.
 
 use crate::{
     bench::{Bench, passed_over, workspace},
@@ -10,14 +10,14 @@ use std::{
     process::{Command, Output},
 };
 
-/// The line of the guide to campaigns that begins so.
+/// The line of the campaign guide that begins with this text.
 pub(crate) fn line_of_the_guide(beginning: &str) -> String {
     let guide = std::fs::read_to_string(workspace().join("console/docs/campaigns.md")).unwrap();
     let line = guide.lines().map(str::trim).find(|line| line.starts_with(beginning));
     line.unwrap_or_else(|| panic!("no line of the guide begins with `{beginning}`")).to_owned()
 }
 
-/// Has `tankops` on the path mean the program under test, and gives a command with that path.
+/// Puts the program under test on the path as `tankops`, and returns a command with that path.
 pub(crate) fn with_tankops_on_the_path(bench: &Bench, program: &str) -> Command {
     let tankops = bench.command();
     let words = std::iter::once(tankops.get_program()).chain(tankops.get_args());
@@ -43,7 +43,7 @@ fn is_there(program: &str, says: &str) -> bool {
     version.is_ok_and(|version| String::from_utf8_lossy(&version.stdout).contains(says))
 }
 
-/// A campaign of seven blocks that is prepared in `DIR`, and what its table has to be.
+/// Prepares a campaign of seven blocks in `DIR`, and returns its expected table.
 fn prepared(bench: &Bench) -> Vec<u8> {
     let plan = plan(bench, "plan.toml", "block = 5", 4);
     assert_eq!(campaign(bench, "run --out local", &[&plan]).code, Some(0));

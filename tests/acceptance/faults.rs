@@ -1,10 +1,11 @@
-//! Planners that misbehave: the robot holds within the tick, the operator sees the reason, the mission can continue.
+//! Planners that misbehave: the robot is held within the tick, the operator sees the reason, the mission can
+//! continue.
 
 use crate::bench::{Bench, Ended, journal, of_kind, passed_over, scenario};
 
 /// Flies the goto scenario with the faulty planner; `apf` is its fallback.
 fn fly_faulty(bench: &Bench, fault: &str) -> Ended {
-    // In quotes, or `nan` would be a number.
+    // In quotes, because `nan` would otherwise be a number.
     let set = format!("fault=\"{fault}\"");
     bench.fly(
         &scenario("goto-single-obstacle.toml"),
@@ -135,7 +136,7 @@ fn a_machine_that_grants_few_threads_is_said_so_before_anything_is_begun() {
     std::fs::copy(bench.command().get_program(), &program).unwrap();
     std::fs::copy(scenario("goto-single-obstacle.toml"), &mission).unwrap();
     std::fs::set_permissions(bench.path(), PermissionsExt::from_mode(0o755)).unwrap();
-    // The limit holds for a user who runs nothing else, but not for root.
+    // The limit applies to a user who runs nothing else, but not to root.
     let user = (70_000 + std::process::id() % 1000).to_string();
     let other = [format!("--reuid={user}"), format!("--regid={user}"), "--clear-groups".to_owned()];
     let is_possible = std::process::Command::new("setpriv").args(&other).arg("true").status();
@@ -151,7 +152,7 @@ fn a_machine_that_grants_few_threads_is_said_so_before_anything_is_begun() {
         limited.args(&other).arg("prlimit").arg(format!("--nproc={threads}")).arg(&program).args(command);
         Ended::from(limited.env_clear().current_dir(bench.path()).output().unwrap())
     };
-    // With less than each command needs nothing is begun.
+    // With less than a command needs, nothing is started.
     let commands: [(usize, &[&str]); 6] = [
         (3, &["report", run]),
         (3, &["rescan", run, "-o", "again.toml"]),

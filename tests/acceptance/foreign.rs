@@ -1,5 +1,5 @@
-//! Files and names of others: nothing in a logs folder uses up memory, no name reaches a terminal or a file as it is, nothing is
-//! written over.
+//! Foreign files and names: nothing in a logs folder uses up memory, no hidden characters of a name reach a terminal
+//! or a file, nothing is overwritten.
 
 use crate::bench::{Bench, Ended, change_journal, journal_text, scenario};
 use recording::JOURNAL_FILE;
@@ -12,7 +12,7 @@ use std::{
     process::{Command, Stdio},
 };
 
-/// A command with limits of the shell before it.
+/// A command run under limits set by the shell.
 fn limited(bench: &Bench, limits: &str, arguments: &[&str]) -> Ended {
     let tankops = bench.command();
     let mut command = Command::new("sh");
@@ -29,7 +29,7 @@ fn flown(bench: &Bench) -> PathBuf {
     bench.runs().pop().unwrap()
 }
 
-/// A file of gigabytes of zeros, packed, out of nearly nothing.
+/// A small compressed file that expands to gigabytes of zeros.
 fn packed_zeros(head: &str) -> Vec<u8> {
     let mut packed = zstd::encode_all(head.as_bytes(), 1).unwrap();
     let zeros = zstd::encode_all(&vec![0; 64 << 20][..], 1).unwrap();
@@ -89,7 +89,7 @@ fn pipes_and_devices_in_place_of_the_files_of_a_run_are_not_waited_for() {
     }
 }
 
-/// What no terminal and no file may get, in one name.
+/// A name with all the characters that must not reach a terminal or a file.
 const ODD: &str = "od\u{1b}]0;x\u{7}\u{9b}2J\u{202e}\u{2066}\u{61c}\u{ad}\u{e0041}d";
 
 fn assert_plain(what: &str, bytes: &[u8]) {
@@ -118,7 +118,7 @@ fn hidden_characters_in_names_reach_neither_the_terminal_nor_a_file() {
         }
     }
     opened["scenario"] = format!("demo{ODD}").into();
-    // Of the reasons only this one is free text; the others are words of the format.
+    // Only this reason is free text; the others are fixed words of the format.
     let rest = rest.replace("\"reason\":\"task", &format!("\"reason\":\"{odd}task"));
     change_journal(&run, &format!("{opened}\n{rest}"));
     fs::remove_file(run.join("report.json")).unwrap();

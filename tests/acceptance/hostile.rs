@@ -1,4 +1,5 @@
-//! Planners that attack while they fly: what is reported about them, what can be proven afterwards, and what the operator still has.
+//! Planners that attack during a flight: the reports about them, the proof afterwards, and the controls that the
+//! operator keeps.
 
 use crate::{
     bench::{Bench, Ended, journal, of_kind, scenario, workspace},
@@ -6,7 +7,7 @@ use crate::{
 };
 use std::path::{Path, PathBuf};
 
-/// A folder with the planner `hostile`, which does this at this moment.
+/// A folder with the planner `hostile`, which makes this attack at this moment.
 pub(crate) fn hostile(bench: &Bench, moment: &str, attack: &str) -> PathBuf {
     let source = std::fs::read_to_string(workspace().join("plugins/faulty/hostile.c")).unwrap();
     let source = bench.file("hostile.c", format!("#define {moment}\n#define ATTACK {attack}\n{source}"));
@@ -22,7 +23,7 @@ fn fly(bench: &Bench, plugins: &Path) -> Ended {
     bench.fly(&scenario("goto-single-obstacle.toml"), &more)
 }
 
-/// It does so at a time that the machine decides, so that the same questions do not give the same fault again.
+/// The time of the attack depends on the machine, so the same requests do not give the same fault again.
 #[test]
 fn a_fault_of_a_thread_that_outlives_its_step_is_taken_from_the_journal() {
     let attacks = [
@@ -89,7 +90,7 @@ fn a_planner_that_does_not_end_well_when_it_is_destroyed_is_named() {
     }
 }
 
-/// The example in C, changed, as `tankops check` finds it.
+/// The result of `tankops check` on a changed copy of the C example.
 fn checked(change: (&str, &str), head: &str) -> Ended {
     let bench = Bench::new();
     let source = std::fs::read_to_string(workspace().join("plugins/examples/direct-c/direct.c")).unwrap();
@@ -136,7 +137,7 @@ fn a_replay_says_which_step_did_not_answer_and_after_how_long() {
     assert!(replayed.code == Some(1) && replayed.out.contains(sentence), "{replayed:?}");
 }
 
-/// A bundle of a planner that is asked for this answer in its fourth step.
+/// A crash bundle of a planner that gives this answer in its fourth step.
 fn bundle(bench: &Bench, attack: &str) -> PathBuf {
     let plugins = hostile(bench, "IN_ANSWER", attack);
     fly(bench, &plugins);
@@ -227,7 +228,7 @@ fn a_check_blames_no_planner_for_the_crash_of_its_neighbour() {
     let folder = hostile(&bench, "IN_STEP", "abort()");
     let own = folder.join("libplanner_own.so");
     crate::faults::compile_file(&workspace().join("plugins/examples/direct-c/direct.c"), &own);
-    // The first that is found.
+    // The first planner that is found.
     std::fs::rename(folder.join("libplanner_hostile.so"), folder.join("libplanner_a.so")).unwrap();
     let checked = bench.tankops(&["check", own.to_str().unwrap(), "--fly", "1"]);
     assert!(
@@ -280,7 +281,7 @@ fn limits_of_the_machine_are_not_blamed_on_plugins() {
         "run {} --no-record --planner hostile --plugin-dir hostile",
         scenario("goto-single-obstacle.toml").display()
     );
-    // What is known of a plugin must not hide it.
+    // Cached information about a plugin must not hide it.
     limited("-n 1024", &run);
     let words = [format!("check {}", plugin.display()), run];
     for words in &words {
@@ -299,7 +300,7 @@ fn has_the_keyboard(console: i32) -> bool {
     fields[2] == fields[5]
 }
 
-/// Attacks that last, and those that would take keyboard or screen.
+/// Attacks that continue, and attacks on keyboard or screen.
 const LASTING: &[(&str, &str)] = &[
     ("IN_STEP", "for (;;);"),
     ("IN_STEP", "for (;;) rest(1000)"),
@@ -347,8 +348,8 @@ fn the_console_hears_space_whatever_a_planner_does_for_long() {
         let mut session = Session::open(&arguments, 120, 36);
         session.see("IDLE");
         if *moment == "IN_THREAD" {
-            // It attacks as soon as it is loaded, so that no plan exists. The message names the plugin if the attack comes while it
-            // loads, and the planner if it comes later.
+            // The planner attacks as soon as it is loaded, so no plan exists. The message names the plugin if the
+            // attack comes during loading, and the planner if it comes later.
             session.see("FAILED: pl");
             session.press("S");
             session.see("tart blocked");
@@ -364,7 +365,7 @@ fn the_console_hears_space_whatever_a_planner_does_for_long() {
             flown.is_some_and(|run| of_kind(&journal(run), "truth").len() > 8)
         });
         session.press(" ");
-        // Where the fault holds the robot already, the key asks whether it is to go on.
+        // If the fault already holds the robot, the key asks whether to resume.
         session.until(&format!("space to be heard: {attack}"), |session| {
             let events = journal(&session.run());
             let is_ordered = of_kind(&events, "ordered").iter().any(|event| event["order"] == "hold");
@@ -373,7 +374,7 @@ fn the_console_hears_space_whatever_a_planner_does_for_long() {
         session
             .until("the robot to be held", |session| !of_kind(&journal(&session.run()), "held").is_empty());
         assert!(has_the_keyboard(session.console_pid()), "{attack}");
-        // Whatever asks something is closed on the way.
+        // Closes any open question on the way.
         session.press("\x1b");
         session.press_until("1", "1 Home");
         session.press("q");
@@ -400,7 +401,7 @@ fn a_plan_that_the_mission_refuses_for_its_tank_is_no_difference() {
 #[test]
 fn a_planner_that_fails_only_while_it_is_verified_makes_a_run_neither_equal_nor_different() {
     let bench = Bench::new();
-    // All that a planner receives of the console's environment.
+    // The only environment variables that a planner receives from the console.
     let attack = r#"if (getenv("RUST_BACKTRACE") && *getenv("RUST_BACKTRACE") == 'f') abort()"#;
     let plugins = hostile(&bench, "IN_STEP", attack);
     let more = ["--planner", "hostile", "--set", "mission.time_limit_s=2", "--plugin-dir"];

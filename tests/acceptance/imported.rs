@@ -1,8 +1,9 @@
-//! Floors from the files of other programs.
+//! Floors imported from files of other programs.
 
 use crate::bench::{Bench, scenario};
 
-/// A drawing in millimetres whose layers have the names of another language: shell, four columns as a block and its hatch.
+/// A drawing in millimetres with layer names in a different language: a shell, and four columns as a block with its
+/// hatch.
 fn drawing() -> String {
     let groups = "0 SECTION,2 HEADER,9 $INSUNITS,70 4,0 ENDSEC,0 SECTION,2 BLOCKS,0 BLOCK,8 0,2 Post,10 0,20 0,\
                   0 CIRCLE,8 0,10 0,20 0,40 250,0 ENDBLK,0 ENDSEC,0 SECTION,2 ENTITIES,\
@@ -39,7 +40,7 @@ fn a_drawing_with_layers_of_other_names_becomes_a_mission_that_is_flown() {
     assert!(wrong.code == Some(2) && wrong.err.contains("for example COLUMNS=Posts"), "{wrong:?}");
 }
 
-/// A round tank whose plates are drawn by their seams: a ring with four joints, and a cross within.
+/// A round tank with plates drawn by their seams: a ring with four joints, and a cross inside.
 fn plated() -> String {
     let groups = "0 SECTION,2 HEADER,9 $INSUNITS,70 6,0 ENDSEC,0 SECTION,2 ENTITIES,\
                   0 CIRCLE,8 SHELL,10 0,20 0,40 3,0 CIRCLE,8 PLATES,10 0,20 0,40 2.4,\

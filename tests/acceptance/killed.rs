@@ -1,4 +1,4 @@
-//! kill -9 in the middle of a mission: nothing but the last moment is lost.
+//! kill -9 in the middle of a mission: only the last moment is lost.
 
 use crate::bench::{Bench, journal, scenario};
 use std::{
@@ -12,7 +12,7 @@ fn a_killed_run_is_listed_as_crashed_and_its_journal_opens() {
     // Times differ, so that the kill hits different moments; seeds are written out.
     for (seed, wait_ms) in [(11, 50), (12, 170), (13, 390), (14, 610), (15, 830)] {
         let bench = Bench::new();
-        // A long mission: nobody kills in time what ends in a second.
+        // A long mission, because one that ends within a second could not be killed in time.
         let slow = slow_scenario(&bench);
         let killed_at = begin_and_kill(&bench, &slow, seed, |_| {
             std::thread::sleep(Duration::from_millis(wait_ms));
@@ -49,7 +49,7 @@ fn a_killed_run_is_listed_as_crashed_and_its_journal_opens() {
     }
 }
 
-/// Begins a run and kills it when its folder is as demanded; when that was.
+/// Starts a run and kills it when its folder meets a condition; returns the time.
 pub(crate) fn begin_and_kill(
     bench: &Bench,
     scenario: &Path,
@@ -83,6 +83,6 @@ pub(crate) fn begin_and_kill(
 
 pub(crate) fn slow_scenario(bench: &Bench) -> PathBuf {
     let text = std::fs::read_to_string(scenario("spiral-paper.toml")).unwrap();
-    // Ten times the ticks, so that it takes seconds.
+    // Ten times as many ticks, so that the run takes seconds.
     bench.file("slow.toml", text.replace("tick_s = 0.1", "tick_s = 0.01"))
 }

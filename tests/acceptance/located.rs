@@ -3,7 +3,7 @@
 use crate::bench::{Bench, scenario, workspace};
 use serde_json::Value;
 
-/// The estimates and the positions from ranges that a journal holds.
+/// The estimates in a journal, and its positions from ranges.
 fn positions(bench: &Bench, run: usize) -> Vec<Value> {
     let events = crate::bench::journal(&bench.runs()[run]);
     let located = |event: &&Value| ["estimated", "fixed"].contains(&event["event"].as_str().unwrap());
@@ -37,7 +37,7 @@ fn readings_of_a_run_are_located_where_the_mission_believed_to_be() {
     let table = std::fs::read_to_string(bench.path().join("fixes.csv")).unwrap();
     assert_eq!(table.lines().count() as u64, 1 + figures["emissions"].as_u64().unwrap());
 
-    // Both may have begun in the same second: their names differ.
+    // Both runs may have begun in the same second, so only their names differ.
     let is_located = |run: &std::path::PathBuf| run.to_string_lossy().contains("-located-");
     let located = bench.runs().into_iter().find(is_located).unwrap();
     let verified = bench.verify(&located, &[]);
@@ -46,7 +46,8 @@ fn readings_of_a_run_are_located_where_the_mission_believed_to_be() {
     assert_eq!((&report["coverage"], &report["collisions"]), (&Value::Null, &Value::Null));
 }
 
-/// Readings of a short run, located with the tool on for a while, or without a word about it; the folder of that run.
+/// Locates readings of a short run, with the tool on for a while or without information about the tool; returns the
+/// folder of the run.
 fn located_run(bench: &Bench, tool_on: Option<&str>) -> String {
     let cover = scenario("cover-circle.toml");
     bench.fly(&cover, &["--set", "mission.time_limit_s=120"]);

@@ -1,4 +1,4 @@
-//! A second console that looks on at the run of another one.
+//! A second console that views the run of another console.
 
 use crate::bench::Bench;
 use std::{
@@ -11,7 +11,7 @@ use std::{
 
 const PATIENCE: Duration = Duration::from_mins(1);
 
-/// A console in sentences.
+/// A console with `--plain`.
 pub(crate) struct Console {
     child: Child,
     said: Receiver<String>,
@@ -42,7 +42,7 @@ impl Console {
         panic!("no {words:?} in {heard:#?}");
     }
 
-    /// Ends its stdin: it carries out what it was told and leaves.
+    /// Closes its stdin: the console carries out the remaining commands and exits.
     pub(crate) fn close(&mut self) {
         drop(self.child.stdin.take());
     }

@@ -1,4 +1,4 @@
-//! The console while a planner makes a plan: nothing that the operator does waits for it.
+//! The console while a planner makes a plan: no action of the operator has to wait for the plan.
 
 use crate::{
     bench::{first_of, journal, of_kind, scenario},
@@ -12,7 +12,7 @@ fn faulty(fault: &str) -> Session {
     Session::open(&arguments, 120, 36)
 }
 
-/// The console with a mission under way whose planner has to plan once more and misbehaves.
+/// The console with a mission in progress; its planner must plan once more and misbehaves.
 fn replanning(fault: &str) -> Session {
     let mut session = faulty(fault);
     session.start();
@@ -24,18 +24,18 @@ fn replanning(fault: &str) -> Session {
     session
 }
 
-/// The events from the zone on that made another plan necessary.
+/// The events from the zone that made a new plan necessary.
 fn since_zone(events: &[Value]) -> &[Value] {
     &events[first_of(events, "zone_drawn").expect("a zone")..]
 }
 
-/// Leaves a console whose mission is held or under way, and gives what was written down.
+/// Leaves a console with a mission held or in progress, and returns the journal and the report.
 fn leave(mut session: Session) -> (Session, Vec<Value>) {
     session.press("1q");
     aborted(session)
 }
 
-/// Agrees to leave, and gives what was written down.
+/// Confirms leaving, and returns the journal and the report.
 fn aborted(mut session: Session) -> (Session, Vec<Value>) {
     assert_eq!(session.agree_to_leave(), "code=1");
     let events = journal(&session.run());
@@ -44,7 +44,7 @@ fn aborted(mut session: Session) -> (Session, Vec<Value>) {
     (session, events)
 }
 
-/// The hold by the operator came before the plan, and before the time of the plan was over.
+/// The operator's hold came before the plan, and before the time limit of the plan.
 fn assert_held_first(events: &[Value]) {
     let events = since_zone(events);
     let held = first_of(events, "held").expect("held");
@@ -61,7 +61,7 @@ fn every_key_that_stops_holds_while_a_plan_is_being_made_and_the_console_leaves_
         let mut session = replanning("replan_hang");
         session.press(key);
         session.see("‖ HOLD");
-        // `q` on the first screen has asked already whether to leave.
+        // `q` on the first screen has already asked whether to leave.
         let (_, events) = if key == "1q" { aborted(session) } else { leave(session) };
         assert_held_first(&events);
         assert!(first_of(since_zone(&events), "planned").is_none());
@@ -128,7 +128,7 @@ fn another_planner_chosen_before_the_start_is_written_down_and_proven() {
 
 #[test]
 fn what_makes_no_run_possible_is_said_before_the_screen_is_taken() {
-    // The shell of the session writes the file `before`.
+    // The shell of the session wrote the file `before`.
     for (arguments, words) in [
         ("console --logs before", ["before", "not a folder"]),
         ("console --planner nonsense", ["nonsense", "there is no planner"]),
@@ -176,7 +176,7 @@ fn a_start_waits_for_the_plan_and_names_the_one_that_was_seen() {
     session.see("not started; start again when the plan is ready");
     session.start();
     session.see("▶ RUN");
-    // Its plan leads through a column, before which the robot is held.
+    // The plan leads through a column, and the robot is held in front of it.
     let (session, events) = leave(session);
     let run = session.run();
     let orders: Vec<&Value> = of_kind(&events, "ordered").iter().map(|event| &event["order"]).collect();
@@ -190,7 +190,7 @@ fn a_start_waits_for_the_plan_and_names_the_one_that_was_seen() {
 #[test]
 fn a_start_is_refused_while_a_planner_is_being_opened_and_leaves_no_run() {
     let mut session = faulty("configure_hang");
-    // On a busy machine the second for which it is being opened is over.
+    // On a busy machine the one-second time limit for opening may have passed.
     session.press("S\r");
     session.until("a refusal", |session| {
         ["not started; start again when the plan is ready", "tart blocked", "none; "]
@@ -216,7 +216,7 @@ fn a_planner_that_cannot_be_opened_blocks_the_start_and_another_one_flies() {
     session.press("A");
     session.see("[FAIL] planner");
     session.press("\x1b");
-    // A key right behind Esc would be Alt and that key.
+    // A key immediately after Esc would be read as Alt and that key.
     session.until("the closed list", |session| !session.text().contains("[FAIL] planner"));
     session.change_planner("rpf");
     session.see("Press S to start");

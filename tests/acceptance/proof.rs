@@ -1,4 +1,4 @@
-//! What `verify` proves, and what it refuses to call equal.
+//! The proofs of `verify`, and the runs that it does not report as equal.
 
 use crate::{
     bench::{Bench, change_journal, journal, journal_text, scenario},
@@ -7,7 +7,7 @@ use crate::{
 use mission::event::JOURNAL_VERSION;
 use std::path::PathBuf;
 
-/// A short run that was flown to its end.
+/// A short finished run.
 fn flown(bench: &Bench) -> PathBuf {
     assert_eq!(bench.fly(&scenario("goto-single-obstacle.toml"), &[]).code, Some(0));
     bench.runs().remove(0)
@@ -81,7 +81,7 @@ fn a_truncated_journal_differs_from_its_report() {
         [("the last line", lines.len() - 1), ("500 lines", lines.len() - 500), ("all but one", 1)]
     {
         change_journal(&run, &(lines[..kept].join("\n") + "\n"));
-        // A report that does not name the journal's hash claims an end all the same.
+        // A report without the journal's hash still claims that the run has ended.
         for report in [report.clone(), report.replacen("events_sha256", "events", 1)] {
             std::fs::write(run.join("report.json"), report).unwrap();
             let verified = bench.verify(&run, &[]);
@@ -101,7 +101,7 @@ fn a_journal_without_an_end_is_compared_as_far_as_it_goes() {
     let run = flown(&bench);
     let text = journal_text(&run);
     std::fs::remove_file(run.join("report.json")).unwrap();
-    // As a process leaves it that was killed: somewhere in a line, at the end of one, or before a newline.
+    // The journal as left by a killed process: cut off within a line, at the end of a line, or before a newline.
     let middle = text.len() / 2;
     let line_end = middle + text[middle..].find('\n').unwrap();
     for kept in [middle, line_end + 1, line_end] {
@@ -181,7 +181,7 @@ fn a_journal_of_another_version_is_refused_by_every_command_that_reads_it() {
     }
 }
 
-/// The text with what stands between two marks replaced, in the first line with both.
+/// Replaces the text between two marks, in the first line that contains both.
 fn with_part(text: &str, (from, to): (&str, &str), part: &str) -> String {
     let at = text.find(from).unwrap() + from.len();
     let end = at + text[at..].find(to).unwrap();

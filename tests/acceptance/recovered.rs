@@ -1,4 +1,4 @@
-//! A run whose writer was killed is closed by a person, and counts from then on.
+//! A run whose writer was killed is closed by a person, and can be used from then on.
 
 use crate::{
     bench::{Bench, Ended, change_journal, journal_text, scenario},
@@ -9,7 +9,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// A scan that was killed: without its report, with what its writer leaves behind.
+/// A killed scan: without its report, and with the temporary files of its writer.
 fn killed(bench: &Bench) -> PathBuf {
     bench.fly(&scenario("cover-circle.toml"), &[]);
     let run = bench.runs().pop().unwrap();
@@ -76,7 +76,7 @@ fn a_killed_run_is_closed_once_and_then_signed_and_noticed_when_it_is_changed() 
     let rescan = bench.tankops(&["rescan", name, "-o", "again.toml"]);
     assert!([Some(0), Some(1)].contains(&rescan.code) && !rescan.out.contains("was killed"), "{rescan:?}");
 
-    // Whatever is there now is not what was fixed.
+    // The current file differs from the one that was recovered.
     cut_block(&run);
     let changed = bench.verify(&run, &["--from-journal"]);
     assert!(
@@ -94,7 +94,7 @@ fn a_run_is_recovered_wherever_its_journal_stops() {
     let run = killed(&bench);
     let text = journal_text(&run);
     let end_of = |lines: usize| text.match_indices('\n').nth(lines - 1).unwrap().0 + 1;
-    // How much of the journal is there, and what is said of it.
+    // The amount of journal that is present, and the message about it.
     let cases = [
         (end_of(1), "the journal holds everything up to T+0.0 s"),
         (end_of(60) - 20, "is cut off after"),

@@ -12,7 +12,7 @@ fn flown(bench: &Bench) -> (PathBuf, String) {
     (run, path)
 }
 
-/// Everything that people must supply.
+/// All facts that people must supply.
 pub(crate) const FACTS: &str = r#"
 [inspection]
 client = "Port of <Rotterdam>"
@@ -97,7 +97,7 @@ fn a_report_is_signed_when_every_item_is_answered_and_the_next_one_is_another_re
         bench.tankops(&[&["report", &run, "-o", file, "--sign", "L. Kern"], &facts[..]].concat())
     };
     let lacks = sign("a.html");
-    // A plate that was not scanned at all has no figure of its accuracy.
+    // A plate that was not scanned at all has no accuracy figure.
     assert!(lacks.code == Some(2) && lacks.err.contains("accuracy of plate"), "{lacks:?}");
     bench.fly(&scenario("cover-circle.toml"), &[]);
     let run = bench.runs().pop().unwrap();
@@ -128,7 +128,7 @@ fn a_report_is_signed_when_every_item_is_answered_and_the_next_one_is_another_re
     assert_eq!((&draft["revision"], draft["revisions"].as_array().unwrap().len()), (&"C".into(), 2));
 }
 
-/// Report, list and verification of a run name what speaks against its files, and it is not signed.
+/// Report, list and verification of a run name the problem with its files, and signing is refused.
 fn assert_doubted(bench: &Bench, run: &Path, path: &str, doubts: [&str; 2]) {
     let [doubt, listed] = doubts;
     let report = bench.tankops(&["report", path]);
@@ -163,7 +163,7 @@ fn a_figure_that_was_changed_is_named_by_report_runs_and_verify_and_blocks_the_s
     std::fs::write(&file, text.replace("\"collisions\": 0", "\"collisions\": 1")).unwrap();
     let doubt = "report.json was changed: collisions is 1; the journal gives 0";
     assert_doubted(&bench, &run, &path, [doubt, "report.json was changed after the run ended"]);
-    // Nor does it help to take the digest out that shows the change.
+    // Removing the digest that shows the change does not help, either.
     let unsealed = text.lines().filter(|line| !line.contains("\"report_sha256\""));
     let unsealed = unsealed.collect::<Vec<_>>().join("\n").replace(",\n}", "\n}");
     std::fs::write(&file, unsealed.replace("\"collisions\": 0", "\"collisions\": 1")).unwrap();

@@ -1,4 +1,4 @@
-//! The papers' tables and the tuning of parameters, over the plugin boundary.
+//! The papers' tables and the tuning of parameters, across the plugin boundary.
 
 use crate::bench::Bench;
 use serde_json::Value;
@@ -69,7 +69,7 @@ fn every_coverage_planner_has_every_figure_of_its_tether_and_is_drawn() {
     }
     assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 6);
     let none = bench.tankops(&["reproduce", "pan-maps", "--case", "nope"]);
-    assert!(none.code == Some(2) && none.err.contains("known are E1-circle-14"), "{none:?}");
+    assert!(none.code == Some(2) && none.err.contains("known: E1-circle-14"), "{none:?}");
     let nothing = bench.tankops(&["reproduce", "wang-table3", "--svg", "plans"]);
     assert!(nothing.code == Some(2) && nothing.err.contains("coverage-suite"), "{nothing:?}");
 }
@@ -123,11 +123,11 @@ fn a_study_with_a_folder_resumes_and_is_shared_by_several_processes() {
     let pipe = bench.tankops(&shared);
     assert!(made.success() && pipe.code == Some(2) && pipe.err.contains("not a regular file"), "{pipe:?}");
     let other = bench.tankops(&[&shared[..], &["--first-seed", "9"]].concat());
-    assert!(other.code == Some(2) && other.err.contains("to other arguments"), "{other:?}");
+    assert!(other.code == Some(2) && other.err.contains("of different arguments"), "{other:?}");
     std::fs::write(bench.path().join("study/study.json"), b"{half").unwrap();
     let broken = bench.tankops(&shared);
     assert!(broken.code == Some(2) && broken.err.contains("study.json: "), "{broken:?}");
-    assert!(!broken.err.contains("other arguments"), "{broken:?}");
+    assert!(!broken.err.contains("different arguments"), "{broken:?}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! The queries of `rerun.md`, run as they stand there on a recording of a run.
+//! The queries of `rerun.md`, run exactly as printed on recordings of runs.
 
 use crate::{
     bench::{Bench, Ended, passed_over, scenario, workspace},
@@ -16,7 +16,7 @@ fn python(bench: &Bench, program: &str) -> Option<Ended> {
     output.ok().map(Ended::from)
 }
 
-/// Whether the recording of a run that is going on has what the queries ask for.
+/// Whether the recording of a run in progress already contains the data for the queries.
 fn has_fixes(run: &Path) -> bool {
     recording::inspect(&run.join("recording.rrd"))
         .is_ok_and(|has| has.entities.keys().any(|entity| entity.starts_with("scalars/residual/")))

@@ -1,9 +1,9 @@
-//! Past runs in the console: played back, noted about, compared.
+//! Past runs in the console: playback, notes, comparison.
 
 use crate::bench::{Bench, change_journal, journal_text, scenario};
 use std::path::Path;
 
-/// Flies a short mission and gives its folder.
+/// Flies a short mission and returns its folder.
 fn flown(bench: &Bench, seed: &str) -> std::path::PathBuf {
     let ended = bench.fly(&scenario("goto-single-obstacle.toml"), &["--seed", seed]);
     assert_eq!(ended.code, Some(0), "{ended:?}");

@@ -2,7 +2,7 @@
 
 use crate::bench::{Bench, journal_text, scenario, workspace};
 
-/// A flight into a trap ends as near to the end of its plan as this, metres.
+/// Maximum distance between the end of a flight into a trap and the end of its plan, metres.
 const STOP_M: f64 = 0.2;
 
 fn shipped() -> Vec<std::path::PathBuf> {
@@ -22,7 +22,7 @@ fn every_shipped_scenario_meets_its_expectations() {
         let flown = bench.fly(&file, &["--no-record"]);
         let report = flown.json();
         assert_eq!(report["violations"], serde_json::json!([]), "{}: {flown:?}", file.display());
-        // Some are there to show how a mission ends otherwise.
+        // Some scenarios exist to show other outcomes.
         let code = i32::from(report["outcome"] != "complete");
         assert_eq!(flown.code, Some(code), "{}: {flown:?}", file.display());
     }

@@ -3,7 +3,7 @@
 use crate::bench::{Bench, journal_text, passed_over, scenario, workspace};
 use std::process::Command;
 
-/// Validates a file of JSON lines; nothing may be there that the schema does not name.
+/// Validates a file of JSON lines; it must not contain anything that the schema does not name.
 const PROGRAM: &str = r#"
 import json, sys
 from jsonschema import Draft202012Validator

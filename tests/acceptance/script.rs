@@ -149,7 +149,7 @@ fn plain_sentences_tell_the_mission_and_commands_come_from_stdin() {
     let mut console = Console::open(bench.command(), &["--speed", "max"]);
     console.hear("Screen 2: Plan.");
     console.hear("Press S to start");
-    // The end of stdin leaves; the commands before it are carried out.
+    // The end of stdin closes the console; the commands before it are carried out.
     console.order("speeed 2\ngoto home\ngoto plan\nstart\nno\n");
     console.close();
     for line in ["Refused: unknown command `speeed`.", "Screen 1: Home.", "Enter: start, Esc: cancel."] {

@@ -18,12 +18,12 @@ const PATIENCE: Duration = Duration::from_mins(1);
 pub(crate) struct Session {
     pub bench: Bench,
     screen: Arc<Mutex<vt100::Parser>>,
-    /// Everything that was ever written to the terminal.
+    /// All output to the terminal so far.
     written: Arc<Mutex<Vec<u8>>>,
     keys: Box<dyn Write + Send>,
     child: Box<dyn Child + Send + Sync>,
     master: Option<Box<dyn MasterPty + Send>>,
-    /// Whether the terminal has been closed: its reader then lets go of it, too.
+    /// Whether the terminal has been closed; its reader then closes it, too.
     closed: Arc<AtomicBool>,
 }
 
@@ -37,7 +37,7 @@ impl Session {
         Self::open_after("", arguments, width, height)
     }
 
-    /// The same, after something else in the shell, which knows the program as `$TANKOPS`.
+    /// The same, after another command in the shell, where `$TANKOPS` is the program.
     pub(crate) fn open_after(before: &str, arguments: &str, width: u16, height: u16) -> Self {
         let bench = Bench::new();
         let size = PtySize { rows: height, cols: width, pixel_width: 0, pixel_height: 0 };
@@ -107,7 +107,7 @@ impl Session {
         self.keys.flush().unwrap();
     }
 
-    /// Presses a key until the screen shows a word; on a busy machine the planners are still being looked for.
+    /// Presses a key until the screen shows a word; on a busy machine the search for planners may still be running.
     pub(crate) fn press_until(&mut self, key: &str, word: &str) {
         let until = Instant::now() + PATIENCE;
         while !self.text().contains(word) && Instant::now() < until {
@@ -117,7 +117,7 @@ impl Session {
         self.see(word);
     }
 
-    /// Goes down an open list to an entry and takes it.
+    /// Moves down an open list to an entry and selects it.
     pub(crate) fn choose(&mut self, entry: &str) {
         let chosen = format!(">{entry} ");
         for _ in 0..60 {
@@ -131,7 +131,7 @@ impl Session {
         self.press("\r");
     }
 
-    /// Starts the mission and agrees to it, once its plan is ready.
+    /// Starts the mission and confirms it, once its plan is ready.
     pub(crate) fn start(&mut self) {
         self.see("Press S to start");
         self.press("S");
@@ -145,7 +145,7 @@ impl Session {
         self.see("‖ HOLD");
     }
 
-    /// Lets a held robot go on.
+    /// Resumes a held robot.
     pub(crate) fn resume(&mut self) {
         self.press(" ");
         self.see("Resume?");
@@ -153,36 +153,36 @@ impl Session {
         self.see("▶ RUN");
     }
 
-    /// Chooses another planner for a robot that stands.
+    /// Chooses another planner for a held robot.
     pub(crate) fn change_planner(&mut self, id: &str) {
         self.press_until("P", "coverage is kept");
         self.choose(id);
         self.see(&format!("Change planner to {id}?"));
-        // Enter right after Enter would be a key that is held down.
+        // Enter immediately after Enter would count as a key that is held down.
         std::thread::sleep(Duration::from_millis(400));
         self.press("\r");
     }
 
-    /// Flies the rest of the mission fast, and leaves the console.
+    /// Flies the rest of the mission at high speed, and leaves the console.
     pub(crate) fn finish(&mut self) {
         self.press(">>>>>>");
         self.see("DONE");
         self.see("7 Result");
-        // Back, screen by screen, and out.
+        // Goes back, screen by screen, and leaves the console.
         self.press("1");
         self.see("1 Home");
         self.press("q");
         assert_eq!(self.back_in_the_shell(), "code=0");
     }
 
-    /// Agrees to quit a mission that is under way, and gives the exit code.
+    /// Confirms quitting a mission in progress, and returns the exit code.
     pub(crate) fn agree_to_leave(&mut self) -> String {
         self.see("Enter: quit");
         self.press("\r");
         self.back_in_the_shell()
     }
 
-    /// Waits for the shell to be back; the terminal must be as it was. Gives the exit code.
+    /// Waits until the shell is back and checks that the terminal is restored. Returns the exit code.
     pub(crate) fn back_in_the_shell(&mut self) -> String {
         self.until("the shell", |session| {
             session.bench.path().join("after").exists() && session.text().contains("SHELL-AGAIN")
@@ -208,7 +208,7 @@ impl Session {
         rustix::process::kill_process(pid, signal).unwrap();
     }
 
-    /// Closes the terminal under the console, as a window that is shut.
+    /// Closes the terminal while the console runs, as if its window were closed.
     pub(crate) fn hang_up(&mut self) {
         self.closed.store(true, Ordering::SeqCst);
         drop(self.master.take());

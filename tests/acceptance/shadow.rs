@@ -1,4 +1,5 @@
-//! A planner in shadow: it takes over without a hold, its faults are its own, and verify repeats all of it.
+//! A planner in shadow: it takes over without a hold, its faults do not affect the mission, and `verify` repeats
+//! everything.
 
 use crate::bench::{Bench, Ended, journal, of_kind, scenario};
 use serde_json::Value;
@@ -16,12 +17,12 @@ fn fly(bench: &Bench, name: &str, more: &[&str]) -> (PathBuf, Vec<Value>, Ended)
     (run, events, flown)
 }
 
-/// Ticks in which the robot was sent a command.
+/// The ticks in which a command was sent to the robot.
 fn driven(events: &[Value]) -> Vec<u64> {
     of_kind(events, "commanded").iter().map(|event| event["tick"].as_u64().unwrap()).collect()
 }
 
-/// The most descriptors and children that a process has while it runs.
+/// The maximum numbers of descriptors and children of a process while it runs.
 #[cfg(target_os = "linux")]
 fn most_held(child: &mut Child) -> (usize, usize) {
     let proc = PathBuf::from(format!("/proc/{}", child.id()));
@@ -37,7 +38,7 @@ fn most_held(child: &mut Child) -> (usize, usize) {
     (fds, children)
 }
 
-/// A slow robot, so that there is time for all of them.
+/// A slow robot, so that there is time for all promotions.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_thousand_planners_take_over_in_one_mission() {
@@ -55,8 +56,8 @@ fn a_thousand_planners_take_over_in_one_mission() {
     assert_eq!(of_kind(&events, "held").len(), 0, "{flown:?}");
     let driven = driven(&events);
     assert!(driven.windows(2).all(|pair| pair[1] == pair[0] + 1), "a command in every tick");
-    // Two drive and fly in shadow; those that were replaced take a moment to end, longer on a busy machine. A leak would
-    // leave one behind for each of the thousand.
+    // There are two workers, one active and one in shadow. Replaced workers take a moment to end, longer on a busy
+    // machine. A leak would leave one worker for each of the thousand promotions.
     assert!(fds < 80 && children <= 16, "{fds} descriptors, {children} children");
     bench.prove(&run);
 }

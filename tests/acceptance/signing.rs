@@ -1,4 +1,4 @@
-//! What must not be signed, and what is said of a run after it was signed.
+//! Reports that must not be signed, and the messages about a run after it was signed.
 
 use crate::{
     bench::{Bench, Ended, change_journal, journal_text, scenario},
@@ -31,7 +31,7 @@ fn digest(text: &str) -> String {
     Sha256::digest(text.as_bytes()).iter().fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
 }
 
-/// Changes a line of the journal that no figure depends on, and recomputes every digest, as a forger would.
+/// Changes a line of the journal on which no figure depends, and recomputes every digest, as a forger would.
 fn forge(run: &Path) {
     let before = journal_text(run);
     let after = before.replacen("certified", "certifies", 1);
@@ -69,7 +69,7 @@ fn a_signature_is_missed_where_its_list_was_deleted_and_a_run_where_another_took
         verified.code == Some(0) && verified.out.contains("signed: revision A by L. Kern"),
         "{verified:?}"
     );
-    // A signed report is written over by nothing, not even as the report of another run.
+    // Nothing overwrites a signed report, not even the report of another run.
     bench.fly(&scenario("cover-circle.toml"), &["--seed", "2", "--set", "mission.time_limit_s=60"]);
     let other = bench.runs().into_iter().find(|other| *other != run).unwrap();
     let over = bench.tankops(&["report", other.to_str().unwrap(), "-o", "a.html", "--force"]);
@@ -96,7 +96,7 @@ fn a_signature_is_missed_where_its_list_was_deleted_and_a_run_where_another_took
     );
     std::fs::rename(&renamed, &run).unwrap();
 
-    // Another run under the name of the one that was signed.
+    // A different run with the name of the signed run.
     for file in ["events.jsonl.zst", "recording.rrd", "report.json"] {
         std::fs::copy(other.join(file), run.join(file)).unwrap();
     }
@@ -108,7 +108,7 @@ fn a_signature_is_missed_where_its_list_was_deleted_and_a_run_where_another_took
     assert_refused(&sign(&bench, &run, "b.html"), "signed revision A covers a different journal");
 }
 
-/// A scenario file of the round tank with what makes it another one.
+/// A scenario file of the round tank, changed so that it is a different tank.
 fn tank(bench: &Bench, name: &str, facts: &str) -> PathBuf {
     let text = std::fs::read_to_string(scenario("cover-circle.toml")).unwrap();
     let text = text.replace("name = \"cover-circle\"", &format!("name = \"{name}\""));
@@ -149,7 +149,7 @@ fn twin_tanks_never_become_one_report_and_a_rescan_names_the_run_that_it_continu
         assert_eq!(together(&again).code, Some(0), "another scan of the same tank: {:?}", together(&again));
     }
     std::fs::remove_file(bench.path().join("s.toml")).unwrap();
-    // A re-scan of the one is not a re-scan of the other.
+    // A re-scan of one tank is not a re-scan of the other.
     assert_eq!(bench.tankops(&["rescan", &one, "-o", "again.toml"]).code, Some(0));
     let rescan = fly(&bench.path().join("again.toml"), &[]);
     assert_eq!(bench.tankops(&["report", &one, &rescan]).code, Some(0));
@@ -161,7 +161,7 @@ fn twin_tanks_never_become_one_report_and_a_rescan_names_the_run_that_it_continu
             && refused.err.contains(&digest),
         "{refused:?}"
     );
-    // Facts of a file do not make one tank another.
+    // A file of facts cannot turn one tank into another.
     bench.file("facts.toml", "[inspection]\ntank_id = \"T-10\"\n");
     let draft = bench.tankops(&["report", &one, "-o", "d.json", "--inspection", "facts.toml"]);
     let text = std::fs::read_to_string(bench.path().join("d.json")).unwrap();

@@ -1,5 +1,5 @@
-//! A campaign on a real Slurm of one node, started for the test. Where slurmctld is absent, or the test is not run by root, it
-//! is passed over with a line.
+//! A campaign on a real Slurm of one node, started for the test. If slurmctld is not installed, or the test does not
+//! run as root, the test is skipped with a message.
 
 use crate::{
     bench::{Bench, passed_over},
@@ -15,7 +15,7 @@ use std::{
 };
 use tempfile::TempDir;
 
-/// Longer than anything here takes, also on a busy machine.
+/// Longer than any step here takes, even on a busy machine.
 const LONG: Duration = Duration::from_mins(3);
 const DAEMONS: [&str; 3] = ["slurmd", "slurmctld", "munged"];
 
@@ -25,7 +25,7 @@ struct Slurm {
 }
 
 impl Slurm {
-    /// None where it is not installed.
+    /// `None` if Slurm is not installed.
     fn start() -> Option<Self> {
         let is_there =
             |program: &&str| Command::new("which").arg(program).output().is_ok_and(|o| o.status.success());
@@ -89,12 +89,12 @@ impl Slurm {
         }
     }
 
-    /// State of a task, as PENDING; empty when it has left the queue.
+    /// State of a task, such as PENDING; empty when the task has left the queue.
     fn state(&self, task: &str) -> String {
         text(&self.call("squeue", &["-h", "-r", "-j", task, "-o", "%T"])).trim().to_owned()
     }
 
-    /// Waits until the queue is empty; requeued tasks would wait two minutes.
+    /// Waits until the queue is empty; requeued tasks would otherwise wait two minutes.
     fn drain(&self) {
         self.wait("the end of the array", |slurm| {
             for task in text(&slurm.call("squeue", &["-h", "-r", "-t", "PENDING", "-o", "%A"])).lines() {
@@ -106,7 +106,7 @@ impl Slurm {
 }
 
 impl Drop for Slurm {
-    /// Ends the daemons by the numbers in their files, after a look at who has them.
+    /// Ends the daemons by the process ids in their files, after checking that the ids are still theirs.
     fn drop(&mut self) {
         self.call("scancel", &["--me"]);
         for daemon in DAEMONS {
@@ -126,7 +126,7 @@ impl Drop for Slurm {
     }
 }
 
-/// munge wants a folder that everybody may enter.
+/// munge requires a folder that everybody can enter.
 fn open_to_all(folder: &Path) {
     for folder in ["", "run", "state", "spool", "log"].map(|name| folder.join(name)) {
         Command::new("chmod").arg("755").arg(folder).status().unwrap();

@@ -1,8 +1,9 @@
-//! Robots that brake slowly, turn slowly or are steered seldom touch nothing that is drawn, whatever drives them.
+//! Robots that brake slowly, turn slowly or have long ticks do not touch anything on the drawing, whatever planner
+//! drives them.
 
 use crate::bench::{Bench, Ended, scenario};
 
-/// Numbers from 0 to 1, the same everywhere.
+/// Pseudo-random numbers from 0 to 1, the same on every machine.
 struct Draw(u64);
 
 impl Draw {
@@ -16,7 +17,7 @@ impl Draw {
     }
 }
 
-/// Flies a robot with other limits; there is time enough.
+/// Flies a robot with other limits and a generous time limit.
 fn fly(name: &str, planner: &str, seed: u64, set: &[String]) -> Ended {
     let bench = Bench::new();
     let seed = seed.to_string();
@@ -69,7 +70,7 @@ fn whatever_the_robot_can_do_it_touches_nothing_that_is_drawn() {
             format!("mission.clearance_m={:.3}", draw.within(0.0, 0.3)),
         ];
         let flown = fly(name, planner, k as u64, &set);
-        // A mission that does not end well is the planner's; a robot that touches something is ours.
+        // A mission that does not complete is the planner's fault; a robot that touches something is ours.
         let figures = flown.json();
         assert_eq!(figures["collisions"], 0, "{name} {planner} {set:?}: {figures}");
     }

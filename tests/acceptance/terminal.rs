@@ -1,4 +1,4 @@
-//! The console in a pseudo terminal: what the operator sees, and that the terminal comes back as it was.
+//! The console in a pseudo terminal: the operator's view, and the restored terminal afterwards.
 
 use crate::bench::{journal, of_kind, scenario};
 use crate::session::Session;
@@ -63,7 +63,7 @@ fn a_held_key_moves_nothing() {
     session.hold();
     session.press(".");
     session.see("Step?");
-    // As a keyboard repeats: after half a second, then many times a second.
+    // Repeats like a keyboard: after half a second, then many times a second.
     std::thread::sleep(std::time::Duration::from_millis(500));
     for _ in 0..40 {
         session.press(".");
@@ -94,7 +94,7 @@ fn a_panic_of_the_screen_gives_the_terminal_back_and_closes_the_run() {
 
 #[test]
 fn a_terminal_that_another_process_has_taken_is_taken_back_and_the_key_is_heard() {
-    // A job of its own, as every other process of the session might be.
+    // A separate job, as any other process of the session might be.
     let thief = "set -m; (until [ -e steal ]; do sleep 0.1; done; trap '' TTOU; $TANKOPS take-terminal && touch stolen; \
                  sleep 100) & set +m;";
     let mut session = Session::open_after(thief, &goto(), 80, 24);

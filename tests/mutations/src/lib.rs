@@ -5,22 +5,22 @@
 
 use proptest::prelude::*;
 
-/// One change. Places are shares of the length, 0 to 1, so that they fit whatever the input has become.
+/// One change. Places are shares of the length, 0 to 1, so that they are valid for any length of the input.
 #[derive(Debug, Clone)]
 pub enum Mutation {
-    /// Another byte.
+    /// Replaces a byte.
     Replace(f64, u8),
-    /// Text that readers stumble over.
+    /// Inserts text that often breaks readers.
     Insert(f64, &'static str),
-    /// Some bytes are missing.
+    /// Removes some bytes.
     Delete(f64, usize),
-    /// Some bytes come twice.
+    /// Duplicates some bytes.
     Repeat(f64, usize),
-    /// The end is missing.
+    /// Cuts off the end.
     Truncate(f64),
 }
 
-/// Numbers, brackets and keys that have broken readers before.
+/// Numbers, brackets and keys that have broken readers in the past.
 const TOKENS: [&str; 22] = [
     "0",
     "-1",

@@ -1,8 +1,8 @@
-//! What the attributes of a type, a field or a variant say.
+//! The information in the attributes of a type, a field or a variant.
 
 use syn::{Attribute, Expr, Lit, Meta, Token, punctuated::Punctuated};
 
-/// The serde attributes that change what is written.
+/// The serde attributes that change the written form.
 #[derive(Debug, Clone, Default)]
 #[allow(clippy::struct_excessive_bools, reason = "each is an attribute of its own")]
 pub(crate) struct Serde {
@@ -20,7 +20,7 @@ pub(crate) struct Serde {
 }
 
 impl Serde {
-    /// Also those that hold with a feature only: the console has all of them.
+    /// Includes attributes that depend on a feature: the console enables all of them.
     pub(crate) fn of(attributes: &[Attribute]) -> Self {
         let mut serde = Self::default();
         for attribute in attributes {
@@ -58,13 +58,13 @@ impl Serde {
             "rename_all" => self.rename_all = value,
             "into" => self.into = value,
             "with" => self.with = value,
-            // They say how it is read.
+            // These attributes only affect reading.
             "from" | "try_from" | "alias" | "deny_unknown_fields" | "bound" => {}
             other => panic!("serde({other}) is not known to the schemas"),
         }
     }
 
-    /// A name as it is written.
+    /// A name in its written form.
     pub(crate) fn name(&self, own: &str, all: Option<&str>) -> String {
         match (&self.rename, all) {
             (Some(name), _) => name.clone(),
@@ -86,7 +86,7 @@ fn snake(name: &str) -> String {
     snake
 }
 
-/// The documentation, as one line for each paragraph.
+/// The documentation, with one line for each paragraph.
 pub(crate) fn documentation(attributes: &[Attribute]) -> String {
     let lines: Vec<String> = attributes
         .iter()

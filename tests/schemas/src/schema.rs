@@ -9,33 +9,33 @@ use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use syn::{Field, Fields, GenericArgument, ItemEnum, ItemStruct, PathArguments, Type, TypeParam, Variant};
 
-/// A type that a document is about.
+/// The root type of a document.
 #[derive(Debug, Clone, Copy)]
 pub struct Root {
-    /// Its crate.
+    /// The crate of the type.
     pub of_crate: &'static str,
-    /// Its name.
+    /// The name of the type.
     pub name: &'static str,
-    /// What is written in this form.
+    /// The description of the documents of this type.
     pub about: &'static str,
 }
 
-/// A schema document that is being made.
+/// A schema document under construction.
 #[derive(Debug)]
 pub struct Document<'a> {
     sources: &'a Sources,
     definitions: BTreeMap<String, Value>,
-    /// What the parameters of the generic type stand for that is being written, and of those around it.
+    /// The arguments of the generic type that is being written, and of the generic types around it.
     parameters: Vec<BTreeMap<String, Value>>,
 }
 
 type Object = Map<String, Value>;
 
 impl<'a> Document<'a> {
-    /// The schema of what is written of some types: any of them.
+    /// The schema of documents that have any of these types.
     ///
     /// # Panics
-    /// If a type is written in a way that is not known here.
+    /// If a type is written in a way that this crate does not support.
     pub fn of(sources: &'a Sources, title: &str, id: &str, roots: &[Root]) -> Value {
         let mut document = Self { sources, definitions: BTreeMap::new(), parameters: Vec::new() };
         let any: Vec<Value> = roots
@@ -62,7 +62,7 @@ impl<'a> Document<'a> {
         whole
     }
 
-    /// A reference to a type, which is defined if it was not yet.
+    /// A reference to a type; adds its definition if it is missing.
     fn defined(&mut self, at: &Defined, inner: &[Value]) -> Value {
         let parameters: Vec<&TypeParam> = at.parameters();
         let mut means = BTreeMap::new();
@@ -83,7 +83,7 @@ impl<'a> Document<'a> {
     #[allow(clippy::needless_pass_by_value, reason = "callers make the name")]
     fn defined_as(&mut self, at: &Defined, name: String) -> Value {
         if !self.definitions.contains_key(&name) {
-            // So that a type may hold itself.
+            // So that a type may contain itself.
             self.definitions.insert(name.clone(), Value::Null);
             let schema = self.definition(at);
             self.definitions.insert(name.clone(), schema);
@@ -120,7 +120,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// An object of some fields and of properties that are there already.
+    /// An object with some fields, in addition to existing properties.
     fn object(
         &mut self,
         at: &Defined,
@@ -216,7 +216,7 @@ impl<'a> Document<'a> {
         json!({ "type": "object", "properties": { name: content }, "required": [name] })
     }
 
-    /// A variant whose name stands beside its content.
+    /// A variant with its name beside its content.
     fn tagged(&mut self, at: &Defined, variant: &Variant, tag: &str, name: &str) -> Value {
         let head = Object::from_iter([(tag.to_owned(), json!({ "const": name }))]);
         let required = vec![Value::from(tag)];
@@ -253,7 +253,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// A schema in place of a reference to it.
+    /// Replaces a reference by the schema itself.
     fn resolved(&self, schema: &Value) -> Value {
         match schema.get("$ref").and_then(Value::as_str) {
             Some(reference) => self.definitions[reference.trim_start_matches("#/$defs/")].clone(),
@@ -311,7 +311,7 @@ impl<'a> Document<'a> {
             ("BTreeMap" | "HashMap", [_, inner]) => {
                 json!({ "type": "object", "additionalProperties": self.of_type(at, inner) })
             }
-            // Its own `Serialize`.
+            // Has its own `Serialize`.
             ("PlanId", _) => json!({ "type": "string", "description": "SHA-256, hexadecimal" }),
             ("Point" | "Vector" | "Point2" | "Vector2", _) => json!({
                 "type": "array",
@@ -330,7 +330,7 @@ impl<'a> Document<'a> {
     }
 }
 
-/// A schema in a word, for the name of a generic type.
+/// A one-word name of a schema, for the name of a generic type.
 fn short(schema: &Value) -> String {
     let reference = schema["$ref"].as_str().and_then(|path| path.rsplit(['.', '/']).next());
     reference.or(schema["type"].as_str()).unwrap_or("any").to_owned()
@@ -347,7 +347,7 @@ fn tuple(items: Vec<Value>) -> Value {
     json!({ "type": "array", "prefixItems": items, "minItems": n, "maxItems": n })
 }
 
-/// A symmetric matrix as it is written: its upper triangle, row by row.
+/// The written form of a symmetric matrix: its upper triangle, row by row.
 fn symmetric(written: &Type) -> Value {
     let is_of_two = matches!(written, Type::Path(path) if path.path.segments.last().is_some_and(|last| last.ident == "Matrix2"));
     let (n, what) = if is_of_two {

@@ -1,4 +1,4 @@
-//! The types of some crates, as their sources define them.
+//! The types of some crates, as defined in their sources.
 
 use std::{
     collections::BTreeMap,
@@ -15,7 +15,7 @@ pub(crate) enum Definition {
     Alias(ItemType),
 }
 
-/// A type with where it is defined.
+/// A type, and the place of its definition.
 #[derive(Debug, Clone)]
 pub(crate) struct Defined {
     pub of_crate: String,
@@ -25,7 +25,7 @@ pub(crate) struct Defined {
 }
 
 impl Defined {
-    /// The types that it takes as parameters.
+    /// The type parameters.
     pub(crate) fn parameters(&self) -> Vec<&TypeParam> {
         let generics = match &self.definition {
             Definition::Struct(item) => &item.generics,
@@ -40,14 +40,14 @@ impl Defined {
 #[derive(Debug, Default)]
 pub struct Sources {
     all: Vec<Defined>,
-    /// For each file and name the crate that the name comes from.
+    /// For each file and name, the crate from which the name is imported.
     uses: BTreeMap<(PathBuf, String), Vec<String>>,
     /// The root of each crate.
     libs: BTreeMap<String, PathBuf>,
 }
 
 impl Sources {
-    /// Reads crates: names with the folders of their sources.
+    /// Reads crates, given by name and source folder.
     ///
     /// # Panics
     /// If a file cannot be read or is not Rust.
@@ -89,7 +89,7 @@ impl Sources {
                 }
                 _ => continue,
             };
-            // Others of the name are not written; an alias is what it stands for.
+            // Other types with this name are never written; an alias stands for its target.
             let is_written = match &definition {
                 Definition::Struct(item) => is_serialised(&item.attrs),
                 Definition::Enum(item) => is_serialised(&item.attrs),
@@ -121,10 +121,10 @@ impl Sources {
         }
     }
 
-    /// The type that a path means in a file of a crate; none if none of the crates has it.
+    /// The type that a path refers to in a file of a crate; `None` if none of the crates has it.
     ///
     /// # Panics
-    /// If it can be several.
+    /// If the path is ambiguous.
     pub(crate) fn find(&self, at: &Defined, path: &[String]) -> Option<&Defined> {
         let (name, before) = path.split_last()?;
         let used = self.uses.get(&(at.file.clone(), path[0].clone()));
@@ -137,7 +137,7 @@ impl Sources {
         let of_crate = way.first().filter(|first| is_known(first)).unwrap_or(&at.of_crate);
         let lib = self.libs.get(of_crate).filter(|lib| **lib != at.file && way.len() <= 1);
         if let Some(lib) = lib.filter(|lib| self.uses.contains_key(&((*lib).clone(), name.clone()))) {
-            // It stands at the root of the crate, which says where it has it from.
+            // The name is at the root of the crate, which states its origin.
             let root = Defined { of_crate: of_crate.clone(), file: lib.clone(), ..at.clone() };
             return self.find(&root, std::slice::from_ref(name));
         }
@@ -149,7 +149,7 @@ impl Sources {
         };
         let mut found = named(Some(of_crate));
         if found.is_empty() {
-            // It is handed on from another one of the crates.
+            // The name is re-exported from another crate.
             found = named(None);
         }
         if found.len() > 1 && way.len() <= 1 {
@@ -172,7 +172,7 @@ impl Sources {
     /// The type of a name in a crate.
     ///
     /// # Panics
-    /// If there is none or there are several.
+    /// If there is no such type, or more than one.
     pub(crate) fn root(&self, of_crate: &str, name: &str) -> &Defined {
         let is_it = |defined: &&Defined| defined.of_crate == of_crate && defined.name == name;
         let found: Vec<&Defined> = self.all.iter().filter(is_it).collect();
@@ -181,7 +181,7 @@ impl Sources {
     }
 }
 
-/// Whether a type derives how it is written, perhaps with a feature only.
+/// Whether a type derives `Serialize`, possibly only with a feature.
 fn is_serialised(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|attribute| match &attribute.meta {
         Meta::List(list) if list.path.is_ident("derive") || list.path.is_ident("cfg_attr") => {

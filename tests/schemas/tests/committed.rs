@@ -1,4 +1,4 @@
-//! The schemas in `console/docs` are those of the types.
+//! The schemas in `console/docs` match the types.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -8,7 +8,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The crates whose types are written.
+/// The crates with the written types.
 const CRATES: [(&str, &str); 9] = [
     ("geometry", "console/geometry/src"),
     ("world", "console/world/src"),
@@ -30,14 +30,14 @@ fn sources() -> Sources {
     Sources::read(&folders.each_ref().map(|(name, folder)| (*name, folder.as_path())))
 }
 
-/// A constant of the sources, by its declaration.
+/// A constant in the sources, found by its declaration.
 fn version(file: &str, name: &str) -> u32 {
     let text = fs::read_to_string(project().join(file)).unwrap();
     let declared = text.split(&format!("pub const {name}: u32 = ")).nth(1).unwrap();
     declared.split(';').next().unwrap().parse().unwrap()
 }
 
-/// Compares a schema with the file that is committed, or renews that.
+/// Compares a schema with the committed file, or renews the file.
 fn is_committed(file: &str, schema: &serde_json::Value) {
     let path = project().join("console/docs").join(file);
     let text = serde_json::to_string_pretty(schema).unwrap() + "\n";

@@ -278,7 +278,7 @@ fn tool(survey: &Survey) -> String {
         "; without measured motion the heading is unknown, so no floor counts as scanned"
     };
     let stretches = match stretches.len() {
-        1 => "1 stretch".to_owned(),
+        1 => "1 period".to_owned(),
         n => format!("{n} periods"),
     };
     format!("on for {on_s:.1} s in {stretches}{heading}")
@@ -292,4 +292,65 @@ fn start_off_m(scenario: &Scenario, tally: &Tally) -> Option<f64> {
     let moved_m = mission.limits.v_max_m_per_s * tally.first_fix_t_s.unwrap_or_default();
     let off_m = (first - mission.start.position).norm();
     (off_m > 2.0 * error_95_m + 3.0 * mission.start_sigma_m + moved_m).then_some(off_m)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ::locate::Refused;
+
+    fn scenario() -> Scenario {
+        let text = include_str!("../../../../scenarios/goto-single-obstacle.toml");
+        Scenario::parse(text, "goto-single-obstacle.toml").expect("the scenario is valid")
+    }
+
+    #[test]
+    fn an_impossible_reading_is_named_with_its_station_time_and_limit() {
+        let scenario = scenario();
+        let station = &scenario.sim.world.stations[1];
+        let with = |count, range_m| {
+            let refused = Refused { count, range_m, most_m: 20.0, t_s: 3.5 };
+            let doubts = Doubts { impossible: [(station.id.0, refused)].into(), ..Doubts::default() };
+            impossible(&scenario, &doubts).join("\n")
+        };
+        assert_eq!(impossible(&scenario, &Doubts::default()), Vec::<String>::new());
+        let name = &station.name;
+        let one = "1 reading that is impossible in this tank";
+        assert_eq!(with(1, 25.5), format!("{one}\nstation {name}: 25.500 m at 3.500 s; at most 20.00 m"));
+        let three = "3 readings that are impossible in this tank";
+        assert_eq!(
+            with(3, f64::NAN),
+            format!("{three}\nstation {name}: not a number at 3.500 s and 2 more; at most 20.00 m")
+        );
+    }
+
+    #[test]
+    fn mirror_images_are_counted_by_what_decided() {
+        let (scenario, all) =
+            (scenario(), Doubts { sides_by_walls: 1, sides_by_track: 2, sides_open: 3, ..Doubts::default() });
+        assert_eq!(sides(&scenario, &Doubts::default()), Vec::<String>::new());
+        let lines = sides(&scenario, &all);
+        assert!(lines[0].starts_with("6 fixes have a mirror image"), "{lines:?}");
+        let counts: Vec<&str> = lines[1..].iter().map(|line| &line[..1]).collect();
+        assert_eq!(counts, ["1", "2", "3"], "{lines:?}");
+        let contradicted = sides(&scenario, &Doubts { contradicts_start: true, ..all });
+        assert!(contradicted[3].contains("robot.start_m contradicts both positions"), "{contradicted:?}");
+    }
+
+    #[test]
+    fn a_start_is_wrong_only_beyond_both_errors_and_the_way_since() {
+        let scenario = scenario();
+        let mission = &scenario.mission;
+        let explained_m = 2.0 * 0.1 + 3.0 * mission.start_sigma_m + 2.0 * mission.limits.v_max_m_per_s;
+        let off = |metres: f64| {
+            let first = mission.start.position + world::Vector::new(metres, 0.0);
+            let mut tally = Tally::default();
+            (tally.first_fix_m, tally.first_fix_t_s) = (Some(first), Some(2.0));
+            tally.first_fix_error_95_m = Some(0.1);
+            start_off_m(&scenario, &tally)
+        };
+        assert_eq!(off(explained_m - 1e-6), None);
+        assert!(off(explained_m + 0.01).is_some());
+        assert_eq!(start_off_m(&scenario, &Tally::default()), None, "without a fix nothing is known");
+    }
 }

@@ -29,13 +29,13 @@ pub enum Role {
 impl fmt::Display for Role {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Shell => "shell",
-            Self::Columns => "columns",
-            Self::Pipes => "pipes",
-            Self::Sump => "sumps",
-            Self::NoGo => "no-go zones",
-            Self::Plates => "plates",
-            Self::Ignored => "ignored layers",
+            Self::Shell => "SHELL",
+            Self::Columns => "COLUMNS",
+            Self::Pipes => "PIPES",
+            Self::Sump => "SUMP",
+            Self::NoGo => "NOGO",
+            Self::Plates => "PLATES",
+            Self::Ignored => "IGNORE",
         })
     }
 }

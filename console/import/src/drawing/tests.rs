@@ -492,7 +492,7 @@ fn an_outline_with_a_gap_is_named_with_its_place() {
     let plan = read_text(",9 $INSUNITS,70 6", "", columns, &plain()).unwrap();
     assert!(
         plan.notes.iter().any(|note| note
-            .starts_with("columns: 1 lines that do not close an outline were left out; an outline 1.000 m across is nearly closed")
+            .starts_with("COLUMNS: 1 lines that do not close an outline were left out; an outline 1.000 m across is nearly closed")
             && note.ends_with("one gap of 50.0 mm, from (1, 1) to (1.05, 1) in the drawing")),
         "{:?}",
         plan.notes

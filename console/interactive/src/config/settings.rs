@@ -62,7 +62,7 @@ fn screen(config: &mut Config, key: &str, item: &Item) -> Result<(), String> {
         "colours" => {
             config.colours = match string(item)? {
                 "auto" => None,
-                name => Some(colours(name).map_err(|why| why.replace("none", "auto, none"))?),
+                name => Some(colours(name).map_err(|_| "must be auto, none, 16, 256 or true")?),
             };
         }
         _ => config.preferences.mouse = item.as_bool().ok_or("must be true or false")?,
@@ -109,12 +109,12 @@ fn string(item: &Item) -> Result<&str, String> {
 ///
 /// # Errors
 /// The allowed values.
-pub fn colours(name: &str) -> Result<Colours, String> {
+pub fn colours(name: &str) -> Result<Colours, &'static str> {
     match name {
         "none" => Ok(Colours::None),
         "16" => Ok(Colours::Sixteen),
         "256" => Ok(Colours::Indexed),
         "true" => Ok(Colours::True),
-        _ => Err("must be none, 16, 256 or true".into()),
+        _ => Err("must be none, 16, 256 or true"),
     }
 }

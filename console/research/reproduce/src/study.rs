@@ -1,4 +1,4 @@
-//! What every study is made of: its cases and methods, who runs them, and the rows that come out.
+//! The parts of every study: its cases and methods, the runner, and the resulting rows.
 
 mod error;
 mod gallery;
@@ -24,7 +24,7 @@ pub(crate) use verdict::{judged, without_seed, wrong_signs};
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Number of cases or methods that an error names.
+/// Maximum number of cases or methods that an error names.
 const KNOWN_SHOWN: usize = 20;
 
 /// A table or figure.
@@ -32,17 +32,17 @@ const KNOWN_SHOWN: usize = 20;
 pub struct Study {
     /// Name on the command line.
     pub name: &'static str,
-    /// One sentence: what it is, and of which paper.
+    /// A one-sentence description with the paper.
     pub about: &'static str,
-    /// Number of layouts or draws unless another is given.
+    /// Default number of layouts or draws.
     pub layouts: usize,
     pub(crate) run: fn(&Job<'_>) -> Result<Vec<Row>>,
 }
 
-/// What a study is asked for.
+/// A request to a study.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Options {
-    /// Number of layouts or draws; the study's own if none.
+    /// Number of layouts or draws; `None` for the study's default.
     pub layouts: Option<usize>,
     /// Seed of the first layout; the others follow.
     pub first_seed: u64,
@@ -53,10 +53,10 @@ pub struct Options {
 }
 
 impl Study {
-    /// The rows of what is asked for.
+    /// Computes the requested rows.
     ///
     /// # Errors
-    /// A planner is missing or broke down, or nothing is left to measure.
+    /// A planner is missing or failed, or nothing is left to measure.
     pub fn rows(&self, runner: &Runner<'_>, options: &Options) -> Result<Vec<Row>> {
         if options.layouts == Some(0) {
             return Err(StudyError::Refused("--layouts 0 measures nothing; give at least 1".into()));
@@ -70,7 +70,7 @@ impl Study {
         })?;
         if rows.is_empty() {
             return Err(StudyError::Refused(format!(
-                "{}: no row has the given --case and --method",
+                "{}: no row matches both --case and --method",
                 self.name
             )));
         }
@@ -79,27 +79,27 @@ impl Study {
     }
 }
 
-/// A study that is being carried out.
+/// A study in progress.
 pub(crate) struct Job<'a> {
     pub runner: &'a Runner<'a>,
     study: &'a Study,
     options: &'a Options,
-    /// Whether seeds were asked for: otherwise nothing of it is drawn.
+    /// Whether seeds were requested; otherwise nothing in the study is drawn at random.
     has_drawn: AtomicBool,
 }
 
 impl Job<'_> {
-    /// Whether a case is asked for.
+    /// Whether a case is requested.
     pub(crate) fn has_case(&self, id: &str) -> bool {
         is_asked(&self.options.cases, id)
     }
 
-    /// Whether a method is asked for.
+    /// Whether a method is requested.
     pub(crate) fn has_method(&self, id: &str) -> bool {
         is_asked(&self.options.methods, id)
     }
 
-    /// Those cases that are asked for; an error if there are none.
+    /// The requested cases; an error if there are none.
     pub(crate) fn cases<C>(
         &self,
         all: impl IntoIterator<Item = C>,
@@ -108,7 +108,7 @@ impl Job<'_> {
         self.asked("case", &self.options.cases, all, id)
     }
 
-    /// Those methods that are asked for; an error if there are none.
+    /// The requested methods; an error if there are none.
     pub(crate) fn methods<M>(
         &self,
         all: impl IntoIterator<Item = M>,
@@ -131,7 +131,7 @@ impl Job<'_> {
         let known: Vec<String> = others.iter().map(id).take(KNOWN_SHOWN).collect();
         let more = if others.len() > KNOWN_SHOWN { ", ..." } else { "" };
         let (name, prefixes, known) = (self.study.name, prefixes.join(", "), known.join(", "));
-        let why = format!("{name}: no {what} begins with --{what} {prefixes}; known are {known}{more}");
+        let why = format!("{name}: no {what} begins with --{what} {prefixes}; known: {known}{more}");
         Err(StudyError::Refused(why))
     }
 
@@ -142,7 +142,7 @@ impl Job<'_> {
         (0..n).map(|k| self.options.first_seed.wrapping_add(k)).collect()
     }
 
-    /// The rows of a method in a case, which all have this note.
+    /// The rows of a method in a case, all with this note.
     pub(crate) fn block<'b>(&self, case: &'b str, method: &'b str, note: &'b str) -> Block<'b> {
         Block { table: self.study.name, case, method, note }
     }
@@ -172,8 +172,8 @@ mod tests {
         let options = Options { cases: unknown.clone(), methods: unknown, ..Options::default() };
         let [cases, methods] =
             chosen(&options, ["E1", "E2", "E3"]).map(|chosen| chosen.unwrap_err().to_string());
-        assert_eq!(cases, "pan-maps: no case begins with --case nope, c; known are E1, E2, E3");
-        assert_eq!(methods, "pan-maps: no method begins with --method nope, c; known are E1, E2, E3");
+        assert_eq!(cases, "pan-maps: no case begins with --case nope, c; known: E1, E2, E3");
+        assert_eq!(methods, "pan-maps: no method begins with --method nope, c; known: E1, E2, E3");
     }
 
     #[test]

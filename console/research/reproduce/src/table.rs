@@ -1,13 +1,13 @@
-//! Rows as people and spreadsheets read them.
+//! Formats rows for people and for spreadsheets.
 
 use crate::study::{Row, without_seed, wrong_signs};
 use std::fmt::Write;
 
-/// Blocks without a seed that are named one by one; more are counted.
+/// Maximum number of blocks without a seed that are named; the others are only counted.
 const MOST_NAMED: usize = 12;
 
-/// The rows for people: a block for each case and method, its notes below; then what of the claims does not come out, and
-/// which rows no seed enters.
+/// Formats the rows for people: a block for each case and method with its notes below; then the claims that are not
+/// reproduced, and the rows that do not depend on a seed.
 pub fn table(rows: &[Row]) -> String {
     let mut text = String::new();
     for block in rows.chunk_by(|a, b| (&a.case, &a.method) == (&b.case, &b.method)) {
@@ -47,7 +47,7 @@ fn line(row: &Row) -> String {
     )
 }
 
-/// What holds for all rows: how many verdicts, claims of another sign, rows without a seed.
+/// The summary of all rows: the number of each verdict, claims with a different sign, rows without a seed.
 fn account(rows: &[Row]) -> String {
     let mut text = String::new();
     let printed: Vec<&Row> = rows.iter().filter(|row| row.verdict.is_some()).collect();
@@ -56,12 +56,12 @@ fn account(rows: &[Row]) -> String {
     if !printed.is_empty() {
         let fitted = match count("fitted") {
             0 => String::new(),
-            n => format!(", {n} as near by a number or a layout that was fitted to them"),
+            n => format!(", {n} equally near, but with a number or a layout fitted to the printed values"),
         };
         let _ = writeln!(
             text,
-            "{} rows with a printed value: {} reproduced (within 5 %, or in the interval of one draw where one is printed), {} \
-             better, {} not reproduced{fitted}",
+            "{} rows with a printed value: {} reproduced (within 5 %, or in the interval of one draw where \
+             one is printed), {} better, {} not reproduced{fitted}",
             printed.len(),
             count("reproduced"),
             count("better"),
@@ -69,7 +69,7 @@ fn account(rows: &[Row]) -> String {
         );
     }
     for sentence in wrong_signs(rows) {
-        let _ = writeln!(text, "the sign of a claim of the paper does not come out: {sentence}");
+        let _ = writeln!(text, "the sign of a claim of the paper is not reproduced: {sentence}");
     }
     let blocks = without_seed(rows);
     if !blocks.is_empty() {
@@ -82,14 +82,14 @@ fn account(rows: &[Row]) -> String {
         };
         let _ = writeln!(
             text,
-            "--first-seed has no effect on {n} {rows}, of which nothing is drawn: {}{more}",
+            "--first-seed has no effect on {n} {rows} that do not depend on random draws: {}{more}",
             named.join("; ")
         );
     }
     text
 }
 
-/// The rows for spreadsheets: a line each, with a head.
+/// Formats the rows for spreadsheets: a header, then a line for each row.
 pub fn csv(rows: &[Row]) -> String {
     let mut text = String::from(
         "table,case,method,metric,paper,ours,unit,n,difference,interval_95_low,interval_95_high,interval_of_one_draw,verdict,\
@@ -123,7 +123,7 @@ pub fn csv(rows: &[Row]) -> String {
     text
 }
 
-/// A field as CSV has it.
+/// Formats a CSV field.
 fn quoted(field: &str) -> String {
     if field.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", field.replace('"', "\"\""))
@@ -132,7 +132,7 @@ fn quoted(field: &str) -> String {
     }
 }
 
-/// Every note of a block once, with the metric it belongs to if it is not of all.
+/// Lists every note of a block once, with its metric if the note does not apply to all.
 fn notes(block: &[Row]) -> Vec<String> {
     let is_new = |(index, row): &(usize, &Row)| {
         !row.note.is_empty() && block[..*index].iter().all(|other| other.note != row.note)
@@ -186,12 +186,13 @@ mod tests {
         assert_eq!(lines.len(), 6);
         assert_eq!(
             lines[1],
-            "t,d1/disk,rpf,rmse,0.266,0.25,m,3,-0.016000000000000014,0.2,0.3,false,not reproduced,\"ours is 6.0 % below the \
-             printed value, but the interval holds the printed value: more layouts decide\",true,false,gated"
+            "t,d1/disk,rpf,rmse,0.266,0.25,m,3,-0.016000000000000014,0.2,0.3,false,not reproduced,\"ours is \
+             6.0 % below the printed value, but the interval contains the printed value: use more layouts to \
+             decide\",true,false,gated"
         );
         assert!(lines[5].ends_with(",false,false,\"a, \"\"b\"\"\""), "{}", lines[5]);
         assert!(
-            lines[4].contains(",not reproduced,\"the sign of the claim does not come out: printed +9.5 %"),
+            lines[4].contains(",not reproduced,\"the sign of the claim is not reproduced: printed +9.5 %"),
             "{}",
             lines[4]
         );

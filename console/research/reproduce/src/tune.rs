@@ -13,27 +13,27 @@ use mission::{ParamKind, ParamValue, Parameters, PlannerInfo};
 use scale::Scale;
 use std::cell::RefCell;
 
-/// First step of the search as a share of each parameter's range.
+/// Initial step of the search, as a share of each parameter's range.
 const FIRST_STEP: f64 = 0.15;
-/// What each unit of range outside the bounds costs, so that the search comes back.
+/// Penalty for each unit of range outside the bounds, so that the search returns.
 const OUTSIDE_COST: f64 = 10.0;
-/// Parameters of this group are tuned if none is named.
+/// The group of parameters that are tuned if none is named.
 const DEFAULT_GROUP: &str = "Field";
 
-/// What is to be tuned, and on what.
+/// The parameters to tune, and the layouts for tuning.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tuning<'a> {
     /// The planner.
     pub planner: &'a PlannerInfo,
-    /// Values to start from; the others start from their defaults.
+    /// Initial values; other parameters start from their defaults.
     pub start: &'a Parameters,
     /// Keys of the parameters to tune; every real number of the group "Field" if empty.
     pub keys: &'a [String],
     /// Name of the layouts.
     pub on: &'a str,
-    /// Number and first seed of the layouts that it is tuned on.
+    /// Number and first seed of the training layouts.
     pub training: (usize, u64),
-    /// Number and first seed of the layouts that it is evaluated on; none of the training set's.
+    /// Number and first seed of the test layouts, which must not overlap the training layouts.
     pub test: (usize, u64),
     /// Generations of the search.
     pub generations: usize,
@@ -44,13 +44,13 @@ pub struct Tuning<'a> {
 /// The result of a search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tuned {
-    /// The best values on the training set; all parameters that were tuned.
+    /// The best values on the training set, for all tuned parameters.
     pub values: Parameters,
-    /// Loss on the training set: at the start, and of the best values.
+    /// Loss on the training set: of the initial values, and of the best values.
     pub loss: (f64, f64),
-    /// How many sets of values were tried.
+    /// Number of sets of values that were tried.
     pub evaluations: usize,
-    /// Figures on the test set, of the start (`ID/start`) and of the best values (`ID/tuned`).
+    /// Figures on the test set, for the initial values (`ID/start`) and the best values (`ID/tuned`).
     pub rows: Vec<Row>,
 }
 
@@ -71,8 +71,8 @@ impl Tuning<'_> {
     /// Searches for better values.
     ///
     /// # Errors
-    /// Unknown layouts, sets of layouts that are empty or overlap, a parameter that is unknown or no real number, or a
-    /// planner that breaks down.
+    /// Unknown layouts, sets of layouts that are empty or overlap, a parameter that is unknown or not a real number,
+    /// or a planner that fails.
     pub fn search(&self, runner: &Runner<'_>) -> Result<Tuned> {
         let search = self.checked().map_err(StudyError::Refused)?;
         let (before, best, evaluations) = search.best(runner)?;
@@ -88,8 +88,8 @@ impl Tuning<'_> {
 
     fn checked(&self) -> Result<Search<'_>, String> {
         let group = Group::named(self.on).ok_or_else(|| {
-            let known = "known are wang-d1, wang-d2, wang-d3, and the same with -square";
-            format!("there are no layouts `{}`; {known}", self.on)
+            let known = "known: wang-d1, wang-d2, wang-d3, and each with -square";
+            format!("unknown layouts `{}`; {known}", self.on)
         })?;
         let numbers =
             [("layouts", self.training.0), ("test-layouts", self.test.0), ("generations", self.generations)];
@@ -109,7 +109,8 @@ impl Tuning<'_> {
         let ((n, first), (m, other)) = (self.training, self.test);
         if first < other.saturating_add(m as u64) && other < first.saturating_add(n as u64) {
             return Err(format!(
-                "training seeds {first} to {} and test seeds {other} to {} overlap; figures on training layouts \
+                "training seeds {first} to {} and test seeds {other} to {} overlap; figures on training \
+                 layouts \
                  prove nothing",
                 first + n as u64 - 1,
                 other + m as u64 - 1,
@@ -120,7 +121,7 @@ impl Tuning<'_> {
 }
 
 impl Search<'_> {
-    /// The loss at the start, the best values, and how many sets of values were tried.
+    /// Returns the loss of the initial values, the best values, and the number of sets of values that were tried.
     fn best(&self, runner: &Runner<'_>) -> Result<(f64, Best, usize)> {
         let Tuning { training, start, planner, .. } = self.tuning;
         let shares: Vec<f64> = self.scales.iter().map(|scale| scale.share(start)).collect();
@@ -199,14 +200,14 @@ fn default_keys(planner: &PlannerInfo) -> Vec<String> {
 }
 
 impl Tuned {
-    /// The result for people.
+    /// Formats the result for people.
     pub fn text(&self, tuning: &Tuning<'_>) -> String {
         let (before, after) = self.loss;
         let values: Vec<String> = self.values.iter().map(|(key, value)| format!("{key} = {value}")).collect();
         format!(
-            "Loss on {} training layouts (cross-track error in m, lost clearance, 1 for each that does not arrive): \
-             {before:.4} at the start, {after:.4} tuned; {} parameter sets tried.\n\n[planner.parameters]\n{}\n\n\
-             On {} test layouts:\n\n{}",
+            "Loss on {} training layouts (cross-track error in m, missing clearance, 1 if the path does not \
+             arrive): {before:.4} at the start, {after:.4} tuned; {} parameter sets \
+             tried.\n\n[planner.parameters]\n{}\n\nOn {} test layouts:\n\n{}",
             tuning.training.0,
             self.evaluations,
             values.join("\n"),

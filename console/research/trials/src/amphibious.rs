@@ -1,8 +1,8 @@
 //! Random floors, half of them flooded, for an amphibious robot.
 //!
 //! After Yang et al. 2021, Figs 12 to 15: ten obstacles between start and goal, half of the floor flooded. The paper
-//! prints neither the places nor the sizes; these are ours: a square of 10 m, the western half flooded, discs of 0.2 to
-//! 0.6 m radius with room for the robot between them.
+//! prints neither places nor sizes. Ours are: a square of 10 m, the western half flooded, discs of 0.2 to 0.6 m
+//! radius with room for the robot between them.
 
 use crate::discs;
 use planner_api::{Boundary, Limits, Motion, Obstacle, Outline, Site, Zone, ZoneKind};
@@ -14,31 +14,31 @@ use world::{
     shortest::{NoWay, Way},
 };
 
-/// Half the side of the floor, metres.
+/// Half the side length of the floor, metres.
 pub const HALF_SIDE_M: f64 = 5.0;
 /// Radius of the robot, metres.
 pub const HULL_M: f64 = 0.2;
-/// Least gap between two discs that are not the block, metres.
+/// Minimum gap between two discs that are not part of the block, metres.
 pub const LEAST_GAP_M: f64 = 0.7;
-/// Least distance from start and goal to a disc, metres.
+/// Minimum distance from start and goal to a disc, metres.
 const KEEP_CLEAR_M: f64 = 0.8;
-/// Discs on the floor.
+/// Number of discs on the floor.
 const N_DISCS: usize = 10;
 
-/// Whether there is a trap.
+/// The arrangement of the discs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Group {
     /// Ten discs anywhere (the paper's group 1).
     Free,
-    /// Three of them make a block across the straight line to the goal (group 2).
+    /// Three of the discs form a block across the straight line to the goal (group 2).
     Block,
 }
 
 impl Group {
-    /// Both.
+    /// Both groups.
     pub const ALL: [Self; 2] = [Self::Free, Self::Block];
 
-    /// Its name in tables.
+    /// The name in tables.
     pub const fn id(self) -> &'static str {
         match self {
             Self::Free => "free",
@@ -52,9 +52,9 @@ impl Group {
 pub struct AmphibiousLayout {
     /// Centres and radii of the discs, metres.
     pub discs: Vec<(Point, f64)>,
-    /// Where the robot is put down, in the water.
+    /// The start of the robot, in the water.
     pub start: Point,
-    /// Where it is to go, on land.
+    /// The goal, on land.
     pub goal: Point,
 }
 
@@ -92,12 +92,12 @@ impl AmphibiousLayout {
         [Zone { kind: ZoneKind::Underwater, outline: Outline::Polygon { vertices: water } }]
     }
 
-    /// The discs as a planner gets them; ids from 0.
+    /// The discs in the form for planners; ids from 0.
     pub fn obstacles(&self) -> Vec<Obstacle<'static>> {
         discs::obstacles(&self.discs)
     }
 
-    /// The site as a planner gets it.
+    /// The site in the form for planners.
     pub fn site<'a>(corners: &'a [Point], obstacles: &'a [Obstacle<'a>], zones: &'a [Zone<'a>]) -> Site<'a> {
         Site {
             revision: 0,
@@ -123,18 +123,18 @@ impl AmphibiousLayout {
     /// The exact shortest path from start to goal.
     ///
     /// # Errors
-    /// The discs leave no path.
+    /// No path exists between the discs.
     pub fn shortest_path(&self) -> Result<Way, NoWay> {
         discs::shortest_path(&Self::corners(), &self.discs, HULL_M, self.start, self.goal)
     }
 
-    /// Distance from a robot's hull at a place to the nearest disc or the wall, metres; negative is a collision.
+    /// Distance from the hull of a robot at a place to the nearest disc or the wall, metres; negative in a collision.
     pub fn hull_clearance_m(&self, at: Point) -> f64 {
         discs::distance_m(&self.discs, at).min(HALF_SIDE_M - at.x.abs().max(at.y.abs())) - HULL_M
     }
 }
 
-/// Three discs side by side across the diagonal, the outer ones a little nearer to the start: a shallow cup.
+/// Three discs side by side across the diagonal, the outer discs slightly nearer to the start: a shallow cup.
 fn block(rng: &mut Pcg64Mcg) -> Vec<(Point, f64)> {
     let ahead = Vector::new(1.0, 1.0).normalize();
     let aside = Vector::new(-ahead.y, ahead.x);

@@ -1,25 +1,25 @@
-//! Something that crosses the way of a robot to its goal.
+//! A cart that crosses the robot's way to its goal.
 
 use crate::{exact_pose, flight};
 use geometry::{Limits, Motion, Point, Pose, Vector, wrap_angle_rad};
 use planner_api::{Boundary, Obstacle, Outline, Planner, Sensed, Site, testing::Bench};
 
-/// Length of a tick, seconds, and ticks at most.
+/// Duration of a tick, seconds, and maximum number of ticks.
 const TICK_S: f64 = 0.1;
 const TICKS: u64 = 1500;
-/// Where the robot sets out and where it is to go.
+/// Start and goal of the robot.
 const START: Point = Point::new(-6.0, 0.0);
 const GOAL: Point = Point::new(6.0, 0.0);
 const TOLERANCE_M: f64 = 0.2;
 /// Radius of the cart, metres.
 const CART_M: f64 = 0.4;
 
-/// How a crossing went.
+/// The result of a crossing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossing {
     /// Whether the goal was reached.
     pub arrived: bool,
-    /// The least distance between hull and cart, metres; negative is a collision.
+    /// The least distance between hull and cart, metres; negative in a collision.
     pub clearance_m: f64,
 }
 
@@ -43,14 +43,14 @@ const SITE: Site<'static> = Site {
     seed: 0,
 };
 
-/// Flies a planner without a plan on an open floor to a goal 12 m to the east, while a cart of its own pace crosses the way
-/// from `from_y_m`.
+/// Flies a planner without a plan on an open floor to a goal 12 m to the east, while a cart with a
+/// constant speed crosses the way from `from_y_m`.
 ///
 /// # Panics
-/// The planner refuses its parameters or a tick.
+/// The planner refuses its parameters, or a step fails.
 pub fn cross<P: Planner>(values: &[(&str, f64)], from_y_m: f64) -> Crossing {
     let bench = Bench::new();
-    let mut planner: P = bench.configure(values, &SITE).expect("it takes its own parameters");
+    let mut planner: P = bench.configure(values, &SITE).expect("accepts its own parameters");
     let limits = SITE.limits;
     let mut pose = Pose { position: START, heading_rad: 0.0 };
     let (mut before, mut was_seen) = (pose, false);
@@ -79,7 +79,7 @@ pub fn cross<P: Planner>(values: &[(&str, f64)], from_y_m: f64) -> Crossing {
             obstacles: if is_seen { &cart } else { &[] },
             ..Sensed::new(tick, TICK_S, estimate, GOAL)
         };
-        let command = planner.step(&sensed, &bench.ctx()).expect("it decides");
+        let command = planner.step(&sensed, &bench.ctx()).expect("the planner answers");
         bench.clear();
         (before, pose) = (pose, flight::moved(&pose, command.drive, &limits));
     }

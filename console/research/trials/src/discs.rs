@@ -1,4 +1,4 @@
-//! Discs on a floor (centre and radius, metres), as planners and the world have them, and paths among them.
+//! Discs on a floor (centre and radius, metres) in the forms of planners and world, and paths among them.
 
 use planner_api::{Obstacle, Outline};
 use world::{
@@ -6,7 +6,7 @@ use world::{
     shortest::{GrownFloor, NoWay, Way},
 };
 
-/// The discs as a planner gets them, from the drawing; ids from 0.
+/// The discs in the form for planners, as on the drawing; ids from 0.
 pub fn obstacles(discs: &[(Point, f64)]) -> Vec<Obstacle<'static>> {
     let obstacle = |(id, &(center, radius_m)): (usize, &(Point, f64))| Obstacle {
         id: id as u32,
@@ -17,7 +17,7 @@ pub fn obstacles(discs: &[(Point, f64)]) -> Vec<Obstacle<'static>> {
     discs.iter().enumerate().map(obstacle).collect()
 }
 
-/// The discs as the drawing of a tank has them; ids from 0, named `C0` and so on.
+/// The discs in the form of a tank's drawing; ids from 0, named `C0` and so on.
 pub fn world(boundary: Boundary, discs: &[(Point, f64)]) -> World {
     let obstacle = |(id, &(center, radius_m)): (usize, &(Point, f64))| world::Obstacle {
         id: ObstacleId(id as u32),
@@ -43,7 +43,7 @@ pub fn path_distance_m(discs: &[(Point, f64)], path: &[Point]) -> f64 {
 /// The exact shortest path of a round robot among discs on a floor with these corners.
 ///
 /// # Errors
-/// There is no path, or an end has no room.
+/// There is no path, or the robot does not fit at an end.
 pub fn shortest_path(
     corners: &[Point],
     discs: &[(Point, f64)],

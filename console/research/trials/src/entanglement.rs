@@ -1,7 +1,7 @@
-//! Entanglement of the tether along a path by graded measures, and the cable at its longest.
+//! Graded measures of the entanglement of the tether along a path, and the cable at its longest.
 //!
 //! Measures after the survey of Battocletti et al. 2024: contact (E0), detour (E1), hook (E2). They are shares of the
-//! path's length, sampled every 0.2 m; what is left out on return and the wraps are in the certificate.
+//! path's length, sampled every 0.2 m. The length still out on return and the wraps are in the certificate.
 
 use crate::tanks::Tank;
 use serde::{Deserialize, Serialize};
@@ -11,29 +11,29 @@ use world::{
     tether::{Cable, CableObstacles, Contact, Geodesic, TetherError},
 };
 
-/// Distance between the places at which the cable is looked at, metres.
+/// Distance between the places at which the cable is evaluated, metres.
 const STEP_M: f64 = 0.2;
 /// Cable beyond the least possible that counts as a detour, metres.
 const DETOUR_M: f64 = 0.05;
-/// A robot that drives within this of straight at its own cable may roll on it, radians.
+/// A robot whose direction is within this angle of its own cable may drive over the cable, radians.
 const AHEAD_RAD: f64 = PI / 6.0;
 
-/// How a taut cable lay along a path.
+/// The state of a taut cable along a path.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Entanglement {
-    /// Most cable out beyond the least that would do, metres.
+    /// Largest length of cable out beyond the minimum, metres.
     pub max_excess_m: f64,
-    /// Most places at which it bore at one time.
+    /// Largest number of contacts at one time.
     pub max_contacts: usize,
-    /// Share of the path on which it bore on anything.
+    /// Share of the path with at least one contact.
     pub contact_share: f64,
-    /// Share of the path on which it was more than 5 cm longer than the least that would do.
+    /// Share of the path on which the cable was more than 5 cm longer than the minimum.
     pub detour_share: f64,
-    /// Share of the path on which it doubled back round an obstacle: half a turn or more on one.
+    /// Share of the path on which the cable doubled back round an obstacle, by half a turn or more.
     pub hook_share: f64,
-    /// Share of the path driven within 30 degrees of straight at the cable.
+    /// Share of the path driven within 30 degrees of the direction to the cable.
     pub own_cable_share: f64,
-    /// The cable when it was longest, from the anchor to the robot.
+    /// The cable at its longest, from the anchor to the robot.
     pub longest: Vec<Point>,
 }
 
@@ -88,17 +88,17 @@ impl Entanglement {
     }
 }
 
-/// Cable beyond the least that would do; 0 for less than 5 cm where that needs no search.
+/// Length of cable beyond the minimum; 0 if it is known without a search to be less than 5 cm.
 fn excess_m(cable: &Cable, length_m: f64, least: &Geodesic) -> f64 {
     let most_m = length_m - (cable.tip() - cable.anchor()).norm();
     if most_m <= DETOUR_M { 0.0 } else { (length_m - least.distance_m(cable.tip())).max(0.0) }
 }
 
-/// Whether a move leads at the cable that lies before the robot.
+/// Whether a move heads for the cable in front of the robot.
 fn is_ahead(cable: &Cable, contacts: &[Contact], move_m: Vector) -> bool {
     let from = contacts.last().map_or(cable.anchor(), |contact| contact.last);
     let back = from - cable.tip();
-    // On the last centimetres there is no cable to roll on.
+    // On the last centimetres there is no cable to drive over.
     back.norm() > DETOUR_M && back.perp(&move_m).atan2(back.dot(&move_m)).abs() <= AHEAD_RAD
 }
 

@@ -12,44 +12,44 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
 use rand_pcg::Pcg64Mcg;
 
-/// Length of a tick, seconds.
+/// Duration of a tick, seconds.
 const TICK_S: f64 = 0.1;
-/// A preset point counts as passed within this distance, metres.
+/// Distance within which a preset point counts as passed, metres.
 const PASSED_M: f64 = 0.5;
-/// The planner sees the preset path from its target on for this length, metres.
+/// Length of the preset path after the target that the planner receives, metres.
 const AHEAD_M: f64 = 4.0;
 /// Distance at which the last point counts as reached, metres.
 const TOLERANCE_M: f64 = 0.3;
-/// A flight ends when the planner says that it is stuck for this long, seconds.
+/// A flight ends after the planner has reported being stuck for this long, seconds.
 const BORNE_S: f64 = 30.0;
-/// A flight may take this many times as long as the preset path at full speed.
+/// Time limit of a flight, as a multiple of the time for the preset path at full speed.
 const PATIENCE: f64 = 3.0;
 
-/// The robot and its pose.
+/// The robot and the error of its pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Robot {
-    /// How it moves.
+    /// Motion of the robot.
     pub motion: Motion,
     /// Standard deviation of the pose's x and y, metres.
     pub sigma_m: f64,
 }
 
-/// How a flight went.
+/// The result of a flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outcome {
     /// Whether the last free preset point was reached.
     pub completed: bool,
-    /// Whether the planner ever said that it was stuck.
+    /// Whether the planner ever reported being stuck.
     pub said_stuck: bool,
-    /// The least true distance between hull and anything solid, metres; negative is a collision.
+    /// The least true distance between hull and anything solid, metres; negative in a collision.
     pub clearance_m: f64,
     /// Share of the free preset points that came within half a metre of the robot.
     pub passed: f64,
     /// Root of the mean squared distance of the free preset points to the flown path, metres.
     pub cross_track_m: f64,
-    /// Where it ended.
+    /// The last place of the robot.
     pub end: Point,
-    /// The preset point that was due in the end.
+    /// The preset point that was the target at the end.
     pub due: Point,
     /// Time flown, seconds.
     pub time_s: f64,
@@ -58,14 +58,14 @@ pub struct Outcome {
 /// Flies a planner along the preset path of a layout.
 ///
 /// # Errors
-/// What the planner refuses.
+/// The planner refuses its parameters, or a call fails.
 pub fn fly<P: Planner>(values: &[(&str, f64)], layout: &Layout, robot: Robot, seed: u64) -> Result<Outcome> {
     let obstacles = layout.obstacles();
     let site = layout.site(&obstacles, robot.motion);
     let bench = Bench::new();
     let mut planner: P = bench.configure(values, &site)?;
     let mut rng = Pcg64Mcg::seed_from_u64(seed ^ 0x00f1_1ed5);
-    let noise = Normal::new(0.0, robot.sigma_m).expect("a standard deviation is not negative");
+    let noise = Normal::new(0.0, robot.sigma_m).expect("a standard deviation must not be negative");
     let has_room = |at: Point| layout.hull_clearance_m(at) >= layout.clearance_m;
     let mut follower = PathFollower::new(layout.path.clone());
     let outward = layout.path[1] - layout.path[0];

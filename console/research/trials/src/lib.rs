@@ -1,7 +1,8 @@
-//! Trials of planners: layouts drawn from a seed as the papers draw them, and the figures of a path on them.
+//! Trials of planners: layouts generated from a seed as in the papers, and the figures of a path on them.
 //!
-//! Pure: the same seed gives the same layout, everywhere. `reproduce` measures planners with it over the plugin
-//! boundary; the planners' own tests use the same layouts and the same figures, and fly them ([`fly`], [`cross`]).
+//! The crate is pure: the same seed gives the same layout on every machine. `reproduce` uses it to measure planners
+//! across the plugin boundary; the planners' own tests use the same layouts and the same figures, and fly them
+//! ([`fly`], [`cross`]).
 //!
 //! Frame: the tank frame, metres, radians.
 #![forbid(unsafe_code)]

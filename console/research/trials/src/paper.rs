@@ -13,7 +13,7 @@ pub enum Distribution {
     D3,
 }
 
-/// Where obstacles are drawn.
+/// The region in which obstacles are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sampling {
     /// Uniform in the tank.
@@ -31,7 +31,7 @@ impl Distribution {
         [1.5, 1.0, 0.8][self as usize]
     }
 
-    /// A layout: point obstacles, a point robot that keeps `clearance_m` from them, and the paper's spiral.
+    /// Generates a layout: point obstacles, a point robot that keeps `clearance_m` from them, and the paper's spiral.
     pub fn layout(self, sampling: Sampling, seed: u64, clearance_m: f64) -> Layout {
         let n_obstacles = [39, 36, 20][self as usize];
         let layout = Layout::of_the_paper(seed, n_obstacles, sampling == Sampling::Square);

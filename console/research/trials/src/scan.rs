@@ -1,4 +1,4 @@
-//! The figures of a path that scans the floor of a tank: coverage, length, turns and what it does to the tether.
+//! The figures of a path that scans the floor of a tank: coverage, length, turns and the effect on the tether.
 
 use crate::tanks::{CLEARANCE_M, HULL_M, SWATH_M, Tank};
 use serde::{Deserialize, Serialize};
@@ -14,36 +14,36 @@ use world::{
 const TOOL: Tool = Tool::Bar { swath_m: SWATH_M };
 /// Width of the critical zone along the shell, metres (API 653: 3 inches).
 const CRITICAL_ZONE_M: f64 = 0.075;
-/// Speeds of the robot by which the time of a path is computed: 0.4 m/s and 60 degrees a second.
+/// Speeds of the robot for computing the time of a path: 0.4 m/s and 60 degrees a second.
 const SPEED_M_PER_S: f64 = 0.4;
 const TURN_RAD_PER_S: f64 = std::f64::consts::PI / 3.0;
-/// Step along a lane that may touch something, metres.
+/// Step along a lane that may come into contact with something, metres.
 const LANE_STEP_M: f64 = 0.02;
 
-/// How a path over a floor went.
+/// The figures of a path over a floor.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Scan {
     /// Scanned share of the floor that the tool can reach.
     pub coverage_reachable: f64,
-    /// The same by the area that the bar swept instead of by cells.
+    /// The same share, computed from the area that the bar swept instead of from cells.
     pub coverage_exact: f64,
     /// Scanned share of the whole floor.
     pub coverage_whole: f64,
     /// Scanned share of the critical zone along the shell.
     pub critical_zone: f64,
-    /// The share of it that one lane along the shell scans, wherever hull and clearance have room.
+    /// The share of the critical zone that one lane along the shell scans, wherever hull and clearance have room.
     pub critical_zone_possible: f64,
     /// Length, metres.
     pub length_m: f64,
-    /// Length over reachable area by swath.
+    /// Length divided by (reachable area divided by swath).
     pub length_over_lower_bound: f64,
     /// Changes of heading by more than 30 degrees.
     pub turns: usize,
     /// Sum of the changes of heading, in whole turns.
     pub rotation_turns: f64,
-    /// Time of driving and turning one after the other at the robot's speeds, over that of driving the lower bound.
+    /// Time of driving and turning in sequence at the robot's speeds, divided by the time of driving the lower bound.
     pub time_over_lower_bound: f64,
-    /// What the tether says, without limits.
+    /// The figures of the tether, without limits.
     pub certificate: Certificate,
 }
 

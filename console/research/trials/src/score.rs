@@ -4,16 +4,16 @@ use crate::discs;
 use serde::{Deserialize, Serialize};
 use world::{Point, Vector, polyline};
 
-/// A planned point this near to its preset point is correct, metres; the paper's `T0`.
+/// Distance from its preset point within which a planned point is correct, metres; the paper's `T0`.
 const CORRECT_M: f64 = 0.2;
-/// The spiral's path arrives when it ends this near to the last preset point, metres.
+/// Distance from the last preset point within which a path along the spiral arrives, metres.
 pub(crate) const ARRIVED_M: f64 = 0.4;
 /// Length of path over which a change of heading is measured, metres.
 const HEADING_SPAN_M: f64 = 0.2;
-/// The nearest preset point is looked for this far ahead, metres.
+/// Distance ahead within which the nearest preset point is searched, metres.
 const WINDOW_M: f64 = 1.5;
 
-/// How well a planned path follows its preset points.
+/// The agreement of a planned path with its preset points.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Score {
     /// Share of planned points within 0.2 m of the preset point of the same index; the paper's P.
@@ -34,7 +34,7 @@ pub struct Score {
     pub cross_track_worst_m: f64,
 }
 
-/// What a planned path keeps clear of, and how it turns.
+/// The clearances and turns of a planned path.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Safety {
     /// The least distance between the path and an obstacle, metres; infinite without obstacles.
@@ -79,8 +79,8 @@ pub fn precision_recall(path: &[Point], preset: &[Point], correct_m: f64) -> (f6
     (precision, n_correct / preset.len().max(1) as f64)
 }
 
-/// The preset points that a walk was bound for whose target was always the one behind the nearest ahead: one for each
-/// point of the path, which begins at the first.
+/// The preset points that were the targets of a walk, if the target is always the point after the nearest one ahead:
+/// one for each point of the path, which begins at the first preset point.
 pub fn targets_ahead(path: &[Point], preset: &[Point]) -> Vec<Point> {
     let mut index = 0;
     let mut targets: Vec<Point> = preset.first().copied().into_iter().collect();
@@ -110,24 +110,25 @@ pub fn safety(path: &[Point], preset: &[Point], columns: &[(Point, f64)], radius
 }
 
 impl Safety {
-    /// Arrives, touches nothing nearer than the clearance and never leaves the tank.
+    /// Whether the path arrives, keeps the clearance everywhere and never leaves the tank.
     pub fn is_ok(&self, clearance_m: f64) -> bool {
         self.missing_m <= ARRIVED_M && self.clearance_m >= clearance_m - 1e-6 && self.wall_m >= -1e-6
     }
 }
 
-/// The least root mean square that any path with this clearance from columns can have: the distance of every preset
-/// point to the nearest place that is clear of all of them, metres.
+/// The least root mean square error that any path with this clearance from columns can have, metres: it follows from
+/// the distance of every preset point to the nearest place that is clear of all columns.
 ///
-/// Exact for a point in one column's circle; in several the nearest of their circles' points and crossings.
+/// Exact for a point in the circle of one column; for a point in several circles, the nearest of their points and
+/// crossings.
 pub fn floor_rmse_m(preset: &[Point], columns: &[(Point, f64)], clearance_m: f64) -> f64 {
     let circles: Vec<(Point, f64)> = columns.iter().map(|(c, r)| (*c, r + clearance_m)).collect();
     let off: Vec<f64> = preset.iter().map(|p| distance_to_clear_m(*p, &circles)).collect();
     root_mean_square(&off)
 }
 
-/// Largest change of heading over 0.2 m of path, radians; nothing is asked of the path where the preset path itself turns
-/// by more than `free_turn_rad`.
+/// Largest change of heading over 0.2 m of path, radians; places where the preset path itself turns by more than
+/// `free_turn_rad` are ignored.
 fn heading_step_rad(path: &[Point], preset: &[Point], free_turn_rad: f64) -> f64 {
     let preset_chords = chords(preset);
     let free: Vec<Point> = turns(&preset_chords).filter(|t| t.1 > free_turn_rad).map(|t| t.0).collect();
@@ -159,7 +160,7 @@ fn turns(marks: &[Point]) -> impl Iterator<Item = (Point, f64)> + '_ {
     })
 }
 
-/// Distance of every path point to the preset path, whose nearest place only moves forward, metres.
+/// Distance of every path point to the preset path, metres; the nearest place on the preset path only moves forward.
 fn cross_track_m(path: &[Point], preset: &[Point]) -> Vec<f64> {
     if preset.len() < 2 {
         return path.iter().map(|p| polyline::distance_m(preset, *p)).collect();
@@ -197,7 +198,7 @@ fn root_mean_square(values: &[f64]) -> f64 {
     (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
-/// Distance from a point to the nearest one outside all circles, metres.
+/// Distance from a point to the nearest point outside all circles, metres.
 fn distance_to_clear_m(at: Point, circles: &[(Point, f64)]) -> f64 {
     let is_clear = |p: Point| circles.iter().all(|(c, r)| (p - c).norm() >= r - 1e-9);
     if is_clear(at) {

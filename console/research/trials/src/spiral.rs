@@ -22,8 +22,8 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// A tank of radius 4 to 10 m with a spiral of pitch 0.8 to 1.3 m and 6 to 40 columns of radius 0.15 to 0.4 m,
-    /// at most one to seven square metres, anywhere but at the start; for a robot of radius 0.25 m.
+    /// A tank of radius 4 to 10 m with a spiral of pitch 0.8 to 1.3 m and 6 to 40 columns of radius 0.15 to 0.4 m, at
+    /// most one per seven square metres, anywhere except at the start; for a robot of radius 0.25 m.
     pub fn random(seed: u64) -> Self {
         let mut rng = Pcg64Mcg::seed_from_u64(seed);
         let radius_m: f64 = rng.random_range(4.0..10.0);
@@ -61,12 +61,12 @@ impl Layout {
         Self { radius_m, columns, path: Spiral::WANG_2023.points(), hull_m: 0.0, clearance_m: 0.0 }
     }
 
-    /// The columns as a planner gets them.
+    /// The columns in the form for planners.
     pub fn obstacles(&self) -> Vec<Obstacle<'static>> {
         discs::obstacles(&self.columns)
     }
 
-    /// The site as a planner gets it.
+    /// The site in the form for planners.
     pub fn site<'a>(&self, obstacles: &'a [Obstacle<'a>], motion: Motion) -> Site<'a> {
         Site {
             revision: 0,
@@ -89,7 +89,7 @@ impl Layout {
         }
     }
 
-    /// Distance from a hull at a place to the nearest column or the wall, metres.
+    /// Distance from the hull of a robot at a place to the nearest column or the wall, metres.
     pub fn hull_clearance_m(&self, at: Point) -> f64 {
         discs::distance_m(&self.columns, at).min(self.radius_m - at.coords.norm()) - self.hull_m
     }

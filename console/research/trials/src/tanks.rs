@@ -1,8 +1,8 @@
 //! Tanks with columns for coverage planners.
 //!
-//! Three of them are like those of the study behind the planners (round tanks of radius 10 m with 14 and 28 columns, a
-//! square of 18 m with 18 columns, anchor in the middle); the others are random: radius 5 to 50 m, 0 to 120 columns, anchor
-//! at the centre or at the shell.
+//! Three of the tanks are like those of the study on which the planners are based (round tanks of radius 10 m with 14
+//! and 28 columns, a square of 18 m with 18 columns, anchor in the middle); the others are random: radius 5 to 50 m,
+//! 0 to 120 columns, anchor at the centre or at the shell.
 
 use crate::discs;
 use planner_api::{Limits, Motion, Site};
@@ -16,14 +16,14 @@ pub const SWATH_M: f64 = 0.6;
 pub const HULL_M: f64 = 0.25;
 /// Distance between hull and anything solid, metres; with the hull the 0.3 m of the study.
 pub const CLEARANCE_M: f64 = 0.05;
-/// Edge of a cell in which coverage is counted, metres.
+/// Edge of a cell for counting coverage, metres.
 pub const CELL_M: f64 = 0.05;
-/// Least gap between columns, and between a column and the wall, metres.
+/// Minimum gap between columns, and between a column and the wall, metres.
 const LEAST_GAP_M: f64 = 0.8;
-/// No column stands nearer to the anchor than this, metres.
+/// Minimum distance of a column from the anchor, metres.
 const ANCHOR_FREE_M: f64 = 0.8;
 
-/// The tanks that have a name.
+/// The named tanks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Known {
     /// Round, radius 10 m, 14 columns.
@@ -35,10 +35,10 @@ pub enum Known {
 }
 
 impl Known {
-    /// All of them.
+    /// All named tanks.
     pub const ALL: [Self; 3] = [Self::E1, Self::E2, Self::E3];
 
-    /// Its name in tables.
+    /// The name in tables.
     pub const fn id(self) -> &'static str {
         match self {
             Self::E1 => "E1-circle-14",
@@ -67,7 +67,7 @@ pub struct Tank {
     pub boundary: Boundary,
     /// Centres and radii of the columns, metres.
     pub columns: Vec<(Point, f64)>,
-    /// Where the tether comes in and the robot starts and ends.
+    /// The place where the tether enters and the robot starts and ends.
     pub anchor: Point,
 }
 
@@ -105,12 +105,12 @@ impl Tank {
         Self { boundary, columns, anchor }
     }
 
-    /// The columns as a planner gets them; ids from 0.
+    /// The columns in the form for planners; ids from 0.
     pub fn obstacles(&self) -> Vec<planner_api::Obstacle<'static>> {
         discs::obstacles(&self.columns)
     }
 
-    /// The site as a planner gets it.
+    /// The site in the form for planners.
     pub fn site<'a>(&'a self, obstacles: &'a [planner_api::Obstacle<'a>]) -> Site<'a> {
         Site {
             revision: 0,
@@ -133,7 +133,7 @@ impl Tank {
         }
     }
 
-    /// The tank as the world has it.
+    /// The tank in the form of `world`.
     pub fn world(&self) -> World {
         discs::world(self.boundary.clone(), &self.columns)
     }

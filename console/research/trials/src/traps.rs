@@ -1,8 +1,8 @@
 //! Random traps: U, triangle, spiral and double traps between start and goal, among free discs.
 //!
-//! After the random benchmark for goal planners (Xu et al. 2022 show one trap of each kind and print none of them):
-//! a square floor of 50 m, a trap made of discs that leave no passage, its mouth towards the start, and 8 to 14 free
-//! discs. A robot of radius 0.3 m can always pass: between a free disc and anything else there are 0.9 m or more.
+//! A random benchmark for goal planners (Xu et al. 2022 show one trap of each kind but print no coordinates): a
+//! square floor of 50 m, a trap made of discs without gaps, with its mouth towards the start, and 8 to 14 free discs.
+//! A robot of radius 0.3 m can always pass: the gap between a free disc and anything else is at least 0.9 m.
 
 use crate::discs;
 use planner_api::{Boundary, Limits, Motion, Obstacle, Site};
@@ -14,15 +14,15 @@ use world::{
     shortest::{NoWay, Way},
 };
 
-/// Side of the square floor, metres.
+/// Side length of the square floor, metres.
 pub const SIDE_M: f64 = 50.0;
 /// Radius of the robot, metres.
 pub const HULL_M: f64 = 0.3;
-/// Step of the planners that walk in steps, metres.
+/// Step length of planners that walk in steps, metres.
 pub const STEP_M: f64 = 0.05;
-/// Least gap between a free disc and anything else, metres.
+/// Minimum gap between a free disc and anything else, metres.
 pub const LEAST_GAP_M: f64 = 0.9;
-/// Least distance from start and goal to the outline of any disc, metres.
+/// Minimum distance from start and goal to the outline of any disc, metres.
 const KEEP_CLEAR_M: f64 = 1.5;
 
 /// The form of a trap.
@@ -39,10 +39,10 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Every kind.
+    /// Every kind of trap.
     pub const ALL: [Self; 4] = [Self::U, Self::Triangle, Self::Spiral, Self::Double];
 
-    /// Its name in tables.
+    /// The name in tables.
     pub const fn id(self) -> &'static str {
         match self {
             Self::U => "u",
@@ -58,13 +58,13 @@ impl Kind {
 pub struct Trap {
     /// The form of the trap.
     pub kind: Kind,
-    /// Where the robot is put down, metres, tank frame (origin in the middle of the square).
+    /// The start of the robot, metres, tank frame (origin in the middle of the square).
     pub start: Point,
-    /// Where it is to go.
+    /// The goal.
     pub goal: Point,
-    /// Centres and radii of the discs, metres: those of the trap first, then the free ones.
+    /// Centres and radii of the discs, metres: first the discs of the trap, then the free discs.
     pub discs: Vec<(Point, f64)>,
-    /// How many of them belong to the trap.
+    /// Number of discs that belong to the trap.
     pub n_trap: usize,
 }
 
@@ -85,7 +85,7 @@ impl Trap {
         for wall in &trap {
             let radius_m = rng.random_range(0.4..0.8);
             let corners: Vec<Point> = wall.iter().map(to_tank).collect();
-            // Neighbours overlap: no gap, however small the robot.
+            // Neighbours overlap, so that even the smallest robot finds no gap.
             discs.extend(polyline::resampled(&corners, 1.6 * radius_m).into_iter().map(|at| (at, radius_m)));
         }
         let n_trap = discs.len();
@@ -102,12 +102,13 @@ impl Trap {
         rectangle(Point::new(-half, -half), Point::new(half, half))
     }
 
-    /// The discs as a planner gets them, on the drawing or discovered on the way; ids from 0.
+    /// The discs in the form for planners, on the drawing or discovered on the way; ids from 0.
     pub fn obstacles(&self, discovered: bool) -> Vec<Obstacle<'static>> {
         discs::obstacles(&self.discs).into_iter().map(|one| Obstacle { discovered, ..one }).collect()
     }
 
-    /// The site as a planner gets it: obstacles are those known so far, `corners` those of the floor.
+    /// The site in the form for planners: `obstacles` are the obstacles known so far, `corners` the corners of the
+    /// floor.
     pub fn site<'a>(corners: &'a [Point], obstacles: &'a [Obstacle<'a>], sensing_range_m: f64) -> Site<'a> {
         Site {
             revision: 0,
@@ -133,12 +134,12 @@ impl Trap {
     /// The exact shortest path from start to goal.
     ///
     /// # Errors
-    /// The trap cannot be left.
+    /// There is no way out of the trap.
     pub fn shortest_path(&self) -> Result<Way, NoWay> {
         discs::shortest_path(&Self::corners(), &self.discs, HULL_M, self.start, self.goal)
     }
 
-    /// The least distance between the hull and a disc or the wall on a path, metres; negative is a collision.
+    /// The least distance between the hull and a disc or the wall on a path, metres; negative in a collision.
     pub fn clearance_m(&self, path: &[Point]) -> f64 {
         let wall_m =
             path.iter().map(|at| SIDE_M / 2.0 - at.x.abs().max(at.y.abs())).fold(f64::INFINITY, f64::min);
@@ -146,7 +147,7 @@ impl Trap {
     }
 }
 
-/// A free disc with gaps on all sides, unless the draw has no room.
+/// A free disc with gaps on all sides; `None` if the drawn place has no room.
 fn free_disc(rng: &mut Pcg64Mcg, discs: &[(Point, f64)], ends: [Point; 2]) -> Option<(Point, f64)> {
     let radius_m = rng.random_range(0.5..2.0);
     let reach_m = SIDE_M / 2.0 - radius_m - LEAST_GAP_M;
@@ -156,7 +157,7 @@ fn free_disc(rng: &mut Pcg64Mcg, discs: &[(Point, f64)], ends: [Point; 2]) -> Op
     (apart && clear).then_some((center, radius_m))
 }
 
-/// The walls of a trap about the origin, the way from start to goal along x.
+/// The walls of a trap about the origin; the line from start to goal is along x.
 fn walls(kind: Kind, rng: &mut Pcg64Mcg) -> Vec<Vec<Point>> {
     match kind {
         Kind::U => vec![u_wall(rng.random_range(5.0..10.0), rng.random_range(6.0..12.0), 0.0)],
@@ -167,7 +168,7 @@ fn walls(kind: Kind, rng: &mut Pcg64Mcg) -> Vec<Vec<Point>> {
     }
 }
 
-/// A U of some depth and width whose middle lies `x` metres ahead.
+/// A U of some depth and width, with its middle `x` metres ahead.
 fn u_wall(depth_m: f64, width_m: f64, x: f64) -> Vec<Point> {
     let (half_depth, half_width) = (depth_m / 2.0, width_m / 2.0);
     [(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)]
@@ -175,7 +176,7 @@ fn u_wall(depth_m: f64, width_m: f64, x: f64) -> Vec<Point> {
         .to_vec()
 }
 
-/// The two sides of a triangle of some depth and mouth whose middle lies `x` metres ahead.
+/// The two sides of a triangle of some depth and mouth, with its middle `x` metres ahead.
 fn v_wall(depth_m: f64, width_m: f64, x: f64) -> Vec<Point> {
     let (half_depth, half_width) = (depth_m / 2.0, width_m / 2.0);
     vec![
@@ -209,7 +210,7 @@ fn nested_walls(rng: &mut Pcg64Mcg) -> Vec<Vec<Point>> {
     vec![u_wall(depth_m, width_m, 0.0), inner]
 }
 
-/// Two traps behind each other, with a way between them.
+/// Two traps behind each other, with a passage between them.
 fn walls_in_a_row(rng: &mut Pcg64Mcg) -> Vec<Vec<Point>> {
     let mut wall = |x: f64| {
         let (depth_m, width_m) = (rng.random_range(3.5..6.0), rng.random_range(6.0..11.0));

@@ -1,26 +1,27 @@
-//! Whether a walk along the spiral succeeds, since the paper says "success" and defines none.
+//! The criterion for a successful walk along the spiral, since the paper uses the word "success" without a
+//! definition.
 
 use crate::score::ARRIVED_M;
 use serde::{Deserialize, Serialize};
 use world::Point;
 
-/// A walk is trapped when so many moves in a row ...
+/// A walk is trapped when this many moves in a row ...
 const TRAP_MOVES: usize = 25;
 /// ... gain less than this, metres, ...
 const TRAP_GAIN_M: f64 = 0.2;
 /// ... while the preset point is further away than this, metres, at all of them.
 const TRAP_LAG_M: f64 = 0.2;
-/// A walk that falls further behind skips floor: one coil of the paper's spiral, metres.
+/// Maximum lag of a walk, metres: one coil of the paper's spiral. A walk that falls further behind skips floor.
 const COIL_M: f64 = 0.4 * std::f64::consts::PI;
 
-/// How a walk went.
+/// The result of a walk.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WalkOutcome {
-    /// Ends within 0.4 m of the last preset point.
+    /// Whether the walk ends within 0.4 m of the last preset point.
     pub arrives: bool,
-    /// Stood still for 25 moves while its preset point went on.
+    /// Whether the walk stood still for 25 moves while its preset point moved on.
     pub is_trapped: bool,
-    /// Furthest distance to the preset point that a planned point belongs to, metres.
+    /// Furthest distance of a planned point from its preset point, metres.
     pub lag_m: f64,
 }
 
@@ -40,7 +41,7 @@ impl WalkOutcome {
         }
     }
 
-    /// Arrives, was never trapped and never lagged by more than a coil.
+    /// Whether the walk arrives, is never trapped and never lags by more than a coil.
     pub fn is_ok(&self) -> bool {
         self.arrives && !self.is_trapped && self.lag_m <= COIL_M
     }

@@ -20,7 +20,8 @@ const TOLERANCE_M: f64 = 0.15;
 const ROUNDING_M_PER_S: f64 = 1e-6;
 
 const OURS: &str = "virtual goals are the corners of the shortest path on the known map (ours)";
-const PAPER: &str = "virtual goals on a square round the goal, used in a minimum, as published; the size of the square is not printed";
+const PAPER: &str = "virtual goals on a square round the goal, used in a minimum, as published; the size of \
+                     the square is not printed";
 const LAYOUT: &str = "the paper shows one layout of each group without coordinates; ours are random";
 
 /// The planner with this number of transition steps.
@@ -177,8 +178,8 @@ fn differences(block: &Block<'_>, measured: [&[Measured]; 2]) -> Vec<Row> {
             }
         };
         block.row(metric, mean, unit, sample.len()).note(format!(
-            "mean of paired differences, {conclusion}; the paper claims one from a single \
-             picture. With a longer transition the robot stays above the speed of land for longer"
+            "mean of paired differences, {conclusion}; the paper claims an effect from a single picture. \
+             With a longer transition the robot exceeds the speed limit on land for longer"
         ))
     };
     let steps: Sample = pairs().map(|(a, b)| a.steps - b.steps).collect();

@@ -13,25 +13,29 @@ const SPACING_M: f64 = 1.2;
 /// Distance at which the goal counts as reached, metres: twice the step of the paper.
 const TOLERANCE_M: f64 = 0.02;
 
-const APF: &str = "attraction k rho, repulsion from the outline; ends when the last steps make no progress, the paper's \
-                   were stopped by hand";
-const ALWAYS: &str = "left tangent force always on at a weight of 0.02, fitted to the printed stop; not the only set that \
-                      gives it: at the full weight a radius of 3.2 to 3.55 m does (case table1/wide)";
-const FULL: &str = "left tangent force always on at its full weight; radius and gain, which the paper does not print, fitted \
-                    to the printed stops";
+const APF: &str = "attraction k rho, repulsion from the outline; ends when the last steps make no progress, \
+                   whereas the paper's runs were stopped by hand";
+const ALWAYS: &str = "left tangent force always on at a weight of 0.02, fitted to the printed stopping \
+                      point; a radius of 3.2 to 3.55 m at the full weight gives the same point (case \
+                      table1/wide)";
+const FULL: &str = "left tangent force always on at its full weight; radius and gain, which the paper does \
+                    not print, are fitted to the printed stopping points";
 const BLOCKING: &str =
     "tangent force only round obstacles that block the path: the other reading; the paper leaves this open";
-const LITERAL: &str = "with our corrections where the paper's formulas cannot be applied: eq. 14 (cotangent of a cosine) and eq. 17 \
-                       (never true) read as an angle at the mouth with room for the seal, eq. 4 near the goal as \
-                       log2(1/rho + 1), eq. 10 as vectors, our oscillation rule";
-const PRINTED: &str = "eq. 4 near the goal as printed, n |log2(1/(rho + 1))|, with the n that makes its two branches meet, \
-                       which the paper does not ask for: the pull vanishes at the goal and the robot misses it";
-const PRINTED_N16: &str = "eq. 4 near the goal as printed with n = 16; the paper calls n adaptive and gives none. From 16 on the \
-                           stop rounds to the printed one, so the table does not decide between this and log2(1/rho + 1); the \
-                           text's force that grows at the goal speaks for the latter";
+const LITERAL: &str = "with our corrections where the paper's formulas cannot be applied: eq. 14 (cotangent \
+                       of a cosine) and eq. 17 (never true) interpreted as an angle at the mouth with room \
+                       for the seal, eq. 4 near the goal as log2(1/rho + 1), eq. 10 as vectors, our \
+                       oscillation rule";
+const PRINTED: &str = "eq. 4 near the goal as printed, n |log2(1/(rho + 1))|, with the n for which its two \
+                       branches meet, which the paper does not require: the pull vanishes at the goal and \
+                       the robot misses it";
+const PRINTED_N16: &str = "eq. 4 near the goal as printed with n = 16; the paper calls n adaptive but gives \
+                           no value. From 16 on the stopping point rounds to the printed one, so the table \
+                           does not decide between this and log2(1/rho + 1); the text describes a force \
+                           that grows at the goal, which favours the latter";
 const OURS: &str = "ours: not in the paper";
-const NO_SHIFT: &str = "layout placed so that the classical field stops near the printed place; the printed shift from APF to \
-                        TAPF (+0.3, -0.3) comes out in no reading that was tried";
+const NO_SHIFT: &str = "layout placed so that the classical field stops near the printed place; none of the \
+                        readings that we tried gives the printed shift from APF to TAPF (+0.3, -0.3)";
 
 /// Gains of a table.
 #[derive(Debug, Clone, Copy)]
@@ -173,17 +177,20 @@ pub(super) fn holistic() -> GotoLayout {
 fn left_open(case: &str) -> Option<&'static str> {
     Some(match case {
         "triangle" => {
-            "layout reconstructed. The paper does not give the side of the detour, the room before the seal and the rule of \
-             oscillation: an independent implementation that decides them otherwise walks 89.08 m (+2.8 %)"
+            "layout reconstructed. The paper does not state the side of the detour, the distance in front \
+             of the seal and the oscillation rule: an independent implementation with other choices walks \
+             89.08 m (+2.8 %)"
         }
         "u" => {
-            "layout reconstructed. The paper does not give the side of the detour, the room before the seal and the rule of \
-             oscillation: an independent implementation that decides them otherwise walks 98.41 m (+11 %)"
+            "layout reconstructed. The paper does not state the side of the detour, the distance in front \
+             of the seal and the oscillation rule: an independent implementation with other choices walks \
+             98.41 m (+11 %)"
         }
         "table2" => {
-            "layout placed and step of 0.0071 m chosen by the printed figures. The paper does not give the side of the detour, \
-             the room before the seal and the rule of oscillation: an independent implementation that decides them otherwise \
-             takes 17,030 steps (+12.7 % of the printed number, ours -1.4 %), so the number confirms nothing within about 15 %"
+            "layout placed and step size of 0.0071 m chosen to match the printed figures. The paper does \
+             not state the side of the detour, the distance in front of the seal and the oscillation rule: \
+             an independent implementation with other choices takes 17,030 steps (+12.7 % of the printed \
+             number, ours -1.4 %), so agreement within about 15 % confirms nothing"
         }
         _ => return None,
     })

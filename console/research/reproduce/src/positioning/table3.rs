@@ -21,7 +21,8 @@ const STATISTICS: [(&str, &str); 5] =
 
 pub(super) const STUDY: Study = Study {
     name: "wang-table3",
-    about: "Wang et al. 2023, Table 3: positioning error of 12 environments at 5 levels of noise, with the t-test",
+    about: "Wang et al. 2023, Table 3: positioning error of 12 environments at 5 levels of noise, with the \
+            t-test",
     layouts: 60,
     run,
 };
@@ -93,8 +94,8 @@ fn run(job: &Job<'_>) -> Result<Vec<Row>> {
 fn row(job: &Job<'_>, case: &str, metric: &str, ours: Option<f64>, n: usize) -> Row {
     let note = match metric {
         "p_value" => {
-            "one-sample two-sided t-test of the 30 means against 0; median over the tables. It moves by orders of magnitude with the \
-             errors, so that its printed digits come out only by chance"
+            "one-sample two-sided t-test of the 30 means against 0; median over the tables. It changes by \
+             orders of magnitude with the errors, so its printed digits can be matched only by chance"
         }
         _ if case.ends_with("parity") => {
             "points in the square around the floor, error divided by the square root of two"

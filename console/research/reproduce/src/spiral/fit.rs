@@ -1,4 +1,4 @@
-//! How near readings come to the printed Table 1, and what becomes of its claim.
+//! The distance of readings from the printed Table 1, and the effect on its claim.
 
 use super::{
     figures::{join, with_path},
@@ -11,14 +11,14 @@ use crate::study::{Job, Row, Sample, jackknife_95};
 /// One figure of a plan.
 type Figure = fn(&Measured) -> f64;
 
-/// Figures this near to the printed one, as a share of it, agree.
+/// Figures that differ from the printed one by at most this share of it agree.
 const NEAR: f64 = 0.05;
 
-const DISTANCE: &str = "mean of |ln(ours / printed)| over the 36 printed cells of IAPF and RPF, without and with improved \
-                        repulsion; 0.05 is about 5 % in every cell";
+const DISTANCE: &str = "mean of |ln(ours / printed)| over the 36 printed cells of IAPF and RPF, without and \
+                        with improved repulsion; 0.05 is about 5 % in every cell";
 const WITH_VT: &str = "the same over 54 cells, with VT, whose source is not available either";
 const CLAIM: &str =
-    "the sign depends on the side of IAPF's push and on the gate, which the paper does not give";
+    "the sign depends on the side of IAPF's push and on the gate, neither of which the paper states";
 
 /// A reading of the two methods that the claim compares.
 #[derive(Debug, Clone)]
@@ -27,7 +27,7 @@ pub(super) struct Pair {
     pub name: String,
     /// Ids without improved repulsion: VT, IAPF, RPF.
     pub ids: [String; 3],
-    /// What a reader must know.
+    /// A note for the reader.
     pub note: String,
 }
 
@@ -36,11 +36,11 @@ pub(super) struct Pair {
 pub(super) struct Planned<'a> {
     /// The runs.
     pub runs: &'a [Run],
-    /// The plans of each.
+    /// The plans of each run.
     pub plans: &'a [Vec<Measured>],
 }
 
-/// What a pair says about the table where the obstacles are drawn in this way: distance and claims.
+/// The rows of a pair for obstacles drawn in this way: distance to the table, and claims.
 pub(super) fn rows(job: &Job<'_>, planned: Planned<'_>, pair: &Pair, sampling: &str) -> Vec<Row> {
     let case = format!("mean/{sampling}");
     let n = planned.plans.first().map_or(0, Vec::len);
@@ -62,7 +62,7 @@ pub(super) fn claims(job: &Job<'_>, planned: Planned<'_>, pair: &Pair, sampling:
     let mut rows = Vec::new();
     for (suffix, paper, note) in [
         ("", 0.0949, "the printed errors give 0.0865: 0.0949 divides the difference by the new value"),
-        ("+ir", 0.0351, "follows from the printed errors"),
+        ("+ir", 0.0351, "computed from the printed errors"),
     ] {
         let [_, theirs, ours] = pair.ids.each_ref().map(|id| format!("{id}{suffix}"));
         let reduction = |without: Option<usize>| {
@@ -81,7 +81,7 @@ pub(super) fn claims(job: &Job<'_>, planned: Planned<'_>, pair: &Pair, sampling:
     rows
 }
 
-/// The share of layouts of which a single one has all three printed figures within 5 %.
+/// The share of single layouts with all three printed figures within 5 %.
 pub(super) fn share_of_layouts(plans: &[Measured], printed: Printed) -> Option<f64> {
     let is_near = |ours: f64, printed: f64| (ours - printed).abs() <= NEAR * printed;
     let agrees = |plan: &&Measured| {
@@ -94,7 +94,7 @@ pub(super) fn share_of_layouts(plans: &[Measured], printed: Printed) -> Option<f
 }
 
 impl Planned<'_> {
-    /// Whether the readings were selected on the printed table.
+    /// Whether the readings were selected with the printed table.
     fn is_selected(&self) -> bool {
         self.runs.iter().any(|run| run.set != Set::Text)
     }
@@ -105,7 +105,7 @@ impl Planned<'_> {
         meant.into_iter()
     }
 
-    /// Mean over the three distributions of a method's mean error, perhaps without one of the layouts; none unless all
+    /// Mean over the three distributions of a method's mean error, optionally without one layout; `None` unless all
     /// three were run.
     fn mean_error(&self, sampling: &str, id: &str, without: Option<usize>) -> Option<f64> {
         let means: Vec<f64> = self
@@ -115,7 +115,7 @@ impl Planned<'_> {
         (means.len() == 3).then(|| means.iter().sum::<f64>() / 3.0)
     }
 
-    /// Mean of the logarithms of ours over the printed values; none unless every cell was run.
+    /// Mean of the logarithms of our values divided by the printed ones; `None` unless every cell was run.
     fn distance(&self, ids: &[String], sampling: &str, without: Option<usize>) -> Option<f64> {
         let mut logarithms = Vec::new();
         for (id, suffix) in ids.iter().flat_map(|id| ["", "+ir"].map(|suffix| (id, suffix))) {
@@ -140,7 +140,7 @@ impl Planned<'_> {
     }
 }
 
-/// Mean of a figure over the layouts that have a path, perhaps without one of all.
+/// Mean of a figure over the layouts that have a path, optionally without one layout.
 fn mean(plans: &[Measured], figure: fn(&Measured) -> f64, without: Option<usize>) -> Option<f64> {
     let kept = plans.iter().enumerate().filter(|(index, plan)| Some(*index) != without && plan.has_path());
     kept.map(|(_, plan)| figure(plan)).collect::<Sample>().mean()

@@ -10,12 +10,12 @@ pub(super) const CLEARANCE_M: f64 = 0.3;
 pub(crate) struct Group {
     /// Number and range of obstacles.
     pub distribution: Distribution,
-    /// Where obstacles are drawn.
+    /// The region in which obstacles are drawn.
     pub sampling: Sampling,
 }
 
 impl Group {
-    /// Every distribution, drawn both ways.
+    /// Every distribution, drawn in both regions.
     pub(crate) fn all() -> impl Iterator<Item = Self> {
         let both =
             |distribution| [Sampling::Disk, Sampling::Square].map(|sampling| Self { distribution, sampling });

@@ -9,41 +9,43 @@ use crate::study::Method;
 /// A column of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Entry {
-    /// The planner, without the range of obstacles.
+    /// The planner, without its obstacle range.
     pub method: Method,
-    /// What the paper prints for the three distributions; none where planning failed or nothing is printed.
+    /// The printed values for the three distributions; `None` where planning failed or nothing is printed.
     pub printed: [Option<Printed>; 3],
-    /// Which preset point a planned point belongs to.
+    /// The rule that assigns a preset point to a planned point.
     pub pairing: Pairing,
-    /// To which methods it belongs.
+    /// The family of the method.
     pub set: Set,
 }
 
-/// Methods that are planned and told together.
+/// A family of methods that are planned and reported together.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Set {
-    /// Those of the text, and ours.
+    /// The methods of the text, and ours.
     Text,
-    /// Those of a reading of this name, which was selected on the printed table for obstacles drawn in the square.
+    /// The methods of the reading with this name, which was selected with the printed table for obstacles drawn in
+    /// the square.
     Reading(String),
 }
 
-/// Which preset point a planned point is compared with.
+/// The preset point with which a planned point is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Pairing {
-    /// That of the same index, as the paper's formulas have it.
+    /// The point with the same index, as in the paper's formulas.
     Index,
-    /// That which it was bound for, where the target is always the one behind the nearest ahead.
+    /// The target of the move, which is always the point after the nearest one ahead.
     Ahead,
-    /// The nearest place of the preset path ahead; for paths with points of their own.
+    /// The nearest place ahead on the preset path; for paths with their own points.
     Forward,
 }
 
 const RECONSTRUCTED: &str = "the cited source is not available: reconstructed from one sentence";
-const GATED: &str =
-    "rotating force only in a trap of our detector and ten moves on, though the text has it always on";
-const FORWARD: &str = "reactive: points of its own, compared with the nearest place of the preset path ahead";
-const LITERAL: &str = "rotating force always on, as the text has it; cannot give the printed figures";
+const GATED: &str = "rotating force only in a trap found by our detector and for ten more moves, whereas in \
+                     the text it is always on";
+const FORWARD: &str =
+    "reactive: has its own points, compared with the nearest place ahead on the preset path";
+const LITERAL: &str = "rotating force always on, as in the text; cannot give the printed figures";
 
 /// The methods of Table 1, the rotating field in both readings, without and with improved repulsion.
 pub(super) fn of_table1() -> Vec<Entry> {
@@ -65,7 +67,7 @@ pub(super) fn of_table1() -> Vec<Entry> {
     [both(false), both(true)].concat()
 }
 
-/// The two readings of the text against our reconstruction of IAPF.
+/// The two readings of the text, compared with our reconstruction of IAPF.
 pub(super) fn pairs() -> [Pair; 2] {
     [("gated", GATED), ("literal", LITERAL)].map(|(name, note)| Pair {
         name: name.to_owned(),
@@ -102,7 +104,7 @@ pub(super) fn of_table2(k_att: f64, rho_0_m: f64, note: &'static str) -> Method 
     gains.iter().fold(method, |method, (key, value)| method.number(key, *value))
 }
 
-/// Our own followers; the lattice also without its turn limit, which shows what the limit costs.
+/// Our own followers; the lattice also without its turn limit, which shows the cost of the limit.
 pub(super) fn followers() -> Vec<Entry> {
     let entry = |method, pairing| Entry { method, printed: [None; 3], pairing, set: Set::Text };
     let lattice = |id: &str, note| Method::new(id, "spiral-lattice", note);

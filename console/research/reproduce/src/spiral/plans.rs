@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use trials::{Layout, Safety, Score, WalkOutcome, discs, floor_rmse_m, safety, score_paired, targets_ahead};
 use world::{Boundary, Pose};
 
-/// The spiral is at its end this near to the centre, metres; the paper's `d0`.
+/// Distance from the centre at which the spiral ends, metres; the paper's `d0`.
 const TOLERANCE_M: f64 = 0.2;
 
 /// One plan and its figures.
@@ -23,7 +23,7 @@ pub(super) struct Measured {
     pub score: Score,
     /// Clearances and turns.
     pub safety: Safety,
-    /// The paper's success, as far as it can be defined.
+    /// Success in the sense of the paper, as far as it can be defined.
     pub walk: WalkOutcome,
     /// The least root mean square error possible with the clearance, metres.
     pub floor_m: f64,
@@ -57,19 +57,19 @@ pub(super) struct Run {
     pub method: Method,
     /// The layouts.
     pub group: Group,
-    /// What the paper prints; none where planning failed or nothing is printed.
+    /// The printed values; `None` where planning failed or nothing is printed.
     pub printed: Option<Printed>,
-    /// Which preset point a planned point belongs to.
+    /// The rule that assigns a preset point to a planned point.
     pub pairing: Pairing,
-    /// To which methods it belongs.
+    /// The family of the method.
     pub set: Set,
 }
 
 impl Run {
-    /// A column of a table on the layouts of a group, with the group's range of obstacles.
+    /// A column of a table on the layouts of a group, with the group's obstacle range.
     pub(super) fn new(entry: &Entry, group: Group) -> Self {
         let mut method = entry.method.clone();
-        // Our own planners know a clearance, not a range of obstacles.
+        // Our own planners have a clearance, not an obstacle range.
         if method.parameters.contains_key("k_att") {
             method = method.number("rho_0_m", group.distribution.rho_0_m());
         }

@@ -1,4 +1,4 @@
-//! What Wang et al. 2023 print.
+//! The printed values of Wang et al. 2023.
 
 /// Precision, recall and root mean square error of one method on one distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,7 +15,7 @@ const fn printed(precision_pct: f64, recall_pct: f64, rmse_e2: f64) -> Printed {
     Printed { precision: precision_pct / 100.0, recall: recall_pct / 100.0, rmse_m: rmse_e2 / 100.0 }
 }
 
-/// Table 1, VT, IAPF and RPF; the error is printed a hundredfold, though the head of the table says otherwise.
+/// Table 1, VT, IAPF and RPF; the error is printed multiplied by one hundred, contrary to the head of the table.
 pub(super) const TABLE1_CLASSIC: [[Printed; 3]; 3] = [
     [printed(71.07, 66.94, 34.79), printed(84.07, 80.30, 26.38), printed(91.68, 88.09, 14.23)],
     [printed(77.28, 72.79, 30.23), printed(86.02, 81.51, 16.19), printed(92.78, 89.79, 14.17)],
@@ -29,7 +29,7 @@ pub(super) const TABLE1_IMPROVED: [[Printed; 3]; 3] = [
     [printed(86.04, 78.16, 28.63), printed(92.11, 87.20, 13.65), printed(95.06, 91.76, 11.39)],
 ];
 
-/// What Table 1 prints for a method by its id, `rpf/K1+ir`, and a column.
+/// The values of Table 1 for a method, given its id such as `rpf/K1+ir`, and a column.
 pub(super) fn table1(id: &str, column: usize) -> Option<Printed> {
     let rows = if id.ends_with("+ir") { TABLE1_IMPROVED } else { TABLE1_CLASSIC };
     let planner = id.trim_end_matches("+ir").split('/').next()?;
@@ -45,7 +45,7 @@ pub(super) const TABLE2_K_ATT: [f64; 7] = [100.0, 150.0, 200.0, 225.0, 250.0, 27
 /// Table 2: range of obstacles, metres.
 pub(super) const TABLE2_RHO_0_M: [f64; 4] = [1.5, 2.0, 2.5, 3.0];
 
-/// Table 2, by range and gain; none where planning failed.
+/// Table 2, by range and gain; `None` where planning failed.
 pub(super) const TABLE2: [[Option<Printed>; 7]; 4] = [
     [
         None,

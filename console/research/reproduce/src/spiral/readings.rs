@@ -1,7 +1,7 @@
-//! What the text of Wang et al. 2023 leaves open, decided in ways that come near its Table 1.
+//! Choices for the details that the text of Wang et al. 2023 leaves open, selected to come near its Table 1.
 //!
-//! Found by a search over some thousands of readings that held each against the printed table; so they show that the
-//! table is compatible with a reading, and not what the authors did.
+//! Found by a search that compared some thousands of readings with the printed table. So they show that the table is
+//! compatible with a reading, not what the authors did.
 
 use super::{
     fit::Pair,
@@ -12,33 +12,33 @@ use crate::study::Method;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-/// What every row of such a reading says.
-pub(super) const SELECTED: &str =
-    "selected on the printed table: it shows what the table allows, not what the authors did";
+/// The note of every row of such a reading.
+pub(super) const SELECTED: &str = "selected with the printed table: it shows that the table is compatible \
+                                   with this reading, not what the authors did";
 
-/// One way to decide what is open; every word is a value of a parameter of the planners.
+/// One set of choices for the open details; every word is a value of a planner parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Reading {
-    /// Name in ids of methods.
+    /// Name used in the ids of methods.
     pub name: String,
     /// Gain of the repulsion; that of the pull is 200.
     k_rep: f64,
     push_form: &'static str,
     push_of: &'static str,
-    /// Improved repulsion: with or without the part toward the target, and the power.
+    /// Improved repulsion: with or without the component toward the target, and the exponent.
     improved: (&'static str, f64),
     targets: &'static str,
     move_length: &'static str,
     gate: &'static str,
     sense: &'static str,
     beside: &'static str,
-    /// Push to the side of `iapf`: strength and side.
+    /// Sideways push of `iapf`: strength and side.
     push: (&'static str, &'static str),
-    /// What acts beside that push.
+    /// The force that acts in addition to that push.
     push_beside: &'static str,
 }
 
-/// The readings of the search that came nearest.
+/// The nearest readings of the search.
 pub(super) fn named() -> [Reading; 4] {
     let k1 = Reading {
         name: "K1".into(),
@@ -92,7 +92,7 @@ pub(super) fn pair(name: &str) -> Pair {
 }
 
 impl Reading {
-    /// A reading drawn from a seed, every open point by itself.
+    /// A reading generated from a seed; every open detail is drawn independently.
     pub(super) fn drawn(seed: u64) -> Self {
         let mut rng = Pcg64Mcg::seed_from_u64(seed);
         let mut one_of = |words: &[&'static str]| words[rng.random_range(0..words.len())];
@@ -131,12 +131,12 @@ impl Reading {
         entries
     }
 
-    /// The decisions as text, for those who want to repeat one.
+    /// The choices as text, so that they can be repeated.
     pub(super) fn words(&self) -> String {
         let ((repulsion, exponent), (push, side)) = (self.improved, self.push);
         format!(
-            "k_rep={} push_form={} push_of={} repulsion={repulsion} exponent={exponent} targets={} move_length={} gate={} \
-             sense={} beside={} push={push} push_side={side} push_beside={}",
+            "k_rep={} push_form={} push_of={} repulsion={repulsion} exponent={exponent} targets={} \
+             move_length={} gate={} sense={} beside={} push={push} push_side={side} push_beside={}",
             self.k_rep,
             self.push_form,
             self.push_of,

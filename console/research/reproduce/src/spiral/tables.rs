@@ -17,13 +17,13 @@ use world::spiral::Spiral;
 const LAYOUTS_OF_A_SEARCH: u64 = 20;
 const FIRST_OF_A_SEARCH: u64 = 7_000_000;
 
-/// Table 1, as the text has it and in every reading that was selected on it.
+/// Table 1, as in the text and in every reading that was selected with it.
 pub(super) fn table1(job: &Job<'_>) -> Result<Vec<Row>> {
     let readings = readings::named();
     let entries = method::of_table1().into_iter().chain(readings.iter().flat_map(Reading::entries));
     let runs = asked(job, entries.collect())?;
     let mut all = Vec::new();
-    // One set after the other: the plans of all at once would take a gigabyte.
+    // One set after the other: holding all plans at the same time would take a gigabyte.
     for runs in runs.chunk_by(|a, b| a.set == b.set) {
         let plans = plan_all(job.runner, &job.seeds(), runs)?;
         for (run, plans) in runs.iter().zip(&plans) {
@@ -36,12 +36,13 @@ pub(super) fn table1(job: &Job<'_>) -> Result<Vec<Row>> {
     Ok(all)
 }
 
-/// How many single layouts agree with a printed line.
+/// The share of single layouts that agree with a printed row.
 fn agreement(block: &Block<'_>, run: &Run, plans: &[Measured]) -> Option<Row> {
     let share = fit::share_of_layouts(plans, run.printed?);
     let row = block.row("layouts_within_5_percent", share, "", plans.len());
     Some(row.note(
-        "share of single layouts with all three figures within 5 % of the printed ones; the paper shows one",
+        "share of single layouts with all three figures within 5 % of the printed ones; the paper shows \
+         only one layout",
     ))
 }
 
@@ -129,14 +130,14 @@ fn cells_of_table2() -> Vec<Run> {
 
 fn note_of_table2(is_printed: bool) -> &'static str {
     if is_printed {
-        "the caption says RPF, the counts of points say RPF with improved repulsion"
+        "the caption says RPF, but the point counts are those of RPF with improved repulsion"
     } else {
-        "planning failed in the paper; equal gains of 200 succeed in its Table 1, impossible where only the direction of \
-         the force counts"
+        "planning failed in the paper, but equal gains of 200 succeed in its Table 1, which is impossible \
+         if only the direction of the force matters"
     }
 }
 
-/// Readings drawn from seeds, each held against Table 1; a layout of the study is a reading.
+/// Readings generated from seeds, each compared with Table 1; a layout of this study is a reading.
 pub(super) fn search(job: &Job<'_>) -> Result<Vec<Row>> {
     let groups: Vec<Group> = Group::all().filter(|group| group.sampling == Sampling::Square).collect();
     let seeds: Vec<u64> = (0..LAYOUTS_OF_A_SEARCH).map(|k| FIRST_OF_A_SEARCH + k).collect();
@@ -150,7 +151,7 @@ pub(super) fn search(job: &Job<'_>) -> Result<Vec<Row>> {
         let pair = fit::Pair { note: reading.words(), ..readings::pair(&reading.name) };
         let planned = Planned { runs: &runs, plans: &plans };
         all.extend(fit::rows(job, planned, &pair, "square"));
-        // What comes out of a reading that was drawn is not about the paper's claim.
+        // The result of a random reading says nothing about the paper's claim.
         let reductions = fit::claims(job, planned, &pair, "square").into_iter();
         all.extend(reductions.map(|row| Row { is_claim: false, ..row }));
     }
@@ -176,7 +177,7 @@ pub(super) fn followers(job: &Job<'_>) -> Result<Vec<Row>> {
     Ok(all)
 }
 
-/// How much larger the mean error is than the least that any path with the clearance can have.
+/// The ratio of the mean error to the least error that any path with the clearance can have.
 fn over_floor(block: &Block<'_>, plans: &[Measured], pairing: Pairing) -> Row {
     let error: fn(&Measured) -> f64 = match pairing {
         Pairing::Index | Pairing::Ahead => |plan| plan.score.rmse_m,
@@ -186,7 +187,7 @@ fn over_floor(block: &Block<'_>, plans: &[Measured], pairing: Pairing) -> Row {
     block.row("rmse_over_floor", ratio, "", with_path(plans).count())
 }
 
-/// What the turn limit costs, as a share of the error without it, on the layouts where both find a path.
+/// The cost of the turn limit, as a share of the error without it, on the layouts where both find a path.
 fn cost_of_the_limit(block: &Block<'_>, limited: &[Measured], free: &[Measured]) -> Row {
     let pairs: Vec<(f64, f64)> = limited
         .iter()
@@ -199,7 +200,7 @@ fn cost_of_the_limit(block: &Block<'_>, limited: &[Measured], free: &[Measured])
     block.row("turn_limit_rmse_cost", cost, "", pairs.len())
 }
 
-/// Every method on every group that is asked for.
+/// Every requested method on every requested group.
 fn asked(job: &Job<'_>, entries: Vec<Entry>) -> Result<Vec<Run>> {
     let groups = job.cases(Group::all(), |group| group.id())?;
     let entries = job.methods(entries, |entry| entry.method.id.clone())?;

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::study::{Block, Method, Result, Row, Runner};
 
-/// The error counts up to this, metres: a walk that is lost is no worse for being lost far away.
+/// Cap on the error, metres: for a lost walk, the distance does not matter.
 const ERROR_MAX_M: f64 = 2.0;
 
 /// A planner with some parameters, on some layouts.
@@ -18,7 +18,7 @@ pub(crate) struct Trained {
 }
 
 impl Trained {
-    /// Lets a planner plan the layouts of these seeds.
+    /// Has a planner plan the layouts of these seeds.
     pub(crate) fn new(runner: &Runner<'_>, seeds: &[u64], method: Method, group: Group) -> Result<Self> {
         let run =
             Run { case: group.id(), method, group, printed: None, pairing: Pairing::Index, set: Set::Text };
@@ -26,8 +26,8 @@ impl Trained {
         Ok(Self { run, plans })
     }
 
-    /// Mean over the layouts of: the cross-track error (metres, at most 2), 1 if the path does not arrive in order, and
-    /// up to 1 for what it lacks of the clearance.
+    /// Mean over the layouts of a sum: the cross-track error (metres, at most 2), 1 if the path does not arrive in
+    /// order, and up to 1 for a lack of clearance.
     pub(crate) fn loss(&self) -> f64 {
         self.plans.iter().map(loss_of).sum::<f64>() / self.plans.len().max(1) as f64
     }

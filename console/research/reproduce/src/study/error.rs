@@ -2,13 +2,13 @@
 
 use mission::Fault;
 
-/// What a study gives, or why it gives nothing.
+/// The result of a study, or the error.
 pub type Result<T, E = StudyError> = std::result::Result<T, E>;
 
 /// Why a study has no rows.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StudyError {
-    /// A planner is missing, refuses its parameters or broke down; with the case it was asked for.
+    /// A planner is missing, refuses its parameters or failed; with the case.
     #[error("{case}: {fault}")]
     Planner {
         /// Layout and method.
@@ -16,7 +16,7 @@ pub enum StudyError {
         /// What happened.
         fault: Box<Fault>,
     },
-    /// The study cannot be carried out as requested, and why.
+    /// The study cannot be carried out as requested; with the reason.
     #[error("{0}")]
     Refused(String),
 }
@@ -33,7 +33,7 @@ impl StudyError {
         Self::Planner { case: case.into(), fault: Box::new(fault) }
     }
 
-    /// The same; a fault of a planner names this case.
+    /// Returns the same error; a fault of a planner gets this case.
     pub(crate) fn in_case(self, case: String) -> Self {
         match self {
             Self::Planner { fault, .. } => Self::Planner { case, fault },

@@ -1,4 +1,4 @@
-//! Plans of a study, drawn into a folder.
+//! Drawings of a study's plans, in a folder.
 
 use super::error::{Result, StudyError};
 use planner_api::Plan;
@@ -34,12 +34,13 @@ impl Gallery {
         Ok(Self { folder: folder.to_owned(), failure: Mutex::new(None) })
     }
 
-    /// Draws the plan of a method for a case and seed into a file of its own.
+    /// Draws the plan of a method for a case and seed into a separate file.
     pub(crate) fn add(&self, name: (&str, u64, &str), drawn: &Drawn<'_>) {
         self.write(name, &svg(drawn));
     }
 
-    /// Draws the path of a plan among obstacles, with the preset path if there is one; the hull needs `room_m`.
+    /// Draws the path of a plan among obstacles, with the preset path if there is one; `room_m` is the distance that
+    /// the hull needs.
     pub(crate) fn add_path(
         &self,
         name: (&str, u64, &str),
@@ -63,7 +64,7 @@ impl Gallery {
         self.add(name, &drawn);
     }
 
-    /// Draws curves of a method for a case and seed into a file of its own.
+    /// Draws curves of a method for a case and seed into a separate file.
     pub(crate) fn add_curves(&self, name: (&str, u64, &str), curves: &Curves<'_>) {
         self.write(name, &curves::svg(curves));
     }
@@ -79,7 +80,7 @@ impl Gallery {
         }
     }
 
-    /// Whether everything was written.
+    /// Reports whether everything was written.
     ///
     /// # Errors
     /// The first drawing that could not be written.

@@ -11,7 +11,7 @@ pub(crate) struct Method {
     pub planner: String,
     /// Values that differ from its defaults.
     pub parameters: Parameters,
-    /// What a reader must know; empty if nothing.
+    /// A note for the reader; empty if there is none.
     pub note: &'static str,
 }
 
@@ -21,22 +21,22 @@ impl Method {
         Self { id: id.into(), planner: planner.into(), parameters: Parameters::new(), note }
     }
 
-    /// With a real number.
+    /// Sets a parameter to a real number.
     pub(crate) fn number(self, key: &str, value: f64) -> Self {
         self.with(key, ParamValue::Float(value))
     }
 
-    /// With one of the words of a choice.
+    /// Sets a parameter to a word of a choice.
     pub(crate) fn word(self, key: &str, value: &str) -> Self {
         self.with(key, ParamValue::Word(value.to_owned()))
     }
 
-    /// With a whole number.
+    /// Sets a parameter to a whole number.
     pub(crate) fn int(self, key: &str, value: i64) -> Self {
         self.with(key, ParamValue::Int(value))
     }
 
-    /// With a switch.
+    /// Sets a switch.
     pub(crate) fn flag(self, key: &str, value: bool) -> Self {
         self.with(key, ParamValue::Flag(value))
     }

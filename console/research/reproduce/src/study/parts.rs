@@ -1,49 +1,49 @@
-//! Answers that are kept between processes, so that a study resumes where it was ended, and several machines share it.
+//! Results that are stored between processes, so that a study can be resumed and shared by several machines.
 
 use super::error::{Result, StudyError};
 use rayon::prelude::*;
 use serde::{Serialize, de::DeserializeOwned};
 use std::time::Duration;
 
-/// How often is looked for a part that another process has claimed.
+/// Interval between checks for a part that another process has claimed.
 const POLL: Duration = Duration::from_millis(200);
 
-/// Where parts are kept: a folder in which several processes may work at once.
+/// The store of the parts: a folder in which several processes may work at the same time.
 pub trait Parts: Sync {
-    /// Where a part is or would be, for people.
+    /// The path of a part, for messages.
     fn place(&self, name: &str) -> String;
-    /// A part, if it is there.
+    /// Reads a part, if it exists.
     ///
     /// # Errors
-    /// It cannot be read.
+    /// The part cannot be read.
     fn read(&self, name: &str) -> Result<Option<Vec<u8>>, String>;
-    /// Takes a part for this process alone; false if another one has it.
+    /// Claims a part for this process; false if another process has it.
     fn claim(&self, name: &str) -> bool;
-    /// Called while this process waits for a part that another one has.
+    /// Called while this process waits for a part that another process has claimed.
     fn wait_for(&self, name: &str);
-    /// Says that the holder of a claim is alive.
+    /// Refreshes a claim, to show that its holder is alive.
     fn keep_claim(&self, name: &str);
-    /// Gives a part back.
+    /// Releases the claim to a part.
     fn release(&self, name: &str);
-    /// Keeps a part whole or not at all.
+    /// Stores a part completely or not at all.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The part cannot be written.
     fn publish(&self, name: &str, bytes: &[u8]) -> Result<(), String>;
 }
 
 /// Parts of one list of cases.
 pub(super) struct Kept<'a> {
     pub parts: &'a dyn Parts,
-    /// The number of the list in the study.
+    /// The index of the list in the study.
     pub list: usize,
-    /// A list has at most so many parts.
+    /// The maximum number of parts of a list.
     pub most: usize,
 }
 
 impl Kept<'_> {
-    /// The answers of all cases, in their order: those of parts that are there, and of the others that are computed here.
-    /// `is_done` is called with the number of cases of a part that did not have to be computed.
+    /// Returns the results of all cases, in order: read from existing parts, or computed. `is_done` is called with
+    /// the number of cases of each part that did not have to be computed.
     ///
     /// # Errors
     /// The first error in the order of the cases, or of the folder.
@@ -73,7 +73,7 @@ impl Kept<'_> {
         format!("part-{:05}-{n:05}.cbor", self.list)
     }
 
-    /// The answers of a part; none if another process computes them.
+    /// The results of a part; `None` if another process is computing them.
     fn take<C, T: Serialize + DeserializeOwned>(
         &self,
         n: usize,
@@ -109,7 +109,7 @@ impl Kept<'_> {
             self.parts.publish(&name, &bytes).map_err(refused)?;
             Ok(answers)
         };
-        // The one that had the claim may have kept the part before it gave the claim back.
+        // The previous holder may have stored the part before it released the claim.
         let answers = there().and_then(|there| there.map_or_else(compute_all, Ok));
         self.parts.release(&name);
         answers.map(Some)

@@ -1,4 +1,4 @@
-//! Planners, asked over the plugin boundary as the console asks them.
+//! Planners, called across the plugin boundary as the console calls them.
 
 use super::{
     error::{Result, StudyError},
@@ -12,20 +12,20 @@ use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
 use world::{Point, Pose};
 
-/// A study waits this long for a plan.
+/// Time for which a study waits for a plan.
 const PLAN_WITHIN: Duration = Duration::from_mins(5);
 
-/// And lets a planner use this much memory, as much as a mission over a whole floor does.
+/// Memory limit of a planner in a study, the same as in a mission over a whole floor.
 const MEMORY_BYTES: u64 = 1 << 30;
 
 /// A planner's answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Planned {
-    /// The plan; where none was found, as much as there is of it.
+    /// The plan, or the part that was found.
     pub plan: Plan,
-    /// Why the plan is not complete.
+    /// The reason why the plan is not complete.
     pub reason: Option<String>,
-    /// Time between question and answer, milliseconds.
+    /// Time between request and answer, milliseconds.
     pub plan_time_ms: f64,
 }
 
@@ -45,7 +45,7 @@ impl Planned {
         self.path().len().saturating_sub(1) as f64
     }
 
-    /// Where the path ends; `start` if it has no points.
+    /// The end of the path; `start` if it has no points.
     pub(crate) fn end(&self, start: Point) -> Point {
         self.path().last().copied().unwrap_or(start)
     }
@@ -56,18 +56,18 @@ impl Planned {
     }
 }
 
-/// Planners of one thread, each in a worker process of its own.
+/// The planners of one thread, each in its own worker process.
 pub(crate) struct Planners {
     dirs: PluginDirs,
 }
 
 impl Planners {
-    /// Planners from these folders.
+    /// Uses the planners from these folders.
     pub(crate) fn new(dirs: &PluginDirs) -> Self {
         Self { dirs: dirs.clone() }
     }
 
-    /// A planner that knows the site, and nothing of what others were asked before.
+    /// Creates a planner for the site, without any state from earlier requests.
     pub(crate) fn prepare(&self, method: &Method, site: &Site<'_>) -> Result<BlockingHost, Fault> {
         let config = HostConfig {
             plan_deadline: PLAN_WITHIN,
@@ -80,10 +80,10 @@ impl Planners {
         Ok(host)
     }
 
-    /// Asks a planner for a plan from a start known exactly; where it finds none, the answer has the reason.
+    /// Asks a planner for a plan from an exactly known start; if it finds none, the answer contains the reason.
     ///
     /// # Errors
-    /// It is missing, refuses the parameters or broke down.
+    /// The planner is missing, refuses the parameters or failed.
     pub(crate) fn plan(
         &self,
         method: &Method,
@@ -114,7 +114,7 @@ impl Planners {
     }
 }
 
-/// Whether a planner refuses for a valid reason; bad parameters are a fault of the study.
+/// Whether a planner's refusal is valid; bad parameters are an error of the study.
 fn is_refusal(fault: &Fault) -> bool {
     matches!(fault.cause, Cause::Planner(code) if code != Code::Config)
 }

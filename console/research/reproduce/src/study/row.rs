@@ -3,52 +3,52 @@
 use super::{sample::Sample, verdict::Verdict};
 use serde::{Deserialize, Serialize};
 
-/// A figure of ours beside the printed one.
+/// One of our figures beside the printed one.
 ///
-/// Rates are fractions from 0 to 1; means carry the plain metric id, medians end in `_median`.
+/// Rates are fractions from 0 to 1; means have the plain metric id, medians end in `_median`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[allow(clippy::struct_excessive_bools, reason = "each is a column of its own")]
+#[allow(clippy::struct_excessive_bools, reason = "each is a separate column")]
 pub struct Row {
     /// Name of the study.
     pub table: String,
-    /// What was solved: `d1/disk`, `table1`, `case3`.
+    /// Id of the case: `d1/disk`, `table1`, `case3`.
     pub case: String,
     /// Planner or estimator id, its mode after a slash: `rpf/literal`.
     pub method: String,
-    /// What was measured: `ok_rate`, `rmse`.
+    /// Id of the metric: `ok_rate`, `rmse`.
     pub metric: String,
-    /// The printed value; none where nothing is printed.
+    /// The printed value; `None` where nothing is printed.
     pub paper: Option<f64>,
-    /// Our value; none where nothing could be measured, and the note says why.
+    /// Our value; `None` where nothing could be measured, with the reason in the note.
     pub ours: Option<f64>,
     /// Unit; empty for pure numbers.
     pub unit: String,
     /// Number of layouts or draws behind the figure.
     pub n: usize,
-    /// What a reader must know; empty if nothing.
+    /// A note for the reader; empty if there is none.
     pub note: String,
-    /// Ours less the printed value.
+    /// Our value minus the printed value.
     #[serde(default)]
     pub difference: Option<f64>,
-    /// 95 % interval of ours over layouts or draws; none of a single one, and where none is known.
+    /// 95 % interval of our value over layouts or draws; `None` for a single draw, or where the interval is unknown.
     #[serde(default)]
     pub interval_95: Option<[f64; 2]>,
-    /// Whether the interval is that of a single draw, which the printed value is.
+    /// Whether the interval is that of a single draw, because the printed value is a single draw.
     #[serde(default)]
     pub is_of_one_draw: bool,
-    /// What ours says about the printed value; none where nothing is printed.
+    /// The verdict on the printed value; `None` where nothing is printed.
     #[serde(default)]
     pub verdict: Option<Verdict>,
-    /// Why that is the verdict; empty if it is reproduced.
+    /// The reason for the verdict; empty if reproduced.
     #[serde(default)]
     pub why: String,
-    /// Whether `--first-seed` changes anything about it.
+    /// Whether the row depends on `--first-seed`.
     #[serde(default = "is_seeded")]
     pub seeded: bool,
-    /// Whether it is a claim of the paper, whose sign counts.
+    /// Whether the row is a claim of the paper, whose sign matters.
     #[serde(default)]
     pub is_claim: bool,
-    /// Whether a number or a layout behind ours was fitted to the printed values.
+    /// Whether a number or a layout behind our value was fitted to the printed values.
     #[serde(default)]
     pub is_fitted: bool,
 }
@@ -58,22 +58,22 @@ fn is_seeded() -> bool {
 }
 
 impl Row {
-    /// With its 95 % interval.
+    /// Adds the 95 % interval.
     pub(crate) fn within(self, interval_95: Option<[f64; 2]>) -> Self {
         Self { interval_95, ..self }
     }
 
-    /// With the 95 % interval of a single draw, which the printed value is.
+    /// Adds the 95 % interval of a single draw, because the printed value is a single draw.
     pub(crate) fn of_one_draw(self, interval_95: Option<[f64; 2]>) -> Self {
         Self { is_of_one_draw: true, interval_95, ..self }
     }
 
-    /// As a claim of the paper, with its 95 % interval.
+    /// Marks the row as a claim of the paper, with its 95 % interval.
     pub(crate) fn claimed(self, interval_95: Option<[f64; 2]>) -> Self {
         Self { is_claim: true, interval_95, ..self }
     }
 
-    /// With the printed value.
+    /// Adds the printed value.
     pub(crate) fn printed(self, paper: impl Into<Option<f64>>) -> Self {
         Self { paper: paper.into(), ..self }
     }
@@ -83,7 +83,7 @@ impl Row {
         Self { is_fitted: true, ..self }
     }
 
-    /// With something that a reader must know, instead of the note of the block.
+    /// Sets a note for the reader, instead of the note of the block.
     pub(crate) fn note(self, note: impl Into<String>) -> Self {
         Self { note: note.into(), ..self }
     }
@@ -98,12 +98,12 @@ pub(crate) struct Block<'a> {
     pub case: &'a str,
     /// Id of the method.
     pub method: &'a str,
-    /// What a reader must know of every row; empty if nothing.
+    /// The note on every row; empty if there is none.
     pub note: &'a str,
 }
 
 impl Block<'_> {
-    /// A row of so many layouts or draws, without a printed value.
+    /// A row over this number of layouts or draws, without a printed value.
     ///
     /// A value that is not finite counts as none: JSON has no such numbers.
     pub(crate) fn row(&self, metric: &str, ours: impl Into<Option<f64>>, unit: &str, n: usize) -> Row {
@@ -128,7 +128,7 @@ impl Block<'_> {
         }
     }
 
-    /// The mean, and the median under an id of its own.
+    /// The mean, and the median with its own id.
     pub(crate) fn mean_and_median(&self, metric: &str, sample: &Sample, unit: &str) -> [Row; 2] {
         let n = sample.len();
         [

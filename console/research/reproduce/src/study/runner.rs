@@ -20,18 +20,18 @@ pub struct Runner<'a> {
     threads: rayon::ThreadPool,
     progress: &'a (dyn Fn(usize, usize) + Sync),
     gallery: Option<&'a Gallery>,
-    /// Where answers are kept, and how many parts a list of cases has at most.
+    /// The store of results, and the maximum number of parts of a list of cases.
     parts: Option<(&'a dyn Parts, usize)>,
-    /// Lists of cases so far; a study has the same ones in every process.
+    /// Number of lists of cases so far; a study has the same lists in every process.
     lists: AtomicUsize,
 }
 
 impl<'a> Runner<'a> {
-    /// A runner with planners from these folders on so many threads (0: one for each core), which reports to
-    /// `progress` how many cases of how many are done.
+    /// Creates a runner with planners from these folders on this number of threads (0: one for each core). It calls
+    /// `progress` with the number of finished cases and of all cases.
     ///
     /// # Errors
-    /// There are too many threads, or they cannot be started.
+    /// The number of threads is too large, or they cannot be started.
     pub fn new(
         dirs: &PluginDirs,
         n_threads: usize,
@@ -55,24 +55,26 @@ impl<'a> Runner<'a> {
         })
     }
 
-    /// The same, drawing every plan into a gallery; only some studies have plans to draw.
+    /// Returns this runner, drawing every plan into a gallery; only some studies have plans to draw.
     #[must_use]
     pub fn with_gallery(self, gallery: Option<&'a Gallery>) -> Self {
         Self { gallery, ..self }
     }
 
-    /// The same, keeping the answers of each list of cases in so many parts at most, and reading those that are there.
+    /// Returns this runner, storing the results of each list of cases in at most this number of parts, and reading
+    /// existing parts.
     #[must_use]
     pub fn with_parts(self, parts: Option<&'a dyn Parts>, most: usize) -> Self {
         Self { parts: parts.map(|parts| (parts, most)), ..self }
     }
 
-    /// Where plans are to be drawn, if they are.
+    /// The gallery for plans, if they are drawn.
     pub(crate) fn gallery(&self) -> Option<&Gallery> {
         self.gallery
     }
 
-    /// Computes every case, or reads its answer; the answers keep the order of the cases, whichever thread computed them.
+    /// Computes every case, or reads its result; the results keep the order of the cases, whichever thread computed
+    /// them.
     ///
     /// # Errors
     /// The first error in the order of the cases.

@@ -1,4 +1,4 @@
-//! Figures of many values.
+//! Statistics of many values.
 
 /// Values of one figure over many layouts or draws.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -7,7 +7,7 @@ pub(crate) struct Sample {
 }
 
 impl FromIterator<f64> for Sample {
-    /// Values that are not finite are left out; [`Sample::len`] gives the number behind a figure.
+    /// Values that are not finite are ignored; [`Sample::len`] gives the number of values used.
     fn from_iter<I: IntoIterator<Item = f64>>(values: I) -> Self {
         let mut sorted: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);
@@ -21,7 +21,7 @@ impl Sample {
         self.sorted.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no values.
     pub(crate) fn is_empty(&self) -> bool {
         self.sorted.is_empty()
     }
@@ -36,7 +36,7 @@ impl Sample {
         self.quantile(0.5)
     }
 
-    /// The value below which a share of the values lies, 0 to 1, interpolated.
+    /// The quantile at a share, 0 to 1, interpolated.
     pub(crate) fn quantile(&self, share: f64) -> Option<f64> {
         let at = share.clamp(0.0, 1.0) * self.len().checked_sub(1)? as f64;
         let (low, high) = (self.sorted[at.floor() as usize], self.sorted[at.ceil() as usize]);
@@ -66,14 +66,14 @@ impl Sample {
         Some([mean - margin, mean + margin])
     }
 
-    /// Where 95 % of the values lie; none of fewer than forty.
+    /// The range that contains 95 % of the values; `None` for fewer than forty.
     pub(crate) fn range_95(&self) -> Option<[f64; 2]> {
         const FEWEST: usize = 40;
         let range = || Some([self.quantile(0.025)?, self.quantile(0.975)?]);
         (self.len() >= FEWEST).then(range)?
     }
 
-    /// 95 % confidence interval of the median, by the ranks of the values; none of fewer than six.
+    /// 95 % confidence interval of the median, by the ranks of the values; `None` for fewer than six.
     pub(crate) fn median_interval_95(&self) -> Option<[f64; 2]> {
         const FEWEST: usize = 6;
         let n = self.len();
@@ -88,7 +88,7 @@ impl Sample {
     }
 }
 
-/// 95 % interval of a figure of `n` draws by what it is without each of them.
+/// 95 % jackknife interval of a figure of `n` draws, from its values without each draw.
 pub(crate) fn jackknife_95(
     figure: f64,
     n: usize,

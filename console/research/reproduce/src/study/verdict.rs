@@ -3,27 +3,27 @@
 use super::row::Row;
 use serde::{Deserialize, Serialize};
 
-/// A figure this near to the printed one is reproduced, as a share of the printed one.
+/// A figure is reproduced if it differs from the printed one by at most this share.
 const NEAR: f64 = 0.05;
-/// Values that differ by less are equal.
+/// Values that differ by less than this are equal.
 const EQUAL: f64 = 1e-9;
 
 /// What a figure of ours says about the printed one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// Within 5 % of the printed one, or in the interval of a single draw where that is what is printed.
+    /// Within 5 % of the printed figure, or in the interval of a single draw where a single draw is printed.
     Reproduced,
-    /// As near, by a number or a layout that was fitted to the printed values.
+    /// Equally near, but with a number or a layout that was fitted to the printed values.
     Fitted,
-    /// Farther from it, on the good side.
+    /// Further from the printed figure, on the good side.
     Better,
-    /// Farther from it otherwise.
+    /// Further from the printed figure, on the bad side.
     NotReproduced,
 }
 
 impl Verdict {
-    /// For people.
+    /// The verdict in words for people.
     pub fn words(self) -> &'static str {
         match self {
             Self::Reproduced => "reproduced",
@@ -34,16 +34,16 @@ impl Verdict {
     }
 }
 
-/// Which values of a figure are good.
+/// The good values of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Good {
     Low,
     High,
-    /// Only the printed one.
+    /// Only the printed value.
     Equal,
 }
 
-/// By the name of the figure; that of a median is that of its mean.
+/// Determines the good values from the name of the figure; a median is treated like its mean.
 fn good(metric: &str) -> Good {
     match metric.trim_end_matches("_median") {
         "ok_rate"
@@ -59,7 +59,7 @@ fn good(metric: &str) -> Good {
     }
 }
 
-/// The difference, the interval of a rate, and the verdict.
+/// Sets the difference, the interval of a rate, and the verdict.
 pub(crate) fn judged(mut row: Row, is_seeded: bool) -> Row {
     row.seeded = is_seeded;
     let is_rate = row.unit.is_empty() && row.metric.ends_with("_rate") && row.n > 1;
@@ -79,13 +79,13 @@ fn verdict(row: &Row, paper: f64) -> (Verdict, String) {
     };
     let off = ours - paper;
     let is_within = row.interval_95.is_some_and(|[low, high]| (low..=high).contains(&paper));
-    // A printed 0 is one of a few digits; a printed size counts by its own size, however small it is.
+    // A printed 0 is rounded to a few digits; any other printed value is compared by its own size, however small.
     let is_near = off.abs() <= if paper == 0.0 { EQUAL } else { NEAR * paper.abs() };
     if is_near || (is_within && row.is_of_one_draw) {
         return (if row.is_fitted { Verdict::Fitted } else { Verdict::Reproduced }, String::new());
     }
     if row.is_claim && ours * paper < 0.0 {
-        return (Verdict::NotReproduced, format!("the sign of the claim does not come out: {}", claim(row)));
+        return (Verdict::NotReproduced, format!("the sign of the claim is not reproduced: {}", claim(row)));
     }
     let is_good = match good(&row.metric) {
         Good::Low => off < 0.0,
@@ -95,7 +95,8 @@ fn verdict(row: &Row, paper: f64) -> (Verdict, String) {
     let far = far(off, paper);
     match (is_within, is_good) {
         (true, _) => {
-            let why = format!("{far}, but the interval holds the printed value: more layouts decide");
+            let why =
+                format!("{far}, but the interval contains the printed value: use more layouts to decide");
             (Verdict::NotReproduced, why)
         }
         (false, true) => (Verdict::Better, far),
@@ -103,7 +104,7 @@ fn verdict(row: &Row, paper: f64) -> (Verdict, String) {
     }
 }
 
-/// How far ours is from the printed value.
+/// Describes the difference between our value and the printed one.
 fn far(off: f64, paper: f64) -> String {
     let side = if off > 0.0 { "above" } else { "below" };
     match paper.abs() {
@@ -112,7 +113,7 @@ fn far(off: f64, paper: f64) -> String {
     }
 }
 
-/// Printed and ours of a claim in per cent, with the interval.
+/// Formats the printed value of a claim and ours in per cent, with the interval.
 fn claim(row: &Row) -> String {
     let signed = |value: f64| format!("{:+.1} %", 100.0 * value);
     let [paper, ours] = [row.paper, row.ours].map(|value| value.map(signed).unwrap_or_default());
@@ -137,7 +138,7 @@ fn wilson(rate: f64, n: usize) -> [f64; 2] {
         .map(|v| (v / (1.0 + Z * Z / n)).clamp(0.0, 1.0))
 }
 
-/// Claims of which the sign does not come out, a sentence each; computed from the rows.
+/// The claims whose sign is not reproduced, one sentence each; computed from the rows.
 pub(crate) fn wrong_signs(rows: &[Row]) -> Vec<String> {
     let is_wrong = |row: &&Row| row.is_claim && row.paper.zip(row.ours).is_some_and(|(p, o)| p * o < 0.0);
     let told = |row: &Row| {
@@ -147,7 +148,8 @@ pub(crate) fn wrong_signs(rows: &[Row]) -> Vec<String> {
     rows.iter().filter(is_wrong).map(told).collect()
 }
 
-/// Blocks of rows that no seed enters, with how many rows each has: `--first-seed` changes nothing about them.
+/// The blocks of rows that do not depend on a seed, with the number of rows of each: `--first-seed` does not change
+/// them.
 pub(crate) fn without_seed(rows: &[Row]) -> Vec<(String, usize)> {
     let mut counts: Vec<(String, usize)> = Vec::new();
     for row in rows.iter().filter(|row| !row.seeded) {
@@ -205,7 +207,7 @@ mod tests {
         let row = judged(mean.printed(0.2), true);
         let [low, high] = row.interval_95.unwrap();
         assert!(low < 0.15 && high > 0.2, "{row:?}");
-        assert!(row.why.ends_with("more layouts decide"), "{row:?}");
+        assert!(row.why.ends_with("use more layouts to decide"), "{row:?}");
     }
 
     #[test]
@@ -221,7 +223,7 @@ mod tests {
         let mut claimed = row("rmse_reduction", -0.3, 0.0949).claimed(Some([-0.35, -0.25]));
         claimed = judged(claimed, true);
         let sentence = "printed +9.5 %, ours -30.0 % (95 % interval -35.0 % to -25.0 %)";
-        assert_eq!(claimed.why, format!("the sign of the claim does not come out: {sentence}"));
+        assert_eq!(claimed.why, format!("the sign of the claim is not reproduced: {sentence}"));
         assert_eq!(wrong_signs(&[claimed]), [format!("t, c: rmse_reduction of m: {sentence}")]);
         assert!(wrong_signs(&[judged(row("rmse_reduction", 0.05, 0.0949).claimed(None), true)]).is_empty());
     }

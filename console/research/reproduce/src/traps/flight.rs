@@ -1,4 +1,4 @@
-//! A flight on a map that is discovered on the way, over the plugin boundary.
+//! A flight on a map that is discovered on the way, across the plugin boundary.
 
 use super::measured::{Attempt, TOLERANCE_M};
 use crate::study::{Method, Planners, Result, StudyError};
@@ -13,14 +13,14 @@ use std::time::Instant;
 use trials::traps::{HULL_M, STEP_M, Trap};
 use world::{Point, polyline};
 
-/// The planner is given so much of its plan ahead of the robot, metres.
+/// Length of its plan ahead of the robot that the planner receives, metres.
 const SHOWN_M: f64 = 4.0;
-/// A flight ends after so many times the moves of the straight way.
+/// A flight ends after this multiple of the number of moves on the straight line.
 const PATIENCE: f64 = 30.0;
-/// It ends, too, when the planner says so many times in a row that it is stuck.
+/// A flight also ends when the planner reports this many times in a row that it is stuck.
 const MOST_STUCK: u32 = 600;
 
-/// A point robot on its way: moves of 0.05 m at most, one each tick.
+/// A point robot in flight: moves of at most 0.05 m, one per tick.
 struct Journey<'a> {
     trap: &'a Trap,
     all: Vec<Obstacle<'static>>,
@@ -77,7 +77,7 @@ impl Journey<'_> {
         PoseEstimate { position: self.here(), heading_rad: 0.0, covariance: Matrix3::zeros() }
     }
 
-    /// Discovers what is within range; whether anything is new.
+    /// Discovers the discs within range; returns whether any disc is new.
     fn look(&mut self) -> bool {
         let (here, before) = (self.here(), self.known.len());
         for (index, (center, radius_m)) in self.trap.discs.iter().enumerate() {
@@ -110,7 +110,7 @@ impl Journey<'_> {
                 let path = polyline::resampled(&reply.value.path, STEP_M);
                 self.plan = (!path.is_empty()).then(|| PathFollower::new(path));
             }
-            // A planner that finds no plan may still know how to move.
+            // A planner without a plan may still give useful commands.
             Err(fault) if matches!(fault.cause, Cause::Planner(_)) => self.plan = None,
             Err(fault) => return Err(StudyError::planner(&method.id, fault)),
         }
@@ -136,7 +136,7 @@ impl Journey<'_> {
             Err(fault) if matches!(fault.cause, Cause::Planner(_)) => return Ok(Status::Stuck),
             Err(fault) => return Err(StudyError::planner(&method.id, fault)),
         };
-        // At 1 m/s a tick is as many seconds long as a step is metres.
+        // At 1 m/s the duration of a tick in seconds equals the length of a step in metres.
         let velocity = match command.drive {
             Drive::Velocity(velocity) => velocity,
             Drive::Twist { v_m_per_s, .. } => Vector2::new(v_m_per_s, 0.0),

@@ -7,29 +7,29 @@ use world::{Point, polyline};
 
 /// The goal counts as reached at this distance, metres.
 pub(super) const TOLERANCE_M: f64 = 0.1;
-/// Rounding of clearances, metres.
+/// Tolerance for rounding of clearances, metres.
 const ROUNDING_M: f64 = 1e-6;
 
-/// How a method did on a trap.
+/// The result of a method on a trap.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Measured {
     /// Whether the goal is reached without a collision.
     pub arrives: bool,
     /// Whether the hull touches a disc or the wall on the way.
     pub collides: bool,
-    /// Length of the path over that of the exact shortest one; only of paths that arrive.
+    /// Length of the path divided by that of the exact shortest path; only for paths that arrive.
     pub ratio: Option<f64>,
     /// Time of the first plan, milliseconds.
     pub plan_time_ms: Option<f64>,
-    /// Times of the plans after it, milliseconds.
+    /// Times of the later plans, milliseconds.
     pub replan_times_ms: Vec<f64>,
 }
 
 /// The path that was planned or flown.
 pub(super) struct Attempt {
-    /// Its points.
+    /// The points of the path.
     pub path: Vec<Point>,
-    /// Times of the plans, milliseconds, the first one first.
+    /// Times of the plans in order, milliseconds.
     pub plan_times_ms: Vec<f64>,
 }
 
@@ -37,7 +37,7 @@ impl Attempt {
     /// The figures of the attempt.
     ///
     /// # Errors
-    /// The trap cannot be left.
+    /// There is no way out of the trap.
     pub(super) fn measured(self, trap: &Trap, seed: u64) -> Result<Measured> {
         let end = self.path.last().copied().unwrap_or(trap.start);
         let missing_m = (trap.goal - end).norm();

@@ -5,7 +5,7 @@ use crate::study::{Block, Row, Sample};
 
 const MISSING: &str = "no such planner is installed";
 
-/// The rows of what was measured; nothing was where a planner is missing.
+/// The rows of the measurements; a missing planner has no measurements.
 pub(super) fn rows(block: &Block<'_>, measured: &[&Option<Measured>]) -> Vec<Row> {
     let n = measured.len();
     let Some(measured) = measured.iter().map(|one| one.as_ref()).collect::<Option<Vec<&Measured>>>() else {

@@ -17,9 +17,10 @@ use world::{Boundary, Pose};
 /// Range within which the discs of an unknown map are discovered, metres.
 const RANGE_M: f64 = 6.0;
 
-const UNKNOWN: &str = "unknown map: discs within 6 m are discovered, even behind others; flown by the planner's commands at 1 m/s";
+const UNKNOWN: &str = "unknown map: discs within 6 m are discovered, even behind others; flown by the \
+                       planner's commands at 1 m/s";
 
-/// A planner, and what it knows of the map.
+/// A planner, and whether it knows the map.
 struct Entry {
     method: Method,
     is_map_known: bool,
@@ -37,7 +38,7 @@ fn entries() -> impl Iterator<Item = Entry> {
     on_known.chain(on_unknown.map(|method| Entry { method, is_map_known: false }))
 }
 
-/// Every kind, and all of them together.
+/// Every kind of trap, and all kinds together.
 fn cases() -> impl Iterator<Item = (&'static str, Vec<Kind>)> {
     Kind::ALL.map(|kind| (kind.id(), vec![kind])).into_iter().chain([("all", Kind::ALL.to_vec())])
 }
@@ -69,7 +70,7 @@ pub(super) fn run(job: &Job<'_>) -> Result<Vec<Row>> {
     Ok(all)
 }
 
-/// Asks a method to leave a trap; none if there is no such planner here.
+/// Asks a method to leave a trap; `None` if the planner is not installed.
 fn measure(
     runner: &Runner<'_>,
     planners: &Planners,
@@ -112,7 +113,8 @@ mod tests {
     #[test]
     fn every_planner_has_a_method_of_its_own() {
         let ids: Vec<String> = entries().map(|entry| entry.method.id).collect();
-        let known = "shortest navfn apf tapf apf-virtual-goals apf-dwa bvo-apf/literal bvo-apf/hull bvo-apf/rollout \
+        let known = "shortest navfn apf tapf apf-virtual-goals apf-dwa bvo-apf/literal bvo-apf/hull \
+                     bvo-apf/rollout \
                      bvo-apf/pre shortest/unknown navfn/unknown";
         assert_eq!(ids.join(" "), known);
     }

@@ -8,7 +8,7 @@ const WIDE: f64 = 100.0;
 /// The range of a parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Scale {
-    /// Its key.
+    /// The key of the parameter.
     pub key: String,
     low: f64,
     high: f64,
@@ -20,7 +20,7 @@ impl Scale {
     /// The range of a planner's parameter.
     ///
     /// # Errors
-    /// There is none of this name, or it is not a real number.
+    /// No parameter has this name, or it is not a real number.
     pub(super) fn of(planner: &PlannerInfo, key: &str) -> Result<Self, String> {
         let floats = || planner.parameters.iter().filter(|p| matches!(p.kind, ParamKind::Float { .. }));
         let Some(info) = planner.parameters.iter().find(|info| info.key == key) else {
@@ -40,7 +40,7 @@ impl Scale {
         Ok(Self { key: key.to_owned(), low: min, high: max, default, is_wide })
     }
 
-    /// The value at a share of the range, 0 to 1.
+    /// Returns the value at a share of the range, 0 to 1.
     pub(super) fn value(&self, share: f64) -> f64 {
         let value = if self.is_wide {
             self.low * (self.high / self.low).powf(share)
@@ -50,7 +50,7 @@ impl Scale {
         value.clamp(self.low, self.high)
     }
 
-    /// The share of the range at which a parameter stands.
+    /// Returns the share of the range at which a value is.
     pub(super) fn share(&self, parameters: &Parameters) -> f64 {
         let value = match parameters.get(&self.key) {
             Some(ParamValue::Float(value)) => *value,
