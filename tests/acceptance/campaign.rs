@@ -145,7 +145,7 @@ fn a_slip_in_a_plan_is_refused_with_its_place() {
     assert_eq!(campaign(&bench, "prepare --out out", &[&plan]).code, Some(0));
     let text = std::fs::read_to_string(&plan).unwrap().replace("0.25", "0.2");
     let other = campaign(&bench, "run --out out", &[&bench.file("plan.toml", text)]);
-    assert!(other.code == Some(2) && other.err.contains("holds a different campaign"), "{other:?}");
+    assert!(other.code == Some(2) && other.err.contains("contains a different campaign"), "{other:?}");
 }
 
 #[test]
@@ -189,7 +189,7 @@ fn what_changes_between_prepare_and_work_changes_nothing_or_is_refused() {
     std::fs::write(&own, text.replace("speed_max_m_per_s = ", "speed_max_m_per_s = 0.1 # ")).unwrap();
     works(&bench, "--block 1", "out");
     let other = campaign(&bench, "run --out out", &[&plan]);
-    assert!(other.code == Some(2) && other.err.contains("holds a different campaign"), "{other:?}");
+    assert!(other.code == Some(2) && other.err.contains("contains a different campaign"), "{other:?}");
     works(&bench, "", "out");
     assert!(table(&bench, "out") == table(&bench, "quiet"), "the text of the scenario is frozen");
 

@@ -175,9 +175,9 @@ fn a_scenario_in_another_encoding_is_named_with_line_and_remedy() {
         ),
         (
             "wide.toml",
-            "UTF-16 instead of UTF-8, judging by its first line\nhelp: save it as UTF-8: `iconv -f UTF-16 -t",
+            "UTF-16 instead of UTF-8, judging by the first line\nhelp: save it as UTF-8: `iconv -f UTF-16 -t",
         ),
-        ("bare.toml", "UTF-16LE instead of UTF-8, judging by its first line\nhelp:"),
+        ("bare.toml", "UTF-16LE instead of UTF-8, judging by the first line\nhelp:"),
     ] {
         let checked = bench.tankops(&["check", file]);
         assert!(checked.code == Some(2) && checked.err.contains(told), "{checked:?}");

@@ -105,7 +105,7 @@ fn readings_are_reported_as_what_they_are_and_what_they_do_not_say_is_not_zero()
     };
     assert!(of("positions") > 20 && of("track") == 1 && of("missed") == 0, "{}", of("positions"));
     let text = bench.tankops(&["report", &run]).out;
-    assert!(text.contains("located from the readings of r.csv") && !text.contains("0 turns"), "{text}");
+    assert!(text.contains("located from the readings in r.csv") && !text.contains("0 turns"), "{text}");
 }
 
 #[test]

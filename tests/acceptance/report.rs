@@ -98,7 +98,7 @@ fn a_report_is_signed_when_every_item_is_answered_and_the_next_one_is_another_re
     };
     let lacks = sign("a.html");
     // A plate that was not scanned at all has no accuracy figure.
-    assert!(lacks.code == Some(2) && lacks.err.contains("accuracy of plate"), "{lacks:?}");
+    assert!(lacks.code == Some(2) && lacks.err.contains("accuracy on plate"), "{lacks:?}");
     bench.fly(&scenario("cover-circle.toml"), &[]);
     let run = bench.runs().pop().unwrap();
     let path = run.to_str().unwrap();

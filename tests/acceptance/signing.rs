@@ -88,7 +88,7 @@ fn a_signature_is_missed_where_its_list_was_deleted_and_a_run_where_another_took
 
     let renamed = run.with_file_name("20300101T000000Z-cover-circle-tether-safe-1");
     std::fs::rename(&run, &renamed).unwrap();
-    assert_refused(&sign(&bench, &renamed, "b.html"), "rename it back to that name");
+    assert_refused(&sign(&bench, &renamed, "b.html"), "rename the folder back to that name");
     let verified = bench.verify(&renamed, &["--from-journal"]);
     assert!(
         verified.code == Some(1) && verified.out.contains("NOT AS SIGNED: the folder is called 20300101"),
@@ -231,13 +231,13 @@ fn empty_words_an_expired_certificate_and_sound_of_unknown_origin_are_not_signed
         assert!(why.contains(&format!("inspection.calibration_before has no content: `{words}`")), "{why}");
     }
     let why = open("\"2099-05\"", "\"2019-05\"");
-    assert!(why.contains("it expired on 2019-05-31, before the inspection on 20"), "{why}");
+    assert!(why.contains("the certificate expired on 2019-05-31, before the inspection on 20"), "{why}");
     assert!(
         open("inspector_certificate_expires = \"2099-05\"\n", "").contains("inspector_certificate_expires")
     );
     assert!(
         open("UT-2 1234", "UT-2 1234, expired 2019")
-            .contains("inspector_certificate states that it is expired")
+            .contains("inspector_certificate states that the certificate is expired")
     );
     assert!(open("sound_speed = \"1180 m/s, gas oil, 14 deg\"\n", "").contains("inspection.sound_speed"));
     assert!(open("1180 m/s, gas oil, 14 deg", "1180 m/s").contains("how it was determined"));

@@ -1,11 +1,12 @@
-//! Accuracy of the estimated position: by its own covariance and, where the true position is known, by the truth.
+//! Accuracy of the estimated position: according to its own covariance and, where the true position is known,
+//! compared with the truth.
 
 use crate::summary::{Accuracy as Statement, Positioning};
 use nalgebra::Matrix2;
 use positioning::fix::ELLIPSE_95;
 use world::Point;
 
-/// Accumulates the 95 % error by the covariance, tick by tick.
+/// Accumulates the 95 % error according to the covariance, tick by tick.
 #[derive(Debug, Default)]
 pub(crate) struct Claimed {
     errors_m: Vec<f32>,
@@ -71,7 +72,7 @@ pub(crate) fn nearest_rank<T: Copy>(sorted: &[T], share: f64) -> Option<T> {
     sorted.get(((share * sorted.len() as f64).ceil() as usize).max(1) - 1).copied()
 }
 
-/// Accumulates position errors; truth and estimate of a tick are paired whichever comes first.
+/// Accumulates position errors; pairs the true and the estimated position of a tick, whichever comes first.
 #[derive(Debug, Default)]
 pub(crate) struct Accuracy {
     truth: Option<(u64, Point)>,

@@ -24,7 +24,7 @@ pub struct DrawnZone {
 }
 
 impl DrawnZone {
-    /// Creates the record of a zone that is drawn now, in a mission of this phase.
+    /// Creates the record of a zone that is being drawn, in a mission of this phase.
     pub(crate) fn new(zone: &Zone, t_s: f64, phase: &Phase) -> Self {
         let corners = match &zone.shape {
             Shape::Polygon { vertices } => vertices.clone(),

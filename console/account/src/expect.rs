@@ -22,7 +22,7 @@ pub struct Expect {
     pub path_length_max_m: Option<f64>,
     /// Minimum share of the reachable floor scanned.
     pub coverage_reachable_min: Option<f64>,
-    /// Minimum share of the reachable floor scanned, by the true position.
+    /// Minimum share of the reachable floor scanned, according to the true position.
     pub coverage_truth_min: Option<f64>,
     /// Minimum share of the whole floor scanned.
     pub coverage_whole_min: Option<f64>,
@@ -40,7 +40,7 @@ pub struct Expect {
     pub mean_error_max_m: Option<f64>,
     /// Largest 95th percentile of the position error, metres.
     pub p95_error_max_m: Option<f64>,
-    /// Minimum share of the ticks with the true position in the 95 % ellipse.
+    /// Minimum share of the ticks with the true position inside the 95 % ellipse.
     pub in_95_ellipse_min: Option<f64>,
     /// Longest time without a position, seconds.
     pub position_lost_max_s: Option<f64>,
@@ -88,7 +88,7 @@ impl Expect {
         Summary { violations: Some(self.check(&run).iter().map(ToString::to_string).collect()), ..run }
     }
 
-    /// The expected end of the run in a few words for people; empty if no bound concerns it.
+    /// The expected end of the run, in a few words for people; empty if no bound concerns the end.
     pub fn words(&self) -> String {
         let outcome = self.outcome.map(|outcome| outcome.word().to_owned());
         let coverage = self

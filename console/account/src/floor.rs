@@ -25,8 +25,8 @@ use world::{
     coverage::{percent, percents},
 };
 
-/// The account of a floor by the estimated position: a cell counts as scanned where the position error was within the
-/// mission's limit.
+/// The account of a floor according to the estimated position: a cell counts as scanned where the position error was
+/// within the mission's limit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Account {
     /// Edge of a cell of the grid, metres.
@@ -44,7 +44,7 @@ pub struct Account {
     pub exact: Option<f64>,
     /// The critical zone along the shell.
     pub critical_zone: CriticalZone,
-    /// All plates, including those of which nothing was scanned; empty if the plate layout is not known.
+    /// All plates, including those on which nothing was scanned; empty if the plate layout is not known.
     pub plates: Vec<PlateAccount>,
     /// Reachable floor that was not scanned, the largest area first.
     pub missed: Vec<Area<MissReason>>,
@@ -75,7 +75,7 @@ impl Account {
         }
     }
 
-    /// Whether this account is of a floor that no mission had to scan.
+    /// Whether this is the account of a floor that no mission had to scan.
     pub fn is_of_no_scan(&self) -> bool {
         self.whole.area_m2 <= 0.0
     }
@@ -126,8 +126,8 @@ pub struct PlateAccount {
     pub name: String,
     /// Its kind.
     pub kind: PlateKind,
-    /// The 95 % error of the position on its scanned floor: not exceeded in 95 % of its scanned cells, each with the
-    /// best pass over it, metres; absent if nothing of it was scanned.
+    /// The 95 % position error that 95 % of the scanned cells do not exceed, taking the best pass over each cell,
+    /// metres; absent if none of the plate was scanned.
     #[serde(default)]
     pub error_p95_m: Option<f64>,
     /// The division of its floor.
@@ -150,7 +150,7 @@ impl Shares {
         Shares { area_m2, scanned, missed, unreachable, margin, guaranteed: None, percent }
     }
 
-    /// The same with the number of guaranteed cells.
+    /// This division with the number of guaranteed cells.
     fn with_guaranteed(mut self, cells: usize, cell_m2: f64) -> Self {
         let share = if self.area_m2 > 0.0 { cells as f64 * cell_m2 / self.area_m2 } else { 0.0 };
         self.guaranteed = Some(share);

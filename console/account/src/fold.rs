@@ -21,9 +21,9 @@ use planner_api::PoseEstimate;
 use positioning::fix::{ellipse_95, position_covariance};
 use world::{Obstacle, Point, Pose, Zone};
 
-/// Maximum number of faults listed.
+/// Maximum number of listed faults.
 const MOST_FAULTS: usize = 20;
-/// Maximum number of planners listed.
+/// Maximum number of listed planners.
 const MOST_PLANNERS: usize = 1000;
 
 /// The state of a run from the events so far.
@@ -42,7 +42,7 @@ pub struct Fold {
     tool: Option<ToolTrack>,
     run: Option<Box<RunOpened>>,
     evidence: Option<Evidence>,
-    /// Whether the previous event drew a zone: the change of the floor that follows belongs to it.
+    /// Whether the previous event drew a zone: the change of the floor that follows belongs to that zone.
     is_zone_new: bool,
     /// Whether the account of the floor is omitted.
     leaves_out_floor: bool,
@@ -54,8 +54,8 @@ impl Fold {
         Self::default()
     }
 
-    /// The same without the account of the floor, for callers that need only the figures: it takes a third of the
-    /// time.
+    /// The state before any event, without the account of the floor, for callers that need only the figures: this
+    /// takes a third of the time.
     pub fn of_figures() -> Self {
         Self { leaves_out_floor: true, ..Self::default() }
     }
@@ -110,7 +110,7 @@ impl Fold {
                 self.find(obstacle);
             }
             EventKind::PlannerFailed { fault, .. } => {
-                // A planner that the console refused to load or to let drive was not running, so it has not failed.
+                // A planner that the console refused to load or to activate was not running, so it has not failed.
                 let refused = matches!(fault.cause, Cause::Refused | Cause::Quarantined);
                 // A planner that reports that no path exists has not failed either.
                 if !fault.is_no_way() {

@@ -60,7 +60,7 @@ pub struct Inspection {
     pub inspected_on: Option<String>,
     /// The reason why no coverage is stated, for readings that do not state when the tool was on.
     pub coverage_waiver: Option<String>,
-    /// The reason why the facts contradict the scenario of the run about the floor.
+    /// The reason why the facts contradict what the scenario of the run states about the floor.
     pub identity_corrected: Option<String>,
     /// The reason why coverage is not stated plate by plate, if the plate layout is not known.
     pub plates_waiver: Option<String>,
@@ -81,7 +81,7 @@ pub struct Inspection {
 }
 
 impl Inspection {
-    /// Merges facts from a later file; each replaces the earlier fact of the same key.
+    /// Merges facts from a later file; each replaces the earlier fact with the same key.
     #[must_use]
     pub fn updated(self, later: Self) -> Self {
         Self {

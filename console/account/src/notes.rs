@@ -33,7 +33,7 @@ pub struct Notes {
 }
 
 impl Notes {
-    /// Sets a bookmark; an existing bookmark at that moment gets the new text.
+    /// Sets a bookmark; an existing bookmark at that time gets the new text.
     ///
     /// # Errors
     /// There are too many bookmarks, or the text is too long.

@@ -1,4 +1,4 @@
-//! The passes of the tool by the estimated position: accuracy, number of passes, and guaranteed floor.
+//! The passes of the tool according to the estimated position: accuracy, number of passes, and guaranteed floor.
 
 use crate::overlap::Overlap;
 use nalgebra::Matrix2;
@@ -32,8 +32,8 @@ impl Passes {
     /// Adds a pass of the tool from one estimated pose to the next; it counts as scanned.
     ///
     /// Floor that is under the tool for every position within the 95 % ellipse is guaranteed. To find it, the tool is
-    /// narrowed on each side by the half width of the ellipse of the covariance, square metres, across the heading.
-    /// `error_m`: the largest 95 % error since the fix before the last.
+    /// narrowed on each side by the half-width of the ellipse across the heading; the ellipse is that of the
+    /// covariance, square metres. `error_m`: the largest 95 % error since the fix before the last.
     pub(crate) fn pass(
         &mut self,
         believed: &CoverageGrid,

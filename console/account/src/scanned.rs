@@ -1,4 +1,5 @@
-//! The scanned share of the floor by the estimated and the true position, and the share scanned more than once.
+//! The scanned share of the floor according to the estimated and the true position, and the share scanned more than
+//! once.
 
 use crate::{
     passes::Passes,
@@ -28,12 +29,12 @@ impl Scanned {
         Self { believed, truth, passes, tool, last: start, has_truth: false }
     }
 
-    /// The floor with the cells scanned by the mission's estimate.
+    /// The floor with the cells scanned according to the mission's estimate.
     pub fn believed(&self) -> &CoverageGrid {
         &self.believed
     }
 
-    /// The passes of the tool by the estimated position.
+    /// The passes of the tool according to the estimated position.
     pub fn passes(&self) -> &Passes {
         &self.passes
     }

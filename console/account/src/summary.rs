@@ -19,18 +19,18 @@ pub struct Summary {
     /// File of the readings that were located; absent for a mission.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub located: Option<String>,
-    /// Id of the first planner that drove.
+    /// Id of the first active planner.
     pub planner: Option<String>,
     /// Version of its plugin.
     pub planner_version: Option<String>,
     /// Its final parameters, including defaults.
     pub parameters: Option<Parameters>,
-    /// Every planner that drove, in order, without duplicates.
+    /// Every planner that was active, in order, without duplicates.
     pub planners: Vec<String>,
     /// The weakest sandbox of its planners. Absent if no planner was loaded, and in older reports.
     #[serde(default)]
     pub sandbox: Option<Sandbox>,
-    /// Seed of all random numbers.
+    /// Seed for all random numbers.
     pub seed: Option<u64>,
     /// How the run ended; absent if it was cut off.
     pub outcome: Option<Outcome>,
@@ -80,10 +80,10 @@ pub struct Summary {
     pub floor: Option<Account>,
     /// How closely a preset path was followed; absent for other missions.
     pub tracking: Option<Tracking>,
-    /// Accuracy of the position by its own covariance, as a real robot can state it.
+    /// Accuracy of the position according to its own covariance, as a real robot can state it.
     #[serde(default)]
     pub accuracy: Option<Accuracy>,
-    /// Accuracy of the position by the truth; absent outside simulation.
+    /// Accuracy of the position compared with the true position; absent outside simulation.
     pub positioning: Option<Positioning>,
     /// The tether record; absent without a tether.
     pub tether: Option<Tether>,
@@ -101,7 +101,7 @@ pub struct Summary {
     pub logs: Option<Logs>,
 }
 
-/// Wall time from the key or signal that stops the robot, as read by the console, to the command that stops it.
+/// Wall time from the key press or signal that stops the robot, as read by the console, to the command that stops it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Stops {
     /// Number of stops.
@@ -130,21 +130,21 @@ impl Stops {
 /// Coverage of the floor. Shares are 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Coverage {
-    /// Share of the reachable floor, by the estimated position.
+    /// Share of the reachable floor, according to the estimated position.
     pub reachable: f64,
-    /// Share of the whole floor (excluding the footprint of obstacles), by the estimated position.
+    /// Share of the whole floor (excluding the footprint of obstacles), according to the estimated position.
     pub whole: f64,
-    /// Share of the scanned floor that was scanned more than once, by the estimated path: the tool came back to it
-    /// after more than two swaths of path. Absent if nothing was scanned.
+    /// Share of the scanned floor that was scanned more than once, according to the estimated path: the tool came
+    /// back to it after more than two swaths of path. Absent if nothing was scanned.
     pub overlap: Option<f64>,
-    /// Reachable floor that was not scanned, by the estimated position, square metres; absent for missions without a
-    /// scan.
+    /// Reachable floor that was not scanned, according to the estimated position, square metres; absent for missions
+    /// without a scan.
     pub missed_area_m2: Option<f64>,
-    /// The same shares by the true position; absent where it is not known.
+    /// The same shares according to the true position; absent where that is not known.
     pub by_truth: Option<CoverageByTruth>,
 }
 
-/// Coverage by the true position. Shares are 0 to 1.
+/// Coverage according to the true position. Shares are 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CoverageByTruth {
     /// Share of the reachable floor.
@@ -159,8 +159,8 @@ pub struct CoverageByTruth {
     pub guaranteed_truly: Option<f64>,
 }
 
-/// The 95 % error of the position: the longer half axis of the 95 % ellipse of its covariance, over all ticks. It
-/// does not include errors of the survey and of the speed of sound, or the offset of the tool.
+/// The 95 % error of the position: the longer semi-axis of the 95 % ellipse of its covariance, over all ticks. It
+/// does not include errors in the survey or in the speed of sound, or the offset of the tool.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Accuracy {
     /// Mean, metres.
@@ -193,9 +193,9 @@ pub struct Tracking {
     pub precision: f64,
     /// Share of the preset points that the true path passes near at any time, 0 to 1.
     pub recall: f64,
-    /// Root mean square distance of the preset points from the piece of true path that was paired with them, metres:
-    /// an arc cut short counts in full. Points that were never reached count only in `recall`. Absent if no point was
-    /// reached.
+    /// Root mean square distance of the preset points from the stretch of the true path that was paired with them,
+    /// metres: an arc cut short counts in full. Points that were never reached count only in `recall`. Absent if no
+    /// point was reached.
     pub rmse_m: Option<f64>,
     /// Root mean square distance of the samples from their paired points, metres.
     pub cross_track_rmse_m: f64,
@@ -236,12 +236,12 @@ pub struct Tether {
     pub loops: u64,
     /// Length out at the end, metres.
     pub end_length_m: f64,
-    /// Whether it could not be reeled in.
+    /// Whether the tether could not be reeled in.
     pub entangled: bool,
-    /// Number of times that the mission found it snagged on an unmapped object.
+    /// Number of times that the mission found the tether snagged on an unmapped object.
     #[serde(default)]
     pub snags: u64,
-    /// Whether it was snagged when the run ended.
+    /// Whether the tether was snagged when the run ended.
     #[serde(default)]
     pub snagged: bool,
 }

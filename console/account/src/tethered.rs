@@ -50,7 +50,7 @@ impl Tethered {
         self.snagged = snagged;
     }
 
-    /// The figures. The cable is entangled if it holds up the mission, or stays out although the robot is back.
+    /// The figures. The cable is entangled if it holds up the mission, or remains out although the robot is back.
     pub(crate) fn tether(&self, robot: Option<Point>, outcome: Option<Outcome>) -> Option<Tether> {
         let is_back = robot.is_some_and(|robot| (robot - self.anchor).norm() <= BACK_M);
         let entangled = outcome == Some(Outcome::Entangled) || (is_back && self.detour_m > LEFT_M);

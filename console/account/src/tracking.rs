@@ -13,7 +13,7 @@ const SAMPLE_M: f64 = 0.05;
 /// Search distance ahead along the preset path for a pair, metres.
 const AHEAD_M: f64 = 1.0;
 
-/// Between preset points further apart than this, more points are inserted, metres.
+/// Distance between preset points above which more points are inserted between them, metres.
 const SPACING_M: f64 = 0.25;
 
 /// A preset path, and how closely the true path has followed it so far.

@@ -39,7 +39,7 @@ pub(crate) fn accuracy(args: &AccuracyArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(COMPLETE))
 }
 
-/// Warns if the scan clearance is so small that the position error may use it up, and if all stations are on a line.
+/// Warns if the scan clearance is so small that the position error may exceed it, and if all stations lie on one line.
 pub(crate) fn warn_of_positions(scenario: &Scenario) {
     let (mission, drawing) = (&scenario.mission, scenario.sim.world.as_drawn());
     for warning in

@@ -98,7 +98,7 @@ fn submit(
 }
 
 fn incomplete(missing: &[u64], why: &str) -> ExitCode {
-    warn_line(&format!("{why}; {} blocks are missing; run again to resume", missing.len()));
+    warn_line(&format!("{why}; {} blocks are missing; run the command again to resume", missing.len()));
     ExitCode::from(ENDED_OTHERWISE)
 }
 

@@ -42,15 +42,15 @@ pub(crate) enum Command {
     Run(RunArgs),
     /// Plan a mission on the drawing without running it.
     Plan(PlanArgs),
-    /// Forecast the position accuracy that the stations provide, and advise where to place them.
+    /// Forecast how accurately the stations will locate the robot, and advise where to place them.
     Accuracy(AccuracyArgs),
     /// Show how an occupancy map is interpreted: the floor, its outlines and convex pieces.
     Map(MapArgs),
     /// Create a scenario from a floor drawing (DXF) or a list of columns (CSV).
     Import(ImportArgs),
-    /// Create a folder with a planner of your own that is ready to build and run.
+    /// Create a folder for a planner of your own, ready to build and run.
     NewPlanner(NewPlannerArgs),
-    /// List the available planners, and the refused plugins with the reasons.
+    /// List the available planners, and any refused plugins with the reasons.
     Planners {
         /// Print JSON.
         #[arg(long)]
@@ -61,8 +61,7 @@ pub(crate) enum Command {
         /// Scenario files (.toml), plugins (.so, .dylib, .dll), and files named config.toml or keys.toml.
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
-        /// For plugins: check the planner contract, and run each planner in N random tanks beside the installed
-        /// planners.
+        /// For plugins: check the planner contract, and compare each planner with the installed ones in N random tanks.
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
         fly: Option<u64>,
         /// Seed of the first random tank; later tanks use the following seeds.
@@ -71,14 +70,14 @@ pub(crate) enum Command {
         /// Print the results of the trial runs as JSON, and nothing else on stdout.
         #[arg(long, requires = "fly")]
         json: bool,
-        /// Write each tank in which a planner did not complete its mission into this folder, as a scenario that can be
-        /// run again.
+        /// Save each tank in which a planner did not complete its mission in this folder, as a scenario that can be run
+        /// again.
         #[arg(long, value_name = "DIR", requires = "fly")]
         keep: Option<PathBuf>,
     },
-    /// Reproduce a table or figure of a paper, with the printed values beside ours.
+    /// Reproduce a table or figure from a paper; show the printed values beside ours.
     Reproduce(ReproduceArgs),
-    /// Optimize planner parameters on one set of layouts and evaluate them on another.
+    /// Optimize planner parameters on one set of layouts, and evaluate them on another set.
     Tune(TuneArgs),
     /// Play back a past run in the console; read-only.
     Replay(ReplayArgs),
@@ -97,14 +96,14 @@ pub(crate) enum Command {
     Verify {
         /// Run folder, or its name in the logs folder.
         run: PathBuf,
-        /// Take the planners' answers from the journal instead of asking the planners again, for example if a plugin
-        /// is not available. The output states what this proves and what it does not.
+        /// Take the planners' answers from the journal instead of asking the planners again, for example if a plugin is
+        /// no longer available. The output states what this proves and what it does not.
         #[arg(long)]
         from_journal: bool,
         #[command(flatten)]
         logs: LogsArg,
     },
-    /// Close a run that was killed: record the SHA-256 of its files, so that it can be part of a signed report.
+    /// Close a run that was killed: record the SHA-256 of its files, so that the run can be part of a signed report.
     Recover {
         /// Run folder, or its name in the logs folder.
         run: PathBuf,
@@ -116,11 +115,11 @@ pub(crate) enum Command {
     },
     /// Print the events of a past run as JSON lines.
     Events(EventsArgs),
-    /// Export a past run: its recording, regenerated, its messages for ROS 2 tools, or its sensor readings.
+    /// Export a past run as a regenerated recording, as messages for ROS 2 tools, or as sensor readings.
     Export(ExportArgs),
-    /// Locate a robot from readings of a real system; writes fixes, track, recording and report.
+    /// Locate a robot from the readings of a real system; write fixes, a track, a recording and a report.
     Locate(LocateArgs),
-    /// Show the result of a past run, or of a scan and its re-scans together.
+    /// Show the result of a past run, or the combined result of a scan and its re-scans.
     Report(ReportArgs),
     /// Create a scenario that scans the areas missed by one or more past runs.
     Rescan(RescanArgs),
@@ -134,12 +133,12 @@ pub(crate) enum Command {
         /// Command of tankops.
         command: Option<String>,
     },
-    /// Repeat the requests to a plugin from before its failure, and show each answer.
+    /// Repeat the requests that a plugin received before it failed, and show each answer.
     ReplayWorker(ReplayWorkerArgs),
-    /// Run a planner in this process; started by the console.
+    /// Run a planner in this process; the console starts this command.
     #[command(hide = true)]
     Worker,
-    /// Give the terminal to this process's group; started by a console that has lost the terminal.
+    /// Give the terminal to this process's group; a console that has lost the terminal starts this command.
     #[command(hide = true)]
     TakeTerminal,
 }

@@ -26,7 +26,7 @@ pub(crate) fn events(args: &EventsArgs) -> anyhow::Result<ExitCode> {
     let mut reader = JournalReader::open_near(&journal_of(&folder), from_s)?;
     let mut out = BufWriter::new(io::stdout().lock());
     let mut is_opened = false;
-    // A journal can also be cut off between two events.
+    // A journal can also be cut off exactly between two events.
     let mut stops_in = None;
     while let Some(line) = reader.next_line()? {
         is_opened = true;

@@ -43,7 +43,7 @@ fn messages(folder: &Path, mcap: &Path) -> anyhow::Result<()> {
     of_journal(folder, mcap, recording::export_mcap, "written")
 }
 
-/// Writes a file that depends on the journal alone; reports what it lacks.
+/// Writes a file that depends on the journal alone; reports any doubt about the journal, and whether it ends early.
 fn of_journal(
     folder: &Path,
     file: &Path,
@@ -58,11 +58,11 @@ fn of_journal(
     };
     let sha256 = events_sha256(&path).ok();
     if let Some(doubt) = journal_doubt(folder, sha256.as_deref()) {
-        say_line(&format!("note: {doubt}; the file contains what the journal holds"))?;
+        say_line(&format!("note: {doubt}; the file contains only what is in the journal"))?;
     }
     if let Some(damage) = truncated {
         say_line(&format!(
-            "note: the journal ends early ({damage}); the file contains what the journal holds"
+            "note: the journal ends early ({damage}); the file contains only what is in the journal"
         ))?;
     }
     Ok(say_line(&format!("{} {done} from {}", file.display(), path.display()))?)

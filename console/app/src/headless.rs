@@ -34,7 +34,7 @@ pub(crate) struct RunOptions {
     pub json: bool,
     /// Write a journal and a recording.
     pub record: bool,
-    /// Apply the console's answer windows: a later answer counts as late.
+    /// Apply the console's answer windows: an answer after its window counts as late.
     pub live_deadlines: bool,
 }
 
@@ -108,7 +108,7 @@ fn fly_beside(
     Ok(ExitCode::from(exit_code(mission_code(&summary), kept.as_ref())))
 }
 
-/// Reports on stderr, once each, that recording fails and that it has resumed.
+/// Reports on stderr, once each, that recording has failed and that it has resumed.
 fn report_trouble(reported: &mut Option<String>, trouble: Option<String>) {
     match (&reported, &trouble) {
         (None, Some(error)) => warn_line(&format!("warning: recording failed: {error}")),
@@ -118,7 +118,7 @@ fn report_trouble(reported: &mut Option<String>, trouble: Option<String>) {
     *reported = trouble;
 }
 
-/// Runs to the end. Every ask is answered before time advances, or within the console's windows.
+/// Runs to the end. Every ask is answered before time advances, unless the console's answer windows apply.
 fn fly_to_end(
     (mut flight, mut shadowing): (Flight, Option<Shadowing>),
     host: Host,

@@ -33,7 +33,7 @@ pub(crate) fn import(args: &ImportArgs, plugins: &PluginDirs) -> anyhow::Result<
     let found = planners::found(plugins);
     let planner = planners::suited_to_coverage(&found).map_or(COVERAGE_PLANNER, |info| &info.id);
     let text = plan.scenario(&name, &source, planner);
-    // Do not write a scenario that its own reader would refuse.
+    // Do not write a scenario that the scenario reader would refuse.
     Scenario::parse(&text, &input.name).map_err(|errors| bad_input(no_scenario(&errors)))?;
     write_file("the scenario", output, &text)?;
     if let Some(file) = &args.svg {
@@ -51,7 +51,7 @@ fn read(args: &ImportArgs, input: &Input) -> anyhow::Result<FloorPlan> {
         InputKind::List => {
             let radius_m = args.tank_radius.ok_or_else(|| {
                 bad_input(
-                    "a list of columns does not state the tank's size: add --tank-radius with its inner \
+                    "a list of columns does not state the tank's size: add --tank-radius with the tank's inner \
                      radius in metres",
                 )
             })?;
@@ -66,8 +66,8 @@ fn read(args: &ImportArgs, input: &Input) -> anyhow::Result<FloorPlan> {
     }
 }
 
-/// Explains why a floor does not make a valid scenario. Line numbers are left out, because the text that they refer to
-/// is not written.
+/// Explains why a floor does not make a valid scenario. Line numbers are left out, because they refer to a text that is
+/// not written.
 fn no_scenario(errors: &ScenarioErrors) -> String {
     let told = errors.problems.iter().take(LISTED).map(|problem| {
         let help = problem.what.help().map(|help| format!("; {help}")).unwrap_or_default();

@@ -7,7 +7,7 @@ use std::{
 };
 use tempfile::NamedTempFile;
 
-/// The most bytes that are read from a pipe.
+/// The largest number of bytes read from a pipe.
 const MOST_PIPED: u64 = 2_000_000_000;
 
 /// An input file that can be read several times.
@@ -29,7 +29,7 @@ impl Input {
     }
 }
 
-/// Opens the file of this name; `-` is standard input.
+/// Opens the file with this name; `-` is standard input.
 pub(crate) fn file(path: &Path) -> anyhow::Result<Input> {
     if path != Path::new("-") {
         return Ok(Input { path: path.to_owned(), shown: path.display().to_string(), _piped: None });

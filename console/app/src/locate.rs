@@ -38,21 +38,21 @@ struct Figures<'a> {
     kind: &'a str,
     /// The speed of sound in metres per second, and its standard deviation.
     sound_speed_m_per_s: Option<[f64; 2]>,
-    /// The relative error by which ranges were too long, and its standard deviation.
+    /// The relative amount by which ranges were too long, and its standard deviation.
     range_scale: Option<[f64; 2]>,
     /// The length in metres by which ranges were too long because of the clock offset, and its standard deviation.
     clock_offset_m: Option<[f64; 2]>,
-    /// The systematic errors that the residuals of the whole session reveal, after the estimated ones are removed.
+    /// The systematic errors that the residuals of the whole session reveal, once the estimated errors are removed.
     session: Session<'a>,
     /// Emissions with several readings of the same station.
     repeated_readings: Option<RepeatedReadings<'a>>,
     sides: Sides,
-    /// If the measured motion is not used because fixes contradict it: the number of contradicting fixes, and of all
-    /// fixes tested.
+    /// If the measured motion is not used because fixes contradict it: the number of fixes that contradict it, and the
+    /// number of fixes tested.
     motion_contradicted: Option<[u64; 2]>,
     /// Readings that fit no position in the tank.
     impossible: Vec<Impossible<'a>>,
-    /// The first time in the file, in UTC, if its times have dates.
+    /// The first time in the file, in UTC, if the times there have dates.
     first_time: Option<&'a str>,
     #[serde(flatten)]
     tally: &'a Tally,
@@ -60,7 +60,7 @@ struct Figures<'a> {
 
 #[derive(Serialize)]
 struct Session<'a> {
-    /// The relative error by which all ranges are too long.
+    /// The relative amount by which all ranges are too long.
     scale: Option<TooLong>,
     /// The length in metres by which all ranges are too long; absent without emission times.
     offset_m: Option<TooLong>,
@@ -87,7 +87,7 @@ struct RepeatedReadings<'a> {
     widest_t_s: f64,
 }
 
-/// The numbers of fixes with a mirror image, by how the side was decided.
+/// The numbers of fixes with a mirror image, by how the right side was determined.
 #[derive(Serialize)]
 struct Sides {
     by_walls: u64,
@@ -196,8 +196,7 @@ fn figures<'a>(
         bad_rows: survey.bad,
         ignored_columns: &survey.ignored,
         kind: survey.kind.word(),
-        // Ranges that are too long by a fraction were computed with a speed of sound that is too high by the same
-        // fraction.
+        // Ranges that are too long by a fraction were computed with a speed of sound too high by the same fraction.
         sound_speed_m_per_s: scale
             .zip(args.sound_speed)
             .map(|([scale, sigma], speed)| [speed / (1.0 + scale), speed * sigma]),

@@ -55,15 +55,15 @@ fn main() -> ExitCode {
     dispatch(cli).unwrap_or_else(|error| fail(&error))
 }
 
-/// Makes the allocator return large blocks to the system immediately, and all threads share one heap. With a heap per
-/// thread and cached blocks, a console would hold twice the memory that it uses. Headless runs do not use this: at full
-/// speed their threads would wait for each other.
+/// Makes the allocator return large blocks to the system immediately and use one heap for all threads. With a heap per
+/// thread and cached blocks, a console would hold twice the memory that it uses. Headless runs keep the default,
+/// because at full speed their threads would wait for each other.
 fn keep_memory_small() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     #[expect(unsafe_code, reason = "the C library offers no other way for a process to set this")]
     // SAFETY: `mallopt` changes parameters of the allocator under its own lock; no other thread runs yet.
     unsafe {
-        /// Blocks of at least this size, in bytes, get their own mapping and are unmapped when freed.
+        /// Blocks of at least this size, in bytes, get mappings of their own and are unmapped when freed.
         const MAPPED_FROM: libc::c_int = 128 << 10;
         // If a parameter is refused, its default stays in effect.
         libc::mallopt(libc::M_MMAP_THRESHOLD, MAPPED_FROM);

@@ -78,9 +78,10 @@ fn files(id: &str, lang: Lang, api: &str) -> Vec<(String, String)> {
                 .replace("\"straight\"", &format!("\"{id}\""))
                 .replace("planner_straight", &format!("planner_{library}"))
                 .replace("{ path = \"../../planner-api\" }", api);
-            // The new folder is a workspace of its own, wherever it is, and its crashes show source lines in a
-            // debugger.
-            let profile = "[profile.release]\n# `tankops replay-worker --gdb` shows the lines of a crash.\ndebug = \"line-tables-only\"\n";
+            // The new folder is a workspace of its own, wherever it is, and crashes of its planner show source lines in
+            // a debugger.
+            let profile = "[profile.release]\n# Lets `tankops replay-worker --gdb` show the source lines of a \
+                           crash.\ndebug = \"line-tables-only\"\n";
             let cargo = format!("{cargo}\n{profile}\n[workspace]\n");
             vec![
                 ("Cargo.toml".into(), cargo),
@@ -115,8 +116,8 @@ fn next_steps(folder: &Path, id: &str, lang: Lang) -> String {
         Lang::C | Lang::Cpp => ("make", "."),
     };
     format!(
-        "created {folder}; build the planner, run it, and try it in random tanks beside the other planners:\n\
-         \n    cd {folder}\n    {build}\n    tankops run scenario.toml --plugin-dir {built}\n    \
+        "created {folder}; build the planner, run it, and compare it with the other planners in random \
+         tanks:\n\n    cd {folder}\n    {build}\n    tankops run scenario.toml --plugin-dir {built}\n    \
          tankops check {built}/libplanner_{library}.so --fly 10\n",
         folder = folder.display(),
         library = library_name(id),

@@ -9,10 +9,10 @@ use std::{borrow::Cow, fs, io, os::unix::fs::MetadataExt, path::Path};
 
 /// Checks that an output file named by the user may be written. An existing file, or the target of a link, is
 /// overwritten only if `force` is `Some(true)`; `force` is `None` for a command without `--force`. The command's own
-/// `inputs`, a signed report and a file of a run are never overwritten. Pipes and devices are written to directly.
+/// `inputs`, signed reports and the files of runs are never overwritten. Pipes and devices are written to directly.
 ///
 /// # Errors
-/// The file, or a link of this name, exists and may not be overwritten.
+/// The file, or a link with this name, exists and may not be overwritten.
 pub(crate) fn check_free(file: &Path, force: Option<bool>, inputs: &[&Path]) -> anyhow::Result<()> {
     let is_free = match fs::symlink_metadata(file) {
         Err(_) => true,
@@ -47,8 +47,8 @@ fn is_same(one: &Path, other: &Path) -> bool {
     id(one).is_some_and(|one| id(other) == Some(one))
 }
 
-/// Writes an output file named by the user (see [`check_free`]), completely or not at all; `name` is its name in error
-/// messages.
+/// Writes an output file named by the user (see [`check_free`]), completely or not at all; error messages call it
+/// `name`.
 pub(crate) fn write_file(name: &str, file: &Path, text: &str) -> anyhow::Result<()> {
     runs::write_whole(file, in_plain(file, text).as_bytes()).map_err(|error| {
         let why = format!("cannot write {name}: {error}: {}", file.display());
@@ -56,8 +56,8 @@ pub(crate) fn write_file(name: &str, file: &Path, text: &str) -> anyhow::Result<
     })
 }
 
-/// The text with unsafe characters replaced. An HTML page is left as it is: its characters were replaced when it was
-/// generated, and it may be signed.
+/// The text with unsafe characters replaced. An HTML page is left as it is: its characters were replaced when the page
+/// was generated, and the page may be signed.
 fn in_plain<'a>(file: &Path, text: &'a str) -> Cow<'a, str> {
     match file.extension().unwrap_or_default().to_string_lossy().to_lowercase().as_str() {
         "json" | "geojson" => plain_json(text),

@@ -63,7 +63,8 @@ pub(crate) fn recover(run: &Path, by: &str, logs: &LogsArg) -> anyhow::Result<Ex
         say_line(&format!("  {missing}"))?;
     }
     say_line(
-        "report.json now contains the SHA-256 of journal and recording; the run can be part of a signed report",
+        "report.json now contains the SHA-256 of the journal and the recording, so the run can be part of a \
+         signed report",
     )?;
     Ok(ExitCode::from(COMPLETE))
 }
@@ -84,7 +85,7 @@ pub(crate) fn verify(
     Ok(ExitCode::from(if verified.is_equal && is_again { COMPLETE } else { ENDED_OTHERWISE }))
 }
 
-/// Locates the readings of a run again and reports the result; returns whether it is the same.
+/// Locates the robot again from the readings of a run and reports the result; returns whether it is unchanged.
 fn is_located_again(folder: &Path) -> anyhow::Result<bool> {
     let again = ::locate::again(folder)?;
     say_line(&match &again {
@@ -96,7 +97,7 @@ fn is_located_again(folder: &Path) -> anyhow::Result<bool> {
         }
         Again::NoReadings(why) => {
             format!(
-                "not proven: the positions cannot be recomputed; restore the readings to their original place: {why}"
+                "not proven: the positions cannot be recomputed; return the readings to their original place: {why}"
             )
         }
     })?;

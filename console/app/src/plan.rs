@@ -1,4 +1,4 @@
-//! `tankops plan`: plans on the known map without running the mission.
+//! `tankops plan`: plans a mission on the known map without running it.
 
 use crate::{
     cli::PlanArgs,
@@ -53,7 +53,7 @@ pub(crate) fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<Exit
     Ok(ExitCode::from(if planned.flies(mission) { COMPLETE } else { ENDED_OTHERWISE }))
 }
 
-/// A plan, with a far better plan by another planner if there is one.
+/// A plan and, if there is one, a far better plan by another planner.
 #[derive(Serialize)]
 struct WithAdvice<'a> {
     #[serde(flatten)]
@@ -66,9 +66,9 @@ struct WithAdvice<'a> {
 struct Better {
     /// The planner's id.
     planner: String,
-    /// The mission time of its plan, in seconds.
+    /// The mission time of the plan, in seconds.
     mission_time_s: f64,
-    /// The path length of its plan, in metres.
+    /// The path length of the plan, in metres.
     path_length_m: f64,
 }
 
@@ -83,10 +83,10 @@ impl Better {
     }
 }
 
-/// The plan of the planner best suited to coverage, if it takes far less time or the given plan cannot be run
-/// completely.
+/// The plan of the planner best suited to coverage, if this plan takes far less time, or if the given plan cannot be
+/// run completely.
 fn better(scenario: &Scenario, planned: &Planned, plugins: &PluginDirs) -> Option<Better> {
-    /// The largest share of the time that counts as far less.
+    /// The largest share of the given plan's time that still counts as far less.
     const FAR: f64 = 0.7;
     if !matches!(scenario.mission.task, TaskConfig::Cover { .. }) {
         return None;
@@ -155,7 +155,7 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Made> 
     Ok(Made { plan, plan_time_ms, reason, warnings })
 }
 
-/// Requests a plan of the whole task from the mission's planner, from the start, on the drawing.
+/// Asks the mission's planner to plan the whole task, from the start, in the tank as drawn.
 fn ask_for_plan(scenario: &Scenario, host: &mut BlockingHost) -> Result<Reply<Plan>, Fault> {
     let ask = preview(&scenario.mission, &scenario.sim.world.as_drawn(), scenario.seed);
     let planner = &scenario.mission.planner;
@@ -163,7 +163,7 @@ fn ask_for_plan(scenario: &Scenario, host: &mut BlockingHost) -> Result<Reply<Pl
     ask.lend(|request| host.plan(request))
 }
 
-/// The partial path of a planner that refuses; any other fault is returned as an error for the user to fix.
+/// The partial path of a planner that refused; any other fault is returned as an error that the user can correct.
 fn partial_plan(fault: &Fault) -> anyhow::Result<Plan> {
     match fault.cause {
         Cause::Planner(code) if code != Code::Config => {

@@ -1,4 +1,4 @@
-//! `tankops planners` and `tankops check`: lists the plugins found, and the problems of files.
+//! `tankops planners` and `tankops check`: list the plugins found, and problems in files.
 
 use crate::accuracy::warn_of_positions;
 use command::json::pretty_json;
@@ -62,7 +62,7 @@ fn parameter_listing(info: &ParamInfo) -> String {
     format!("      {:<18} {values}{unit}{live}\n", info.key)
 }
 
-/// Warns if a planner of the scenario is in more than one plugin.
+/// Warns if more than one plugin contains a planner of the scenario.
 pub(crate) fn warn_of_shadowed(scenario: &Scenario, plugins: &PluginDirs) {
     for sentence in &planners::shadowed(scenario, plugins) {
         warn_line(sentence);
@@ -84,10 +84,10 @@ pub(crate) fn check(files: &[PathBuf], plugins: &PluginDirs) -> anyhow::Result<E
     Ok(ExitCode::from(if sound { COMPLETE } else { BAD_INPUT }))
 }
 
-/// A description of the file, or of its problems.
+/// A description of the file, or of the problems in it.
 ///
 /// # Errors
-/// The machine cannot run any planner.
+/// This machine cannot run any planner.
 fn check_file(file: &Path, plugins: &PluginDirs) -> anyhow::Result<Result<String, String>> {
     if let Some(checked) = config::check(file) {
         return Ok(checked);

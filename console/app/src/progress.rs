@@ -31,7 +31,7 @@ pub(crate) fn show_share(bar: &ProgressBar, work: &str, progress: &Progress) {
     }
 }
 
-/// Callbacks that show slow work of planners, and its progress, in an existing bar.
+/// Callbacks that show the planners' slow work and its progress in an existing bar.
 pub(crate) fn shown_in(bar: &ProgressBar) -> (OnWork, OnProgress) {
     let current: Arc<Mutex<Option<Work>>> = Arc::default();
     let (shown, work) = (bar.clone(), Arc::clone(&current));

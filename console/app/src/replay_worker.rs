@@ -1,4 +1,4 @@
-//! `tankops replay-worker`: repeats to a plugin alone the requests that it received before it failed.
+//! `tankops replay-worker`: sends a plugin, on its own, the requests that it received before it failed.
 
 use crate::cli::ReplayWorkerArgs;
 use anyhow::anyhow;
@@ -12,7 +12,7 @@ use std::{
     process::{self, ExitCode},
 };
 
-/// The worker holds a copy of the plugin at this descriptor; gdb knows the plugin by this number.
+/// The worker's descriptor for its copy of the plugin; gdb identifies the plugin by this number.
 const KNOWN_TO_GDB_AS: &str = "201";
 /// The files that gdb writes into a bundle.
 const CORE: &str = "core";
@@ -48,7 +48,7 @@ pub(crate) fn replay(args: &ReplayWorkerArgs) -> anyhow::Result<ExitCode> {
     });
     let (code, end) = match replayed? {
         Replayed::ToTheEnd { requests } => {
-            (COMPLETE, format!("all {requests} answers are accepted: the plugin does not fail again"))
+            (COMPLETE, format!("all {requests} answers were accepted: the plugin did not fail again"))
         }
         Replayed::Failed(how) => (ENDED_OTHERWISE, format!("failed again at {how}")),
     };

@@ -97,7 +97,7 @@ fn format_of(output: &Path) -> anyhow::Result<&'static str> {
     })
 }
 
-/// The files of a report in a format.
+/// The files that make up a report in a format.
 fn names(output: &Path, format: &str) -> Vec<PathBuf> {
     if format != "csv" {
         return vec![output.to_owned()];
@@ -107,7 +107,7 @@ fn names(output: &Path, format: &str) -> Vec<PathBuf> {
 }
 
 /// Refuses to overwrite an existing file without `--force`, and always refuses to overwrite a signed report of these
-/// runs. [`check_free`] refuses the signed reports in the register.
+/// runs. [`check_free`] protects the signed reports in the register.
 fn may_write(output: &Path, args: &ReportArgs, revisions: &[Revision]) -> anyhow::Result<()> {
     let path = fs::canonicalize(output).unwrap_or_else(|_| output.to_owned()).display().to_string();
     if let Some(revision) = revisions.iter().find(|revision| revision.file == path) {
@@ -129,7 +129,7 @@ fn inspection(args: &ReportArgs, last: Option<&Past>) -> anyhow::Result<Inspecti
     Ok(known.updated(later.map_err(|errors| bad_input(errors.render()))?))
 }
 
-/// The files of a format with their contents.
+/// The files that make up a report in a format, with their contents.
 fn files(
     output: &Path,
     format: &str,

@@ -44,7 +44,7 @@ pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<
     Ok(ExitCode::from(COMPLETE))
 }
 
-/// The scenario text, changed to planners that can run it if necessary, and a note on the change.
+/// The scenario text, changed if necessary to name a planner that can run it, and a note on the change.
 fn flyable(
     text: String,
     scenario: &Scenario,
@@ -64,7 +64,8 @@ fn flyable(
     let shown = output.display().to_string();
     let text = settings.put_into(&text).map_err(|what| bad_input(format!("{shown}: {what}")))?;
     Scenario::parse(&text, &shown).map_err(|errors| bad_input(errors.render()))?;
-    let note = format!("planner {} replaces {} of the run, which {why}", suited.id, mission.planner.id);
+    let note =
+        format!("planner {} replaces {}, the planner of the run, which {why}", suited.id, mission.planner.id);
     Ok((text, Some(note)))
 }
 

@@ -1,4 +1,4 @@
-//! A planner in shadow in a headless run, and its swaps with the driving planner.
+//! A planner in shadow in a headless run, and its swaps with the active planner.
 
 use crate::cli::ShadowArgs;
 use flight::{planners, scenarios};
@@ -9,7 +9,7 @@ use std::path::Path;
 
 /// Issues the orders for a planner in shadow.
 pub(crate) struct Shadowing {
-    /// The planner in shadow, then the one that drives.
+    /// The planner in shadow, then the active planner.
     choices: [PlannerChoice; 2],
     every_s: Option<f64>,
     tally: ShadowTally,
@@ -18,7 +18,7 @@ pub(crate) struct Shadowing {
 }
 
 impl Shadowing {
-    /// Reads the shadow options of the command line for a scenario that was read from `file`.
+    /// Reads the shadow options on the command line for a scenario that was read from `file`.
     ///
     /// # Errors
     /// The planner is not available, or it does not accept its parameters.

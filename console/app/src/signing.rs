@@ -24,7 +24,7 @@ use std::{
 pub(crate) struct Chain {
     /// The revisions without duplicates, earliest first.
     pub revisions: Vec<Revision>,
-    /// Doubts about them: a report was changed, moved or lost, or is about a different run of the same name.
+    /// Doubts about the revisions: a report was changed, moved or lost, or is about a different run with the same name.
     pub doubts: Vec<String>,
 }
 
@@ -64,7 +64,7 @@ impl Chain {
     }
 }
 
-/// A signature by this person, dated to the current minute.
+/// A signature by this person, dated to the current minute in UTC.
 pub(crate) fn signature(by: &str) -> Signature {
     Signature { by: by.to_owned(), at: utc_minute(SystemTime::now()) }
 }
@@ -73,20 +73,20 @@ pub(crate) fn signature(by: &str) -> Signature {
 pub(crate) fn refuse_doubts(chain: &Chain) -> anyhow::Result<()> {
     match chain.doubts.first() {
         Some(doubt) => Err(bad_input(format!(
-            "not signed: {doubt}; restore the files to their state when it was signed"
+            "not signed: {doubt}; restore the files to the state in which they were signed"
         ))),
         None => Ok(()),
     }
 }
 
-/// Refuses a signer who is not the inspector whose certificate is stated. A missing inspector is an open item of the
+/// Refuses a signer other than the inspector whose certificate is stated. A missing inspector is an open item of the
 /// gate, not an error here.
 pub(crate) fn refuse_other_signer(by: &str, inspector: Option<&str>) -> anyhow::Result<()> {
     match inspector {
         Some(inspector) if inspector.trim() != by.trim() => Err(bad_input(format!(
             "not signed: --sign names {by}, but inspection.inspector is {inspector}, whose certificate the \
-             report states; let {inspector} sign, or state inspector and inspector_certificate of {by} in a \
-             file for --inspection"
+             report states; let {inspector} sign, or state {by} as inspector, with an inspector_certificate, in \
+             a file for --inspection"
         ))),
         _ => Ok(()),
     }
@@ -103,14 +103,14 @@ pub(crate) fn refuse_open_items(document: &Document) -> anyhow::Result<()> {
     }
     let (count, are) = (open.len(), if open.len() == 1 { "is" } else { "are" });
     Err(bad_input(format!(
-        "not signed: {count} of {} items {are} open (state keys of [inspection] in a file for --inspection):\n{}",
+        "not signed: {count} of {} items {are} open (state the keys of [inspection] in a file for --inspection):\n{}",
         document.gate.len(),
         open.join("\n")
     )))
 }
 
-/// Refuses runs whose journal is not reproduced when it is recomputed: the digests alone prove nothing, because
-/// `report.json` can be rewritten. `folders` holds the flown runs only, since located readings do not come from the
+/// Refuses a run if recomputing it does not reproduce its journal: the digests alone prove nothing, because
+/// `report.json` can be rewritten. `folders` contains no located runs, because their readings do not come from the
 /// simulator.
 pub(crate) fn refuse_not_recomputed(folders: &[PathBuf], plugins: &PluginDirs) -> anyhow::Result<()> {
     for folder in folders {
@@ -124,17 +124,17 @@ pub(crate) fn refuse_not_recomputed(folders: &[PathBuf], plugins: &PluginDirs) -
     Ok(())
 }
 
-/// Refuses located runs that their readings do not reproduce. `folders` holds the located runs only.
+/// Refuses a located run if its readings do not reproduce its positions. `folders` contains only located runs.
 pub(crate) fn refuse_not_located_again(folders: &[PathBuf]) -> anyhow::Result<()> {
     for folder in folders {
         let name = folder.file_name().unwrap_or_default().to_string_lossy();
-        warn_line(&format!("locating the readings of run {name} again ..."));
+        warn_line(&format!("locating the robot again from the readings of run {name} ..."));
         let why = match ::locate::again(folder)? {
             Again::Equal(_) => continue,
             Again::Different { line, .. } => {
-                format!("they give different positions from line {line} of its journal on")
+                format!("they give positions that differ from those in its journal from line {line} on")
             }
-            Again::NoReadings(why) => format!("restore them to their original place: {why}"),
+            Again::NoReadings(why) => format!("return them to their original place: {why}"),
         };
         return Err(bad_input(format!("not signed: the readings of run {name}: {why}")));
     }
@@ -142,7 +142,7 @@ pub(crate) fn refuse_not_located_again(folders: &[PathBuf]) -> anyhow::Result<()
 }
 
 /// Lists a signed report in the folders of its runs and in the register, and makes it read-only. If the report cannot
-/// be listed, it is removed, because later changes could not be detected.
+/// be listed, it is removed, because later changes to it could not be detected.
 pub(crate) fn seal(
     (file, text): (&Path, &str),
     document: &Document,

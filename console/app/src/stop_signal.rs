@@ -34,7 +34,7 @@ pub(crate) fn listen() -> StopSignal {
         let registered =
             signal_hook::flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&asked))
                 .and_then(|_| signal_hook::flag::register(signal, Arc::clone(&asked)));
-        // If this fails, the signal ends the process, as by default.
+        // If this fails, the signal ends the process, as it does by default.
         drop(registered);
     }
     StopSignal(asked)
@@ -44,6 +44,6 @@ pub(crate) fn listen() -> StopSignal {
 pub(crate) fn wake_on_signal(waker: Waker) {
     let Ok(mut signals) = Signals::new(SIGNALS) else { return };
     let watch = move || signals.forever().for_each(|_| waker.wake());
-    // Without this thread, the signal is noticed when the planner answers.
+    // Without this thread, the signal is noticed only when the planner answers.
     drop(thread::Builder::new().name("stop signal".into()).spawn(watch));
 }

@@ -3,8 +3,8 @@
 use crate::cli::{CampaignCommand, Command};
 use command::threads::{cores, missions};
 
-/// Numbers of simultaneous threads and processes besides the first thread, as counted by `prlimit --nproc`. Further
-/// threads of a planner are counted only if they could take what something else needs; the planners of tankops work
+/// Numbers of simultaneous threads and processes besides the first thread, as counted by `prlimit --nproc`. Additional
+/// threads of a planner are counted only if they could use up what something else needs; the planners of tankops work
 /// without them.
 mod each {
     pub(super) use command::threads::{PLANNER, SIGNAL};
@@ -17,7 +17,7 @@ mod each {
     pub(super) const JOURNAL: usize = 1;
     /// Writing a run.
     pub(super) const RUN: usize = RECORDING + JOURNAL;
-    /// Recomputing a run: its journal and its planners, and its files at the same time.
+    /// Recomputing a run: its journal and planners and, at the same time, its files.
     pub(super) const VERIFY: usize = 3 + PAST_RUN + PLANNER;
     /// The console: signals, keys, plugins, and background work.
     pub(super) const CONSOLE: usize = 5;
@@ -52,7 +52,7 @@ pub(crate) fn needed(command: Option<&Command>) -> usize {
             | Command::Map(_)
             | Command::Import(_)
             | Command::NewPlanner(_)
-            // A different program, which checks for itself.
+            // A different program, which checks its own limits.
             | Command::Reproduce(_)
             | Command::Tune(_)
             | Command::Events(_)

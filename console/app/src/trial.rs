@@ -16,7 +16,7 @@ use std::{
     process::ExitCode,
 };
 
-/// Tries every planner of some plugins in `n` random tanks, beginning with a seed; `keep` is a folder for the failed
+/// Tries every planner in these plugins in `n` random tanks, beginning with a seed; `keep` is a folder for the failed
 /// tanks.
 pub(crate) fn fly(
     files: &[PathBuf],
@@ -52,13 +52,13 @@ pub(crate) fn fly(
     Ok(ExitCode::from(if is_passed { COMPLETE } else { ENDED_OTHERWISE }))
 }
 
-/// Writes the failed tanks as scenarios, and reports their files.
+/// Writes the failed tanks as scenarios, and lists these files.
 fn keep_lost(folder: &Path, lost: &[Lost]) -> anyhow::Result<()> {
     let failed = |error: io::Error| bad_input(format!("--keep {}: {error}", folder.display()));
     fs::create_dir_all(folder).map_err(failed)?;
     for Lost { name, scenario } in lost {
         let file = folder.join(format!("{name}.toml"));
-        // The same tank always has the same text; a different text was edited by a person.
+        // The same tank always has the same text, so a different text has been edited by a person.
         if fs::read_to_string(&file).is_ok_and(|there| there != *scenario) {
             return Err(bad_input(format!(
                 "--keep {}: already exists and was edited; choose another folder",
@@ -82,7 +82,7 @@ fn with_folder_of(file: &Path, plugins: &PluginDirs) -> PluginDirs {
     plugins
 }
 
-/// The planners of a plugin. Each must be the one that its id selects.
+/// The planners of a plugin. Each must be the planner that its id selects.
 fn planners_of(file: &Path, plugins: &PluginDirs, found: &[PlannerInfo]) -> anyhow::Result<Vec<PlannerInfo>> {
     let refused = |why: String| bad_input(format!("{}: {why}", file.display()));
     let SurveyedPlugin { sha256, planners, refused: reason, .. } =
@@ -95,7 +95,7 @@ fn planners_of(file: &Path, plugins: &PluginDirs, found: &[PlannerInfo]) -> anyh
         |info: &&PlannerInfo| !found.iter().any(|found| found.id == info.id && found.sha256 == sha256);
     if let Some(hidden) = planners.iter().find(is_hidden) {
         return Err(refused(format!(
-            "cannot be run: its planner `{}` is not found in this folder; the file must be named \
+            "cannot be run: its planner `{}` was not found in this folder; the file must be named \
              libplanner_*.so (.dylib, planner_*.dll), and no plugin found earlier may have a planner with this \
              id",
             hidden.id

@@ -16,8 +16,8 @@ use std::{
 /// The wait after which a note is printed.
 const SOON: Timespec = Timespec { tv_sec: 1, tv_nsec: 0 };
 
-/// Waits until each pipe among a command's first input files has data. The returned files keep the pipes open until
-/// they are read; otherwise the writer would lose its reader.
+/// Waits until each pipe among a command's first input files has data. The returned files keep the pipes open until the
+/// command reads them; otherwise a writer would lose its reader.
 pub(crate) fn for_pipes(command: Option<&Command>) -> Vec<File> {
     files(command).iter().filter_map(|file| wait(file)).collect()
 }

@@ -16,20 +16,21 @@ pub struct Comparison {
     pub metric: String,
     /// One entry for each group.
     pub groups: Vec<Group>,
-    /// Number of missions that count in only one of the tables: flown ones for success, complete ones for other metrics.
+    /// Number of missions that count in only one of the tables. For success, missions that ran count; for other metrics,
+    /// complete ones.
     pub unpaired: u64,
 }
 
 /// Paired missions of one group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Group {
-    /// The common value of the group; `all` without groups.
+    /// The common value of the group; `all` if there are no groups.
     pub name: String,
-    /// Mean of the first table.
+    /// Mean in the first table.
     pub first: Mean,
-    /// Mean of the second.
+    /// Mean in the second table.
     pub second: Mean,
-    /// Second table minus first.
+    /// Second table minus first table.
     pub difference: Mean,
     /// The verdict on the difference.
     pub verdict: Verdict,
@@ -74,11 +75,11 @@ impl Verdict {
     }
 }
 
-/// Compares a metric of two tables: success over the missions that were flown in both, other metrics over those that were
-/// completed in both. `by` is the column that defines the groups.
+/// Compares a metric in two tables. Success is compared over the missions that ran in both tables, other metrics over
+/// those that were completed in both. `by` is the column that defines the groups.
 ///
 /// # Errors
-/// A table has no such column.
+/// At least one of the tables has no such column.
 pub fn compare(first: &Table, second: &Table, metric: &str, by: Option<&str>) -> Result<Comparison, String> {
     let is_missing = |name: &&str| !(first.has(name) && second.has(name));
     if let Some(name) = [Some(metric), by].into_iter().flatten().find(is_missing) {
@@ -108,7 +109,7 @@ pub fn compare(first: &Table, second: &Table, metric: &str, by: Option<&str>) ->
     Ok(Comparison { metric: metric.to_owned(), groups, unpaired: unpaired + other.len() as u64 })
 }
 
-/// The missions that count, by the columns in which two compared missions agree, each with its group and value.
+/// The missions that count, each with its group and value. Their key is the columns in which two compared missions agree.
 fn missions(table: &Table, metric: &str, by: Option<&str>) -> BTreeMap<Vec<String>, (String, f64)> {
     let names = ["scenario", "planner", "seed"].map(str::to_owned).into_iter().chain(table.keys());
     let keys: Vec<_> = names.map(|name| table.words(&name)).collect();
@@ -120,7 +121,7 @@ fn missions(table: &Table, metric: &str, by: Option<&str>) -> BTreeMap<Vec<Strin
         table.numbers(metric)
     };
     let outcome = table.words("outcome");
-    // The cost of an incomplete mission does not measure the task.
+    // The cost of an incomplete mission says nothing about the cost of the task.
     let counts = |row: &usize| match metric {
         "success" => status[*row].as_deref() == Some("flown"),
         _ => outcome.get(*row).is_some_and(|word| word.as_deref() == Some(COMPLETE)),

@@ -18,13 +18,13 @@ pub struct Seeds {
 pub struct Design {
     /// Name of the campaign.
     pub name: String,
-    /// Ids of planners; empty to use those of the scenarios.
+    /// Ids of the planners; empty to use those named by the scenarios.
     pub planners: Vec<String>,
     /// Keys of scenarios and parameters of planners that change between missions.
     pub keys: Vec<String>,
-    /// Values of these keys at each point; there is at least one point.
+    /// Values of these keys at each point of the grid; there is at least one point.
     pub points: Vec<Vec<Value>>,
-    /// Bounds for every run, in addition to those of its scenario: key of `[expect]` and value.
+    /// Bounds that every run must meet, in addition to those of its scenario: key of `[expect]` and value.
     pub expect: Vec<(String, Value)>,
     /// The seeds.
     pub seeds: Seeds,

@@ -1,5 +1,5 @@
-//! The digest in every table. It covers all bytes of the table, with the digits of the digest itself counted as zeros. It
-//! is stored in the metadata at the end of the file, so other programs can read the table like any other.
+//! The digest stored in every table. It covers all bytes of the table, with the digits of the digest itself treated as
+//! zeros. It is stored in the metadata at the end of the file, so other programs can read the table like any other.
 
 use parquet::{
     errors::ParquetError,
@@ -10,12 +10,12 @@ use sha2::{Digest, Sha256};
 const KEY: &str = "tankops.sha256";
 /// Number of hexadecimal digits in a digest.
 const DIGITS: usize = 64;
-/// States in a second place that the file has a digest, so that a file whose digest cannot be found is not mistaken for
-/// one without.
+/// States in a second place that the file has a digest, so that a file in which the digest cannot be found is not
+/// mistaken for one without a digest.
 pub(crate) const CREATED_BY: &str = "tankops campaign, with digest";
 /// The end of a Parquet file: the length of the metadata, and a magic word.
 const TAIL: u64 = 8;
-/// Maximum size of the metadata that is searched, bytes.
+/// Maximum size of the metadata to be searched, bytes.
 const MOST_METADATA: u64 = 16 << 20;
 /// Number of bytes read at a time.
 const PIECE: u64 = 1 << 20;
@@ -25,9 +25,9 @@ const PIECE: u64 = 1 << 20;
 pub(crate) enum Seal {
     /// The bytes are unchanged.
     Whole,
-    /// The bytes were changed.
+    /// At least one byte was changed.
     Damaged,
-    /// The file has no digest: it was written by an earlier version, or by a different program.
+    /// The file has no digest: it was written by an earlier version or by another program.
     None,
 }
 
@@ -79,7 +79,7 @@ fn metadata(file: &impl ChunkReader) -> Result<Option<Vec<u8>>, ParquetError> {
     }
 }
 
-/// Position of the digest: after the last occurrence of its key, as a text in Thrift's compact form.
+/// Position of the digest: directly after the last occurrence of its key, encoded as text in Thrift's compact form.
 fn place_in(bytes: &[u8]) -> Option<usize> {
     let text = 0x18; // the next field, and it is a text
     let before = [&[text, KEY.len() as u8], KEY.as_bytes(), &[text, DIGITS as u8]].concat();

@@ -1,4 +1,4 @@
-//! The findings from a table: how often the missions succeed, what they cost, and how the planners compare.
+//! The findings from a campaign's table: how often the missions succeed, what they cost, and how the planners compare.
 
 use crate::{
     frozen::Campaign,
@@ -8,9 +8,9 @@ use crate::{
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Maximum number of missions listed as the worst.
+/// Maximum number of missions listed as the worst ones.
 const WORST: usize = 10;
-/// The outcome of a complete mission, as in the table.
+/// The word for the outcome of a complete mission in the table.
 pub(crate) const COMPLETE: &str = "complete";
 
 /// The findings from a table.
@@ -22,11 +22,11 @@ pub struct Findings {
     pub planned: u64,
     /// Number of missions in the table.
     pub rows: u64,
-    /// Number of these that were refused by their scenario or planner.
+    /// Number of missions in the table that were refused by their scenario or planner.
     pub refused: u64,
-    /// Number of these that were not flown because the program failed.
+    /// Number of missions in the table that did not run because the program failed.
     pub failed: u64,
-    /// Number of these that were flown with planner faults.
+    /// Number of missions in the table that ran with planner faults.
     pub with_faults: u64,
     /// The planners with faults.
     pub faults: Vec<Faults>,
@@ -38,37 +38,37 @@ pub struct Findings {
     pub worst: Vec<Worst>,
 }
 
-/// A planner at a point of the grid.
+/// A planner at one point of the grid.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Arm {
     /// Planner and values.
     pub name: String,
-    /// Share of the missions that are complete and keep every bound.
+    /// Share of the missions that are complete and met every bound.
     pub success: Share,
-    /// Share of the flown missions that are complete, whatever bounds they kept.
+    /// Share of the missions run that are complete, whether or not they met the bounds.
     pub complete: Share,
-    /// The metrics over the complete missions; absent if none of them has the figure. The cost of an incomplete mission
-    /// says nothing about the cost of the task.
+    /// The metrics over the complete missions; absent if none of these missions has the figure. The cost of an incomplete
+    /// mission says nothing about the cost of the task.
     pub means: Vec<Option<Mean>>,
-    /// The metrics over the missions that were flown but are incomplete.
+    /// The metrics over the missions that ran but are incomplete.
     pub means_of_incomplete: Vec<Option<Mean>>,
-    /// Differences from the first arm over missions of the same scenario and seed: success over those that both arms
-    /// flew, then the metrics over those that both completed. Absent for the first arm.
+    /// Differences from the first arm over missions with the same scenario and seed: first success, over the missions
+    /// that both arms ran; then the metrics, over the missions that both completed. Absent for the first arm.
     pub differences: Vec<Option<Mean>>,
-    /// Success for each scenario, if there are several.
+    /// Success for each scenario, if there is more than one.
     pub scenarios: Vec<(String, Share)>,
-    /// Quantiles of the first metric over the complete missions: at 0, 1/40, ... 1.
+    /// Quantiles of the first metric over the complete missions, at 0, 1/40, ... 1.
     pub quantiles: Vec<f64>,
 }
 
 impl Arm {
-    /// Whether it completes clearly fewer missions than another arm: its interval ends below the other's.
+    /// Whether this arm completes clearly fewer missions than another one: its interval ends below the other's.
     fn is_clearly_below(&self, other: &Self) -> bool {
         other.complete.share().is_some_and(|share| self.complete.high < share)
     }
 }
 
-/// The faults of a planner at a point of the grid.
+/// The faults of a planner at one point of the grid.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Faults {
     /// Planner and values.
@@ -101,8 +101,9 @@ struct Columns {
 }
 
 impl Findings {
-    /// Which arms may be ranked by their metrics: those that do not complete clearly fewer missions than another arm.
-    /// Otherwise a planner that gives up early would look fast in the few missions that it completes.
+    /// Which arms may be ranked by their metrics: those that do not complete clearly fewer missions than another arm. If
+    /// all were ranked, a planner that gives up early would look fast, because only the few missions that it completes
+    /// count.
     pub fn ranked(&self) -> Vec<bool> {
         let is_ranked =
             |arm: &Arm| arm.complete.hits > 0 && !self.arms.iter().any(|other| arm.is_clearly_below(other));
@@ -134,7 +135,7 @@ impl Columns {
         self.status[row].as_deref() == Some("flown")
     }
 
-    /// A figure of a flown mission; index 0 is success, the metrics follow.
+    /// A figure of a mission that ran; index 0 is success, the metrics follow.
     fn value(&self, metric: usize, row: usize) -> Option<f64> {
         match metric.checked_sub(1) {
             None => Some(f64::from(u8::from(self.success[row]))),
@@ -182,7 +183,7 @@ fn faults(campaign: &Campaign, columns: &Columns, of_arm: &[Vec<usize>]) -> Vec<
     all
 }
 
-/// The rows of an arm by scenario and seed.
+/// The rows of an arm, by scenario and seed.
 fn pairs(campaign: &Campaign, columns: &Columns, rows: &[usize]) -> BTreeMap<u64, usize> {
     rows.iter().map(|row| (columns.cases[*row] / campaign.arms() as u64, *row)).collect()
 }
@@ -246,9 +247,9 @@ fn by_scenario(campaign: &Campaign, columns: &Columns, rows: &[usize]) -> Vec<(S
     campaign.scenarios.iter().map(|s| (s.name.clone(), share(columns, &of(&s.name)))).collect()
 }
 
-/// The worst missions: first those that failed, then those without success, then refused ones, then those that succeeded
-/// with planner faults. Each group is sorted by the first metric. If missions of one arm ended in the same way, only one
-/// of them is listed.
+/// The worst missions: first those that failed, then those that ran without success, then those that were refused, and
+/// last those that succeeded despite planner faults. Each group is sorted by the first metric. If several missions of one
+/// arm ended in the same way, only one of them is listed.
 fn worst(campaign: &Campaign, table: &Table, columns: &Columns) -> Vec<Worst> {
     let Some(metric) = campaign.design.metrics.first() else { return Vec::new() };
     let sign = if more_is_better(metric) { 1.0 } else { -1.0 };
@@ -284,7 +285,7 @@ fn worst(campaign: &Campaign, table: &Table, columns: &Columns) -> Vec<Worst> {
     alike.into_iter().take(WORST).map(named).collect()
 }
 
-/// A reason without its numbers, which differ even between missions that ended in the same way.
+/// A reason with its numbers removed: they differ even between missions that ended in the same way.
 fn kind(why: &str) -> String {
     why.chars().filter(|letter| !letter.is_ascii_digit() && *letter != '.' && *letter != '-').collect()
 }

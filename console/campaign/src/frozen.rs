@@ -1,4 +1,4 @@
-//! A campaign frozen before its first mission: every block is flown from it and from nothing else.
+//! A campaign frozen before its first mission: every block is run from this frozen form and nothing else.
 
 use crate::{
     design::Design,
@@ -10,21 +10,21 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::{collections::BTreeMap, ops::Range};
 
-/// Version of the frozen format; any other version is refused.
+/// Version of the frozen format; files with any other version are refused.
 const FORMAT: u32 = 2;
 /// Number of missions per block if the plan sets none ...
 const BLOCK: u64 = 64;
 /// ... unless that would give more blocks than this.
 const MOST_BLOCKS: u64 = 1000;
 
-/// The program and the plugins that fly the missions.
+/// The program and the plugins that run the missions.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Program {
     /// Version of tankops.
     pub tankops_version: String,
     /// SHA-256 of the program, hexadecimal.
     pub tankops_sha256: String,
-    /// SHA-256 of every plugin file, hexadecimal, by its name.
+    /// SHA-256 of every plugin file, hexadecimal, by file name.
     pub plugins_sha256: BTreeMap<String, String>,
 }
 
@@ -33,7 +33,7 @@ pub struct Program {
 pub struct ScenarioText {
     /// Its unique name in the table.
     pub name: String,
-    /// Path of its file, for the command that repeats a mission.
+    /// Path of its file, used in the command that repeats a mission.
     pub path: String,
     /// Its text, with the maps included.
     pub text: String,
@@ -41,7 +41,7 @@ pub struct ScenarioText {
     pub sha256: String,
 }
 
-/// A plan with the texts of its scenarios and the program that flies them.
+/// A plan, with the texts of its scenarios and the program that runs them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Campaign {
     format: u32,
@@ -63,7 +63,7 @@ pub struct Case<'a> {
     pub n: u64,
     /// Its scenario.
     pub scenario: &'a ScenarioText,
-    /// Its planner; `None` for that of the scenario.
+    /// Its planner; `None` for the planner named by the scenario.
     pub planner: Option<&'a str>,
     /// The values of the campaign's keys.
     pub point: &'a [Value],
@@ -83,7 +83,7 @@ impl Campaign {
     /// Reads a frozen campaign and checks it.
     ///
     /// # Errors
-    /// It is not a campaign, has a different format, or was changed after it was frozen.
+    /// The file is not a campaign, has a different format, or was changed after the campaign was frozen.
     pub fn thaw(json: &[u8]) -> Result<Self, String> {
         let no_campaign = |error| format!("is not a campaign: {error}");
         let value: serde_json::Value = serde_json::from_slice(json).map_err(no_campaign)?;
@@ -106,7 +106,7 @@ impl Campaign {
     /// The frozen form, with the digest by which [`Self::thaw`] detects changes.
     ///
     /// # Errors
-    /// Never, for a campaign frozen from a plan.
+    /// Never occur for a campaign frozen from a plan.
     pub fn to_json(&self) -> serde_json::Result<Vec<u8>> {
         let mut value = serde_json::to_value(self)?;
         value["sha256"] = self.digest().into();
@@ -118,7 +118,7 @@ impl Campaign {
         hex::encode(Sha256::digest(serde_json::to_vec(self).unwrap_or_default()))
     }
 
-    /// Why this program cannot have frozen it; `None` if it can.
+    /// Why this program cannot have frozen the campaign; `None` if it can have.
     fn damage(&self) -> Option<String> {
         let Design { points, keys, seeds, .. } = &self.design;
         let changed = self.scenarios.iter().find(|s| hex::encode(Sha256::digest(&s.text)) != s.sha256);
@@ -136,7 +136,7 @@ impl Campaign {
         (!is_possible).then(|| "there are no missions, or more than a plan allows".to_owned())
     }
 
-    /// Whether a different campaign flies the same missions with the same program, regardless of blocks.
+    /// Whether a different campaign runs the same missions with the same program, regardless of blocks.
     pub fn is_same(&self, other: &Self) -> bool {
         self == &Self { block: self.block, ..other.clone() }
     }
@@ -162,8 +162,8 @@ impl Campaign {
         block * self.block..end.min(self.cases())
     }
 
-    /// Returns the mission with this number. Seeds are outermost, so that blocks cost about the same and a part of a
-    /// campaign is still paired.
+    /// Returns the mission with this number. The seeds are the outermost loop, so all blocks take about the same time,
+    /// and the missions are still paired if only a part of the campaign has run.
     pub fn case(&self, n: u64) -> Case<'_> {
         let mut rest = (n % self.per_seed()) as usize;
         let mut take = |count: usize| {
@@ -205,7 +205,7 @@ impl Campaign {
         format!("{planner}{set}")
     }
 
-    /// The settings by which a mission differs from its scenario.
+    /// The settings in which a mission differs from its scenario.
     pub fn settings(&self, case: &Case<'_>) -> Settings {
         let expect = self.design.expect.iter().map(|(key, bound)| format!("expect.{key}={}", quoted(bound)));
         let set = expect.chain(self.set(case)).collect();
@@ -223,7 +223,8 @@ impl Campaign {
         format!("tankops run {}{planner}{set} --seed {}", shell(&case.scenario.path), case.seed)
     }
 
-    /// The origin of a table, as stored in it: everything except the blocks, the texts and the paths of files.
+    /// The origin of a table, as stored in it: everything except the blocks, the scenario texts and the paths of the
+    /// files.
     pub(crate) fn provenance(&self) -> String {
         let without_text =
             |s: &ScenarioText| ScenarioText { path: String::new(), text: String::new(), ..s.clone() };
@@ -233,7 +234,7 @@ impl Campaign {
     }
 }
 
-/// Keeps the quotes of a word that could be read as a number or flag.
+/// Keeps the quotes of a word that could otherwise be read as a number or flag.
 fn quoted(value: &Value) -> String {
     match value {
         Value::Word(word) if word.is_empty() || !word.starts_with(|c: char| c.is_ascii_alphabetic()) => {

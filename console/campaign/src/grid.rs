@@ -7,14 +7,14 @@ use rand_pcg::Pcg64Mcg;
 /// The values of a key.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Axis {
-    /// These values.
+    /// A list of values.
     List(Vec<Value>),
-    /// Numbers between two ends; a range without `steps` is only for samples.
+    /// Numbers between two ends; a range without `steps` can only be sampled.
     Range { from: f64, to: f64, steps: Option<usize>, log: bool },
 }
 
 impl Axis {
-    /// The value at a share of the axis, 0 to 1 (excluding 1 for lists).
+    /// The value at a given share of the axis, from 0 to 1.
     fn at(&self, share: f64) -> Value {
         match self {
             Self::List(values) => {
@@ -38,7 +38,7 @@ impl Axis {
     }
 }
 
-/// Rounds to six digits: nobody reads more, and the command line that repeats a mission stays short.
+/// Rounds to six digits: more digits are of no use, and the command line that repeats a mission stays short.
 fn rounded(x: f64) -> f64 {
     format!("{x:.5e}").parse().unwrap_or(x)
 }
@@ -52,8 +52,8 @@ pub(crate) fn product(axes: &[(String, Axis)]) -> Vec<Vec<Value>> {
     })
 }
 
-/// A Latin hypercube of `count` points: each axis is cut into that many equal parts, and each part is used once. The
-/// middle of a part is taken; the combination of parts depends only on the seed.
+/// A Latin hypercube of `count` points: each axis is cut into that many equal parts, and each part is used once. Each
+/// value is the middle of its part. How the parts are combined depends only on the seed.
 pub(crate) fn latin_hypercube(axes: &[(String, Axis)], samples: usize, seed: u64) -> Vec<Vec<Value>> {
     let mut chance = Pcg64Mcg::seed_from_u64(seed);
     let columns: Vec<Vec<Value>> = axes

@@ -1,9 +1,9 @@
-//! Many missions from one plan: the list of missions, their blocks, the table of their results, and the findings.
+//! Many missions from one plan: the list of missions, their blocks, the table of their results, and the findings from it.
 //!
-//! A [`Plan`] is a file. [`Campaign`] is the plan frozen, with the texts of its scenarios: [`Campaign::case`] returns
-//! each mission, by number. The result of a mission is a [`Row`]; rows become a [`table`], and a table becomes
-//! [`Findings`], as text and as a page. This crate uses no files, threads, clocks or processes: the bytes of the table
-//! depend only on the plan.
+//! A [`Plan`] is read from a file. A [`Campaign`] is the plan frozen together with the texts of its scenarios;
+//! [`Campaign::case`] returns a mission by its number. The result of a mission is a [`Row`]; rows become a [`table`], and
+//! a table becomes [`Findings`], which can be written as text or as a page. This crate uses no files, threads, clocks or
+//! processes: the bytes of the table depend only on the plan.
 
 mod columns;
 mod compare;

@@ -51,7 +51,7 @@ pub fn page(campaign: &Campaign, findings: &Findings) -> Result<String, String> 
     page.render().map_err(|error| error.to_string())
 }
 
-/// A share of the missions and the means over these missions.
+/// A share of the missions, and the means over these missions.
 fn cells(hits: u64, n: u64, means: &[Option<Mean>]) -> Vec<String> {
     let means = means.iter().map(|mean| text::interval(mean.as_ref()));
     std::iter::once(format!("{hits} of {n}")).chain(means).collect()

@@ -1,4 +1,4 @@
-//! The part of a block: a file with the rows of its missions, which is accepted only if it is unchanged.
+//! The part of a block: a file with the rows of the block's missions. It is accepted only if it is unchanged.
 
 use crate::{
     digest::{self, Seal},
@@ -19,14 +19,14 @@ fn part_source(campaign: &Campaign, block: u64) -> String {
 /// Writes the rows of a block, in the order of their missions, as a file.
 ///
 /// # Errors
-/// The rows do not fit the columns.
+/// The rows do not match the columns.
 pub fn write(campaign: &Campaign, block: u64, rows: &[Row]) -> Result<Vec<u8>, TableError> {
     let mut writer = writer(campaign, part_source(campaign, block))?;
     writer.write(&batch(campaign, rows)?)?;
     finished(writer)
 }
 
-/// Checks that a file is the part of this block, byte for byte as it was written.
+/// Checks that a file is the part of this block and is byte for byte as it was written.
 ///
 /// # Errors
 /// The file is damaged, or is not the part of this block.

@@ -26,21 +26,21 @@ const KEYS: [&str; 11] = [
     "block",
     "about",
 ];
-/// Default metrics, if the plan names none.
+/// Metrics that are used if the plan names none.
 const METRICS: [&str; 4] = ["mission_time_s", "path_length_m", "clearance_min_m", "coverage.reachable"];
-/// Maximum number of points; a larger number is probably a mistake.
+/// Maximum number of points; more are probably a mistake.
 const MOST_POINTS: usize = 100_000;
-/// Maximum number of missions; a larger number is probably a mistake.
+/// Maximum number of missions; more are probably a mistake.
 pub(crate) const MOST_CASES: u64 = 100_000_000;
-/// The range of seeds: in scenarios they are TOML numbers.
+/// The range of seeds; they are limited because scenarios store them as TOML numbers.
 pub(crate) const SEEDS: Range<u64> = 0..(1 << 62);
 
-/// A plan, checked as far as possible without its scenarios and planners.
+/// A plan, checked as far as that is possible without its scenarios and planners.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
     /// What varies and what is measured.
     pub design: Design,
-    /// Paths of the scenario files as written, relative to the plan.
+    /// Paths of the scenario files as written, relative to the folder of the plan.
     pub scenarios: Vec<String>,
     /// Number of missions per block, if the plan sets it.
     pub block: Option<u64>,
@@ -49,7 +49,7 @@ pub struct Plan {
     places: Vec<(PlanKey, Range<usize>)>,
 }
 
-/// A value of a plan that only the scenarios and planners can check.
+/// A value in a plan that only the scenarios and planners can check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PlanKey {
     /// A scenario, by its index.
@@ -63,11 +63,11 @@ pub enum PlanKey {
 }
 
 impl Plan {
-    /// Reads a plan from its text. `shown_name` is the name of the file in messages; `name` is the name of the campaign
-    /// unless the plan sets one.
+    /// Reads a plan from its text. `shown_name` is the name of the file as used in messages; `name` is the name of the
+    /// campaign if the plan does not set one.
     ///
     /// # Errors
-    /// Everything that is wrong with it, with line, key and remedy.
+    /// Everything that is wrong with the plan, with line, key and remedy.
     pub fn parse(text: &str, shown_name: &str, name: &str) -> Result<Self, ScenarioErrors> {
         let errors =
             |problems| ScenarioErrors { shown_name: shown_name.to_owned(), text: text.to_owned(), problems };
@@ -82,7 +82,7 @@ impl Plan {
         if problems.is_empty() { Ok(plan) } else { Err(errors(problems)) }
     }
 
-    /// The objections of a scenario or a planner to a value of the plan.
+    /// The objections that scenarios or planners raise to a value in the plan.
     pub fn refused(&self, key: PlanKey, why: &str) -> ScenarioErrors {
         let at = self.places.iter().find(|(placed, _)| *placed == key).map(|(_, at)| at.clone());
         let name = match key {
@@ -113,7 +113,7 @@ fn read(root: &Reader<'_>, shown_name: &str, text: &str, name: &str) -> Plan {
     let seeds = seeds(root);
     let cases = scenarios.len().max(1) * planners.len().max(1) * points.len();
     if (cases as u64).saturating_mul(seeds.count) > MOST_CASES {
-        let what = Complaint::OutOfRange(format!("smaller: at most {MOST_CASES} missions in total"));
+        let what = Complaint::OutOfRange(format!("fewer: at most {MOST_CASES} missions in total"));
         root.complain("seeds", root.place("seeds"), what);
     }
     let placed = |of: &[(String, Range<usize>)], key: fn(usize) -> PlanKey| -> Vec<(PlanKey, Range<usize>)> {
@@ -170,7 +170,7 @@ fn unknown_metric(name: &str) -> Complaint {
         Some(key) => format!("did you mean \"{key}\"?"),
         None => format!("known: {}", known.join(", ")),
     };
-    Complaint::WrongType { wanted: "the name of a figure of the report".into(), remedy }
+    Complaint::WrongType { wanted: "the name of a figure in the report".into(), remedy }
 }
 
 fn until(root: &Reader<'_>) -> Option<Until> {
@@ -178,7 +178,7 @@ fn until(root: &Reader<'_>) -> Option<Until> {
     until.require("ci95", "write ci95 = { metric = \"success\", below = 0.02 }");
     let ci95 = until.table("ci95", &["metric", "below"])?;
     ci95.require("metric", "name the figure whose 95 % interval decides");
-    ci95.require("below", "give the half width that is sufficient");
+    ci95.require("below", "set the half width that is narrow enough");
     let metric = ci95.word("metric")?;
     if metric != "success" && !is_metric(&metric) {
         ci95.complain("metric", ci95.place("metric"), unknown_metric(&metric));
@@ -187,7 +187,7 @@ fn until(root: &Reader<'_>) -> Option<Until> {
     Some(Until { metric, below: ci95.number("below")?, seeds_min })
 }
 
-/// Reads the bounds of `[expect]`; their keys are checked by the scenarios.
+/// Reads the bounds in `[expect]`; the scenarios check their keys.
 fn expect(root: &Reader<'_>) -> Vec<(String, Value)> {
     let Some(table) = root.table("expect", &[]) else { return Vec::new() };
     let bound = |(name, value): (String, &Placed<'_>)| {
@@ -280,7 +280,8 @@ fn points(root: &Reader<'_>, axes: &Axes) -> Vec<Vec<Value>> {
     let count: f64 = named.iter().map(|(_, axis)| axis.values().len() as f64).product();
     if count > MOST_POINTS as f64 {
         let what = Complaint::OutOfRange(format!(
-            "smaller: {count} combinations, at most {MOST_POINTS}; set `samples` to use only some of them"
+            "smaller: it has {count} combinations, and at most {MOST_POINTS} are allowed; set `samples` \
+             to use only some of them"
         ));
         root.complain("grid", root.place("grid"), what);
         return vec![Vec::new()];

@@ -1,16 +1,16 @@
-//! Plots of findings as SVG.
+//! Plots findings as SVG.
 
 use crate::{findings::Findings, table::more_is_better};
 use std::fmt::Write;
 
-/// Width of a plot and of the names on its left, in units of the drawing.
+/// Width of a plot, and of the names to its left, in drawing units.
 const WIDTH: f64 = 720.0;
 const NAMES: f64 = 240.0;
 /// Height of a line of text.
 const LINE: f64 = 20.0;
 /// Height of a plot with two axes.
 const HEIGHT: f64 = 300.0;
-/// Colours of arms, used in turn; they do not rely on telling red from green.
+/// Colours for the arms, used in turn; they do not rely on telling red from green.
 const COLOURS: [&str; 6] = ["#2C5F7C", "#B26A00", "#7A3E8C", "#39444E", "#C23B1E", "#5A8DA6"];
 /// Maximum number of curves that can be told apart.
 const MOST_CURVES: usize = 6;
@@ -94,7 +94,7 @@ impl Axis {
     }
 }
 
-/// Formats a number without insignificant digits.
+/// Formats a number without superfluous digits.
 fn number(value: f64) -> String {
     format!("{}", (value * 1e6).round() / 1e6)
 }
@@ -114,7 +114,7 @@ fn axes(plot: &mut Plot, across: (&Axis, &str), up: (&Axis, &str)) {
     plot.text(across.0.places.0, up.0.places.1 - 8.0, "start", up.1);
 }
 
-/// The success of every arm with its interval.
+/// The success of every arm, with its interval.
 pub(crate) fn success(findings: &Findings) -> String {
     let axis = Axis { values: (0.0, 1.0), places: (NAMES, WIDTH - 20.0) };
     let foot = findings.arms.len() as f64 * LINE + 8.0;
@@ -134,8 +134,8 @@ pub(crate) fn success(findings: &Findings) -> String {
     plot.svg("Success with 95 % intervals")
 }
 
-/// Share of the flown missions that are complete with at most a given value of the first metric, for the first arms; a
-/// curve ends at the share of complete missions.
+/// Cumulative share of all missions run that are complete and have at most a given value of the first metric, shown for
+/// the first arms. Each curve ends at the arm's share of complete missions.
 pub(crate) fn distribution(findings: &Findings) -> Option<String> {
     let metric = findings.metrics.first()?;
     let curves =
@@ -162,8 +162,8 @@ pub(crate) fn distribution(findings: &Findings) -> Option<String> {
     Some(plot.svg("Distribution of the first metric"))
 }
 
-/// The means of the first two metrics over complete missions. Arms that no other arm beats in both metrics are joined by
-/// a line and named. Arms that complete clearly fewer missions than another arm are hollow and not ranked.
+/// The means of the first two metrics over complete missions. Arms that no other arm beats in both metrics are named and
+/// joined by a line. Arms that complete clearly fewer missions than another arm are drawn hollow and not ranked.
 pub(crate) fn pareto(findings: &Findings) -> Option<String> {
     let [one, two, ..] = &findings.metrics[..] else { return None };
     let value = |mean: &Option<crate::statistics::Mean>| mean.as_ref().map(|mean| mean.mean);

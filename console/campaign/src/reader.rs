@@ -1,4 +1,4 @@
-//! Reads a table of a plan: values by key, and everything that is wrong, with line, key and remedy.
+//! Reads a table in a plan: its values by key, and everything that is wrong with it, with line, key and remedy.
 
 use mission::spelling::nearest;
 use scenario::{Complaint, Problem};
@@ -11,7 +11,7 @@ use toml::{
 /// A value with its position in the text.
 pub(crate) type Placed<'a> = Spanned<DeValue<'a>>;
 
-/// A table of a plan.
+/// A table in a plan.
 pub(crate) struct Reader<'a> {
     text: &'a str,
     table: &'a DeTable<'a>,
@@ -20,7 +20,8 @@ pub(crate) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// Creates a reader of a table with these keys. Every other key is a problem, unless the list is empty.
+    /// Creates a reader for a table with these keys. Every other key is reported as a problem, unless the list of keys is
+    /// empty.
     pub(crate) fn new(
         text: &'a str,
         table: &'a DeTable<'a>,
@@ -58,7 +59,7 @@ impl<'a> Reader<'a> {
         self.complain(name, value.span(), what);
     }
 
-    /// The position of a key's value; the start of the file if the key is missing.
+    /// The position of a key's value, or the start of the file if the key is missing.
     pub(crate) fn place(&self, name: &str) -> Range<usize> {
         self.get(name).map_or(0..0, Spanned::span)
     }

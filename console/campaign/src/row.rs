@@ -4,12 +4,12 @@ use account::Summary;
 use mission::Outcome;
 use serde_json::Value;
 
-/// Whether a mission was flown.
+/// Whether a mission ran, and if not, why.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// Flown to its end.
+    /// It ran to its end.
     Flown,
-    /// The scenario or the planner refuses a value of the plan; flying the mission again would change nothing.
+    /// The scenario or the planner refuses a value in the plan; running the mission again would change nothing.
     Refused,
     /// The program failed repeatedly.
     Failed,
@@ -26,23 +26,23 @@ impl Status {
     }
 }
 
-/// The result of a mission. Equal missions have equal results, regardless of who flew them and when.
+/// The result of a mission. Equal missions have equal results, no matter which worker ran them and when.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     /// Number of the mission.
     pub case: u64,
-    /// Whether it was flown.
+    /// Whether the mission ran.
     pub status: Status,
-    /// Why it was not flown, as a sentence.
+    /// Why the mission did not run, as a sentence.
     pub error: Option<String>,
-    /// Whether it is complete and kept every bound.
+    /// Whether the mission is complete and met every bound.
     pub success: bool,
-    /// Its report, as JSON; null if it was not flown.
+    /// The report on the mission, as JSON; null if the mission did not run.
     pub(crate) report: Value,
 }
 
 impl Row {
-    /// The row of a mission that was flown to its end, without wall-clock figures and the account of the floor.
+    /// The row for a mission that ran to its end, without wall-clock figures and without the account of the floor.
     pub fn flown(case: u64, summary: Summary) -> Self {
         let success = summary.outcome == Some(Outcome::Complete)
             && summary.violations.as_ref().is_none_or(Vec::is_empty);
@@ -51,17 +51,17 @@ impl Row {
         Self { case, status: Status::Flown, error: None, success, report }
     }
 
-    /// The row of a mission that was not flown, with the reason.
+    /// The row for a mission that did not run, with the reason.
     pub fn not_flown(case: u64, status: Status, error: String) -> Self {
         Self { case, status, error: Some(error), success: false, report: Value::Null }
     }
 
-    /// Whether a planner failed while it was flown.
+    /// Whether a planner failed during the mission.
     pub fn has_faults(&self) -> bool {
         self.report["planner_faults"].as_u64().is_some_and(|faults| faults > 0)
     }
 
-    /// The outcome in one word.
+    /// The outcome, in one word.
     pub fn word(&self) -> &str {
         self.report["outcome"].as_str().unwrap_or(self.status.word())
     }

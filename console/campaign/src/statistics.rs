@@ -6,21 +6,21 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 /// 97.5 % quantile of the normal distribution.
 const Z: f64 = 1.959_963_984_540_054;
 
-/// A share of successes with its Wilson interval, 95 %.
+/// A share of successes with its 95 % Wilson interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Share {
     /// Successes.
     pub hits: u64,
     /// Number of cases.
     pub n: u64,
-    /// Lower end of the interval, 0 to 1.
+    /// Lower end of the interval, from 0 to 1.
     pub low: f64,
     /// Upper end.
     pub high: f64,
 }
 
 impl Share {
-    /// The share of `hits` in `n` cases; for no cases the interval is 0 to 1.
+    /// The share of `hits` in `n` cases; if there are no cases, the interval is 0 to 1.
     pub fn of(hits: u64, n: u64) -> Self {
         if n == 0 {
             return Self { hits, n, low: 0.0, high: 1.0 };
@@ -29,11 +29,11 @@ impl Share {
         let p = hits as f64 / count;
         let middle = (p + z2 / (2.0 * count)) / (1.0 + z2 / count);
         let half = Z / (1.0 + z2 / count) * (p * (1.0 - p) / count + z2 / (4.0 * count * count)).sqrt();
-        // At the ends rounding must not exclude the observed share.
+        // At 0 and 1, rounding must not exclude the observed share.
         Self { hits, n, low: (middle - half).clamp(0.0, p), high: (middle + half).clamp(p, 1.0) }
     }
 
-    /// The share itself; `None` without any cases.
+    /// The share itself; `None` if there are no cases.
     pub fn share(&self) -> Option<f64> {
         (self.n > 0).then(|| self.hits as f64 / self.n as f64)
     }
@@ -44,7 +44,7 @@ impl Share {
     }
 }
 
-/// A mean with its 95 % interval by Student's distribution.
+/// A mean with its 95 % interval, from Student's distribution.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Mean {
     /// Number of values.
@@ -72,7 +72,7 @@ impl Sums {
         self.squares += off * (value - self.mean);
     }
 
-    /// Mean of the values so far; `None` without any.
+    /// Mean of the values so far; `None` if there are none.
     pub fn mean(&self) -> Option<Mean> {
         let half = (self.n > 1).then(|| {
             let freedom = (self.n - 1) as f64;
@@ -90,7 +90,7 @@ pub fn mean(values: impl IntoIterator<Item = f64>) -> Option<Mean> {
     sums.mean()
 }
 
-/// The quantile of sorted values at a share, interpolated.
+/// The quantile of sorted values at a given share, interpolated.
 pub fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let at = share.clamp(0.0, 1.0) * sorted.len().checked_sub(1)? as f64;
     let (low, high) = (sorted[at.floor() as usize], sorted[at.ceil() as usize]);

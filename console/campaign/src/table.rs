@@ -29,8 +29,8 @@ use thiserror::Error;
 
 /// Number of rows written at a time, regardless of blocks. Pages end only at these boundaries.
 const ROWS_AT_ONCE: usize = 8192;
-/// The origin of a file, as stored in it: in a part its hash and the missions of the block, in the table of results
-/// everything.
+/// The origin of a file, as stored in it. A part stores its hash and the missions of its block; the table of results
+/// stores everything.
 const SOURCE: &str = "tankops.campaign";
 
 /// Type of a figure.
@@ -44,7 +44,7 @@ enum Kind {
 
 use Kind::{Count, Flag, Number, Text};
 
-/// Columns that are figures of the report, by their path in it.
+/// Columns that contain figures from the report, with their paths in it.
 const FIGURES: [(&str, Kind); 48] = [
     ("outcome", Text),
     ("reason", Text),
@@ -96,7 +96,7 @@ const FIGURES: [(&str, Kind); 48] = [
     ("tether.snagged", Flag),
 ];
 
-/// Figures of which a larger value is better; for all others a smaller one is.
+/// Figures for which a larger value is better; for all others, a smaller one is.
 const MORE_IS_BETTER: [&str; 12] = [
     "clearance_min_m",
     "coverage.reachable",
@@ -112,7 +112,7 @@ const MORE_IS_BETTER: [&str; 12] = [
     "positioning.in_95_ellipse",
 ];
 
-/// Names of the columns that are figures of the report.
+/// Names of the columns that contain figures from the report.
 pub(crate) fn metrics() -> impl Iterator<Item = &'static str> {
     FIGURES.iter().filter(|(_, kind)| matches!(kind, Count | Number)).map(|(name, _)| *name)
 }
@@ -130,7 +130,7 @@ pub(crate) fn more_is_better(metric: &str) -> bool {
 /// Why a table cannot be written or read.
 #[derive(Debug, Error)]
 pub enum TableError {
-    /// The columns do not fit.
+    /// The columns do not match.
     #[error("its columns do not match: {0}")]
     Arrow(#[from] ArrowError),
     /// Not a Parquet file, or damaged.
@@ -142,13 +142,13 @@ pub enum TableError {
     /// A part without a digest.
     #[error("is not a complete part: it has no digest")]
     NoDigest,
-    /// The content makes no sense to the reader.
+    /// The content cannot be interpreted by the reader.
     #[error("is damaged, or not a Parquet file that tankops can read")]
     Unreadable,
-    /// Part of a different campaign or block.
+    /// The part belongs to a different campaign or block.
     #[error("comes from a different campaign or block, or from a different version of this campaign")]
     Foreign,
-    /// A table with a different content.
+    /// A Parquet file that is not a table of results.
     #[error("was not written by `tankops campaign`: it has no column `{0}`")]
     NoColumn(&'static str),
 }
@@ -187,7 +187,7 @@ fn set_name(campaign: &Campaign, key: usize) -> String {
     format!("set.{}", campaign.design.keys[key])
 }
 
-/// The narrowest type that fits all values of a key.
+/// The narrowest type that can represent all values of a key.
 fn set_type(campaign: &Campaign, key: usize) -> DataType {
     let all = |is: fn(&Value) -> bool| campaign.design.points.iter().all(|point| is(&point[key]));
     if all(|value| matches!(value, Value::Whole(_))) {
@@ -267,15 +267,15 @@ pub(crate) fn writer(campaign: &Campaign, source: String) -> Result<ArrowWriter<
     Ok(ArrowWriter::try_new(Vec::new(), schema(campaign), Some(properties))?)
 }
 
-/// The bytes of a finished table, with their digest.
+/// The bytes of a finished table, including their digest.
 pub(crate) fn finished(writer: ArrowWriter<Vec<u8>>) -> Result<Vec<u8>, TableError> {
     let mut bytes = writer.into_inner()?;
     digest::seal(&mut bytes);
     Ok(bytes)
 }
 
-/// Creates a reader that uses the columns but ignores the Arrow schema in the metadata, which damage could turn into
-/// anything.
+/// Creates a reader that uses the columns but ignores the Arrow schema in the metadata, which could contain anything if
+/// the file is damaged.
 pub(crate) fn opened<T: ChunkReader + 'static>(
     file: T,
 ) -> Result<ParquetRecordBatchReaderBuilder<T>, TableError> {
@@ -283,7 +283,7 @@ pub(crate) fn opened<T: ChunkReader + 'static>(
     Ok(ParquetRecordBatchReaderBuilder::try_new_with_options(file, options)?)
 }
 
-/// Combines parts, in order, to the bytes of the table of results.
+/// Combines parts, in order, into the bytes of the table of results.
 ///
 /// # Errors
 /// The parts do not fit together.
@@ -308,20 +308,20 @@ pub(crate) fn source<T>(builder: &parquet::arrow::arrow_reader::ArrowReaderBuild
     entries.iter().find(|entry| entry.key == SOURCE)?.value.as_deref()
 }
 
-/// Catches panics of a third-party reader of foreign bytes.
+/// Catches the panics of a third-party reader when it reads files from elsewhere.
 fn unharmed<T>(read: impl FnOnce() -> Result<T, TableError>) -> Result<T, TableError> {
     catch_unwind(AssertUnwindSafe(read)).unwrap_or(Err(TableError::Unreadable))
 }
 
-/// Rows of a table.
+/// The rows of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
     rows: RecordBatch,
 }
 
 impl Table {
-    /// Reads a table of results, and whether its bytes are verified. A table written by an earlier version or a different
-    /// program has no digest.
+    /// Reads a table of results; also returns whether its bytes were verified. A table written by an earlier version or
+    /// by another program has no digest.
     ///
     /// # Errors
     /// The file is damaged or is not a table of results.
@@ -368,7 +368,7 @@ impl Table {
         self.rows.num_rows()
     }
 
-    /// Whether there are none.
+    /// Whether there are no rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

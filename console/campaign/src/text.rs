@@ -11,11 +11,11 @@ use comfy_table::{
 use std::fmt;
 use world::coverage::percent_text;
 
-/// Maximum number of arms shown; the page has all of them.
+/// Maximum number of arms shown; the HTML page shows all of them.
 const MOST_ARMS: usize = 20;
 /// Maximum length of an arm's name; longer names are shortened in the middle.
 const NAME: usize = 40;
-/// Number of characters kept from the beginning of a shortened name; its end holds the values of the grid.
+/// Number of characters kept from the beginning of a shortened name; the end of the name contains the values of the grid.
 const BEGINNING: usize = 10;
 
 /// A share in per cent, with its interval.
@@ -53,7 +53,7 @@ pub(crate) fn points(mean: Option<&Mean>) -> String {
     )
 }
 
-/// Aligns rows of cells in columns, the first one left, the others right.
+/// Aligns rows of cells in columns: the first column on the left, the others on the right.
 pub(crate) fn columns(rows: &[Vec<String>]) -> String {
     let mut table = Table::new();
     table.load_preset(presets::NOTHING).add_rows(rows);
@@ -99,7 +99,7 @@ impl fmt::Display for Findings {
                 faults.missions
             )?;
         }
-        writeln!(f, "\nSuccess (complete, every bound kept; 95 % interval)")?;
+        writeln!(f, "\nSuccess (complete, every bound met; 95 % interval)")?;
         let cells =
             |arm: &Arm| vec![share(&arm.success), format!("{} of {}", arm.success.hits, arm.success.n)];
         f.write_str(&table(&[], &cells, shown))?;
@@ -128,8 +128,8 @@ impl fmt::Display for Findings {
         if self.arms.len() > 1 {
             writeln!(
                 f,
-                "\nDifferences from {}, same scenario and seed; success over missions flown by both, \
-                 other metrics over missions completed by both (± 95 %)",
+                "\nDifferences from {}, same scenario and seed; success over missions run by both, other \
+                 metrics over missions completed by both (± 95 %)",
                 short(&self.arms[0].name)
             )?;
             let differences = |arm: &Arm| {

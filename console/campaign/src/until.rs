@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 
 /// A campaign may end when the 95 % interval of a figure is narrow enough for every planner and point.
 ///
-/// The condition is checked after every complete seed, in order, so that the end depends neither on blocks nor on which
-/// worker flew what when.
+/// The condition is checked after each complete seed, in order, so the end depends neither on the blocks nor on which
+/// worker ran which mission when.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Until {
     /// A column of the table, or `success`.
@@ -23,29 +23,29 @@ pub struct Until {
 }
 
 impl Until {
-    /// Default minimum number of seeds: a few equal values would give a false certainty.
+    /// Default minimum number of seeds: a few values that happen to be equal would give false certainty.
     pub(crate) const SEEDS_MIN: u64 = 10;
 }
 
-/// Checks missions in their order until the condition is met.
+/// Checks missions, in order, until the condition is met.
 pub struct Watch<'a> {
     campaign: &'a Campaign,
     until: &'a Until,
     arms: Vec<(u64, u64, Sums)>,
     taken: u64,
-    /// The number of seeds that is sufficient.
+    /// The number of seeds that turned out to be sufficient.
     enough: Option<u64>,
 }
 
 impl<'a> Watch<'a> {
-    /// Creates a check without any missions yet; `None` for a campaign that flies all its seeds.
+    /// Creates a check that has seen no missions yet; `None` for a campaign that runs all its seeds.
     pub fn new(campaign: &'a Campaign) -> Option<Self> {
         let until = campaign.design.until.as_ref()?;
         let arms = vec![(0, 0, Sums::default()); campaign.arms()];
         Some(Self { campaign, until, arms, taken: 0, enough: None })
     }
 
-    /// Adds the next rows; returns the sufficient number of seeds once it is known.
+    /// Adds the next rows; returns the sufficient number of seeds as soon as it is known.
     pub fn take(&mut self, rows: &Table) -> Option<u64> {
         let success = rows.flags("success");
         let values = rows.numbers(&self.until.metric);

@@ -19,7 +19,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// A simple value of a TOML file.
+    /// A simple value in a TOML file.
     pub(crate) fn read(value: &DeValue<'_>) -> Option<Self> {
         match value {
             DeValue::Boolean(flag) => Some(Self::Flag(*flag)),
@@ -47,7 +47,7 @@ impl Value {
     }
 }
 
-/// The value in the form used with `--set`.
+/// The value as it is written after `--set`.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -40,21 +40,21 @@ pub struct ReproduceArgs {
     /// Seed of the first layout; later layouts use the following seeds.
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     pub first_seed: u64,
-    /// Only cases whose ids start with this prefix (`d1/disk`); repeatable.
+    /// Run only cases whose ids start with this prefix (`d1/disk`); repeatable.
     #[arg(long, value_name = "CASE")]
     pub case: Vec<String>,
-    /// Only methods whose ids start with this prefix (`rpf/gated`); repeatable.
+    /// Run only methods whose ids start with this prefix (`rpf/gated`); repeatable.
     #[arg(long, value_name = "METHOD")]
     pub method: Vec<String>,
-    /// Number of threads; 0: one per core. Affects times, not results.
+    /// Number of threads; 0: one per core. Affects the computing times, not the results.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
-    /// Folder for drawings of the plans or of their curves, one file per layout and method; created if missing. Studies
-    /// of positions have no drawings. With --out, only plans made by this process are drawn.
+    /// Folder for drawings of plans or curves, one file per layout and method; created if missing. Studies of positions
+    /// have no drawings. With --out, only plans made by this process are drawn.
     #[arg(long, value_name = "DIR")]
     pub svg: Option<PathBuf>,
-    /// Folder for the answers; created if missing. Repeating the command with the same folder resumes the work, and
-    /// several processes, on any machines, can share it.
+    /// Folder for results computed so far; created if missing. Repeating the command with the same folder resumes the
+    /// work, and several processes, on any machines, can share it.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Print the rows as a JSON array on stdout.
@@ -63,8 +63,8 @@ pub struct ReproduceArgs {
     /// Print the rows as CSV on stdout.
     #[arg(long, conflicts_with = "json")]
     pub csv: bool,
-    /// List every study, and the status of the papers: each equation, table, figure and claim, its outcome, and the
-    /// command that shows it.
+    /// List every study, and each equation, table, figure and claim of the papers with its outcome and the command that
+    /// shows it.
     #[arg(long, conflicts_with = "name")]
     pub list: bool,
 }
@@ -81,7 +81,7 @@ pub struct TuneArgs {
     /// Parameter to tune; repeatable. Default: every real-valued parameter of the group "Field".
     #[arg(long, value_name = "KEY")]
     pub tune: Vec<String>,
-    /// Initial value of a tuned parameter, or fixed value of another parameter (`reading=gated`).
+    /// Initial value of a tuned parameter, or fixed value of a parameter that is not tuned (`reading=gated`).
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<String>,
     /// Number of layouts to tune on.
@@ -105,8 +105,8 @@ pub struct TuneArgs {
     /// Number of threads; 0: one per core. Does not affect the result.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
-    /// Folder for the answers; created if missing. Repeating the command with the same folder resumes the work, and
-    /// several processes, on any machines, can share it.
+    /// Folder for results computed so far; created if missing. Repeating the command with the same folder resumes the
+    /// work, and several processes, on any machines, can share it.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Print values, losses and rows as JSON on stdout.

@@ -28,7 +28,7 @@ impl Here {
         if let Some(why) = surveyor.no_worker() {
             return Err(anyhow!("a planner plugin {why}"));
         }
-        let program = std::env::current_exe().and_then(fs::read).context("reading the program itself")?;
+        let program = std::env::current_exe().and_then(fs::read).context("reading the program's own file")?;
         let sound = survey.plugins.iter().filter(|plugin| plugin.refused.is_none());
         let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let program = Program {

@@ -5,8 +5,7 @@ use foreign::plain_json;
 use report::print::say_line;
 use serde::Serialize;
 
-/// Formats a value as indented JSON for people to read, with unsafe characters escaped; `name` is its name in error
-/// messages.
+/// Formats a value as indented JSON for people to read, with unsafe characters escaped; error messages call it `name`.
 ///
 /// # Errors
 /// The value cannot be written as JSON.
@@ -15,7 +14,7 @@ pub fn pretty_json(name: &str, value: &impl Serialize) -> anyhow::Result<String>
     Ok(plain_json(&text).into_owned() + "\n")
 }
 
-/// Prints a value on stdout as a line of JSON; `name` is its name in error messages.
+/// Prints a value on stdout as a line of JSON; error messages call it `name`.
 ///
 /// # Errors
 /// The value cannot be written as JSON, or stdout is closed.

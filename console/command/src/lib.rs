@@ -1,5 +1,5 @@
 //! Code that the command lines of `tankops` and `tankops-research` share: options, start-up and failure, system limits,
-//! and folders that several processes work in.
+//! and folders shared by several processes.
 
 pub mod arguments;
 pub mod bar;

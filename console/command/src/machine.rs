@@ -9,7 +9,7 @@ const ADDRESS_SPACE: u64 = 1 << 30;
 /// The stack of the first thread in bytes.
 const STACK: u64 = 1 << 20;
 
-/// Checks that the stack limit is large enough. Call this before parsing the command line, which needs stack, too.
+/// Checks that the stack limit is large enough. Call this before parsing the command line, which itself needs stack.
 ///
 /// # Errors
 /// The limit is too low; the message names it.

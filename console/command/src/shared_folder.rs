@@ -32,7 +32,7 @@ impl SharedFolder {
         &self.0
     }
 
-    /// Creates the folder, these subfolders and the subfolder for claims, as far as they are missing.
+    /// Creates the folder, these subfolders and the subfolder for claims, unless they exist.
     ///
     /// # Errors
     /// A folder cannot be created.
@@ -87,7 +87,7 @@ impl SharedFolder {
     }
 
     /// The time by the clock that dates the files here. If the folder is on a server, this is the server's clock, so
-    /// that all machines judge claims alike even if their own clocks are wrong.
+    /// all machines judge claims alike even if their own clocks are wrong.
     fn now(&self) -> SystemTime {
         let probe = self.0.join(CLAIMS).join(format!(".now-{}-{}", host(), std::process::id()));
         let dated = File::create(&probe).and_then(|mut file| {
@@ -103,15 +103,15 @@ impl SharedFolder {
         self.0.join(CLAIMS).join(name)
     }
 
-    /// Claims an item for this process; returns `false` if another process holds it.
+    /// Claims an item for this process; returns `false` if another process holds the item.
     pub fn claim(&self, name: &str) -> bool {
         let claim = self.claim_file(name);
         if claim.exists() && is_void(&claim, self.now()) {
-            // If two processes find the claim void at the same time, at worst they duplicate the work.
+            // If two processes find the claim void at the same time, at worst both do the same work.
             let _ = fs::remove_file(&claim);
         }
         match File::create_new(&claim) {
-            // If the holder cannot be written, the claim becomes void by age.
+            // If the holder cannot be written to the claim, the claim becomes void with age.
             Ok(mut made) => drop(write!(made, "{} {}", host(), std::process::id())),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => return false,
             // No claim can be created here, and waiting would never end. Publishing the results will report the
@@ -156,7 +156,7 @@ fn is_silent(file: &Path, now: SystemTime) -> bool {
     touched.is_ok_and(|at| now.duration_since(at).unwrap_or_default() > SILENT_FOR)
 }
 
-/// The name of this machine. If two machines have the same name, at worst they duplicate work.
+/// The name of this machine. If two machines have the same name, at worst both do the same work.
 fn host() -> String {
     let name = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
     name.split_whitespace().next().unwrap_or("?").to_owned()

@@ -1,4 +1,4 @@
-//! Start-up of a program, and its failure messages.
+//! The start-up of a program, and its messages when it fails.
 
 use flight::failure::{BAD_INPUT, INTERNAL, is_input};
 use report::print::warn_line;
@@ -30,8 +30,9 @@ pub fn close_memory() {
 /// Makes a write beyond the file size limit (`ulimit -f`) fail with an error, as on a full disk, instead of ending the
 /// process.
 ///
-/// Installs a handler that does nothing. Ignoring the signal instead would be inherited by the planners' processes.
+/// Installs a handler that does nothing. If the signal were ignored instead, the planners' processes would inherit this
+/// setting.
 pub fn survive_file_size_limit() {
-    // If this fails, the signal ends the process, as by default.
+    // If this fails, the signal ends the process, as it does by default.
     let _ = signal_hook::flag::register(libc::SIGXFSZ, Arc::default());
 }

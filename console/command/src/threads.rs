@@ -8,13 +8,13 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// The number of threads and processes of a planner, as counted by `prlimit --nproc`: its process, and a thread that
-/// ends the process together with the program.
+/// The number of threads and processes of a planner, as counted by `prlimit --nproc`: the planner's process, and a
+/// thread that ends this process when the program ends.
 pub const PLANNER: usize = 2;
 /// The thread that waits for signals.
 pub const SIGNAL: usize = 1;
 
-/// The time within which the system releases ended threads, even on a busy machine.
+/// The time within which the system releases threads that have ended, even on a busy machine.
 const CLEARED_WITHIN: Duration = Duration::from_secs(1);
 /// The stack of each test thread in bytes; the threads do nothing.
 const STACK_BYTES: usize = 64 << 10;
@@ -29,8 +29,8 @@ pub fn cores() -> usize {
     available_parallelism().map_or(1, usize::from)
 }
 
-/// Checks that the system grants enough threads and processes for a command, before it starts work that it could not
-/// finish. Takes less than a millisecond.
+/// Checks that the system grants enough threads and processes for a command, before the command starts work that it
+/// could not finish. Takes less than a millisecond.
 ///
 /// # Errors
 /// The system grants fewer threads and processes than needed.

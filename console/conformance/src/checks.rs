@@ -13,14 +13,15 @@ use std::time::Duration;
 
 /// How long a tick of the console waits for a command, milliseconds: 60 % of a tick of 0.1 s.
 const STEP_WITHIN_MS: f64 = 60.0;
-/// The ticks at which the planner takes over from a different one.
+/// The ticks at which the planner takes over from a different planner.
 const SWAPS_AT: [u64; 3] = [5, 40, 120];
-/// A planner's memory is measured after this many warm-up steps, and again after this many more.
+/// A planner's memory is measured after `WARM_UP` steps, and again after `STEPS` more.
 const WARM_UP: usize = 300;
 const STEPS: usize = 3000;
-/// How much the memory may grow in between, bytes: at 0.7 kB per step a mission of eight hours takes 200 MB.
+/// How much the memory may grow in between, bytes. At this rate, 0.7 kB per step, a mission of eight hours takes 200
+/// MB.
 const MAY_GROW: u64 = 2 << 20;
-/// How many ticks a planner is watched after an intervention.
+/// The number of ticks for which a planner is watched after an intervention.
 const LOOK_FOR: u64 = 30;
 
 /// One check and its result.
@@ -36,7 +37,7 @@ pub struct Check {
 }
 
 impl Check {
-    /// Reports a check that could not be made.
+    /// Reports a check that could not be carried out.
     pub(crate) fn not_made(what: &'static str, why: &str) -> Self {
         Self { what, failure: None, warning: Some(why.to_owned()) }
     }
@@ -56,14 +57,14 @@ pub(crate) struct Subject<'a> {
     pub(crate) plugins: &'a PluginDirs,
     /// The tank for the checks.
     pub(crate) tank: &'a Scenario,
-    /// Other planners that fly such missions without a fault; the planner under test takes over from the first.
+    /// Other planners that run such missions without a fault; the planner under test takes over from the first.
     pub(crate) beside: Vec<&'a str>,
 }
 
-/// The planner from which to take over failed.
+/// The other planner failed, so there was nothing to take over from.
 struct FailedBeside;
 
-/// Runs all checks, given the flights already flown and the seed of the first tank.
+/// Runs all checks, given the missions already run and the seed of the first tank.
 pub(crate) fn all(subject: &Subject<'_>, flown: &[Flown], first_seed: u64) -> Vec<Check> {
     let check = |what, failure| Check { what, failure, warning: None };
     let mut checks = vec![
@@ -72,12 +73,12 @@ pub(crate) fn all(subject: &Subject<'_>, flown: &[Flown], first_seed: u64) -> Ve
             named(flown, first_seed, |flown| flown.misbehaved.as_deref()),
         ),
         Check {
-            what: "does not give up in every tank",
+            what: "does not always give up",
             failure: gives_up(flown, first_seed),
             warning: completes_none(flown),
         },
         check("answers steps in time", in_time(flown)),
-        check("flies the same flight twice", subject.twice()),
+        check("repeats its mission exactly", subject.twice()),
         check("works at the limits of its parameters", subject.extremes()),
         check("stops planning when it is asked to", subject.stops()),
         check("takes over during a mission", subject.takes_over()),
@@ -93,11 +94,11 @@ pub(crate) fn all(subject: &Subject<'_>, flown: &[Flown], first_seed: u64) -> Ve
     checks
 }
 
-/// Returns the first sentence about a tank, together with the tank.
+/// Returns the first sentence about a tank, preceded by the seed of the tank.
 fn named(flown: &[Flown], first_seed: u64, about: impl Fn(&Flown) -> Option<&str>) -> Option<String> {
     let mut tanks = (0..).zip(flown);
     tanks.find_map(|(n, flown)| {
-        Some(format!("tank of seed {}: {}", first_seed.wrapping_add(n), about(flown)?))
+        Some(format!("tank with seed {}: {}", first_seed.wrapping_add(n), about(flown)?))
     })
 }
 
@@ -138,7 +139,7 @@ impl Subject<'_> {
             if written(&first) != written(&second) {
                 let t_s = first.and_then(|events| Some(events.first()?.t_s)).unwrap_or_default();
                 return Some(format!(
-                    "after {t_s:.1} s the second flight differs from the first; start every random choice \
+                    "after {t_s:.1} s the second run differs from the first; derive every random choice \
                      from the site's seed, and use no clock"
                 ));
             }
@@ -157,7 +158,7 @@ impl Subject<'_> {
         })
     }
 
-    /// Returns the requests that the planner receives at the start of its first flight.
+    /// Returns the requests that the planner receives at the start of its first mission.
     fn tape(&self) -> Vec<What> {
         let mut pilot = self.pilot(&self.planner.id, Parameters::new(), true);
         let _ = (0..LOOK_FOR).try_for_each(|_| pilot.tick(&[]).map(|_| ()));
@@ -195,21 +196,22 @@ impl Subject<'_> {
         };
         let (before, after) = (after(WARM_UP)?, after(STEPS)?);
         let grown = after.saturating_sub(before);
-        (grown > MAY_GROW)
-            .then(|| format!("{STEPS} steps took {:.1} MB that were not released", grown as f64 / 1e6))
+        (grown > MAY_GROW).then(|| {
+            format!("{STEPS} steps took {:.1} MB of memory without releasing it", grown as f64 / 1e6)
+        })
     }
 
     fn takes_over(&self) -> Option<String> {
         let own = std::iter::once(self.planner.id.as_str());
-        // If a planner fails on its own, taking over from it proves nothing, so the next one is tried.
+        // If a planner fails on its own, taking over from it proves nothing, so the next planner is tried.
         let mut tried = self.beside.iter().copied().chain(own).map(|from| self.takes_over_from(from));
         tried.find_map(Result::ok).flatten()
     }
 
-    /// Returns why the planner does not take over from a different one; `None` if it does.
+    /// Returns why the planner does not take over from a different planner; `None` if it does.
     ///
     /// # Errors
-    /// The planner from which to take over failed.
+    /// The other planner failed, so there was nothing to take over from.
     fn takes_over_from(&self, from: &str) -> Result<Option<String>, FailedBeside> {
         for at in SWAPS_AT {
             let failure = self.takes_over_at(from, at)?;
@@ -231,7 +233,7 @@ impl Subject<'_> {
                 Some(3) => vec![Order::Resume],
                 _ => Vec::new(),
             };
-            // The mission may end before that.
+            // The mission may end before the last of these ticks.
             let Some(events) = pilot.tick(&orders) else { return Ok(None) };
             has_taken_over |= events.iter().any(|event| {
                 matches!(&event.kind, EventKind::PlannerChosen { choice, .. } if tick > at && choice.id == self.planner.id)
@@ -243,7 +245,7 @@ impl Subject<'_> {
                 return Err(FailedBeside);
             }
         }
-        Ok((!has_taken_over).then(|| "it gave no plan to continue with".to_owned()))
+        Ok((!has_taken_over).then(|| "it provided no plan to continue with".to_owned()))
     }
 
     fn restores(&self) -> Option<String> {
@@ -251,7 +253,7 @@ impl Subject<'_> {
         let tape = self.tape();
         let half = tape.len() / 2;
         for what in &tape[..half] {
-            // The flights judge faults; here it only matters whether both instances answer alike.
+            // Other checks judge faults; here it only matters whether both instances give the same answers.
             let _ = player.ask(0, what.clone());
         }
         let (state, saved) = player.ask(0, What::Snapshot);
@@ -311,7 +313,7 @@ mod tests {
         let some = [given_up(), flown(Outcome::Complete)];
         assert_eq!((gives_up(&some, 5), completes_none(&some)), (None, None));
         let all = [given_up(), given_up()];
-        assert_eq!(gives_up(&all, 5).as_deref(), Some("tank of seed 5: no path found"));
+        assert_eq!(gives_up(&all, 5).as_deref(), Some("tank with seed 5: no path found"));
         assert_eq!(completes_none(&all), None, "one finding is enough");
         let unsupported = [Flown { unsupported: true, ..given_up() }];
         assert_eq!(gives_up(&unsupported, 5), None, "a mission that it does not fly is not given up");
@@ -336,8 +338,8 @@ mod tests {
     fn a_finding_names_the_seed_of_its_tank_also_beyond_the_last_number() {
         let tanks = [flown(Outcome::Complete), Flown { bad_end: Some("hung".into()), ..given_up() }];
         let named = |first| named(&tanks, first, |flown| flown.bad_end.as_deref());
-        assert_eq!(named(9).as_deref(), Some("tank of seed 10: hung"));
-        assert_eq!(named(u64::MAX).as_deref(), Some("tank of seed 0: hung"));
+        assert_eq!(named(9).as_deref(), Some("tank with seed 10: hung"));
+        assert_eq!(named(u64::MAX).as_deref(), Some("tank with seed 0: hung"));
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Flies one mission as fast as possible.
+//! Runs one mission as fast as possible.
 
 use crate::tape::Taping;
 use account::{Fold, Summary};
@@ -8,7 +8,7 @@ use planner_api::Code;
 use planner_host::{Host, PluginDirs};
 use scenario::Scenario;
 
-/// The result of a flight.
+/// The result of a mission.
 #[derive(Debug)]
 pub(crate) struct Flown {
     pub(crate) summary: Summary,
@@ -18,15 +18,16 @@ pub(crate) struct Flown {
     pub(crate) p99_ms: Option<f64>,
     /// Peak memory of the planner's process, bytes; absent where the system does not report it.
     pub(crate) memory_bytes: Option<u64>,
-    /// Threads left running between the last calls; absent if there are none or the system does not report them.
+    /// The number of threads left running between the last calls; absent if there were none or the system does not
+    /// report it.
     pub(crate) threads_left: Option<u32>,
-    /// How the planner ended when it was no longer needed, if not cleanly.
+    /// How the planner ended when it was no longer needed; absent if it ended cleanly.
     pub(crate) bad_end: Option<String>,
-    /// The first fault that a correct planner never has.
+    /// The first fault of a kind that a correct planner never has.
     pub(crate) misbehaved: Option<String>,
     /// The planner's first refusal.
     pub(crate) gave_up: Option<String>,
-    /// Whether the planner reported that it does not fly such missions.
+    /// Whether the planner reported that it does not support such missions.
     pub(crate) unsupported: bool,
 }
 
@@ -36,15 +37,15 @@ impl Flown {
     }
 }
 
-/// How often the memory of the planner is measured, ticks.
+/// The planner's memory is measured at this interval, ticks.
 const LOOK_AT_MEMORY_EVERY: u64 = 16;
 
-/// How many consecutive measurements must find a thread for it to count as left running.
+/// A thread is regarded as left running if this many consecutive measurements find it.
 const LOOKS: usize = 3;
 /// The number of threads that every worker has.
 const OWN_THREADS: u32 = 2;
 
-/// A flight that continues until its mission ends or the caller stops.
+/// A mission that runs until it ends or the caller stops.
 pub(crate) struct Pilot {
     /// The planner whose faults are recorded.
     planner: String,
@@ -52,22 +53,22 @@ pub(crate) struct Pilot {
     answers: Taping,
     fold: Fold,
     memory_bytes: Option<u64>,
-    /// The number of threads of the process at the last measurements, newest first.
+    /// The number of threads in the process at the last measurements, newest first.
     threads: [u32; LOOKS],
     faults: Faults,
     tick: u64,
 }
 
-/// The faults of a flight, by what they mean for the planner under test.
+/// The faults in a mission, by what they mean for the planner under test.
 #[derive(Debug, Default, PartialEq)]
 struct Faults {
-    /// The first fault that a correct planner never has.
+    /// The first fault of a kind that a correct planner never has.
     misbehaved: Option<String>,
     /// The planner's first refusal.
     gave_up: Option<String>,
     /// Whether a different planner failed.
     beside: bool,
-    /// Whether the planner reported that it does not fly such missions.
+    /// Whether the planner reported that it does not support such missions.
     unsupported: bool,
 }
 
@@ -94,7 +95,7 @@ pub(crate) fn with_planner(tank: &Scenario, id: &str, parameters: Parameters) ->
     scenario
 }
 
-/// Flies a tank with a planner until the mission ends.
+/// Runs the mission in a tank with a planner until the mission ends.
 pub(crate) fn fly(tank: &Scenario, id: &str, plugins: &PluginDirs) -> Flown {
     let mut pilot = Pilot::new(id, &with_planner(tank, id, Parameters::new()), plugins, false);
     while pilot.tick(&[]).is_some() {}
@@ -102,7 +103,7 @@ pub(crate) fn fly(tank: &Scenario, id: &str, plugins: &PluginDirs) -> Flown {
 }
 
 impl Pilot {
-    /// Prepares a flight and records faults of this planner. If it is `attended`, a hold does not end the mission.
+    /// Prepares a mission and records faults of this planner. If the mission is `attended`, a hold does not end it.
     pub(crate) fn new(planner: &str, scenario: &Scenario, plugins: &PluginDirs, attended: bool) -> Self {
         let flight = Flight::prepare(scenario, attended);
         let host = Host::new(plugins, hosts::config(&scenario.mission));
@@ -120,7 +121,7 @@ impl Pilot {
         }
     }
 
-    /// Flies one tick with these orders. Returns the events, or `None` when the mission has ended.
+    /// Runs one tick with these orders. Returns the events, or `None` when the mission has ended.
     pub(crate) fn tick(&mut self, orders: &[Order]) -> Option<Vec<Event>> {
         if matches!(self.flight.phase(), Phase::Ended(_)) {
             return None;
@@ -152,7 +153,7 @@ impl Pilot {
         self.faults.beside
     }
 
-    /// Returns the first fault that a correct planner never has.
+    /// Returns the first fault of a kind that a correct planner never has.
     pub(crate) fn misbehaved(&self) -> Option<&str> {
         self.faults.misbehaved.as_deref()
     }

@@ -1,8 +1,8 @@
-//! Tests a planner for its author: checks what every planner must do, and compares its flights in random tanks with
+//! Tests a planner for its author: checks what every planner must do, and compares its missions in random tanks with
 //! those of other planners.
 //!
-//! Everything but the times is determined by the plugin and a seed. Coordinates are in the tank frame, in metres and
-//! radians.
+//! Everything except the times and the memory is determined by the plugin and a seed. Positions are in the tank frame,
+//! in metres; angles are in radians.
 #![forbid(unsafe_code)]
 
 mod checks;
@@ -30,11 +30,11 @@ pub struct Trial {
     pub planner: String,
     /// The task in the tanks.
     pub task: Task,
-    /// Seed of the first tank; the others follow.
+    /// Seed of the first tank; each further tank has the next number.
     pub first_seed: u64,
     /// The checks with their results.
     pub checks: Vec<Check>,
-    /// The results of the flights: those of this planner first, then those of the others in the same tanks.
+    /// The results of the missions: first those of this planner, then those of the others in the same tanks.
     pub rows: Vec<Row>,
 }
 
@@ -47,7 +47,7 @@ pub struct Lost {
     pub scenario: String,
 }
 
-/// The planners to compare with.
+/// The planners with which to compare the planner under test.
 #[derive(Debug, Clone, Copy)]
 pub struct Others<'a> {
     /// All planners found.
@@ -57,8 +57,8 @@ pub struct Others<'a> {
 }
 
 impl Trial {
-    /// Tests a planner in `n` tanks, together with the other planners that fly such missions. Every planner drives to a
-    /// goal; one that covers the floor is tested for that, too.
+    /// Tests a planner in `n` tanks, together with the other planners that run such missions. Every planner is tested
+    /// on driving to a goal; one that can cover the floor is tested on that, too.
     pub fn all_of(
         planner: &PlannerInfo,
         others: Others<'_>,
@@ -86,13 +86,16 @@ impl Trial {
         let flown: Vec<Flown> = flights.par_iter().map(|(id, tank)| fly(tank, ids[*id], plugins)).collect();
         let rows = ids.iter().zip(flown.chunks(tanks.len().max(1)));
         let mut rows: Vec<Row> = rows.map(|(id, flown)| Row::of(id, flown, first_seed)).collect();
-        // A planner that does not fly such missions at all cannot be compared.
+        // A planner that does not run such missions at all cannot be compared.
         rows.retain(|row| row.planner == planner.id || row.unsupported < row.tanks);
         let is_sound = |row: &&Row| row.faults == 0 && others.shipped.contains(&row.planner);
         let beside = rows[1..].iter().filter(is_sound).map(|row| row.planner.as_str()).take(1).collect();
         let subject = Subject { planner, plugins, tank: &tanks[0], beside };
         let checks = if rows[0].unsupported == rows[0].tanks {
-            vec![Check::not_made("flies such missions", "it reports that it does not; nothing was checked")]
+            vec![Check::not_made(
+                "supports such missions",
+                "it reports that it does not; nothing was checked",
+            )]
         } else {
             checks::all(&subject, &flown[..tanks.len()], first_seed)
         };

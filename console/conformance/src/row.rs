@@ -1,4 +1,4 @@
-//! The results of a planner in several tanks, as a row of a table.
+//! The results of a planner in a number of tanks, as a row of a table.
 
 use crate::flown::Flown;
 use comfy_table::{
@@ -21,7 +21,7 @@ const HEADINGS: [&str; 10] = [
     "memory MB",
 ];
 
-/// The results of a planner in several tanks.
+/// The results of a planner in a number of tanks.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
     /// Id of the planner.
@@ -34,9 +34,9 @@ pub struct Row {
     pub collided: usize,
     /// The number of tanks in which the robot got stuck.
     pub stuck: usize,
-    /// The number of faults of the planner.
+    /// The number of faults caused by the planner.
     pub faults: u64,
-    /// The number of tanks in which the planner reported that it does not fly such missions.
+    /// The number of tanks in which the planner reported that it does not support such missions.
     pub unsupported: usize,
     /// Median mission time of the completed missions, seconds.
     pub time_s: Option<f64>,
@@ -46,7 +46,7 @@ pub struct Row {
     pub clearance_m: Option<f64>,
     /// Median over the tanks of the 99th percentile of the wall time of a step, milliseconds.
     pub step_p99_ms: Option<f64>,
-    /// Largest memory of the planner's process in any tank, including libraries, megabytes; absent where the system
+    /// Peak memory of the planner's process over all tanks, including libraries, megabytes; absent where the system
     /// does not report it.
     pub memory_mb: Option<f64>,
     /// The results in each tank.
@@ -60,7 +60,7 @@ pub struct InTank {
     pub seed: u64,
     /// How the mission ended.
     pub outcome: Option<Outcome>,
-    /// The number of faults of the planner.
+    /// The number of faults caused by the planner.
     pub faults: u64,
     /// The first fault.
     pub failure: Option<String>,
@@ -86,12 +86,12 @@ impl InTank {
         }
     }
 
-    /// Formats a line about a tank that was not completed.
+    /// Formats a line about a tank in which the mission was not completed.
     pub(crate) fn line(&self) -> String {
         let ended = self.outcome.map_or("did not end", Outcome::word).replace('_', " ");
         let after = self.time_s.map(|s| format!(" after {s:.1} s")).unwrap_or_default();
         let why = self.failure.as_ref().map(|why| format!(": {why}")).unwrap_or_default();
-        format!("not completed: tank of seed {}, {ended}{after}{why}\n", self.seed)
+        format!("not completed: tank with seed {}, {ended}{after}{why}\n", self.seed)
     }
 }
 
@@ -124,7 +124,7 @@ impl Row {
         }
     }
 
-    /// Returns the tanks that were not completed.
+    /// Returns the tanks in which the mission was not completed.
     pub(crate) fn lost(&self) -> impl Iterator<Item = &InTank> {
         self.by_tank.iter().filter(|tank| tank.outcome != Some(Outcome::Complete))
     }
@@ -148,7 +148,7 @@ impl Row {
     }
 }
 
-/// Formats rows as a text table, one line each below the headings.
+/// Formats rows as a text table, with one line for each row below the headings.
 pub(crate) fn table(rows: &[Row]) -> String {
     let mut table = Table::new();
     table.load_preset(presets::NOTHING).add_row(HEADINGS).add_rows(rows.iter().map(Row::cells));

@@ -26,19 +26,19 @@ impl fmt::Display for Task {
     }
 }
 
-/// Smallest distance between an obstacle and anything else, metres: the robot fits through everywhere.
+/// Smallest distance between an obstacle and anything else, metres. It lets the robot pass everywhere.
 const GAP_M: f64 = 0.9;
 
-/// Draws the tank of a seed: columns and boxes, two thirds of which are on the drawing.
+/// Generates the tank for a seed: columns and boxes, each of which is on the drawing with a probability of two thirds.
 ///
 /// # Panics
-/// Never: the tests show that every text drawn is a valid scenario.
+/// Never: the tests show that every generated text is a valid scenario.
 pub(crate) fn draw(task: Task, seed: u64) -> Scenario {
     Scenario::parse_with(&text(task, seed, "it"), &format!("tank {seed}"), &Settings::default())
         .unwrap_or_else(|errors| panic!("{}", errors.render()))
 }
 
-/// Returns the text of that tank's scenario, with this planner.
+/// Returns the text of the scenario for this tank and planner.
 pub(crate) fn text(task: Task, seed: u64, planner: &str) -> String {
     let mut random = Pcg64::seed_from_u64(seed);
     let (tank_radius, most) = if task == Task::Goto { (5.0, 9) } else { (3.0, 4) };

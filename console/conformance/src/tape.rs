@@ -1,4 +1,4 @@
-//! Records the requests to a planner during a flight, so that they can be sent to a different instance.
+//! Records the requests to a planner during a mission, so that they can be sent to a different instance.
 
 use flight::answers::{Answers, InOrder};
 use mission::{Answer, Ask, AskId, Fault, Given, Mission, What, WorkerId};
@@ -36,7 +36,7 @@ impl Taping {
 
 impl Answers for Taping {
     fn submit(&mut self, ask: Ask) {
-        // A tape is useful only if it contains the requests of a single planner from its beginning.
+        // A tape is useful only if it contains the requests to a single planner from the beginning.
         let first = *self.worker.get_or_insert(ask.id.worker);
         if self.tape.len() < MOST && ask.id.worker == first && ask.what != What::Close {
             self.tape.push(ask.what.clone());
@@ -49,7 +49,7 @@ impl Answers for Taping {
     }
 }
 
-/// Sends recorded requests to planners, one after the other.
+/// Sends recorded requests to planners, one at a time.
 pub(crate) struct Player {
     host: Host,
     n: u32,

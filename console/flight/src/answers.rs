@@ -1,8 +1,8 @@
-//! The sources of planners' answers, and how long a tick waits for them.
+//! The sources of the planners' answers, and how long a tick waits for them.
 //!
-//! The mission itself never waits. A headless flight answers every ask before mission time advances, in the order of the
-//! asks, so the result does not depend on the machine. The console gives each tick a time window and continues without
-//! late answers.
+//! The mission itself never waits. In a headless flight, every ask is answered before mission time advances, in the order
+//! of the asks, so the result does not depend on the machine. The console gives each tick a time window and continues
+//! without answers that are late.
 
 use mission::{Answer, Ask, AskId, Awaits, Mission, What};
 use planner_host::Host;
@@ -11,9 +11,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// A source of answers to the mission's asks.
+/// A source of answers to the asks of a mission.
 pub trait Answers {
-    /// Takes an ask.
+    /// Takes an ask from the mission.
     fn submit(&mut self, ask: Ask);
 
     /// The next answer for the current tick of a mission; `None` if the tick should end.
@@ -21,17 +21,17 @@ pub trait Answers {
 }
 
 /// Waits for every answer, and returns the answers in the order of the asks. If a [`planner_host::Waker`] interrupts a
-/// tick, its asks stay open for the next one.
+/// tick, the asks of that tick stay open for the next one.
 pub struct InOrder {
     host: Host,
-    /// Asks without an answer, oldest first.
+    /// Asks that have no answer yet, oldest first.
     open: VecDeque<AskId>,
-    /// Answers that arrived before those to older asks.
+    /// Answers that arrived before the answers to older asks.
     early: Vec<Answer>,
 }
 
 impl InOrder {
-    /// Creates the source from a host that only this thread uses from now on.
+    /// Creates the source from a host; from now on only this thread uses that host.
     pub fn new(mut host: Host) -> Self {
         host.share_processor();
         Self { host, open: VecDeque::new(), early: Vec::new() }
@@ -42,7 +42,7 @@ impl InOrder {
         &mut self.host
     }
 
-    /// Ends a mission. The next one starts as with a new host, except that planner processes may be reused.
+    /// Ends a mission. The next one starts as it would with a new host, except that planner processes may be reused.
     pub fn end_mission(&mut self) {
         self.host.end_mission();
         self.open.clear();
@@ -78,14 +78,14 @@ impl Answers for InOrder {
     }
 }
 
-/// Gives each tick a time window; a later answer is used in a later tick.
+/// Gives each tick a time window; an answer that comes later is used in a later tick.
 pub struct Windowed<'a> {
     host: &'a mut Host,
-    /// How long a tick waits for the robot's command; `None` to wait without limit.
+    /// How long a tick waits for the robot's command; `None` means no limit.
     step: Option<Duration>,
-    /// How long a tick waits for work during which the robot stands still.
+    /// How long a tick waits for an answer while the robot stands still for it.
     work: Duration,
-    /// How long a tick waits if only the planner in shadow has an open ask.
+    /// How long a tick waits if the only open ask is that of the planner in shadow.
     shadow: Duration,
     began: Instant,
 }
@@ -118,18 +118,19 @@ impl Answers for Windowed<'_> {
 /// How long a tick waits for answers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
-    /// For the robot's command; `None` to wait without limit.
+    /// For the robot's command; `None` means no limit.
     pub step: Option<Duration>,
-    /// For opening a planner or making a plan while the robot stands still.
+    /// For a planner to be opened, or for a plan, while the robot stands still.
     pub work: Duration,
-    /// For the planner in shadow, if it has the only open ask. In real time there is no wait: the planner has until the
-    /// next tick.
+    /// For the planner in shadow, if its ask is the only open one. In real time there is no wait: the planner has until
+    /// the next tick.
     pub shadow: Duration,
 }
 
 /// Share of a tick that is available for waiting.
 const SHARE: f64 = 0.6;
-/// Minimum wait of a simulation that runs faster than real time: it slows down rather than letting the robot stop.
+/// Minimum wait in a simulation that runs faster than real time: the simulation slows down rather than letting the robot
+/// stop.
 const AT_LEAST: Duration = Duration::from_millis(100);
 
 impl Window {

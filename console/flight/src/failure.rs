@@ -6,17 +6,16 @@ use recording::JournalError;
 use runs::{Kept, RunError};
 use std::fmt;
 
-/// The mission was flown, is complete, and kept all bounds of its scenario (`[expect]`).
+/// The mission ran, is complete, and met all bounds of its scenario (`[expect]`).
 pub const COMPLETE: u8 = 0;
-/// The mission was flown, but ended without being complete or did not keep a bound. Also used for a verification that
-/// found a difference.
+/// The mission ran, but ended incomplete or did not meet a bound. Also used for a verification that found a difference.
 pub const ENDED_OTHERWISE: u8 = 1;
 /// Wrong usage or wrong input.
 pub const BAD_INPUT: u8 = 2;
-/// A fault of the program or the machine.
+/// A fault in the program or the machine.
 pub const INTERNAL: u8 = 3;
 
-/// An input error that the user can fix; its text is complete, including the place and the remedy.
+/// An input error that the user can fix; its text is complete, with the place of the error and the remedy.
 #[derive(Debug)]
 pub struct BadInput(pub String);
 
@@ -33,19 +32,20 @@ pub fn bad_input(text: impl Into<String>) -> anyhow::Error {
     BadInput(text.into()).into()
 }
 
-/// Whether a failure is an input error; this includes a journal that cannot be read and a folder that cannot take runs.
+/// Whether a failure is an input error; journals that cannot be read and folders that cannot take runs are included.
 pub fn is_input(error: &anyhow::Error) -> bool {
     let of_run = error.downcast_ref::<RunError>().is_some_and(RunError::is_input);
     of_run || error.is::<BadInput>() || error.is::<JournalError>()
 }
 
-/// The exit code of a mission that was flown.
+/// The exit code for a mission that ran.
 pub fn mission_code(flown: &Summary) -> u8 {
     let keeps_bounds = flown.violations.as_ref().is_none_or(Vec::is_empty);
     if flown.outcome == Some(Outcome::Complete) && keeps_bounds { COMPLETE } else { ENDED_OTHERWISE }
 }
 
-/// The exit code of a run, given the result of its mission. A run that should have been kept but was not is a fault.
+/// The exit code for a run, given the code for its mission. A run that should have been kept but was not counts as an
+/// internal fault.
 pub fn exit_code(mission: u8, kept: Option<&Kept>) -> u8 {
     if kept.is_some_and(|kept| kept.problem().is_some()) { INTERNAL } else { mission }
 }

@@ -28,7 +28,7 @@ impl Flight {
         Self::of(scenario, MissionConfig { attended, ..scenario.mission.clone() })
     }
 
-    /// Creates a flight for the operator of a console, who sees the plan before the start.
+    /// Creates a flight for the operator at a console, who sees the plan before the start.
     pub fn for_operator(scenario: &Scenario) -> Self {
         let mission = scenario.mission.clone();
         Self::of(scenario, MissionConfig { attended: true, start_names_plan: true, ..mission })
@@ -61,8 +61,8 @@ impl Flight {
         }
     }
 
-    /// Creates a forecast of how the flight would continue, in a tank that holds only what the mission knows, without
-    /// injected faults. Its first order must choose a planner.
+    /// Creates a forecast of how the flight would continue. Its tank contains only what the mission knows, and no faults
+    /// are injected. The first order to the forecast must choose a planner.
     #[must_use]
     pub fn forked(&self, scenario: &Scenario) -> Self {
         let Fork { mission, world, pose, cable } = self.mission.fork();
@@ -106,7 +106,7 @@ impl Flight {
         Duration::from_secs_f64(self.tick_s)
     }
 
-    /// Flies one tick: sense, ask planners and process their answers, act. The true state is written to the events first,
+    /// Runs one tick: sense, ask planners and process their answers, act. The true state is written to the events first,
     /// and is used nowhere else.
     pub fn tick(&mut self, orders: &[Order], answers: &mut impl Answers) -> Vec<Event> {
         self.readings = self.simulator.sense();
@@ -126,7 +126,7 @@ impl Flight {
         truth.chain(step.events).map(Event::rounded).collect()
     }
 
-    /// Injected station faults that the mission accepted begin with the next tick.
+    /// Starts the injected station faults that the mission accepted; they take effect with the next tick.
     fn inject_faults(&mut self, events: &[Event]) {
         for event in events {
             if let EventKind::Ordered { order: Order::Inject(Injection { station, fault, for_s, .. }) } =

@@ -6,7 +6,7 @@ use planner_host::{Host, HostConfig, PluginDirs};
 use scenario::Scenario;
 use std::time::Duration;
 
-/// Time limit for a plan of the whole floor.
+/// Time limit for a plan that covers the whole floor.
 const COVER_WITHIN: Duration = Duration::from_mins(1);
 /// Memory limit for such a plan: large floors have many cells.
 const COVER_MEMORY_BYTES: u64 = 1 << 30;
@@ -16,7 +16,7 @@ pub fn host(scenario: &Scenario, plugins: &PluginDirs) -> Host {
     Host::new(plugins, config(&scenario.mission))
 }
 
-/// The limits of planners for a mission: a plan of a whole floor needs more time and memory than a path to a point.
+/// The limits of planners in a mission: a plan for a whole floor needs more time and memory than a path to a point.
 pub fn config(mission: &MissionConfig) -> HostConfig {
     let config = HostConfig::default();
     match mission.task {
@@ -27,7 +27,7 @@ pub fn config(mission: &MissionConfig) -> HostConfig {
     }
 }
 
-/// Wall-clock figures of the planners' calls.
+/// Wall-clock figures about the calls to planners.
 pub fn calls(host: &Host) -> PlannerCalls {
     let stats = host.stats();
     PlannerCalls {

@@ -1,8 +1,8 @@
-//! Flies a scenario for every caller: the console, `tankops run`, a what-if, or a verification.
+//! Flies a scenario on behalf of every caller: the console, `tankops run`, a what-if, or a verification.
 //!
-//! A [`Flight`] combines simulator and mission, tick by tick. The answers of its planners come from an
-//! [`answers::Answers`]. Before a flight the scenario is read ([`scenarios`]) and checked against the installed planners
-//! ([`planners`]).
+//! A [`Flight`] combines the simulator and the mission, tick by tick. The planners' answers come from an implementation
+//! of [`answers::Answers`]. Before a flight, the scenario is read ([`scenarios`]) and checked against the installed
+//! planners ([`planners`]).
 
 pub mod answers;
 pub mod failure;

@@ -1,17 +1,17 @@
-//! Tracks which planner is being opened or is planning, for display. This depends on wall-clock time, so it enters
-//! neither journal nor recording.
+//! Tracks which planner is being opened or is planning, for display. The tracked state depends on wall-clock time, so it
+//! is written to neither the journal nor the recording.
 
 use crate::answers::Answers;
 use mission::{Answer, Ask, AskId, Mission, What, WorkerId};
 use std::{collections::BTreeMap, time::Duration};
 
-/// Callback for the planners' work: the work when it begins, `None` when it ends.
+/// Callback for the planners' work: called with the work when it begins, and with `None` when it ends.
 pub type OnWork = Box<dyn FnMut(Option<&Work>) + Send>;
 
 /// Work of a planner that may take a while.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Work {
-    /// The ask that it answers.
+    /// The ask that the work will answer.
     pub ask: AskId,
     /// Description for the screen, such as `Planning (tether-safe)`.
     pub what: String,
@@ -33,7 +33,7 @@ impl PlanWatch {
         Self { plan_limit, names: BTreeMap::new(), open: BTreeMap::new(), on_work }
     }
 
-    /// The current work; that of the active planner takes precedence over that of one being prepared.
+    /// The current work; the work of the active planner takes precedence over that of a planner being prepared.
     pub fn current(&self) -> Option<&Work> {
         self.open.values().next()
     }
@@ -72,14 +72,14 @@ impl PlanWatch {
     }
 }
 
-/// Answers whose planning work is watched.
+/// A source of answers that also reports when planners are working.
 pub struct Watched<'a, A> {
     answers: &'a mut A,
     watch: &'a mut PlanWatch,
 }
 
 impl<'a, A: Answers> Watched<'a, A> {
-    /// Wraps these answers.
+    /// Wraps this source of answers.
     pub fn new(answers: &'a mut A, watch: &'a mut PlanWatch) -> Self {
         Self { answers, watch }
     }

@@ -28,10 +28,11 @@ pub fn found(plugins: &PluginDirs) -> Found {
 }
 
 /// Checks, before a flight, that the planners of a scenario are installed and accept their parameters. Only the plugins
-/// that may contain them are examined; if something is wrong, all plugins are examined to list the available planners.
+/// that may contain these planners are examined; if something is wrong, all plugins are examined in order to list the
+/// available planners.
 ///
 /// # Errors
-/// Every objection, with its place in the scenario; or the reason why this machine cannot run any planner.
+/// Every objection, with its place in the scenario; or the reason why no planner can run on this machine.
 pub fn check_installed(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<()> {
     check_limits(plugins).map_err(anyhow::Error::msg)?;
     let ids: Vec<&str> = chosen(scenario).map(|(_, choice)| choice.id.as_str()).collect();
@@ -47,7 +48,8 @@ pub fn check_installed(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Res
     })
 }
 
-/// Messages about planners of the scenario that more than one plugin contains: which plugin is used.
+/// For each planner of the scenario that is contained in more than one plugin, a message that states which plugin is
+/// used.
 pub fn shadowed(scenario: &Scenario, plugins: &PluginDirs) -> Vec<String> {
     let ids: Vec<&str> = chosen(scenario).map(|(_, choice)| choice.id.as_str()).collect();
     let worker = WorkerCommand::default();
@@ -59,7 +61,7 @@ pub fn shadowed(scenario: &Scenario, plugins: &PluginDirs) -> Vec<String> {
     twice.into_iter().map(sentence).collect()
 }
 
-/// The planners of a scenario, each with the section that names it.
+/// The planners of a scenario, each with the section of the scenario that names it.
 fn chosen(scenario: &Scenario) -> impl Iterator<Item = (&'static str, &PlannerChoice)> {
     let mission = &scenario.mission;
     let fallback = mission.fallback.iter().map(|choice| ("planner.fallback", choice));
@@ -103,7 +105,7 @@ fn objections(
     }
 }
 
-/// Planners for coverage, starting with the one with the shortest paths (`tankops reproduce coverage-suite`).
+/// Planners for coverage, with those that drive the shortest paths first (`tankops reproduce coverage-suite`).
 const FOR_COVERAGE: [&str; 3] = ["tether-safe", "hull-partition", "boustrophedon"];
 
 /// The default planner in scenarios for coverage missions.
@@ -114,7 +116,7 @@ pub fn why_unsuited(info: &PlannerInfo, task: &TaskConfig) -> Option<&'static st
     info.why_no_coverage().filter(|_| matches!(task, TaskConfig::Cover { .. }))
 }
 
-/// The best planner found for a coverage mission: a well-known one if possible, otherwise any that covers floor.
+/// The best available planner for a coverage mission: a well-known one if possible, otherwise any that covers floor.
 pub fn suited_to_coverage(found: &Found) -> Option<&PlannerInfo> {
     let covering = || found.planners.iter().filter(|info| info.covers);
     let rank = |info: &&PlannerInfo| FOR_COVERAGE.iter().position(|id| *id == info.id).unwrap_or(usize::MAX);
@@ -124,7 +126,7 @@ pub fn suited_to_coverage(found: &Found) -> Option<&PlannerInfo> {
 /// Finds the planner with this id.
 ///
 /// # Errors
-/// Why its plugin is refused, or a sentence with the planners found.
+/// The reason why its plugin was refused, or a sentence that lists the available planners.
 pub fn choice_of<'a>(id: &str, found: &'a Found) -> Result<&'a PlannerInfo, String> {
     found.planners.iter().find(|info| info.id == id).ok_or_else(|| {
         if let Some(RefusedPlugin { plugin, reason }) =

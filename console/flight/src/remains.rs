@@ -1,4 +1,4 @@
-//! Output and crash files of planners, kept in the folder of the run.
+//! Output and crash files of planners, saved in the folder of the run.
 
 use mission::{Event, EventKind};
 use planner_api::LogLevel;
@@ -9,13 +9,13 @@ use runs::RunLog;
 pub const CRASH_FILE: &str = "crash.txt";
 /// The last requests to the planner.
 pub const FRAMES_FILE: &str = "frames.bin";
-/// Start of the line with their digest.
+/// Start of the line that contains the digest of these requests.
 const FRAMES_DIGEST: &str = "frames.bin: sha256 ";
 /// Maximum number of lines shown at once.
 const MOST_SHOWN: usize = 8;
 
-/// Keeps the output of planners and the crash files of failed ones since the last call, in files of the run beside the
-/// journal. Returns the printed lines as events for display; they do not enter the journal.
+/// Saves what planners have printed, and the crash files of planners that have failed, since the last call, in files
+/// beside the journal. Returns the printed lines as events for display; they are not written to the journal.
 pub fn keep(host: &mut Host, mut log: Option<&mut RunLog>, (tick, t_s): (u64, f64)) -> Vec<Event> {
     let (printed, crashes, bad_ends) = (host.take_printed(), host.take_crashes(), host.take_bad_ends());
     if let Some(log) = &mut log {
@@ -46,7 +46,7 @@ fn plugin_file(crash: &Crash) -> String {
     plugin_of(&crash.frames).map_or_else(|| "unknown".to_owned(), |file| file.display().to_string())
 }
 
-/// The crash files for `tankops replay-worker`.
+/// The crash files that `tankops replay-worker` reads.
 fn files(crash: &Crash) -> [(&'static str, Vec<u8>); 3] {
     let Crash { fault, frames, output } = crash;
     let about = format!(
@@ -60,10 +60,10 @@ fn files(crash: &Crash) -> [(&'static str, Vec<u8>); 3] {
     [(CRASH_FILE, about.into()), (FRAMES_FILE, frames.clone()), ("output.txt", output.clone().into())]
 }
 
-/// Checks that the requests of a crash are the original ones; `about` is the description kept with them.
+/// Checks that the requests saved for a crash are the original ones; `about` is the description saved with them.
 ///
 /// # Errors
-/// The requests do not match; the text continues after the name of their file.
+/// The requests do not match. The error text continues a sentence that begins with the name of their file.
 pub fn check_frames(about: &str, frames: &[u8]) -> Result<(), String> {
     let kept = about.lines().find_map(|line| line.strip_prefix(FRAMES_DIGEST));
     match kept {

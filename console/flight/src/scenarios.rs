@@ -4,7 +4,7 @@ use crate::failure::bad_input;
 use scenario::{Scenario, Settings, is_stdin};
 use std::path::{Path, PathBuf};
 
-/// The built-in demo, so that `tankops` shows something in whatever folder it is started.
+/// The built-in demo, so that `tankops` has something to show whatever folder it is started in.
 const DEMO: &str = include_str!("../../../scenarios/demo.toml");
 
 /// The demo, with the settings of the command line applied.
@@ -15,8 +15,8 @@ pub fn demo(settings: &Settings) -> anyhow::Result<Scenario> {
     Scenario::parse_with(DEMO, "the demo scenario", settings).map_err(|errors| bad_input(errors.render()))
 }
 
-/// Reads a scenario from a path, from the standard input (`-`), or by the name listed on the home screen: `cover-circle`
-/// is `scenarios/cover-circle.toml`.
+/// Reads a scenario from a path, from standard input (`-`), or by the name listed on the home screen: `cover-circle`
+/// stands for `scenarios/cover-circle.toml`.
 ///
 /// # Errors
 /// Every objection, with its place in the file.
@@ -34,7 +34,7 @@ pub fn read(path: &Path, settings: &Settings) -> anyhow::Result<Scenario> {
     }
 }
 
-/// The scenario file for a name without folder and extension.
+/// The path of the scenario file for a name that has neither folder nor extension.
 fn listed(name: &Path) -> Option<PathBuf> {
     let is_bare = name.components().count() == 1 && name.file_name().is_some() && name.extension().is_none();
     is_bare.then(|| Path::new("scenarios").join(name).with_extension("toml"))

@@ -7,7 +7,7 @@ use std::{io, path::Path};
 /// Reads a text file, which may be a pipe.
 ///
 /// # Errors
-/// The file cannot be read or is not UTF-8; the message tells what it is instead and what to do.
+/// The file cannot be read or is not UTF-8; the message tells what the file contains instead and what to do.
 pub fn read(file: &Path) -> anyhow::Result<String> {
     named(file, open_waiting(file).and_then(|open| text_of(open, MOST_TEXT_BYTES)))
 }
@@ -15,7 +15,7 @@ pub fn read(file: &Path) -> anyhow::Result<String> {
 /// Reads a regular text file.
 ///
 /// # Errors
-/// As for [`read`]; also if the file is not a regular one.
+/// As for [`read`]; also if the file is not a regular file.
 pub fn read_regular(file: &Path) -> anyhow::Result<String> {
     named(file, foreign::read_regular(file))
 }

@@ -1,12 +1,13 @@
-//! Missions of which only the report is needed: nothing is written or displayed.
+//! Runs missions from which only the report is needed: nothing is written or displayed.
 
 use crate::{Flight, answers::InOrder};
 use account::{Fold, Summary};
 use mission::{Order, Phase};
 use scenario::Scenario;
 
-/// Flies a scenario to its end and answers every ask before mission time advances; `None` if it was stopped early. The
-/// summary has no wall-clock figures, no file hashes and no account of the floor, so equal missions have equal summaries.
+/// Runs a scenario to its end, answering every ask before mission time advances; returns `None` if it was stopped early.
+/// The summary has no wall-clock figures, no file hashes and no account of the floor, so equal missions have equal
+/// summaries.
 pub fn fly(scenario: &Scenario, answers: &mut InOrder, is_stopped: impl Fn() -> bool) -> Option<Summary> {
     let mut flight = Flight::prepare(scenario, false);
     let mut fold = Fold::of_figures();

@@ -1,6 +1,6 @@
 //! Detects the encoding of a text that should be UTF-8 but is not, and suggests what to do about it.
 
-/// The number of bytes from the start of a text that decide whether it has two bytes a character.
+/// The number of bytes at the start of a text that are examined for an encoding with two bytes per character.
 const BEGINNING: usize = 2000;
 
 /// Returns the name of a two-byte encoding without a byte order mark, recognised by the zero bytes of Latin letters.
@@ -68,7 +68,7 @@ impl NotUtf8 {
 impl std::fmt::Display for NotUtf8 {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match (self.encoding, self.line) {
-            (Some(encoding), 1) => write!(f, "{encoding} instead of UTF-8, judging by its first line"),
+            write!(f, "{encoding} instead of UTF-8, judging by the first line"), => (Some(encoding), 1) => write!(f, "{encoding} instead of UTF-8, judging by its first line"), => write!(f, "{encoding} instead of UTF-8, judging by its first line"),
             (Some(encoding), line) => write!(f, "{encoding} instead of UTF-8, judging by line {line}"),
             (None, line) => write!(f, "not text: line {line} is not UTF-8"),
         }
@@ -95,7 +95,7 @@ mod tests {
         assert_eq!(told(&latin).unwrap(), "ISO-8859-1 instead of UTF-8, judging by line 3");
         assert_eq!(
             told(b"price = \x80").unwrap(),
-            "WINDOWS-1252 instead of UTF-8, judging by its first line"
+            "WINDOWS-1252 instead of UTF-8, judging by the first line"
         );
         for (bytes, mark, name) in [
             (u16::to_le_bytes as fn(u16) -> [u8; 2], &[0xff_u8, 0xfe][..], "UTF-16"),
@@ -104,7 +104,7 @@ mod tests {
             (u16::to_be_bytes, &[], "UTF-16BE"),
         ] {
             let foreign = NotUtf8::of(&wide_text(text, bytes, mark)).unwrap();
-            assert_eq!(foreign.to_string(), format!("{name} instead of UTF-8, judging by its first line"));
+            assert_eq!(foreign.to_string(), format!("{name} instead of UTF-8, judging by the first line"));
             assert_eq!(foreign.remedy(), format!("save it as UTF-8: `iconv -f {name} -t UTF-8 FILE > NEW`"));
         }
         assert_eq!(told(b"\x7fELF\x01\n\xfe\xff").unwrap(), "not text: line 2 is not UTF-8");

@@ -13,7 +13,7 @@ use std::{
     path::Path,
 };
 
-/// The greatest length of a text that is read as a whole, unless a smaller limit is given, bytes.
+/// The greatest length of a text that is read in one piece, unless a smaller limit is given, bytes.
 pub const MOST_TEXT_BYTES: u64 = 64 << 20;
 
 /// Opens a regular file, and refuses devices and pipes, which may never end. Never waits for the other end of a pipe.
@@ -77,7 +77,7 @@ pub fn read_at_most(path: &Path, most_bytes: u64) -> io::Result<String> {
     text_of(file, most_bytes)
 }
 
-/// Reads the whole text of a reader, at most `most_bytes`.
+/// Reads the whole text from a reader, at most `most_bytes`.
 ///
 /// # Errors
 /// The reader returns too many bytes, cannot be read, or is not UTF-8. In the last case the message names the
@@ -94,8 +94,8 @@ pub fn text_of(reader: impl Read, most_bytes: u64) -> io::Result<String> {
     String::from_utf8(bytes).map_err(|error| damaged(error.to_string()))
 }
 
-/// Reads the text of a regular JSON file of at most `most_bytes`. The memory that its values need is limited to a
-/// small multiple of that.
+/// Reads the text of a regular JSON file of at most `most_bytes`. The memory that the values of the file need is
+/// limited to a small multiple of `most_bytes`.
 ///
 /// # Errors
 /// See [`read_at_most`]; also if the file holds too many values.
@@ -109,12 +109,12 @@ pub fn read_json(path: &Path, most_bytes: u64) -> io::Result<String> {
 
 /// The greatest weight of a JSON file, as a multiple of its greatest length.
 const MOST_GROWTH: u64 = 8;
-/// The memory that a number, a word or a key takes as any JSON value, and what a list or an object takes, bytes.
+/// The memory that a number, a word or a key takes as a generic JSON value, and that a list or an object takes, bytes.
 const VALUE_BYTES: usize = 32;
 const LIST_BYTES: usize = 176;
 
-/// Returns an upper bound for the memory that the values of a JSON text take when it is read as any JSON value,
-/// bytes. Commas, colons and brackets inside its strings are counted, too.
+/// Returns an upper bound for the memory that the values of a JSON text take when it is read as a generic JSON value,
+/// bytes. Commas, colons and brackets inside strings are counted, too.
 pub fn json_weight(text: &[u8]) -> usize {
     let weight = |byte: &u8| match byte {
         b',' | b':' => VALUE_BYTES,

@@ -35,7 +35,7 @@ pub fn is_plain(c: char) -> bool {
     !c.is_control() && !is_hidden && !is_none
 }
 
-/// Returns the first character of a text that is not plain, as `U+202E`. Line ends and tabs count as plain.
+/// Returns the first character of a text that is not plain, in the form `U+202E`. Line ends and tabs count as plain.
 pub fn unplain(text: &str) -> Option<String> {
     let is_end = |at: usize| text[at..].starts_with("\r\n");
     let is_odd = |(at, c): &(usize, char)| !is_plain(*c) && !matches!(c, '\n' | '\t') && !is_end(*at);
@@ -70,7 +70,8 @@ pub fn plain_lines(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// Returns a text as content or attribute value of XML and HTML: plain, with line feeds and tabs, its markup escaped.
+/// Returns a text for use as content or as an attribute value in XML and HTML: plain, with line feeds and tabs kept and
+/// markup escaped.
 ///
 /// ```
 /// assert_eq!(foreign::markup("S1 <\"5 m\">"), "S1 &lt;&quot;5 m&quot;&gt;");

@@ -2,7 +2,7 @@
 
 use crate::{Point, polyline, shape};
 
-/// The wall of the tank; `P` stores the corners, as for [`Shape`](crate::Shape).
+/// The wall of a tank; `P` stores the corners, as for [`Shape`](crate::Shape).
 ///
 /// ```
 /// use geometry::{Boundary, Point};
@@ -85,7 +85,7 @@ impl<P: AsRef<[Point]>> Boundary<P> {
         }
     }
 
-    /// The smallest axis-aligned box around the floor: south-west and north-east corner.
+    /// The smallest axis-aligned box around the floor: its south-west and north-east corners.
     ///
     /// ```
     /// let tank: geometry::Boundary = geometry::Boundary::Circle { radius_m: 10.0 };
@@ -99,10 +99,10 @@ impl<P: AsRef<[Point]>> Boundary<P> {
         }
     }
 
-    /// Whether a box, given by its south-west and north-east corners, contains some floor.
+    /// Whether a box, given by its south-west and north-east corners, contains some of the floor.
     ///
-    /// Walls are sampled at half the shorter side of the box, so a corner of the floor that reaches less far into the
-    /// box can be missed.
+    /// Walls are sampled at intervals of half the shorter side of the box, so a corner of the floor that extends into the
+    /// box by less than that may be missed.
     ///
     /// ```
     /// use geometry::{Boundary, Point};

@@ -1,7 +1,8 @@
-//! The one law of braking, used by the mission, by planners and for time estimates: how far a robot moves until it has
-//! stopped, and how fast it may be if it must stop, or slow down, within a given distance.
+//! The one law of braking, used by the mission, by planners and for time estimates. It gives the distance that a robot
+//! needs to stop, and the maximum speed at which it can still stop, or slow down, within a given distance.
 //!
-//! A robot that is ordered to brake continues for up to one tick, and then slows down at its acceleration.
+//! A robot that is ordered to brake continues at its speed for up to one tick, and then slows down at its maximum
+//! deceleration.
 
 use crate::Limits;
 
@@ -39,8 +40,8 @@ impl Braking {
         Self { acceleration_m_per_s2: limits.acceleration_m_per_s2.max(0.0), tick_s: limits.tick_s.max(0.0) }
     }
 
-    /// Distance that a robot moves from the moment it begins to brake until it has stopped, metres; infinite if it cannot
-    /// brake.
+    /// Distance that a robot travels from the moment it begins to brake until it has stopped, metres; infinite if it
+    /// cannot brake.
     ///
     /// ```
     /// use geometry::Braking;

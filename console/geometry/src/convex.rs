@@ -123,7 +123,7 @@ impl Part {
         }
     }
 
-    /// A point inside the part: the middle of a capsule, the mean of a polygon's corners.
+    /// A point inside the part: the middle of a capsule, or the mean of a polygon's corners.
     ///
     /// ```
     /// use geometry::{Point, convex::Part};
@@ -154,7 +154,7 @@ impl Part {
         if inside { 0.0 } else { self.gap(&Self::segment(a, b)).width_m }
     }
 
-    /// The shortest segment to another part; neither may contain the other.
+    /// The shortest segment from this part to another; neither may contain the other.
     ///
     /// ```
     /// use geometry::{Point, convex::Part};
@@ -175,7 +175,7 @@ impl Part {
         best
     }
 
-    /// Discs (centre, and radius in metres) whose convex hull is the part.
+    /// Discs, each given by its centre and its radius in metres, whose convex hull is the part.
     ///
     /// ```
     /// use geometry::{Point, convex::Part};
@@ -219,7 +219,7 @@ fn is_inside(vertices: &[Point], point: Point) -> bool {
     vertices.len() > 2 && edges(vertices).all(|(a, b)| (b - a).perp(&(point - a)) > 0.0)
 }
 
-/// The nearest points of two segments; both are the same point where the segments cross.
+/// The nearest points on two segments; where the segments cross, both are the crossing point.
 fn closest_of_segments(a: Point, b: Point, c: Point, d: Point) -> (Point, Point) {
     if let Some(crossing) = crossing(a, b, c, d) {
         return (crossing, crossing);
@@ -235,11 +235,11 @@ fn closest_of_segments(a: Point, b: Point, c: Point, d: Point) -> (Point, Point)
     pairs.into_iter().reduce(shorter).expect("there are four pairs")
 }
 
-/// Outward unit vector of an outline at a point: along the line through `point` and `closest`, the nearest point of the
-/// outline.
+/// Outward unit vector of an outline at a point: along the line through `point` and `closest`, which is the nearest point
+/// on the outline.
 ///
-/// `signed_m` is the distance to the outline, metres, negative inside. On the outline itself, where the two points
-/// coincide, the vector points away from `center`, a point inside.
+/// `signed_m` is the distance from the point to the outline, metres, negative inside. On the outline itself, where
+/// `point` and `closest` coincide, the vector points away from `center`, a point inside.
 ///
 /// ```
 /// use geometry::{Point, Vector, convex::away_from};
@@ -253,7 +253,7 @@ pub fn away_from(point: Point, signed_m: f64, closest: Point, center: Point) -> 
     direction_or(outward, from_center)
 }
 
-/// The point at which two segments meet, including their ends; `None` for parallel ones.
+/// The point at which two segments meet, which may be an end; `None` for parallel segments.
 ///
 /// ```
 /// use geometry::{Point, convex::crossing};

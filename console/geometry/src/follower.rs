@@ -3,25 +3,26 @@
 use crate::{Point, polyline, wrap_angle_rad};
 use std::collections::VecDeque;
 
-/// Distance ahead of the robot at which it aims, metres.
+/// Distance between the robot and the point ahead at which it aims, metres.
 const LOOKAHEAD_M: f64 = 0.5;
 /// Lookahead on a path that is followed exactly, metres.
 const EXACT_LOOKAHEAD_M: f64 = 0.25;
 /// Spacing of the points of a path that is followed exactly, metres.
 const EXACT_SPACING_M: f64 = 0.1;
-/// Minimum change of direction that makes a point of the path a corner, radians. The robot drives to a corner before it
-/// turns.
+/// Minimum change of direction at which a point of the path counts as a corner, radians. The robot drives to a corner
+/// before it turns.
 const CORNER_RAD: f64 = 0.5;
 /// Distance at which a corner counts as reached, metres.
 const CORNER_M: f64 = 0.05;
-/// Distance from a corner within which passing it counts as reaching it, metres.
+/// Distance from a corner within which driving past the corner counts as reaching it, metres.
 const BESIDE_CORNER_M: f64 = 0.4;
-/// Length of path searched for the nearest point, metres; shorter than one turn of any useful spiral.
+/// Length of path in which the nearest point is searched for, metres; shorter than one turn of any useful spiral.
 const WINDOW_M: f64 = 1.5;
-/// Length searched on a path that is followed exactly, metres: shorter than a lap of the smallest ring worth scanning.
+/// The same length on a path that is followed exactly, metres: shorter than a lap of the smallest ring worth scanning.
 const EXACT_WINDOW_M: f64 = 0.6;
 
-/// Progress along a path; it never decreases, because the nearest point is searched forward from the last one.
+/// Progress along a path. It never decreases, because the search for the nearest point starts from the previous one and
+/// goes forward.
 ///
 /// ```
 /// use geometry::{PathFollower, Point};
@@ -35,7 +36,7 @@ pub struct PathFollower {
     stations_m: Vec<f64>,
     nearest: usize,
     target: usize,
-    /// Last point with room for the robot; all later ones are blocked by obstacles.
+    /// The last point that has room for the robot; all later ones are blocked by obstacles.
     last: usize,
     lookahead_m: f64,
     window_m: f64,
@@ -45,7 +46,7 @@ pub struct PathFollower {
 }
 
 impl PathFollower {
-    /// Creates a follower at the start of a path with at least one point. It cuts corners by its lookahead of 0.5 m.
+    /// Creates a follower at the start of a path with at least one point. With its lookahead of 0.5 m, it cuts corners.
     ///
     /// ```
     /// use geometry::{PathFollower, Point};
@@ -78,10 +79,10 @@ impl PathFollower {
         Self { lookahead_m: EXACT_LOOKAHEAD_M, window_m: EXACT_WINDOW_M, corners, ..follower }
     }
 
-    /// Advances to the robot's position, tank frame, and chooses the next target.
+    /// Advances to the robot's position, in the tank frame, and chooses the next target.
     ///
-    /// The target is the first point that is at least the lookahead ahead and has room; points where `has_room` is false
-    /// are skipped.
+    /// The target is the first point that has room and is at least the lookahead distance ahead; points for which
+    /// `has_room` is false are skipped.
     ///
     /// ```
     /// use geometry::{PathFollower, Point};
@@ -141,8 +142,8 @@ impl PathFollower {
         self.corners.front().copied().unwrap_or(self.path.len() - 1)
     }
 
-    /// Whether a position is at a corner, or close to it and past it. A corner farther along the path is not reached by
-    /// passing it on an earlier lane.
+    /// Whether a position is at a corner, or has passed the corner and is close to it. Passing a corner on an earlier
+    /// lane does not count if the corner is farther along the path.
     fn has_reached(&self, corner: usize, position: Point) -> bool {
         if self.stations_m[corner] - self.stations_m[self.nearest] > self.window_m {
             return false;
@@ -176,7 +177,7 @@ impl PathFollower {
         self.stations_m[self.target]
     }
 
-    /// The points of the path from the target on, within `length_m` of it along the path; always includes the target.
+    /// The points of the path from the target on, within `length_m` along the path; the target is always included.
     ///
     /// ```
     /// use geometry::{PathFollower, Point};
@@ -250,7 +251,7 @@ impl PathFollower {
         polyline::distance_m(&self.path[first..end], position)
     }
 
-    /// Whether the last point with room is within a tolerance, metres, both in a straight line and along the path.
+    /// Whether the last point that has room is within a tolerance, metres, both in a straight line and along the path.
     ///
     /// ```
     /// use geometry::{PathFollower, Point};

@@ -5,9 +5,9 @@ use crate::{Amphibious, Point, Pose, Vector, unit_vector, wrap_angle_rad};
 /// Heading error above which a unicycle turns on the spot before it drives, radians.
 pub const TURN_FIRST_RAD: f64 = 1.0;
 /// Heading error above which a unicycle turns on the spot on lanes that are followed exactly, radians: a wide curve at
-/// the end of a lane would lead into the wall.
+/// the end of a lane would take the robot into the wall.
 pub const TURN_FIRST_IN_LANES_RAD: f64 = 0.25;
-/// Turn rate per heading error, 1/s: a 0.5 rad error decays in about a second.
+/// Turn rate per unit of heading error, 1/s: an error of 0.5 rad decays in about a second.
 const HEADING_GAIN_PER_S: f64 = 2.5;
 
 /// Interval between the poses of a rollout, seconds.
@@ -21,9 +21,9 @@ const ROUNDING: f64 = 1e-12;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[repr(u32)]
 pub enum Motion {
-    /// In any direction without turning, like the point robots of the papers.
+    /// In any direction without turning, like the point robots in the papers.
     Point = 0,
-    /// Ahead and backward along its heading, and turning, like tracked and wheeled robots.
+    /// Forward and backward along its heading, and turning, like tracked and wheeled robots.
     Unicycle = 1,
 }
 
@@ -58,9 +58,10 @@ pub struct Limits {
     pub sensing_range_m: f64,
     /// Maximum acceleration, metres per second squared.
     pub acceleration_m_per_s2: f64,
-    /// Length of a tick, seconds: the time for which a command takes effect before the next one can.
+    /// Length of a tick, seconds: the time for which a command is in effect before the next one can replace it.
     pub tick_s: f64,
-    /// For a robot that walks and swims: the limits in each mode. The limits above are the larger of the two.
+    /// For a robot that walks and swims, the limits in each mode. The fields above hold the larger limit of the two
+    /// modes.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub amphibious: Option<Amphibious>,
 }
@@ -81,7 +82,7 @@ pub enum Drive {
         /// Turn rate, radians per second, counter-clockwise.
         w_rad_per_s: f64,
     },
-    /// Velocity in the tank frame, metres per second, for planners that compute directions: [`drive_for`] controls the
+    /// Velocity in the tank frame, metres per second. For planners that compute directions: [`drive_for`] controls the
     /// heading for them.
     Velocity(Vector),
 }
@@ -91,8 +92,8 @@ impl Drive {
     pub const STILL: Self = Self::Twist { v_m_per_s: 0.0, w_rad_per_s: 0.0 };
 }
 
-/// Converts a planner's command to the drive that is sent to the robot: within its limits, and in a form that suits its
-/// way of moving.
+/// Converts a planner's command into the drive that is sent to the robot: within the robot's limits, and in a form that
+/// suits its way of moving.
 ///
 /// A unicycle receives a turn rate proportional to the error between `heading_rad` and the direction of the velocity. The
 /// speed is multiplied by the cosine of that error; above `turn_first_rad` the unicycle turns on the spot. For a point
@@ -127,8 +128,8 @@ pub fn drive_for(command: Drive, heading_rad: f64, limits: &Limits, turn_first_r
     }
 }
 
-/// The poses of a robot that follows one constant command, every tenth of a second, from a start pose for a given time,
-/// seconds.
+/// The poses of a robot that follows one constant command from a start pose for a given time, seconds; one pose for every
+/// tenth of a second.
 ///
 /// ```
 /// use geometry::{Drive, Limits, Motion, Pose, Vector, motion::{TURN_FIRST_RAD, rollout}};
@@ -192,8 +193,8 @@ fn twist(v_m_per_s: f64, w_rad_per_s: f64, limits: &Limits) -> Drive {
     }
 }
 
-/// The velocity, shortened to a maximum speed if it exceeds that by more than rounding. A velocity that was shortened
-/// before is returned bit for bit.
+/// The velocity, shortened to a maximum speed if it exceeds that speed by more than rounding. A velocity that has already
+/// been shortened is returned bit for bit.
 ///
 /// ```
 /// use geometry::{Vector, motion::at_most};

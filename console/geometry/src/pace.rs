@@ -1,4 +1,4 @@
-//! The maximum speeds of a robot, and for one that walks and swims those of each mode.
+//! The maximum speeds of a robot; for one that walks and swims, those in each mode.
 
 /// The maximum speeds of a robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,12 +18,12 @@ pub struct Amphibious {
     pub land: Pace,
     /// Under water.
     pub underwater: Pace,
-    /// Ticks for a complete change of mode; 0 for an instant one.
+    /// Number of ticks for a complete change of mode; 0 for an instant change.
     pub transition_steps: u32,
 }
 
 impl Amphibious {
-    /// The limits of Yang et al. 2021, Table 1, with a transition of 20 steps as in that paper.
+    /// The limits from Yang et al. 2021, Table 1, with a transition of 20 steps as in that paper.
     pub const YANG_2021: Self = Self {
         land: Pace { v_max_m_per_s: 0.13, w_max_rad_per_s: 0.12 },
         underwater: Pace { v_max_m_per_s: 0.23, w_max_rad_per_s: 0.31 },
@@ -45,7 +45,7 @@ impl Amphibious {
         }
     }
 
-    /// The larger limits of the two modes.
+    /// The larger of each limit in the two modes.
     ///
     /// ```
     /// use geometry::Amphibious;

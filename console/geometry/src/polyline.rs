@@ -52,8 +52,8 @@ pub fn distance_m(path: &[Point], point: Point) -> f64 {
     }
 }
 
-/// Walks from point `from` as long as the next point is at least as close to `at`, and returns the index where it
-/// stops. Returns `from` itself at or beyond the end of the list.
+/// Walks forward from point `from` as long as the next point is at least as close to `at` as the current one, and returns
+/// the index at which it stops. If `from` is the last point or beyond it, returns `from`.
 ///
 /// ```
 /// use geometry::{Point, polyline::nearest_ahead};
@@ -67,8 +67,8 @@ pub fn nearest_ahead(path: &[Point], from: usize, at: Point) -> usize {
     from + going_on.count()
 }
 
-/// Whether two segments cross, with the ends of each strictly on both sides of the other; segments that only touch do not
-/// cross.
+/// Whether two segments cross, that is, whether the ends of each are strictly on opposite sides of the other. Segments
+/// that only touch do not cross.
 ///
 /// ```
 /// use geometry::{Point, polyline::segments_cross};
@@ -81,7 +81,7 @@ pub fn segments_cross(a: Point, b: Point, c: Point, d: Point) -> bool {
     side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
 }
 
-/// The edges of a closed polygon, including the one from the last corner to the first; none without corners.
+/// The edges of a closed polygon, including the one from the last corner to the first; none if it has no corners.
 ///
 /// ```
 /// use geometry::{Point, polyline::edges};
@@ -92,7 +92,7 @@ pub fn edges(vertices: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
     vertices.iter().copied().zip(vertices.iter().copied().cycle().skip(1)).take(vertices.len())
 }
 
-/// Distance from a point to the edges of a closed polygon, metres, both inside and outside; infinite without corners.
+/// Distance from a point, inside or outside, to the edges of a closed polygon, metres; infinite if it has no corners.
 ///
 /// ```
 /// use geometry::{Point, polyline::distance_to_ring_m, shape::rectangle};
@@ -164,7 +164,7 @@ pub fn without_ends(path: &[Point], end_m: f64) -> Vec<Point> {
     std::iter::once(at(first_m)).chain(between).chain(std::iter::once(at(last_m))).collect()
 }
 
-/// The path with its segments divided evenly so that neighbouring points are at most `spacing_m` apart.
+/// The path with each segment divided evenly so that neighbouring points are at most `spacing_m` apart.
 ///
 /// ```
 /// use geometry::{Point, polyline::resampled};

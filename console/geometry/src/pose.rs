@@ -1,4 +1,4 @@
-//! Points, vectors and poses of the tank frame.
+//! Points, vectors and poses in the tank frame.
 
 use nalgebra::{Isometry2, Point2, Rotation2, Vector2};
 
@@ -56,8 +56,8 @@ impl Pose {
         Isometry2::new(self.position.coords, self.heading_rad)
     }
 
-    /// The pose after an arc: `forward_m` and `sideways_m` along the robot's own axes, metres, while these axes turn at a
-    /// constant rate by `turn_rad`, radians.
+    /// The pose after an arc. `forward_m` and `sideways_m` are distances along the robot's own axes, metres; these axes
+    /// turn at a constant rate by `turn_rad`, radians, in total.
     ///
     /// ```
     /// use geometry::{Point, Pose};
@@ -77,7 +77,7 @@ impl Pose {
     }
 }
 
-/// Unit vector of a bearing in radians, counter-clockwise from east.
+/// Unit vector with a bearing in radians, counter-clockwise from east.
 ///
 /// ```
 /// use geometry::{Vector, unit_vector};

@@ -22,7 +22,7 @@ pub enum Shape<P = Vec<Point>> {
     Disc {
         /// Centre, metres.
         center: Point,
-        /// Radius, metres; zero for the point obstacles of the papers.
+        /// Radius, metres; zero for the point obstacles in the papers.
         radius_m: f64,
     },
     /// A convex polygon, counter-clockwise.
@@ -95,7 +95,7 @@ impl<P: AsRef<[Point]>> Shape<P> {
         }
     }
 
-    /// The centre of a disc, otherwise the mean of the corners.
+    /// The centre of a disc, or the mean of the corners of any other shape.
     ///
     /// ```
     /// use geometry::{Point, Shape};
@@ -109,8 +109,8 @@ impl<P: AsRef<[Point]>> Shape<P> {
         }
     }
 
-    /// Distance from a point to the outline, metres; negative inside. Within a bend of a polyline the depth is that of the
-    /// nearer segment alone.
+    /// Distance from a point to the outline, metres; negative inside. Inside a bend of a polyline, the depth relative to
+    /// the nearer segment alone counts.
     ///
     /// ```
     /// use geometry::{Point, Shape};
@@ -159,8 +159,8 @@ pub fn mean_of(points: &[Point]) -> Point {
     Point::from(sum / points.len().max(1) as f64)
 }
 
-/// The smallest axis-aligned box around some points: its south-west and north-east corners. Without points, the corners
-/// are at infinity, with the first beyond the second.
+/// The smallest axis-aligned box around some points: its south-west and north-east corners. If there are no points, the
+/// corners are at infinity, the first beyond the second.
 ///
 /// ```
 /// use geometry::{Point, shape::bounds_of};
@@ -174,7 +174,8 @@ pub fn bounds_of(points: &[Point]) -> (Point, Point) {
         .fold((Point::new(far, far), Point::new(-far, -far)), |(low, high), p| (low.inf(p), high.sup(p)))
 }
 
-/// Whether a point is inside a simple polygon, by the crossing number; for a point on an edge the result is unspecified.
+/// Whether a point is inside a simple polygon, decided by the crossing number; for a point on an edge the result is
+/// unspecified.
 ///
 /// ```
 /// use geometry::{Point, shape::{rectangle, ring_contains}};

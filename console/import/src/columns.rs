@@ -22,12 +22,12 @@ const MOST_NOTES: usize = 20;
 /// The first line names the fields: x, y, and radius or diameter, each with its unit, as in `x_m` or `X [mm]`, and
 /// optionally `name`. Fields can be in any order, separated by commas, semicolons or tabs. Unless commas separate the
 /// fields, numbers may have a decimal comma. The origin is the tank's centre. Lines that begin with `#` are skipped.
-/// The notes list unknown fields, and columns of which one stands on the centre of another.
+/// The notes list unknown fields, and pairs of columns in which one covers the centre of the other.
 ///
 /// # Errors
 /// Every problem, with its line and field.
 pub fn read(input: &Input, tank_radius_m: f64) -> Result<FloorPlan, Vec<ImportError>> {
-    // Use line feeds only, because lines are counted by them.
+    // Convert all line ends to line feeds, by which lines are counted.
     let text = decoded(&input.bytes, None).replace("\r\n", "\n").replace('\r', "\n") + "\n";
     let wrong = |Wrong { line, field, what }: Wrong| ImportError {
         file: input.name.clone(),
@@ -50,7 +50,7 @@ pub fn read(input: &Input, tank_radius_m: f64) -> Result<FloorPlan, Vec<ImportEr
     Ok(FloorPlan { boundary, obstacles, no_go: Vec::new(), plates: Vec::new(), notes })
 }
 
-/// A problem in a line, optionally in one of its fields.
+/// A problem in a line, optionally in one of the line's fields.
 struct Wrong {
     line: u64,
     field: String,
@@ -114,13 +114,13 @@ fn list(text: &str, tank_radius_m: f64) -> Result<(Vec<Row>, Vec<String>), Vec<W
         columns.extend(shape.map(|shape| (line, Named { name, shape })));
     }
     if let Some((line, field, what)) = marks.doubt() {
-        // Report ambiguous numbers before problems with their values.
+        // Report ambiguous numbers before any problem with their values.
         problems.insert(0, Wrong::new(line, field, what));
     }
     if problems.is_empty() { Ok((columns, fields.unused)) } else { Err(problems) }
 }
 
-/// The shape of the column in a row. An error is the field and its problem.
+/// The shape of the column in a row. An error states the field and its problem.
 fn disc(
     fields: &Fields,
     record: &csv::StringRecord,
@@ -147,7 +147,7 @@ fn disc(
     Ok(Shape::Disc { center, radius_m })
 }
 
-/// Notes pairs of columns of which one contains the centre of the other, which real columns cannot do.
+/// Notes each pair of columns in which one contains the centre of the other; real columns cannot do so.
 fn note_coincident(rows: &[Row], notes: &mut Vec<String>) {
     let mut discs: Vec<(f64, Point, &Row)> = rows
         .iter()
@@ -184,7 +184,7 @@ fn note_coincident(rows: &[Row], notes: &mut Vec<String>) {
     }
 }
 
-/// The problem of a line that is not a valid row.
+/// The problem in a line that is not a valid row.
 fn no_row(error: &csv::Error, line: u64) -> Wrong {
     let what = match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
@@ -195,7 +195,7 @@ fn no_row(error: &csv::Error, line: u64) -> Wrong {
     Wrong::new(line, "", what)
 }
 
-/// The current line of the reader. The reader's record position is wrong after comments and empty lines.
+/// The line that the reader has reached. The position of its current record is wrong after comments and empty lines.
 fn line_of(reader: &csv::Reader<&[u8]>) -> u64 {
     reader.position().line().saturating_sub(1).max(1)
 }

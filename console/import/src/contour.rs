@@ -57,8 +57,8 @@ impl Component {
             && self.is_free.get(y as usize * self.columns + x as usize).is_some_and(|free| *free)
     }
 
-    /// The outlines as closed chains of corners with the floor to the left: the outer outline counter-clockwise, those
-    /// of inner solids clockwise.
+    /// The outlines as closed chains of corners with the floor to the left: the outer outline counter-clockwise, the
+    /// outlines of inner solids clockwise.
     ///
     /// Where two free cells share only a corner, the outline separates them.
     pub(crate) fn rings(&self) -> Vec<Vec<Node>> {
@@ -91,7 +91,7 @@ impl Component {
     }
 }
 
-/// Follows edges from a point back to it, keeping left where there is a choice; returns the corners.
+/// Follows edges from a point until they return to it, keeping left where there is a choice; returns the corners.
 fn trace(first: Node, edges: &mut [u8], index: impl Fn(Node) -> usize) -> Vec<Node> {
     const STEPS: [Node; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
     let start = edges[index(first)].trailing_zeros() as usize;
@@ -101,7 +101,7 @@ fn trace(first: Node, edges: &mut [u8], index: impl Fn(Node) -> usize) -> Vec<No
         at = [at[0] + STEPS[direction][0], at[1] + STEPS[direction][1]];
         let leaving = [1, 0, 3].map(|turn| (direction + turn) % 4);
         let next = leaving.into_iter().find(|next| edges[index(at)] & (1 << next) != 0);
-        let next = next.expect("every point has as many leaving as arriving edges");
+        let next = next.expect("every point has as many outgoing as incoming edges");
         if next != direction {
             corners.push(at);
         }

@@ -1,6 +1,6 @@
 //! Reads floor drawings in DXF format.
 //!
-//! The layer determines what an entity is: SHELL, COLUMNS, PIPES, SUMP, NOGO or PLATES. A layer is used if a word of
+//! The layer determines what an entity is: SHELL, COLUMNS, PIPES, SUMP, NOGO or PLATES. A layer is used if a word in
 //! its name is one of these, in the singular or the plural, or if the caller assigns it. Blocks are expanded; their
 //! entities on layer 0 take the layer of the insertion.
 
@@ -32,10 +32,10 @@ use world::{Boundary, Point, Shape};
 
 /// The default width in metres of pipes drawn as lines without a width.
 pub const PIPE_WIDTH_M: f64 = 0.1;
-/// The range of tank sizes in metres. A shell outside it suggests that the unit is wrong.
+/// The range of tank sizes in metres. A shell outside this range suggests that the unit is wrong.
 const ACROSS_M: std::ops::RangeInclusive<f64> = 1.0..=1000.0;
 
-/// Values for what a drawing does not state, or states wrongly.
+/// Values for what a drawing does not state or states wrongly.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assumed {
     /// The size of the drawing's unit in metres; overrides the header.
@@ -49,8 +49,8 @@ pub struct Assumed {
 /// Reads a floor plan from a drawing.
 ///
 /// # Errors
-/// The drawing is not DXF, or its unit is neither in the header nor given; it has no closed outline for the shell; or
-/// an assigned layer is empty.
+/// The drawing is not DXF; its unit is neither in the header nor given; it has no closed outline for the shell; or an
+/// assigned layer is empty.
 pub fn read(input: &Input, assumed: &Assumed) -> Result<FloorPlan, ImportError> {
     let of_file = |what: String| ImportError::of_input(input, what);
     let drawing = Drawing::read(input)?;
@@ -58,7 +58,7 @@ pub fn read(input: &Input, assumed: &Assumed) -> Result<FloorPlan, ImportError> 
     let unit_m = unit(drawing.units, assumed.unit_m, &mut notes).map_err(of_file)?;
     let all = entities::all(&drawing, unit_m).ok_or_else(|| {
         of_file(format!(
-            "more than {} entities, including those of inserted blocks; keep only the layers of the floor",
+            "more than {} entities, including those in inserted blocks; keep only the layers of the floor",
             entities::MOST
         ))
     })?;
@@ -105,7 +105,8 @@ fn floor(
         && vertices.len() > MOST_CORNERS
     {
         return Err(format!(
-            "the shell has {} relevant corners; draw it with at most {MOST_CORNERS}, or as a circle",
+            "the shell still has {} corners after simplification; draw it with at most {MOST_CORNERS}, or as a \
+             circle",
             vertices.len()
         ));
     }
@@ -113,8 +114,8 @@ fn floor(
     let across_m = (high - low).max();
     if !ACROSS_M.contains(&across_m) {
         return Err(format!(
-            "the shell is {across_m:.6} m across if a unit of the drawing is {unit_m} m; tanks must be {} to {} \
-             m across: state the unit, for example --units mm",
+            "the shell is {across_m:.6} m across if the drawing's unit is {unit_m} m; tanks must be {} to {} m \
+             across: state the unit, for example --units mm",
             ACROSS_M.start(),
             ACROSS_M.end()
         ));
@@ -173,11 +174,11 @@ fn keep_inside(boundary: &Boundary, all: &mut Vec<Named>, notes: &mut Vec<String
     });
 }
 
-/// The size of the drawing's unit in metres: as given, else from the header.
+/// The size of the drawing's unit in metres: as given, else as in the header.
 fn unit(header: Option<i32>, stated_m: Option<f64>, notes: &mut Vec<String>) -> Result<f64, String> {
     let header_m = header.and_then(metres);
     let unit_m = stated_m.or(header_m).ok_or(
-        "the header ($INSUNITS) states no unit of length; state it with --units, for example --units mm",
+        "the header ($INSUNITS) states no unit of length; give it with --units, for example --units mm",
     )?;
     match header_m {
         None => notes.push(format!("the drawing states no unit; one unit was taken as {unit_m} m")),
@@ -195,7 +196,7 @@ fn is_near(low: Point, high: Point) -> bool {
     [low, high].iter().all(|at| at.coords.amax() <= most)
 }
 
-/// The size in metres of a unit by its number in `$INSUNITS`, if it is a plausible unit of length.
+/// The size in metres of a unit, given its number in `$INSUNITS`, if this is a plausible unit of length.
 fn metres(units: i32) -> Option<f64> {
     match units {
         1 => Some(0.0254),

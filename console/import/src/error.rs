@@ -37,7 +37,7 @@ impl ImportError {
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, ImportError> {
     let of_file = |what: String| ImportError::of_file(path, what);
     let unreadable = |error: std::io::Error| of_file(format!("cannot be read: {error}"));
-    // Check before opening: opening a pipe would wait for a writer.
+    // Check this before opening the file: opening a pipe would wait for a writer.
     let about = fs::metadata(path).map_err(unreadable)?;
     if about.is_dir() {
         return Err(of_file("is a folder; name a file in it".into()));

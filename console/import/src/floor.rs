@@ -1,4 +1,4 @@
-//! Converts a map to a wall and convex obstacles.
+//! Converts a map into a wall and convex obstacles.
 
 use crate::{OccupancyMap, contour::Component, pieces::pieces, simplify::Simplified};
 use world::{Boundary, Point};
@@ -16,9 +16,9 @@ pub struct MapFloor {
     pub n_free_in_map: usize,
     /// The number of outlines: the outer outline, and one for each solid inside.
     pub n_outlines: usize,
-    /// The number of corners of the outlines: along the cells, and after simplification.
+    /// The number of corners of the outlines: first along the cells, then after simplification.
     pub n_corners: [usize; 2],
-    /// The largest distance in metres from floor that became solid to a solid cell.
+    /// The largest distance in metres between floor that became solid and the nearest solid cell.
     pub error_m: f64,
     /// Whether each cell of the map belongs to the floor.
     is_joined: Vec<bool>,
@@ -28,8 +28,8 @@ impl MapFloor {
     /// The floor that is reachable from a start; if none is given, or the start is not free, the largest floor. `None`
     /// if no cell is free.
     ///
-    /// Removes corners of the outlines as long as no floor that becomes solid is farther than `tolerance_m` from a
-    /// solid cell; the default is half a cell. Solid cells never become floor.
+    /// Removes corners of the outlines, provided that no floor that becomes solid is farther than `tolerance_m` from a
+    /// solid cell; by default, the tolerance is half a cell. Solid cells never become floor.
     pub fn new(map: &OccupancyMap, start: Option<Point>, tolerance_m: Option<f64>) -> Option<Self> {
         let component = Component::new(map, start.and_then(|place| map.cell_at(place)))?;
         let tolerance = tolerance_m.map_or(0.5, |tolerance_m| tolerance_m / map.cell_m);

@@ -4,8 +4,8 @@
 //! obstacles. [`drawing::read`] reads a DXF drawing, and [`columns::read`] a list of columns; both return a
 //! [`FloorPlan`], which [`FloorPlan::scenario`] turns into a scenario.
 //!
-//! Frame: the tank frame in metres, unless a comment states *lattice*: the cells of the map, with x right, y up, and
-//! the origin at the lower left corner of the lower left cell.
+//! Coordinates are in the tank frame, in metres, unless a comment states *lattice*: then the unit is a cell of the map,
+//! with x to the right, y up, and the origin at the lower left corner of the lower left cell.
 
 pub mod columns;
 mod contour;

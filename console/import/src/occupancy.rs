@@ -1,8 +1,8 @@
 //! Occupancy maps in the format of the ROS map server: a YAML file that names an image and states its scale.
 //!
-//! Values are interpreted as in the ROS 2 `nav2_map_server`. Cells that are not known to be free count as solid, as for
-//! the robots of the papers. Cells of grey 205, which map savers write for unseen cells, also count as solid, whatever
-//! the thresholds.
+//! Values are interpreted as in the ROS 2 `nav2_map_server`. Cells that are not known to be free count as solid, as
+//! they do for the robots in the papers. Cells of grey 205, which map savers write for unseen cells, also count as
+//! solid, whatever the thresholds.
 
 mod image;
 mod settings;
@@ -32,7 +32,7 @@ pub struct OccupancyMap {
     pub unseen: Option<Unseen>,
 }
 
-/// Cells with the grey of unseen cells that the thresholds of the map would make floor.
+/// Cells that have the grey of unseen cells, but that the map's thresholds would make floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unseen {
     /// The number of cells.
@@ -49,7 +49,7 @@ impl fmt::Display for Unseen {
         write!(
             f,
             "{n_cells} cells of grey {grey} count as solid: map savers write this grey for unseen cells, \
-             although it is floor by free_thresh {free_thresh}"
+             although free_thresh {free_thresh} would make it floor"
         )
     }
 }

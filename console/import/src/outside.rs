@@ -19,8 +19,8 @@ pub fn is_wholly_outside(boundary: &Boundary, shape: &Shape) -> bool {
     !corner_inside && points.iter().all(|point| boundary.wall_distance_m(*point) <= -reach_m)
 }
 
-/// Points along an outline, close enough together to detect any part of it on the floor, and the distance in metres by
-/// which the outline extends beyond them.
+/// Points along an outline, close enough together to detect any part of the outline that is on the floor, and the
+/// distance in metres by which the outline extends beyond them.
 fn samples(shape: &Shape) -> (Vec<Point>, f64) {
     const PIECES: u32 = 16;
     let along = |a: &Point, b: &Point| -> Vec<Point> {

@@ -1,7 +1,7 @@
-//! Converts the solid area around and inside the outlines to convex pieces.
+//! Converts the solid area around and inside the outlines into convex pieces.
 //!
 //! Builds a constrained Delaunay triangulation of the outlines. Solid triangles are then merged across edges that are
-//! not part of an outline, as long as the result stays convex (Hertel and Mehlhorn). All corners are lattice points, so
+//! not part of an outline, provided that the result is convex (Hertel and Mehlhorn). All corners are lattice points, so
 //! all tests are exact.
 
 use crate::{
@@ -45,7 +45,7 @@ pub(crate) fn pieces(component: &Component, outlines: &Simplified) -> Vec<Vec<No
         .filter(|edge| !edge.is_constraint_edge())
         .map(|edge| edge.positions().map(node_of))
         .collect();
-    // Short edges between pieces are the least useful, so they are removed first; ties are broken by position.
+    // Short edges between pieces are the least useful and are removed first; ties are broken by position.
     inner.sort_unstable_by_key(|[a, b]| ((b[0] - a[0]).pow(2) + (b[1] - a[1]).pow(2), *a, *b));
     for [a, b] in inner {
         joined.join(a, b);

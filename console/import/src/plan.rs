@@ -3,19 +3,19 @@
 use std::{f64::consts::TAU, fmt::Write};
 use world::{Boundary, DrawnPlate, Obstacle, ObstacleId, ObstacleMap, Point, Shape, World};
 
-/// The largest number of corners of a polygon in a scenario; its sides are compared in pairs.
+/// The largest number of corners of a polygon in a scenario, since the sides of a polygon are compared in pairs.
 pub const MOST_CORNERS: usize = 200;
 /// The largest number of plates of a floor in a scenario.
 pub const MOST_PLATES: usize = 2_000;
-/// The number of stations in a scenario from a file without stations.
+/// The number of stations in a scenario made from a file without stations.
 const N_STATIONS: usize = 5;
-/// The number of points along each side of the grid on which the start is chosen.
+/// The number of points along each side of the grid from which the start is chosen.
 const N_PLACES: usize = 64;
-/// The width of a scanned pass in metres, and the speed in metres per second for estimating the time limit.
+/// The width of a scanned pass in metres, and the speed in metres per second from which the time limit is estimated.
 const SWATH_M: f64 = 0.6;
 const PACE_M_PER_S: f64 = 0.1;
 
-/// The largest time limit for a scenario in seconds; the number of ticks is limited.
+/// The largest time limit for a scenario in seconds, since the number of ticks is limited.
 const LONGEST_S: f64 = 500_000.0;
 
 /// A named shape in the tank frame.
@@ -64,8 +64,8 @@ impl FloorPlan {
         }
     }
 
-    /// The text of a scenario that scans this floor with a planner. Comments mark defaults for what the file does not
-    /// state.
+    /// The text of a scenario that scans this floor with a planner. Comments mark the defaults used for what the file
+    /// does not state.
     pub fn scenario(&self, name: &str, source: &str, planner: &str) -> String {
         let mut text = format!("# The floor was imported from {}.\n", commented(source));
         for note in &self.notes {
@@ -86,10 +86,9 @@ impl FloorPlan {
         let cell_m = (self.boundary.area_m2().sqrt() / 400.0).max(0.05);
         let _ = write!(
             text,
-            "\n# The start is the place with the most room; change it to the manhole.\n\
-             [robot]\nstart_m = {}\n\n\
-             # Assumed: replace these stations by the surveyed ones.\n\
-             [ae]\nnoise = {{ model = \"uniform\", ratio = 0.02 }}\nstations = [\n",
+            "\n# The start is the point with the most clearance; change it to the manhole.\n[robot]\nstart_m = \
+             {}\n\n# Assumed: replace these stations by the surveyed ones.\n[ae]\nnoise = {{ model = \
+             \"uniform\", ratio = 0.02 }}\nstations = [\n",
             point(start)
         );
         for (index, at) in self.stations().into_iter().enumerate() {
@@ -105,7 +104,7 @@ impl FloorPlan {
         text
     }
 
-    /// The point of a grid with the most room.
+    /// The point of a grid with the most clearance.
     fn roomiest(&self) -> Point {
         let world = self.world();
         let solids: Vec<Obstacle> = world
@@ -200,7 +199,8 @@ pub fn points(points: &[Point]) -> String {
     format!("[{}]", all.join(", "))
 }
 
-/// The centre, smallest and largest radius of a ring with many corners that is a circle to within half a per cent.
+/// The centre, and the smallest and largest radius, of a ring with many corners that is a circle to within half a per
+/// cent.
 pub(crate) fn round(ring: &[Point]) -> Option<(Point, f64, f64)> {
     const MANY: usize = 16;
     let center = world::shape::mean_of(ring);

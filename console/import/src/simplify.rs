@@ -1,14 +1,14 @@
 //! Simplifies outlines on the safe side: floor may be lost, but none is gained.
 //!
 //! A chord between two corners of an outline replaces the chain between them if the whole chain is on its solid side.
-//! The floor between chord and chain, the *pocket*, becomes solid; no part of it may be farther from a solid cell than
-//! the tolerance. No cell belongs to two pockets, so outlines never cross, and the cell of a point determines its
-//! pocket.
+//! The floor between chord and chain, the *pocket*, becomes solid; no part of the pocket may be farther from a solid
+//! cell than the tolerance. No cell belongs to two pockets, so outlines never cross, and the cell of a point determines
+//! its pocket.
 
 use crate::contour::{Component, Node};
 use std::collections::HashMap;
 
-/// The largest number of corners of an outline that one chord may replace, and of cell edges along them.
+/// The largest number of outline corners that one chord may replace, and the largest number of cell edges along them.
 const LONGEST_CHAIN: usize = 32;
 const MOST_EDGES: i32 = 64;
 /// The number of failed chords after which a corner is kept.
@@ -25,7 +25,7 @@ pub(crate) struct Simplified {
     pub rings: Vec<Vec<Node>>,
     /// The chord that cuts each partly solid free cell.
     pub chords: HashMap<Node, Chord>,
-    /// The largest distance in cells from floor that became solid to a solid cell.
+    /// The largest distance in cells between floor that became solid and the nearest solid cell.
     pub error_cells: f64,
 }
 
@@ -119,7 +119,7 @@ impl Pocket {
                 return None;
             }
             let sides = Sides::of(component, cell);
-            // Do not fill a slot that the robot may be able to enter, however narrow its cells are.
+            // Do not fill a slot that the robot might be able to enter, however narrow its cells are.
             n_whole += usize::from(sides.is_slot());
             error = error.max(sides.farthest(cell, &region));
             area += region_area;
@@ -166,12 +166,12 @@ impl Sides {
         (west && east) || (south && north)
     }
 
-    /// An upper bound on the distance of any point of a convex region in the cell from the solid sides, in cells.
+    /// An upper bound, in cells, on the distance from any point of a convex region in the cell to the solid sides.
     fn farthest(&self, cell: Node, region: &[[f64; 2]]) -> f64 {
         if self.is_slot() {
             return 0.5;
         }
-        // Mirrored so that the solid sides are west and south; distances are then x and y.
+        // Mirrored so that the solid sides are in the west and the south; distances are then x and y.
         let [west, east, south, north] = self.0;
         let turned = |p: &[f64; 2]| {
             let (x, y) = (p[0] - f64::from(cell[0]), p[1] - f64::from(cell[1]));
@@ -181,7 +181,7 @@ impl Sides {
         };
         let points: Vec<[f64; 2]> = region.iter().map(turned).collect();
         let edges = points.iter().zip(points.iter().cycle().skip(1));
-        // The smaller distance increases towards the points where both are equal.
+        // The smaller of the two distances increases towards the points where both are equal.
         let equal = edges.filter_map(|(p, q)| {
             let (before, after) = (p[0] - p[1], q[0] - q[1]);
             let crosses = before.is_finite() && before * after < 0.0;

@@ -1,4 +1,4 @@
-//! Checks before the start of everything outside the screen that a mission depends on: plugins, disk, recorder, engine
+//! Before the start, checks everything outside the screen that a mission depends on: plugins, disk, recorder, engine
 //! and clock.
 
 use super::{desk::Tools, inbox::RunOutbox, line::EngineHandle};
@@ -11,7 +11,7 @@ use std::{
 };
 use tui::RunMsg;
 
-/// The longest acceptable response time of the engine; a slower engine would be late to stop the robot.
+/// The longest acceptable response time of the engine; a slower engine would stop the robot too late.
 const STOP_LIMIT: Duration = Duration::from_millis(50);
 /// The longest wait for an answer of the engine.
 const STOP_PATIENCE: Duration = Duration::from_secs(2);
@@ -116,7 +116,7 @@ fn clock() -> Check {
         Ok(difference) if difference <= CLOCK_LIMIT => check(
             "clock",
             CheckOutcome::Passed,
-            format!("steady within {:.1} ms", difference.as_secs_f64() * 1e3),
+            format!("steady to within {:.1} ms", difference.as_secs_f64() * 1e3),
         ),
         Ok(difference) => check(
             "clock",

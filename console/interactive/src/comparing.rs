@@ -1,4 +1,4 @@
-//! Another planner's plan of the waiting mission, made in a separate worker for comparison; it is never run.
+//! Another planner's plan for the waiting mission, made in a separate worker for comparison; this plan is never run.
 
 use super::inbox::RunOutbox;
 use account::Estimate;
@@ -34,7 +34,7 @@ impl Drop for Comparing {
 }
 
 impl Comparing {
-    /// Begins to plan.
+    /// Starts planning.
     ///
     /// # Errors
     /// The thread cannot be started.

@@ -26,7 +26,7 @@ const KEYS: &str = "keys.toml";
 /// The operator's configuration.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Config {
-    /// The colour theme; `None`: chosen by the terminal's background.
+    /// The colour theme; `None`: chosen to suit the terminal's background.
     pub theme: Option<ThemeName>,
     /// The number of colours; `None`: as many as the terminal supports.
     pub colours: Option<Colours>,
@@ -38,7 +38,7 @@ pub(crate) struct Config {
     pub preferences: Preferences,
     /// Key bindings and aliases of commands.
     pub keys: Keymap,
-    /// Problems of the files, for the home screen.
+    /// Problems in the files, for the home screen.
     pub attention: Vec<Attention>,
 }
 
@@ -57,7 +57,7 @@ impl Default for Config {
 }
 
 impl Config {
-    /// Reads both files; a missing or faulty entry keeps its default.
+    /// Reads both files; for a missing or faulty entry, the default stays in effect.
     pub(crate) fn load() -> Self {
         let Some(folder) = folder() else { return Self::default() };
         let mut config = Self::default();
@@ -87,7 +87,7 @@ impl Config {
     }
 }
 
-/// Reads the text of a file into the configuration; returns its faults.
+/// Reads the text of a file into the configuration; returns the faults in the text.
 type Read = fn(&mut Config, &str) -> Vec<Fault>;
 
 fn attention_to(fault: &Fault, name: &str, text: &str) -> Attention {
@@ -107,7 +107,7 @@ fn name_of(file: &Path) -> String {
     file.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Whether the name of a file is that of a configuration file.
+/// Whether a file has the name of a configuration file.
 pub fn is_one(file: &Path) -> bool {
     reader_of(file).is_some()
 }
@@ -120,10 +120,10 @@ fn reader_of(file: &Path) -> Option<Read> {
     }
 }
 
-/// Checks a file if its name is that of a configuration file; returns a description.
+/// Checks a file if it has the name of a configuration file; returns a description.
 ///
 /// # Errors
-/// The faults of the file, one per line.
+/// The faults in the file, one per line.
 pub fn check(file: &Path) -> Option<Result<String, String>> {
     let read = reader_of(file)?;
     let text = match texts::read_regular(file) {

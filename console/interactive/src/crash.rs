@@ -5,10 +5,10 @@ use runs::utc;
 use std::{path::Path, time::SystemTime};
 use tui::Model;
 
-/// Writes the state of the screen to the folder of the runs. Returns an error that states the file, and that the run
-/// was closed.
+/// Writes the state of the screen to the folder of the runs. Returns an error that names the file and states that the
+/// run was closed.
 ///
-/// The file is a model as JSON, which a test of the screen can open.
+/// The file contains the model as JSON; a test of the screen can open it.
 pub(super) fn report(logs: &Path, model: &Model) -> anyhow::Error {
     let name = format!("crash-{}.json", utc(SystemTime::now()));
     let path = logs.join(name);

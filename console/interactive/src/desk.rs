@@ -1,7 +1,7 @@
-//! The desk: a thread that opens runs one after the other and starts background work.
+//! The desk: a thread that opens runs one after another and starts background work.
 //!
 //! The engine of the open run is closed before the next run is opened, so the journal of a run is complete before the
-//! next one begins.
+//! next run begins.
 
 use super::{
     checking,
@@ -41,7 +41,7 @@ use tui::{Job, Msg, RunId, RunMsg, Source, Speed, Transport};
 
 /// A request to the desk.
 pub(super) enum Request {
-    /// Close the open run and open another; if the new run cannot be opened, the old one stays open.
+    /// Close the open run and open another; if the new run cannot be opened, the old run stays open.
     Open { id: RunId, source: Source, planner: Option<PlannerChoice>, speed: Speed },
     /// Close the open run and play back a past run.
     Replay { id: RunId, run: String },
@@ -63,7 +63,7 @@ pub(super) enum Request {
     SavePreset { name: String, choice: PlannerChoice },
     /// Save a command line in the history.
     Remember(String),
-    /// Combine the coverage of the open run and of these earlier runs.
+    /// Combine the coverage of the open run with that of these earlier runs.
     Combine(Vec<String>),
     /// Survey the plugins again.
     Survey,
@@ -75,7 +75,7 @@ pub(super) enum Request {
     Leave { hurry: bool },
 }
 
-/// The planners and plugins of the latest survey.
+/// The planners and plugins found by the latest survey.
 #[derive(Clone, Default)]
 pub(super) struct Known(Arc<Mutex<Arc<Found>>>);
 
@@ -105,20 +105,20 @@ pub(super) struct Tools {
 pub(super) struct Desk {
     tools: Tools,
     disk: Arc<Disk>,
-    /// Changes from the command line to the scenario named there.
+    /// Changes from the command line, for the scenario named there.
     settings: Settings,
     /// The speed of newly opened runs.
     speed: Speed,
     drill: Option<Drill>,
     current: Current,
     engine: Option<Engine>,
-    /// The replay of a past run; there is no engine then.
+    /// The replay of a past run; while it is open, there is no engine.
     player: Option<Player>,
     /// The open mission.
     opened: Option<(RunId, Arc<Scenario>)>,
     comparing: Option<Comparing>,
     forecasting: Option<Forecasting>,
-    /// The last run that was flown, if any.
+    /// The last mission that was run, if any.
     flown: Option<Closed>,
 }
 
@@ -159,7 +159,7 @@ impl Desk {
         self.current.clone()
     }
 
-    /// Opens a scenario that has been read, with its prepared flight.
+    /// Opens a scenario that has already been read, with the flight prepared for it.
     ///
     /// # Errors
     /// A planner is not available or does not accept its parameters, or the thread cannot be started.
@@ -215,7 +215,7 @@ impl Desk {
         Ok(self.flown)
     }
 
-    /// Finds every problem of the new scenario before it closes the open run.
+    /// Finds every problem in the new scenario before closing the open run.
     fn replace(&mut self, id: RunId, source: &Source, planner: Option<PlannerChoice>) -> anyhow::Result<()> {
         let opened = match self.prepare(source, planner) {
             Ok((scenario, flight)) => {
@@ -255,7 +255,7 @@ impl Desk {
         Ok(())
     }
 
-    /// Passes a control to the open replay.
+    /// Passes a playback control to the open replay.
     pub(super) fn transport(&self, transport: &Transport) {
         self.player.iter().for_each(|player| player.transport(transport.clone()));
     }

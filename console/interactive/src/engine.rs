@@ -1,8 +1,8 @@
-//! The engine: a thread that runs the mission. It receives orders, paces the ticks, and sends every event to recorder,
-//! report and screen.
+//! The engine: a thread that runs the mission. It receives orders, paces the ticks, and sends every event to the
+//! recorder, the report and the screen.
 //!
-//! The engine never blocks in a planner, on the screen or on the disk. An order to hold or end immediately interrupts
-//! any wait: for the next tick, an answer, or space in the screen's inbox or in the recorder's queue.
+//! The engine never blocks in a planner, on the screen or on the disk. An order to hold or end the mission immediately
+//! interrupts any wait: for the next tick, for an answer, or for space in the screen's inbox or the recorder's queue.
 
 mod estimating;
 mod keeping;
@@ -121,16 +121,16 @@ struct EngineThread {
     asked: Receiver<Request>,
     screen: RunOutbox,
     speed: Speed,
-    /// Events from before the start of the mission; written to the journal when it starts.
+    /// Events from before the start of the mission; they are written to the journal when the mission starts.
     early: Vec<Event>,
-    /// When the stop was requested that the next tick will carry out.
+    /// When the stop that the next tick will carry out was requested.
     stop_asked: Option<Instant>,
     /// The duration of each stop in milliseconds.
     stops_ms: Vec<f64>,
     log: Option<RunLog>,
-    /// The number of the last tick, and its mission time in seconds.
+    /// The number of the last tick, and the mission time then, in seconds.
     now: (u64, f64),
-    /// The planners' output during this tick; only the screen receives it.
+    /// The planners' output during this tick; only the screen receives this output.
     printed: Vec<Event>,
     closed: Option<Closed>,
     health_sent_at: Instant,
@@ -226,7 +226,7 @@ impl EngineThread {
         events
     }
 
-    /// Sends to the screen the planners' work that outlasts this tick, with its progress.
+    /// Reports to the screen any work of the planners that outlasts this tick, with its progress.
     fn send_work(&mut self) {
         let work = self.watch.current();
         if work != self.shown_work.as_ref() {

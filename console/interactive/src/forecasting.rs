@@ -20,12 +20,12 @@ use tui::{
 };
 use world::Point;
 
-/// The longest wait for the engine's copy of its flight.
+/// The longest wait for the engine to copy its flight.
 const PATIENCE: Duration = Duration::from_secs(5);
 /// The number of ticks between two progress reports of a forecast.
 const REPORT_TICKS: u64 = 500;
 
-/// Forecasts in progress, one after the other; dropping this cancels them.
+/// Forecasts in progress, one after another; dropping this cancels them.
 pub(super) struct Forecasting {
     given_up: Arc<AtomicBool>,
 }

@@ -1,6 +1,6 @@
-//! Keeps the console in the terminal's foreground group, whose processes alone may read keys. If another process of the
-//! session takes the terminal, the console would receive no keys, so it takes the terminal back within two seconds or
-//! at the next key.
+//! Keeps the console in the terminal's foreground group; only processes in this group may read keys. If another process
+//! in the session took the terminal, the console would receive no keys, so the console takes it back within two
+//! seconds, or when the next key is pressed.
 //!
 //! A planner's worker cannot take the terminal: it leaves the session before any plugin code runs.
 
@@ -48,11 +48,11 @@ impl Foreground {
         !self.0.load(Ordering::SeqCst) && !has_terminal() && stdin().is_terminal()
     }
 
-    /// Takes the terminal back if another process has taken it. Call this periodically, too: without a parent shell,
+    /// Takes the terminal back if another process has taken it. Also call this periodically: without a parent shell,
     /// the process receives no signal.
     ///
     /// The system stops a background process that takes the terminal, unless the process ignores SIGTTOU. A shell can
-    /// set this for its child.
+    /// make its child ignore this signal.
     pub(super) fn keep(&self) {
         if !self.is_lost() {
             return;

@@ -1,4 +1,4 @@
-//! The command lines of earlier sessions: the file `history` in the XDG state folder, one line each, newest last.
+//! The command lines of earlier sessions: the file `history` in the XDG state folder, one per line, newest last.
 //! Failures to read or write the file are ignored.
 
 use planner_host::user_folder;

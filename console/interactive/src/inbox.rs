@@ -95,7 +95,8 @@ impl Outbox {
 }
 
 impl Inbox {
-    /// Takes the next message, urgent ones first. Waits until the given time; without one, waits indefinitely.
+    /// Takes the next message; urgent messages come first. Waits until the given time; if none is given, waits
+    /// indefinitely.
     pub(super) fn next(&self, until: Option<Instant>) -> Option<Msg> {
         let mut queues = self.0.queues();
         loop {

@@ -16,7 +16,7 @@ use tui::{Job, Msg};
 /// The file name of the report in a run folder.
 const PAGE: &str = "report.html";
 
-/// Begins a job; its result is reported to the screen.
+/// Starts a job; its result is reported to the screen.
 pub(super) fn begin(job: Job, tools: &Tools) {
     let (tools, outbox) = (tools.clone(), tools.outbox.clone());
     let began = thread::Builder::new().name("job".into()).spawn(move || {

@@ -49,7 +49,7 @@ use std::{
 };
 use tui::{Caps, Colours, Glyphs, Model, Msg, RunId, Source, Speed, Transport, terminal};
 
-/// The options for opening a console; `None` leaves a choice to `config.toml` and then to the terminal.
+/// The options for opening a console; `None` leaves the choice to `config.toml`, then to the terminal.
 #[derive(Debug)]
 pub struct Options {
     /// The scenario file; `None`: the demo.
@@ -66,7 +66,7 @@ pub struct Options {
     pub glyphs: Option<Glyphs>,
     /// How the console is operated.
     pub by: By,
-    /// A run to watch instead of opening a scenario: its folder, or its name in `logs`.
+    /// A run to watch instead of opening a scenario: given by its folder, or by its name in `logs`.
     pub view: Option<PathBuf>,
     /// A past run to play back, instead of opening a scenario.
     pub replay: Option<Replay>,
@@ -74,7 +74,7 @@ pub struct Options {
     pub drill: Option<Drill>,
 }
 
-/// A past run to play back: its folder, or its name in the folder of the runs.
+/// A past run to play back: given by its folder, or by its name in the folder of the runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Replay {
     /// The run to play back.
@@ -107,7 +107,7 @@ pub enum Drill {
 enum Ended {
     /// By the operator or a signal.
     Left(Left),
-    /// The script ended, or a line of it failed.
+    /// The script ended, or one of its lines failed.
     Script(Result<(), String>),
 }
 

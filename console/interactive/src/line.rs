@@ -21,11 +21,11 @@ pub(super) enum Request {
     Speed(Speed),
     /// Answer immediately, to measure how long an order waits.
     Answer(Sender<()>),
-    /// Return a copy of the flight in its present state, for forecasts.
+    /// Return a copy of the flight in its current state, for forecasts.
     Fork(Sender<Flight>),
     /// End the run, close everything and stop.
     Close {
-        /// Whether a signal has asked the process to exit; the time limit is shorter then.
+        /// Whether a signal has asked the process to exit; if so, the time limit is shorter.
         hurry: bool,
     },
 }
@@ -76,7 +76,7 @@ impl EngineHandle {
         self.request(Request::Speed(speed), false);
     }
 
-    /// Measures how long an order that stops the robot waits for the engine; `None` if it takes longer than `patience`.
+    /// Measures how long an order that stops the robot waits for the engine; `None` if the wait exceeds `patience`.
     pub(super) fn measure(&self, patience: Duration) -> Option<Duration> {
         let (answer, answered) = mpsc::channel();
         let asked = Instant::now();
@@ -84,7 +84,7 @@ impl EngineHandle {
         answered.recv_timeout(patience).ok().map(|()| asked.elapsed())
     }
 
-    /// Copies the flight in its present state, for forecasts; `None` if the engine does not answer within `patience`.
+    /// Copies the flight in its current state, for forecasts; `None` if the engine does not answer within `patience`.
     pub(super) fn fork(&self, patience: Duration) -> Option<Flight> {
         let (answer, answered) = mpsc::channel();
         self.request(Request::Fork(answer), false);

@@ -20,9 +20,9 @@ use tui::{
 };
 use world::Boundary;
 
-/// The largest number of past runs shown; the newest are kept.
+/// The largest number of past runs shown: the newest ones.
 const MOST_RUNS: usize = 1000;
-/// The number of newest past runs for which the operator is warned.
+/// The number of newest past runs that are searched for bad ends, of which the operator is warned.
 const RECENT: usize = 20;
 
 /// A scan of the disk. An unchanged file is not read again.
@@ -68,7 +68,7 @@ impl Disk {
         }
     }
 
-    /// The scenarios in the folders, by name, and always the demo, wherever the console was started.
+    /// The scenarios in the folders, by name; the demo is always included, wherever the console was started.
     fn scenarios(&self) -> Vec<ScenarioEntry> {
         let folders = &self.tools.config.scenarios;
         let mut files: Vec<PathBuf> = folders

@@ -8,21 +8,21 @@ use tui::{Measured, Msg};
 
 /// The reporting interval.
 const PERIOD: Duration = Duration::from_secs(1);
-/// The time for which a key press counts. With fewer than a hundred key presses, the slowest is reported.
+/// How long a key press counts. With fewer than a hundred key presses, the slowest is reported.
 const KEYS: Duration = Duration::from_secs(30);
-/// The time for which a skipped frame counts.
+/// How long a skipped frame counts.
 const SKIPPED: Duration = Duration::from_secs(10);
 
 /// Measures the performance of the screen.
 pub(super) struct Measure {
     reported: Instant,
-    /// When the key press arrived that the next frame answers.
+    /// When the key press that the next frame answers arrived.
     key: Option<Instant>,
-    /// When each key press was answered, and its response time.
+    /// When each key press was answered, and the response time.
     answered: VecDeque<(Instant, Duration)>,
     /// When frames were skipped, and how many.
     skipped: VecDeque<(Instant, u32)>,
-    /// When the first message arrived that the next frame shows.
+    /// When the first message that the next frame shows arrived.
     changed: Option<Instant>,
 }
 

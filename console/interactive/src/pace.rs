@@ -7,8 +7,8 @@ use tui::Speed;
 /// If a tick is later than this, the lost time is not made up.
 const MOST_LATE: Duration = Duration::from_millis(50);
 
-/// The number of ticks that run together while the mission rests, because a wake-up of three threads costs more than a
-/// tick. Events of this phase, such as a station that falls silent, are shown at most this many ticks late.
+/// The number of ticks that run together while the mission rests, because waking three threads costs more than a tick.
+/// Events in this phase, such as a station that falls silent, are shown at most this many ticks late.
 const TOGETHER: u32 = 4;
 
 /// The schedule of ticks.
@@ -28,9 +28,9 @@ impl Pace {
         Self { due: now, period: None, rests: false }
     }
 
-    /// Sets when the following tick is due. Lost time is not made up by running faster.
+    /// Sets when the following tick is due. The mission does not run faster to make up lost time.
     ///
-    /// While the mission waits for a planner or an order (`waits`), it runs no faster than real time.
+    /// While the mission waits for a planner or an order (`waits`), the mission runs no faster than real time.
     pub(super) fn tick_flown(&mut self, now: Instant, tick: Duration, speed: Speed, waits: bool) {
         self.period = match speed {
             Speed::Times(factor) if waits => Some(tick.div_f64(factor.min(1.0))),
@@ -47,7 +47,7 @@ impl Pace {
         self.rests = rests;
     }
 
-    /// When the engine must wake; with orders, when the next tick is due.
+    /// When the engine must wake: with orders, when the next tick is due; otherwise possibly some ticks later.
     pub(super) fn wakes_at(&self, has_orders: bool) -> Instant {
         match self.period {
             Some(period) if self.rests && !has_orders => self.due + period * (TOGETHER - 1),
@@ -55,7 +55,7 @@ impl Pace {
         }
     }
 
-    /// Whether another tick is due that was left out while the mission rested. That tick then counts as run.
+    /// Whether another tick is due that was postponed while the mission rested. If so, this tick counts as run.
     pub(super) fn makes_up(&mut self, now: Instant) -> bool {
         let next = self.period.filter(|_| self.rests).map(|period| self.due + period);
         let is_due = next.is_some_and(|next| next <= now);
@@ -93,7 +93,7 @@ impl Reached {
         self.n_ticks = self.n_ticks.saturating_add(1);
     }
 
-    /// The mission time per wall time of this period; begins a new period.
+    /// The mission time per wall time in this period; begins a new period.
     pub(super) fn take(&mut self, now: Instant, tick: Duration) -> f64 {
         let wall = now.saturating_duration_since(self.since).max(Duration::from_nanos(1));
         let factor = (tick * self.n_ticks).div_duration_f64(wall);

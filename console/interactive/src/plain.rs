@@ -31,7 +31,7 @@ pub(super) fn speak(mut session: Session, outbox: &Outbox, engine: &Current) -> 
     let mut is_listening = false;
     let mut said = Said::default();
     loop {
-        // Accept commands only once the scenario is open, as for an operator who sees the screen.
+        // Accept commands only once the scenario is open: an operator, too, waits to see the screen.
         if !is_listening && is_open(&session.model) {
             listen(outbox, Arc::clone(&is_over))?;
             is_listening = true;
@@ -67,7 +67,7 @@ fn listen(outbox: &Outbox, is_over: Arc<AtomicBool>) -> anyhow::Result<()> {
     let outbox = outbox.clone();
     let began = thread::Builder::new().name("stdin".into()).spawn(move || {
         for line in std::io::stdin().lock().split(b'\n').map_while(Result::ok) {
-            // A line that is not valid text is refused as an unknown command; later lines still count.
+            // A line that is not valid text is refused as an unknown command; later lines are still carried out.
             let msg = match String::from_utf8_lossy(&line).trim() {
                 "" => continue,
                 "yes" => Msg::Key(Key::Enter.into()),

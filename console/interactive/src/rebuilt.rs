@@ -9,7 +9,7 @@ use std::{thread, time::Duration};
 /// The interval at which the files are checked; a build is noticed within two intervals.
 const PERIOD: Duration = Duration::from_secs(1);
 
-/// Makes the desk survey the plugins whenever their files have changed and then stayed unchanged for one interval.
+/// Makes the desk survey the plugins whenever their files have changed and have then stayed unchanged for one interval.
 ///
 /// # Errors
 /// The thread cannot be started.

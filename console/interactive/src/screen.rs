@@ -22,13 +22,13 @@ const BURST: usize = 256;
 const BURST_TIME: Duration = Duration::from_millis(5);
 /// The shortest time between two frames that only show new values of a robot at rest.
 const CALM_FRAME: Duration = Duration::from_secs(1);
-/// The largest data rate for new values, in bytes per second: at any mission speed, and while the robot is at rest.
-/// Answers to keys are not delayed.
+/// The largest data rate for new values, in bytes per second: the first limit always applies, the second while the
+/// robot is at rest. Answers to keys are not delayed.
 const LINE_RATE: f64 = 15_000.0;
 const CALM_RATE: f64 = 200.0;
 /// The longest time between two frames of a robot at rest.
 const LONGEST_CALM: Duration = Duration::from_secs(4);
-/// The longest time that new values wait for the line, even after a complete redraw.
+/// The longest time that new values wait until the line to the terminal is free, even after a complete redraw.
 const LONGEST_DEBT: Duration = Duration::from_millis(250);
 /// The shortest time between two frames that answer keys.
 const KEY_FRAME: Duration = Duration::from_millis(8);
@@ -42,13 +42,13 @@ pub(super) struct Screen {
     frame_interval: Duration,
     /// The shortest time between the last frame and a frame that only shows new values of a robot at rest.
     calm_pause: Duration,
-    /// The time after the last frame for which a line with [`LINE_RATE`] is still busy.
+    /// The time after the last frame during which a line with [`LINE_RATE`] is still busy.
     line_busy: Duration,
     /// How soon a frame must be drawn.
     due: Redraw,
     cache: Cache,
     places: SharedPlaces,
-    /// Whether the operator waits for something that the next frame shows.
+    /// Whether the operator is waiting for something that the next frame shows.
     answer_seen: bool,
     measure: Measure,
     drill: Option<Drill>,
@@ -121,7 +121,7 @@ impl Screen {
     /// Waits for a message, then takes all others that are waiting.
     fn take_burst(&mut self) -> anyhow::Result<Option<Left>> {
         let first = self.wait();
-        // The wait may have been for a change of the model over time.
+        // The model may have been due to change by itself.
         let by_itself = self.session.model.wakes_at_mono_s();
         self.session.update_time();
         if by_itself.is_some_and(|at_s| at_s <= self.session.model.console.now.mono_s) {
@@ -199,7 +199,7 @@ impl Screen {
             Effect::Copy(line) => self.terminal.copy(line).context("copying")?,
             Effect::Suspend => self.suspend()?,
             Effect::Quit { signal } => return Ok(Some(Left { signal: *signal })),
-            // The session has carried out all other effects.
+            // The session has already carried out all other effects.
             _ => {}
         }
         Ok(None)
@@ -211,7 +211,7 @@ impl Screen {
         rustix::process::kill_process(rustix::process::getpid(), rustix::process::Signal::STOP)
             .context("stopping the process")?;
         self.terminal.resume().context("taking over the terminal again")?;
-        // Frames were not needed while the process was stopped.
+        // No frames were needed while the process was stopped.
         self.measure = Measure::since(Instant::now());
         self.due = Redraw::Soon;
         Ok(())
@@ -245,7 +245,7 @@ fn taken(bytes: usize, rate: f64) -> Duration {
     Duration::from_secs_f64(bytes as f64 / rate)
 }
 
-/// Whether the operator is waiting to see this message: a key, a stop of the robot, or the result of a seek in a past
+/// Whether the operator is waiting to see this message: a key, a stop of the robot, or the result of seeking in a past
 /// run.
 fn is_answer(model: &Model, msg: &Msg) -> bool {
     match msg {

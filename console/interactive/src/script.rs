@@ -47,7 +47,7 @@ const SIZE: (u16, u16) = (120, 36);
 const LOOK_AGAIN: Duration = Duration::from_millis(50);
 /// The longest wait for the scenario to open.
 const OPENING: Duration = Duration::from_secs(30);
-/// The longest wait for the mission to accept an order; it answers in the next tick, at any speed.
+/// The longest wait for the mission to accept an order; the mission answers in the next tick, at any speed.
 const ANSWERING: Duration = Duration::from_secs(30);
 
 /// A step of a script.
@@ -126,7 +126,7 @@ struct Runner {
 
 impl Runner {
     fn carry_out(&mut self, script: &Script) -> Result<(), String> {
-        // Accept commands only once the scenario is open, as for an operator who sees the screen.
+        // Accept commands only once the scenario is open: an operator, too, waits to see the screen.
         self.hear_until(OPENING, is_open)?;
         for (line, step) in &script.steps {
             let done = self.step(step);
@@ -175,7 +175,7 @@ impl Runner {
         }
     }
 
-    /// Waits for the plan before a start, as an operator would. The time limit for planning is the planner's own.
+    /// Waits for the plan before a start, as an operator would. The planner has its own time limit for planning.
     fn see_plan(&mut self, action: Option<ActionId>) -> Result<(), String> {
         if action != Some(ActionId::Start) {
             return Ok(());
@@ -185,7 +185,7 @@ impl Runner {
             Readiness::Preparing => Some(true),
             Readiness::Unseen | Readiness::Failed(_) | Readiness::Plan(_) => None,
         };
-        // The plan is ordered when the scenario opens.
+        // A plan is requested when the scenario opens.
         self.hear_until(ANSWERING, |model| !model.live.waits() || readiness(model) != Some(false))?;
         let is_planning = |model: &Model| model.live.waits() && readiness(model) == Some(true);
         while is_planning(&self.session.model) && !self.is_left {
@@ -194,7 +194,7 @@ impl Runner {
         Ok(())
     }
 
-    /// Sends a command or a key to the console; a refusal by the console or the mission is a failure.
+    /// Sends a command or a key to the console; a refusal by the console or the mission counts as a failure.
     fn order(&mut self, msg: Msg) -> Result<(), String> {
         self.hear_until(Duration::ZERO, |_| false)?;
         self.session.model.console.notice = None;
@@ -261,7 +261,7 @@ impl Runner {
         }
         self.answers.hear(&msg);
         let effects = self.session.take(msg);
-        // If the robot is already held for good, HOLD stops nothing and gets no answer.
+        // If the robot is already held for good, HOLD changes nothing and gets no answer.
         let may_move = self.session.model.live.may_move();
         let sent = self.session.sent().iter().filter(|order| may_move || **order != Order::Hold);
         self.answers.await_for(sent);

@@ -1,4 +1,4 @@
-//! The model with its connections; shared by the screen, scripts and the console in sentences.
+//! The model with its connections; shared by the screen, scripts and the console that prints sentences.
 
 use super::{
     desk::{DeskHandle, Request},
@@ -35,12 +35,12 @@ impl Session {
         self.kept = Some(self.model.console.history.last().cloned().unwrap_or_default());
     }
 
-    /// Takes the next message. Waits until the given time; without one, waits indefinitely.
+    /// Takes the next message. Waits until the given time; if none is given, waits indefinitely.
     pub(super) fn next(&self, until: Option<Instant>) -> Option<Msg> {
         self.inbox.next(until)
     }
 
-    /// When the model next changes by itself, plus a millisecond, so that the moment has passed on waking.
+    /// When the model next changes by itself, plus a millisecond, so that this moment has passed when the caller wakes.
     pub(super) fn wakes_at(&self) -> Option<Instant> {
         let at_s = self.model.wakes_at_mono_s()?;
         Some(self.began + Duration::from_secs_f64(at_s.max(0.0)) + Duration::from_millis(1))

@@ -1,4 +1,4 @@
-//! Watching a run: its journal is read while another process writes it, or after it has ended.
+//! Watching a run: its journal is read while another process writes it, or after the run has ended.
 
 use super::inbox::RunOutbox;
 use anyhow::Context;
@@ -18,7 +18,7 @@ const LOOK_AGAIN: Duration = Duration::from_millis(100);
 const PATIENCE: Duration = Duration::from_millis(50);
 /// The largest number of events sent together, unless one tick has more.
 const MOST: usize = 512;
-/// The number of messages waiting for the screen above which reading pauses.
+/// If more messages than this are waiting for the screen, reading pauses.
 const MOST_BACKLOG: usize = 64;
 
 /// Reads the journal of a run from its beginning, and follows it while it is being written, on a separate thread.
@@ -60,7 +60,7 @@ impl Viewing {
         }
     }
 
-    /// Sends every event; returns whether the last one ends the run.
+    /// Sends every event; returns whether the last event ends the run.
     fn read_all(&mut self, reader: JournalReader) -> Result<bool, recording::JournalError> {
         let mut has_ended = false;
         for event in reader {

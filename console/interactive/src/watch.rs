@@ -24,11 +24,11 @@ use tui::{
     terminal::{self, Keyboard, Pointer},
 };
 
-/// The time for a clean exit after a signal; then the process exits in any case.
+/// The time for a clean exit after a signal; once it is over, the process exits in any case.
 const GRACE: Duration = Duration::from_secs(1);
 
-/// Signals that are not meant for a console, but would end a process without a handler and leave the terminal in the
-/// state of the screen. SIGXFSZ is not listed: the failing write reports it.
+/// Signals that are not meant for a console, but would end a process without a handler and leave the terminal as the
+/// screen has set it. SIGXFSZ is not listed: the failing write reports it.
 const OTHERS: [i32; 11] = [
     libc::SIGQUIT,
     libc::SIGTRAP,
@@ -69,7 +69,7 @@ pub(super) fn disk(outbox: &Outbox, logs: &Path) -> anyhow::Result<()> {
     })
 }
 
-/// The places of clickable items in the last frame, for the thread that listens to the mouse.
+/// The positions of clickable items in the last frame, for the thread that listens to the mouse.
 #[derive(Clone, Default)]
 pub(super) struct SharedPlaces(Arc<Mutex<Places>>);
 
@@ -145,8 +145,8 @@ pub(super) fn signals(outbox: &Outbox, engine: Current, foreground: Foreground) 
 /// `false` if the inbox is closed.
 ///
 /// The screen gets the message first, because its handling of the key must not depend on the hold that follows. The
-/// screen orders a hold, too: the hold from here may overtake an order to move that the screen has not sent yet, but
-/// the hold from the screen cannot.
+/// screen also orders a hold: the hold from here may overtake an order to move that the screen has not sent yet, but
+/// the screen's hold cannot.
 fn send_and_hold(outbox: &Outbox, engine: &Current, msg: Msg, stops: bool) -> bool {
     let is_delivered = outbox.send_urgent(msg);
     if stops && let Some(engine) = engine.get().filter(EngineHandle::may_move) {
@@ -157,8 +157,8 @@ fn send_and_hold(outbox: &Outbox, engine: &Current, msg: Msg, stops: bool) -> bo
 
 /// Whether a key stops a moving robot. While text is typed, the space key is a letter.
 ///
-/// The screen's report may be one key late. A space right after the key that opens a text line may hold the robot; a
-/// space right after the key that closes it is left to the screen.
+/// The screen's report may be one key late. A space typed right after the key that opens a text line may hold the
+/// robot; a space typed right after the key that closes the line is left to the screen.
 fn is_stop_key(msg: &Msg, is_typing: bool) -> bool {
     match msg {
         Msg::Key(press) if !press.repeat => {
@@ -185,7 +185,7 @@ pub(super) fn terminal(outbox: &Outbox, engine: Current, foreground: Foreground)
         loop {
             let waited = poll(&mut watched, Some(&TERMINAL_PERIOD));
             // Only after two checks in a row: a console continued in the background must first receive the signal that
-            // tells it so.
+            // says so.
             let is_lost = foreground.is_lost();
             if is_lost && was_lost {
                 foreground.keep();

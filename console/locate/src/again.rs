@@ -11,7 +11,7 @@ use std::path::Path;
 /// The result of recomputing a located run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Again {
-    /// Byte for byte the same journal, of this many events.
+    /// Byte for byte the same journal, with this many events.
     Equal(usize),
     /// A journal that differs from this line on.
     Different {
@@ -22,11 +22,11 @@ pub enum Again {
         /// The computed line.
         computed: String,
     },
-    /// Nothing, because the readings are missing or have changed; the reason.
+    /// Nothing was recomputed, because the readings are missing or have changed; this is the reason.
     NoReadings(String),
 }
 
-/// Recomputes the located run in a folder from its readings, if the file is still in its old place.
+/// Recomputes the located run in a folder from its readings, if the file of readings is still where it was.
 ///
 /// # Errors
 /// The journal cannot be read, has a different version, or belongs to a run that was flown.

@@ -11,7 +11,7 @@ pub(crate) const EXAMPLE: &str = "2026-10-25T02:59:58.250Z";
 /// The form in which a time is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Written {
-    /// A number of seconds, or of a fraction of a second.
+    /// A number of seconds, milliseconds or microseconds.
     Number,
     /// A time of day: seconds since midnight.
     OfDay,

@@ -9,12 +9,13 @@ use report::document::csv::cell;
 use std::collections::HashMap;
 use world::{Odometry, Point, Pose, Station, StationId};
 
-/// A quantity with the suffixes of its units. Each suffix has its factor to seconds, metres or radians.
+/// A quantity, with the suffixes for its units. Each suffix has its factor for conversion to seconds, metres or
+/// radians.
 type Column = (&'static str, &'static [(&'static str, f64)]);
 
 const TIME: &[(&str, f64)] = &[("_s", 1.0), ("_ms", 1e-3), ("_us", 1e-6)];
 const TIME_OR_DATE: &[(&str, f64)] = &[("_s", 1.0), ("_ms", 1e-3), ("_us", 1e-6), ("", DATED)];
-/// The factor of a time of day or a date, which has no unit.
+/// The factor for a time of day or a date, which has no unit.
 const DATED: f64 = 0.0;
 const LENGTH: &[(&str, f64)] = &[("_m", 1.0), ("_mm", 1e-3)];
 const ANGLE: &[(&str, f64)] = &[("_rad", 1.0), ("_deg", std::f64::consts::PI / 180.0)];
@@ -54,7 +55,7 @@ const COLUMNS: [Column; 15] = [
     ("tool_on", NAME),
 ];
 
-/// The largest accepted number of repetitions behind one mean.
+/// The largest number of repetitions that one mean may stand for.
 const REPETITIONS_MAX: u32 = 1000;
 
 /// The kind of readings in a file.
@@ -62,7 +63,7 @@ const REPETITIONS_MAX: u32 = 1000;
 pub enum Kind {
     /// Distances, or times of flight.
     Ranges,
-    /// Arrival times without the emission time, or their differences: only differences count.
+    /// Arrival times without the emission time, or differences between arrival times: only differences count.
     Differences,
 }
 
@@ -100,14 +101,14 @@ pub(crate) struct Row {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Heard {
     pub station: StationId,
-    /// The range, metres. If only differences count, it is off by an unknown length that all readings share, and may
-    /// be negative.
+    /// The range, metres. If only differences count, the range is off by an unknown length that all readings share, and
+    /// may be negative.
     pub range_m: f64,
     pub repetitions: u32,
 }
 
 impl Columns {
-    /// Finds the columns named in the first line.
+    /// Finds the columns that the first line names.
     pub(crate) fn new(
         header: &StringRecord,
         stations: &[Station],
@@ -147,11 +148,11 @@ impl Columns {
             None
         };
         if let Some(wrong) = wrong {
-            return Err(format!("{wrong}; the columns found are {}", names.join(", ")));
+            return Err(format!("{wrong}; columns found: {}", names.join(", ")));
         }
         let by_number = stations.iter().map(|station| (station.id.0.to_string(), station.id));
         let by_name = stations.iter().map(|station| (station.name.clone(), station.id));
-        // The names as a table writes them.
+        // The names as they are written in a table.
         let by_cell = stations.iter().map(|station| (cell(&station.name), station.id));
         Ok(Self {
             names,
@@ -242,14 +243,14 @@ impl Columns {
         let range_m = match (written.is_empty(), range_m) {
             (true, None) => return Ok(None),
             (true, Some(_)) => {
-                return Err(self.problem(line, STATION, "empty, although the row has a reading".into()));
+                return Err(self.problem(line, STATION, "empty, but the row has a reading".into()));
             }
             (false, None) => {
                 let column = measured.filter(|column| self.cell(cells, *column).is_empty());
                 return Err(self.problem(
                     line,
                     column.unwrap_or(EMITTED),
-                    format!("empty, although the row names station {written}"),
+                    format!("empty, but the row names station {written}"),
                 ));
             }
             (false, Some(range_m)) => range_m,
@@ -305,7 +306,7 @@ impl Columns {
         Ok(Some(number * factor))
     }
 
-    /// Returns a problem with the time of a row.
+    /// Returns a problem with the time in a row.
     pub(crate) fn wrong_time(&self, line: u64, what: String) -> Problem {
         self.problem(line, if self.has(T) { T } else { ARRIVAL }, what)
     }

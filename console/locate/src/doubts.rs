@@ -29,7 +29,8 @@ pub struct Doubts {
     pub sides_by_track: u64,
     /// Fixes for which nothing decides between the position and its mirror image.
     pub sides_open: u64,
-    /// Whether both positions of the first fix with a mirror image contradict the start in the scenario.
+    /// Whether the first fix with a mirror image contradicts the start in the scenario, in both of its possible
+    /// positions.
     pub contradicts_start: bool,
     /// Impossible ranges by station number.
     pub impossible: BTreeMap<u32, Refused>,

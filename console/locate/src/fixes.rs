@@ -1,4 +1,4 @@
-//! Writes fixes and track as a table, with one line for each moment with ranges.
+//! Writes fixes and track as a table, with one line for each moment that has ranges.
 
 use crate::columns::Kind;
 use mission::{Event, EventKind};
@@ -88,7 +88,7 @@ impl<W: Write> Fixes<W> {
     }
 }
 
-/// Returns the word that is shown to people.
+/// Returns the word to show to people.
 pub(crate) fn word(integrity: Integrity) -> &'static str {
     match integrity {
         Integrity::Ok => "ok",
@@ -99,7 +99,7 @@ pub(crate) fn word(integrity: Integrity) -> &'static str {
 }
 
 impl Kind {
-    /// Returns the words that are shown to people.
+    /// Returns the words to show to people.
     pub fn word(self) -> &'static str {
         match self {
             Self::Ranges => "ranges",

@@ -11,7 +11,7 @@ pub struct Found {
 }
 
 impl Found {
-    /// Creates a correction for ranges that are all too long by a share.
+    /// Creates a correction for ranges that are all too long by the same share.
     pub(crate) fn of_scale(scale: (f64, f64)) -> Self {
         Self { scale, offset_m: (0.0, 0.0) }
     }

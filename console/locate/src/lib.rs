@@ -2,8 +2,8 @@
 //! a track. It uses the same estimator as a mission and produces the events of a run, so journal, recording and
 //! report are made as for any other run.
 //!
-//! A file is read row by row, once to check it and once to locate; memory does not grow with its length. To estimate
-//! clock and sound errors, it is read more often.
+//! A file is read row by row, once to check it and once to locate; memory use does not grow with the length of the
+//! file. To estimate clock and sound errors, the file is read more often.
 
 mod again;
 mod clock;

@@ -25,9 +25,10 @@ mod learning;
 
 /// The number of bad rows that an error lists.
 const LISTED: usize = 10;
-/// A time between two motions of more than this many times the usual interval is a gap: some motions were lost.
+/// If the time between two motions is more than this many times the usual interval, it is a gap: some motions were
+/// lost.
 const GAP: f64 = 5.0;
-/// The number of intervals between motions that determine the usual one.
+/// The number of intervals between motions from which the usual interval is determined.
 const INTERVALS: usize = 4_096;
 
 /// The motion is ignored if at least this many fixes contradict it. A wrong start alone makes three fixes contradict
@@ -64,7 +65,7 @@ pub struct Survey {
     pub kind: Kind,
     /// Whether the motion between the readings was measured and is used.
     pub has_motion: bool,
-    /// The agreement of fixes and motion, if they contradict each other so often that the motion is not used.
+    /// How well fixes and motion agree; present if they contradict each other so often that the motion is not used.
     pub contradicted: Option<Agreement>,
     /// The number of rows, including bad ones.
     pub rows: u64,
@@ -76,18 +77,19 @@ pub struct Survey {
     pub ignored: Vec<String>,
     /// The clock and sound errors found; absent if they were not requested.
     pub calibration: Option<Found>,
-    /// The times from when to when the tool was on, seconds after the first moment; absent if neither the readings
-    /// nor a file state them.
+    /// The stretches of time in which the tool was on, in seconds after the first moment; absent if neither the
+    /// readings nor a file states them.
     pub tool_on_s: Option<Vec<[f64; 2]>>,
-    /// The errors of sound and stations according to the residuals, after correction for `calibration`.
+    /// The errors of the speed of sound and of the stations according to the residuals, after correction with
+    /// `calibration`.
     pub verdict: Verdict,
     /// The scatter of several readings of one station in one emission.
     pub repeats: Repeats,
-    /// The first time as written in the file, seconds.
+    /// The first time in the file, as written there, seconds.
     pub first_s: f64,
-    /// First and last time with date, in UTC; absent if times have no date.
+    /// The first and the last time, with their dates, in UTC; absent if times have no date.
     pub dates: Option<[String; 2]>,
-    /// The time between motions, in seconds, beyond which some motions were lost.
+    /// The time between motions, in seconds, beyond which some motions must have been lost.
     gap_s: f64,
 }
 
@@ -116,8 +118,8 @@ impl Task<'_> {
     }
 
     fn scatter(&self, kind: Kind) -> Scatter {
-        // Without the emission time the distance of a station is unknown. The span of the tank is the farthest it can
-        // be.
+        // Without the emission time, the distance to a station is unknown; the span of the tank is the largest distance
+        // possible.
         let (low, high) = self.scenario.sim.world.boundary.bounds();
         let distance_m = (kind == Kind::Differences).then(|| (high - low).amax());
         Scatter { noise: self.noise(), timing: self.scenario.mission.locating.timing, distance_m }
@@ -126,7 +128,7 @@ impl Task<'_> {
     /// Reads the whole file once to collect its contents and problems, and again to estimate clock and sound errors.
     ///
     /// # Errors
-    /// The file cannot be read, or has bad rows without a request to leave them out.
+    /// The file cannot be read, or it has bad rows and there is no request to leave them out.
     pub fn survey(&self) -> anyhow::Result<Survey> {
         let (mut moments, columns) = self.open()?;
         let in_file = self.tool_on_in_file()?;
@@ -218,7 +220,7 @@ impl Task<'_> {
         self.tool_on.map(read).transpose()
     }
 
-    /// Returns the times when the tool was on, from that file or from the readings, which span the times of `span`,
+    /// Returns the times when the tool was on, from that file or from the readings, which cover the times in `span`,
     /// seconds.
     fn tool_on(
         &self,
@@ -332,7 +334,7 @@ impl Task<'_> {
         Ok(track)
     }
 
-    /// Returns the configuration of the mission, reduced to locating.
+    /// Returns the configuration of the mission, reduced to what locating needs.
     fn config(&self, survey: &Survey) -> MissionConfig {
         let mut config = self.scenario.mission.clone();
         config.planner =
@@ -351,7 +353,7 @@ impl Task<'_> {
     }
 }
 
-/// Merges the readings of a station in an emission into their mean.
+/// Merges the readings of each station in an emission into their mean.
 fn as_one(set: &mut RangeSet) {
     let mean_m = set.ranges_m.iter().sum::<f64>() / set.ranges_m.len().max(1) as f64;
     set.ranges_m = vec![mean_m];
@@ -375,7 +377,7 @@ struct Track {
     t_s: f64,
 }
 
-/// The floor that the tool passed while it was on.
+/// The floor that the tool passed over while it was on.
 struct Swept {
     tool: Tool,
     track: ToolTrack,

@@ -10,10 +10,10 @@ use csv::StringRecord;
 use positioning::{Impossible, Possible};
 use world::{Odometry, Pose, RangeSet};
 
-/// Added to each arrival difference, as a length in metres, to make it a range: ranges must be positive.
+/// The length added to each arrival difference to make it a range, metres: ranges must be positive.
 const BASE_M: f64 = 100.0;
 
-/// If the time of day falls by more than this, it has passed midnight, seconds.
+/// If the time of day goes back by more than this, midnight has passed, seconds.
 const HALF_A_DAY_S: f64 = 43_200.0;
 
 /// All measurements of one time or emission.
@@ -29,8 +29,8 @@ pub(crate) struct Moment {
     pub odometry: Option<Odometry>,
     /// The true pose of the robot, if known.
     pub truth: Option<Pose>,
-    /// Whether the tool is on from this moment on; `None` if no row states it. If rows contradict each other, it is
-    /// off.
+    /// Whether the tool is on from this moment on; `None` if no row states it. If rows contradict each other, the tool
+    /// counts as off.
     pub tool_on: Option<bool>,
     /// The form in which the time is written.
     pub written: Written,
@@ -62,7 +62,7 @@ struct Place {
     t_s: f64,
 }
 
-/// A stretch of rows with times earlier than the row before them.
+/// A stretch of rows with times earlier than that of the row before the stretch.
 #[derive(Debug, Clone, Copy)]
 struct Back {
     first: Place,

@@ -1,4 +1,5 @@
-//! Checks several readings of one station in one emission: they are repetitions, or two emissions under one time.
+//! Checks several readings of one station in one emission: they may be repetitions, or two emissions recorded under one
+//! time.
 
 use crate::moments::Moment;
 use positioning::{RangeNoise, Timing, scatter_limit};
@@ -7,7 +8,7 @@ use world::StationId;
 /// A squared difference counts for at most this many variances, so that a few far outliers do not make a session
 /// suspect.
 const MOST_SQUARES: f64 = 16.0;
-/// Scatter below this multiple of the noise does no harm; a ratio of variances.
+/// Scatter below this multiple of the noise, as a ratio of variances, does no harm.
 const HARMLESS: f64 = 1.3;
 /// Readings whose variance is below this share of the noise variance are not independent: they are copies of one
 /// reading, or share its error. Such readings count as one.
@@ -15,14 +16,14 @@ const NARROW: f64 = 0.25;
 /// A sum that deviates by more standard deviations than this is significant.
 const SIGNIFICANT: f64 = 5.0;
 
-/// The two readings of one station that differ most.
+/// The two readings of one station that differ the most.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Repeated {
     /// The station.
     pub station: StationId,
     /// The number of readings in the emission.
     pub count: u32,
-    /// The difference of the two readings, metres.
+    /// The difference between the two readings, metres.
     pub apart_m: f64,
     /// Time of the emission as in the file, seconds.
     pub t_s: f64,
@@ -34,9 +35,9 @@ pub struct Repeats {
     /// Sum of the squared differences from the means, each divided by its variance.
     sum: f64,
     degrees: u32,
-    /// Emissions with several readings of a station.
+    /// The number of emissions with several readings of a station.
     pub emissions: u64,
-    /// The emissions among them whose readings scatter more than the noise.
+    /// The number of those emissions in which the readings scatter more than the noise explains.
     pub wide: u64,
     /// The readings that differ most in relation to their noise.
     pub worst: Option<Repeated>,
@@ -143,9 +144,9 @@ impl Repeats {
         self.degrees > 0 && self.sum < limit * degrees
     }
 
-    /// Returns the likely error of a position from an emission with several readings of a station, if nothing is
-    /// proven; a standard deviation, metres. It consists of the excess of the scatter over the noise, less one
-    /// standard deviation of chance.
+    /// Returns the likely error of a position from an emission with several readings of a station, for when nothing is
+    /// proven; a standard deviation, metres. It is the excess of the scatter over the noise, less one standard
+    /// deviation to allow for chance.
     pub(crate) fn likely_m(&self, moment: &Moment, scatter: &Scatter) -> f64 {
         let is_repeated = |set: &&world::RangeSet| {
             moment.heard.iter().filter(|heard| heard.station == set.station).count() > 1
@@ -162,7 +163,7 @@ impl Repeats {
         (excess * variances.iter().sum::<f64>() / variances.len() as f64).sqrt()
     }
 
-    /// Returns the likely error of the readings of an emission because of their scatter, metres; `None` if the
+    /// Returns the likely error of the readings in an emission that their scatter suggests, metres; `None` if the
     /// scatter raises no doubt.
     pub(crate) fn doubt_m(&self, moment: &Moment, scatter: &Scatter) -> Option<f64> {
         let once = Once::of(moment, scatter);

@@ -21,9 +21,9 @@ const MCAP: &[u8; 8] = b"\x89MCAP0\r\n";
 /// A file that is read as rows.
 #[allow(clippy::large_enum_variant, reason = "there is only one, for a whole file")]
 pub(crate) enum Rows {
-    /// Text whose first line names the columns.
+    /// Text; its first line names the columns.
     Csv { reader: csv::Reader<BufReader<Text>>, header: StringRecord, has_commas: bool, file: PathBuf },
-    /// Messages that are JSON objects, whose keys name the columns.
+    /// Messages that are JSON objects; their keys name the columns.
     Messages(Box<Messages>),
 }
 
@@ -95,7 +95,7 @@ impl Rows {
     }
 }
 
-/// Returns the line that a reader has reached. Where a record began is not known after comments and empty lines.
+/// Returns the line that a reader has reached. After comments and empty lines, it is not known where a record began.
 fn line_of(reader: &csv::Reader<BufReader<Text>>) -> u64 {
     reader.position().line().saturating_sub(1).max(1)
 }

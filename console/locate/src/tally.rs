@@ -22,7 +22,7 @@ pub struct Tally {
     pub first_fix_t_s: Option<f64>,
     /// Longer half axis of the 95 % ellipse of the first fix, metres.
     pub first_fix_error_95_m: Option<f64>,
-    /// How often each station was rejected because of its residual, by station number.
+    /// How often each station was rejected for its residual, by station number.
     pub left_out: BTreeMap<u32, u64>,
     /// 95 % error of the track from its covariance, metres: mean and largest.
     pub error_95_m: Option<[f64; 2]>,
@@ -58,7 +58,7 @@ impl Mean {
 }
 
 impl Tally {
-    /// Whether any emission gave a position that its own ranges do not contradict.
+    /// Whether any emission gave a position that the ranges of that emission do not contradict.
     pub fn has_fix(&self) -> bool {
         self.fixes.keys().any(|word| *word != fixes::word(Integrity::Alarm))
     }

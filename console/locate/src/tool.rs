@@ -4,7 +4,7 @@ use crate::{clock, rows::Rows};
 use csv::StringRecord;
 use std::path::Path;
 
-/// Collects the stretches of time in which the tool was on from the moments of the readings.
+/// Collects, from the moments of the readings, the stretches of time in which the tool was on.
 #[derive(Debug, Default)]
 pub(crate) struct Stretches {
     all: Vec<[f64; 2]>,
@@ -25,7 +25,7 @@ impl Stretches {
         self.is_said |= tool_on.is_some();
     }
 
-    /// Returns the stretches, in order; `None` if no moment states whether the tool is on.
+    /// Returns the stretches in order; `None` if no moment states whether the tool is on.
     pub(crate) fn finish(self) -> Option<Vec<[f64; 2]>> {
         self.is_said.then_some(self.all)
     }
@@ -35,7 +35,7 @@ impl Stretches {
 /// clock of the readings, in any form that readings may use.
 ///
 /// # Errors
-/// The file cannot be read, or a stretch ends before it begins or overlaps the one before it. The message has the
+/// The file cannot be read, or a stretch ends before it begins or overlaps the one before it. The message names the
 /// line.
 pub(crate) fn read(file: &Path) -> Result<Vec<[f64; 2]>, String> {
     let mut rows = Rows::open(file)?;
@@ -47,7 +47,7 @@ pub(crate) fn read(file: &Path) -> Result<Vec<[f64; 2]>, String> {
         };
         let at = header.iter().position(is_it);
         at.ok_or_else(|| {
-            format!("line 1: column {name}_s is missing; use from_s and to_s, in the time of the readings")
+            format!("line 1: column {name}_s is missing; use from_s and to_s, on the clock of the readings")
         })
     };
     let columns = [("from_s", column("from")?), ("to_s", column("to")?)];
@@ -64,7 +64,10 @@ pub(crate) fn read(file: &Path) -> Result<Vec<[f64; 2]>, String> {
             return Err(format!("line {line}: to_s {} must be later than from_s {}", stretch[1], stretch[0]));
         }
         if let Some([_, before_s]) = all.last().filter(|before| stretch[0] < before[1]) {
-            return Err(format!("line {line}: from_s {} is before the previous end, {before_s}", stretch[0]));
+            return Err(format!(
+                "line {line}: from_s {} is before the end of the previous stretch, {before_s}",
+                stretch[0]
+            ));
         }
         all.push(stretch);
     }

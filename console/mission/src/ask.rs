@@ -2,7 +2,7 @@
 //!
 //! The mission never waits. It issues [`Ask`]s and continues; the caller that runs the planners passes each [`Answer`]
 //! back when it arrives, in the same tick or in a later one. An ask owns all its data, so it can be stored, sent to
-//! another process, or repeated to another planner.
+//! another process, or put to another planner again.
 //!
 //! Lengths are in metres. Angles are in radians, counter-clockwise from the x axis of the tank frame.
 
@@ -24,8 +24,8 @@ use std::{fmt, sync::Arc};
 #[serde(transparent)]
 pub struct WorkerId(pub u16);
 
-/// The id of an ask. Asks are numbered per worker, so that the ids of one planner's asks do not depend on another
-/// planner's timing.
+/// The id of an ask. Asks are numbered separately for each worker, so the ids of one planner's asks do not depend on
+/// another planner's timing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(from = "(WorkerId, u32)", into = "(WorkerId, u32)")]
 pub struct AskId {
@@ -67,12 +67,12 @@ pub struct Ask {
 pub enum What {
     /// Start a worker process, load the plugin, create the planner, and restore the state of an earlier instance.
     Open {
-        /// The planner, with the parameters that were set by hand.
+        /// The planner, with its manually set parameters.
         choice: PlannerChoice,
         /// The tank as known so far.
         site: Arc<Site>,
         /// The [`What::Snapshot`] from which the new instance restores its state; used only if planner and plugin file
-        /// are the same.
+        /// have not changed.
         restore: Option<AskId>,
     },
     /// Change live parameters; parameters that are not listed keep their values.
@@ -81,8 +81,8 @@ pub enum What {
     Plan(Box<PlanAsk>),
     /// Compute the command for this tick.
     Step(Box<StepAsk>),
-    /// Save the private state. The process that runs the planners keeps the state; the mission keeps only the id of the
-    /// ask.
+    /// Save the private state. The process that runs the planners keeps the state itself; the mission remembers only the
+    /// id of the ask.
     Snapshot,
     /// Abandon the current request and end the process. This request has no answer.
     Close,
@@ -128,14 +128,14 @@ pub struct Said {
     pub logs: Vec<(LogLevel, String)>,
 }
 
-/// The answer that the mission would like before the tick ends. It can continue without it.
+/// The answer that the mission would like to have before the tick ends. The mission can continue without it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Awaits {
     /// No ask is open.
     Nothing,
     /// Only the planner in shadow has been asked; nothing depends on its answer.
     Shadow,
-    /// Only a planner that does not drive yet has been asked; the robot does not depend on its answer.
+    /// Only a planner that is not active yet has been asked; the robot does not depend on its answer.
     Candidate,
     /// The robot stands still until the active planner has been opened or has made a plan.
     Work,

@@ -12,9 +12,9 @@ use planner_api as api;
 use std::sync::Arc;
 use world::{Obstacle, ObstacleId, ObstacleMap, Point, Pose, Shape, Sighting, World, Zone, ZoneKind};
 
-/// A found obstacle is reported again once its estimated place has moved by this much, metres.
+/// A found obstacle is reported again once its estimated position has moved by this much, metres.
 const MOVED_M: f64 = 0.05;
-/// Number of sightings in the running mean of a found obstacle's place.
+/// Number of sightings in the running mean of a found obstacle's position.
 const MEMORY: f64 = 50.0;
 /// A moving obstacle is forgotten after being out of sight for this long, seconds.
 const OUT_OF_SIGHT_S: f64 = 2.0;
@@ -51,8 +51,8 @@ struct Found {
 pub(crate) struct Seen {
     /// Events for new or moved obstacles.
     pub events: Vec<EventKind>,
-    /// Whether a plan may have become invalid. The continued motion of a moving obstacle does not count; the next steps
-    /// deal with it.
+    /// Whether a plan may have become invalid. A moving obstacle that merely keeps moving does not count; the planner
+    /// avoids it step by step.
     pub changes_plans: bool,
 }
 
@@ -82,20 +82,20 @@ impl Chart {
         &self.world
     }
 
-    /// Whether a place is at least `room_m` metres from everything solid and from every no-go zone.
+    /// Whether a position is at least `room_m` metres from everything solid and from every no-go zone.
     pub(crate) fn has_room(&self, at: Point, room_m: f64) -> bool {
         let mut no_go = self.world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo);
         self.map.clearance_m(at) >= room_m && no_go.all(|zone| zone.shape.distance_m(at) >= room_m)
     }
 
-    /// Whether everything that the hull must not touch is at least `reach_m` metres from a place: both the obstacles in
+    /// Whether everything that the hull must not touch is at least `reach_m` metres from a position: the obstacles in
     /// sight, where they are seen, and everything on the chart.
     pub(crate) fn is_free(&self, at: Point, reach_m: f64) -> bool {
         let seen_m = |(_, shape): &(ObstacleId, Shape)| shape.distance_m(at);
         self.has_room(at, reach_m) && self.in_sight.iter().all(|seen| seen_m(seen) >= reach_m)
     }
 
-    /// Everything that the hull must not touch within `reach_m` metres of a place. Obstacles in sight are placed where
+    /// Everything within `reach_m` metres of a position that the hull must not touch. Obstacles in sight are placed where
     /// they are seen. A moving obstacle that has gone out of sight is left out.
     pub(crate) fn solids(&self, at: Point, reach_m: f64) -> Vec<Solid<'_>> {
         let is_seen = |id: ObstacleId| self.in_sight.iter().any(|(seen, _)| *seen == id);
@@ -129,16 +129,16 @@ impl Chart {
 
     /// Records what is seen from an estimated pose.
     ///
-    /// Even when the position is wrong, the robot sees how far away an obstacle is. Planners therefore avoid obstacles
-    /// where they are seen, not where the chart has them.
+    /// Even when the position estimate is wrong, the robot sees how far away an obstacle is. Planners therefore avoid
+    /// obstacles where they are seen, not where the chart puts them.
     pub(crate) fn sight(&mut self, sightings: &[Sighting], from: &Pose) {
         let seen = |s: &Sighting| (s.id, s.shape_in_robot.transformed(&from.tank_from_robot()));
         self.in_sight = sightings.iter().map(seen).collect();
     }
 
-    /// Puts sightings on the chart, seen at time `now_s` from an estimated pose; returns what is new.
+    /// Puts sightings on the chart, made at time `now_s` from an estimated pose; returns what is new.
     ///
-    /// The obstacle tracker recognizes the columns of the drawing, so only other obstacles are added.
+    /// The obstacle tracker recognizes the columns that are on the drawing, so only other obstacles are added.
     pub(crate) fn see(&mut self, now_s: f64, sightings: &[Sighting], from: &Pose) -> Seen {
         self.now_s = now_s;
         let mut events = Vec::new();
@@ -153,7 +153,7 @@ impl Chart {
                 events.extend(event);
             }
         }
-        // A small movement since the last report may change plans, too: plans are checked against this map.
+        // Even a small movement since the last report may affect plans, because they are checked against this map.
         if changes_plans || !events.is_empty() {
             self.revision += 1;
             self.map = ObstacleMap::new(&self.world.boundary, &self.world.obstacles);
@@ -168,7 +168,7 @@ impl Chart {
         };
         found.drift.see(now_s, shape.center());
         if found.drift.velocity().is_some() {
-            // A running mean would lag behind a moving obstacle.
+            // For a moving obstacle, a running mean would lag behind.
             found.sightings = 0.0;
         }
         let obstacle = &mut self.world.obstacles[found.index];
@@ -200,7 +200,7 @@ impl Chart {
         self.revision += 1;
     }
 
-    /// The whole chart in the form that planners receive.
+    /// The whole chart, in the form that planners receive.
     pub(crate) fn site(&self) -> Site {
         Site {
             revision: self.revision,
@@ -219,8 +219,8 @@ impl Chart {
         }
     }
 
-    /// The obstacles within sensing range of a point, in the form that planners receive: where they are seen now, or else
-    /// where the chart has them.
+    /// The obstacles within sensing range of a point, in the form that planners receive. Each is placed where it is seen
+    /// now or, if it is out of sight, where the chart has it.
     pub(crate) fn near(&self, point: Point) -> Vec<SiteObstacle> {
         let reach_m = self.limits.sensing_range_m + self.limits.radius_m;
         let near = self.map.within(point, reach_m);
@@ -238,7 +238,7 @@ impl Chart {
         }
     }
 
-    /// An obstacle in the form that planners receive; `None` for a moving one that has gone out of sight.
+    /// An obstacle, in the form that planners receive; `None` for a moving obstacle that has gone out of sight.
     fn reported(&self, index: usize) -> Option<SiteObstacle> {
         let obstacle = &self.world.obstacles[index];
         let found = self.found.iter().find(|found| found.index == index);

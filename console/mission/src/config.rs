@@ -27,7 +27,7 @@ pub enum TaskConfig {
     },
     /// Scan the floor and return to the anchor.
     Cover {
-        /// The end of the path, and the place where the tether, if any, is attached; metres.
+        /// Where the path ends and where the tether, if the robot has one, is attached; metres.
         anchor: Point,
         /// The areas to scan, as closed polygons; empty for all reachable floor.
         #[serde(default)]
@@ -60,11 +60,11 @@ impl TaskConfig {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ScanConfig {
-    /// Overlap of neighbouring lanes, metres. Planners receive a swath narrower by this much, so that the position error
-    /// leaves no gaps between lanes.
+    /// Overlap of neighbouring lanes, metres. Planners receive a swath that is narrower by this much, so that position
+    /// errors leave no gaps between lanes.
     pub overlap_m: f64,
-    /// Half width of the 95 % position error above which no floor counts as scanned, metres; `None` to use the limit
-    /// above which the position counts as lost.
+    /// Limit of the 95 % position error (half width), metres; above it, no floor counts as scanned. `None` to use the
+    /// limit above which the position counts as lost.
     pub position_limit_m: Option<f64>,
 }
 
@@ -72,7 +72,8 @@ pub struct ScanConfig {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Locating {
-    /// Distribution of the errors of single ranges; `None` for a normal one, by [`MissionConfig::range_sigma_ratio`].
+    /// Distribution of the errors of single ranges; `None` for a normal distribution with
+    /// [`MissionConfig::range_sigma_ratio`].
     pub noise: Option<RangeNoise>,
     /// How repeated measurements are combined into one range.
     pub aggregation: Aggregation,
@@ -81,14 +82,14 @@ pub struct Locating {
     /// Additional timing errors of single ranges.
     #[serde(skip_serializing_if = "Timing::is_none")]
     pub timing: Timing,
-    /// Standard deviation of the scale error that all ranges share, as a ratio; repetition does not reduce it.
+    /// Standard deviation of the scale error common to all ranges, as a ratio; repeating measurements does not reduce it.
     #[serde(skip_serializing_if = "is_zero")]
     pub scale_sigma_ratio: f64,
     /// Whether the speed of sound is estimated during the mission.
     pub calibrate_sound_speed: bool,
-    /// Number of ranges per station and cycle; used only to forecast accuracy.
+    /// Number of ranges per station and cycle; used only for accuracy forecasts.
     pub repetitions: u32,
-    /// Whether a station cannot be used where an obstacle hides it.
+    /// Whether an obstacle that hides a station makes the station unusable.
     pub needs_line_of_sight: bool,
 }
 
@@ -121,7 +122,7 @@ pub struct TetherConfig {
     pub limits: tether::Limits,
     /// Friction of the cable on steel, used to compute the pull; the shape of the cable does not depend on it.
     pub friction: f64,
-    /// Whether plans that cannot be certified are run.
+    /// Whether plans that cannot be certified may be run.
     #[serde(default)]
     pub allow_uncertified: bool,
 }
@@ -134,28 +135,28 @@ impl TetherConfig {
     }
 }
 
-/// How a better plan is handled. After a repair the planner makes, in the background, a plan for all that is left.
+/// What to do about better plans. After a repair, the planner makes a plan for all that is left, in the background.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BetterPlan {
     /// No better plan is computed.
     #[default]
     Off,
-    /// A better plan is offered to the operator. Without an operator none is computed.
+    /// A better plan is offered to the operator; if no operator is present, none is computed.
     Offer,
     /// A better plan is taken automatically.
     Take,
 }
 
 impl BetterPlan {
-    /// Whether no better plans are computed. The reference is required by serde.
+    /// Whether no better plans are computed. Takes a reference because serde requires that signature.
     #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
     fn is_off(&self) -> bool {
         *self == Self::Off
     }
 }
 
-/// A mission as the engine needs it. The code that reads the scenario builds and validates it.
+/// A mission in the form that the engine needs. The code that reads the scenario builds and validates it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MissionConfig {
     /// The task.
@@ -176,21 +177,21 @@ pub struct MissionConfig {
     pub clearance_m: f64,
     /// Edge of a coverage cell, metres.
     pub cell_m: f64,
-    /// Half width of the 95 % position error above which the position counts as lost, metres.
+    /// Limit of the 95 % position error (half width), metres; above it, the position counts as lost.
     pub position_limit_m: f64,
-    /// The robot is held when the position has been lost for this long, seconds.
+    /// The robot is held after the position has been lost for this long, seconds.
     pub position_lost_hold_s: f64,
     /// The mission ends as stuck after this long without progress, seconds.
     pub stuck_s: f64,
     /// Standard deviation of the surveyed heading at the start, radians.
     pub start_heading_sigma_rad: f64,
-    /// Standard deviation of odometry as a share of the distance travelled.
+    /// Standard deviation of the odometry, as a share of the distance travelled.
     pub odometry_sigma_per_m: f64,
-    /// Standard deviation of odometry as a share of the angle turned.
+    /// Standard deviation of the odometry, as a share of the angle turned.
     pub odometry_turn_sigma_per_rad: f64,
-    /// Standard deviation of the heading's drift, radians per second.
+    /// Standard deviation of the heading drift, radians per second.
     pub gyro_sigma_rad_per_s: f64,
-    /// Standard deviation of a range as a share of the range.
+    /// Standard deviation of a range, as a share of the range.
     pub range_sigma_ratio: f64,
     /// How positions are computed from ranges.
     #[serde(default)]
@@ -198,25 +199,25 @@ pub struct MissionConfig {
     /// The conditions under which floor counts as scanned.
     #[serde(default)]
     pub scan: ScanConfig,
-    /// The pressure sensor that tells an amphibious robot whether it is under water. Without one, the zone at the
+    /// The pressure sensor that tells an amphibious robot whether it is under water. Without a sensor, the zone at the
     /// estimated position decides.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure: Option<PressureSensor>,
     /// The tether; `None` for a robot without one.
     #[serde(default)]
     pub tether: Option<TetherConfig>,
-    /// The planner that drives first.
+    /// The planner that is active first.
     pub planner: PlannerChoice,
     /// The planner that takes over automatically after a fault, if any.
     pub fallback: Option<PlannerChoice>,
     /// Whether an operator is present. If not, a hold that only an operator could end ends the mission.
     #[serde(default)]
     pub attended: bool,
-    /// Whether a start order names the plan that the operator saw, so that the mission cannot begin with a different
-    /// plan.
+    /// Whether a start order must name the plan that the operator saw, so that the mission cannot begin with a different
+    /// one.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub start_names_plan: bool,
-    /// How a better plan than a repaired one is handled.
+    /// What to do about a plan that is better than a repaired one.
     #[serde(default, skip_serializing_if = "BetterPlan::is_off")]
     pub better_plan: BetterPlan,
 }
@@ -227,12 +228,12 @@ impl MissionConfig {
         self.limits.radius_m + self.clearance_m
     }
 
-    /// Swath width that planners can rely on in one pass, metres.
+    /// Width of the swath that planners can rely on in one pass, metres.
     pub fn lane_m(&self) -> f64 {
         self.swath_m - self.scan.overlap_m
     }
 
-    /// Whether better plans than repaired ones are computed at all.
+    /// Whether better plans than a repaired one are computed at all.
     pub fn wants_better_plans(&self) -> bool {
         match self.better_plan {
             BetterPlan::Off => false,
@@ -249,13 +250,14 @@ impl MissionConfig {
         }
     }
 
-    /// Half width of the 95 % position error above which no floor counts as scanned, metres.
+    /// Limit of the 95 % position error (half width), metres; above it, no floor counts as scanned.
     pub fn scan_limit_m(&self) -> f64 {
         self.scan.position_limit_m.unwrap_or(self.position_limit_m)
     }
 
-    /// The anchor, and the length of the shortest path from it up to which planners place lanes; `None` without a tether.
-    /// Floor farther away is beyond the reel: the outermost lane runs up to one swath before the end of the cable.
+    /// The anchor, and the maximum distance from it, along the shortest path, at which planners place lanes; `None`
+    /// without a tether. Floor farther away is beyond the reel: the outermost lane is up to one swath short of the end of
+    /// the cable.
     pub fn cable_reach(&self) -> Option<(Point, f64)> {
         self.tether.as_ref().map(|tether| (tether.anchor, tether.limits.reel_length_m - self.swath_m))
     }
@@ -265,7 +267,7 @@ impl MissionConfig {
         self.tether.as_ref().map(TetherConfig::as_request)
     }
 
-    /// The inputs of an accuracy forecast, for cells with this edge.
+    /// The inputs of an accuracy forecast for cells with this edge length.
     pub fn forecast(&self, cell_m: f64) -> Forecast {
         let normal = RangeNoise::Gaussian { sigma_ratio: self.range_sigma_ratio };
         Forecast {

@@ -7,11 +7,12 @@ use world::{Point, Vector};
 const MEMORY_S: f64 = 1.5;
 /// Minimum number of sightings for an estimate.
 const LEAST_PLACES: usize = 4;
-/// A slower obstacle counts as standing still, metres per second: a poor position can simulate this speed.
+/// An obstacle that is slower than this counts as standing still, metres per second: errors of the estimated position can
+/// mimic such speeds.
 const MOVING_M_PER_S: f64 = 0.08;
-/// An obstacle that counted as moving still does down to this speed, metres per second.
+/// An obstacle that already counts as moving continues to do so down to this speed, metres per second.
 const STILL_MOVING_M_PER_S: f64 = 0.04;
-/// Minimum distance that the obstacle must have moved, metres.
+/// Minimum distance that an obstacle must have moved to count as moving, metres.
 const LEAST_WAY_M: f64 = 0.12;
 
 /// Recent sightings of one obstacle.
@@ -22,7 +23,7 @@ pub(crate) struct Drift {
 }
 
 impl Drift {
-    /// Adds a sighting at a time, in seconds.
+    /// Adds a sighting made at a given time, in seconds.
     pub(crate) fn see(&mut self, t_s: f64, at: Point) {
         self.places.push_back((t_s, at));
         while self.places.front().is_some_and(|(seen_s, _)| t_s - seen_s > MEMORY_S) {
@@ -49,7 +50,7 @@ impl Drift {
         self.places.back().map_or(f64::NEG_INFINITY, |(t_s, _)| *t_s)
     }
 
-    /// Slope of the straight line fitted to the places by least squares.
+    /// Slope of the straight line that is fitted to the positions by least squares.
     fn slope(&self) -> Option<Vector> {
         if self.places.len() < LEAST_PLACES {
             return None;

@@ -1,9 +1,9 @@
-//! The engine. Its inputs are sensor readings, orders and answers of planners; its outputs are commands to the robot,
+//! The engine. Its inputs are sensor readings, orders and answers from planners; its outputs are commands to the robot,
 //! asks to planners, and events.
 //!
 //! A tick is [`Mission::sense`], any number of [`Mission::poll_ask`] and [`Mission::answer`], and [`Mission::act`]. The
 //! mission never waits: an ask that is still open when [`Mission::act`] is called may be answered in any later tick. The
-//! same inputs and answers in the same ticks give the same events.
+//! same inputs and answers in the same ticks produce the same events.
 
 mod answers;
 mod asks;
@@ -22,6 +22,7 @@ mod orders;
 mod planning;
 mod preparing;
 mod requests;
+mod role;
 mod rules;
 mod scanning;
 mod shadow;
@@ -45,7 +46,7 @@ pub use fork::Fork;
 use happened::Happened;
 use known::Known;
 use planner_api::{Drive, Reason};
-use preparing::Preparing;
+use role::Preparing;
 use rules::{Rules, Seen};
 use shadow::Shadow;
 use stepping::PlaceOnPlan;
@@ -73,8 +74,8 @@ pub struct Step {
 
 /// A mission in progress.
 ///
-/// Cost per tick: one position update, plus work that grows with the obstacles in sensing range and the cells under the
-/// swath. Memory grows by one point per decimetre driven.
+/// Cost per tick: one position update, plus work that grows with the number of obstacles in sensing range and of cells
+/// under the swath. Memory grows by one point per decimetre driven.
 #[derive(Clone)]
 pub struct Mission {
     known: Known,
@@ -84,12 +85,12 @@ pub struct Mission {
     preparing: Option<Preparing>,
     /// The planner in shadow, if any.
     shadow: Option<Shadow>,
-    /// Mission time at which the search for a better plan than the repaired one begins, seconds.
+    /// Mission time at which the search for a better plan than the repaired one is to begin, seconds.
     better_plan_due_s: Option<f64>,
-    /// The plan that was being run when the active planner took over.
+    /// The plan that was in use when the active planner took over.
     left: Option<LeftPlan>,
     workers: Workers,
-    /// The robot's position when it was ordered to move until something happens.
+    /// Where the robot was when it was ordered to move until something happens.
     stepped_from: Option<PlaceOnPlan>,
     happened: Happened,
 }
@@ -123,7 +124,7 @@ impl Mission {
         self.driving.id()
     }
 
-    /// The conversion that a command would undergo now on its way to the robot.
+    /// The conversion that a command would now undergo on its way to the robot.
     pub fn sending(&self) -> Sending {
         self.known.sending()
     }
@@ -174,7 +175,7 @@ impl Mission {
         Step { drive, events }
     }
 
-    /// Requests a new plan if the tether, as it lies now, no longer permits the current one.
+    /// Requests a new plan if the current one is no longer permitted with the tether as it lies now.
     fn watch_tether(&mut self, map_changed: bool) {
         if map_changed {
             self.driving.course.doubt_for_tether(&self.known);
@@ -184,7 +185,8 @@ impl Mission {
         }
     }
 
-    /// Applies the rules that hold the robot, resume, or end the mission; the first rule that returns a verdict decides.
+    /// Applies the rules that hold the robot, let it resume, or end the mission; the first rule that returns a verdict
+    /// decides.
     fn apply_rules(&mut self, readings: &Readings, reached: Option<&TetherAlarm>) {
         if matches!(self.known.phase, Phase::Waiting | Phase::Ended(_)) {
             return;
@@ -210,10 +212,10 @@ impl Mission {
         }
     }
 
-    /// Updates the rules for a tick in which nothing stops a running robot or resumes a held one.
+    /// Does what remains in a tick in which no rule stops a running robot or lets a held one resume.
     fn go_on_or_help(&mut self) {
         match &self.known.phase {
-            // While the robot waits for its planner, the corner timer must not run.
+            // While the robot waits for its planner, the time limit for reaching a corner must not run.
             Phase::Running(_) if self.robot_waits() => {}
             Phase::Running(_) => self.known.task.wait(self.known.config.tick_s * self.known.briskness()),
             Phase::Held(hold) if hold.by.blames_planner() || matches!(hold.by, HoldReason::Stuck { .. }) => {
@@ -224,7 +226,7 @@ impl Mission {
     }
 
     /// Whether the robot stands still because it has no plan or planner yet, or because the pressure sensor has not
-    /// decided yet.
+    /// reached a decision yet.
     fn robot_waits(&self) -> bool {
         !self.known.knows_medium()
             || self.driving.worker.is_being_prepared()

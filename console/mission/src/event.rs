@@ -1,7 +1,7 @@
 //! The events of a run: everything that is known about it.
 //!
 //! Journal, recording, screen and report are all derived from this one enum. Events are in the past tense and
-//! self-contained. They carry no wall-clock time, nor anything else that would differ between two equal runs.
+//! self-contained. They do not contain the wall-clock time or anything else that would differ between two equal runs.
 
 mod effort;
 mod log_line;
@@ -34,13 +34,13 @@ use serde::{Deserialize, Serialize};
 use world::tether::Certificate;
 use world::{CellRun, KindRun, Medium, Obstacle, ObstacleId, Point, Pose, StationId, World, Zone};
 
-/// Version of the journal format; raised when older readers cannot read new journals.
+/// Version of the journal format; raised when older readers can no longer read new journals.
 pub const JOURNAL_VERSION: u32 = 5;
 
 /// One event.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Event {
-    /// Number of the tick, from 0.
+    /// Number of the tick, counted from 0.
     pub tick: u64,
     /// Mission time at the start of that tick, seconds.
     pub t_s: f64,
@@ -53,7 +53,7 @@ pub struct Event {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "event")]
 pub enum EventKind {
-    /// First event of every run: everything needed to repeat the run.
+    /// First event of every run: everything that is needed to repeat the run.
     RunOpened(Box<RunOpened>),
     /// An order of the operator was accepted.
     Ordered {
@@ -64,7 +64,7 @@ pub enum EventKind {
     OrderRefused {
         /// The order.
         order: Order,
-        /// The reason, and what would be accepted.
+        /// The reason why it was refused, and what would be accepted.
         why: String,
     },
     /// The true geometry of the cable at the start of this tick; reported by the simulator and unknown to the mission.
@@ -80,12 +80,12 @@ pub enum EventKind {
     },
     /// The geometry of the cable, from the estimated pose.
     Tethered {
-        /// Length of cable between anchor and robot expected from the map, metres.
+        /// Length of cable between anchor and robot, as expected from the map, metres.
         length_m: f64,
-        /// Length paid out by the reel, measured by its encoder, metres; absent without an encoder.
+        /// Length paid out by the reel, as measured by its encoder, metres; absent without an encoder.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         paid_out_m: Option<f64>,
-        /// Length left on the reel, metres, computed from the larger of the two lengths above.
+        /// Length left on the reel, metres, computed from the larger of `length_m` and `paid_out_m`.
         free_m: f64,
         /// Contacts with obstacles, from the anchor on.
         contacts: Vec<TetherContact>,
@@ -104,7 +104,7 @@ pub enum EventKind {
     TetherAlarmRaised {
         /// The limit.
         alarm: TetherAlarm,
-        /// Whether the limit has been reached.
+        /// Whether the limit has been reached; if not, the cable is only near it.
         reached: bool,
     },
     /// The cable is well within a limit again.
@@ -112,7 +112,7 @@ pub enum EventKind {
         /// The limit.
         alarm: TetherAlarm,
     },
-    /// A plan was evaluated for the tether.
+    /// The effect of a plan on the tether was evaluated.
     Certified {
         /// Id of the planner.
         planner: String,
@@ -127,7 +127,7 @@ pub enum EventKind {
         pose: Pose,
         /// Distance from the hull to the nearest solid object, metres; negative in a collision.
         clearance_m: f64,
-        /// Whether a contact of the hull began in this tick.
+        /// Whether the hull came into contact with something in this tick.
         collided: bool,
     },
     /// A ranging cycle ended, with one aggregated range per station heard.
@@ -144,10 +144,10 @@ pub enum EventKind {
     FixFailed {
         /// The reason.
         error: FixError,
-        /// Whether the previous cycle failed too; the log shows only the first failure in a row.
+        /// Whether the previous cycle had failed, too; the log shows only the first of several failures in a row.
         repeated: bool,
     },
-    /// A station was left out of a fix, for the first time since it was last used.
+    /// A station that was in use until now was left out of a fix.
     StationRejected {
         /// Id of the station.
         station: StationId,
@@ -176,7 +176,7 @@ pub enum EventKind {
         /// Half width of the 95 % error, metres.
         error_m: f64,
     },
-    /// The ranges contradict each other, and leaving out one station does not resolve it.
+    /// The ranges contradict each other, and leaving out one station does not resolve the contradiction.
     RangesInconsistent {
         /// Sum of the squared residuals over their variances.
         chi2: f64,
@@ -195,14 +195,14 @@ pub enum EventKind {
         /// Its name and outline.
         zone: Zone,
     },
-    /// The estimated place of a found obstacle changed.
+    /// The estimated position of a found obstacle changed.
     ObstacleMoved {
         /// Id of the obstacle.
         id: ObstacleId,
         /// Its new estimated outline.
         obstacle: Obstacle,
     },
-    /// A planner was opened that will take over once it has a plan.
+    /// A planner that will take over once it has a plan was opened.
     PlannerPrepared {
         /// Id of the ask that this answers.
         ask: AskId,
@@ -228,7 +228,7 @@ pub enum EventKind {
         choice: PlannerChoice,
         /// Description of the planner.
         info: Box<PlannerInfo>,
-        /// Id of the planner that drove before.
+        /// Id of the planner that was active before.
         from: Option<String>,
     },
     /// Parameters changed during the mission.
@@ -257,27 +257,27 @@ pub enum EventKind {
         length_m: f64,
         /// Whether it achieves the whole task.
         complete: bool,
-        /// The stretches of the path and their purpose, as far as the planner states it.
+        /// The stretches of the path and their purposes, if the planner states them.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         legs: Vec<Leg>,
         /// Lines that the tethered robot never crosses.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         cuts: Vec<Vec<Point>>,
     },
-    /// The planner answered a step; this is the command that the robot was sent.
+    /// The planner answered a step; the event contains the command that was sent to the robot.
     Commanded {
         /// Id of the ask that this answers; absent in journals up to version 2.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         ask: Option<AskId>,
-        /// The command sent to the robot: the planner's, within the robot's limits and limited so that the robot can
-        /// stop.
+        /// The command sent to the robot: the planner's command, brought within the robot's limits and slowed down if
+        /// necessary so that the robot can stop.
         command: Command,
-        /// The planner's command, if it was too fast to stop in time.
+        /// The planner's own command, if it was too fast for the robot to stop in time.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         asked: Option<Command>,
     },
-    /// For some time the robot has been driven more slowly than the planner requests, so that it can stop. Only the first
-    /// of several such periods in a row is reported.
+    /// For some time, the robot has been driven more slowly than the planner requests, so that it can stop. If there are
+    /// several such periods in a row, only the first is reported.
     SpeedLimited {
         /// The speed requested by the planner, metres per second.
         asked_m_per_s: f64,
@@ -293,7 +293,7 @@ pub enum EventKind {
     MediumKnown {
         /// The result.
         medium: Medium,
-        /// The reading that led to it, pascals.
+        /// The reading that led to the result, pascals.
         pressure_pa: f64,
     },
     /// The planner drew something to explain its decisions.
@@ -319,18 +319,19 @@ pub enum EventKind {
     Snapshotted {
         /// Id of the ask that this answers, which also names the state.
         ask: AskId,
-        /// Length of the state, bytes; 0 if there was none to save.
+        /// Length of the state, bytes; 0 if there was nothing to save.
         bytes: u64,
     },
     /// A planner's answer came too late to be used.
     Discarded {
         /// Id of the ask that it answers.
         ask: AskId,
-        /// The plan, if the planner is asked to keep to it in the next one.
+        /// The plan, if the planner is to be asked to keep to it in the next one.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         plan: Option<Box<EventKind>>,
     },
-    /// A planner answered a step after the tick for which it was asked; reported for the first of several late answers.
+    /// A planner answered a step after the tick in which it was asked; of several late answers in a row, only the first
+    /// is reported.
     PlannerLate {
         /// Id of the planner.
         planner: String,
@@ -345,7 +346,7 @@ pub enum EventKind {
         /// Description of the fault.
         fault: Fault,
     },
-    /// A planner was opened that flies in shadow from now on.
+    /// A planner that runs in shadow from now on was opened.
     ShadowBegan {
         /// Id of the ask that this answers.
         ask: AskId,
@@ -355,12 +356,12 @@ pub enum EventKind {
         info: Box<PlannerInfo>,
     },
     /// An action of the planner in shadow, without effect on the robot: it planned, drew, logged, commanded or failed. A
-    /// command is recorded as the planner gave it.
+    /// command is recorded exactly as the planner gave it.
     Shadowed {
         /// The event that would have occurred if this planner had been the active one.
         of: Box<EventKind>,
     },
-    /// The planner in shadow answered a step later than in the tick after the ask; the answer is not used.
+    /// The planner in shadow answered a step later than in the tick after the ask, so the answer is not used.
     ShadowMissed {
         /// Id of the ask that it answers.
         ask: AskId,
@@ -374,22 +375,22 @@ pub enum EventKind {
         /// The reason, as a sentence.
         why: String,
     },
-    /// The planner in shadow took over in this tick. The events that it drives, its plan from here, and the certificate
-    /// of that plan follow.
+    /// The planner in shadow took over in this tick. The events for its activation, its plan from here on, and the
+    /// certificate of that plan follow.
     Promoted {
         /// Id of the planner.
         planner: String,
         /// Its record in shadow.
         tally: ShadowTally,
     },
-    /// No planner flies in shadow any more.
+    /// No planner runs in shadow any more.
     ShadowEnded {
-        /// Id of the planner that did.
+        /// Id of the planner that was in shadow.
         planner: String,
         /// The reason, as a sentence.
         why: String,
     },
-    /// After a repair, a plan for all that is left was made in the background, beginning at a place ahead on the present
+    /// After a repair, a plan for all that is left was made in the background. It begins at a place ahead on the current
     /// plan.
     BetterPlanned {
         /// Id of the ask that this answers.
@@ -400,22 +401,22 @@ pub enum EventKind {
         path: Vec<Point>,
         /// Whether it achieves the whole task.
         complete: bool,
-        /// The stretches of the path and their purpose, as far as the planner states it.
+        /// The stretches of the path and their purposes, if the planner states them.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         legs: Vec<Leg>,
         /// Lines that the tethered robot never crosses.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         cuts: Vec<Vec<Point>>,
-        /// The effort of the current plan from there on.
+        /// The effort of the current plan from that place on.
         flown: Effort,
         /// The effort of this plan.
         better: Effort,
-        /// The reason why it is not offered, as a sentence; absent if it is.
+        /// The reason why the plan is not offered, as a sentence; absent if it is offered.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         objection: Option<String>,
     },
-    /// The better plan was taken in this tick. The events that its planner drives, the plan from here, and the
-    /// certificate of that plan follow.
+    /// The better plan was taken in this tick. The events for the activation of its planner, the plan from here on, and
+    /// the certificate of that plan follow.
     BetterPlanTaken {
         /// Id of the planner.
         planner: String,
@@ -424,14 +425,14 @@ pub enum EventKind {
         /// The effort of this plan.
         better: Effort,
     },
-    /// The better plan was dropped, whether it was still being made or already offered.
+    /// The better plan was dropped, either while it was being made or after it had been offered.
     BetterPlanDropped {
         /// Id of its planner.
         planner: String,
         /// The reason, as a sentence.
         why: String,
     },
-    /// Floor was scanned, by the estimated pose.
+    /// Floor was scanned, according to the estimated pose.
     Covered {
         /// Newly scanned cells of the coverage grid.
         runs: Vec<CellRun>,
@@ -441,7 +442,7 @@ pub enum EventKind {
         /// Cells of the coverage grid that were not scanned before.
         runs: Vec<CellRun>,
     },
-    /// A found obstacle changed which cells are floor, or which of them the tool can reach.
+    /// A found obstacle changed which cells are floor, or which cells the tool can reach.
     FloorChanged {
         /// The changed cells and their new state.
         changes: Vec<KindRun>,
@@ -474,7 +475,7 @@ pub enum EventKind {
     },
     /// The robot may move again.
     Resumed,
-    /// Last event of a run that ended normally or by order.
+    /// The last event of every run that ended normally or by order.
     Ended {
         /// The outcome.
         outcome: Outcome,
@@ -499,7 +500,7 @@ pub struct RunOpened {
     pub scenario: String,
     /// The scenario file as read, with the settings of the command line already applied.
     pub scenario_toml: String,
-    /// Seed of all random choices.
+    /// Seed for all random choices.
     pub seed: u64,
     /// The true tank.
     pub world: World,
@@ -513,7 +514,7 @@ pub struct RunOpened {
     /// The checks that the operator ticks by hand before the start.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub checklist: Vec<String>,
-    /// Measurements made by others and located afterwards; absent for a run that was flown.
+    /// Measurements by another system, located afterwards; absent for a run that was flown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub measured: Option<Measured>,
 }

@@ -1,26 +1,26 @@
-//! The one rule that limits every command, whatever its source: after this tick the robot must still be able to brake to
-//! a standstill, straight ahead, without touching anything on the chart and within the range of its sensors.
+//! The one rule that limits every command, whatever its source. After this tick, the robot must still be able to brake to
+//! a standstill, straight ahead, without touching anything on the chart and without leaving the range of its sensors.
 //!
-//! If this is true in one tick, a command that keeps it true exists in the next. A command that would make it false is
-//! executed more slowly, or in the last resort not at all: the robot brakes. The path is computed for one tick with the
+//! If this condition is met in one tick, the next tick has a command that meets it again. A command that would violate it
+//! is executed more slowly or, as a last resort, not at all: the robot brakes. The path is computed for one tick with the
 //! robot's own acceleration and turn rate, from its current speed.
 
 use geometry::{Braking, Drive, Limits, Motion, motion::at_most};
 use world::{Point, Pose, Vector};
 
-/// Room to keep beside obstacles in sight, metres: their position relative to the robot is known.
+/// Clearance to keep from obstacles in sight, metres; small, because their position relative to the robot is known.
 const SEEN_ROOM_M: f64 = 0.01;
-/// Maximum room to keep, because of the position error, beside obstacles that are only on the chart, metres: a robot that
-/// is lost must still be able to move.
+/// Maximum clearance to keep, because of the position error, from obstacles that are only on the chart, metres; limited,
+/// because a robot that is lost must still be able to move.
 const CHART_ROOM_MOST_M: f64 = 0.15;
-/// Where there is less than the required room, the share of it that the robot may use up: along a curved wall, braking
-/// straight ahead comes closer.
+/// Where room is short, the share of it that must remain: along a curved wall, braking straight ahead brings the robot
+/// closer.
 const ROOM_SHARE: f64 = 0.5;
-/// A hull in contact may move into the obstacle by this much, metres, to allow for rounding.
+/// A hull in contact with an obstacle may move into it by this much, metres, to allow for rounding.
 const TOUCH_M: f64 = 1e-4;
 /// Minimum step for checking the robot's path, metres.
 const LOOK_M: f64 = 0.01;
-/// Maximum turn of one piece of an arc when it is checked, radians.
+/// Maximum turn in one piece of an arc when the arc is checked, radians.
 const ARC_PIECE_RAD: f64 = 0.2;
 /// Number of bisection steps in the search for the highest safe speed.
 const HALVINGS: u32 = 6;
@@ -30,7 +30,7 @@ const HALVINGS: u32 = 6;
 pub(crate) struct Solid<'a> {
     /// Its outline.
     pub outline: Outline<'a>,
-    /// Whether it is in sight now; otherwise its place is the one on the chart, relative to the estimated pose.
+    /// Whether it is in sight now; if not, its position relative to the estimated pose is taken from the chart.
     pub is_seen: bool,
 }
 
@@ -66,7 +66,7 @@ pub(crate) struct Here {
 /// The robot's speed, computed from the commands sent to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Momentum {
-    /// Speed along the heading, metres per second; negative backward. For a robot without a heading, its speed.
+    /// Speed along the heading, metres per second; negative backward. For a robot without a heading, simply its speed.
     ahead_m_per_s: f64,
     /// Velocity of a robot without a heading, metres per second, tank frame.
     velocity: Vector,
@@ -88,7 +88,7 @@ impl Momentum {
     /// Standstill.
     pub(crate) const NONE: Self = Self { ahead_m_per_s: 0.0, velocity: Vector::new(0.0, 0.0) };
 
-    /// The speed, metres per second; negative backward.
+    /// The speed along the heading, metres per second; negative backward.
     pub(crate) fn speed_m_per_s(&self) -> f64 {
         self.ahead_m_per_s
     }
@@ -125,7 +125,7 @@ impl Momentum {
         Motions { end, turn_rad, after, onward: end.direction() * ahead_m_per_s.signum() }
     }
 
-    /// The command at `share` of its speed, on the same curve: 1 is the full command, 0 the hardest braking.
+    /// The command at `share` of its speed, on the same curve: 1 is the full command, 0 is the hardest braking.
     fn slower(&self, drive: Drive, share: f64, here: &Here) -> Drive {
         match drive {
             Drive::Velocity(velocity) => Drive::Velocity(velocity * share),
@@ -139,7 +139,7 @@ impl Momentum {
     }
 }
 
-/// The obstacles near a robot, and the distance to keep from each.
+/// The obstacles near a robot, and the distance that its centre must keep from each.
 pub(crate) struct Surroundings<'a> {
     solids: Vec<(Outline<'a>, f64)>,
 }
@@ -158,7 +158,8 @@ impl<'a> Surroundings<'a> {
         Self { solids: solids.iter().map(to).collect() }
     }
 
-    /// Spare room for the hull's centre at a place, metres; negative where it must not be.
+    /// Distance by which a position of the hull's centre exceeds what is required, metres; negative where the centre must
+    /// not be.
     fn spare_m(&self, at: Point) -> f64 {
         self.solids
             .iter()
@@ -183,7 +184,7 @@ impl<'a> Surroundings<'a> {
         }
     }
 
-    /// Whether a robot that executes this for a tick, and then brakes, touches nothing.
+    /// Whether a robot that moves in this way for one tick, and then brakes, touches nothing.
     fn allows(&self, motions: &Motions, here: &Here) -> bool {
         let start = &here.pose;
         let n = (motions.turn_rad.abs() / ARC_PIECE_RAD).ceil().max(1.0) as u32;
@@ -201,7 +202,7 @@ impl<'a> Surroundings<'a> {
     }
 }
 
-/// Room to keep beside obstacles that are only on the chart, metres.
+/// Clearance to keep from obstacles that are only on the chart, metres.
 fn chart_room_m(error_m: f64) -> f64 {
     if error_m.is_finite() { error_m.clamp(SEEN_ROOM_M, CHART_ROOM_MOST_M) } else { CHART_ROOM_MOST_M }
 }
@@ -219,8 +220,7 @@ pub(crate) fn is_within_sight(momentum: &Momentum, drive: Drive, here: &Here) ->
     Braking::of(&here.limits).distance_m(after) <= here.limits.sensing_range_m
 }
 
-/// The drive that is sent for a command: the command itself if the robot can stop after it, otherwise as much of it as is
-/// safe.
+/// The drive that is sent for a command: the command itself if the robot can stop after it, or as much of it as is safe.
 pub(crate) fn governed(momentum: &Momentum, drive: Drive, here: &Here, around: &Surroundings<'_>) -> Drive {
     let is_safe = |drive: Drive| {
         is_within_sight(momentum, drive, here) && around.allows(&momentum.motions(drive, here), here)

@@ -1,12 +1,12 @@
-//! The mission: a pure function from sensor readings to the robot's motion, with events that report everything worth
+//! The mission: a pure function from sensor readings to the motion of the robot, with events that report everything worth
 //! knowing.
 //!
-//! There is no clock, file, thread or terminal in this crate: the same inputs give the same events. The only outputs of
-//! the engine are [`Event`]s, asks to planners, and commands to the robot.
+//! This crate uses no clock, file, thread or terminal: the same inputs produce the same events. The only outputs of the
+//! engine are [`Event`]s, asks to planners, and commands to the robot.
 //!
 //! Suggested reading order: [`engine`] (the tick), [`event`] (its outputs), [`order`] and [`config`] (its inputs),
-//! [`phase`] and [`standing`] (what the mission is doing, and which orders it accepts then), [`ask`] (the interface to
-//! planners).
+//! [`phase`] and [`standing`] (what the mission is doing, and which orders it accepts meanwhile), [`ask`] (the interface
+//! to planners).
 
 pub mod ask;
 mod chart;
@@ -33,9 +33,9 @@ pub use config::{BetterPlan, Locating, MissionConfig, ScanConfig, TaskConfig, Te
 pub use engine::{Fork, Input, Mission, Sending, Step};
 pub use event::{Event, EventKind, LogLine, RunOpened, Severity};
 pub use locate::Locator;
-pub use order::{Check, CheckOutcome, Injection, Note, Noted, Order, Outlook, RangeFault, StepTo};
+pub use order::{Check, CheckOutcome, Injection, Note, Noted, Order, Outlook, RangeFault};
 pub use passage::Passage;
-pub use phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes};
+pub use phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes, StepTo};
 pub use plan_extent::check_extent;
 pub use plan_id::{PlanId, PlanSeen};
 pub use planner::{

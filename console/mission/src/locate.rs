@@ -19,7 +19,7 @@ use world::{Point, Pose, Readings, StationId, World};
 pub struct Locator {
     positioner: Positioner,
     limit_m: f64,
-    /// Stations that the operator excluded.
+    /// Stations that the operator has excluded.
     unused: BTreeSet<StationId>,
     left_out: BTreeMap<StationId, Exclusion>,
     last_cycle_failed: bool,
@@ -66,7 +66,7 @@ impl Locator {
         }
     }
 
-    /// Sets whether the ranges of a station are used from now on.
+    /// Sets whether the ranges from a station are used from now on.
     pub(crate) fn use_station(&mut self, station: StationId, used: bool) {
         if used {
             self.unused.remove(&station);
@@ -80,12 +80,12 @@ impl Locator {
         self.positioner.wander(most_m, most_rad);
     }
 
-    /// Reduces the weight of the ranges of the next cycles.
+    /// Reduces the weight of the ranges in the next cycles.
     pub fn doubt(&mut self, doubt: Doubt) {
         self.positioner.doubt(doubt);
     }
 
-    /// Ranges of the last cycle that no place in the tank explains.
+    /// Ranges in the last cycle that are impossible at any place in the tank.
     pub fn impossible(&self) -> &[Impossible] {
         &self.impossible
     }
@@ -95,7 +95,7 @@ impl Locator {
         self.positioner.agreement()
     }
 
-    /// How the last fix was chosen over its mirror image.
+    /// How the choice between the last fix and its mirror image was made.
     pub fn sides(&self) -> Sides {
         self.sides
     }
@@ -133,8 +133,8 @@ impl Locator {
         events
     }
 
-    /// Raises the alarm when the ranges contradict each other and leaving out a station does not resolve it. The next
-    /// consistent fix clears it. A cycle without information changes nothing.
+    /// Raises the alarm if the ranges contradict each other and leaving out a station does not resolve the contradiction.
+    /// The next consistent fix clears the alarm. A cycle without information changes nothing.
     fn heed(&mut self, fix: &Result<Fix, FixError>) -> Option<EventKind> {
         let contradiction = match fix {
             Ok(fix) if fix.integrity == Integrity::Alarm => Some((fix.chi2, fix.degrees_of_freedom)),
@@ -154,7 +154,7 @@ impl Locator {
 
     fn stations_changed(&mut self, fix: &Fix) -> Vec<EventKind> {
         let out: BTreeMap<StationId, Exclusion> = fix.excluded.iter().copied().collect();
-        // A new reason is reported, a new number is not.
+        // A new reason is reported; new numbers with the same reason are not.
         let is_news = |(station, reason): &(&StationId, &Exclusion)| {
             self.left_out.get(station).is_none_or(|before| discriminant(before) != discriminant(*reason))
         };
@@ -189,7 +189,7 @@ impl Locator {
         self.lost
     }
 
-    /// The longer half axis of the 95 % ellipse, metres.
+    /// The longer semi-axis of the 95 % ellipse, metres.
     pub(crate) fn error_95_m(&self) -> f64 {
         self.positioner.error_95_m()
     }

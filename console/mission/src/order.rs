@@ -1,7 +1,7 @@
 //! The operator's orders; they take effect at the start of the next tick.
 
 use crate::{
-    phase::Outcome,
+    phase::{Outcome, StepTo},
     plan_id::PlanId,
     planner::{ParamValue, PlannerChoice},
 };
@@ -14,14 +14,14 @@ use world::{Point, StationId};
 pub enum Order {
     /// While waiting: make the plan that the mission will begin with, or make it again. Nothing moves.
     Plan,
-    /// Begin the mission with whatever plan is made, without showing it first. Refused where a start names its plan
-    /// ([`crate::MissionConfig::start_names_plan`]).
+    /// Begin the mission with whatever plan is made, without showing the plan first. Refused where a start must name its
+    /// plan ([`crate::MissionConfig::start_names_plan`]).
     Start,
     /// Begin the mission with the plan that the operator saw.
     StartPlan(PlanId),
-    /// While waiting: record the checks made before the start, by the console and by hand.
+    /// While waiting: record the checks made before the start, both by the console and by hand.
     NoteChecks(Vec<Check>),
-    /// While held: record forecasts of how the mission would continue with some planners.
+    /// While held: record forecasts of how the mission would continue with certain planners.
     NoteOutlooks(Vec<Outlook>),
     /// Hold the robot.
     Hold,
@@ -31,7 +31,7 @@ pub enum Order {
     Step,
     /// While held: move until something happens, then stand still again.
     StepTo(StepTo),
-    /// While held because a plan was refused for the tether: run that plan, and later ones until one fails.
+    /// While held because a plan was refused for the tether: run that plan and later ones, until one of them fails.
     FlyUncertified,
     /// End the mission.
     Abort,
@@ -45,22 +45,22 @@ pub enum Order {
     Promote,
     /// End the shadow.
     DropShadow,
-    /// Take the better plan that is offered, at the place where it begins.
+    /// Take the better plan that is offered, once the robot is at the place where the plan begins.
     TakePlan,
-    /// Change one parameter of the planner; while the mission runs, only a live one.
+    /// Change one parameter of the planner; while the mission runs, only a live one can be changed.
     SetParameter {
         /// Key of the parameter.
         key: String,
         /// Its new value.
         value: ParamValue,
     },
-    /// Close the floor between these corners (metres, tank frame) from now on: plans keep out of the zone, and it is not
-    /// scanned. The mission names the zone.
+    /// Close the floor between these corners (metres, tank frame) from now on: plans stay out of the zone, and it is not
+    /// scanned. The mission gives the zone its name.
     DrawZone(Vec<Point>),
-    /// For training: let a station of the simulation fail for a while. The mission records the order, but does not use it
-    /// for locating.
+    /// For training: make a station of the simulation faulty for a while. The mission records the order, but does not use
+    /// it for locating.
     Inject(Injection),
-    /// Set whether the ranges of a station are used; the others still locate the robot.
+    /// Set whether the ranges from a station are used; the other stations still locate the robot.
     UseStation {
         /// Id of the station.
         station: StationId,
@@ -70,7 +70,7 @@ pub enum Order {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         by: Option<String>,
     },
-    /// Record what the operator did at the console; this affects neither robot nor planner.
+    /// Record what the operator did at the console; the record affects neither robot nor planner.
     Note(Note),
 }
 
@@ -84,8 +84,8 @@ pub struct Note {
     pub by: Option<String>,
 }
 
-/// The kinds of action at the console. An alarm is recorded by its name, which is the same in every run, and by the text
-/// that the operator saw.
+/// The kinds of action at the console. An alarm is recorded by its name, which is the same in every run, together with
+/// the text that the operator saw.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Noted {
@@ -114,7 +114,7 @@ pub enum Noted {
         /// Its text.
         text: String,
     },
-    /// The parameters of a preset were taken; the order that sets them follows.
+    /// The operator took over the parameters of a preset; the order that sets them follows.
     PresetTaken {
         /// Name of the preset.
         preset: String,
@@ -144,24 +144,14 @@ pub struct Injection {
     pub by: Option<String>,
 }
 
-/// The kinds of fault of a station.
+/// The kinds of fault that a station can have.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RangeFault {
     /// The station is silent.
     Dead,
-    /// The ranges of the station are too long by this many metres.
+    /// The ranges from the station are too long by this many metres.
     Offset(f64),
-}
-
-/// The end of a step of a held robot.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum StepTo {
-    /// The end of the current lane or connector; without lanes, one metre ahead.
-    LaneEnd,
-    /// The next event of severity WATCH or above.
-    Event,
 }
 
 /// A check made before the start.
@@ -171,7 +161,7 @@ pub struct Check {
     pub what: String,
     /// The result.
     pub outcome: CheckOutcome,
-    /// The finding, as a sentence; for a check ticked by hand, the name of the person, or empty.
+    /// The finding, as a sentence; for a check ticked by hand, the name of the person, or nothing.
     pub found: String,
 }
 
@@ -189,8 +179,8 @@ pub enum CheckOutcome {
     Failed,
 }
 
-/// A forecast of how the mission would continue with a planner from where it is held, computed from the estimate and the
-/// map alone.
+/// A forecast of how the mission would continue with a planner from the point at which it is held, computed from the
+/// estimate and the map alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Outlook {
     /// The planner, with its parameters.
@@ -199,7 +189,7 @@ pub struct Outlook {
     pub outcome: Option<Outcome>,
     /// The reason, as a sentence.
     pub reason: String,
-    /// Mission time until the end, seconds.
+    /// Mission time left until the end, seconds.
     pub after_s: f64,
     /// Distance to drive until the end, metres.
     pub length_m: f64,

@@ -1,8 +1,8 @@
-//! The rule for what counts as scanned.
+//! The rule that decides which floor counts as scanned.
 
 use crate::phase::Phase;
 
-/// The status of floor that the tool passes between two estimates of its pose.
+/// The status of floor that the tool passes over between two estimates of the robot's pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Passage {
     /// Ignored: the mission has not been started.
@@ -14,8 +14,8 @@ pub enum Passage {
 }
 
 impl Passage {
-    /// The one rule for the mission and for all readers of its events: floor counts as scanned from the start of the
-    /// mission on, also while a held robot brakes, wherever the 95 % error of the position is within the limit for
+    /// The one rule for the mission and for all readers of its events. Floor counts as scanned from the start of the
+    /// mission on, even while a held robot is braking, wherever the 95 % error of the position is within the limit for
     /// scanning (both in metres).
     ///
     /// ```

@@ -1,10 +1,9 @@
-//! The phase of a mission: whether the robot moves, why it stands still, how the mission ended.
+//! The phase of a mission: whether the robot moves, why it stands still, or how the mission ended.
 
 mod hold_reason;
 
 pub use hold_reason::HoldReason;
 
-use crate::order::StepTo;
 use serde::{Deserialize, Serialize};
 
 /// The phase of a mission.
@@ -13,7 +12,7 @@ pub enum Phase {
     /// The mission has not been started.
     #[default]
     Waiting,
-    /// The robot moves, or will as soon as its planner is ready.
+    /// The robot moves, or will move as soon as its planner is ready.
     Running(Gait),
     /// The robot is held.
     Held(Hold),
@@ -22,7 +21,7 @@ pub enum Phase {
 }
 
 impl Phase {
-    /// Whether the robot moves, or may begin to move without an order.
+    /// Whether the robot moves or may begin to move without an order.
     pub fn may_move(&self) -> bool {
         match self {
             Self::Running(_) => true,
@@ -32,7 +31,7 @@ impl Phase {
     }
 }
 
-/// How long a running robot moves.
+/// For how long a running robot moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Gait {
     /// Until something stops it.
@@ -60,9 +59,9 @@ pub enum Resumes {
     /// Only an order lets the robot move again.
     #[default]
     Never,
-    /// The robot moves again as soon as the cause is gone.
+    /// The robot moves again automatically as soon as the cause is gone.
     WhenCleared,
-    /// The robot moves again as soon as the fallback planner has a plan.
+    /// The robot moves again automatically as soon as the fallback planner has a plan.
     ByFallback,
 }
 
@@ -103,4 +102,14 @@ impl Outcome {
             Self::Aborted => "aborted",
         }
     }
+}
+
+/// Where a step of a held robot ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StepTo {
+    /// The end of the current lane or connector; without lanes, one metre ahead.
+    LaneEnd,
+    /// The next event of severity WATCH or above.
+    Event,
 }

@@ -1,18 +1,18 @@
-//! Rejects plans that are far too large for their tank.
+//! Refuses plans that are far too large for their tank.
 
 use planner_api::Plan;
 use world::{Boundary, Point, polyline};
 
-/// Maximum length of a path: this multiple of the length of all lanes over the whole floor, plus this multiple of the
+/// Maximum length of a path: this multiple of the length of all lanes over the whole floor, plus the same multiple of the
 /// size of the tank.
 const MOST_LANES: f64 = 20.0;
 const MOST_CROSSINGS: f64 = 1000.0;
 
-/// Refuses a plan that is far too large for this tank; `lane_m` is the width of a lane, metres. Sampling such a path
-/// would exhaust time and memory.
+/// Refuses a plan that is far too large for this tank; `lane_m` is the width of a lane, metres. Without this check,
+/// sampling the path would exhaust time and memory.
 ///
 /// # Errors
-/// What is wrong; the text continues after the planner's name.
+/// What is wrong; the text continues a sentence that begins with the planner's name.
 pub fn check_extent(plan: &Plan, boundary: &Boundary, lane_m: f64) -> Result<(), String> {
     let (low, high) = boundary.bounds();
     let size = high - low;

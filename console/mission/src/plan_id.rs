@@ -7,9 +7,10 @@ use sha2::{Digest, Sha256};
 use std::fmt;
 use world::Point;
 
-/// SHA-256 of a plan: of the planner, its build and its parameters, and of the exact path with its legs and cuts.
+/// SHA-256 that identifies a plan: of the planner with its build and parameters, and of the exact path with its legs and
+/// cuts.
 ///
-/// For a planner that only steps the path is empty, so the hash covers the planner with its parameters.
+/// For a planner that only steps, the path is empty, so the hash covers only the planner with its parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct PlanId([u8; 32]);
 
@@ -18,7 +19,7 @@ pub struct PlanId([u8; 32]);
 pub struct PlanSeen<'a> {
     /// The path, metres, tank frame.
     pub path: &'a [Point],
-    /// The legs of the path and their purpose.
+    /// The legs of the path and their purposes.
     pub legs: &'a [Leg],
     /// Lines that the tethered robot never crosses, metres, tank frame.
     pub cuts: &'a [Vec<Point>],
@@ -83,8 +84,8 @@ impl<'de> Deserialize<'de> for PlanId {
     }
 }
 
-/// Feeds values so that different plans never feed the same bytes: everything of variable length is preceded by its
-/// length.
+/// Feeds values into the hash in such a way that different plans never feed the same bytes: everything of variable length
+/// is preceded by its length.
 struct Hash(Sha256);
 
 impl Hash {

@@ -102,7 +102,7 @@ pub struct ParamInfo {
     pub live: bool,
 }
 
-/// Description of an installed planner or of the active one.
+/// Description of a planner that is installed or active.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlannerInfo {
     /// Its id.
@@ -122,10 +122,10 @@ pub struct PlannerInfo {
     /// Whether it can cover floor.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub covers: bool,
-    /// Whether it can save its private state and continue from it in a new process.
+    /// Whether it can save its private state and continue from that state in a new process.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub snapshots: bool,
-    /// Sandbox of its process on the machine where it was found or drives; absent in older journals.
+    /// Sandbox of its process on the machine where it was found or is active; absent in older journals.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sandbox: Option<Sandbox>,
     /// Its parameters.
@@ -142,7 +142,7 @@ pub struct RefusedPlugin {
 }
 
 impl RefusedPlugin {
-    /// Whether the file name is the usual one for a plugin with the planner of this id.
+    /// Whether the file name is the usual one for a plugin that contains the planner with this id.
     pub fn is_named_after(&self, id: &str) -> bool {
         let stem = self.plugin.split_once('.').map_or(&*self.plugin, |(stem, _)| stem);
         stem.split_once("planner_").is_some_and(|(_, name)| name.replace('_', "-") == id.replace('_', "-"))
@@ -150,7 +150,8 @@ impl RefusedPlugin {
 }
 
 impl PlannerInfo {
-    /// Why it cannot do a mission over a whole floor; `None` if it can. The text continues after the planner's name.
+    /// Why it cannot run a mission over a whole floor; `None` if it can. The text continues a sentence that begins with
+    /// the planner's name.
     pub fn why_no_coverage(&self) -> Option<&'static str> {
         (!self.covers).then_some("does not support coverage missions")
     }
@@ -191,28 +192,28 @@ impl fmt::Display for During {
 #[cfg_attr(test, derive(strum::EnumCount))]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
-    /// The planner itself returned this error code; its process still runs.
+    /// The planner itself returned this error code; its process is still running.
     Planner(planner_api::Code),
     /// The planner panicked.
     Panic,
     /// The process ended: a signal, an abort, an exit.
     Died,
-    /// The planner did not answer although it had the processor to itself for the whole time allowed, or it was stopped;
-    /// its process was killed.
+    /// The planner did not answer although it had the processor to itself for the whole time allowed, or its process was
+    /// stopped. The process was killed.
     Hung,
-    /// The planner answered only after it was asked to stop, so it is too slow.
+    /// The planner answered only after it had been asked to stop, so it is too slow.
     Late,
     /// The planner was starved of CPU time for too long; its process was killed.
     Starved,
-    /// The planner answered with numbers that are not finite or exceed the robot's limits.
+    /// The planner answered with numbers that are not finite or that exceed the robot's limits.
     BadOutput,
-    /// The planner attempted a forbidden call of the system; its process was killed.
+    /// The planner attempted a forbidden system call; its process was killed.
     Forbidden,
     /// The planner sent something that is not a valid answer.
     Protocol,
     /// The host refused to load or configure it.
     Refused,
-    /// The planner failed too often and cannot drive again in this mission.
+    /// The planner failed too often and cannot be used again in this mission.
     Quarantined,
 }
 
@@ -237,8 +238,8 @@ impl fmt::Display for Cause {
 impl Cause {
     /// Whether the failure came from outside the planner's own logic: from the clock, from limits enforced by the
     /// machine, or from an unrequested message to the console, for example from a thread that outlived its call. When the
-    /// run is recomputed, the same failure need not occur, or not in the same tick. After such a failure the process is
-    /// gone.
+    /// run is recomputed, the same failure may not occur, or may occur in another tick. After such a failure, the process
+    /// is gone.
     pub fn is_external(self) -> bool {
         matches!(
             self,
@@ -247,10 +248,10 @@ impl Cause {
     }
 }
 
-/// A planner's failure, in words from which an operator understands what happened.
+/// A planner's failure, in words that tell an operator what happened.
 ///
-/// `message` names planner, cause and step. It contains no figure that differs between two equal runs (no milliseconds,
-/// no process ids), because it goes into the journal, which must repeat byte for byte.
+/// `message` names planner, cause and step. It contains no figures that differ between two equal runs (no milliseconds,
+/// no process ids), because it is written to the journal, which must repeat byte for byte.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, thiserror::Error)]
 #[error("{message}")]
 pub struct Fault {
@@ -262,16 +263,17 @@ pub struct Fault {
     pub cause: Cause,
     /// The message, one sentence.
     pub message: String,
-    /// For a plan that got only part of the way: that part of the path.
+    /// The first part of the path, if the plan got only part of the way.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub partial: Vec<world::Point>,
-    /// SHA-256 of the plugin's file, hexadecimal, if it was known at the time.
+    /// SHA-256 of the plugin file, hexadecimal, if it was known at the time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plugin_sha256: Option<String>,
 }
 
 impl Fault {
-    /// Whether the planner answered that no path leads from the start to the goal, which is not a failure of the planner.
+    /// Whether the planner answered that there is no path from the start to the goal, which is not a failure of the
+    /// planner.
     pub fn is_no_way(&self) -> bool {
         use planner_api::Code::{GoalOccupied, GoalOutside, NoPath, StartOccupied, StartOutside};
         let says = |code| matches!(code, NoPath | GoalOccupied | GoalOutside | StartOccupied | StartOutside);

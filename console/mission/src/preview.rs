@@ -1,4 +1,4 @@
-//! A plan without a run: the inputs that a planner would receive at the start, on the drawing.
+//! A plan without a run: the inputs that a planner would receive at the start, using only the drawing.
 
 use crate::{ask::PlanAsk, chart::Chart, config::MissionConfig, task::Task};
 use nalgebra::Matrix3;
@@ -6,8 +6,8 @@ use planner_api::{PoseEstimate, Reason};
 use std::sync::Arc;
 use world::{CoverageGrid, Floor, World};
 
-/// The inputs of a plan for the whole task, from the start, on the drawing; they include the tank as the planner receives
-/// it.
+/// The inputs of a plan for the whole task from the start, using only the drawing; they include the tank in the form that
+/// the planner receives.
 pub fn preview(config: &MissionConfig, drawing: &World, seed: u64) -> PlanAsk {
     let chart = Chart::new(drawing.clone(), config, seed);
     let task = Task::new(&config.task, config.start.position);

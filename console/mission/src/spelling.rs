@@ -1,8 +1,8 @@
-//! Finds the name that was probably meant, for the hint in a message about an unknown one.
+//! Finds the name that was probably meant, for the hint in a message about an unknown name.
 
 /// The known name nearest to a misspelt one; `None` if more than a third of its letters, or more than four, are wrong.
 ///
-/// The cost is the product of the lengths, for each known name.
+/// The cost, for each known name, is the product of the lengths of the two names.
 pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let reach = (word.chars().count() / 3).clamp(1, 4);
     known

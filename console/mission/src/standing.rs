@@ -1,7 +1,7 @@
 //! Which orders a mission accepts now.
 //!
 //! There is one table, [`Standing::allows`]. The mission consults it for every order; the screen consults it to show
-//! which keys are available and why the others are not. It has no state and changes none.
+//! which keys are available, and why the others are not. The table has no state and changes none.
 
 mod folded;
 
@@ -25,14 +25,14 @@ pub enum PositionTrust {
     Good,
     /// The position error is beyond the limit, or there are no more fixes.
     Lost {
-        /// The limit of the 95 % error, metres.
+        /// The limit on the 95 % error, metres.
         limit_m: f64,
     },
     /// The ranges contradict each other.
     Alarmed,
 }
 
-/// The plan that a start would begin with.
+/// The plan with which a start would begin the mission.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Readiness<'a> {
     /// Plans are not shown before the start: whatever plan is made is run.
@@ -41,7 +41,7 @@ pub enum Readiness<'a> {
     NoPlan,
     /// The planner is being opened or changed, or is making a plan.
     Preparing,
-    /// The planner failed, or its plan cannot be run: the reason, as a sentence.
+    /// The planner failed, or its plan cannot be run. Contains the reason, as a sentence.
     Failed(&'a str),
     /// This plan is ready.
     Plan(PlanId),
@@ -58,9 +58,9 @@ pub struct Standing<'a> {
     pub planner: Option<&'a PlannerInfo>,
     /// The record of the planner in shadow; `None` without one.
     pub shadow: Option<ShadowTally>,
-    /// Whether a better plan is offered and not ordered yet.
+    /// Whether a better plan is offered and has not been ordered yet.
     pub has_offer: bool,
-    /// The plan that a start would begin with.
+    /// The plan with which a start would begin the mission.
     pub readiness: Readiness<'a>,
 }
 
@@ -82,7 +82,7 @@ pub enum Refusal {
         /// The reason, as a sentence.
         why: String,
     },
-    /// The plan is not the one that the start order names; `None` if the order names none.
+    /// The plan that is ready is not the one that the start order names; `None` if the order names none.
     OtherPlan {
         /// The plan that was seen.
         seen: Option<PlanId>,
@@ -102,7 +102,7 @@ pub enum Refusal {
     },
     /// The position error is beyond the limit, or there are no more fixes.
     PositionLost {
-        /// The limit of the 95 % error, metres.
+        /// The limit on the 95 % error, metres.
         limit_m: f64,
     },
     /// The ranges contradict each other.
@@ -111,7 +111,7 @@ pub enum Refusal {
     NoPlanRefused,
     /// No better plan is offered.
     NoOffer,
-    /// No planner flies in shadow.
+    /// No planner runs in shadow.
     NoShadow,
     /// The planner in shadow has not answered enough steps in a row yet.
     ShadowNotReady {
@@ -152,7 +152,7 @@ impl fmt::Display for Refusal {
             }
             Self::NoPlanRefused => f.write_str("no plan has been refused because of the tether"),
             Self::NoOffer => f.write_str("no better plan is offered"),
-            Self::NoShadow => f.write_str("no planner flies in shadow"),
+            Self::NoShadow => f.write_str("no planner runs in shadow"),
             Self::ShadowNotReady { in_row } => write!(
                 f,
                 "the planner in shadow has answered {in_row} steps in a row; taking over requires {READY_AFTER}"
@@ -164,10 +164,10 @@ impl fmt::Display for Refusal {
 impl Standing<'_> {
     /// Whether an order is accepted now.
     ///
-    /// [`Order::Hold`] is accepted while the mission runs and under every hold.
+    /// [`Order::Hold`] is accepted while the mission runs, and during every hold.
     ///
     /// # Errors
-    /// Why the order is refused.
+    /// The reason why the order is refused.
     pub fn allows(&self, order: &Order) -> Result<(), Refusal> {
         match (order, self.phase) {
             (_, Phase::Ended(outcome)) => Err(Refusal::Ended(*outcome)),
@@ -225,7 +225,7 @@ impl Standing<'_> {
         }
     }
 
-    /// Checks that a start names the plan that is ready.
+    /// Checks that a start order names the plan that is ready.
     fn can_start(&self, seen: Option<PlanId>) -> Result<(), Refusal> {
         match self.readiness {
             Readiness::Unseen => Ok(()),

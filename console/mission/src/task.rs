@@ -22,7 +22,7 @@ pub(crate) enum Task {
     Goto(Goto),
     /// Follow preset points.
     Follow {
-        /// Progress along them.
+        /// Progress along these points.
         follower: PathFollower,
         /// Distance at which the last point counts as reached, metres.
         tolerance_m: f64,
@@ -65,8 +65,8 @@ impl Task {
         }
     }
 
-    /// Updates the robot's position. `has_room` tells where the robot can be: points of a preset path elsewhere are
-    /// skipped.
+    /// Updates the robot's position. `has_room` tells whether the robot can be at a point: points of a preset path at
+    /// which it cannot be are skipped.
     pub(crate) fn advance(&mut self, position: Point, map: &ObstacleMap, has_room: impl Fn(Point) -> bool) {
         match self {
             Self::Goto(goto) => goto.position = position,
@@ -122,7 +122,7 @@ impl Task {
         self.cover().map_or_else(Vec::new, |cover| cover.floor_left(coverage))
     }
 
-    /// The requested areas without reachable floor; empty unless the task is to cover some.
+    /// The requested areas that contain no reachable floor; empty unless the task is to cover requested areas.
     pub(crate) fn areas_out_of_reach(&self, coverage: &CoverageGrid) -> Vec<Vec<Point>> {
         self.cover().map_or_else(Vec::new, |cover| cover.regions_out_of_reach(coverage).collect())
     }
@@ -142,18 +142,18 @@ impl Task {
         self.cover()?.lanes()
     }
 
-    /// Purpose of the stretch of the plan under the robot, if the planner states it.
+    /// Purpose of the stretch of the plan that the robot is on, if the planner states it.
     pub(crate) fn leg(&self) -> Option<api::LegTag> {
         self.cover()?.leg()
     }
 
-    /// Number of the stretch of the plan under the robot, if the planner lists its stretches.
+    /// Index of the stretch of the plan that the robot is on, if the planner lists its stretches.
     pub(crate) fn leg_index(&self) -> Option<usize> {
         self.cover()?.leg_index()
     }
 
-    /// Whether the rest of the task leads the robot's centre closer than `room_m` to an outline. Always true for tasks in
-    /// which planners find their own way round obstacles: they need to know of every new obstacle.
+    /// Whether the rest of the task takes the robot's centre closer than `room_m` to an outline. Always true for tasks in
+    /// which planners find their own way round obstacles: their planners need to know of every new obstacle.
     pub(crate) fn is_in_the_way(&self, shape: &Shape, room_m: f64) -> bool {
         match self {
             Self::Cover(cover) => cover.is_in_the_way(shape, room_m),
@@ -206,7 +206,7 @@ impl Task {
         }
     }
 
-    /// Whether the task is done, by the position last passed to `advance`.
+    /// Whether the task is done, according to the position last passed to `advance`.
     pub(crate) fn is_done(&self, position: Point) -> bool {
         match self {
             Self::Goto(goto) => goto.left_m() <= goto.tolerance_m,
@@ -233,12 +233,13 @@ impl Goto {
 
 /// Detects a moving robot that makes no progress.
 ///
-/// The robot counts as stuck after twice `patience_s` without progress, or after `patience_s` on the same spot. Progress
-/// is less left of the task or of the planner's path: between rooms a path may lead away from the goal for a long time.
+/// The robot counts as stuck after twice `patience_s` without progress, or after `patience_s` on the same spot without
+/// progress. Progress means that less is left of the task or of the planner's path: between rooms, a path may lead away
+/// from the goal for a long time.
 #[derive(Clone)]
 pub(crate) struct StuckWatch {
     patience_s: f64,
-    /// Minimum of what was left of the task and of the planner's path, metres.
+    /// Minimum distances left so far, of the task and of the planner's path, metres.
     least_left_m: [f64; 2],
     since_progress_s: f64,
     spot: Option<Point>,
@@ -262,8 +263,8 @@ impl StuckWatch {
         *self = Self::new(self.patience_s);
     }
 
-    /// Processes one tick in which the robot was free to move; `path_left_m` is the length left of the planner's path, if
-    /// any. Returns whether the robot is stuck.
+    /// Processes one tick in which the robot was free to move; `plan_left_m` is the length left of the planner's path, if
+    /// there is one. Returns whether the robot is stuck.
     pub(crate) fn update(
         &mut self,
         task: &Task,

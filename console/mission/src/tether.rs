@@ -1,13 +1,14 @@
 //! The mission's estimate of the tether: the taut cable at the estimated pose, its alarms, and the evaluation of plans.
 //!
-//! Scatter of the position estimate does not wind the cable. A move of the estimate and its way back cancel. As long as
-//! the estimate strays from the truth by less than column plus hull, the straight line between the two never passes the
-//! middle of a column, so both paths pass every column on the same side (`world::tether`, module `sidestep`). Beyond
-//! that, or while the position counts as lost, the cable is not moved at all: it takes one straight move when the
-//! position is recovered.
+//! Scatter of the position estimate does not wind the cable: if the estimate moves and then moves back, the two moves
+//! cancel. As long as the estimate is off by less than the radius of a column plus that of the hull, the straight line
+//! between estimate and truth never crosses the middle of a column, so the paths of both pass every column on the same
+//! side (`world::tether`, module `sidestep`). If the position counts as lost, the cable is not moved at all: it takes one
+//! straight move when the position is recovered.
 //!
-//! An obstacle found later may lie across the taut line. The path driven then decides on which side the cable passes it:
-//! the path is kept, and driven again in simulation among all obstacles known now.
+//! An obstacle that is found later may lie across the taut line. The path driven then determines on which side the cable
+//! passes the obstacle. For this purpose the path is stored, and it is driven again in simulation among all obstacles
+//! known now.
 
 mod alarms;
 mod certifying;
@@ -32,12 +33,12 @@ use world::{
     tether::{Bearing, Cable, CableObstacles, Certificate, TetherError, capstan_factor},
 };
 
-/// Room that a return path may lack beside obstacles on the chart, metres: found obstacles are placed with about this
-/// accuracy.
+/// Amount by which a return path may fall short of the required room beside obstacles on the chart, metres: found
+/// obstacles are placed with about this accuracy.
 const CHART_M: f64 = 0.05;
-/// Time without a return path before the alarm is raised, seconds.
+/// How long there must be no return path before the alarm is raised, seconds.
 const NO_HOME_S: f64 = 3.0;
-/// Length of cable beyond the straight line to the robot that counts as still out at the end, metres.
+/// Length of cable beyond the straight line to the robot above which cable counts as still out at the end, metres.
 const LEFT_M: f64 = 0.3;
 
 /// The tether during a mission.
@@ -46,10 +47,10 @@ pub struct Tether {
     config: TetherConfig,
     hull_m: f64,
     cable: Cable,
-    /// The obstacles as the hull's centre meets them on a return path.
+    /// The obstacles, enlarged by the room that the hull's centre needs on a return path.
     roomy: Arc<CableObstacles>,
-    /// The taut line that the hull leaves on that ground, moved by the robot like the cable; `None` if the hull does not
-    /// fit at the anchor.
+    /// The taut line left behind by the hull among these enlarged obstacles, moved by the robot like the cable; `None` if
+    /// the hull does not fit at the anchor.
     hull: Option<Cable>,
     /// How long there has been no return path, seconds.
     without_home_s: f64,
@@ -59,10 +60,10 @@ pub struct Tether {
 }
 
 impl Tether {
-    /// The cable from the anchor straight to the start.
+    /// Creates a cable that runs straight from the anchor to the start.
     ///
     /// # Errors
-    /// The anchor is inside an obstacle of the drawing, or outside the wall.
+    /// The anchor is inside an obstacle on the drawing, or outside the wall.
     pub fn new(config: &TetherConfig, hull_m: f64, world: &World, start: Point) -> Result<Self, TetherError> {
         let shapes = shapes(world);
         let mut cable = Cable::new(config.anchor, &world.boundary, &shapes)?;
@@ -81,12 +82,12 @@ impl Tether {
         })
     }
 
-    /// Whether plans that cannot be certified are run.
+    /// Whether plans that cannot be certified may be run.
     pub fn flies_uncertified(&self) -> bool {
         self.config.allow_uncertified
     }
 
-    /// Sets whether plans that cannot be certified are run, by order of the operator.
+    /// Sets whether plans that cannot be certified may be run, by order of the operator.
     pub fn allow_uncertified(&mut self, fly: bool) {
         self.config.allow_uncertified = fly;
     }
@@ -96,11 +97,11 @@ impl Tether {
         &self.cable
     }
 
-    /// Recomputes the cable among the obstacles known now, from the path driven.
+    /// Recomputes the cable among the obstacles known now, using the path driven.
     pub fn lay_again(&mut self, world: &World) {
         let shapes = shapes(world);
         let obstacles = Arc::new(CableObstacles::new(&world.boundary, &shapes));
-        // An obstacle on top of the anchor is an error of the estimate, so the cable is left unchanged.
+        // If an obstacle covers the anchor, the estimate is wrong, so the cable is left unchanged.
         if let Ok(mut cable) = Cable::on(self.config.anchor, obstacles) {
             cable.drag_along(self.driven.points());
             cable.drag_to(self.cable.tip());
@@ -124,8 +125,8 @@ impl Tether {
         }
     }
 
-    /// Updates the hull's return path. If the estimate passed through a place without room for the hull, its line may be
-    /// on the wrong side of an obstacle; it is then laid along the cable again.
+    /// Updates the hull's return path. If the estimate has passed through a place without room for the hull, the hull's
+    /// line may be on the wrong side of an obstacle; it is then laid along the cable again.
     fn home(&mut self, map: &ObstacleMap) -> Option<Vec<Point>> {
         let room_m = home_room_m(self.hull_m);
         let dragged = self.hull.as_ref().and_then(|hull| self.cable.return_path_of(hull, map, room_m));
@@ -137,22 +138,23 @@ impl Tether {
         })
     }
 
-    /// Records the measured length paid out, metres, after some time. `error_m` is the position error with which the
-    /// cable was laid, metres; `None` while the position is lost.
+    /// Records the measured length paid out, metres, and the time that has passed since the last call, seconds. `error_m`
+    /// is the position error with which the cable was laid, metres; `None` while the position is lost.
     pub fn measure(&mut self, paid_out_m: Option<f64>, error_m: Option<f64>, passed_s: f64) {
         let (length_m, points) = (self.cable.length_m(), self.driven.points().len());
         let explained = error_m.map(|error_m| Explained { length_m, error_m, points });
         self.payout.take(paid_out_m, explained, self.config.limits.reel_length_m, passed_s);
     }
 
-    /// Whether more cable is out than expected from the map: it has caught on something unknown.
+    /// Whether more cable is out than expected from the map: the cable has caught on something unknown.
     pub fn is_snagged(&self) -> bool {
         self.payout.is_snagged()
     }
 
-    /// The path, from the robot to the anchor, that frees a caught cable and reels it in. It first goes back along the
-    /// path driven to the last place where the cable length was as expected; from there it goes home along the cable,
-    /// with `room_m` metres for the hull's centre. The obstacle that caught the cable is beside that second part.
+    /// The path from the robot to the anchor that frees a caught cable and reels it in. It first goes back along the path
+    /// driven to the last place where the cable length was as expected, and beyond it by some margin; from there, it
+    /// returns along the cable, with `room_m` metres for the hull's centre. The obstacle that caught the cable lies
+    /// beside that second part.
     pub fn way_out(&self, world: &World, room_m: f64) -> Option<Vec<Point>> {
         let driven = self.driven.points();
         let first = self.payout.points_to_go_back_to(driven.len());
@@ -163,7 +165,7 @@ impl Tether {
         Some(way)
     }
 
-    /// Updates the cable after some time; returns the alarms that were raised or cleared.
+    /// Updates the cable after some time has passed; returns events for the alarms that were raised or cleared.
     pub fn update(&mut self, world: &World, map: &ObstacleMap, passed_s: f64) -> Vec<EventKind> {
         let return_length_m = self.home(map).map(|way| world::polyline::length_m(&way));
         self.without_home_s = if return_length_m.is_some() { 0.0 } else { self.without_home_s + passed_s };
@@ -192,7 +194,7 @@ impl Tether {
         self.without_home_s == 0.0
     }
 
-    /// The alarms of the cable, with their levels as a share of the limit.
+    /// The alarms of the cable, each with its current value as a share of the limit.
     fn alarms_with_shares(&self, world: &World) -> [(TetherAlarm, f64); 5] {
         let limits = self.config.limits;
         let contacts = self.cable.contacts();
@@ -227,7 +229,7 @@ impl Tether {
         self.config.anchor
     }
 
-    /// The return path along the cable from the robot to the anchor, with some room for the hull's centre, metres.
+    /// The return path along the cable from the robot to the anchor, with `room_m` metres for the hull's centre.
     pub fn return_path(&self, world: &World, room_m: f64) -> Option<Vec<Point>> {
         let ground = Ground::new(world, room_m);
         ground.way_along(&self.cable).or_else(|| {
@@ -239,15 +241,16 @@ impl Tether {
         })
     }
 
-    /// Whether the rest of a plan still reels the cable in within its limits, with the current knowledge of the tank.
+    /// Whether, as far as the tank is known now, the rest of a plan can be driven and the cable reeled in within its
+    /// limits.
     pub fn bears(&self, rest: &[Point], world: &World, returns: bool) -> bool {
         certified(&self.config, 0.0, Some(&self.cable), rest, &[], world, returns).certified
     }
 
-    /// Evaluates a plan from the current geometry of the cable; `returns` tells whether the cable must be reeled in at
-    /// its end.
+    /// Evaluates a plan, starting with the current geometry of the cable; `returns` tells whether the cable must be
+    /// reeled in at the end of the plan.
     ///
-    /// For a plan that first goes home along the cable, its cuts apply from there on.
+    /// If a plan first returns to the anchor along the cable, its cuts apply only from there on.
     pub fn certify(&self, plan: &Plan, world: &World, returns: bool) -> Certificate {
         let evaluate = |cable, path, cuts: &[Vec<Point>]| {
             certified(&self.config, self.hull_m, cable, path, cuts, world, returns)
@@ -265,14 +268,14 @@ impl Tether {
         whole
     }
 
-    /// Evaluates a plan from the geometry that the cable will have after driving a path.
+    /// Evaluates a plan, starting with the geometry that the cable will have after a path has been driven.
     pub fn certify_after(&self, way: &[Point], plan: &Plan, world: &World, returns: bool) -> Certificate {
         let mut there = self.clone();
         there.cable.drag_along(way);
         there.certify(plan, world, returns)
     }
 
-    /// Why cable is still out although the robot is back, as a sentence; `None` if it is all in.
+    /// Why cable counts as still out although the robot is back, as a sentence; `None` if the cable is reeled in.
     pub fn left_out(&self, world: &World) -> Option<String> {
         let mut cable = self.cable.clone();
         cable.drag_to(self.config.anchor);
@@ -289,7 +292,7 @@ fn bends(cable: &Cable) -> Vec<Point> {
     line[1..line.len() - 1].to_vec()
 }
 
-/// The obstacles as a hull meets them that needs this much room.
+/// The obstacles, enlarged by the room that a hull needs.
 struct Ground {
     roomy: Arc<CableObstacles>,
     map: ObstacleMap,
@@ -308,7 +311,7 @@ impl Ground {
     }
 }
 
-/// The taut line of a hull that was moved from the anchor along a path.
+/// The taut line left behind by a hull that was moved from the anchor along a path.
 fn hull_dragged(anchor: Point, roomy: &Arc<CableObstacles>, way: &[Point]) -> Option<Cable> {
     let mut hull = Cable::hull_at(anchor, roomy)?;
     hull.drag_along(way);

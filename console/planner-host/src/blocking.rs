@@ -21,20 +21,20 @@ pub struct Reply<T> {
     pub logs: Vec<(LogLevel, String)>,
 }
 
-/// Runs one planner at a time and waits for each of its answers. It saves no private state: every planner starts fresh.
+/// Runs one planner at a time and waits for each of its answers. It saves no private state: every planner starts anew.
 pub struct BlockingHost {
     host: Host,
     /// The worker of the active planner.
     active: Option<WorkerId>,
     n_asks: u32,
-    /// Log messages from calls whose result cannot carry them.
+    /// Log messages from calls with results that cannot contain them.
     unheard: Vec<(LogLevel, String)>,
     /// The number of calls made while no planner was chosen.
     n_unanswered: u64,
 }
 
 impl BlockingHost {
-    /// Creates a host that searches these folders when a planner is first chosen.
+    /// Creates a host that searches these folders when the first planner is chosen.
     pub fn new(dirs: &PluginDirs, config: HostConfig) -> Self {
         Self { host: Host::new(dirs, config), active: None, n_asks: 0, unheard: Vec::new(), n_unanswered: 0 }
     }
@@ -44,17 +44,17 @@ impl BlockingHost {
         self.host.set_on_progress(on_progress);
     }
 
-    /// Returns the calls, wall times and faults so far.
+    /// Returns the number of calls, their wall times and the number of faults so far.
     pub fn stats(&self) -> HostStats {
         let stats = self.host.stats();
         HostStats { faults: stats.faults + self.n_unanswered, ..stats }
     }
 
-    /// Opens a planner. It is active from the next call on, and the previous one is closed. After a fault the previous
-    /// one stays active.
+    /// Opens a planner, which becomes active from the next call on; the previous planner is closed. After a fault the
+    /// previous planner stays active.
     ///
     /// # Errors
-    /// The planner was not found, was refused, or failed while it was loaded or configured.
+    /// The planner was not found, was refused, or failed while it was being loaded or configured.
     pub fn choose(
         &mut self,
         id: &str,
@@ -88,7 +88,7 @@ impl BlockingHost {
     /// Requests a plan.
     ///
     /// # Errors
-    /// The planner found no plan, or failed.
+    /// The planner found no plan or failed.
     pub fn plan(&mut self, request: &PlanRequest<'_>) -> Result<Reply<Plan>, Fault> {
         let worker = self.active(During::Plan)?;
         match self.ask(worker, &Wanted::Plan(request))? {

@@ -1,4 +1,4 @@
-//! Checks a planner's answers against the limits of the robot; [`limits`] checks them against the limits of what a
+//! Checks a planner's answers against the limits of the robot; [`limits`] checks them against the limits on what a
 //! worker may send at all.
 
 pub(crate) mod limits;
@@ -8,7 +8,7 @@ use planner_api::{Command, Drive, Limits, Plan};
 /// Rounding tolerance by which a command may exceed a limit.
 const SLACK: f64 = 1e-6;
 
-/// Checks a command; the error continues after the planner's name.
+/// Checks a command. The error completes a sentence that begins with the planner's name.
 pub(crate) fn command(command: &Command, limits: &Limits) -> Result<(), String> {
     let (v_max, w_max) = (limits.v_max_m_per_s, limits.w_max_rad_per_s);
     match command.drive {
@@ -30,7 +30,7 @@ fn within(what: &str, value: f64, limit: f64, unit: &str) -> Result<(), String> 
     Ok(())
 }
 
-/// Checks a plan; the error continues after the planner's name.
+/// Checks a plan. The error completes a sentence that begins with the planner's name.
 pub(crate) fn plan(plan: &Plan) -> Result<(), String> {
     plan.check()?;
     if !plan.cost.is_finite() {

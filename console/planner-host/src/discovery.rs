@@ -5,7 +5,6 @@ mod stamps;
 pub use stamps::{FileStamp, Stamps};
 
 use crate::stamp::{self, Abi};
-use crate::survey::Cache;
 use crate::user_folder::user_folder;
 use rustix::fs::OFlags;
 use rustix::process::{Resource, getrlimit};
@@ -20,7 +19,7 @@ use std::path::{Path, PathBuf};
 /// The folders with plugins, and the conditions for loading them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PluginDirs {
-    /// The folders; if several contain the same planner, the first one is used.
+    /// The folders; if more than one contains the same planner, the first is used.
     pub folders: Vec<PathBuf>,
     /// Whether a plugin is refused if its process cannot be fully sandboxed.
     pub requires_sandbox: bool,
@@ -29,12 +28,12 @@ pub struct PluginDirs {
 }
 
 impl PluginDirs {
-    /// Uses these folders, loads plugins even if their processes cannot be fully sandboxed, and caches nothing.
+    /// Uses these folders, with plugins loaded even if their processes cannot be fully sandboxed, and without a cache.
     pub fn of(folders: Vec<PathBuf>) -> Self {
         Self { folders, requires_sandbox: false, cache: None }
     }
 
-    /// Uses the standard folders: those given by hand, `$TANKOPS_PLUGIN_PATH`, `plugins` beside the program, the
+    /// Uses the standard folders: those given by the user, `$TANKOPS_PLUGIN_PATH`, `plugins` beside the program, the
     /// program's own folder and `deps` in it (where Cargo puts libraries), `../lib/tankops/plugins` relative to the
     /// program, and `$XDG_DATA_HOME/tankops/plugins`. The contents are cached in `$XDG_CACHE_HOME/tankops/plugins`.
     pub fn standard(extra: &[PathBuf]) -> Self {
@@ -56,27 +55,9 @@ impl PluginDirs {
         read_bytes(&file).ok().map(|bytes| sha256_hex(&bytes))
     }
 
-    /// Returns the paths of all files that are named like a plugin, folder by folder.
+    /// Returns the paths of all files that have the name of a plugin, folder by folder.
     pub(crate) fn candidates(&self) -> Vec<PathBuf> {
         self.folders.iter().flat_map(|dir| named_like_plugins(dir)).collect()
-    }
-
-    /// Returns every file that is named like a plugin: folder by folder, by name within a folder. A file with the same
-    /// content as an earlier one is the same plugin and is left out.
-    pub fn plugins(&self) -> Vec<PluginFile> {
-        let mut found: Vec<PluginFile> = Vec::new();
-        let cache = Cache::new(self.cache.as_deref());
-        for path in self.candidates() {
-            let plugin = cache.seen(&path).unwrap_or_else(|| {
-                let plugin = PluginFile::read(path);
-                cache.note(&plugin);
-                plugin
-            });
-            if plugin.sha256.is_empty() || found.iter().all(|known| known.sha256 != plugin.sha256) {
-                found.push(plugin);
-            }
-        }
-        found
     }
 }
 
@@ -101,7 +82,7 @@ fn is_plugin_name(path: &Path) -> bool {
 /// Maximum size of a plugin file, bytes.
 pub(crate) const MOST_BYTES: u64 = 128 << 20;
 
-/// A file that is named like a plugin, with what can be determined without loading it.
+/// A file that has the name of a plugin, with everything that can be determined without loading it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PluginFile {
     /// The path of the file.
@@ -118,7 +99,7 @@ pub struct PluginFile {
 pub(crate) enum Words {
     /// The complete list of their ids.
     Ids(Vec<String>),
-    /// A file without a list of ids: they can be anywhere in these bytes.
+    /// The bytes of a file without a list of ids; the ids can be anywhere in them.
     Bytes(Vec<u8>),
 }
 
@@ -143,14 +124,14 @@ impl PluginFile {
         }
     }
 
-    /// Returns the name of the file without its folder.
+    /// Returns the name of the file, without its folder.
     pub fn name(&self) -> String {
         self.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 
     /// Whether the file may contain this planner. Rust libraries list their ids. Other libraries are searched for the
-    /// bytes of the id, so a planner that only composes its id at run time is not found. A refused file contains no
-    /// planners.
+    /// bytes of the id, so a planner whose id is composed at run time is not found. A refused file is taken to contain
+    /// no planners.
     pub fn may_have(&self, id: &str) -> bool {
         match &self.words {
             Words::Ids(ids) => ids.iter().any(|known| known == id),
@@ -161,7 +142,8 @@ impl PluginFile {
     }
 }
 
-/// Reads a regular file of reasonable size, even if its path changes meanwhile. A device or a pipe might never end.
+/// Reads a file, which must be a regular file of reasonable size even if its path changes meanwhile. A device or a pipe
+/// might never end.
 pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     let unreadable = |error: std::io::Error| format!("cannot be read: {error}");
     // Opening a pipe without this flag would wait for a writer.
@@ -171,7 +153,7 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     if !about.is_file() {
         return Err("not a regular file".into());
     }
-    let too_large = |length: u64| format!("{length} bytes: no plugin is larger than {MOST_BYTES}");
+    let too_large = |length: u64| format!("has {length} bytes; a plugin may have at most {MOST_BYTES}");
     if about.len() > MOST_BYTES {
         return Err(too_large(about.len()));
     }
@@ -181,8 +163,8 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     if bytes.len() as u64 > MOST_BYTES { Err(too_large(bytes.len() as u64)) } else { Ok(bytes) }
 }
 
-/// Returns why this machine prevents any process from making a private copy of a plugin; `None` if it does not, or if
-/// the file is too large to be a plugin.
+/// Returns why no process on this machine can make a private copy of a plugin; `None` if one can, or if the file is too
+/// large to be a plugin.
 pub(crate) fn too_large_for_machine(path: &Path) -> Option<String> {
     let length = path.metadata().ok().filter(std::fs::Metadata::is_file)?.len();
     let limit = getrlimit(Resource::Fsize).current.filter(|limit| *limit < length && length <= MOST_BYTES)?;
@@ -244,7 +226,7 @@ mod tests {
         let sparse = File::create(place("sparse")).expect("a file");
         sparse.set_len(10 << 30).expect("a length");
         let why = read_bytes(&place("sparse")).expect_err("too large");
-        assert_eq!(why, "10737418240 bytes: no plugin is larger than 134217728");
+        assert_eq!(why, "has 10737418240 bytes; a plugin may have at most 134217728");
         std::os::unix::fs::symlink(place("pipe"), place("link")).expect("a link");
         assert_eq!(read_bytes(&place("link")), Err("not a regular file".into()));
     }

@@ -1,4 +1,4 @@
-//! Answers the mission's asks: finds planners, starts, asks and ends them, and waits only in [`Host::next`].
+//! Answers the mission's asks: finds, starts, asks and ends planners, and waits only in [`Host::next`].
 
 mod config;
 pub(crate) mod fault;
@@ -37,7 +37,7 @@ use std::time::{Duration, Instant};
 /// [`Self::submit`] begins an ask and returns immediately. [`Self::next`] returns the answers and is the only function
 /// that waits. Every ask except [`What::Close`] is answered exactly once, unless its worker is closed first.
 ///
-/// After a timeout, a crash, a panic or an invalid answer, the process has ended and the planner must be opened again.
+/// A timeout, a crash, a panic or an invalid answer ends the process, and the planner must be opened again.
 pub struct Host {
     config: HostConfig,
     catalog: Catalog,
@@ -45,7 +45,7 @@ pub struct Host {
     /// Retired workers that are still running.
     leaving: Vec<Leaving>,
     answers: VecDeque<Answer>,
-    /// The events of each worker from the last poll; kept only to reuse its memory.
+    /// The events of each worker from the last poll; the list is kept only so that its memory can be reused.
     ready: Vec<Ready>,
     saved: SavedStates,
     spares: Spares,
@@ -62,7 +62,7 @@ pub struct Host {
 }
 
 impl Host {
-    /// Creates a host that searches these folders when a planner is first opened.
+    /// Creates a host that searches these folders when the first planner is opened.
     pub fn new(dirs: &PluginDirs, config: HostConfig) -> Self {
         Self {
             config,
@@ -85,8 +85,8 @@ impl Host {
         }
     }
 
-    /// From now on, runs a planner on the processor of the calling thread if it is the only one. Use it in a thread
-    /// that waits for every command, and call it from that thread.
+    /// From now on, runs a planner on the processor of the calling thread if it is the only planner. Call this from a
+    /// thread that waits for every command.
     pub fn share_processor(&mut self) {
         #[cfg(target_os = "linux")]
         {
@@ -94,7 +94,7 @@ impl Host {
         }
     }
 
-    /// Moves a planner to the processor of this thread for a command, and away from it for everything else.
+    /// Moves a planner to the processor of this thread for a command, and away from that processor for everything else.
     #[cfg_attr(
         not(target_os = "linux"),
         allow(unused_variables, clippy::unused_self, reason = "only possible on Linux")
@@ -114,17 +114,17 @@ impl Host {
         self.on_progress = Some(on_progress);
     }
 
-    /// Returns what planners printed since the last call.
+    /// Returns what planners have printed since the last call.
     pub fn take_printed(&mut self) -> Vec<Printed> {
         std::mem::take(&mut self.kept.printed)
     }
 
-    /// Returns what remains of the planners that failed since the last call.
+    /// Returns the remains of the planners that have failed since the last call.
     pub fn take_crashes(&mut self) -> Vec<Crash> {
         std::mem::take(&mut self.kept.crashes)
     }
 
-    /// Returns the planners that ended badly since the last call.
+    /// Returns the planners that have ended badly since the last call.
     pub fn take_bad_ends(&mut self) -> Vec<BadEnd> {
         std::mem::take(&mut self.kept.bad_ends)
     }
@@ -134,7 +134,7 @@ impl Host {
         self.config.plan_deadline
     }
 
-    /// Returns the calls, wall times and faults so far.
+    /// Returns the number of calls, their wall times and the number of faults so far.
     pub fn stats(&self) -> HostStats {
         HostStats { plan: self.plan_times.stats(), step: self.step_times.stats(), faults: self.n_faults }
     }
@@ -154,8 +154,8 @@ impl Host {
         self.wake_ups.take();
     }
 
-    /// Ends a mission, so that the next one begins as with a new host. Only processes are reused: a planner that has
-    /// answered all its asks is created again in the process that loaded it, when it is next opened.
+    /// Ends a mission, so that the next mission begins as it would with a new host. Only processes are reused: a
+    /// planner that has answered all its asks is created again, when it is next opened, in the process that loaded it.
     pub fn end_mission(&mut self) {
         self.place(None);
         for planner in std::mem::take(&mut self.planners) {
@@ -193,7 +193,7 @@ impl Host {
         }
     }
 
-    /// Begins an ask of an opened planner; one that cannot begin is answered immediately.
+    /// Begins an ask to an opened planner; an ask that cannot begin is answered immediately.
     pub(crate) fn begin(&mut self, id: AskId, wanted: &Wanted<'_>) {
         if let Err(fault) = self.try_begin(id, wanted) {
             self.answer(id, Err(fault));
@@ -221,9 +221,9 @@ impl Host {
         }
     }
 
-    /// Returns the next answer as soon as there is one. Returns `None` when the time limit is reached, when the host
-    /// was woken, or when no ask is open. Without a time limit it waits indefinitely. Messages that have already
-    /// arrived are always processed.
+    /// Returns the next answer as soon as there is one, or `None` when the time limit is reached, when the host was
+    /// woken, or when no ask is open. Without a time limit, waits indefinitely. Messages that have already arrived are
+    /// always processed.
     pub fn next(&mut self, until: Option<Instant>) -> Option<Answer> {
         if self.answers.is_empty() && self.leaving.is_empty() && !self.is_asked() {
             self.clear_wake_ups();
@@ -247,8 +247,8 @@ impl Host {
         self.planners.iter().any(|planner| planner.asked.is_some())
     }
 
-    /// Waits until something happens or the time limit is reached, and does what is due. Returns whether the host was
-    /// woken.
+    /// Waits until something happens or the time limit is reached, and then does what is due. Returns whether the host
+    /// was woken.
     fn look(&mut self, until: Option<Instant>) -> bool {
         if self.is_answered_at_once() {
             return false;
@@ -260,8 +260,8 @@ impl Host {
         woken
     }
 
-    /// Whether a planner on the processor of this thread has answered. Usually it has, by the time this thread runs
-    /// again. The system is then asked for other events only once a millisecond.
+    /// Whether a planner on the processor of this thread has answered. By the time this thread runs again, it usually
+    /// has; the system is then asked for other events only once a millisecond.
     fn is_answered_at_once(&mut self) -> bool {
         #[cfg(target_os = "linux")]
         if let (Some(together), [_], true) = (&mut self.together, &self.planners[..], self.leaving.is_empty())
@@ -339,7 +339,7 @@ impl Host {
         self.answers.push_back(Answer { ask, result, said });
     }
 
-    /// Keeps what remains of a planner whose author must find out why it failed.
+    /// Keeps the remains of a planner if its author must find out why it failed.
     fn keep_remains(&mut self, id: WorkerId, fault: &Fault) {
         let planner = self.planners.iter_mut().find(|planner| planner.id == id);
         let of_worker = planner.and_then(|planner| planner.worker.as_mut()).map(Worker::remains);

@@ -1,13 +1,13 @@
-//! Planner plugins: discovery, checks before loading, loader, worker process, supervisor.
+//! Planner plugins: discovery, checks before loading, the loader, the worker process and the supervisor.
 //!
 //! A plugin is a shared library from a third party. The console never loads one itself: it starts a copy of itself as a
-//! worker process, which enters a sandbox, loads one plugin and answers requests over a socket. Whatever the plugin
-//! does there (crash, hang, exhaust memory, print, try to reach files or other processes) becomes a [`mission::Fault`]
+//! worker process, which enters a sandbox, loads one plugin and answers requests over a socket. Any failure there (the
+//! plugin crashes, hangs, exhausts memory, or tries to reach files or other processes) becomes a [`mission::Fault`]
 //! with one sentence, within the budget of the request.
 //!
 //! [`Host`] answers the asks of a mission and waits only where the caller requests it. [`BlockingHost`] is for callers
-//! that have nothing to do but wait. [`survey`] lists the plugins found. [`worker_main`] is run by the hidden command
-//! `worker`. All of this needs a Unix system.
+//! that have nothing to do but wait. [`survey`] lists the plugins found. The hidden command `worker` runs
+//! [`worker_main`]. This crate needs a Unix system.
 //!
 //! Coordinate frames and units are those of `planner_api`.
 

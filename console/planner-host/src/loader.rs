@@ -1,4 +1,5 @@
-//! Loads a library and calls its planners. Most of the console's unsafe code is here; it runs only in a worker.
+//! Loads a library and calls its planners. This module contains most of the console's unsafe code, and runs only in a
+//! worker.
 #![expect(unsafe_code, reason = "third-party libraries are loaded and called here")]
 
 mod instance;
@@ -47,7 +48,7 @@ pub(crate) struct Loaded(abi::Entry);
 pub(crate) enum NotRead {
     /// The file is not a plugin that can be loaded.
     Refused(String),
-    /// The machine prevents the file from being loaded.
+    /// This machine prevents the file from being loaded.
     Machine(String),
 }
 
@@ -55,7 +56,7 @@ impl File {
     /// Reads and checks a file.
     ///
     /// # Errors
-    /// Why the file is refused; the text continues after "refused:".
+    /// Why the file is refused; the text follows "refused:".
     pub(crate) fn read(path: &Path) -> Result<Self, NotRead> {
         let bytes = read_bytes(path).map_err(NotRead::Refused)?;
         let abi = stamp::read(&bytes).map_err(|error| NotRead::Refused(error.to_string()))?;
@@ -72,17 +73,18 @@ impl File {
     /// Loads exactly the bytes that were checked.
     ///
     /// # Errors
-    /// Why the library is refused; the text continues after "refused:". The same applies below.
+    /// Why the library is refused; the text follows "refused:". The same applies below.
     pub(crate) fn load(self) -> Result<Loaded, String> {
         let staged = self.staged.path();
-        // All symbols are resolved now, so a missing one is a refusal here and does not end the process on first use.
-        // SAFETY: this runs the library's constructors, whatever they do; this process exists to contain that.
+        // All symbols are resolved now, so a missing symbol causes a refusal here instead of ending the process on
+        // first use. SAFETY: this runs the library's constructors, whatever they do; the purpose of this process is to
+        // contain them.
         let library = unsafe { Library::open(Some(staged), RTLD_NOW | RTLD_LOCAL) }.map_err(|error| {
             let reason = error.source().map_or_else(|| error.to_string(), ToString::to_string);
             format!("the loader refused it: {}", reason.replace(&*staged.to_string_lossy(), &self.name))
         })?;
-        // SAFETY: the stamp promises that this symbol is an entry; the entry's own magic is checked before anything
-        // else.
+        // SAFETY: the stamp promises that this symbol is an entry; the entry's own magic number is checked before
+        // anything else.
         let entry = unsafe {
             let symbol = library.get::<*const abi::Entry>(abi::SYMBOL);
             let symbol = symbol.map_err(|_| format!("does not export `{}`", abi::SYMBOL))?;
@@ -126,7 +128,7 @@ fn check_entry(entry: &abi::Entry) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks a size. Version 1.0 has the smallest structs; later versions only add to them.
+/// Checks the size of a struct. Version 1.0 has the smallest structs; later versions only add to them.
 fn check_size(what: &str, size: u32, needed: usize) -> Result<(), String> {
     if (size as usize) < needed {
         return Err(format!(
@@ -151,7 +153,7 @@ fn read_table(entry: &abi::Entry, index: usize) -> Result<Table, String> {
     let text = |raw| plain(raw, LONGEST_TEXT);
     let id = text(raw.id);
     if !planner_api::export::is_id(&id) {
-        return Err(format!("`{id}` is not a planner id; ids are 1 to 32 characters of a-z, 0-9, _ and -"));
+        return Err(format!("`{id}` is not a planner id; ids are 1 to 32 characters from a-z, 0-9, _ and -"));
     }
     let functions = [
         ("describe", raw.describe.is_some()),
@@ -173,7 +175,7 @@ impl Table {
     /// Asks the planner for its parameters.
     pub(crate) fn describe(&self, sink: &mut Sink<'_>) -> Result<Described, String> {
         let describe = self.raw.describe.expect("checked when the table was read");
-        // SAFETY: the services live through the call.
+        // SAFETY: the services outlive the call.
         let code = sink.during(|host| unsafe { describe(host) });
         if code != 0 {
             return Err(format!("planner `{}` failed to describe itself: {}", self.id, sink.take_error()));

@@ -2,15 +2,16 @@
 
 use mission::{ParamInfo, ParamKind, ParamValue, Parameters, PlannerInfo, spelling::nearest};
 
-/// Checks values set by hand against a planner's parameters.
+/// Checks values set by the user against a planner's parameters.
 ///
 /// # Errors
-/// One sentence: what is wrong and what would be right.
+/// One sentence that states what is wrong and what would be right.
 pub fn check_parameters(planner: &PlannerInfo, parameters: &Parameters) -> Result<(), String> {
     parameter_problems(planner, parameters).into_iter().next().map_or(Ok(()), |(_, problem)| Err(problem))
 }
 
-/// Returns everything that is wrong with values set by hand: the key, and one sentence with what would be right.
+/// Returns everything that is wrong with values set by the user: each key, and one sentence that states what is wrong
+/// and what would be right.
 pub fn parameter_problems(planner: &PlannerInfo, parameters: &Parameters) -> Vec<(String, String)> {
     let problem = |key: &String, value: &ParamValue| {
         find(planner, key).and_then(|param| number(&planner.id, param, value)).err()
@@ -42,7 +43,7 @@ pub(crate) fn check(parameters: &[ParamInfo]) -> Result<(), String> {
     Ok(())
 }
 
-/// Returns all parameters of a planner as numbers: the values set by hand, and the defaults of the others.
+/// Returns all parameters of a planner as numbers: the values set by the user, and the defaults of the others.
 pub(crate) fn numbers(planner: &PlannerInfo, parameters: &Parameters) -> Result<Vec<(String, f64)>, String> {
     for key in parameters.keys() {
         find(planner, key)?;

@@ -1,5 +1,5 @@
-//! Progress of a plan while it is being computed. It is displayed but not stored: it depends on wall-clock time, so it
-//! is kept out of both journal and recording.
+//! Progress of a plan while it is being computed. It depends on wall-clock time, so it is displayed, but kept out of
+//! both the journal and the recording.
 
 use crate::checks::limits;
 use mission::AskId;
@@ -18,7 +18,7 @@ pub struct Progress {
 }
 
 /// Callback for the progress of the plan that an ask requested. It is called on the thread that waits for the plan and
-/// must not block it.
+/// must not block that thread.
 pub type OnProgress = Arc<dyn Fn(AskId, &Progress) + Send + Sync>;
 
 impl Progress {

@@ -1,5 +1,5 @@
-//! What planners leave behind besides their answers: their printed output, and the remains of one that failed. When it
-//! arrives depends on the machine, so it is kept out of both journal and recording.
+//! What planners leave behind besides their answers: their printed output, and the remains of planners that failed.
+//! When these arrive depends on the machine, so they are kept out of both the journal and the recording.
 
 use mission::{Cause, Fault};
 use std::fmt;
@@ -13,7 +13,7 @@ pub struct Printed {
     pub line: String,
 }
 
-/// The remains of a planner that failed: enough to repeat its last requests to the plugin ([`crate::replay`]).
+/// The remains of a planner that failed: enough to send its last requests to the plugin again ([`crate::replay`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Crash {
     /// The fault.
@@ -24,12 +24,12 @@ pub struct Crash {
     pub output: String,
 }
 
-/// A planner that ended badly when it was no longer needed.
+/// A planner that did not end cleanly when it was no longer needed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BadEnd {
     /// The planner's id.
     pub planner: String,
-    /// How the planner ended; continues after its id.
+    /// How the planner ended; completes a sentence that begins with its id.
     pub how: String,
 }
 
@@ -39,8 +39,8 @@ impl fmt::Display for BadEnd {
     }
 }
 
-/// Whether the author must find out why: neither did the planner refuse the request, nor did the console refuse the
-/// planner.
+/// Whether the author must find out why the planner failed: the planner did not refuse the request, and the console did
+/// not refuse the planner.
 pub(crate) fn is_crash(cause: Cause) -> bool {
     !matches!(cause, Cause::Planner(_) | Cause::Refused | Cause::Quarantined | Cause::Starved)
 }

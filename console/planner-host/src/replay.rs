@@ -1,4 +1,4 @@
-//! Repeats the requests that a plugin received before it failed, in a worker of its own, and checks its answers as the
+//! Repeats, in a separate worker, the requests that a plugin received before it failed, and checks the answers as the
 //! console does.
 
 mod judge;
@@ -23,21 +23,21 @@ pub enum Replayed {
         /// The number of requests.
         requests: usize,
     },
-    /// The plugin failed again; the text is a sentence that describes how.
+    /// The plugin failed again; the text is a sentence that states how.
     Failed(String),
 }
 
 /// Why nothing was replayed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum NotReplayed {
-    /// The requests are incomplete; the text continues after the name of their file.
+    /// The requests are incomplete; the text completes a sentence that begins with the name of their file.
     Damaged(String),
     /// This machine prevents planners from running.
     Machine(String),
 }
 
-/// Sends recorded requests to a worker, one after the other, and reports the outcome of each. With `patient` there are
-/// no deadlines, so that a debugger can be used.
+/// Sends recorded requests to a worker, one at a time, and reports the outcome of each. If `patient`, sets no
+/// deadlines, so that a debugger can be used.
 ///
 /// # Errors
 /// The requests are incomplete, or no worker can be started.
@@ -86,7 +86,7 @@ pub fn replay(
     Ok(Replayed::ToTheEnd { requests })
 }
 
-/// Returns the SHA-256 of recorded requests, hexadecimal; it reveals a copy that was truncated or changed.
+/// Returns the SHA-256 of recorded requests, hexadecimal; with it, a truncated or changed copy can be detected.
 pub fn digest_of(frames: &[u8]) -> String {
     sha256_hex(frames)
 }
@@ -94,7 +94,7 @@ pub fn digest_of(frames: &[u8]) -> String {
 /// Checks that recorded requests are complete, and counts them.
 ///
 /// # Errors
-/// What is wrong with them.
+/// What is wrong with the requests.
 fn whole(frames: &[u8]) -> Result<usize, String> {
     if frames.is_empty() {
         return Err("is empty: no request was recorded".to_owned());
@@ -116,7 +116,7 @@ fn whole(frames: &[u8]) -> Result<usize, String> {
     unreachable!("the input is finite")
 }
 
-/// Returns the plugin's file that is named in recorded requests.
+/// Returns the plugin file that is named in recorded requests.
 pub fn plugin_of(frames: &[u8]) -> Option<PathBuf> {
     loaded(frames, |load| load.path().to_owned())
 }

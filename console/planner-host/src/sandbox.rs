@@ -1,10 +1,11 @@
-//! Prevents a worker from reaching anything outside, whatever its plugin does.
+//! Prevents a worker from reaching anything outside its process, whatever its plugin does.
 //!
 //! Two mechanisms of the Linux kernel isolate the process before the first instruction of a plugin runs, in a probe as
-//! well as in a mission. *Landlock* removes access to files and network: while the plugin is loading, the process can
-//! read libraries, and afterwards nothing. *seccomp* allows the system calls that are needed for computing. Every other
-//! call waits for the console's decision ([`verdict`]); if it is forbidden, the console kills the process and names the
-//! call. The plugin cannot interfere: the kernel itself reports the call, over a descriptor that the plugin never sees.
+//! well as in a mission. *Landlock* removes access to files and the network: while the plugin is being loaded, the
+//! process can read libraries, and afterwards nothing. *seccomp* allows the system calls that are needed for computing.
+//! Every other call waits for the console's decision ([`verdict`]); if the call is forbidden, the console kills the
+//! process and names the call. The plugin cannot interfere: the kernel itself reports the call, through a descriptor
+//! that the plugin never sees.
 
 #[cfg(target_os = "linux")]
 mod about;
@@ -37,14 +38,14 @@ pub(crate) use {
 use mission::Sandbox;
 use std::os::fd::OwnedFd;
 
-/// The descriptor of the worker's copy of the plugin. It is above the numbers that careless plugins close.
+/// The descriptor of the worker's copy of the plugin. Its number is higher than those that careless plugins close.
 #[cfg(target_os = "linux")]
 pub(crate) const PLUGIN_AT: i32 = 201;
-/// The path of the same copy; it is opened again only to look up function names.
+/// The path of the same copy, which is opened again only to look up function names.
 #[cfg(target_os = "linux")]
 const PLUGIN: &str = "/proc/self/fd/201";
 
-/// The worker's progress in loading its plugin.
+/// How far a worker has got with loading its plugin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Stage {
     /// The plugin's libraries are being read.
@@ -60,14 +61,14 @@ pub(crate) enum Stage {
 pub(crate) struct ClosedOff {
     /// The extent of the sandbox.
     pub(crate) sandbox: Sandbox,
-    /// The descriptor over which the console receives all system calls beyond computing.
+    /// The descriptor through which the console receives all system calls that computing does not need.
     pub(crate) listener: Option<OwnedFd>,
     /// Whether access to files must still be removed, with [`close_files`], once the plugin is loaded.
     pub(crate) reads_libraries: bool,
 }
 
-/// Puts this process into the sandbox. The process must have only one thread, because other threads would not be
-/// covered.
+/// Puts this process into the sandbox. The process must have only one thread, because the sandbox would not cover other
+/// threads.
 #[cfg(target_os = "linux")]
 pub(crate) fn seal() -> ClosedOff {
     let files = files::only_libraries();

@@ -1,6 +1,6 @@
 //! Reads what a library states about itself before any of its code runs.
 //!
-//! Loading a library runs its constructors, so the planner ABI is read from a section of the file first.
+//! Loading a library runs its constructors, so the planner ABI is first read from a section of the file.
 
 use object::{Architecture, BinaryFormat, File, Object, ObjectKind, ObjectSection};
 use planner_api::abi;
@@ -9,9 +9,9 @@ use std::fmt;
 /// The version of the planner ABI for which a library was built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Abi {
-    /// Must equal the console's.
+    /// The major version; must equal the console's.
     pub major: u32,
-    /// May be newer or older than the console's.
+    /// The minor version; may be newer or older than the console's.
     pub minor: u32,
 }
 
@@ -24,7 +24,7 @@ impl fmt::Display for Abi {
 /// The ABI that this console uses.
 pub const CONSOLE_ABI: Abi = Abi { major: abi::MAJOR, minor: abi::MINOR };
 
-/// Why a file is not a plugin for this console; the text continues after "refused:".
+/// Why a file is not a plugin for this console; the text follows "refused:".
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum StampError {
     /// The file is neither ELF, Mach-O nor PE.

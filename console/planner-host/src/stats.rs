@@ -1,4 +1,4 @@
-//! How often planners were called, and how much wall-clock time the calls took.
+//! How often planners were called, and how much wall-clock time their calls took.
 
 use std::time::Duration;
 
@@ -13,7 +13,8 @@ pub struct CallStats {
     pub p99_us: Option<f64>,
 }
 
-/// The cost of planners so far. Wall times differ from run to run, so they belong in reports and never in the journal.
+/// The cost of planners so far. Wall times differ from run to run, so they may be written to reports but never to the
+/// journal.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
 pub struct HostStats {
     /// Requests for plans.
@@ -35,8 +36,8 @@ pub struct Memory {
     pub threads: u32,
 }
 
-/// Wall times of calls of one kind, microseconds. A million of them take four megabytes, each exact to one part in ten
-/// million.
+/// Wall times of calls of one kind, microseconds. A million of them take up four megabytes, each accurate to one part
+/// in ten million.
 #[derive(Debug, Default)]
 pub(crate) struct Durations(Vec<f32>);
 

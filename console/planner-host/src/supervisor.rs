@@ -28,7 +28,7 @@ use std::io;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// How to start a worker: a program that ends in [`crate::worker_main`].
+/// How to start a worker: a program that eventually calls [`crate::worker_main`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WorkerCommand {
     /// The program.
@@ -45,8 +45,8 @@ impl WorkerCommand {
 }
 
 impl Default for WorkerCommand {
-    /// Runs this same program with the argument `worker`. On Linux this is the file that is running, even if it has
-    /// been replaced on disk, so that console and worker are always the same build.
+    /// Runs this same program with the argument `worker`. On Linux this is the very file that is running, even if it
+    /// has been replaced on disk, so that console and worker are always the same build.
     fn default() -> Self {
         let running = PathBuf::from("/proc/self/exe");
         let is_there = cfg!(target_os = "linux") && running.exists();
@@ -54,13 +54,13 @@ impl Default for WorkerCommand {
     }
 }
 
-/// Returns the deadline that a planner sees. It is earlier than the enforced one, so that a planner that watches its
+/// Returns the deadline that a planner sees. It is earlier than the enforced deadline, so a planner that watches its
 /// time can still answer before it is killed.
 fn soft(deadline: Duration) -> Duration {
     deadline * 9 / 10
 }
 
-/// Why there is no answer. All texts continue after the name of the planner or plugin.
+/// Why there is no answer. Every text completes a sentence that begins with the name of the planner or plugin.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Failure {
     /// The planner refused the request.
@@ -71,25 +71,25 @@ pub(crate) enum Failure {
     Died {
         /// How it ended, such as "was killed by ...".
         how: String,
-        /// The last line that it printed; may be empty.
+        /// The last line that the process printed; may be empty.
         last_output: String,
     },
-    /// The planner tried something that no planner may do; the process was killed.
+    /// The planner tried something that no planner may do, and the process was killed.
     Forbidden {
         /// What the planner tried.
         call: String,
-        /// The last line that it printed; may be empty.
+        /// The last line that the process printed; may be empty.
         last_output: String,
     },
-    /// There was no answer within the budget and the grace period; the process was killed.
+    /// There was no answer within the budget and the grace period, and the process was killed.
     Hung,
-    /// The answer came only within the grace period; the process was killed.
+    /// The answer came only in the grace period, and the process was killed.
     Late,
-    /// The worker was starved of CPU time for too long; the process was killed.
+    /// The worker was starved of CPU time for too long, and the process was killed.
     Starved,
-    /// The worker exceeded this memory limit, bytes; the process was killed.
+    /// The worker exceeded this memory limit, bytes, and the process was killed.
     Overweight(u64),
-    /// The answer was invalid; the process was killed.
+    /// The answer was invalid, and the process was killed.
     Protocol,
     /// The process no longer exists.
     Gone,
@@ -97,7 +97,8 @@ pub(crate) enum Failure {
     Console(String),
 }
 
-/// Describes that a process exceeded this memory limit, bytes; continues after the planner's name.
+/// States that a process exceeded this memory limit, bytes. The text completes a sentence that begins with the
+/// planner's name.
 pub(crate) fn overweight(limit: u64) -> String {
     format!("exceeded its memory limit of {} MB", limit >> 20)
 }
@@ -114,7 +115,7 @@ pub(crate) fn no_worker(cannot: &str, error: &io::Error) -> String {
 }
 
 impl Failure {
-    /// Whether the process has ended as well, on its own or killed because of the failure.
+    /// Whether the process has ended as well, either on its own or because it was killed after the failure.
     pub(crate) fn has_ended_the_process(&self) -> bool {
         matches!(
             self,
@@ -128,7 +129,7 @@ impl Failure {
         )
     }
 
-    /// Describes how the process ended; continues after the planner's name.
+    /// Describes how the process ended. The text completes a sentence that begins with the planner's name.
     pub(crate) fn how(&self) -> String {
         match self {
             Self::Died { how, .. } => how.clone(),
@@ -139,7 +140,8 @@ impl Failure {
         }
     }
 
-    /// Whether the planner can no longer be asked after this refusal, or ran out of time; then its process is killed.
+    /// Whether the planner, after this refusal, can no longer be asked or has run out of time; if so, its process is
+    /// killed.
     fn ends_the_process(&self) -> bool {
         let Self::Planner(refusal) = self else { return false };
         match Code::from_number(refusal.code) {

@@ -22,7 +22,7 @@ pub(crate) const LOAD_WITHIN: Duration = Duration::from_secs(2);
 /// The default memory limit of a planner, bytes.
 pub(crate) const MEMORY_LIMIT: u64 = 256 << 20;
 
-/// Every plugin file, in the order in which they are searched.
+/// Every plugin file, in the order in which the files are searched.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Survey {
     /// The plugins.
@@ -34,16 +34,36 @@ pub struct Survey {
 pub struct SurveyedPlugin {
     /// The path of the file.
     pub path: PathBuf,
-    /// The planner ABI for which it was built, as `major.minor`; absent when it has no stamp.
+    /// The planner ABI for which the plugin was built, as `major.minor`; absent if the file has no stamp.
     pub abi: Option<String>,
-    /// SHA-256 of the file, hexadecimal; empty when it cannot be read.
+    /// SHA-256 of the file, hexadecimal; empty if the file cannot be read.
     pub sha256: String,
     /// The planners that can be chosen from this plugin.
     pub planners: Vec<PlannerInfo>,
-    /// Ids of planners that an earlier plugin contains, too; they cannot be chosen from this plugin.
+    /// Ids of planners that an earlier plugin also contains; they cannot be chosen from this plugin.
     pub shadowed: Vec<String>,
     /// Why the plugin is refused, if it is.
     pub refused: Option<String>,
+}
+
+impl PluginDirs {
+    /// Returns every file that has the name of a plugin, folder by folder and sorted by name within a folder. A file
+    /// with the same content as an earlier file is the same plugin and is left out.
+    pub fn plugins(&self) -> Vec<PluginFile> {
+        let mut found: Vec<PluginFile> = Vec::new();
+        let cache = Cache::new(self.cache.as_deref());
+        for path in self.candidates() {
+            let plugin = cache.seen(&path).unwrap_or_else(|| {
+                let plugin = PluginFile::read(path);
+                cache.note(&plugin);
+                plugin
+            });
+            if plugin.sha256.is_empty() || found.iter().all(|known| known.sha256 != plugin.sha256) {
+                found.push(plugin);
+            }
+        }
+        found
+    }
 }
 
 impl Survey {
@@ -61,12 +81,12 @@ impl Survey {
     }
 }
 
-/// Surveys every plugin. One that is not cached is loaded and described in a temporary worker.
+/// Surveys every plugin. A plugin that is not cached is loaded and described in a temporary worker.
 pub fn survey(dirs: &PluginDirs, worker: &WorkerCommand) -> Survey {
     Surveyor::new(dirs, worker).survey()
 }
 
-/// Surveys plugins, each at most once, because one that does not load takes time.
+/// Surveys plugins, each at most once, because a plugin that fails to load takes time.
 pub struct Surveyor<'a> {
     probing: Probing<'a>,
     plugins: Vec<PluginFile>,
@@ -79,7 +99,7 @@ impl<'a> Surveyor<'a> {
     }
 
     /// Returns the planners with these ids, each from the first plugin that contains it. Only plugins that may contain
-    /// one of them are loaded.
+    /// one of these planners are loaded.
     pub fn find(&self, ids: &[&str]) -> Vec<PlannerInfo> {
         let find = |id: &&str| {
             let may_have = self.plugins.iter().filter(|plugin| plugin.may_have(id));
@@ -89,13 +109,13 @@ impl<'a> Surveyor<'a> {
         ids.iter().filter_map(find).collect()
     }
 
-    /// Returns why this machine prevents planners from running, if a worker could not be run for one of the plugins.
+    /// If a worker could not be run for one of the plugins, returns why this machine prevents planners from running.
     pub fn no_worker(&self) -> Option<String> {
         self.probing.no_worker()
     }
 
-    /// Returns which of these ids more than one plugin contains: the id, the plugin that is used, and the first one
-    /// that is not.
+    /// Returns those of these ids that more than one plugin contains: the id, the plugin that is used, and the first
+    /// plugin that is not used.
     pub fn shadowed(&self, ids: &[&str]) -> Vec<(String, PathBuf, PathBuf)> {
         let holders = |id: &&str| {
             let has_it = |plugin: &&PluginFile| {
@@ -119,7 +139,7 @@ impl<'a> Surveyor<'a> {
     }
 }
 
-/// Checks one file, whatever its folder and name; it is loaded even if it is cached.
+/// Checks one file, whatever its folder and name. The file is loaded even if it is cached.
 ///
 /// # Errors
 /// Why this machine prevents planners from running, which is not the plugin's fault.
@@ -221,7 +241,7 @@ fn finished(worker: &mut Worker) -> Result<(), Failure> {
     }
 }
 
-/// Describes a planner in the form that the mission uses.
+/// Describes a planner in the form used by the mission.
 pub(crate) fn info(planner: &Described, sealed: &Sealed, plugin: &str) -> PlannerInfo {
     PlannerInfo {
         id: planner.id.clone(),

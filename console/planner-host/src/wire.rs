@@ -1,10 +1,11 @@
 //! The protocol between console and worker.
 //!
-//! A frame is `u32 length | u8 kind | u32 sequence | u32 soft deadline | body`, little-endian. The length counts
-//! everything after itself; the soft deadline is in microseconds, and zero means none. Every request gets one answer
-//! with the same sequence number. A CANCEL may follow a request and is never answered. Before the answer to a PLAN, and
-//! nowhere else, there may be any number of PROGRESS frames with the sequence number of the request; they are never
-//! answered. Before the answer to a LOAD there is one SEALED frame, sent before any code of the plugin runs.
+//! A frame is `u32 length | u8 kind | u32 sequence | u32 soft deadline | body`, little-endian. The length covers
+//! everything after the length itself; the soft deadline is in microseconds, and zero means no deadline. Every request
+//! gets one answer with the same sequence number. A CANCEL may follow a request and is never answered. Before the
+//! answer to a PLAN, and nowhere else, any number of PROGRESS frames may be sent with the sequence number of the
+//! request; they are never answered. Before the answer to a LOAD, one SEALED frame is sent, before any code of the
+//! plugin runs.
 
 pub(crate) mod answer;
 pub(crate) mod body;
@@ -16,12 +17,12 @@ pub(crate) mod request;
 use rustix::process::Signal;
 use std::time::Duration;
 
-/// Raised whenever the form of a frame changes: console and worker must be the same build.
+/// The version of the protocol, raised whenever the form of a frame changes. Console and worker must be the same build.
 pub(crate) const VERSION: u32 = 6;
 /// The maximum length of a frame, bytes.
 pub(crate) const LONGEST: usize = 16 << 20;
-/// The signal with which a worker ends itself when it can no longer talk to its console. It is not an exit code,
-/// because exit codes are the planner's; on Linux it is a signal that nothing else uses.
+/// The signal with which a worker ends itself when it can no longer communicate with its console. An exit code would
+/// not do, because any exit code may be the planner's own. On Linux nothing else uses this signal.
 #[cfg(target_os = "linux")]
 pub(crate) const CHANNEL_LOST: Signal = Signal::STKFLT;
 #[cfg(not(target_os = "linux"))]
@@ -48,8 +49,8 @@ pub(crate) mod kind {
     /// Progress of a plan; the answer follows.
     pub(crate) const PROGRESS: u8 = 0x83;
     /// The extent of the worker's sandbox, and the file to load. The descriptor that reports the worker's calls is sent
-    /// along.
+    /// with it.
     pub(crate) const SEALED: u8 = 0x84;
-    /// The machine prevents the worker from running; the library is not to blame.
+    /// This machine prevents the worker from running; the library is not to blame.
     pub(crate) const UNABLE: u8 = 0x85;
 }

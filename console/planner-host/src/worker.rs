@@ -18,7 +18,7 @@ use std::os::unix::net::UnixStream;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// The one descriptor of the socket, shared by all its users.
+/// The only descriptor of the socket; all users of the socket share it.
 type Socket = Arc<UnixStream>;
 
 /// Runs a worker: takes the socket that was passed as standard input and answers requests until the console hangs up.
@@ -31,7 +31,7 @@ pub fn worker_main() -> ExitCode {
 }
 
 /// Reads from a socket only when data is available. A blocking read would also be woken, in vain, whenever the other
-/// side reads what was written, which happens at every step.
+/// side has read what was written to it, which happens on every step.
 struct Patient<'a>(&'a UnixStream);
 
 impl Read for Patient<'_> {
@@ -75,7 +75,7 @@ fn answer(session: &mut Session<'_>, incoming: &Incoming, writer: &mut Writer) -
         Err(Trouble::Unable(why)) => {
             writer.begin(kind::UNABLE, sequence, 0).put(&why);
         }
-        // The console sent something that no console of the same build sends.
+        // The console sent something that a console of the same build never sends.
         Err(Trouble::Malformed) => return Err(io::ErrorKind::InvalidData.into()),
     }
     Ok(())

@@ -12,9 +12,9 @@ use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
 use world::{ObstacleMap, Point, Station, World};
 
-/// Distances to a station below this count as this, metres: the direction is undefined so close to it.
+/// Shorter distances to a station are raised to this, metres: the direction is undefined so close to the station.
 const NEAREST_M: f64 = 0.05;
-/// The most cells of a map along its longer side.
+/// The largest number of cells along the longer side of a map.
 const MOST_CELLS: usize = 400;
 /// A ray that ends this close to a station has reached it, metres: stations may be mounted on a column.
 const REACHED_M: f64 = 1e-3;
@@ -29,9 +29,9 @@ pub struct Forecast {
     pub timing: Timing,
     /// The number of ranges per station and cycle.
     pub repetitions: u32,
-    /// Whether a station is unusable where an obstacle hides it.
+    /// Whether a station is unusable wherever an obstacle hides it from the robot.
     pub needs_line_of_sight: bool,
-    /// Edge of a cell, metres.
+    /// Edge length of a cell, metres.
     pub cell_m: f64,
 }
 
@@ -44,21 +44,21 @@ pub struct Accuracy {
     pub gdop: Option<f64>,
     /// The number of stations heard.
     pub heard: u32,
-    /// The mirror image of the place if the stations are nearly on a line, metres: its ranges are practically the
-    /// same.
+    /// The mirror image of the place if the stations are nearly on a line, metres; the ranges from both are practically
+    /// the same.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mirror: Option<Point>,
 }
 
 /// The forecast for every cell of the floor, row by row from the south-west corner.
 ///
-/// It is the Cramér-Rao bound of a single cycle with normal noise. Least squares reach this bound; filters do better
-/// during a mission.
+/// The forecast is the Cramér-Rao bound for a single cycle with normal noise. Least squares reach this bound; filters
+/// do better during a mission.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AccuracyMap {
     /// South-west corner of cell 0, metres.
     pub origin: Point,
-    /// Edge of a cell, metres.
+    /// Edge length of a cell, metres.
     pub cell_m: f64,
     /// The number of cells from west to east.
     pub width: usize,
@@ -69,7 +69,7 @@ pub struct AccuracyMap {
 }
 
 impl AccuracyMap {
-    /// Computes the forecast for a tank as drawn. Costs one ray for each cell and station.
+    /// Computes the forecast for a tank as drawn. Casts one ray for each pair of cell and station.
     pub fn new(drawing: &World, forecast: &Forecast) -> Self {
         let grid = Grid::of(drawing, forecast.cell_m);
         let map = ObstacleMap::new(&drawing.boundary, &drawing.obstacles);
@@ -99,7 +99,7 @@ impl AccuracyMap {
         self.cells.iter().enumerate().filter_map(|(index, cell)| Some((self.center(index), (*cell)?)))
     }
 
-    /// Returns the places where the error exceeds a limit or there is no fix, the worst first.
+    /// Returns the places where the error exceeds a limit or there is no fix, worst first.
     pub fn beyond(&self, limit_m: f64) -> Vec<(Point, Accuracy)> {
         let error_m = |cell: &Accuracy| cell.error_95_m.unwrap_or(f64::INFINITY);
         let mut places: Vec<_> = self.floor().filter(|(_, cell)| error_m(cell) > limit_m).collect();
@@ -191,7 +191,7 @@ fn is_in_sight(map: &ObstacleMap, from: Point, to: Point) -> bool {
         || map.ray_m(from, way / distance_m, distance_m).is_none_or(|hit_m| hit_m >= distance_m - REACHED_M)
 }
 
-/// Square cells over the bounding box of a tank.
+/// Square cells that cover the bounding box of a tank.
 struct Grid {
     origin: Point,
     cell_m: f64,
@@ -200,12 +200,12 @@ struct Grid {
 }
 
 impl Grid {
-    /// Creates cells with this edge, or with a longer one if there would be too many cells.
+    /// Creates cells with this edge length, or a longer one if there would otherwise be too many cells.
     fn of(world: &World, cell_m: f64) -> Self {
         let (low, high) = world.boundary.bounds();
         let span = high - low;
         let least_m = span.amax() / MOST_CELLS as f64;
-        // `max` also replaces NaN by the minimum.
+        // `max` also replaces NaN with the minimum.
         let cell_m = cell_m.max(least_m).max(1e-6);
         let count = |span_m: f64| ((span_m / cell_m).ceil().max(1.0) as usize).min(MOST_CELLS + 1);
         Self { origin: low, cell_m, width: count(span.x), height: count(span.y) }

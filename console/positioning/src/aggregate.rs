@@ -7,7 +7,7 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use world::RangeSet;
 
-/// The least standard deviation of an aggregated range, metres: stations are not surveyed more accurately.
+/// The least standard deviation of an aggregated range, metres: stations are not surveyed more accurately than this.
 pub const SIGMA_FLOOR_M: f64 = 1e-3;
 
 /// The shortest valid range, metres.
@@ -17,9 +17,9 @@ pub(crate) const RANGE_LIMIT_M: f64 = 1e6;
 
 /// The number of nodes in the numerical posterior of one distance.
 const NODES: u32 = 48;
-/// Ranges this many sigmas from the median are trimmed.
+/// Ranges more than this many sigmas from the median are trimmed.
 const TRIM_SIGMAS: f64 = 3.0;
-/// Standard deviation of a normal distribution per median absolute deviation.
+/// Standard deviation of a normal distribution, as a multiple of its median absolute deviation.
 const SIGMA_PER_MAD: f64 = 1.4826;
 
 /// The method that combines repetitions into one range.
@@ -29,7 +29,7 @@ pub enum Aggregation {
     /// The mean of the ranges.
     #[default]
     Mean,
-    /// The root of the mean square.
+    /// The root mean square of the ranges.
     ///
     /// The linear solution is linear in the squared ranges. This method therefore gives exactly the mean of the
     /// positions of the single repetitions, which is what Wang et al. 2023 average.
@@ -47,7 +47,7 @@ pub enum Aggregation {
 impl Aggregation {
     /// Returns one range per station heard, in the order of `sets`; stations without ranges are left out.
     ///
-    /// `noise` is the scatter of single ranges; repetitions are taken as independent.
+    /// `noise` is the scatter of single ranges; repetitions are assumed to be independent.
     ///
     /// # Errors
     /// [`FixError::BadRange`] if a range is not between a micrometre and a million metres, or is not a number.
@@ -81,7 +81,7 @@ impl Aggregation {
             }),
         };
         let repetitions = u32::try_from(ranges_m.len()).unwrap_or(u32::MAX);
-        // `max` also replaces NaN by the floor.
+        // `max` also replaces NaN with the lower limit.
         let at_least_m = sigma_m.max(SIGMA_FLOOR_M);
         let sigma_m = at_least_m.min(RANGE_LIMIT_M);
         let station = set.station;

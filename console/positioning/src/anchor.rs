@@ -1,4 +1,4 @@
-//! Joins ranges with the positions of their stations, checked once for all solvers.
+//! Joins ranges with the positions of their stations, and checks both once for all solvers.
 
 use crate::{
     aggregate::{RANGE_LIMIT_M, is_usable},
@@ -8,7 +8,7 @@ use nalgebra::Rotation2;
 use std::f64::consts::TAU;
 use world::{Point, Station, StationId, Vector};
 
-/// Distances below this count as this, metres: the direction is undefined so close to a station.
+/// Shorter distances are raised to this, metres: the direction is undefined so close to a station.
 const NEAREST_M: f64 = 1e-3;
 /// A range is short if it is less than this share of the longest one.
 const SHORT_RANGE: f64 = 0.2;
@@ -56,7 +56,7 @@ impl View {
 impl Anchor {
     /// Returns the station as seen from `position`.
     ///
-    /// Except for timing errors, the scatter of a range is a share of the true distance, so its sigma is scaled to
+    /// Except for timing errors, the scatter of a range is proportional to the true distance, so its sigma is scaled to
     /// the computed distance.
     pub(crate) fn view_from(&self, position: Point) -> View {
         let away = position - self.at;
@@ -118,7 +118,7 @@ fn anchor(ranging: &Ranging, stations: &[Station]) -> Result<Anchor, FixError> {
     Ok(Anchor { station, at, range_m, sigma_m, timing_sigma_m })
 }
 
-/// Returns places on the range circle of a station that is close by; nothing if there is no such station.
+/// Returns places on the range circle of a station that is close by; none if there is no such station.
 pub(crate) fn on_near_circle(anchors: &[Anchor]) -> impl Iterator<Item = Point> {
     let longest_m = anchors.iter().map(|a| a.range_m).fold(0.0, f64::max);
     let nearest = anchors.iter().min_by(|a, b| a.range_m.total_cmp(&b.range_m)).copied();

@@ -19,14 +19,14 @@ const THINNEST_M: f64 = 1e-6;
 /// Computes the mean of all positions that are consistent with every single range, with an error of at most `ratio`
 /// of the distance.
 ///
-/// Each station allows an annulus around it, from its longest range over `1 + ratio` to its shortest over
-/// `1 - ratio`; the possible positions are where all annuli overlap. With uniform noise, the likelihood of a position
-/// is proportional to `prod l_i^-n_i`, so the weighted centroid is the exact mean of the posterior. Its error then
-/// falls with the number of repetitions, not with their square root.
+/// Each station allows an annulus around it, from its longest range divided by `1 + ratio` to its shortest range
+/// divided by `1 - ratio`; the possible positions are those where all annuli overlap. With uniform noise, the
+/// likelihood of a position is proportional to `prod l_i^-n_i`, so the weighted centroid is the exact mean of the
+/// posterior. Its error then falls in proportion to the number of repetitions, not to the square root of that number.
 ///
-/// The covariance is that of the same posterior. Its 95 % ellipse holds more than 95 %, because nothing lies outside
-/// the set: no point of a convex set is farther than `sqrt(8)` standard deviations from the mean, which is 1.16 times
-/// the longer half axis.
+/// The covariance is that of the same posterior. The 95 % ellipse contains more than 95 % of the posterior, because no
+/// position outside the set is possible: no point of a convex set is farther than `sqrt(8)` standard deviations from
+/// the mean, which is 1.16 times the longer half axis.
 ///
 /// Use this solver only if the bound is known to hold: with any other noise the set soon becomes empty, which
 /// [`FixError::EmptySet`] reports.

@@ -10,11 +10,11 @@ use nalgebra::{DMatrix, DVector, Matrix2, Matrix4, Vector4};
 use serde::{Deserialize, Serialize};
 use world::{Point, Station};
 
-/// The largest error of the assumed speed of sound that is accepted, as a share.
+/// The largest error that is accepted in the assumed speed of sound, as a share.
 pub(crate) const MOST_SCALE: f64 = 0.3;
 /// The largest scale error that counts as zero, as a share.
 const LEAST_SCALE: f64 = 1e-6;
-/// The number of iterations that fit the position together with the common errors of a cycle.
+/// The number of iterations in which the position is fitted together with the common errors of a cycle.
 const ROUNDS: usize = 6;
 
 /// The quantities to estimate, each with its prior uncertainty.
@@ -59,10 +59,11 @@ fn is_positive(sigma: f64) -> bool {
 /// Pools the cycles of a session: a single cycle reveals little about the scale of all ranges, but together they
 /// determine it exactly.
 ///
-/// Every cycle is fitted with a free position. The rest of its information goes into one system of linear equations
-/// (a Schur complement), so memory does not grow with the length of a session. Cycles that contradict themselves even
-/// with a free scale, such as those with a wrong station, are left out. It takes four stations to separate a scale or
-/// an offset from a position, five for both. Estimating the station positions also needs a robot that moves about.
+/// Every cycle is fitted with a free position. The rest of its information goes into one system of linear equations (a
+/// Schur complement), so memory does not grow with the length of a session. Cycles that contradict themselves even with
+/// a free scale, such as those with a wrong station, are left out. It takes four stations to separate either a scale or
+/// an offset from a position, and five to separate both. Estimating the station positions also needs a robot that moves
+/// about.
 #[derive(Debug, Clone)]
 pub struct Calibration {
     stations: Vec<Station>,
@@ -80,7 +81,7 @@ impl Calibration {
     pub fn new(stations: &[Station], unknowns: Unknowns) -> Self {
         let surveyed = if unknowns.has_survey() { 2 * stations.len() } else { 0 };
         let n = 1 + surveyed + usize::from(unknowns.has_offset());
-        // `max` also replaces NaN by the minimum.
+        // `max` also replaces NaN with the minimum.
         let at_least = unknowns.sound_sigma_ratio.max(LEAST_SCALE);
         let sound = at_least.min(1.0);
         let mut information = DMatrix::from_diagonal_element(n, n, unknowns.survey_sigma_m.powi(-2));
@@ -111,7 +112,7 @@ impl Calibration {
     }
 
     /// Returns a calibration without data that starts from the estimate of this one. Cycles are linearised about the
-    /// estimate at the time, so a second pass over the session removes the errors of the first.
+    /// estimate at that time, so a second pass over the session removes the errors of the first.
     #[must_use]
     pub fn again(&self) -> Self {
         Self { estimate: self.estimate.clone(), ..Self::new(&self.stations, self.unknowns) }
@@ -147,7 +148,7 @@ impl Calibration {
         self.unknowns
     }
 
-    /// Returns the ranges with their common error removed; its remaining uncertainty widens their sigmas.
+    /// Returns the ranges with their common error removed; the remaining uncertainty of that error widens their sigmas.
     pub fn corrected(&self, ranges: &[Ranging]) -> Vec<Ranging> {
         let Common { scale, offset_m } = self.common();
         let by = 1.0 / (1.0 + scale);
@@ -199,7 +200,7 @@ impl Calibration {
         }
         let mut right = nalgebra::Vector2::zeros();
         for (row, by_unknown) in cycle.rows.iter().zip(&rows) {
-            // Relative to zero values of the unknowns, so that cycles linearised at different estimates can be
+            // Expressed relative to unknowns that are all zero, so that cycles linearised at different estimates can be
             // summed.
             let error = row.error + by_unknown.dot(&self.estimate);
             self.information += by_unknown * by_unknown.transpose() * row.weight;

@@ -12,11 +12,11 @@ use world::{Point, Station};
 const CUT_SIGMAS: f64 = 3.0;
 /// The number of Newton steps on a subset of three; the linear start is already close.
 const SUBSET_STEPS: usize = 2;
-/// The most subsets tried before some are skipped: all subsets of up to ten stations.
+/// The largest number of subsets that are tried before some are skipped: enough for all subsets of ten stations.
 const MOST_SUBSETS: usize = 120;
-/// The number of best groups of agreeing stations that are refined.
+/// The number of groups of agreeing stations that are refined, best first.
 const REFINED: usize = 8;
-/// The most iterations of reselecting the agreeing stations.
+/// The largest number of times that the agreeing stations are selected again.
 const ROUNDS: usize = 6;
 /// A second answer is as good as the first if its cost is higher by less than this.
 const MARGIN: f64 = 16.0;
@@ -26,7 +26,7 @@ const NEEDED: usize = 4;
 /// The sign of the error of wrong ranges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum WrongRanges {
-    /// Always too long, as for sound that takes a detour; a range that is too short is accepted.
+    /// Always too long, as when sound takes a detour; a range that is too short is accepted.
     #[default]
     Late,
     /// Too long or too short.
@@ -36,8 +36,8 @@ pub enum WrongRanges {
 /// Fits all subsets of three stations, keeps the position with which the fewest stations disagree, and fits again to
 /// those that agree.
 ///
-/// With fewer than four stations, it behaves like [`crate::Nls`]. With six to eight stations, it tolerates one in
-/// five hidden behind an obstacle.
+/// With fewer than four stations, it behaves like [`crate::Nls`]. With six to eight stations, it tolerates one station
+/// in five being hidden behind an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Consensus {
     /// The kind of errors to expect.
@@ -95,7 +95,7 @@ impl Consensus {
         answers
     }
 
-    /// Fits to the agreeing stations until the selection no longer changes.
+    /// Repeats the fit to the agreeing stations until the selection no longer changes.
     fn refined(self, anchors: &[Anchor], start: Point, prior: Option<Prior>) -> Option<Answer> {
         let mut agreeing = self.agreeing(anchors, start);
         let mut answer = None;

@@ -11,7 +11,7 @@ use world::{Point, Station};
 
 /// The number of stations needed: two for the position, one for the emission time, one to exclude mirror images.
 const NEEDED: usize = 4;
-/// The most steps before giving up; six are usual.
+/// The largest number of steps before the search gives up; six are usual.
 const MAX_ITERATIONS: usize = 60;
 /// The search ends when a step is shorter than this, metres.
 const SETTLED_M: f64 = 1e-9;
@@ -20,9 +20,9 @@ const SETTLED_M: f64 = 1e-9;
 /// time. Position and length are both free, and the covariance of the position includes the uncertainty of the
 /// length.
 ///
-/// The scatter of a range is the given share of the range, scaled to the true distance. Differences of distances have
-/// valleys behind the stations, so several starts are tried; the best result is used. A prior is only one of the
-/// starts.
+/// The scatter of a range is the given share of the range, scaled to the true distance. A search on differences of
+/// distances can end in a valley behind a station, so several starts are tried and the best result is used. A prior is
+/// only one of the starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Differences;
 
@@ -47,7 +47,7 @@ impl PositionSolver for Differences {
         let covariance = found.covariance.fixed_view::<2, 2>(0, 0).into_owned();
         let mut fix = assess(&ranges, found.position, covariance, conditioning(&ranges), None)?;
         fix.degrees_of_freedom -= 1;
-        // Leaving out a station also frees the length, so the bound for known ranges does not hold.
+        // Leaving out a station also frees the length, so the bound for known ranges does not apply.
         fix.protection_level_m = None;
         fix.integrity = integrity_of(fix.chi2, fix.degrees_of_freedom);
         Ok(fix)
@@ -92,7 +92,7 @@ fn squared(anchors: &[Anchor]) -> Option<Point> {
     Some(Point::new(solved.x, solved.y)).filter(|at| at.iter().all(|c| c.is_finite()))
 }
 
-/// Descends from a place by Gauss-Newton steps with Levenberg-Marquardt damping.
+/// Descends from a place in Gauss-Newton steps with Levenberg-Marquardt damping.
 fn descend(anchors: &[Anchor], start: Point) -> Option<Minimum> {
     let mut state = Vector3::new(start.x, start.y, 0.0);
     state.z = best_excess_m(anchors, start);
@@ -137,7 +137,7 @@ fn slope(anchors: &[Anchor], state: &Vector3<f64>) -> Slope {
         let view = anchor.view_from(Point::new(state.x, state.y));
         let error = (view.residual_m - state.z) / view.sigma_m;
         let by = Vector3::new(view.direction.x, view.direction.y, 1.0) / view.sigma_m;
-        // The sigma grows with the distance as well.
+        // The sigma also grows with the distance.
         let by = by + Vector3::new(view.direction.x, view.direction.y, 0.0) * (error / view.growth_m);
         slope.cost += error * error;
         slope.gradient -= by * error;

@@ -8,7 +8,7 @@ use world::{Point, RangeSet, Station, StationId};
 /// Radius of the paper's tank, metres.
 pub(crate) const RADIUS_M: f64 = 10.0;
 
-/// Returns stations at these places, numbered from 1.
+/// Returns stations at the given places, numbered from 1.
 pub(crate) fn stations(places: &[(f64, f64)]) -> Vec<Station> {
     (1..)
         .zip(places)

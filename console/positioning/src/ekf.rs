@@ -17,7 +17,7 @@ const VARIANCE_FLOOR: f64 = 1e-14;
 /// 000.
 const GATE: [f64; 2] = [15.14, 18.42];
 
-/// Position, heading, share of the distance lost to slip, error of the measured turn per tick.
+/// Position, heading, share of the distance that is lost to slip, and error of the measured turn per tick.
 pub(crate) type State = SVector<f64, 5>;
 pub(crate) type Covariance = SMatrix<f64, 5, 5>;
 
@@ -34,7 +34,7 @@ pub struct MotionNoise {
     /// Standard deviation of the position after one metre without a fix, metres. Most of it is slip, so it grows in
     /// proportion to the distance until fixes show how large the slip is.
     pub sigma_per_m: f64,
-    /// Standard deviation of a single motion as a share of it, independent for every motion.
+    /// Standard deviation of a single motion as a share of that motion, independent for every motion.
     #[serde(default)]
     pub way_sigma_ratio: f64,
     /// Standard deviation of a turn as a share of the turn.
@@ -42,7 +42,7 @@ pub struct MotionNoise {
     /// Standard deviation of the turn that a robot at rest measures in a tick, radians. Most of it is the gyro's bias
     /// times the tick, so it adds up until fixes show how large the bias is.
     pub heading_sigma_per_tick_rad: f64,
-    /// Probability that the tracks spin in a motion, which is then mostly lost, 0 to 1.
+    /// Probability, 0 to 1, that the tracks spin in a motion, so that most of the motion is lost.
     #[serde(default)]
     pub slip_chance: f64,
 }
@@ -106,7 +106,7 @@ impl Ekf {
         );
         let mut filter = Self {
             state: State::new(position.x, position.y, heading_rad, 0.0, 0.0),
-            // `min` also replaces NaN by the limit.
+            // `min` also replaces NaN with the limit.
             covariance: Covariance::from_diagonal(
                 &sigma.zip_map(&State::from(SIGMA_LIMITS), |s, limit| s.abs().min(limit).powi(2)),
             ),
@@ -137,17 +137,17 @@ impl Ekf {
         ellipse_95(&self.position_covariance()).0
     }
 
-    /// Corrects the estimate by a position with its covariance, unless the position is implausibly far off.
+    /// Corrects the estimate with a position and its covariance, unless the position is implausibly far off.
     pub fn update_position(&mut self, position: Point, covariance: &Matrix2<f64>) -> Update {
         let by_state = SMatrix::<f64, 2, 5>::identity();
         self.update(position - self.pose().position, by_state, *covariance)
     }
 
-    /// Corrects the estimate by the range from one station, unless the range is implausibly far off.
+    /// Corrects the estimate with the range from one station, unless the range is implausibly far off.
     pub fn update_range(&mut self, station: Point, range_m: f64, sigma_m: f64) -> Update {
         let away = self.pose().position - station;
         let distance_m = away.norm();
-        // So close to the station, the direction and with it the correction are undefined.
+        // So close to the station, the direction is undefined, and so is the correction.
         if distance_m < sigma_m {
             return Update::REFUSED;
         }
@@ -211,8 +211,8 @@ impl Ekf {
         is_sound
     }
 
-    /// Keeps the covariance symmetric, non-negative and bounded, the heading within one turn, and the slip below
-    /// standstill.
+    /// Keeps the covariance symmetric, non-negative and bounded, the heading within one turn, and the slip below a
+    /// total loss of motion.
     fn keep_sound(&mut self) {
         self.state[2] = wrap_angle_rad(self.state[2]);
         self.state[SLIP] = self.state[SLIP].clamp(-0.5, 0.9);

@@ -139,8 +139,8 @@ pub struct Fix {
     pub conditioning: f64,
     /// The second position that fits nearly as well, if there is one.
     pub mirror: Option<Point>,
-    /// Radius that contains the true position even if any single station is wrong without showing it, metres; `None`
-    /// if the other stations alone would give no position.
+    /// Radius around the fix that contains the true position even if any one station has an error that does not show,
+    /// metres; `None` if the other stations alone would give no position.
     pub protection_level_m: Option<f64>,
     /// How far the fix can be trusted.
     pub integrity: Integrity,
@@ -199,7 +199,7 @@ pub fn position_covariance(pose: &Matrix3<f64>) -> Matrix2<f64> {
 #[serde(rename_all = "snake_case")]
 pub enum FixError {
     /// Fewer stations answered than the solver needs.
-    #[error("a position fix needs {need} stations, {have} answered")]
+    #[error("a position fix needs {need} stations; {have} answered")]
     TooFewStations {
         /// The number of stations that answered.
         have: usize,

@@ -8,10 +8,10 @@ use nalgebra::Matrix2;
 use std::collections::VecDeque;
 use world::{Odometry, Point, Pose, Station, geometry::wrap_angle_rad};
 
-/// An [`Ekf`] that remembers its last motions and smooths them backwards (Rauch, Tung and Striebel).
+/// An [`Ekf`] that remembers its last motions and smooths them backwards in time (Rauch, Tung and Striebel).
 ///
-/// Ranges taken after a motion also constrain where it began. Ten motions back, the error is a third less than that
-/// of the filter; the estimate of the present does not improve. Useful for maps and reports, not for driving.
+/// Ranges measured after a motion also constrain where the motion began. Ten motions back, the error is a third smaller
+/// than that of the filter; the estimate of the present does not improve. Useful for maps and reports, not for driving.
 #[derive(Debug, Clone)]
 pub struct FixedLag {
     filter: Ekf,
@@ -58,7 +58,7 @@ impl FixedLag {
         &self.filter
     }
 
-    /// Corrects the present by the ranges of a cycle; returns whether they were accepted.
+    /// Corrects the present pose with the ranges of a cycle; returns whether they were accepted.
     ///
     /// A motion in which the tracks spun reveals little about where it began.
     pub fn update_ranges(&mut self, ranges: &[Ranging], stations: &[Station]) -> bool {
@@ -91,7 +91,7 @@ impl FixedLag {
         }
     }
 
-    /// Moves the present by the odometry.
+    /// Moves the present pose according to the odometry.
     pub fn predict(&mut self, odometry: &Odometry) {
         let (state, covariance) = (*self.filter.state(), *self.filter.state_covariance());
         let by_state = self.filter.moved_by(odometry);
@@ -107,7 +107,7 @@ impl FixedLag {
         }
     }
 
-    /// Returns all remembered poses, the oldest first, the present last.
+    /// Returns all remembered poses, from the oldest to the present one.
     pub fn smoothed(&self) -> Vec<Smoothed> {
         let (mut state, mut covariance) = (*self.filter.state(), *self.filter.state_covariance());
         let mut found = vec![smoothed_pose(0, &state, &covariance)];

@@ -16,8 +16,8 @@ const SINGULAR: f64 = 1e12;
 
 /// The method of the paper: subtracting the squared range of the last station makes the equations linear.
 ///
-/// With three stations there are two equations with two unknowns, so nothing is averaged and half of the information
-/// is lost. [`crate::Nls`] uses all of it.
+/// With three stations there are two equations with two unknowns, so nothing is averaged, and half of the information
+/// is lost. [`crate::Nls`] uses all of the information.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LinearLs;
 

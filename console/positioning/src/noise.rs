@@ -8,9 +8,9 @@ pub(crate) const TAIL_FREEDOM: f64 = 3.0;
 
 /// The number of harmonics of the rounding error that are summed; the rest is at most a fortieth of the whole.
 const HARMONICS: u32 = 24;
-/// The number of standard deviations that no normal error exceeds.
+/// The number of standard deviations that a normal error practically never exceeds.
 const NORMAL_EXTREME: f64 = 6.0;
-/// The same for [`RangeNoise::HeavyTailed`], except for about one error in ten thousand.
+/// The number of standard deviations that only about one [`RangeNoise::HeavyTailed`] error in ten thousand exceeds.
 const TAIL_EXTREME: f64 = 30.0;
 
 /// The distribution of the error of a range as a share of the true distance.
@@ -32,7 +32,7 @@ pub enum RangeNoise {
         /// Standard deviation as a share of the distance.
         sigma_ratio: f64,
     },
-    /// Student's distribution with 3 degrees of freedom.
+    /// Student's t distribution with 3 degrees of freedom.
     HeavyTailed {
         /// Standard deviation as a share of the distance.
         sigma_ratio: f64,
@@ -72,7 +72,7 @@ impl RangeNoise {
     pub fn midrange_sigma_ratio(&self, n: f64) -> f64 {
         match *self {
             Self::Uniform { ratio } => ratio * (2.0 / ((n + 1.0) * (n + 2.0))).sqrt(),
-            // The extremes of a triangle: (1 - pi/4) / n of the squared bound for many errors.
+            // The extremes of many triangular errors: (1 - pi/4) / n of the squared bound.
             Self::Triangular { ratio } => {
                 (ratio * (0.2146 / n).sqrt()).min(self.sigma_ratio() / n.min(2.0).sqrt())
             }
@@ -145,8 +145,8 @@ impl Timing {
         NORMAL_EXTREME * self.jitter_m + self.resolution_m
     }
 
-    /// Adds timing errors to ranges that were aggregated to one per station. `excess_m` is the length by which they
-    /// are all longer than the distances.
+    /// Adds timing errors to ranges that were aggregated to one per station. `excess_m` is the length by which all
+    /// ranges exceed the distances.
     pub fn apply(&self, rangings: &mut [Ranging], noise: &RangeNoise, excess_m: f64) {
         if self.is_none() {
             return;

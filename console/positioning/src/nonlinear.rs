@@ -11,22 +11,23 @@ use crate::{
 use nalgebra::Matrix2;
 use world::{Point, Station, Vector};
 
-/// The most steps before giving up; five are usual.
+/// The largest number of steps before the search gives up; five are usual.
 const MAX_ITERATIONS: usize = 60;
 /// The search ends when a step is shorter than this share of the longest range.
 const STEP_TOLERANCE: f64 = 1e-9;
 /// A second position fits nearly as well if its chi-squared is higher by less than this.
 const MIRROR_MARGIN: f64 = 9.0;
 
-/// Least squares on relative range errors, `sum ((r_i - l_i) / (s_i l_i))^2` with `s_i` the relative sigma of a range.
+/// Least squares on relative range errors, `sum ((r_i - l_i) / (s_i l_i))^2` where `s_i` is the relative sigma of a
+/// range.
 ///
 /// Starts at the linear solution and continues with Newton steps under Levenberg-Marquardt damping. (Starting at the
-/// tank's centre ends in a false minimum for 5 % of the places in a round tank.) Plain Gauss-Newton steps zigzag on
-/// the small range circle of a station close by. Reaches the Cramér-Rao bound of normal noise.
+/// tank's centre ends in a false minimum for 5 % of the places in a round tank.) Plain Gauss-Newton steps zigzag on the
+/// small range circle of a station close by. Reaches the Cramér-Rao bound for normal noise.
 ///
 /// Stations on one line need a prior to choose between the position and its mirror image. Two stations give both
-/// crossings of their circles, one as position and the other as mirror image; here, too, a prior chooses. It has no
-/// other influence on the fix.
+/// crossings of their circles, one as position and the other as mirror image; here, too, a prior chooses. The prior has
+/// no other influence on the fix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Nls;
 
@@ -103,8 +104,8 @@ fn choose_side(anchors: &[Anchor], found: Minimum, prior: Option<Prior>) -> (Min
     }
 }
 
-/// Returns the mirror image of a place that fits, if it fits nearly as well; `None` if there is no such place, or
-/// both are the same within their error.
+/// Returns the mirror image of a place that fits, if the mirror image fits nearly as well; `None` if there is no such
+/// place, or the two are the same within their errors.
 pub(crate) fn mirror_of(anchors: &[Anchor], at: Point) -> Option<Point> {
     let cost = Slope::at(anchors, at).cost;
     let other = descend(anchors, reflected(anchors, at)).ok()?;
@@ -113,7 +114,7 @@ pub(crate) fn mirror_of(anchors: &[Anchor], at: Point) -> Option<Point> {
     (is_other && other.cost < cost + MIRROR_MARGIN).then_some(other.position)
 }
 
-/// Returns the normalised squared distance from a prior; in square metres if its covariance is unusable.
+/// Returns the normalised squared distance from a prior; in square metres if the covariance of the prior is unusable.
 fn surprise_to((near, covariance): Prior, position: Point) -> f64 {
     let away = position - near;
     let inverse = inverse_of(&covariance).unwrap_or_else(Matrix2::identity);
@@ -209,7 +210,7 @@ impl Slope {
 
     /// Returns the damped Newton step downhill; `None` if the numbers have overflowed.
     ///
-    /// Damping by the trace also works if all stations see the position from the same direction.
+    /// Scaling the damping by the trace also works if all stations lie in the same direction from the position.
     pub(crate) fn step(&self, damping: f64) -> Option<Vector> {
         let least = Matrix2::identity() * (damping * self.curvature.trace());
         let inverse = inverse_of(&(made_positive(self.curvature + self.bend) + least))?;
@@ -217,7 +218,8 @@ impl Slope {
     }
 }
 
-/// Returns the symmetric matrix with the same axes and the absolute eigenvalues; this turns a saddle into a valley.
+/// Returns the symmetric matrix with the same axes and the absolute values of the eigenvalues; this turns a saddle into
+/// a valley.
 fn made_positive(matrix: Matrix2<f64>) -> Matrix2<f64> {
     let (trace, determinant) = (matrix.trace(), matrix.determinant());
     if determinant >= 0.0 {
@@ -227,7 +229,7 @@ fn made_positive(matrix: Matrix2<f64>) -> Matrix2<f64> {
     matrix * (trace / gap) - Matrix2::identity() * (2.0 * determinant / gap)
 }
 
-/// Returns the inverse of the covariance: `sum u_i u_i^T / sigma_i^2` with `u_i` the directions from the stations.
+/// Returns the inverse of the covariance: `sum u_i u_i^T / sigma_i^2` where `u_i` are the directions from the stations.
 pub(crate) fn information_at(anchors: &[Anchor], position: Point) -> Matrix2<f64> {
     anchors
         .iter()

@@ -12,8 +12,8 @@ use world::{Point, Vector};
 /// Circles whose gap exceeds this many sigmas contradict each other.
 const GAP_SIGMAS: f64 = 3.0;
 
-/// Returns the crossing of two range circles on the side of `near`, or either crossing without it. The other crossing
-/// is reported as the mirror image.
+/// Returns the crossing of two range circles on the side of `near`, or either crossing if there is no `near`. The other
+/// crossing is reported as the mirror image.
 ///
 /// Where the circles touch or just miss each other, the position is on the line between the stations. Its uncertainty
 /// across that line is the half chord that the range errors can open.

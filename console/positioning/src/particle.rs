@@ -12,7 +12,7 @@ use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 use world::{Odometry, Point, Pose, Station, Vector, geometry::wrap_angle_rad};
 
-/// A smaller share of effective guesses than this is too few to continue with.
+/// If the share of effective guesses is smaller than this, there are too few to continue with.
 const TOO_FEW: f64 = 0.02;
 /// Copies of a survivor are scattered by this share of the spread of all survivors.
 const JITTER: f64 = 0.25;
@@ -32,14 +32,14 @@ pub struct ParticlesConfig {
     pub odometry: MotionNoise,
     /// Probability that the tracks spin in a motion, 0 to 1.
     pub slip_chance: f64,
-    /// The seed of all random numbers.
+    /// The seed for all random numbers.
     pub seed: u64,
 }
 
 /// A particle filter with the likelihood of bounded ranges: a guess outside any station's bounds is dropped.
 ///
-/// Where the noise is uniform, its memory makes it better than any fix of a single cycle. Equal seeds give equal
-/// estimates on every machine.
+/// Where the noise is uniform, the filter is better than any fix from a single cycle, because it remembers earlier
+/// cycles. Equal seeds give equal estimates on every machine.
 #[derive(Debug, Clone)]
 pub struct Particles {
     config: ParticlesConfig,
@@ -93,7 +93,7 @@ impl Particles {
         (pose, covariance.sum())
     }
 
-    /// Moves every guess by the odometry, each with its own errors.
+    /// Moves every guess according to the odometry, each with errors of its own.
     pub fn predict(&mut self, odometry: &Odometry) {
         let Odometry { forward_m, sideways_m, turn_rad } = *odometry;
         if ![forward_m, sideways_m, turn_rad].iter().all(|m| m.abs() <= MOTION_LIMIT) {
@@ -115,7 +115,7 @@ impl Particles {
 
     /// Drops every guess that does not explain the ranges. Call [`Self::renew`] to replace the dropped guesses.
     ///
-    /// If hardly any guess survives, for example after the tracks spun, all guesses are placed according to the
+    /// If hardly any guess survives, for example after the tracks spun, all guesses are placed again, according to the
     /// ranges alone.
     ///
     /// # Errors
@@ -139,7 +139,7 @@ impl Particles {
     /// Replaces weighted guesses by equally weighted ones: likely guesses are copied, and each copy is moved slightly
     /// within the bounds.
     ///
-    /// Call this after reading the estimate of the step.
+    /// Call this after the estimate of the step has been read.
     pub fn renew(&mut self, ranges: &[Ranging], stations: &[Station]) {
         let weights: Vec<f64> = self.guesses.iter().map(|g| g.weight).collect();
         let n = self.guesses.len();
@@ -231,7 +231,7 @@ fn effective(weights: &[f64]) -> f64 {
     if squares > 0.0 { weights.iter().sum::<f64>().powi(2) / squares } else { 0.0 }
 }
 
-/// Returns the Cholesky factor of a covariance, as far as it exists.
+/// Returns the Cholesky factor of a covariance, with its diagonal kept above zero.
 fn root(covariance: &Matrix2<f64>) -> Matrix2<f64> {
     let a = covariance[(0, 0)].max(1e-12).sqrt();
     let b = covariance[(0, 1)] / a;
@@ -242,7 +242,7 @@ fn bell(rng: &mut Pcg64) -> f64 {
     StandardNormal.sample(rng)
 }
 
-/// Limits a standard deviation so that numbers stay finite; 0 for NaN.
+/// Limits a standard deviation so that numbers stay finite; NaN becomes 0.
 fn bounded(sigma: f64) -> f64 {
     if sigma.is_nan() { 0.0 } else { sigma.abs().min(MOTION_LIMIT) }
 }

@@ -19,26 +19,26 @@ use world::{Odometry, Point, Pose, RangeSet, Station, StationId};
 
 /// This many consecutive sound fixes that contradict the filter prove it wrong.
 const PATIENCE: u32 = 3;
-/// Standard deviation of the prior that selects a mirror image, metres.
+/// Standard deviation of the prior that chooses between a position and its mirror image, metres.
 const MIRROR_SIGMA_M: f64 = 0.01;
-/// The largest magnitude at which an impossible range is shown, metres.
+/// The largest magnitude shown for an impossible range, metres.
 const MOST_SHOWN_M: f64 = 1e9;
 
 /// Returns a range for display: always a finite number within bounds.
 fn shown_m(range_m: f64) -> f64 {
     if range_m.is_nan() { -MOST_SHOWN_M } else { range_m.clamp(-MOST_SHOWN_M, MOST_SHOWN_M) }
 }
-/// Standard deviation that is added to the heading after the filter was proved wrong, radians.
+/// Standard deviation that is added to the heading after the filter has been proved wrong, radians.
 const RESTART_HEADING_SIGMA_RAD: f64 = 0.3;
 
-/// Reasons to trust ranges less than their noise suggests: they make fixes suspect and wider.
+/// Reasons to trust ranges less than their noise suggests: fixes become suspect and less certain.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Doubt {
     /// A suspected error of all ranges, as a share of the distance.
     pub ratio: f64,
-    /// Likely errors of all ranges, as standard deviations: they make fixes wider, but not suspect.
+    /// Likely errors of all ranges, as standard deviations: fixes become less certain, but not suspect.
     pub likely_errors: [CommonError; 2],
-    /// Likely error of a position in any direction, metres, as a standard deviation: it makes fixes wider, but not
+    /// Likely error of a position in any direction, metres, as a standard deviation: fixes become less certain, but not
     /// suspect.
     pub likely_m: f64,
     /// A suspected error of all ranges, metres.
@@ -65,7 +65,7 @@ pub struct Estimate {
 /// How well fixes and measured motion agree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Agreement {
-    /// The number of fixes that could be tested and passed.
+    /// The number of fixes that passed the test of their own ranges.
     pub sound: u64,
     /// The number of those fixes that contradict the motion since the previous fixes.
     pub contradicting: u64,
@@ -99,10 +99,10 @@ pub struct Positioner {
     has_wandered: bool,
     /// Whether any fix has confirmed the start.
     is_confirmed: bool,
-    /// Whether the estimate is on a known side of stations on a line.
+    /// Whether it is known on which side of stations on a line the estimate lies.
     knows_side: bool,
     refused_in_a_row: u32,
-    /// The first of several consecutive refused fixes, and the filter's pose at that time.
+    /// The first fix in an unbroken series of refused fixes, and the filter's pose at that time.
     first_refused: Option<(Fix, Pose)>,
     agreement: Agreement,
     /// Covariance of the error that all fixes share, square metres; averaging over fixes does not reduce it.
@@ -203,7 +203,7 @@ impl Positioner {
     }
 
     /// Returns the mean length by which ranges exceed the distances from the estimated position, metres; 0 if the
-    /// ranges are distances.
+    /// ranges themselves are distances.
     fn excess_m(&self, rangings: &[Ranging]) -> f64 {
         if self.config.solver != SolverKind::Differences || rangings.is_empty() {
             return 0.0;
@@ -341,7 +341,7 @@ impl Positioner {
             (self.is_confirmed, self.knows_side) = (true, true);
             return true;
         }
-        // Only a fix that was tested and passed counts against the filter.
+        // Only a fix that passed the test of its own ranges counts as evidence against the filter.
         self.agreement.contradicting += counts;
         fix.integrity = Integrity::Suspect;
         if !is_sound {
@@ -359,8 +359,8 @@ impl Positioner {
         true
     }
 
-    /// Processes a fix on an unknown side of the stations. The estimate then covers both sides if it contradicts both
-    /// or is less accurate.
+    /// Processes a fix on an unknown side of the stations. If the estimate keeps contradicting both sides, or is less
+    /// accurate than one that covers both sides would be, it is replaced with one that does.
     ///
     /// Nothing is merged, because two such fixes together do not determine the side any better than one.
     fn take_both(&mut self, fix: &Fix, other: Point, contradicts: bool) -> bool {
@@ -388,7 +388,7 @@ impl Positioner {
         is_known.then(|| (by_odometry.perp(&by_fixes).atan2(by_odometry.dot(&by_fixes)), sigma_rad))
     }
 
-    /// Corrects the filter by the fix or by its ranges, whichever suits the geometry.
+    /// Corrects the filter with the fix or with its ranges, whichever suits the geometry.
     ///
     /// Close to a station, the error of a fix is curved like the range circle and does not form an ellipse. A filter
     /// that is more accurate than the fix therefore takes the ranges instead, linearised at its own position.
@@ -402,7 +402,7 @@ impl Positioner {
         }
     }
 
-    /// Corrects the filter by all single ranges or by none; returns whether it accepted them.
+    /// Corrects the filter with all single ranges or with none; returns whether it accepted them.
     fn take_ranges(&mut self, rangings: &[Ranging]) -> bool {
         let mut filter = self.filter.clone();
         let fits = |ranging: &Ranging| {
@@ -421,7 +421,7 @@ impl Positioner {
     }
 }
 
-/// Subtracts the excess length that the fix gives for all ranges.
+/// Subtracts the excess length that the solver found for all ranges.
 fn take_excess_out(fix: &Fix, rangings: &mut [Ranging], stations: &[Station]) {
     let Some(excess_m) = common_excess_m(fix, rangings, stations) else { return };
     for ranging in rangings {

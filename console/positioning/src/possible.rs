@@ -22,7 +22,8 @@ pub struct Impossible {
     pub most_m: f64,
 }
 
-/// The bounds of possible ranges in a tank: the distance to its farthest place, plus the largest error of the noise.
+/// The bounds of possible ranges in a tank: for each station, the distance to the farthest place in the tank, plus the
+/// largest error of the noise.
 #[derive(Debug, Clone)]
 pub struct Possible {
     stations: Vec<Reach>,
@@ -73,7 +74,7 @@ impl Possible {
         })
     }
 
-    /// Separates possible from impossible ranges if only their differences count: two ranges may differ by no more
+    /// Separates possible from impossible ranges when only their differences count: two ranges may differ by no more
     /// than the distance between their stations. Ranges that agree with most others are kept.
     pub fn differences<'a>(&self, sets: &'a [RangeSet]) -> (Cow<'a, [RangeSet]>, Vec<Impossible>) {
         let mut all: Vec<(Reach, f64)> = Vec::new();
@@ -138,7 +139,7 @@ fn sorted_out(
     (Cow::Owned(kept), refused)
 }
 
-/// Returns the distance to the farthest place of a tank, metres.
+/// Returns the distance to the farthest place in a tank, metres.
 fn farthest_m(boundary: &Boundary, from: Point) -> f64 {
     match boundary {
         Boundary::Circle { radius_m } => from.coords.norm() + radius_m,

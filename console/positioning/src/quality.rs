@@ -15,17 +15,18 @@ pub(crate) const ALARM_Z: f64 = 3.090_232_306;
 /// Normal quantile beyond which the scatter of readings exceeds their noise: one correct set in 10 000.
 const SCATTER_Z: f64 = 3.719_016_485;
 
-/// The standard deviations that a protection level allows for chance: one position in 3000 lies farther off.
+/// The number of standard deviations that a protection level allows for chance: one position in 3000 lies farther off.
 const PROTECTION_SIGMAS: f64 = 4.0;
 /// If a place this many standard deviations away cannot be ruled out, the errors do not form an ellipse.
 const BENT_SIGMAS: f64 = 5.0;
-/// A range whose residual keeps less than this share of its variance cannot be checked by the other ranges.
+/// If the residual of a range keeps less than this share of the range's variance, the other ranges cannot check the
+/// range.
 const LEAST_SPARED: f64 = 1e-6;
 
 /// Stands for an infinite dilution, so that every number stays finite.
 pub(crate) const NO_GEOMETRY: f64 = 1e9;
 
-/// Assembles a fix, and rates its integrity by its residuals.
+/// Assembles a fix, and rates its integrity according to its residuals.
 pub(crate) fn assess(
     anchors: &[Anchor],
     position: Point,
@@ -130,8 +131,8 @@ pub(crate) fn residual_gate_m(sigma_m: f64) -> f64 {
     ALARM_Z * sigma_m
 }
 
-/// Returns a quantile of the chi-squared distribution, by the cube formula of Wilson and Hilferty; within 3 % for the
-/// tails used here.
+/// Returns a quantile of the chi-squared distribution, by the cube formula of Wilson and Hilferty, which is accurate to
+/// 3 % for the tails used here.
 pub(crate) fn chi_squared_quantile(z: f64, degrees_of_freedom: u32) -> f64 {
     let k = f64::from(degrees_of_freedom);
     let spread = 2.0 / (9.0 * k);

@@ -39,7 +39,7 @@ impl<S: PositionSolver> PositionSolver for Screened<S> {
 }
 
 impl<S: PositionSolver> Screened<S> {
-    /// Returns the fix without one station, if the other stations agree and the station left out contradicts them.
+    /// Returns the fix without one station, if the other stations agree and the omitted station contradicts them.
     fn without(
         &self,
         left_out: &Ranging,

@@ -15,18 +15,19 @@ use world::{Station, StationId};
 
 /// An error of more standard deviations than this is significant. Fixes allow for smaller errors ([`Wrong::likely`]).
 /// In two series of 200 sets with a wrong speed of sound and no emission times, 93.1 and 94.0 % of the true positions
-/// lie in the ellipses of the fixes rated ok. With 4, it would be 92.2 %, because chance hides the remaining errors.
+/// lie in the ellipses of the fixes rated ok. With a limit of 4, only 92.2 % would, because chance hides the remaining
+/// errors.
 const SIGNIFICANT: f64 = 5.0;
 /// An error does no harm if the squared shift of the fixes, in units of their variance, is below this: 93.5 % of the
 /// true positions still lie in the 95 % ellipse.
 const HARMLESS: f64 = 0.2;
 /// An offset of fewer standard deviations than this is attributed to chance: most sessions have no offset.
 const BEYOND_CHANCE: f64 = 2.0;
-/// The least information about an error, as a share of the information with known positions; with less, the error
-/// cannot be seen.
+/// The least information from which an error can be seen, as a share of the information that there would be if the
+/// positions were known.
 const LEAST_SEEN: f64 = 1e-6;
 
-/// The index of the scale error of all ranges; the errors of the stations follow, and then the common length of all
+/// The index of the scale error of all ranges; the errors of the stations come next, and then the common length of all
 /// ranges.
 const SCALE: usize = 0;
 
@@ -196,7 +197,7 @@ impl Session {
         is_seen.then(|| (self.score[error] / information, information.sqrt().recip()))
     }
 
-    /// Estimates an error together with a second error.
+    /// Estimates one error together with another.
     fn beside(&self, error: usize, other: usize) -> Option<(f64, f64)> {
         let by = self.information[(error, other)] / self.information[(other, other)];
         let information = self.information[(error, error)] - by * self.information[(other, error)];
@@ -210,7 +211,7 @@ impl Session {
         value.abs() > SIGNIFICANT * sigma && shift > HARMLESS
     }
 
-    /// Returns the findings: the error that explains most, and others only if they are proven beside it.
+    /// Returns the findings: the error that explains most, and others only if they are proven as well.
     pub fn verdict(&self) -> Verdict {
         let explained =
             |error: usize| self.alone(error).map_or(0.0, |(value, sigma)| (value / sigma).powi(2));

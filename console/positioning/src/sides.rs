@@ -12,7 +12,7 @@ use world::{Boundary, Point, Station};
 
 /// The normalised squared distance beyond which a position contradicts the estimate: one correct position in 10 000.
 const CONTRADICTS: f64 = 18.42;
-/// The lead in normalised squared distance that decides between the two positions: one wrong choice in 1000.
+/// The difference in normalised squared distance that decides between the two positions: one wrong choice in 1000.
 const DECIDES: f64 = 13.82;
 /// Stations with a condition number above this are nearly on a line, and can allow a second position.
 pub(crate) const MIRROR_CONDITIONING: f64 = 5.0;
@@ -30,7 +30,7 @@ pub enum Sides {
     Open {
         /// The other position.
         other: Point,
-        /// Whether both are too far from the robot's estimated position.
+        /// Whether both positions are too far from the robot's estimated position.
         contradicts: bool,
     },
 }
@@ -65,8 +65,8 @@ pub(crate) fn is_behind(boundary: &Boundary, at: Point, covariance: &Matrix2<f64
     -boundary.wall_distance_m(at) > crate::fix::ellipse_95(covariance).0
 }
 
-/// Returns one position with a covariance that covers both sides: their midpoint, and half their distance as a
-/// standard deviation.
+/// Returns one position with a covariance that covers both sides: their midpoint, and half the distance between them as
+/// a standard deviation.
 pub(crate) fn both(fix: &Fix, other: Point) -> (Point, Matrix2<f64>) {
     let half = (other - fix.position) / 2.0;
     (fix.position + half, fix.covariance + half * half.transpose())

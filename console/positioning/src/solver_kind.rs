@@ -25,12 +25,12 @@ pub enum SolverKind {
     /// [`Nls`].
     #[default]
     Nls,
-    /// [`Bounded`] with the bound of the noise; [`Nls`] if the noise has no bound. If no position is possible,
-    /// [`Nls`] with a suspect fix.
+    /// [`Bounded`] with the bound of the noise; [`Nls`] if the noise has no bound. If no position meets the bound,
+    /// [`Nls`] is used and its fix becomes suspect.
     Bounded,
-    /// [`Consensus`], for ranges of which some are too long.
+    /// [`Consensus`], for cycles in which some ranges are too long.
     Consensus,
-    /// [`Differences`]: all ranges of a cycle are too long by one unknown length.
+    /// [`Differences`]: all ranges in a cycle are too long by the same unknown length.
     Differences,
 }
 

@@ -11,9 +11,9 @@ use world::{Point, Station, Vector};
 
 /// The linear method with Gauss-Markov weights, for more than three stations.
 ///
-/// Differences of squared ranges share the reference station, so their errors are correlated. Fitting
-/// `r_i^2 - |s_i|^2 = c - 2 s_i . p` with weights `1 / (2 r_i sigma_i)^2` and a free `c` is equivalent, but needs no
-/// reference. With three stations nothing can be weighted, and the answer is that of [`crate::LinearLs`].
+/// Differences of squared ranges share the reference station, so their errors are correlated. Fitting `r_i^2 - |s_i|^2
+/// = c - 2 s_i . p` with weights `1 / (2 r_i sigma_i)^2` and a free `c` is equivalent, but needs no reference. With
+/// three stations, nothing can be weighted, and the answer is the same as that of [`crate::LinearLs`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct WeightedLinear;
 
@@ -39,8 +39,7 @@ impl PositionSolver for WeightedLinear {
 }
 
 fn solve_weighted(anchors: &[Anchor]) -> Option<(Point, Matrix2<f64>)> {
-    // Weights are relative to the largest and places are relative to the first station, to keep the numbers well
-    // scaled.
+    // Weights are relative to the largest weight, and places to the first station, to keep the numbers well scaled.
     let origin = anchors.first()?.at;
     let spread = |a: &Anchor| 2.0 * a.range_m * a.sigma_m;
     let least = anchors.iter().map(spread).fold(f64::INFINITY, f64::min);

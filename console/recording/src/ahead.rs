@@ -1,4 +1,4 @@
-//! A queue between a thread that reads ahead and its consumer. It is limited by the weight of its items, not by their
+//! A queue between a thread that reads ahead and its consumer. The limit is on the weight of the items, not on their
 //! number: a journal may contain millions of small events, and a few large ones.
 
 use std::{

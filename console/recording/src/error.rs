@@ -43,7 +43,7 @@ pub enum RecordingError {
         /// The error of the system.
         why: String,
     },
-    /// The chunks of a recording cannot be merged; the recording is complete without that.
+    /// The chunks of a recording cannot be merged; the recording is complete even so.
     #[error("the chunks of the recording cannot be merged ({why}): {}", path.display())]
     Merge {
         /// The error of the system or the format.

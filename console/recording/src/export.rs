@@ -7,7 +7,7 @@ use std::{path::Path, time::Instant};
 /// Regenerates the recording of a run from its journal, with the same content as the one made during the run.
 ///
 /// The recording belongs to the run of the journal (the name of its folder), wherever the recording is stored. A
-/// journal that is cut off gives a recording up to that point; the missing part is returned as text.
+/// journal that is cut off yields a recording up to that point, and a text that states what is missing.
 ///
 /// # Errors
 /// There is no journal, it is damaged, or the recording cannot be written; an existing recording is never

@@ -23,7 +23,7 @@ pub fn sha256(path: &Path) -> io::Result<String> {
 /// Like [`sha256`], but stops as soon as `goes_on` returns `false`; `goes_on` receives the number of bytes read.
 ///
 /// # Errors
-/// As [`sha256`]; [`io::ErrorKind::Interrupted`] if it was stopped.
+/// Those of [`sha256`], and [`io::ErrorKind::Interrupted`] if it was stopped.
 pub fn sha256_while(path: &Path, goes_on: impl FnMut(u64) -> bool) -> io::Result<String> {
     digest(&mut open_regular(path)?, goes_on)
 }
@@ -116,7 +116,8 @@ impl FileWatch {
         &self.path
     }
 
-    /// Checks that the file at the path is this one and has at least this length; more bytes may be on their way.
+    /// Checks that the file at the path is this one and has at least this length; more bytes may still be on their
+    /// way.
     pub(crate) fn check(&self, written: u64) -> Result<(), FileChange> {
         self.check_length(written, |found| found >= written)
     }

@@ -1,4 +1,4 @@
-//! Name and id of a recording, by which the viewer keeps two runs apart.
+//! Name and id of a recording, which the viewer uses to keep two runs apart.
 
 use jiff::{civil::DateTime, tz::TimeZone};
 use sha2::{Digest, Sha256};
@@ -43,7 +43,7 @@ impl Identity {
     }
 }
 
-/// The time with which a run's name begins, nanoseconds since 1970.
+/// The time at the beginning of a run's name, nanoseconds since 1970.
 fn began_ns(name: &str) -> Option<i64> {
     let began = DateTime::strptime("%Y%m%dT%H%M%SZ", name.get(..16)?).ok()?.to_zoned(TimeZone::UTC).ok()?;
     began.timestamp().as_nanosecond().try_into().ok()

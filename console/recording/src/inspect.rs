@@ -7,12 +7,12 @@ use crate::{
 };
 use std::{collections::BTreeMap, fs::File, io::BufReader, path::Path};
 
-/// The content of a recording, as far as it can be read.
+/// The readable content of a recording.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Summary {
-    /// The application id by which the viewer keeps the layout.
+    /// The application id under which the viewer stores the layout.
     pub application: String,
-    /// The id by which the viewer keeps recordings apart.
+    /// The id that the viewer uses to keep recordings apart.
     pub recording_id: String,
     /// Name for people.
     pub name: Option<String>,
@@ -28,11 +28,11 @@ pub struct Summary {
     pub log_lines: u64,
     /// How the run ended; absent if the run was killed or is still in progress.
     pub outcome: Option<String>,
-    /// The figures of the run by name, in the units in their names.
+    /// The figures of the run by name, in the units that the names state.
     pub figures: BTreeMap<String, f64>,
     /// Whether a layout is embedded.
     pub has_layout: bool,
-    /// The error that stopped the reading, if any.
+    /// The error that stopped the reading; absent if there was none.
     pub damage: Option<String>,
 }
 

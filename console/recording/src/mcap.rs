@@ -35,8 +35,8 @@ const COVERAGE_S: f64 = 5.0;
 /// Minimum distance between two points of the track, metres.
 const TRACK_M: f64 = 0.01;
 
-/// Writes the run of a journal as MCAP. A journal that is cut off gives a file up to that point, and the missing part
-/// is returned as text.
+/// Writes the run of a journal as MCAP. A journal that is cut off yields a file up to that point, and a text that
+/// states what is missing.
 ///
 /// # Errors
 /// There is no journal, it is damaged, or the file cannot be written; an existing file is never overwritten.
@@ -242,7 +242,7 @@ fn position_only(covariance: &Matrix2<f64>) -> Matrix3<f64> {
     whole
 }
 
-/// The points of a path, each heading to the next.
+/// The points of a path, each with the heading to the next point.
 fn headed(path: &[Point]) -> impl Iterator<Item = Pose> {
     path.iter().enumerate().map(|(index, point)| {
         let (from, to) = match path.get(index + 1) {

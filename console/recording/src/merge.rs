@@ -18,11 +18,11 @@ const MOST_CHUNK_BYTES: usize = 4 << 20;
 /// Extension of the file that replaces the recording when it is complete.
 const ENDING: &str = "merging";
 
-/// Merges the chunks of a recording, about 60 MB per second; gives up at the time `until`, if there is one.
+/// Merges the chunks of a recording, about 60 MB per second; gives up at the time `until`, if one is given.
 ///
 /// # Errors
-/// The recording cannot be read, its replacement cannot be written, or the time is over; the recording stays as it
-/// was.
+/// The recording cannot be read, its replacement cannot be written, or the time has run out; the recording stays as
+/// it was.
 pub(crate) fn merge(path: &Path, until: Option<Instant>) -> Result<(), RecordingError> {
     let successor = with_ending(path);
     let done = write(path, &successor, until)
@@ -118,7 +118,7 @@ impl Merger {
         self.merged(full)
     }
 
-    /// Returns all chunks that still wait.
+    /// Returns all chunks that are still waiting.
     fn rest(&mut self) -> Result<Vec<rr::LogMsg>, String> {
         let waiting = std::mem::take(&mut self.waiting);
         waiting
@@ -138,7 +138,7 @@ impl Merger {
     }
 }
 
-/// Whether the waiting chunks and another one are too large for one chunk.
+/// Whether the waiting chunks and another one would be too large for a single chunk.
 fn is_full(waiting: &[rr::Chunk], next: &rr::Chunk) -> bool {
     let chunks = || waiting.iter().chain([next]);
     let bytes = |chunk: &rr::Chunk| {

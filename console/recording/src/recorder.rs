@@ -40,11 +40,11 @@ use stream::Stream;
 
 /// Name of the recording in the folder of a run.
 pub const RECORDING_FILE: &str = "recording.rrd";
-/// Rows are sent to the file after this many ticks
+/// Number of ticks after which rows are sent to the file.
 const SEND_TICKS: u32 = 16_384;
-/// or after this many drawings of planners, of which a tick may have thousands
+/// Number of drawings of planners after which rows are sent to the file; a tick may have thousands of drawings.
 const SEND_DRAWINGS: usize = 1 << 19;
-/// or after this time, whichever comes first.
+/// Time after which rows are sent to the file at the latest.
 const SEND_AFTER: Duration = Duration::from_secs(5);
 
 /// Folds events into a recording.
@@ -104,7 +104,7 @@ impl Recorder {
         Arc::clone(&self.health)
     }
 
-    /// The reason why the recording is not being written at present; `None` if it is.
+    /// The reason why the recording is currently not being written; `None` if it is.
     pub fn trouble(&self) -> Option<RecordingError> {
         let why = self.health.error()?;
         Some(if self.health.has_ended() {
@@ -122,7 +122,7 @@ impl Recorder {
         self.watch.as_ref().map_or(Ok(()), |watch| watch.check(self.health.bytes()))
     }
 
-    /// Adds the next event; does nothing after an error. `account` is that of the events before it.
+    /// Adds the next event; does nothing after an error. `account` is the account of the earlier events.
     ///
     /// # Errors
     /// The first error that loses data, once.
@@ -149,7 +149,7 @@ impl Recorder {
     /// Sends waiting rows if they are due; call it regularly while there are no events.
     ///
     /// # Errors
-    /// As [`Recorder::push`].
+    /// See [`Recorder::push`].
     pub fn idle(&mut self, now: Instant) -> Result<(), RecordingError> {
         if now.saturating_duration_since(self.sent_at) >= SEND_AFTER { self.send(now) } else { Ok(()) }
     }

@@ -35,7 +35,7 @@ impl SinkHealth {
         self.bytes.load(Ordering::Relaxed)
     }
 
-    /// The reason why the file cannot be written at present, in the words of the system; `None` if it can.
+    /// The reason why the file currently cannot be written, in the words of the system; `None` if it can.
     pub fn error(&self) -> Option<String> {
         self.lock().clone()
     }

@@ -83,7 +83,7 @@ pub struct Finished {
 
 /// Writes journal and recording of a run in a separate thread.
 ///
-/// [`RunRecorder::send`] hands over events and returns immediately, unless 8192 batches are waiting. Then the
+/// [`RunRecorder::send`] hands over events and returns immediately, unless 8192 batches are waiting. In that case the
 /// simulation waits for the disk, and no data is lost. An error affects only its own file and appears in
 /// [`RunRecorder::health`] within a second, as does a file that others delete, replace or truncate; the other file
 /// and the mission continue. [`crate::FAILURE_FILE`] in the folder of the run states the reason for later readers.
@@ -152,7 +152,7 @@ impl RunRecorder {
         Ok(Self { sender: Some(sender), ended, shared, sink, journal: None, recording: None, unsynced: None })
     }
 
-    /// From now on syncs the journal to disk every second. A loss of power then costs no more than that second, plus
+    /// Syncs the journal to disk every second from now on. A loss of power then costs no more than that second, plus
     /// the data not yet handed to the system. Only a separate thread waits for the disk.
     ///
     /// # Errors
@@ -212,7 +212,7 @@ impl RunRecorder {
 
     fn close(&mut self, timeout: Duration) -> Option<Ended> {
         let sender = self.sender.take()?;
-        // The other half is for data that still waits to be written, and for slow disks.
+        // The other half is for data that is still waiting to be written, and for slow disks.
         self.shared.set_merge_until(Instant::now() + timeout / 2);
         drop(sender);
         let ended = self.ended.get_mut().unwrap_or_else(PoisonError::into_inner);

@@ -1,4 +1,4 @@
-//! The report that an inspector signs: one model behind HTML, JSON, CSV, `GeoJSON` and DXF.
+//! The report that an inspector signs: one model, written as HTML, JSON, CSV, `GeoJSON` and DXF.
 
 mod certificate;
 mod charts;
@@ -43,7 +43,7 @@ use world::Point;
 pub struct Context<'a> {
     /// The facts that only people know.
     pub inspection: Inspection,
-    /// Indications, if any: the file name and the text, as CSV.
+    /// Indications as CSV, with the name of their file; `None` if there are none.
     pub indications_csv: Option<(&'a str, &'a str)>,
     /// Version of the program that makes the report.
     pub version: &'a str,
@@ -85,14 +85,14 @@ pub struct SignedRun {
 }
 
 impl SignedRun {
-    /// The present state of a run.
+    /// The current state of a run.
     pub fn of(past: &PastRun) -> Self {
         let Files { journal_sha256, recording_sha256, closed_as, .. } = past.files.clone();
         Self { run: closed_as.unwrap_or_else(|| past.name.clone()), journal_sha256, recording_sha256 }
     }
 
-    /// Returns the run under the folder name that it had when it was closed, and under its present folder name.
-    /// Another run may have taken the first name since.
+    /// Returns the run under its current folder name, and under the name that the folder had when the run was closed.
+    /// Another run may have taken the earlier name since then.
     pub fn names_of(past: &PastRun) -> [Self; 2] {
         let closed = Self::of(past);
         [Self { run: past.name.clone(), ..closed.clone() }, closed]
@@ -127,7 +127,7 @@ pub struct Signature {
     pub at: String,
 }
 
-/// A report on one or more runs of one floor.
+/// A report on one or more runs on one floor.
 #[derive(Debug, Serialize)]
 pub struct Document {
     /// Version of the report format, `REPORT_VERSION`.
@@ -142,7 +142,7 @@ pub struct Document {
     pub revisions: Vec<Revision>,
     /// Name and version of the program that made the report.
     pub made_by: String,
-    /// Whether the runs were simulated, so that no floor was inspected.
+    /// Whether the runs were simulated; if so, no floor was inspected.
     pub is_simulation: bool,
     /// The readings that were located; absent for missions.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -175,7 +175,7 @@ pub struct Document {
     /// Whether scanning was the task of the runs. If not, no floor counts as missed and there is no account of the
     /// floor.
     pub is_to_scan: bool,
-    /// The task and its figures, for a run that had a task other than scanning.
+    /// The task and its figures, for a run whose task was not to scan.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub task: Option<TaskPart>,
     #[serde(skip)]
@@ -196,8 +196,8 @@ pub(crate) struct Pictures {
 }
 
 impl Pictures {
-    /// Draws the pictures. The coverage map and the pictures of single runs are drawn in a second thread; they take
-    /// as long as all others together.
+    /// Draws the pictures. The coverage map and the pictures of individual runs are drawn in a second thread; they
+    /// take as long as all the others together.
     fn draw(layers: &Layers<'_>, floor: &Account, indications: &[Indication], past: &[PastRun]) -> Self {
         std::thread::scope(|scope| {
             let more = scope.spawn(|| {
@@ -218,10 +218,10 @@ impl Pictures {
 }
 
 impl Document {
-    /// Builds the report on one or more runs of one floor.
+    /// Builds the report on one or more runs on one floor.
     ///
     /// # Errors
-    /// As [`crate::merged()`]; also if indications cannot be placed.
+    /// Those of [`crate::merged()`], and faults in the indications.
     pub fn new(past: &[PastRun], context: Context<'_>) -> Result<Self, String> {
         let all = joined_or_located(past)?;
         let located = Located::of(past);
@@ -318,7 +318,7 @@ pub(crate) fn is_marked(incident: &crate::record::Incident) -> bool {
     incident.needs_review() || matches!(incident.kind, "obstacle" | "zone" | "end")
 }
 
-/// Builds the document number from the start time in the first run's name and its seed.
+/// Builds the document number from the seed of the first run and the start time in its name.
 fn number(past: &[PastRun]) -> String {
     let first = past.first();
     let name = first.map(|past| past.files.closed_as.as_ref().unwrap_or(&past.name));
@@ -327,7 +327,7 @@ fn number(past: &[PastRun]) -> String {
     format!("{began}-{seed}")
 }
 
-/// The letter of the revision that follows this many earlier ones: A, B, ... Z, AA, AB.
+/// The letter of a revision, from the number of earlier revisions: A, B, ... Z, AA, AB.
 fn letter(index: usize) -> String {
     let last = char::from(b'A' + (index % 26) as u8);
     if index < 26 { last.to_string() } else { letter(index / 26 - 1) + &last.to_string() }

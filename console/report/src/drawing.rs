@@ -1,4 +1,5 @@
-//! Pictures of tanks: SVG in millimetres of paper, with the x axis of the tank frame to the right and y up.
+//! Pictures of tanks: SVG in millimetres on paper, with the x axis of the tank frame pointing right and the y axis
+//! up.
 
 pub(crate) mod badges;
 pub mod curves;

@@ -1,5 +1,5 @@
-//! A forecast of the accuracy of fixes, place by place, with advised station positions: for scripts and people, and
-//! as a picture.
+//! Forecast of the accuracy of fixes, place by place, with advised station positions: for scripts and people, and as
+//! a picture.
 
 mod mirror;
 
@@ -12,13 +12,13 @@ use serde::Serialize;
 use std::fmt::Write;
 use world::{Point, World};
 
-/// Largest error during a scan, with fixes and odometry filtered, as a share of the 95 % error of a single fix;
-/// measured in simulated missions.
+/// Largest error during a scan, with fixes and odometry filtered, as a share of the 95 % error of a single fix; from
+/// simulated missions.
 const FILTERED: f64 = 0.65;
-/// A robot whose sensing range beyond the hull is shorter than this detects nearby objects too late and relies on its
-/// position alone, metres.
+/// Sensing range beyond the hull, metres, below which a robot detects nearby objects too late and relies on its
+/// position alone.
 const SHORT_SIGHTED_M: f64 = 0.5;
-/// Maximum number of places beyond the limit listed.
+/// Maximum number of listed places beyond the limit.
 const MOST_SHOWN: usize = 12;
 
 /// A forecast for scripts.
@@ -149,11 +149,11 @@ impl<'a> ForecastReport<'a> {
     }
 }
 
-/// Warns if the clearance is so small that the position error may use it up. This concerns scans, because the robot
+/// Warns if the clearance is so small that the position error may exceed it. This concerns scans, because the robot
 /// senses its distance from columns but not from walls, and any mission of a robot that senses little beyond its
 /// hull.
 ///
-/// Takes as long as the map: one forecast for each of some thousand places.
+/// Takes as long as computing the map, which is one forecast for each of several thousand places.
 pub fn clearance_warning(mission: &MissionConfig, drawing: &World) -> Option<String> {
     let (clearance_m, sensed_m) = (mission.clearance_m, mission.limits.sensing_range_m);
     let knows_by_position = matches!(mission.task, TaskConfig::Cover { .. }) || sensed_m < SHORT_SIGHTED_M;
@@ -175,7 +175,7 @@ pub fn clearance_warning(mission: &MissionConfig, drawing: &World) -> Option<Str
 /// Warns if the stations are so nearly on a line that the ranges fit two positions, and states what decides between
 /// the two.
 ///
-/// Takes as long as the map.
+/// Takes as long as computing the map.
 pub fn mirror_warning(mission: &MissionConfig, drawing: &World) -> Option<String> {
     let map = AccuracyMap::new(drawing, &forecast(mission, drawing));
     let [first, second] = Mirrored::of(mission, drawing, &map)?.sentences();

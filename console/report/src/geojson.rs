@@ -24,8 +24,8 @@ impl<'a> Datum<'a> {
     }
 
     /// The member that names the coordinate system. Programs read coordinates as degrees of longitude and latitude
-    /// unless they know the name in this member. A name that they may not know is therefore written as a local system
-    /// in WKT.
+    /// unless they know the name in this member. A system whose name they may not know is therefore written as a
+    /// local system in WKT.
     pub(crate) fn crs(&self) -> Value {
         let name = match self.crs {
             Some(name) if is_known(name) => name.to_owned(),

@@ -43,7 +43,7 @@ pub fn human(run: &Summary) -> String {
     text.0
 }
 
-/// The checks before the start: the number passed, every warning, and every point that the operator ticked.
+/// The checks before the start: the number passed, every warning, and every item that the operator ticked.
 pub(crate) fn pre_flight(checks: &[Check]) -> Option<String> {
     let of = |outcome| checks.iter().filter(move |check| check.outcome == outcome);
     let passed = of(CheckOutcome::Passed).count();
@@ -61,7 +61,7 @@ pub(crate) fn pre_flight(checks: &[Check]) -> Option<String> {
 fn title(run: &Summary) -> String {
     let or_unknown = |text: &Option<String>| text.clone().unwrap_or_else(|| "unknown".into());
     if let Some(file) = &run.located {
-        return format!("{}, located from the readings of {file}", or_unknown(&run.scenario));
+        return format!("{}, located from the readings in {file}", or_unknown(&run.scenario));
     }
     let seed = run.seed.map_or_else(|| "unknown".to_owned(), |seed| seed.to_string());
     let version = run.planner_version.as_ref().map(|version| format!(" {version}")).unwrap_or_default();
@@ -73,12 +73,13 @@ fn warnings(run: &Summary) -> Vec<String> {
     let mut found = Vec::new();
     match run.outcome {
         None if is_open(run) => found.push(
-            "run in progress: figures up to the part of the journal that was read, not checked against \
-             [expect]"
+            "run in progress: the figures cover the journal up to the part that was read, and are not \
+             checked against [expect]"
                 .to_owned(),
         ),
         None => found.push(
-            "run cut off: figures up to the end of the journal, not checked against [expect]".to_owned(),
+            "run cut off: the figures cover the journal up to its end, and are not checked against [expect]"
+                .to_owned(),
         ),
         Some(Outcome::Complete) => {}
         Some(other) => found.push(format!("mission not complete: {}", other.word())),
@@ -113,7 +114,8 @@ fn warnings(run: &Summary) -> Vec<String> {
     {
         let (by_truth, estimated) = (percent(truth.reachable), percent(coverage.reachable));
         found.push(format!(
-            "coverage overestimated: {by_truth} of reachable floor by true position, {estimated} by estimate"
+            "coverage overestimated: {by_truth} of reachable floor by true position, but {estimated} by \
+             estimate"
         ));
     }
     found.extend(run.logs.as_ref().and_then(|logs| logs.error.clone()));
@@ -127,8 +129,8 @@ fn beyond_reel(floor: &Account) -> Option<String> {
     let (scanned, area_m2) = (floor.reachable.percent.scanned, floor.reachable.area_m2);
     is_beyond.then(|| {
         format!(
-            "only {scanned:.1} % of {area_m2:.1} m² reachable floor scanned: some of it is beyond the \
-            reel"
+            "only {scanned:.1} % of {area_m2:.1} m² of reachable floor scanned: some of the floor is beyond \
+            the reel"
         )
     })
 }
@@ -172,9 +174,9 @@ fn coverage(coverage: &Coverage) -> Vec<String> {
     let claims = coverage.by_truth.and_then(|truth| Some((truth.scanned_truly?, truth.guaranteed_truly)));
     lines.extend(claims.map(|(scanned, guaranteed)| {
         let guaranteed =
-            guaranteed.map(|share| format!(", {} of the floor claimed as guaranteed", percent(share)));
+            guaranteed.map(|share| format!(" and {} of the floor claimed as guaranteed", percent(share)));
         let (scanned, guaranteed) = (percent(scanned), guaranteed.unwrap_or_default());
-        format!("by true position, {scanned} of the floor claimed as scanned{guaranteed} was scanned")
+        format!("truly scanned: {scanned} of the floor claimed as scanned{guaranteed}")
     }));
     lines.extend(coverage.overlap.map(|share| format!("overlap {}", text::overlap(share))));
     lines
@@ -195,12 +197,12 @@ fn accuracy(accuracy: &Accuracy) -> Vec<String> {
     let Accuracy { mean_m, p95_m, max_m, limit_m, over_limit, fixes, stations_mean, stations_min } = accuracy;
     let over = percent(*over_limit);
     let mut lines = vec![format!(
-        "95 % error by covariance {mean_m:.3} m mean, {p95_m:.3} m p95, {max_m:.3} m maximum, above the \
+        "95 % error from covariance {mean_m:.3} m mean, {p95_m:.3} m p95, {max_m:.3} m maximum, above the \
          limit of {limit_m} m on {over} of the path"
     )];
     lines.extend(stations_mean.zip(*stations_min).map(|(mean, least)| {
         format!(
-            "{} from {mean:.1} stations on average, {least} at least",
+            "{} from {mean:.1} stations on average, at least {least}",
             format_args!("{fixes} {}", if *fixes == 1 { "fix" } else { "fixes" })
         )
     }));

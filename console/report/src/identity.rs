@@ -79,7 +79,7 @@ pub(crate) fn contradiction(facts: &Inspection, flown: &Inspection) -> Option<St
     Some(format!("{} is {}, but {} in the scenario of the run", found.key, found.one, found.other))
 }
 
-/// Everything that identifies a floor and determines what counts as scanned on it, with the names used in messages.
+/// Everything that identifies a floor or determines what counts as scanned on it, with the names used in messages.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct Identity {
     inspection: FloorFacts,
@@ -161,7 +161,7 @@ impl<'a> Candidate<'a> {
         other.journal_sha256.is_some_and(|sha256| self.stated.continues_sha256.iter().any(|of| of == sha256))
     }
 
-    /// Whether two runs are known to be of the same floor: one continues the other, or both have the same scenario.
+    /// Whether two runs are known to be on the same floor: one continues the other, or both have the same scenario.
     fn is_linked(&self, other: &Self) -> bool {
         let is_same =
             self.scenario == other.scenario && self.stated.continues_sha256 == other.stated.continues_sha256;
@@ -169,15 +169,15 @@ impl<'a> Candidate<'a> {
     }
 }
 
-/// Refuses runs that are not all of one floor, or that count floor as scanned by different rules; the error names the
-/// first difference and both values. A run of a different scenario must be a re-scan that names the journal of one of
-/// the other runs.
+/// Refuses runs that are not all on one floor, or that differ in what counts as scanned; the error names the first
+/// difference and both values. A run with a different scenario must be a re-scan that names the journal of one of the
+/// other runs.
 pub(crate) fn require_one_floor(runs: &[PastRun]) -> Result<(), String> {
     let all: Vec<Candidate<'_>> =
         runs.iter().map(Candidate::of).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
     let Some((first, others)) = all.split_first() else { return Ok(()) };
     let refused = |other: &Candidate<'_>, why: &str| {
-        format!("runs {} and {} are not of the same floor: {why}", first.name, other.name)
+        format!("runs {} and {} are not on the same floor: {why}", first.name, other.name)
     };
     for other in others {
         if let Some(why) = first.identity.difference(first.name, &other.identity, other.name) {
@@ -214,7 +214,7 @@ fn no_link(first: &Candidate<'_>, other: &Candidate<'_>) -> String {
             let beside = if std::ptr::eq(run, first) { other } else { first };
             format!(
                 "continues_sha256 of {} is {}, but the journal of {} has the SHA-256 {}; also give the run \
-                 that it continues",
+                 that is continued",
                 run.name,
                 run.stated.continues_sha256.join(" and "),
                 beside.name,
@@ -222,8 +222,8 @@ fn no_link(first: &Candidate<'_>, other: &Candidate<'_>) -> String {
             )
         }
         None => format!(
-            "name is {} in {} and {} in {}, and neither is a re-scan that names the journal of the other \
-             (continues_sha256, which `tankops rescan` writes)",
+            "name is {} in {} and {} in {}, and neither run is a re-scan that names the journal of the \
+             other (continues_sha256, which `tankops rescan` writes)",
             first.scenario, first.name, other.scenario, other.name
         ),
     }

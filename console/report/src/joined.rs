@@ -41,8 +41,8 @@ pub(crate) struct Joined<'a> {
 }
 
 impl Joined<'_> {
-    /// The account of the floor over all of the runs. Floor that counts as scanned in any of them counts here, so the
-    /// largest of their limits of the position error holds for the whole account.
+    /// The account of the floor over all of the runs. Floor that counts as scanned in any run counts here, so the
+    /// largest position error limit of the runs applies to the whole account.
     pub(crate) fn account(&self, runs: &[PastRun]) -> Account {
         let limits = runs.iter().filter_map(|past| Some(past.fold.run()?.mission.scan_limit_m()));
         let position_limit_m = limits.fold(0.0, f64::max);
@@ -64,7 +64,7 @@ pub(crate) fn require_scans(runs: &[PastRun]) -> Result<(), String> {
 /// Combines the scans of several runs, on the floor with the obstacles found by any of them.
 ///
 /// # Errors
-/// There is no run; a run is given twice or was not to scan; the runs are of different floors.
+/// There is no run, a run is given twice, a run was not a scan, or the runs are on different floors.
 pub(crate) fn joined(runs: &[PastRun]) -> Result<Joined<'_>, String> {
     match runs.iter().find(|past| past.is_located()) {
         Some(past) => Err(format!(
@@ -99,7 +99,7 @@ pub(crate) fn joined_or_located(runs: &[PastRun]) -> Result<Joined<'_>, String> 
         all.evidence.to_mut().join(&evidence);
     }
     if all.evidence.found().any(|(id, _)| !known.contains(&id)) {
-        // Floor blocked by an obstacle that only another run found is excluded, too.
+        // Exclude floor blocked by an obstacle that only another run found, too.
         let grid = all.scanned.believed().floor();
         let updated = updated_floor(all.run, grid, &all.evidence, all.run.mission.swath_m);
         let changes = updated.into_floor().kinds();
@@ -128,7 +128,7 @@ fn require_different(runs: &[PastRun]) -> Result<(), String> {
     Ok(())
 }
 
-/// The name of an object that was found in one of several runs, each of which numbers its objects from 1.
+/// The name of an object found in one of several runs; each run numbers its objects from 1.
 pub(crate) fn found_name(name: &str, run: usize, runs: usize) -> String {
     if runs > 1 { format!("{name} of run {}", run + 1) } else { name.to_owned() }
 }

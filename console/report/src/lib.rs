@@ -1,4 +1,4 @@
-//! Reports for people and scripts: on a run, on several runs together, on a plan, and on a forecast of the accuracy.
+//! Reports for people and scripts: on a run, on several runs together, on a plan, and on a forecast of accuracy.
 //!
 //! The figures come from [`account`]. This crate turns them into text ([`human()`]), pages ([`document`]) and
 //! pictures ([`drawing`]), and does the same for plans ([`plan`]) and forecasts ([`forecast`]).

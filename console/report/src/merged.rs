@@ -42,7 +42,7 @@ pub struct MergedRun {
 /// Combines several runs.
 ///
 /// # Errors
-/// There is no run; a run is given twice or is a mission without a scan; the cells or the tanks differ.
+/// There is no run, a run is given twice or was not a scan, or the cells or tanks differ.
 pub fn merged(runs: &[PastRun]) -> Result<Merged, String> {
     require_scans(runs)?;
     let all = joined(runs)?;
@@ -158,7 +158,7 @@ mod tests {
         let walls = refused(round_tank(0.1), other.clone());
         assert_eq!(
             walls,
-            "runs a and b are not of the same floor: tank.circle.radius_m is 5.0 in a and 5.01 in b"
+            "runs a and b are not on the same floor: tank.circle.radius_m is 5.0 in a and 5.01 in b"
         );
         (other.world.boundary, other.world.obstacles) = (round_tank(0.1).world.boundary, vec![]);
         let columns = refused(round_tank(0.1), other);

@@ -15,7 +15,7 @@ use world::{
     tether::{Cable, Certificate},
 };
 
-/// A shorter time mostly measures the round trip to the planner's process, milliseconds.
+/// Time, milliseconds, below which mostly the round trip to the planner's process is measured.
 const RESOLVED_MS: f64 = 0.05;
 
 /// A plan for scripts.
@@ -36,15 +36,15 @@ pub struct Planned {
     pub(crate) complete: bool,
     /// The reason why the plan is not complete.
     reason: Option<String>,
-    /// Warnings of the planner: floor that it omits and why, and its own solutions where the method has none.
+    /// Warnings from the planner: floor that it omits and why, and its own solutions where the method defines none.
     warnings: Vec<String>,
-    /// The reachable floor by the definition of the reports; absent for missions without a scan.
+    /// The reachable floor as the reports define it; absent for missions without a scan.
     floor: Option<PlannedFloor>,
     /// The tether along the path; absent without a tether.
     certificate: Option<Certificate>,
 }
 
-/// The reachable floor by the definition of the reports: with the whole swath, including the overlap of lanes.
+/// The reachable floor as the reports define it: with the whole swath, including the overlap of lanes.
 #[derive(Debug, Serialize)]
 struct PlannedFloor {
     /// Width of floor scanned in one pass, metres.
@@ -68,7 +68,7 @@ pub struct Made {
     pub plan_time_ms: f64,
     /// The reason why the plan is not complete.
     pub reason: Option<String>,
-    /// Warnings of the planner: floor that it omits and why, and its own solutions where the method has none.
+    /// Warnings from the planner: floor that it omits and why, and its own solutions where the method defines none.
     pub warnings: Vec<String>,
 }
 
@@ -99,8 +99,8 @@ impl Planned {
         (self.length_m, self.mission_time_s)
     }
 
-    /// Whether the plan achieves the whole task and has a valid tether certificate, so that its mission would not
-    /// refuse it.
+    /// Whether the plan achieves the whole task and has a valid tether certificate, so that the mission would accept
+    /// it.
     pub fn flies(&self, mission: &MissionConfig) -> bool {
         let must_be_certified = mission.tether.as_ref().is_some_and(|tether| !tether.allow_uncertified);
         let is_certified = self.certificate.as_ref().is_some_and(|certificate| certificate.certified);
@@ -224,8 +224,8 @@ fn certified(certificate: &Certificate) -> String {
         certificate;
     let reasons: Vec<String> = certificate.reasons.iter().map(|why| format!("          {why}\n")).collect();
     format!(
-        "tether    {}, {tether_length_max_m:.2} m out at most ({eccentricity_m:.2} m is the minimum), wrap \
-         {:.0}° on one obstacle, {:.0}° in total\n{}",
+        "tether    {}, at most {tether_length_max_m:.2} m out (minimum possible {eccentricity_m:.2} m), \
+         wrap {:.0}° on one obstacle, {:.0}° in total\n{}",
         if certificate.certified { "certified" } else { "NOT certified" },
         wrap_max_rad.to_degrees(),
         wrap_total_max_rad.to_degrees(),

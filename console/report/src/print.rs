@@ -6,7 +6,7 @@ use std::io::{self, ErrorKind, Write};
 /// Writes a text to stdout in plain characters. A reader that has closed the pipe, such as `head`, is not an error.
 ///
 /// # Errors
-/// The error of the system.
+/// The system's error.
 pub fn say(text: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     match out.write_all(plain_lines(text).as_bytes()).and_then(|()| out.flush()) {

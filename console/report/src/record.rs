@@ -18,7 +18,7 @@ use world::{Point, Pose};
 /// Time between two stored values of the coverage, seconds.
 const PROGRESS_S: f64 = 5.0;
 
-/// Maximum number of changes of the planner stored.
+/// Maximum number of stored planner changes.
 const MOST_PLANNERS: usize = 1000;
 
 /// The estimated position in a tick.
@@ -32,7 +32,7 @@ pub struct TrackPoint {
     pub y_m: f32,
     /// Heading, radians.
     pub heading_rad: f32,
-    /// 95 % error by the covariance, metres.
+    /// 95 % error according to the covariance, metres.
     pub error_m: f32,
     /// Distance to the true position, metres; NaN outside simulation.
     pub true_error_m: f32,
@@ -55,11 +55,11 @@ pub struct Record {
     pub track: Vec<TrackPoint>,
     /// Scanned share of the reachable floor over time.
     pub progress: Vec<(f64, f64)>,
-    /// Times on a lane, and times on anything else.
+    /// Times on a lane, and times off the lanes.
     pub scanning: [Vec<Span>; 2],
     /// The tether record; absent without a tether.
     pub tether: Option<TetherRecord>,
-    /// The planners that drove, in order.
+    /// The planners that were active, in order.
     pub planners: Vec<PlannerInfo>,
     truth: Option<(u64, Pose)>,
     stations: Stations,
@@ -131,7 +131,8 @@ impl Record {
         }
     }
 
-    /// The incidents in order; alarms and holds with their ends. If the run was cut off, that is the last incident.
+    /// The incidents in order; alarms and holds with their ends. If the run was cut off, the last incident states
+    /// this.
     pub fn incidents(&self) -> Vec<Incident> {
         self.incidents.all()
     }

@@ -9,8 +9,8 @@ use world::{Floor, ObstacleId, Point, Zone, coverage::regions};
 
 /// Missed areas closer together than this are merged, as a share of the swath.
 const TOGETHER_SWATHS: f64 = 0.5;
-/// Width of the floor around a missed area that is re-scanned with it, as a share of the swath: a robot cannot aim
-/// more finely.
+/// Width of the floor around a missed area that is re-scanned with it, as a share of the swath: a robot cannot steer
+/// more precisely.
 const AROUND_SWATHS: f64 = 0.25;
 /// Boxes are made of blocks of this width, as a share of the swath.
 const BLOCK_SWATHS: f64 = 0.2;
@@ -27,7 +27,7 @@ pub struct Rescan {
     /// Missed areas that no lane reaches, the largest first: another scan would miss them again, whatever the
     /// original reason.
     pub out_of_reach: Vec<Area<MissReason>>,
-    /// Missed floor that none of the runs was to scan, square metres.
+    /// Missed floor that none of the runs had to scan, square metres.
     pub not_asked_m2: f64,
     /// Obstacles that the runs found.
     pub found: BTreeSet<ObstacleId>,
@@ -38,11 +38,11 @@ pub struct Rescan {
 /// Finds the floor to re-scan.
 ///
 /// Missed floor that no lane reaches is listed separately. In the rest, neighbouring areas are merged; merged areas
-/// smaller than `min_area_m2` are omitted. The others are grown by a margin, because a robot cannot aim more finely.
-/// There are at most `most` boxes; the fewer boxes are allowed, the coarser they are.
+/// smaller than `min_area_m2` are omitted. The others are grown by a margin, because a robot cannot steer more
+/// precisely. There are at most `most` boxes; the smaller that number, the coarser the boxes.
 ///
 /// # Errors
-/// As [`crate::merged()`].
+/// See [`crate::merged()`].
 pub fn rescan(runs: &[PastRun], min_area_m2: f64, most: usize) -> Result<Rescan, String> {
     require_scans(runs)?;
     let Joined { run, scanned, evidence } = joined(runs)?;
@@ -98,8 +98,8 @@ pub fn rescan(runs: &[PastRun], min_area_m2: f64, most: usize) -> Result<Rescan,
     })
 }
 
-/// Groups the wanted cells: a cell belongs with all cells within a given distance. The groups are in order of their
-/// first cell.
+/// Groups the selected cells: a cell is in one group with all selected cells within a given distance. The groups are
+/// in order of their first cells.
 fn clusters(floor: &Floor, within_m: f64, is_wanted: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
     let mut open: Vec<bool> = (0..floor.len()).map(is_wanted).collect();
     let mut found = Vec::new();

@@ -22,7 +22,7 @@ pub fn read_all(runs: &[PathBuf], logs: &Path) -> anyhow::Result<Vec<Past>> {
 /// The combined scan of several runs on one floor.
 ///
 /// # Errors
-/// A run does not exist, its journal cannot be read, or the runs are not of one floor.
+/// A run does not exist, its journal cannot be read, or the runs are not on one floor.
 pub fn combined(runs: &[String], logs: &Path) -> anyhow::Result<Account> {
     let runs: Vec<PathBuf> = runs.iter().map(PathBuf::from).collect();
     let past: Vec<PastRun> = read_all(&runs, logs)?.into_iter().map(|past| past.run).collect();

@@ -8,7 +8,7 @@ use recording::{Ticks, journal_of};
 use std::{io, path::Path};
 use world::{Pose, Readings};
 
-/// Writes, tick by tick, the sensor readings with their time, seconds, and the true pose of the robot.
+/// Writes the sensor readings tick by tick, each with its time, seconds, and the true pose of the robot.
 ///
 /// # Errors
 /// The journal of the run in the folder cannot be read, this build recomputes a different run from it, or the

@@ -79,7 +79,7 @@ pub fn rescan_of(runs: &[String], logs: &Path) -> anyhow::Result<Scenario> {
     }
 }
 
-/// The objections to a journal, as notes.
+/// The doubts about a journal, as notes.
 ///
 /// # Errors
 /// It names scanned cells outside the floor.
@@ -87,8 +87,8 @@ pub fn doubt(Past { opened, run, beyond_floor }: &Past) -> anyhow::Result<Option
     if let Some(tick) = beyond_floor {
         let cells = opened.floor.len();
         return Err(bad_input(format!(
-            "run {}: its journal was changed: an event of tick {tick} names cells beyond the {cells} of the \
-             floor",
+            "run {}: its journal was changed: an event of tick {tick} names a cell beyond the {cells} cells \
+             of the floor",
             run.name
         )));
     }

@@ -1,11 +1,11 @@
-//! Recomputes a past run and proves that its journal is equal.
+//! Recomputes a past run and proves that the result equals its journal.
 //!
 //! One pass makes two proofs. *Mission*: simulator and mission get the recorded orders, and the recorded answers of
-//! the planners in the ticks in which they arrived. Every line must then come out again, byte for byte. This is
-//! always possible, whatever happened to the planners during the run. *Planners*: each ask also goes to a planner,
-//! whose answer must equal the recorded one. The machine, not the ask, determines when a planner is killed, stopped,
-//! too late, or disturbed by a thread that it left behind. Such faults are therefore taken from the journal and
-//! counted, and one that occurs in a different tick counts as the same fault.
+//! the planners in the ticks in which they arrived. Every line must then be reproduced, byte for byte. This is always
+//! possible, whatever happened to the planners during the run. *Planners*: each ask also goes to a planner, whose
+//! answer must equal the recorded one. The machine, not the ask, determines when a planner is killed, stopped, too
+//! late, or disturbed by a thread that it left behind. Such faults are therefore taken from the journal and counted,
+//! and one that occurs in a different tick counts as the same fault.
 //!
 //! The journal is read tick by tick; memory use does not grow with its length.
 
@@ -41,9 +41,9 @@ const AHEAD_BYTES: u64 = 1 << 20;
 /// The findings of a verification.
 #[derive(Debug, Default)]
 struct Findings {
-    /// The first line whose recomputation differs.
+    /// The first line that differs when recomputed.
     difference: Option<Difference>,
-    /// The objections to the file as a whole.
+    /// A doubt about the files as a whole.
     doubt: Option<String>,
     /// Whether a report contains the digests of journal and recording.
     is_reported: bool,
@@ -55,7 +55,7 @@ struct Findings {
     planners: Option<Asked>,
     /// The signed reports on the run, as lines.
     signed: Vec<String>,
-    /// The objections to the signed reports.
+    /// The doubts about the signed reports.
     not_as_signed: Vec<String>,
     /// The planners of the run, by id.
     builds: BTreeMap<String, PlannerInfo>,
@@ -66,7 +66,7 @@ struct Findings {
 /// The result of a verification.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Verified {
-    /// Whether the whole run was recomputed equal to its record.
+    /// Whether the whole run was recomputed and equals its record.
     pub is_equal: bool,
     /// Whether the run consists of located readings, so that nothing was recomputed.
     pub is_located: bool,
@@ -74,7 +74,7 @@ pub struct Verified {
     pub lines: Vec<String>,
 }
 
-/// Verifies the run in a folder; with plugins, the planners are asked again, too.
+/// Verifies the run in a folder. With plugins, the planners are asked again, too.
 ///
 /// Takes about as long as the mission took to compute, without waiting for the clock.
 ///
@@ -100,12 +100,12 @@ fn verify_located(folder: &Path, Measured { file, sha256, .. }: &Measured) -> an
     }
     if past.files.are_as_reported.is_none() {
         lines.push(
-            "note: report.json is missing or does not state the digests of journal and recording, so these \
-             are not checked"
+            "note: report.json is missing or does not state the digests of journal and recording, so the \
+             files were not checked"
                 .into(),
         );
     }
-    lines.push(format!("note: not a mission: the readings of {file} were located (SHA-256 {sha256})"));
+    lines.push(format!("note: not a mission: the readings in {file} were located (SHA-256 {sha256})"));
     lines.extend(signed);
     lines.extend(not_as_signed.iter().map(|doubt| format!("NOT AS SIGNED: {doubt}")));
     Ok(Verified { is_equal, is_located: true, lines })
@@ -137,7 +137,7 @@ fn findings(folder: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findi
     })
 }
 
-/// The signed reports on a run as lines, and all objections to them or to this run being the signed one.
+/// The signed reports on a run as lines, and all doubts about them or about this run being the signed one.
 fn signed(folder: &Path, now: &[SignedRun]) -> (Vec<String>, Vec<String>) {
     let Signatures { revisions, mut doubts, notes } = signatures(folder, &register());
     doubts.extend(revisions.iter().filter_map(|revision| now.iter().find_map(|run| revision.doubt(run))));
@@ -156,7 +156,7 @@ impl Findings {
         self.planners.as_ref().and_then(|asked| asked.difference.as_ref())
     }
 
-    /// Where a planner that did not fail in the run had an external or timing fault.
+    /// The place and the fault, if a planner that did not fail in the run had an external or timing fault.
     fn unproven(&self) -> Option<&String> {
         self.planners.as_ref().and_then(|asked| asked.unproven.as_ref())
     }
@@ -181,32 +181,33 @@ fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
     if !findings.is_reported && no_end.is_none() {
         lines.push(
             "note: report.json is missing or does not state the digests of journal and recording, so the \
-             recording is not checked"
+             recording was not checked"
                 .into(),
         );
     }
     if let Some(recovered) = &findings.recovered {
-        lines.push(format!("note: the run was killed, and later recovered {recovered}"));
+        lines.push(format!("note: the run was killed and later recovered {recovered}"));
     }
     if let Some(why) = no_end {
-        lines.push(format!("note: the journal is incomplete ({why}); only the part before that is compared"));
+        lines
+            .push(format!("note: the journal is incomplete ({why}); only the part that exists was compared"));
     }
     if let Some(Difference { tick, recorded, computed }) = difference {
         lines.push(format!("different from tick {tick} on\n  recorded: {recorded}\n  computed: {computed}"));
     } else if let Some(doubt) = doubt {
-        lines.push(format!("different: {doubt}; its {events} events up to tick {last_tick} were recomputed"));
+        lines.push(format!("different: {doubt}; the {events} events up to tick {last_tick} were recomputed"));
     }
     lines.extend(planners.iter().flat_map(|asked| &asked.external).map(|(planner, count)| {
         format!("note: external or timing faults of planner {planner}, taken from the journal: {count}")
     }));
     if let Some(why) = findings.unproven().filter(|_| findings.other_answer().is_none()) {
         lines.push(format!(
-            "not proven: a planner had an external or timing fault at {why}, which did not occur in the \
-             run: verify again; the mission itself is reproduced from the recorded answers"
+            "not proven: at {why}, a planner had an external or timing fault that did not occur in the run \
+             (verify again); the mission itself was reproduced from the recorded answers"
         ));
     }
     if let Some(why) = findings.other_answer() {
-        lines.push(format!("different: {why}; the mission is reproduced from the recorded answers"));
+        lines.push(format!("different: {why}; the mission itself was reproduced from the recorded answers"));
     }
     if difference.is_some() || findings.other_answer().is_some() {
         lines.extend(planner_changes(&findings.builds, plugins).iter().map(|note| format!("note: {note}")));
@@ -237,7 +238,7 @@ fn proven(planners: Option<&Asked>) -> String {
     };
     let failed = match too_early {
         0 => String::new(),
-        n => format!(", {n} of a planner that failed earlier than in the run cannot be compared"),
+        n => format!(", {n} from a planner that failed earlier than it did in the run cannot be compared"),
     };
     format!("{same} planner answers are the same{refused}{failed}")
 }
@@ -247,7 +248,7 @@ pub(crate) fn prepared(path: &Path, ticks: &mut Ticks) -> anyhow::Result<(Scenar
     let opened = ticks.opened()?.clone();
     if let Some(Measured { file, .. }) = &opened.measured {
         return Err(bad_input(format!(
-            "not a mission: the readings of {file} were located; `tankops locate` computes them again: {}",
+            "not a mission: the readings in {file} were located; `tankops locate` computes them again: {}",
             path.display()
         )));
     }

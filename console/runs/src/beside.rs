@@ -1,5 +1,5 @@
-//! Files of a run beside journal and recording: the output of planners, and the crash files of those that failed. The run
-//! is complete without them, so write errors are ignored.
+//! Files of a run that are beside the journal and the recording: the output of planners, and the crash files of planners
+//! that failed. The run is complete without these files, so write errors are ignored.
 
 use std::{
     fs::{self, File, OpenOptions},
@@ -7,11 +7,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Output of planners.
+/// File name of the planners' output.
 const OUTPUT_FILE: &str = "planner.log";
-/// Maximum size of this file, bytes.
+/// Maximum size of the planners' output, bytes.
 const MOST_OUTPUT: usize = 4 << 20;
-/// Maximum number of crashes kept per run.
+/// Maximum number of crashes saved per run.
 const MOST_CRASHES: usize = 10;
 
 /// The files of a run beside its journal.
@@ -24,7 +24,7 @@ pub(crate) struct Beside {
 }
 
 impl Beside {
-    /// No files written yet.
+    /// No files have been written yet.
     pub(crate) fn new(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), output: None, written: 0, n_crashes: 0 }
     }
@@ -45,7 +45,7 @@ impl Beside {
         }
     }
 
-    /// Keeps the crash files of a planner that failed, in a separate folder.
+    /// Saves the crash files of a planner that failed, in a separate folder.
     pub(crate) fn keep_crash(&mut self, files: &[(&str, Vec<u8>)]) {
         if self.n_crashes == MOST_CRASHES {
             return;

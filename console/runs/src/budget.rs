@@ -1,10 +1,10 @@
-//! Limits how much of the files of past runs is read for a list. A list is an overview, even during a mission, and must
-//! not take longer because a run was long or a file is damaged.
+//! Limits how much is read from the files of past runs for a list. A list is an overview that may be shown even during a
+//! mission; it must not take longer just because a run was long or a file is damaged.
 
 use recording::{events_sha256_while, sha256_while};
 use std::{cell::Cell, io, path::Path};
 
-/// Maximum size of the journal lines read for a list, bytes: for one run, and for all runs.
+/// Maximum size of the journal lines that are read for a list, bytes: for one run, and for all runs together.
 const LINES_OF_ONE: u64 = 16 << 20;
 const LINES_OF_ALL: u64 = 64 << 20;
 /// Maximum size of the files whose digests are computed for a list, bytes.
@@ -34,7 +34,7 @@ impl Budget {
         self.lines.get().min(self.lines_of_one)
     }
 
-    /// Deducts bytes of lines that were read.
+    /// Deducts the bytes of lines that were read.
     pub(crate) fn take_lines(&self, bytes: u64) {
         self.lines.set(self.lines.get().saturating_sub(bytes));
     }
@@ -42,7 +42,8 @@ impl Budget {
     /// Computes [`recording::events_sha256`].
     ///
     /// # Errors
-    /// As for that function; also [`io::ErrorKind::QuotaExceeded`] if the file is too long for the remaining budget.
+    /// As for that function; also [`io::ErrorKind::QuotaExceeded`] if the file is too long for what is left of the
+    /// budget.
     pub(crate) fn events_sha256(&self, path: &Path) -> io::Result<String> {
         self.digest(|goes_on| events_sha256_while(path, goes_on))
     }

@@ -6,10 +6,10 @@ use std::{io, path::PathBuf};
 /// Why a run cannot be kept, found or read.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
-    /// The folder for runs cannot take a run: the reason, and what to do.
+    /// No run can be written to the folder for runs. Contains the reason, and what to do.
     #[error("{0}")]
     Logs(String),
-    /// A limit of the machine is too low: which one, and what to do.
+    /// A limit set by the machine is too low. Contains the limit, and what to do.
     #[error("{0}")]
     Machine(String),
     /// The run does not exist.
@@ -42,12 +42,12 @@ pub enum RunError {
     /// No free name was found for the folder of the run.
     #[error("a thousand runs named {name} exist already: {}", logs.display())]
     NoName {
-        /// The name that was tried, with numbers appended.
+        /// The name that was tried, with different numbers appended.
         name: String,
         /// The folder of runs.
         logs: PathBuf,
     },
-    /// A file of the run besides journal and recording is damaged.
+    /// A file of the run other than its journal or recording is damaged.
     #[error("{} is damaged: {why}; restore the original file", file.display())]
     Damaged {
         /// Path of the file.
@@ -55,7 +55,7 @@ pub enum RunError {
         /// The damage, with line and column.
         why: String,
     },
-    /// The request does not suit the run: the reason, and what to do.
+    /// The request does not suit the run. Contains the reason, and what to do.
     #[error("{0}")]
     Refused(String),
     /// Any other system error.
@@ -63,13 +63,13 @@ pub enum RunError {
     System {
         /// The operation that failed.
         what: String,
-        /// The error of the system.
+        /// The error reported by the system.
         why: io::Error,
     },
 }
 
 impl RunError {
-    /// Whether the user can correct this; the message tells how.
+    /// Whether the user can correct this; if so, the message tells how.
     pub fn is_input(&self) -> bool {
         matches!(
             self,
@@ -82,7 +82,7 @@ impl RunError {
         )
     }
 
-    /// Wraps a system error in an operation.
+    /// Wraps a system error together with the operation that failed.
     pub(crate) fn during(what: String) -> impl FnOnce(io::Error) -> Self {
         |why| Self::System { what, why }
     }

@@ -17,9 +17,9 @@ use std::{
     time::SystemTime,
 };
 
-/// A folder with one of these files is the folder of a run.
+/// A folder that contains one of these files is the folder of a run.
 const SIGNS: [&str; 5] = [JOURNAL_FILE, PLAIN_JOURNAL_FILE, REPORT_FILE, LOCK_FILE, FAILURE_FILE];
-/// Space that is reserved for the report when a run starts, bytes, so that it can still be written if the disk is full at
+/// Space reserved for the report when a run starts, bytes, so that the report can still be written if the disk is full at
 /// the end.
 const REPORT_RESERVE: usize = 256 << 10;
 
@@ -31,15 +31,15 @@ pub fn is_run(folder: &Path) -> bool {
 /// The folder of a run that is being written; no other process writes to it.
 pub struct RunFolder {
     path: PathBuf,
-    /// Locked as long as this process lives; if the process is killed, the lock is released.
+    /// Locked as long as this process lives; if the process is killed, the system releases the lock.
     _lock: File,
 }
 
 impl RunFolder {
-    /// Creates a new folder `<utc>-<scenario>-<planner>-<seed>`, with a number appended if that exists.
+    /// Creates a new folder `<utc>-<scenario>-<planner>-<seed>`, with a number appended if a folder of that name exists.
     ///
     /// # Errors
-    /// The folder for runs cannot take a run.
+    /// No run can be written to the folder for runs.
     pub fn create(logs: &Path, scenario: &str, planner: &str, seed: u64) -> Result<Self, RunError> {
         make_logs(logs)?;
         let refused = |error| not_writable(logs, &error);
@@ -52,7 +52,7 @@ impl RunFolder {
         Ok(Self { path, _lock: lock })
     }
 
-    /// Takes over the folder of a run whose writer is gone.
+    /// Takes over the folder of a run when no process writes to it any more.
     ///
     /// # Errors
     /// A process is still writing to it.
@@ -63,7 +63,7 @@ impl RunFolder {
         match lock.try_lock() {
             Ok(()) => Ok(Self { path: path.to_owned(), _lock: lock }),
             Err(TryLockError::WouldBlock) => Err(RunError::Refused(format!(
-                "the run is still being written; end it, or end the process that writes it, first: {}",
+                "the run is still being written; first end it, or end the process that is writing it: {}",
                 path.display()
             ))),
             Err(TryLockError::Error(error)) => Err(RunError::during(locking())(error)),
@@ -78,12 +78,12 @@ impl RunFolder {
     /// Writes the report atomically.
     ///
     /// # Errors
-    /// The system refuses.
+    /// The system refuses to write it.
     pub fn write_report(&self, summary: &Summary) -> Result<(), RunError> {
         self.write_report_of(summary, None)
     }
 
-    /// As [`RunFolder::write_report`], with `recovered` if the writer was killed.
+    /// Like [`RunFolder::write_report`], with `recovered` set if the writer was killed.
     pub(crate) fn write_report_of(
         &self,
         summary: &Summary,
@@ -116,7 +116,7 @@ fn fresh_folder(logs: &Path, name: &str) -> Result<PathBuf, RunError> {
     Err(RunError::NoName { name: name.to_owned(), logs: logs.to_owned() })
 }
 
-/// The folders of past runs, oldest first, including those without a journal.
+/// The folders of past runs, oldest first, including folders without a journal.
 pub(crate) fn past_runs(logs: &Path) -> Result<Vec<PathBuf>, RunError> {
     if !logs.exists() {
         return Ok(Vec::new());
@@ -134,18 +134,18 @@ pub(crate) fn past_runs(logs: &Path) -> Result<Vec<PathBuf>, RunError> {
     Ok(folders)
 }
 
-/// The second in which a run began, according to its name.
+/// The second in which a run began, according to the name of the run.
 fn second_of(folder: &Path) -> &[u8] {
     let name = folder.file_name().unwrap_or_default().as_encoded_bytes();
     name.split(|byte| *byte == b'-').next().unwrap_or_default()
 }
 
-/// The time when a run began, from its lock file, which is written once; `None` if that is missing.
+/// The time at which a run began, taken from its lock file, which is written only once; `None` if that file is missing.
 fn made(folder: &Path) -> Option<SystemTime> {
     fs::metadata(folder.join(LOCK_FILE)).and_then(|lock| lock.modified()).ok()
 }
 
-/// Finds the folder of a run that the user specified by path, by name, by the beginning of its name, or as `latest`.
+/// Finds the folder of a run that the user specified by its path, its name, the beginning of its name, or as `latest`.
 ///
 /// # Errors
 /// [`RunError::NoRun`], [`RunError::ManyRuns`].

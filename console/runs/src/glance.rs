@@ -31,7 +31,7 @@ impl Glance {
 
 struct Reading {
     fold: Fold,
-    /// Scanned share of the reachable floor, from the last event that states it.
+    /// Scanned share of the reachable floor, from the last event that contains it.
     reachable: Option<f64>,
     is_partial: bool,
 }

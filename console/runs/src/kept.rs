@@ -4,7 +4,7 @@ use crate::{error::RunError, files::REPORT_FILE, folder::RunFolder};
 use recording::{Finished, JOURNAL_FILE};
 use std::path::PathBuf;
 
-/// Whether everything of a run that has ended was written, and where.
+/// Whether all files of a run that has ended were written, and where.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Kept {
     folder: PathBuf,
@@ -18,8 +18,8 @@ impl Kept {
         Self { folder: folder.path().to_owned(), problem: finished.error.clone().or_else(unwritten) }
     }
 
-    /// Why the run is not kept; `None` if it is. Checks the disk again, because the console may stay open long after the
-    /// end.
+    /// Why the run is not kept; `None` if it is kept. Checks the disk again, because the console may stay open long after
+    /// the end of the run.
     pub fn problem(&self) -> Option<String> {
         let mut missing = [JOURNAL_FILE, REPORT_FILE].into_iter().map(|name| self.folder.join(name));
         let missing =

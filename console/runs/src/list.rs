@@ -30,9 +30,9 @@ pub struct Listed {
     pub end: String,
     /// Name of its scenario.
     pub scenario: Option<String>,
-    /// Id of the planner that drove first.
+    /// Id of the planner that was active first.
     pub planner: Option<String>,
-    /// Seed of all random choices.
+    /// Seed for all random choices.
     pub seed: Option<u64>,
     /// Mission time that passed, seconds.
     pub mission_time_s: Option<f64>,
@@ -40,7 +40,7 @@ pub struct Listed {
     pub coverage_reachable: Option<f64>,
     /// Its folder.
     pub folder: PathBuf,
-    /// What is wrong with the run, if anything.
+    /// What is wrong with the run; absent if nothing is.
     pub note: Option<String>,
     /// The remark that people wrote about it.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -49,8 +49,8 @@ pub struct Listed {
     pub bookmarks: usize,
 }
 
-/// Lists the past runs in a folder, oldest first, including those without a journal. Of long journals without a report
-/// only the beginning and the end are read. Problems with signed reports are stated in the note of the run.
+/// Lists the past runs in a folder, oldest first, including those without a journal. If a journal is long and has no
+/// report, only its beginning and end are read. Problems with signed reports are stated in the note on the run.
 ///
 /// # Errors
 /// The folder cannot be read.
@@ -61,7 +61,7 @@ pub fn list(logs: &Path, register: &Register) -> Result<Vec<Listed>, RunError> {
         let notes = listed.note.into_iter().chain(signatures(folder, register).doubts);
         Listed { note: notes.reduce(|one, other| format!("{one}; {other}")), ..listed }
     };
-    // The budget is spent on the newest runs first, because people look for them.
+    // The budget is spent on the newest runs first, because those are the ones that people look for.
     let mut listed: Vec<Listed> = past_runs(logs)?.iter().rev().map(look).collect();
     listed.reverse();
     Ok(listed)
@@ -153,7 +153,7 @@ fn word(summary: &Summary) -> &'static str {
     summary.outcome.map_or("unknown", mission::Outcome::word)
 }
 
-/// A run whose report is missing or not trusted: its entry is built from the journal.
+/// A run with no report, or with one that is not trusted: its entry is built from the journal.
 fn by_journal(folder: &Path, doubt: Option<&str>, failure: Option<String>, budget: &Budget) -> Listed {
     let Glance { summary, damage, is_partial } = Glance::at(&journal_of(folder), budget);
     let with = |more: &str| Some(doubt.map_or_else(|| more.to_owned(), |doubt| format!("{doubt}; {more}")));

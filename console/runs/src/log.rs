@@ -1,4 +1,4 @@
-//! Writes a run while it is flown: journal, recording and, at its end, the report.
+//! Writes a run while its mission runs: journal and recording and, at its end, the report.
 
 use crate::{beside::Beside, error::RunError, folder::RunFolder, kept::Kept};
 use account::{Expect, Logs, PlannerCalls, Stops, Summary};
@@ -10,20 +10,20 @@ use std::{
     time::{Duration, Instant, SystemTime},
 };
 
-/// How long closing a run may take before it is abandoned with a message.
+/// How long closing a run may take before the attempt is abandoned with a message.
 pub const CLOSE_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// A run that is being written or, without a folder, only computed.
+/// A run that is being written or, if it has no folder, only computed.
 pub struct RunLog {
     folder: Option<RunFolder>,
     beside: Option<Beside>,
     recorder: RunRecorder,
-    /// Message about a run whose recorder does not finish in time.
+    /// Message about a run if its recorder does not finish in time.
     least: Summary,
     began: Instant,
 }
 
-/// A run that was flown.
+/// A run that has ended.
 pub struct Closed {
     /// The report.
     pub summary: Summary,
@@ -44,7 +44,7 @@ impl RunLog {
         Ok(Self { folder: Some(folder), beside, recorder, least: Summary::default(), began: Instant::now() })
     }
 
-    /// Flushes the journal to disk every second from now on.
+    /// From now on, flushes the journal to disk every second.
     ///
     /// # Errors
     /// The system cannot create a thread.
@@ -52,7 +52,7 @@ impl RunLog {
         Ok(self.recorder.sync()?)
     }
 
-    /// Writes nothing, but computes report and hash.
+    /// Writes nothing, but computes the report and the hash.
     ///
     /// # Errors
     /// The system cannot create a thread.
@@ -62,7 +62,7 @@ impl RunLog {
         Ok(Self { folder: None, beside: None, recorder, least: Summary::default(), began })
     }
 
-    /// Takes the events of a tick, which are copied unless they are shared. Waits while the recorder's queue is full.
+    /// Takes the events of a tick; they are copied unless they are shared. Waits while the recorder's queue is full.
     pub fn keep(&mut self, events: impl Into<Arc<[Event]>>) {
         let events = events.into();
         if let Some(event) = events.last() {
@@ -76,21 +76,21 @@ impl RunLog {
         self.recorder.send(events);
     }
 
-    /// Keeps lines that planners printed, in a file beside the journal.
+    /// Saves lines that planners printed, in a file beside the journal.
     pub fn keep_output(&mut self, text: &str) {
         if let Some(beside) = &mut self.beside {
             beside.keep_output(text);
         }
     }
 
-    /// Keeps the crash files of a planner that failed in a separate folder; `files` lists them by name.
+    /// Saves the crash files of a planner that failed, in a separate folder; `files` lists them by name.
     pub fn keep_crash(&mut self, files: &[(&str, Vec<u8>)]) {
         if let Some(beside) = &mut self.beside {
             beside.keep_crash(files);
         }
     }
 
-    /// The progress of recording.
+    /// How far recording has progressed.
     pub fn health(&self) -> Health {
         self.recorder.health()
     }
@@ -100,8 +100,8 @@ impl RunLog {
         self.recorder.is_behind()
     }
 
-    /// Closes the files and writes the report. The report includes data that is not in the events: wall-clock figures
-    /// about planner calls and stops, and the expectations of the scenario.
+    /// Closes the files and writes the report. The report also contains data that is not in the events: wall-clock
+    /// figures about planner calls and stops, and the expectations of the scenario.
     pub fn close(
         self,
         within: Duration,
@@ -121,7 +121,7 @@ impl RunLog {
             wall_time_s: Some(began.elapsed().as_secs_f64()),
             events_sha256: finished.events_sha256.clone(),
             recording_sha256: finished.recording_sha256.clone().or_else(|| {
-                // Incomplete, but possibly useful.
+                // This may be incomplete, but it may still be useful.
                 finished.recording.as_ref().and_then(|path| sha256(path).ok())
             }),
             planner_calls: Some(calls),
@@ -138,7 +138,7 @@ impl RunLog {
     }
 }
 
-/// A recording carries the machine's time, which must be a plausible date.
+/// A recording contains the machine's time, which must be a plausible date.
 fn check_clock(now: SystemTime) -> Result<(), RunError> {
     if now >= SystemTime::UNIX_EPOCH {
         return Ok(());

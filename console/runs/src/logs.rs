@@ -1,4 +1,5 @@
-//! Checks whether runs can be kept in the folder for runs, before a terminal is taken over or anything moves.
+//! Checks whether runs can be kept in the folder for runs, before the console takes over the terminal and before anything
+//! moves.
 
 use crate::{error::RunError, log::CLOSE_TIMEOUT};
 use recording::{JOURNAL_FILE, Options, RECORDING_FILE, RunRecorder, events_sha256};
@@ -23,16 +24,16 @@ pub(crate) enum LogsError {
     /// The folder does not exist, and the system refuses to create it.
     #[error("cannot keep runs in {}: the folder cannot be created ({why}); choose another one with --logs", logs.display())]
     CannotCreate { logs: PathBuf, why: String },
-    /// The system refuses to create, write or remove a file in it.
+    /// The system refuses to create, write or remove a file in the folder.
     #[error("cannot keep runs in {}: the folder is not writable ({why}); choose another one with --logs", logs.display())]
     NotWritable { logs: PathBuf, why: String },
-    /// There is not enough space.
+    /// There is not enough free space.
     #[error(
         "cannot keep runs in {}: {} MB are free, at least {} MB are needed; free some space or choose another folder with \
          --logs", logs.display(), megabytes(*free_bytes), megabytes(*needed_bytes)
     )]
     NoSpace { logs: PathBuf, free_bytes: u64, needed_bytes: u64 },
-    /// A limit of the system on the size of files is too low for a run.
+    /// The system's limit on the size of files is too low for a run.
     #[error(
         "cannot keep runs in {}: the system limits files to {} kB, at least {} MB are needed; raise the limit: `ulimit -f {}`",
         logs.display(), limit_bytes / 1000, megabytes(MIN_FREE_BYTES), MIN_FREE_BYTES >> 10
@@ -40,7 +41,7 @@ pub(crate) enum LogsError {
     FilesTooSmall { logs: PathBuf, limit_bytes: u64 },
 }
 
-/// Checks that runs can be kept in a folder, in the same way as the start of a run does, and leaves nothing behind.
+/// Checks that runs can be kept in a folder, using the same checks as the start of a run, and leaves nothing behind.
 ///
 /// # Errors
 /// [`RunError::Logs`].
@@ -53,17 +54,18 @@ fn check(logs: &Path) -> Result<(), LogsError> {
         logs.ancestors().take_while(|folder| is_missing(folder)).map(Path::to_owned).collect();
     let checked = make_logs(logs);
     for folder in missing {
-        // Only folders created above, and only while they are empty: a different run may have begun there.
+        // Only folders that were created above are removed, and only while they are empty: a different run may have begun
+        // there.
         let _ = fs::remove_dir(folder);
     }
     checked
 }
 
-/// Writes a test recording to a separate folder below the one for runs, reads it back, and leaves nothing behind. Returns
-/// its length in bytes.
+/// Writes a test recording to a separate folder inside the folder for runs, reads it back, and leaves nothing behind.
+/// Returns the length of the recording in bytes.
 ///
 /// # Errors
-/// It cannot be written, or differs when it is read back.
+/// The recording cannot be written, or is different when it is read back.
 pub fn check_recorder(logs: &Path) -> Result<u64, RunError> {
     make_logs(logs)?;
     let folder = logs.join(format!(".recorder-{}", std::process::id()));
@@ -115,7 +117,7 @@ pub(crate) fn make_logs(logs: &Path) -> Result<(), LogsError> {
 }
 
 fn check_folder(logs: &Path) -> Result<(), LogsError> {
-    // A file system that does not report its size is not treated as full.
+    // A file system that does not report its free space is not treated as full.
     if let Some(free_bytes) = free_bytes(logs).filter(|free_bytes| *free_bytes < MIN_FREE_BYTES) {
         return Err(LogsError::NoSpace { logs: logs.to_owned(), free_bytes, needed_bytes: MIN_FREE_BYTES });
     }
@@ -125,7 +127,7 @@ fn check_folder(logs: &Path) -> Result<(), LogsError> {
     probe(logs).map_err(|error| LogsError::NotWritable { logs: logs.to_owned(), why: error.to_string() })
 }
 
-/// The first part of a path that is a file, if any.
+/// The first part of a path that is a file; `None` if there is none.
 fn file_on_the_way(path: &Path) -> Option<PathBuf> {
     let existing = path.ancestors().find(|part| part.exists())?;
     (!existing.is_dir()).then(|| existing.to_owned())
@@ -135,14 +137,15 @@ fn is_missing(folder: &Path) -> bool {
     !folder.as_os_str().is_empty() && folder.symlink_metadata().is_err()
 }
 
-/// Free space where runs are kept, or where the folder would be created, bytes; `None` if the system does not report it.
+/// Free space where runs are kept, or where the folder for runs would be created, bytes; `None` if the system does not
+/// report it.
 pub fn free_bytes(logs: &Path) -> Option<u64> {
     let folder = logs.ancestors().find(|part| part.is_dir()).unwrap_or(Path::new("."));
     let space = rustix::fs::statvfs(folder).ok()?;
     (space.f_blocks > 0).then(|| space.f_bavail.saturating_mul(space.f_frsize))
 }
 
-/// Creates a file, writes to it and removes it. Permissions alone would not reveal quotas and read-only mounts.
+/// Creates a file, writes to it and removes it. Checking permissions alone would not reveal quotas and read-only mounts.
 fn probe(folder: &Path) -> io::Result<()> {
     let path = folder.join(format!(".probe-{}-{:?}", std::process::id(), std::thread::current().id()));
     let mut file = File::create_new(&path)?;

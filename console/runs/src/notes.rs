@@ -9,19 +9,19 @@ use std::{io, path::Path};
 
 /// File name of the notes in the folder of a run.
 pub const NOTES_FILE: &str = "notes.json";
-/// Maximum size of a file of notes, bytes: the maximum number of bookmarks, each with the longest text.
+/// Maximum size of a file of notes, bytes: the maximum number of bookmarks, each with a text of maximum length.
 const MOST_BYTES: u64 = 4 << 20;
 
-/// Reads the notes about the run in a folder; empty if there is no such file.
+/// Reads the notes about the run in a folder; empty if there is no file of notes.
 ///
 /// # Errors
-/// The file cannot be read or parsed: a sentence with its line and column.
+/// The file cannot be read or parsed. The error is a sentence with line and column.
 pub fn read_notes(folder: &Path) -> Result<Notes, String> {
     let path = folder.join(NOTES_FILE);
     let is_long = path.metadata().is_ok_and(|file| file.len() > MOST_BYTES);
     if is_long {
         return Err(format!(
-            "{}: longer than {} MB, the maximum for notes; correct or remove the file",
+            "{}: larger than {} MB, the maximum for notes; correct or remove the file",
             path.display(),
             MOST_BYTES >> 20
         ));
@@ -31,7 +31,7 @@ pub fn read_notes(folder: &Path) -> Result<Notes, String> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Notes::default()),
         Err(error) => return Err(format!("{}: {error}", path.display())),
     };
-    // Otherwise a list would be read as the members of the object in their order.
+    // Without this check, a list would be read as the members of the object, in order.
     let object: Map<String, Value> =
         serde_json::from_str(&text).map_err(|error| not_understood(&path, &error))?;
     drop(object);
@@ -47,10 +47,11 @@ fn not_understood(path: &Path, error: &serde_json::Error) -> String {
     format!("{}:{line}:{column}: {why}; correct or remove the file", path.display())
 }
 
-/// Writes the notes about the run in a folder atomically. A file that cannot be parsed is not overwritten.
+/// Writes the notes about the run in a folder atomically. If an existing file cannot be parsed, it is not overwritten.
 ///
 /// # Errors
-/// The error of [`read_notes`] for the existing file; the folder no longer holds a run; the system refuses.
+/// The existing file has one of the errors of [`read_notes`]; the folder no longer contains a run; or the system refuses
+/// to write the file.
 pub fn write_notes(folder: &Path, notes: &Notes) -> Result<(), String> {
     read_notes(folder)?;
     if !journal_of(folder).exists() {

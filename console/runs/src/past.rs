@@ -20,7 +20,7 @@ use std::{
 };
 use world::{CellRun, Floor};
 
-/// Maximum number of events to read ahead at a time, and size of their lines in bytes after which reading ahead stops.
+/// Maximum number of events to read ahead at a time, and the size of their lines, in bytes, at which reading ahead stops.
 const BATCH: usize = 512;
 const BATCH_BYTES: u64 = 1 << 18;
 /// Events that were read ahead, and the size of their lines, bytes.
@@ -31,14 +31,14 @@ const AHEAD_BYTES: u64 = 1 << 20;
 pub struct Past {
     /// The first event of the run.
     pub opened: Box<RunOpened>,
-    /// The state derived from its events, and its files.
+    /// The state derived from the events of the run, and the files of the run.
     pub run: PastRun,
-    /// Tick of the first event that names cells outside the floor, which no run does: the journal was changed.
+    /// Tick of the first event that names cells outside the floor. No run does that, so the journal was changed.
     pub beyond_floor: Option<u64>,
 }
 
 impl Past {
-    /// Reads the run in a folder. Problems with its journal are added to its logs as an error.
+    /// Reads the run in a folder. Problems with the journal are stored as an error in the logs of the run's state.
     ///
     /// # Errors
     /// The journal cannot be read.
@@ -67,7 +67,7 @@ impl Past {
         let doubts = files.doubts.first().cloned();
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let run = PastRun {
-            // Renaming a folder does not change when the run began.
+            // Renaming the folder does not change when the run began.
             began: began(files.closed_as.as_deref().unwrap_or(&name)),
             name,
             logs: Logs {
@@ -85,8 +85,8 @@ impl Past {
     }
 }
 
-/// Passes every event of a journal to the caller, in order. One thread reads ahead; a second one computes the digests of
-/// journal and recording meanwhile, which are returned.
+/// Passes every event in a journal to the caller, in order. One thread reads ahead; a second one computes the digests of
+/// journal and recording meanwhile. Returns these digests.
 fn each_event(
     reader: &mut JournalReader,
     folder: &Path,
@@ -113,14 +113,14 @@ fn each_event(
         taken.flatten().for_each(&mut take);
         let read: Result<(), JournalError> =
             reading.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-        // Without a readable file, nothing is proven about it.
+        // If the file cannot be read, nothing can be proven about it.
         is_damaged.store(read.is_err(), Ordering::Relaxed);
         let digests = hashing.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         read.map(|()| digests)
     })
 }
 
-/// The digests of the files of a run, and the doubts about them.
+/// The digests of a run's files, and the doubts about these files.
 fn files(
     folder: &Path,
     opened: &RunOpened,
@@ -152,7 +152,7 @@ fn files(
     }
 }
 
-/// When a run began, according to its name: `20261122T040132Z-...` as `2026-11-22 04:01`.
+/// The time at which a run began, according to its name: `20261122T040132Z-...` becomes `2026-11-22 04:01`.
 fn began(name: &str) -> Option<String> {
     let stamp = name.get(..16).filter(|stamp| stamp.ends_with('Z') && stamp.as_bytes()[8] == b'T')?;
     let digits =

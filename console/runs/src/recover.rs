@@ -1,5 +1,5 @@
-//! Closes a run whose writer was killed. The report records digests of the existing files, who closed the run and when,
-//! and what is missing. Neither journal nor recording is changed.
+//! Closes a run that was killed while it was being written. The report records the digests of the existing files, who
+//! closed the run and when, and what is missing. Neither the journal nor the recording is changed.
 
 use crate::{
     error::RunError, folder::RunFolder, past::Past, report_file::Reported, standing::held, utc_minute,
@@ -14,11 +14,11 @@ const BY_THE_CLOCK: &str = "wall-clock figures: computing time, planner calls, s
 /// What is missing from a recording that was not closed.
 const OF_RECORDING: &str = "the index of the recording, and up to 5 s that had not been written yet";
 
-/// Closes the run in a folder whose writer was killed.
+/// Closes the run in a folder if its writer was killed.
 ///
 /// # Errors
-/// A process is still writing to it; it has already been closed; its journal is empty or cannot be read; the system
-/// refuses.
+/// A process is still writing to the run; the run has already been closed; its journal is empty or cannot be read; or the
+/// system refuses to write the report.
 pub fn recover(folder: &Path, by: &str) -> Result<Recovered, RunError> {
     let run = RunFolder::take(folder)?;
     refuse_closed(folder)?;
@@ -33,13 +33,13 @@ pub fn recover(folder: &Path, by: &str) -> Result<Recovered, RunError> {
         logs: Some(Logs { is_open: false, ..past.run.logs.clone() }),
         ..past.run.summary.clone()
     };
-    // The draft left by the writer is reused.
+    // The draft left behind by the killed writer is reused.
     run.write_report_of(&summary, Some(&recovered))?;
     remove_reserve(folder);
     Ok(recovered)
 }
 
-/// Refuses a run that has a report.
+/// Refuses a run that already has a report.
 fn refuse_closed(folder: &Path) -> Result<(), RunError> {
     let refused = |why: String| Err(RunError::Refused(format!("{why}: {}", folder.display())));
     match Reported::read(folder) {
@@ -60,7 +60,7 @@ fn refuse_closed(folder: &Path) -> Result<(), RunError> {
 fn explained(error: RunError, folder: &Path) -> RunError {
     match error {
         RunError::Journal(JournalError::NotOpened { .. }) => RunError::Refused(format!(
-            "the run was killed before its journal held anything; there is nothing to recover, and the folder can be removed: {}",
+            "the run was killed before anything was written to its journal; there is nothing to recover, and the folder can be removed: {}",
             folder.display()
         )),
         error => error,

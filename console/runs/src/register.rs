@@ -1,5 +1,5 @@
-//! The register of signatures: the signed reports of a user, kept apart from the runs. It reveals a list in the folder of
-//! a run that is missing a report or was changed.
+//! The register of signatures: the signed reports of a user, kept apart from the runs. It reveals it if a list in the
+//! folder of a run was changed or lacks a report.
 
 use crate::error::RunError;
 use foreign::read_regular;
@@ -10,12 +10,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The register, as JSON with one signed report per line; lines are only ever appended.
+/// The register: a file with one signed report per line, as JSON; lines are only ever appended.
 #[derive(Debug, Clone)]
 pub struct Register(Option<PathBuf>);
 
 impl Register {
-    /// Creates a register stored in a file. Without a file nothing is registered, and lost reports are not noticed.
+    /// Creates a register that is stored in a file. If there is no file, nothing is registered, and lost reports are not
+    /// noticed.
     pub fn at(file: Option<PathBuf>) -> Self {
         Self(file)
     }
@@ -23,7 +24,7 @@ impl Register {
     /// Adds a signed report.
     ///
     /// # Errors
-    /// The system refuses.
+    /// The system refuses to write the register.
     pub(crate) fn add(&self, revision: &Revision) -> Result<(), RunError> {
         let Some(file) = &self.0 else { return Ok(()) };
         let line = serde_json::to_string(revision).map_err(io::Error::from);
@@ -31,7 +32,7 @@ impl Register {
             .map_err(RunError::during(format!("writing the register of signatures: {}", file.display())))
     }
 
-    /// The signed reports of a run that has one of these names.
+    /// The signed reports on a run that has one of these names.
     ///
     /// # Errors
     /// The register cannot be read.
@@ -68,7 +69,8 @@ impl Register {
         Ok(found)
     }
 
-    /// The signed report that was written to a file, given its absolute path; `None` if the register cannot be read.
+    /// The signed report that was written to the file with this absolute path; `None` if there is none, or if the
+    /// register cannot be read.
     pub fn signed_as(&self, file: &Path) -> Option<Revision> {
         let all = self.about(|_| true).unwrap_or_default();
         all.into_iter().find(|revision| Path::new(&revision.file) == file)
@@ -86,7 +88,7 @@ fn append(file: &Path, line: &str) -> io::Result<()> {
         fs::create_dir_all(folder)?;
     }
     let mut file = OpenOptions::new().append(true).create(true).open(file)?;
-    // In one write, so that the lines of two processes do not mix.
+    // Written in one call, so that the lines of two processes do not mix.
     file.write_all(format!("{line}\n").as_bytes())?;
     file.sync_all()
 }

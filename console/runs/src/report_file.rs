@@ -17,7 +17,7 @@ use std::{
     time::SystemTime,
 };
 
-/// A report as written to disk, with the name of the run and the length of the journal from which it was made.
+/// A report as written to disk, with the name of the run and the length of the journal from which the report was made.
 #[derive(Serialize)]
 pub(crate) struct ReportFile<'a> {
     /// Name of the run's folder.
@@ -31,13 +31,13 @@ pub(crate) struct ReportFile<'a> {
     /// How the run was closed if its writer was killed.
     #[serde(skip_serializing_if = "Option::is_none")]
     recovered: Option<&'a Recovered>,
-    /// SHA-256 of all other lines of the file.
+    /// SHA-256 of all lines of the file except this one.
     report_sha256: String,
 }
 
 impl<'a> ReportFile<'a> {
-    /// Formats the report on a run with this name and files of these lengths in bytes; `recovered` is set if the writer
-    /// was killed.
+    /// Formats the report on a run with this name whose files have these lengths in bytes; `recovered` is set if the
+    /// writer was killed.
     ///
     /// # Errors
     /// The report cannot be converted to JSON.
@@ -57,8 +57,8 @@ impl<'a> ReportFile<'a> {
     }
 }
 
-/// SHA-256 of all lines of a report except the one with the digest itself: `grep -v '"report_sha256"' report.json |
-/// sha256sum`.
+/// SHA-256 of all lines of a report except the line with the digest itself, as computed by `grep -v '"report_sha256"'
+/// report.json | sha256sum`.
 fn digest_of_lines(text: &str) -> String {
     let lines = text.split_inclusive('\n').filter(|line| !line.contains("\"report_sha256\""));
     sha256_of(lines.collect::<String>().as_bytes())
@@ -85,24 +85,24 @@ struct Source {
 /// Maximum size of a report, bytes: a hundred times the missed areas of the largest floor.
 const MOST_BYTES: u64 = 8 << 20;
 
-/// Message about a journal from which the report was not made.
-const NOT_THE_ONE: &str = "the report was made from a different journal: their SHA-256 digests differ";
+/// Message about a journal that is not the one from which the report was made.
+const NOT_THE_ONE: &str = "the report was made from a different journal: the SHA-256 digests differ";
 
 /// Message about a recording that does not belong to the report.
-const NOT_THE_RECORDING: &str = "the recording is not the one written with the run: their SHA-256 digests differ; restore the file, or write a new one with `tankops export`";
+const NOT_THE_RECORDING: &str = "the recording is not the one written with the run: the SHA-256 digests differ; restore the file, or write a new one with `tankops export`";
 
-/// Message about a report without the digest with which every report is written.
+/// Message about a report that has no digest, although every report is written with one.
 const NO_SEAL: &str = "report.json was changed after the run ended: its line report_sha256 is missing";
 
 /// How the digest of a recording is obtained.
 pub(crate) enum Now<'a> {
     /// Already computed; `None` if the file cannot be read.
     Is(Option<&'a str>),
-    /// Computed only if length and time of the file are not sufficient, as in lists.
+    /// Computed only if the length and time of the file are not sufficient, as they are in lists.
     Within(&'a Budget),
 }
 
-/// The report of a run as found on disk, and its disagreements with the other files.
+/// The report on a run as found on disk, and where it disagrees with the other files.
 pub(crate) struct Reported {
     text: String,
     source: Source,
@@ -124,14 +124,14 @@ impl Reported {
         }
     }
 
-    /// The figures of the report, if it is unchanged and agrees with the journal.
+    /// The figures in the report, if the report is unchanged and agrees with the journal.
     ///
     /// # Errors
     /// Why the report is not trusted, as a sentence.
     pub(crate) fn summary(&self, folder: &Path, budget: &Budget) -> Result<Box<Summary>, String> {
         let summary: Box<Summary> = serde_json::from_str(&self.text).map_err(|error| damaged(&error))?;
         self.seal_doubt().map_or(Ok(()), Err)?;
-        // A report that states itself that the journal is incomplete claims nothing about it.
+        // A report that itself states that the journal is incomplete claims nothing about the journal.
         let Some(then) = &self.source.events_sha256 else { return Ok(summary) };
         let path = journal_of(folder);
         let no_journal = |error: io::Error| format!("{} cannot be read: {error}", name_of(&path));
@@ -146,7 +146,7 @@ impl Reported {
         match read_ending(&path).map_err(no_journal)? {
             Some(ending) if agrees(&summary, &ending) => Ok(summary),
             None if self.recovered().is_some() && summary.outcome.is_none() => Ok(summary),
-            _ => Err(format!("{REPORT_FILE} was changed: its end differs from that of the journal")),
+            _ => Err(format!("{REPORT_FILE} was changed: it ends differently from the journal")),
         }
     }
 
@@ -160,7 +160,7 @@ impl Reported {
         self.source.recovered.as_ref()
     }
 
-    /// Whether it holds the digests of journal and recording.
+    /// Whether it contains the digests of both journal and recording.
     pub(crate) fn names_digests(&self) -> bool {
         self.source.events_sha256.is_some() && self.source.recording_sha256.is_some()
     }
@@ -198,13 +198,13 @@ impl Reported {
         }
     }
 
-    /// Why the figures are not trusted: they differ from those of the journal (`figures`), or the file was changed.
-    /// `None` if they are trusted.
+    /// Why the figures are not trusted: they differ from the figures derived from the journal (`figures`), or the file
+    /// was changed. `None` if they are trusted.
     pub(crate) fn figures_doubt(&self, figures: &Summary) -> Option<String> {
         if self.source.report_sha256.is_none() {
             return self.seal_doubt();
         }
-        // An incomplete journal gives only few figures.
+        // An incomplete journal provides only a few figures.
         let figures = Some(figures).filter(|_| self.source.events_sha256.is_some());
         let reported: Summary = match serde_json::from_str(&self.text) {
             Ok(reported) => reported,
@@ -216,7 +216,7 @@ impl Reported {
             .or_else(|| self.seal_doubt())
     }
 
-    /// Why the report does not match its own digest; `None` if it does.
+    /// Why the lines of the report do not match the digest that it contains; `None` if they do.
     fn seal_doubt(&self) -> Option<String> {
         let Some(then) = &self.source.report_sha256 else { return Some(NO_SEAL.to_owned()) };
         let now = digest_of_lines(&self.text);
@@ -236,12 +236,14 @@ fn name_of(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Whether a file has the length stated in the report and was not written after the report; then it need not be hashed.
+/// Whether a file has the length stated in the report and was last written before the report was; such a file need not be
+/// hashed.
 ///
-/// This is sufficient for lists. Where certainty is needed, the file is read ([`Reported::journal_doubt`],
+/// This is sufficient for lists. Where certainty is needed, the file itself is read ([`Reported::journal_doubt`],
 /// [`Reported::recording_doubt`]).
 fn is_untouched(file: &Path, bytes: Option<u64>, folder: &Path) -> io::Result<bool> {
-    // Within one tick of the file system's clock, both may have been written, or the file may have been changed.
+    // If the times are within one tick of the file system's clock, the two files may have been written together, or the
+    // file may have been changed afterwards.
     let (file, report) = (fs::metadata(file)?, fs::metadata(folder.join(REPORT_FILE))?);
     let written = |file: &Metadata| file.modified().unwrap_or(SystemTime::UNIX_EPOCH);
     Ok(bytes == Some(file.len()) && written(&file) < written(&report))
@@ -254,8 +256,8 @@ fn agrees(summary: &Summary, ending: &Event) -> bool {
         && summary.ticks == Some(ending.tick)
 }
 
-/// Why the journal of a run with this digest is not trusted: the report states a different digest, or cannot be read.
-/// `None` if it is trusted.
+/// Why the journal of a run, which has this digest, is not trusted: the report states a different digest, or cannot be
+/// read. `None` if the journal is trusted.
 pub fn journal_doubt(folder: &Path, sha256: Option<&str>) -> Option<String> {
     match Reported::read(folder) {
         Ok(reported) => reported?.journal_doubt(sha256),
@@ -263,7 +265,7 @@ pub fn journal_doubt(folder: &Path, sha256: Option<&str>) -> Option<String> {
     }
 }
 
-/// The evidence against a journal without an end: the run has a report, so it was closed normally.
+/// The evidence against a journal that has no end: the run has a report, so it was closed normally.
 pub fn end_is_missing(folder: &Path) -> Option<String> {
     let reported = Reported::read(folder).ok()??;
     let report: Value = serde_json::from_str(&reported.text).ok()?;

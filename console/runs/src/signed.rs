@@ -13,12 +13,12 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The list of signed reports in the folder of a run.
+/// File name of the list of signed reports in the folder of a run.
 pub const SIGNED_FILE: &str = "signed.json";
 /// Maximum size of the list, bytes: ten thousand signatures.
 const MOST_BYTES: u64 = 8 << 20;
 
-/// Reads the list of signed reports of the run in a folder, in order.
+/// Reads the list of signed reports on the run in a folder, in order.
 ///
 /// # Errors
 /// The list cannot be read.
@@ -33,19 +33,19 @@ pub fn signed_list(folder: &Path) -> Result<Vec<Revision>, RunError> {
     serde_json::from_str(&text).map_err(|error| RunError::Damaged { file: path, why: error.to_string() })
 }
 
-/// The signed reports of a run.
+/// The signed reports on a run.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Signatures {
     /// The reports in the order of the list.
     pub revisions: Vec<Revision>,
     /// Problems with them, as sentences that name the file.
     pub doubts: Vec<String>,
-    /// Points that only a different register could settle, as sentences.
+    /// Points that only another user's register could settle, as sentences.
     pub notes: Vec<String>,
 }
 
-/// Reads the signed reports of the run in a folder, and checks them. It is a problem if a file has changed since it was
-/// signed or is no longer where it was written, or if a list is missing, damaged or different from the register.
+/// Reads the signed reports on the run in a folder, and checks them. It is a problem if a file has changed since it was
+/// signed or is no longer where it was written, or if a list is missing, damaged, or different from the register.
 pub fn signatures(folder: &Path, register: &Register) -> Signatures {
     let mut found = Signatures::default();
     match signed_list(folder) {
@@ -67,7 +67,7 @@ pub fn signatures(folder: &Path, register: &Register) -> Signatures {
     let lost: Vec<String> = lost.collect();
     found.doubts.extend(lost);
     for revision in found.revisions.iter().filter(|revision| entry(revision).is_none()) {
-        // The owner of this register has signed this run, but not this report.
+        // The owner of this register has signed reports on this run, but not this report.
         let is_invented = registered.iter().any(|entry| entry.signature.by == revision.signature.by);
         let to = if is_invented { &mut found.doubts } else { &mut found.notes };
         to.push(unregistered(revision, is_invented, register));
@@ -76,9 +76,10 @@ pub fn signatures(folder: &Path, register: &Register) -> Signatures {
 }
 
 /// Searches the register for a signed report on exactly these files, but under a name that the run in this folder no
-/// longer has. Returns a message if there is one.
+/// longer has. Returns a message if there is such a report.
 ///
-/// Both digests must match: equal runs have equal journals, but each recording contains its own time of day.
+/// Both digests must match: equal runs have equal journals, but each recording contains the time of day at which it was
+/// made.
 pub fn signed_under_another_name(folder: &Path, register: &Register, now: &SignedRun) -> Option<String> {
     now.recording_sha256.as_ref()?;
     let names = names_of(folder);
@@ -89,7 +90,7 @@ pub fn signed_under_another_name(folder: &Path, register: &Register, now: &Signe
     let entry = register.about(is_it).ok()?.into_iter().next()?;
     let then = entry.runs.iter().find(|then| is_it(then))?;
     Some(format!(
-        "run {} has the files of run {}, which was signed as revision {} by {} at {} UTC, according to {}; rename its folder back to that name",
+        "run {} has the files of run {}, which was signed as revision {} by {} at {} UTC, according to {}; rename the folder back to that name",
         names[0],
         then.run,
         entry.revision,
@@ -99,7 +100,7 @@ pub fn signed_under_another_name(folder: &Path, register: &Register, now: &Signe
     ))
 }
 
-/// The names of a run: the current name of its folder, and the name when the run was closed.
+/// The names of a run: the current name of its folder, and the name that the folder had when the run was closed.
 fn names_of(folder: &Path) -> Vec<String> {
     let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let closed_as =
@@ -111,7 +112,7 @@ fn is_same_report(one: &Revision, other: &Revision) -> bool {
     (&one.number, &one.revision) == (&other.number, &other.revision)
 }
 
-/// The difference between a listed signed report and its entry in the register, which is never changed.
+/// The difference between a signed report in the list and its entry in the register, which is never changed.
 fn list_change(listed: &Revision, entry: &Revision, register: &Register) -> Option<String> {
     let [now, then] = [listed, entry].map(|revision| serde_json::to_value(revision).ok());
     let Difference { key, one, other } = first_difference(&now?, &then?)?;
@@ -122,7 +123,7 @@ fn list_change(listed: &Revision, entry: &Revision, register: &Register) -> Opti
     ))
 }
 
-/// The problem with the file of a signed report, if any. `entry` is its entry in the register, if any.
+/// The problem with the file of a signed report, or `None`. `entry` is the report's entry in the register, if it has one.
 fn file_doubt(listed: &Revision, entry: Option<&Revision>) -> Option<String> {
     let Revision { revision: letter, file, sha256: then, .. } = entry.unwrap_or(listed);
     match sha256(&PathBuf::from(file)) {
@@ -145,13 +146,14 @@ fn file_doubt(listed: &Revision, entry: Option<&Revision>) -> Option<String> {
     }
 }
 
-/// The problem with a folder whose name is in no report on it: the folder was renamed or copied.
+/// The problem with a folder if the signed report names runs, but not this folder: the folder was renamed or copied.
 fn renamed(listed: &Revision, folder: &Path) -> Option<String> {
     let name = folder.file_name()?.to_string_lossy();
     let signed: Vec<&str> = listed.runs.iter().map(|run| run.run.as_str()).collect();
     (!signed.is_empty() && !signed.contains(&&*name)).then(|| {
         format!(
-            "the folder is called {name}, but revision {} was signed on {}; rename it back to that name",
+            "the folder is called {name}, but revision {} was signed on {}; rename the folder back to \
+             that name",
             listed.revision,
             signed.join(" and ")
         )
@@ -192,7 +194,7 @@ fn lost(entry: &Revision, folder: &Path, register: &Register) -> String {
     )
 }
 
-/// Adds a signed report to the lists of all runs that it covers and to the register, or to none of them.
+/// Adds a signed report to the register and to the lists of all runs that it covers, or to none of them.
 ///
 /// # Errors
 /// A list cannot be read or written.
@@ -208,7 +210,7 @@ pub fn add_signed(folders: &[PathBuf], register: &Register, revision: &Revision)
         .inspect_err(|_| folders[..added].iter().for_each(|folder| take_back(folder, revision)))
 }
 
-/// Removes a report from the list again, if the system permits it.
+/// Removes a report from the list again, if the system permits that.
 fn take_back(folder: &Path, revision: &Revision) {
     if let Ok(mut revisions) = signed_list(folder) {
         revisions.retain(|listed| listed != revision);

@@ -13,26 +13,26 @@ pub enum Standing {
     Ended(Box<Summary>),
     /// The run ended, but its journal or its recording is incomplete, as the report itself states.
     NotRecorded(Box<Summary>, String),
-    /// A process is still writing to it.
+    /// A process is still writing to the run.
     Running,
     /// The run has no report that can be trusted; only the journal tells what happened.
     JournalOnly {
-        /// What is wrong with the report; absent if there is none.
+        /// What is wrong with the report; absent if there is no report.
         doubt: Option<String>,
-        /// Why the writer could not write; absent if it was killed.
+        /// Why the writer could no longer write; absent if it was killed.
         failure: Option<String>,
     },
 }
 
 /// Determines the status of the run in a folder.
 ///
-/// The journal is authoritative and the report is derived from it: a report that cannot be read or disagrees with the
+/// The journal is authoritative and the report is derived from it, so a report that cannot be read or disagrees with the
 /// journal is ignored.
 pub fn standing(folder: &Path) -> Standing {
     standing_within(folder, &Budget::of_one_run())
 }
 
-/// As [`standing()`], within a budget.
+/// Like [`standing()`], but within a budget.
 pub(crate) fn standing_within(folder: &Path, budget: &Budget) -> Standing {
     let failure = recorded_failure(folder);
     let summary = Reported::read(folder)

@@ -1,4 +1,4 @@
-//! Writes files atomically: complete, or not at all.
+//! Writes files atomically: either the complete file is written, or nothing is.
 
 use rustix::fs::OFlags;
 use std::{
@@ -8,13 +8,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Writes a file atomically: to a draft beside it, `NAME.part`, which is flushed to disk and then renamed. The space
-/// already taken by an existing draft is reused. If writing fails, the file is unchanged and no draft remains.
+/// Writes a file atomically: first to a draft beside it, `NAME.part`, which is flushed to disk and then renamed. If a
+/// draft already exists, the space that it occupies is reused. If writing fails, the file is unchanged and no draft
+/// remains.
 ///
 /// A target that is not a regular file (a pipe, `/dev/stdout`) is written to directly.
 ///
 /// # Errors
-/// The system refuses, or the file is read-only.
+/// The system refuses to write the file, or the file is read-only.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     // A link stays a link: its target is replaced.
     let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
@@ -23,7 +24,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
         return fs::write(&path, bytes);
     }
     if there.is_some_and(|file| file.permissions().readonly()) {
-        // The system would allow the file to be replaced, and root could write to it in any case.
+        // The system would allow the file to be replaced, and root could write to it anyway.
         return Err(io::Error::new(
             io::ErrorKind::PermissionDenied,
             "the file is read-only, as signed reports are",
@@ -32,15 +33,17 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     write_by_draft(&path, &draft_of(&path), bytes)
 }
 
-/// As [`write_whole`], with a different name for the draft, for files that several processes may write at the same time.
+/// Like [`write_whole`], with a different name for the draft, for files that several processes may write at the same
+/// time.
 ///
 /// # Errors
-/// The system refuses.
+/// The system refuses to write the file.
 pub fn write_by_draft(path: &Path, draft: &Path, bytes: &[u8]) -> io::Result<()> {
     write_in(path, draft, bytes, || open_draft(draft))
 }
 
-/// Opens an existing draft of ours, or replaces whatever else has its name: a link or a pipe would lead elsewhere.
+/// Opens an existing draft of ours, or replaces anything else that has its name: a link or a pipe would send the data
+/// elsewhere.
 fn open_draft(draft: &Path) -> io::Result<File> {
     let flags = OFlags::NOFOLLOW | OFlags::NONBLOCK;
     let there = OpenOptions::new().write(true).custom_flags(flags.bits().cast_signed()).open(draft);
@@ -93,7 +96,7 @@ fn write_in<D: Draft>(
         fs::rename(draft, path)
     };
     write().inspect_err(|_| drop(fs::remove_file(draft)))?;
-    // The new name is stored in the folder, which some file systems cannot flush.
+    // The new name is stored in the folder; some file systems cannot flush a folder.
     let _ = path.parent().map(|folder| File::open(folder).and_then(|folder| folder.sync_all()));
     Ok(())
 }

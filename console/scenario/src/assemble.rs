@@ -18,11 +18,12 @@ use sim::{AeConfig, Mover, NoiseModel, RobotConfig, SimConfig};
 use toml::de::DeTable;
 use world::{Boundary, Obstacle, Point, Pose, Station, World};
 
-/// The smallest clearance kept if ranges scatter, in metres. With 0.05, one of 1,293 robots of random scenarios touched
-/// the shell, which it locates only by its own position: the 95 % error was 0.047 m, and the error 0.063 m.
+/// The smallest clearance used when ranges scatter, in metres. With 0.05, one of 1,293 robots in random scenarios
+/// touched the shell, which a robot locates only from its own estimated position: its 95 % error was 0.047 m, but its
+/// actual error 0.063 m.
 const LEAST_CLEARANCE_M: f64 = 0.08;
 
-/// A start within this distance of the first path point, in metres, counts as on it.
+/// A start within this distance of the first path point, in metres, counts as being at that point.
 const ON_PATH_M: f64 = 1e-3;
 
 /// Reads every section and checks that they fit together. Returns the scenario or all problems. `also` runs an
@@ -156,7 +157,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     })
 }
 
-/// Checks the digests of the runs that a re-scan continues. Only reports use them.
+/// Checks the digests of the runs that a re-scan continues. Only reports use these digests.
 fn check_continued(root: &Section<'_>) {
     let digests = if root.has("continues_sha256") { root.texts("continues_sha256") } else { None };
     let is_digest = |text: &String| {
@@ -191,16 +192,16 @@ impl Floor {
     }
 }
 
-/// Complains if the start is missing in a mission that does not determine it itself.
+/// Complains if the start is missing from a mission that does not determine it itself.
 fn require_start(sections: &Sections<'_>) {
     let (Some(mission), Some(robot)) = (&sections.mission, &sections.robot) else { return };
     if mission.has("kind") && matches!(mission.word("kind"), Some("goto" | "cover")) && !robot.has("start_m")
     {
-        robot.require("start_m", "add start_m = [x, y] to [robot]: the place where it is put down");
+        robot.require("start_m", "add start_m = [x, y] to [robot]: the place where the robot is put down");
     }
 }
 
-/// The pose at the start: as given, or on the path and in its direction.
+/// The pose at the start: as given, or at the beginning of the path and in its direction.
 fn start(robot: Option<&Robot>, task: Option<&TaskConfig>) -> Option<Pose> {
     let (robot, task) = (robot?, task?);
     let (position, ahead) = match (robot.start, task) {
@@ -218,7 +219,7 @@ fn start(robot: Option<&Robot>, task: Option<&TaskConfig>) -> Option<Pose> {
     Some(Pose { position, heading_rad: robot.start_heading_rad.unwrap_or(along) })
 }
 
-/// The clearance to keep. Without one, a robot that only estimates its position would touch objects that it passes.
+/// The clearance to keep. Without one, a robot that only estimates its position would touch objects as it passes them.
 fn kept_clearance_m(clearance_m: f64, robot: &Robot, ae: &AeConfig) -> f64 {
     let is_exact = robot.limits.radius_m == 0.0 || ae.noise == NoiseModel::None;
     if is_exact { clearance_m } else { clearance_m.max(LEAST_CLEARANCE_M) }
@@ -273,7 +274,7 @@ fn check_places(sections: &Sections<'_>, floor: &Floor, start: Option<Pose>, tas
     }
 }
 
-/// The tether, if there is one. Complains about a tether that is not possible.
+/// The tether, if there is one. Complains about an impossible tether.
 fn tether_of(
     sections: &Sections<'_>,
     floor: &Floor,

@@ -15,12 +15,12 @@ pub(crate) const MOST_TICKS: f64 = 1e7;
 /// Slack for rounded numbers in files, in metres.
 pub(crate) const ROUNDING_M: f64 = 1e-6;
 
-/// The free distance in millimetres that a robot needs at its start. The robot keeps this far from obstacles that it
+/// The clearance in millimetres that a robot needs at its start. The robot keeps this far from obstacles that it
 /// senses. With less, a small position error would put an obstacle within this distance, and the mission could not
 /// distinguish moving off from a collision.
 const START_ROOM_MM: f64 = 10.0;
 
-/// The longest average time in seconds in which a robot must detect its medium.
+/// The longest time in seconds that a robot may need, on average, to detect its medium.
 const LONGEST_WAIT_S: f64 = 10.0;
 
 /// Everything that a robot of a given radius could collide with.
@@ -41,7 +41,7 @@ impl Site<'_> {
         self.wall(place).or_else(|| self.obstacle(place)).or_else(|| self.no_go(place))
     }
 
-    /// The reason why the robot cannot start at a point where it can be, if any.
+    /// The reason why the robot cannot start at a point that is otherwise possible, if any.
     pub(crate) fn objection_to_start(&self, place: Point) -> Option<Complaint> {
         let wall = ("the wall".to_owned(), self.boundary.wall_distance_m(place));
         let obstacle = |obstacle: &Obstacle| {
@@ -103,7 +103,7 @@ pub(crate) fn check_pressure(robot: &Section<'_>, tick_s: f64, sensor: Option<Pr
     // One reading is always allowed, however long a tick is.
     let most = (LONGEST_WAIT_S / tick_s).max(1.0);
     if sensor.readings_to_decide() > most {
-        // Rounded down, so that the suggested number is accepted.
+        // Round down, so that the suggested number is accepted.
         let most_pa = (PressureSensor::largest_sigma_pa(sensor.depth_m, most) * 1e3).floor() / 1e3;
         let must_be = format!(
             "at most {most_pa} Pa at pressure_depth_m = {}: otherwise the robot would wait over \
@@ -115,7 +115,7 @@ pub(crate) fn check_pressure(robot: &Section<'_>, tick_s: f64, sensor: Option<Pr
 }
 
 /// The edge of a cell of the coverage grid in metres; complains about too many cells. A mission to a goal needs no fine
-/// grid, so its cells become larger if the floor is too large for the default.
+/// grid, so its cells are larger if the floor is too large for the default size.
 pub(crate) fn cell_m(mission: &Section<'_>, boundary: Option<&Boundary>) -> Option<f64> {
     let cell_m = mission.number("cell_m")?;
     let Some((low, high)) = boundary.map(Boundary::bounds) else { return Some(cell_m) };
@@ -124,7 +124,7 @@ pub(crate) fn cell_m(mission: &Section<'_>, boundary: Option<&Boundary>) -> Opti
     if cells <= MOST_CELLS {
         return Some(cell_m);
     }
-    // Rounded up to millimetres, with a reserve for cells cut at the edges.
+    // Round up to millimetres, with a reserve for cells cut at the edges.
     let fits_m = ((size.x * size.y / MOST_CELLS).sqrt() * 1010.0).ceil() / 1000.0;
     if !mission.has("cell_m") && mission.word("kind") == Some("goto") {
         return Some(fits_m);
@@ -134,13 +134,13 @@ pub(crate) fn cell_m(mission: &Section<'_>, boundary: Option<&Boundary>) -> Opti
     None
 }
 
-/// Complains about a swath that is too narrow: without the overlap, the floor would need too many lanes.
+/// Complains if the swath, less the overlap, is so narrow that the floor would need too many lanes.
 pub(crate) fn check_lanes(mission: &Section<'_>, boundary: &Boundary, swath_m: f64, overlap_m: f64) {
     let (low, high) = boundary.bounds();
     let across_m = (high - low).min();
     let lanes = across_m / (swath_m - overlap_m);
     if lanes > MOST_LANES {
-        // Rounded up to millimetres, so that the suggested number is accepted.
+        // Round up to millimetres, so that the suggested number is accepted.
         let fits_m = ((across_m / MOST_LANES + overlap_m) * 1000.0).ceil() / 1000.0;
         let of = if overlap_m > 0.0 { format!(" with overlap_m = {overlap_m}") } else { String::new() };
         let must_be = format!(
@@ -151,7 +151,7 @@ pub(crate) fn check_lanes(mission: &Section<'_>, boundary: &Boundary, swath_m: f
     }
 }
 
-/// Complains about a run with too many ticks, or less than one.
+/// Complains about a run with too many ticks, or with less than one tick.
 pub(crate) fn check_ticks(mission: &Section<'_>, tick_s: f64, time_limit_s: f64) {
     let ticks = time_limit_s / tick_s;
     if ticks > MOST_TICKS {

@@ -10,7 +10,7 @@ use super::{
 use account::{Date, Inspection, is_placeholder};
 use toml::de::DeTable;
 
-/// The largest length of a fact in characters: more than a page.
+/// The largest number of characters in a fact: more than a page.
 const MOST_LETTERS: usize = 4000;
 
 /// Reads `[inspection]`; without this section all facts are unknown.
@@ -58,9 +58,9 @@ fn fact(section: &Section<'_>, key: &str) -> Option<String> {
     // An empty text means an unknown fact.
     let text = section.text(key).filter(|text| !text.trim().is_empty())?;
     if is_placeholder(&text) {
-        let wanted = "the fact itself; leave the key out if it is unknown, because a placeholder cannot be \
-                      signed"
-            .to_owned();
+        let wanted =
+            "the fact itself; leave out the key if the fact is unknown, because a placeholder cannot be signed"
+                .to_owned();
         section.complain(key, Complaint::OutOfRange(wanted));
     }
     if text.chars().count() > MOST_LETTERS {

@@ -13,7 +13,8 @@ const TRIES_PER_OBSTACLE: usize = 200;
 pub(crate) enum Sampling {
     /// Anywhere on the floor.
     Disk,
-    /// Anywhere in the square or box around the tank, as in Wang et al. 2023, where one in five is outside the tank.
+    /// Anywhere in the square or box around the tank, as in Wang et al. 2023, where one obstacle in five is outside the
+    /// tank.
     Square,
 }
 
@@ -28,7 +29,7 @@ pub(crate) struct RandomObstacles {
     pub sampling: Sampling,
     /// The smallest distance in metres between two outlines, including those of other obstacles.
     pub min_gap_m: f64,
-    /// The smallest distance in metres of an outline from the start and the end of the mission.
+    /// The smallest distance in metres from an outline to the start and to the end of the mission.
     pub keep_clear_m: f64,
     /// Whether the obstacles are on the drawing.
     pub known: bool,

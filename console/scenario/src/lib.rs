@@ -1,9 +1,9 @@
 //! Scenario files: one TOML text that states everything about a run.
 //!
 //! [`Scenario::read_with`] reads a file, and [`Scenario::parse`] a text. The result has been checked, so the engine and
-//! the simulator can rely on it. All problems are reported together as [`ScenarioErrors`], each with line, column, key,
-//! value and remedy; [`ScenarioErrors::render`] formats them. Settings from the command line are written into the text
-//! before it is parsed, so the resulting text alone reproduces the scenario.
+//! the simulator can rely on it. All problems are reported together as [`ScenarioErrors`], each with its line, column,
+//! key, value and remedy; [`ScenarioErrors::render`] formats them. Settings from the command line are written into the
+//! text before it is parsed, so the resulting text alone reproduces the scenario.
 
 mod assemble;
 mod checks;
@@ -41,7 +41,7 @@ use std::{io::Read, path::Path};
 use toml::de::DeTable;
 use world::PlateLayout;
 
-/// The largest size of a scenario in kilobytes; a scenario with a large map takes about two thousand.
+/// The largest size of a scenario in kilobytes; a scenario with a large map is about two thousand kilobytes long.
 const LIMIT_KB: usize = 8000;
 
 /// A checked scenario.
@@ -55,7 +55,7 @@ pub struct Scenario {
     pub shown_name: String,
     /// The text of the scenario after settings have been applied; it reproduces the scenario.
     pub text: String,
-    /// The seed of all random numbers.
+    /// The seed for all random numbers.
     pub seed: u64,
     /// The simulated world.
     pub sim: SimConfig,
@@ -75,7 +75,7 @@ impl Scenario {
     /// Reads a scenario file, or standard input for `-`, and applies settings from the command line.
     ///
     /// # Errors
-    /// All problems of the scenario or the settings.
+    /// All problems in the scenario or the settings.
     pub fn read_with(path: &Path, settings: &Settings) -> Result<Self, ScenarioErrors> {
         let shown_name =
             if is_stdin(path) { "standard input".to_owned() } else { path.display().to_string() };
@@ -88,16 +88,16 @@ impl Scenario {
     /// Parses a scenario; `shown_name` is its name in messages.
     ///
     /// # Errors
-    /// All problems of the scenario.
+    /// All problems in the scenario.
     pub fn parse(text: &str, shown_name: &str) -> Result<Self, ScenarioErrors> {
         Self::checked(text, shown_name, readable::check)
     }
 
-    /// Parses the scenario of a past run, which was accepted then. Older runs may have names that would be refused
-    /// today.
+    /// Parses the scenario of a past run, which was accepted at that time. Older runs may have names that would be
+    /// refused today.
     ///
     /// # Errors
-    /// All problems of the scenario.
+    /// All problems in the scenario.
     pub fn recorded(text: &str, shown_name: &str) -> Result<Self, ScenarioErrors> {
         Self::checked(text, shown_name, |_, _| {})
     }
@@ -121,14 +121,14 @@ impl Scenario {
     /// Parses a scenario after applying settings to its text.
     ///
     /// # Errors
-    /// All problems of the scenario or the settings.
+    /// All problems in the scenario or the settings.
     pub fn parse_with(text: &str, shown_name: &str, settings: &Settings) -> Result<Self, ScenarioErrors> {
         let (text, shown_name) = with_settings(text, shown_name, settings)?;
         Self::parse(&text, &shown_name)
     }
 }
 
-/// Applies settings to a text; returns it with its name for messages.
+/// Applies settings to a text; returns the changed text with its name for messages.
 fn with_settings(
     text: &str,
     shown_name: &str,

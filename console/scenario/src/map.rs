@@ -1,4 +1,4 @@
-//! `tank.map`: writes an occupancy map into the text of a scenario, as wall and obstacles.
+//! `tank.map`: writes an occupancy map into the text of a scenario, as a wall and obstacles.
 //!
 //! The changed text alone reproduces the scenario, as with settings from the command line: a journal needs no map file.
 
@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 use toml_edit::{DocumentMut, Value, value};
 use world::{Boundary, Point};
 
-/// Replaces the map in a text, if it names one, by wall and obstacles; `folder` is the folder of the scenario.
+/// If a text names a map, replaces it with a wall and obstacles; `folder` is the folder of the scenario.
 ///
 /// # Errors
 /// The map cannot be read, or has no free floor.

@@ -4,11 +4,11 @@ use super::{problem::Complaint, section::Section};
 use import::plan::MOST_CORNERS;
 use world::{Point, Shape, shape::ring_area_m2};
 
-/// Keys that some kinds of outline use.
+/// Keys that only some kinds of outline use.
 const KEYS: [&str; 7] =
     ["center_m", "radius_m", "size_m", "heading_deg", "vertices_m", "points_m", "width_m"];
 
-/// Reads an outline; the key `word_key` gives its kind.
+/// Reads an outline; the key `word_key` states what kind it is.
 pub(crate) fn outline(section: &Section<'_>, word_key: &str) -> Option<Shape> {
     let kind = section.word(word_key)?;
     let used: &[&str] = match kind {

@@ -1,4 +1,4 @@
-//! Locates the objections of planners in the text of a scenario.
+//! Locates planners' objections in the text of a scenario.
 
 use super::{Complaint, Problem, Scenario, ScenarioErrors};
 use std::ops::Range;
@@ -8,7 +8,7 @@ use toml::{
 };
 
 impl Scenario {
-    /// Converts objections of planners to problems of this scenario. An objection is the path of a key
+    /// Converts planners' objections to problems in this scenario. An objection consists of the path of a key
     /// (`planner.parameters.k_rep`) and the problem.
     pub fn refused(&self, objections: Vec<(String, String)>) -> ScenarioErrors {
         let table = DeTable::parse(&self.text).ok();

@@ -1,4 +1,4 @@
-//! Problems of a scenario.
+//! Problems in a scenario.
 
 use foreign::NotUtf8;
 use std::{fmt, ops::Range};
@@ -34,7 +34,7 @@ pub enum Complaint {
     #[error("cannot be read: {0}")]
     Unreadable(String),
     /// The file is too large.
-    #[error("larger than {limit_kb} kB, the largest size of a scenario")]
+    #[error("larger than {limit_kb} kB, the limit for a scenario")]
     TooLarge {
         /// The largest accepted size in kilobytes.
         limit_kb: usize,
@@ -82,14 +82,14 @@ pub enum Complaint {
         /// The word that was probably meant.
         nearest: Option<&'static str>,
     },
-    /// A key that has no meaning together with another key.
+    /// A key that has no effect together with another key.
     #[error("has no effect with {beside}")]
     OutOfPlace {
         /// The other key, with its value.
         beside: String,
     },
     /// A list that is too short.
-    #[error("needs at least {need} entries, has {have}")]
+    #[error("needs {need} or more entries, but has {have}")]
     TooFew {
         /// The number of entries.
         have: usize,
@@ -111,7 +111,7 @@ pub enum Complaint {
         other: String,
     },
     /// Fewer than two stations.
-    #[error("only {have} of at least 2 stations")]
+    #[error("only {have} given; at least 2 stations are needed")]
     TooFewStations {
         /// The number of stations.
         have: usize,
@@ -187,13 +187,13 @@ pub enum Complaint {
         "with a limit of {limit_m} m, a robot that could be anywhere in this tank would not count as lost"
     )]
     LimitOfTank {
-        /// The limit as written, in metres.
+        /// The given limit in metres.
         limit_m: f64,
         /// The largest accepted limit in metres.
         most_m: f64,
     },
     /// A spiral that does not fit in the tank.
-    #[error("larger than the tank less the robot's radius: at most {fits_m} m")]
+    #[error("larger than the tank minus the robot's radius: at most {fits_m} m")]
     SpiralTooLarge {
         /// The largest outer radius that fits, in metres.
         fits_m: f64,
@@ -272,19 +272,19 @@ impl Complaint {
             Self::Flat => "write corners that are not all on one line".into(),
             Self::WhollyOutside => "move it onto the floor or remove it".into(),
             Self::InWall { radius_m, .. } | Self::HullInObstacle { radius_m, .. } => {
-                format!("keep the robot's radius, {radius_m} m, away from anything solid")
+                format!("keep at least the robot's radius, {radius_m} m, away from anything solid")
             }
             Self::InObstacle { .. } | Self::InNoGo { .. } | Self::OutsideTank { .. } => {
                 "choose a point on the free floor".into()
             }
             Self::NoRoomToStart { needed_mm, .. } => {
-                format!("leave {needed_mm} mm, so that the robot can move off without touching it")
+                format!("leave {needed_mm} mm, so the robot can move off without touching anything")
             }
             Self::LimitOfTank { most_m, .. } => {
                 format!("at most {most_m:.3} m, half the width of the tank; 0.5 is usual")
             }
             Self::SpiralTooLarge { fits_m } => format!("write outer_radius_m = {fits_m} or less"),
-            Self::PathInWall { .. } => "keep the robot's radius away from the wall".into(),
+            Self::PathInWall { .. } => "keep the path at least the robot's radius away from the wall".into(),
             Self::TooManyPoints { .. } => "remove points, or use a larger step or pitch".into(),
             Self::TooManyCells { fits_m, .. } => format!("write cell_m = {fits_m} or more"),
             Self::TooManyTicks { .. } => "use a longer tick or a shorter time limit".into(),
@@ -304,7 +304,7 @@ impl Complaint {
     }
 }
 
-/// All problems of a scenario, in the order of the text.
+/// All problems in a scenario, in the order of the text.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{}", self.first_line())]
 pub struct ScenarioErrors {
@@ -317,7 +317,7 @@ pub struct ScenarioErrors {
 }
 
 impl ScenarioErrors {
-    /// Creates an error with a single problem of the whole file.
+    /// Creates an error with a single problem that concerns the whole file.
     pub fn of_file(shown_name: &str, what: Complaint) -> Self {
         let problem = Problem { key: String::new(), value: None, at: None, what };
         Self { shown_name: shown_name.to_owned(), text: String::new(), problems: vec![problem] }

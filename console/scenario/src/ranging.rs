@@ -6,8 +6,8 @@ use positioning::{Aggregation, RangeNoise, SolverKind, Timing};
 use sim::{AeConfig, BehindColumns, Disturbances, NoiseModel, StationFault, TimingErrors};
 use world::{Boundary, Station, StationId};
 
-/// The largest distance in metres of a station behind the wall: sensors are mounted on the wall, and drawings are
-/// rounded to centimetres.
+/// The largest distance in metres by which a station may be outside the wall: sensors are mounted on the wall, and
+/// drawings are rounded to centimetres.
 const ON_WALL_M: f64 = 0.01;
 
 /// Reads `[ae]` except for its stations.
@@ -27,8 +27,7 @@ pub(crate) fn ae(section: &Section<'_>) -> Option<AeConfig> {
     })
 }
 
-/// The settings of the estimator for the ranges. The estimator uses the stated scatter, but has no information about
-/// faults.
+/// The estimator's settings for ranging. The estimator uses the stated scatter, but has no information about faults.
 pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig) -> Option<Locating> {
     let (solver, aggregation) = (section.word("solver"), section.word("aggregation"));
     let calibrate_sound_speed = section.flag("calibrate_sound_speed");
@@ -71,7 +70,7 @@ pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig) -> Option<Locating>
     })
 }
 
-/// Refuses methods that assume noise proportional to distance if times have errors, too.
+/// Refuses methods that assume noise proportional to distance if the times also have errors.
 fn refuse_beside_timing(section: &Section<'_>, solver: Option<&str>, aggregation: Option<&str>) {
     if solver == Some("bounded") {
         let must_be = "a different solver: noise.jitter_m and noise.resolution_m make the noise unbounded";
@@ -93,7 +92,7 @@ fn timing(section: &Section<'_>) -> Option<TimingErrors> {
     Some(TimingErrors { jitter_m: jitter_m?, resolution_m: resolution_m? })
 }
 
-/// Reads the disturbances of ranges besides their scatter, except for faults of single stations.
+/// Reads the disturbances of ranges other than scatter, except for faults of single stations.
 fn disturbances(section: &Section<'_>) -> Option<Disturbances> {
     let (ping_dropout_probability, nlos_probability) =
         (section.number("ping_dropout_probability"), section.number("nlos_probability"));
@@ -181,7 +180,7 @@ fn noise(section: &Section<'_>) -> Option<NoiseModel> {
     }
 }
 
-/// The standard deviation of a range as a share of the range, as the estimator expects it; never zero.
+/// The standard deviation of a range that the estimator expects, as a share of the range; never zero.
 pub(crate) fn range_sigma_ratio(noise: NoiseModel) -> f64 {
     const LEAST: f64 = 1e-3;
     match noise {

@@ -11,7 +11,7 @@ use toml::{
     de::{DeTable, DeValue},
 };
 
-/// Complains about every text and every key with such a character.
+/// Complains about every text and every key that contains such a character.
 pub(crate) fn check(source: &Source<'_>, table: &DeTable<'_>) {
     of_table(source, "", table);
 }

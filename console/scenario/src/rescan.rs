@@ -10,16 +10,17 @@ use world::{ObstacleId, Point, Shape, Zone};
 pub struct Continued<'a> {
     /// The name of its folder.
     pub name: &'a str,
-    /// The SHA-256 of its journal in hexadecimal. A report uses it to verify that both runs are of the same floor.
+    /// The SHA-256 of the run's journal, in hexadecimal. A report uses it to verify that both runs are of the same
+    /// floor.
     pub journal_sha256: &'a str,
 }
 
 /// Changes the scenario of a past run into a mission that scans these boxes, each given by its south-west and
-/// north-east corners in metres. Obstacles that were found, and zones that were drawn during the run, become part of
-/// the drawing. `runs` are the runs that missed the areas in the boxes.
+/// north-east corners in metres. Obstacles that were found and zones that were drawn during the run become part of the
+/// drawing. `runs` are the runs that missed the areas in the boxes.
 ///
 /// # Errors
-/// The scenario of the run cannot be parsed, because its journal was changed.
+/// The scenario of the run cannot be parsed because its journal was changed.
 pub fn rescan(
     opened: &RunOpened,
     runs: &[Continued<'_>],
@@ -27,7 +28,7 @@ pub fn rescan(
     found: &BTreeSet<ObstacleId>,
     drawn: &[Zone],
 ) -> Result<String, TomlError> {
-    // Journals of other programs may contain names that are not allowed in a scenario.
+    // Journals written by other programs may contain names that are not allowed in a scenario.
     let mut document: DocumentMut = foreign::plain_lines(&opened.scenario_toml).parse()?;
     let first_name = opened.scenario.strip_suffix("-rescan").unwrap_or(&opened.scenario);
     document["name"] = value(format!("{first_name}-rescan"));
@@ -54,7 +55,7 @@ pub fn rescan(
     Ok(document.to_string())
 }
 
-/// Marks the obstacles of the scenario that were found as known.
+/// Marks as known the obstacles of the scenario that were found.
 fn put_on_drawing(document: &mut DocumentMut, found: &BTreeSet<ObstacleId>) {
     let know = |index: usize, table: &mut dyn TableLike| {
         // Obstacles are numbered from 1 in the order of the file.

@@ -4,7 +4,7 @@ use super::{problem::Complaint, section::Section};
 use planner_api::{Limits, Motion};
 use world::{Amphibious, Pace, Point, PressureSensor};
 
-/// `[robot]` as read; the start may still be determined by the mission.
+/// `[robot]` as read; the mission may still determine the start.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Robot {
     /// The limits of the robot, except for the length of a tick, which the mission sets.
@@ -21,7 +21,7 @@ pub(crate) struct Robot {
     pub slip_mean: f64,
     /// The standard deviation of slip from tick to tick.
     pub slip_sigma: f64,
-    /// The standard deviation of odometry as a share of the distance.
+    /// The standard deviation of odometry errors, as a share of the distance.
     pub odometry_sigma_ratio: f64,
     /// The constant error of the gyro in radians per second.
     pub gyro_bias_rad_per_s: f64,
@@ -30,20 +30,20 @@ pub(crate) struct Robot {
 }
 
 impl Robot {
-    /// The standard deviation of a distance, as a share of it, that the estimator expects: the error of odometry and
-    /// slip combined, at least 2 %.
+    /// The standard deviation that the estimator expects of a distance, as a share of the distance: the combined error
+    /// of odometry and slip, at least 2 %.
     pub(crate) fn odometry_sigma_per_m(&self) -> f64 {
         let squares = [self.odometry_sigma_ratio, self.slip_mean, self.slip_sigma].map(|share| share * share);
         squares.iter().sum::<f64>().sqrt().max(0.02)
     }
 
-    /// The standard deviation of a turn, as a share of it, that the estimator expects; at least 1 %.
+    /// The standard deviation that the estimator expects of a turn, as a share of the turn; at least 1 %.
     pub(crate) fn turn_sigma_per_rad(&self) -> f64 {
         self.odometry_sigma_ratio.max(0.01)
     }
 
-    /// The standard deviation of the heading's drift that the estimator expects, in radians per second; at least that
-    /// of a good gyro, 3 degrees per minute.
+    /// The standard deviation of the heading's drift that the estimator expects, in radians per second; at least the
+    /// drift of a good gyro, 3 degrees per minute.
     pub(crate) fn gyro_sigma_rad_per_s(&self) -> f64 {
         self.gyro_bias_rad_per_s.abs().max(0.05_f64.to_radians())
     }
@@ -71,7 +71,7 @@ pub(crate) fn robot(section: &Section<'_>) -> Option<Robot> {
     let gyro_bias_deg = section.number("gyro_bias_deg_per_s");
     let amphibious = amphibious?;
     let pressure = if amphibious.is_some() { pressure(section) } else { None };
-    // Planners get the faster of the two limits; the zones specify where the slower limit applies.
+    // Planners get the faster of the two limits; the zones determine where the slower limit applies.
     let fastest = amphibious.map_or(one_pace?, |both| both.fastest());
     Some(Robot {
         limits: Limits {
@@ -97,7 +97,7 @@ pub(crate) fn robot(section: &Section<'_>) -> Option<Robot> {
     })
 }
 
-/// The keys of the limits that apply everywhere, and of those that depend on the zone.
+/// The keys of the limits that apply everywhere, and of the limits that depend on the zone.
 const ONE_PACE: [&str; 2] = ["speed_max_m_per_s", "turn_rate_max_deg_per_s"];
 const ON_LAND: [&str; 2] = ["land_speed_max_m_per_s", "land_turn_rate_max_deg_per_s"];
 const PRESSURE: [&str; 2] = ["pressure_sigma_pa", "pressure_depth_m"];

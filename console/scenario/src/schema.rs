@@ -1,7 +1,7 @@
 //! All keys of a scenario: type, unit, range and default.
 //!
-//! The reader checks values against these tables and compares misspelt keys with them, and a test compares
-//! `docs/scenario-format.md` with them.
+//! The reader checks values against these tables and compares misspelt keys with them; a test checks that they agree
+//! with `docs/scenario-format.md`.
 
 use std::fmt;
 
@@ -69,7 +69,7 @@ impl fmt::Display for Span {
 /// The type of a key's value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Kind {
-    /// A real number; a whole number is accepted, too.
+    /// A real number; whole numbers are also accepted.
     Number(Span),
     /// A whole number in this range, bounds included.
     Whole(i64, i64),
@@ -101,7 +101,7 @@ pub(crate) enum Kind {
     Free,
 }
 
-/// The value of a key that is not given.
+/// The value of a key that is left out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Default {
     /// The key is required.
@@ -121,9 +121,9 @@ pub(crate) enum Default {
 /// One key of a section.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Key {
-    /// The name as written; ends in the unit.
+    /// The name as written; ends with the unit.
     pub name: &'static str,
-    /// The unit of its numbers; empty for dimensionless numbers.
+    /// The unit of the key's numbers; empty for dimensionless numbers.
     pub unit: &'static str,
     /// The type of its value.
     pub kind: Kind,
@@ -171,7 +171,7 @@ impl Key {
 
 const LENGTH: Span = above(0.0).up_to(1000.0);
 const ANGLE: Span = at_least(-360.0).up_to(360.0);
-/// Coordinates in metres of a national or global reference system; none on Earth are larger.
+/// Coordinates of a national or global reference system, in metres; no coordinate on Earth is outside this range.
 const DATUM: Span = at_least(-1e8).up_to(1e8);
 const SHARE: Span = at_least(0.0).up_to(1.0);
 const ANY_LENGTH: Span = at_least(0.0);
@@ -258,7 +258,7 @@ static PLATES: &[Key] = &[
 
 static PLATE_OUTLINES: &[Key] = &[key("name", "", Kind::Text), key("vertices_m", "m", Kind::Points(3))];
 
-/// The kinds of outline of an obstacle or a zone.
+/// The kinds of outline that an obstacle or a zone can have.
 pub(crate) static OUTLINES: &[&str] = &["circle", "box", "polygon", "polyline"];
 
 static OBSTACLES: &[Key] = &[
@@ -438,7 +438,7 @@ static EXPECT: &[Key] = &[
     number("tether_end_length_max_m", "m", at_least(0.0)).or_none(NO_BOUND),
 ];
 
-/// All sections by path, beginning with the whole file under the empty path.
+/// All sections by path, beginning with the whole file, whose path is empty.
 pub(crate) fn sections() -> Vec<(String, &'static [Key])> {
     let mut found = vec![(String::new(), ROOT)];
     let mut next = 0;
@@ -454,7 +454,7 @@ pub(crate) fn sections() -> Vec<(String, &'static [Key])> {
     found
 }
 
-/// The path of a key from the path of its section.
+/// The path of a key, from the path of its section and the name of the key.
 pub(crate) fn joined(section: &str, key: &str) -> String {
     if section.is_empty() { key.to_owned() } else { format!("{section}.{key}") }
 }

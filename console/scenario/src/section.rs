@@ -20,7 +20,7 @@ const MOST_ENTRIES: usize = 50_000;
 /// Coordinates beyond this, in metres, are mistakes.
 const FAR_M: f64 = 10_000.0;
 
-/// The position of a value, for later complaints.
+/// The position of a value, for later reports of problems with it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Place {
     /// The path of the key.
@@ -85,7 +85,7 @@ impl<'a> Section<'a> {
         joined(&self.path, name)
     }
 
-    /// The position of a key's value, or of the section if the key is not given.
+    /// The position of a key's value; if the key is not given, the position of the section.
     pub(crate) fn place(&self, name: &str) -> Place {
         let at = self.value(name).map_or_else(|| self.at.clone(), Spanned::span);
         Place { key: self.path_of(name), at }
@@ -142,7 +142,7 @@ impl<'a> Section<'a> {
     }
 
     fn key(&self, name: &str) -> &'static Key {
-        self.keys.iter().find(|key| key.name == name).expect("only declared keys are read")
+        self.keys.iter().find(|key| key.name == name).expect("every key that is read is declared")
     }
 
     /// The value of a key; complains if a required key is missing.
@@ -159,7 +159,7 @@ impl<'a> Section<'a> {
     pub(crate) fn number(&self, name: &str) -> Option<f64> {
         let key = self.key(name);
         let (Kind::Number(span), unit) = (key.kind, key.unit) else {
-            panic!("{name} is declared as a number")
+            panic!("{name} is not declared as a number")
         };
         match (self.required(name), key.default) {
             (None, Default::Number(default)) => Some(default),
@@ -192,7 +192,7 @@ impl<'a> Section<'a> {
     /// A whole number; if it is not given, its default.
     pub(crate) fn whole(&self, name: &str) -> Option<i64> {
         let key = self.key(name);
-        let Kind::Whole(low, high) = key.kind else { panic!("{name} is declared as a whole number") };
+        let Kind::Whole(low, high) = key.kind else { panic!("{name} is not declared as a whole number") };
         let Some(value) = self.required(name) else {
             return if let Default::Whole(default) = key.default { Some(default) } else { None };
         };
@@ -221,7 +221,7 @@ impl<'a> Section<'a> {
     /// One of the allowed words; if it is not given, the default.
     pub(crate) fn word(&self, name: &str) -> Option<&'static str> {
         let key = self.key(name);
-        let Kind::Word(words) = key.kind else { panic!("{name} is declared as a word") };
+        let Kind::Word(words) = key.kind else { panic!("{name} is not declared as a word") };
         let Some(value) = self.required(name) else {
             return if let Default::Word(default) = key.default { Some(default) } else { None };
         };
@@ -292,7 +292,9 @@ impl<'a> Section<'a> {
 
     /// A list of points.
     pub(crate) fn points(&self, name: &str) -> Option<Vec<Point>> {
-        let Kind::Points(need) = self.key(name).kind else { panic!("{name} is declared as points") };
+        let Kind::Points(need) = self.key(name).kind else {
+            panic!("{name} is not declared as a list of points")
+        };
         let list = self.list(name, "a list of points", "write [[x, y], [x, y], ...] in metres")?;
         if list.len() < need {
             self.complain(name, Complaint::TooFew { have: list.len(), need });
@@ -325,7 +327,7 @@ impl<'a> Section<'a> {
         list.iter().enumerate().map(text_at).collect()
     }
 
-    /// A list of boxes, each as its south-west and north-east corners.
+    /// A list of boxes, each given by its south-west and north-east corners.
     pub(crate) fn boxes(&self, name: &str) -> Option<Vec<[Point; 2]>> {
         let remedy = "write [[west, south, east, north], ...] in metres";
         let list = self.list(name, "a list of boxes", remedy)?;
@@ -371,7 +373,7 @@ impl<'a> Section<'a> {
     /// Reads a pair of numbers.
     pub(crate) fn pair(&self, name: &str) -> Option<[f64; 2]> {
         let key = self.key(name);
-        let Kind::Pair(span) = key.kind else { panic!("{name} is declared as a pair") };
+        let Kind::Pair(span) = key.kind else { panic!("{name} is not declared as a pair") };
         self.checked_pair(self.path_of(name), self.required(name)?, span, key.unit, "write [number, number]")
     }
 
@@ -402,13 +404,13 @@ impl<'a> Section<'a> {
 
     /// A table within this section; `None` if it is missing or not a table.
     pub(crate) fn table(&self, name: &str) -> Option<Self> {
-        let Kind::Table(keys) = self.key(name).kind else { panic!("{name} is declared as a table") };
+        let Kind::Table(keys) = self.key(name).kind else { panic!("{name} is not declared as a table") };
         self.inner(name, keys, self.required(name)?)
     }
 
     /// A table within this section; an empty table if it is not given.
     pub(crate) fn table_or_empty(&self, name: &str) -> Option<Self> {
-        let Kind::Table(keys) = self.key(name).kind else { panic!("{name} is declared as a table") };
+        let Kind::Table(keys) = self.key(name).kind else { panic!("{name} is not declared as a table") };
         match self.value(name) {
             Some(value) => self.inner(name, keys, value),
             None => Some(Self {
@@ -423,7 +425,9 @@ impl<'a> Section<'a> {
 
     /// A list of tables; empty if it is not given.
     pub(crate) fn tables(&self, name: &str) -> Vec<Self> {
-        let Kind::Tables(keys) = self.key(name).kind else { panic!("{name} is declared as tables") };
+        let Kind::Tables(keys) = self.key(name).kind else {
+            panic!("{name} is not declared as a list of tables")
+        };
         let remedy = format!("write [[{}]] in double brackets and its keys below", self.path_of(name));
         let list = self.list(name, "a list of tables", &remedy).unwrap_or_default();
         if list.len() > MOST_ENTRIES {

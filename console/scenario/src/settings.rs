@@ -36,7 +36,7 @@ impl Settings {
     /// The text with the settings applied: first the planner, then the seed, then every `--set` in order.
     ///
     /// # Errors
-    /// A setting is not a `KEY=VALUE`, or its key leads through a value that is not a table.
+    /// A setting is not a `KEY=VALUE`, or its key passes through a value that is not a table.
     pub fn put_into(&self, text: &str) -> Result<String, Complaint> {
         let bad = |error: toml_edit::TomlError| Complaint::NotToml(error.message().to_owned());
         let mut document: DocumentMut = text.parse().map_err(bad)?;
@@ -86,7 +86,7 @@ fn put_setting(document: &mut DocumentMut, setting: &str) -> Result<(), String> 
     put(document.as_item_mut(), &path, &value)
 }
 
-/// Writes a value at the end of a path, creating missing tables; a number in the path is the index in a list.
+/// Writes a value at the end of a path, creating missing tables; a number in the path is an index into a list.
 fn put(item: &mut Item, path: &[&str], value: &Value) -> Result<(), String> {
     let [first, rest @ ..] = path else {
         *item = Item::Value(in_place_of(item, value));
@@ -139,10 +139,10 @@ fn index(part: &str) -> Option<usize> {
 }
 
 fn no_entry(part: &str, count: usize) -> String {
-    format!("no entry `{part}`; the list has {count}, counted from 0")
+    format!("no entry `{part}`; the list has {count} entries, counted from 0")
 }
 
-/// The new value with the spacing and comment of the old one.
+/// The new value, with the spacing and the comment of the old value.
 fn in_place_of(item: &Item, value: &Value) -> Value {
     item.as_value().map_or_else(|| value.clone(), |old| in_place_of_value(old, value))
 }

@@ -38,7 +38,7 @@ pub(crate) fn task(
     Some(TaskConfig::Follow { path, tolerance_m: tolerance_m? })
 }
 
-/// A box that contains no floor is a typing error.
+/// A box that contains no floor must be a typing error.
 fn complain_of_boxes_outside(section: &Section<'_>, boundary: Option<&Boundary>, boxes: &[[Point; 2]]) {
     let outside = |[low, high]: &[Point; 2]| boundary.is_some_and(|wall| !wall.meets_box(*low, *high));
     if let Some(index) = boxes.iter().position(outside) {
@@ -95,7 +95,7 @@ fn spiral(section: &Section<'_>, walls: Option<(&Boundary, f64)>) -> Option<Vec<
         let fits_m = boundary.wall_distance_m(Point::origin()) - radius_m;
         let is_out = |point: &Point| boundary.wall_distance_m(*point) < radius_m - ROUNDING_M;
         if path.iter().any(is_out) {
-            // Rounded down to millimetres, so that the suggested radius fits.
+            // Round down to millimetres, so that the suggested radius fits.
             let fits_m = ((fits_m * 1000.0 + 1e-6).floor() / 1000.0).max(0.0);
             section.complain("outer_radius_m", Complaint::SpiralTooLarge { fits_m });
         }
@@ -118,7 +118,7 @@ pub(crate) fn planner(section: &Section<'_>) -> Option<PlannerChoice> {
     Some(PlannerChoice { id: id?, parameters: parameters? })
 }
 
-/// Reads the planner that takes over after a fault; `None` if there is none, or it is invalid.
+/// Reads the planner that takes over after a fault; `None` if there is none, or if it is invalid.
 pub(crate) fn fallback(section: &Section<'_>) -> Option<PlannerChoice> {
     planner(&section.table("fallback")?)
 }

@@ -226,7 +226,7 @@ const MISTAKES: &[(&str, &str, &str)] = &[
     (
         "radius_m = 5",
         "vertices_m = [[0, 0], [1, 1]]",
-        "3:14: tank.vertices_m = [[0, 0], [1, 1]]: needs at least 3 entries, has 2",
+        "3:14: tank.vertices_m = [[0, 0], [1, 1]]: needs 3 or more entries, but has 2",
     ),
     (
         "radius_m = 5",
@@ -327,7 +327,7 @@ const MISTAKES: &[(&str, &str, &str)] = &[
     (
         ", { name = \"B\", at_m = [0, 5] }",
         "",
-        "5:12: ae.stations = [{ name = \"A\", at_m = [5, 0] }]: only 1 of at least 2 stations",
+        "5:12: ae.stations = [{ name = \"A\", at_m = [5, 0] }]: only 1 given; at least 2 stations are needed",
     ),
     ("id = \"apf\"", "", "11:1: planner.id: missing"),
     (
@@ -402,7 +402,7 @@ fn an_error_for_a_spiral_that_does_not_fit_names_one_that_does() {
         SMALL.replace("kind = \"goto\"\ngoal_m = [3, 0]", &task)
     };
     let shown = errors(&spiral(5.0)).render();
-    assert!(shown.contains("larger than the tank less the robot's radius: at most 4.75 m"), "{shown}");
+    assert!(shown.contains("larger than the tank minus the robot's radius: at most 4.75 m"), "{shown}");
     assert!(shown.contains("help: write outer_radius_m = 4.75"), "{shown}");
     read(&spiral(4.75));
 }

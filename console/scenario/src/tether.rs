@@ -36,14 +36,14 @@ pub(crate) fn check(section: &Section<'_>, tether: &TetherConfig, site: &Site<'_
     }
 }
 
-/// The distance in metres from the anchor within which the robot counts as back, for the certificate of a plan; less if
-/// the mission's tolerance is smaller.
+/// For the certificate of a plan, the robot counts as back within this distance of the anchor, in metres, or within the
+/// mission's tolerance if that is smaller.
 const BACK_M: f64 = 0.3;
-/// The share of that distance within which there must be a point with room for hull and clearance.
+/// The share of that distance within which there must be a point with room for the hull and its clearance.
 const ASIDE: f64 = 0.5;
 
-/// Complains about an anchor without room for the returning robot: the hull must fit at the anchor, and hull and
-/// clearance at a point nearby.
+/// Complains about an anchor without enough clearance for the returning robot: the hull must fit at the anchor, and the
+/// hull with its clearance at a point nearby.
 pub(crate) fn check_room(
     (section, key): (&Section<'_>, &str),
     tether: &TetherConfig,
@@ -62,8 +62,8 @@ pub(crate) fn check_room(
     // A point outside the tank or inside something solid is reported separately.
     if section.has(key) && away_m >= 0.0 {
         let must_be = format!(
-            "at least {need_m:.3} m from {from}, because the robot returns to it: its hull must fit there, and \
-             its clearance within {aside_m:.3} m; the distance is {away_m:.3} m"
+            "at least {need_m:.3} m from {from}, because the robot returns to the anchor: its hull must fit \
+             there, and its clearance must fit within {aside_m:.3} m of there; the distance is {away_m:.3} m"
         );
         section.complain(key, Complaint::OutOfRange(must_be));
     }

@@ -21,20 +21,20 @@ pub enum NoiseModel {
         sigma_ratio: f64,
     },
     /// True distance times `1 + t`, `t` triangular about 0 with ends at `-ratio` and `ratio`: the mean of two uniform
-    /// errors, as in two-way ranging.
+    /// errors, as occurs in two-way ranging.
     Triangular {
         /// Maximum error as a share of the distance.
         ratio: f64,
     },
-    /// True distance times `1 + t`, `t` with Student's distribution of 3 degrees of freedom, scaled to the standard
-    /// deviation `sigma_ratio`. Occasionally a range is far off.
+    /// True distance times `1 + t`, `t` from Student's distribution with 3 degrees of freedom, scaled to the standard
+    /// deviation `sigma_ratio`. Occasionally, a range is far off.
     HeavyTailed {
         /// Standard deviation as a share of the distance.
         sigma_ratio: f64,
     },
 }
 
-/// The sound that a station receives from a robot behind something solid.
+/// The sound that a station receives from a robot that is behind something solid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BehindColumns {
@@ -61,36 +61,36 @@ pub struct StationFault {
     pub from_s: f64,
     /// End of the fault, mission time, seconds.
     pub to_s: f64,
-    /// Metres by which every range is too long; `None` if the station is silent.
+    /// Metres by which every range from the station is too long; `None` if the station is silent.
     pub excess_range_m: Option<f64>,
 }
 
-/// All disturbances of ranges other than their random error. By default there are none.
+/// All disturbances of ranges other than their random error. By default, there are none.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Disturbances {
     /// Probability that a single range of a station is missing, 0 to 1.
     pub ping_dropout_probability: f64,
     /// Probability that the error of a range is [`Self::outlier_factor`] times as large, 0 to 1.
     pub outlier_probability: f64,
-    /// Factor on the error of outliers.
+    /// Factor by which the errors of outliers are multiplied.
     pub outlier_factor: f64,
     /// Probability that a single range is late, 0 to 1.
     pub late_ping_probability: f64,
-    /// Probability that all ranges of a station are late in a cycle, as if it were out of sight, 0 to 1.
+    /// Probability that all ranges of a station in a cycle are late, as if it were out of sight, 0 to 1.
     pub nlos_probability: f64,
     /// Mean of the exponential delay of late ranges, metres.
     pub excess_range_mean_m: f64,
-    /// The sound received from a robot behind a column.
+    /// The sound received from a robot that is behind a column.
     pub behind_columns: BehindColumns,
-    /// Standard deviation of the surveyed station positions in x and in y, metres; drawn once per run.
+    /// Standard deviation of the error of surveyed station positions, in x and in y, metres; drawn once per run.
     pub survey_sigma_m: f64,
-    /// Share by which all ranges are too long because sound is slower than assumed.
+    /// Ratio by which all ranges are too long because sound is slower than assumed.
     pub sound_speed_error_ratio: f64,
     /// Temporary faults of single stations.
     pub faults: Vec<StationFault>,
 }
 
-/// Errors of ranges that do not depend on the distance: errors of the times from which the ranges are computed.
+/// Errors of ranges that do not depend on the distance: they are errors of the times from which the ranges are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct TimingErrors {
@@ -114,14 +114,14 @@ pub struct AeConfig {
     pub period_s: f64,
     /// Number of ranges per station and cycle.
     pub repetitions: u32,
-    /// Their random error.
+    /// The random error of the ranges.
     pub noise: NoiseModel,
-    /// Their timing errors.
+    /// The timing errors of the ranges.
     #[serde(default, skip_serializing_if = "TimingErrors::is_none")]
     pub timing: TimingErrors,
     /// Probability that a station is not heard in a cycle, 0 to 1.
     pub dropout_probability: f64,
-    /// Intervals of mission time without any ranges, seconds: start, end.
+    /// Intervals of mission time in which there are no ranges, seconds: start, end.
     pub outages_s: Vec<(f64, f64)>,
     /// Other disturbances.
     pub disturbances: Disturbances,
@@ -144,13 +144,13 @@ pub struct RobotConfig {
     pub sensing_range_m: f64,
     /// Mean share of the commanded distance that is lost to slip.
     pub slip_mean: f64,
-    /// Standard deviation of the slip between ticks.
+    /// Standard deviation of the slip from tick to tick.
     pub slip_sigma: f64,
     /// Standard deviation of the odometry's own error, as a share of the distance.
     pub odometry_sigma_ratio: f64,
     /// Constant bias of the gyro, radians per second.
     pub gyro_bias_rad_per_s: f64,
-    /// For a robot that walks and swims: limits that replace the ones above, depending on its zone.
+    /// For a robot that walks and swims: limits that replace the ones above, depending on the zone that the robot is in.
     #[serde(default)]
     pub amphibious: Option<Amphibious>,
     /// The pressure sensor that detects whether the floor under the robot is flooded.
@@ -167,16 +167,16 @@ pub struct Mover {
     pub track: Track,
 }
 
-/// The motion of an obstacle; it does not rotate, and only the wall stops it.
+/// The motion of an obstacle. The obstacle does not rotate, and only the wall stops it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Track {
-    /// Straight ahead; reverses at the wall.
+    /// Straight ahead; the direction is reversed at the wall.
     Straight {
         /// Velocity, metres per second, tank frame.
         velocity_m_per_s: Vector2<f64>,
     },
-    /// From its initial position through the points and back the same way, repeated forever.
+    /// From its initial position through the points and back the same way, repeated indefinitely.
     Waypoints {
         /// The points, metres, tank frame.
         points: Vec<Point>,
@@ -185,14 +185,14 @@ pub enum Track {
     },
 }
 
-/// Everything that the simulator needs except the seed.
+/// Everything that the simulator needs, except the seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SimConfig {
     /// The true tank.
     pub world: World,
     /// The robot.
     pub robot: RobotConfig,
-    /// The ranging; `None` for a tank without stations.
+    /// Configuration of ranging; `None` for a tank without stations.
     pub ae: Option<AeConfig>,
     /// Length of a tick, seconds.
     pub tick_s: f64,
@@ -202,7 +202,8 @@ pub struct SimConfig {
     /// Where the tether enters the tank, metres, tank frame; `None` for a robot without one.
     #[serde(default)]
     pub tether_anchor: Option<Point>,
-    /// Length of the tether on the reel, metres; `None` for no limit. A robot at the end of its tether cannot move on.
+    /// Length of tether on the reel, metres; `None` for no limit. A robot at the end of its tether cannot drive any
+    /// farther.
     #[serde(default)]
     pub reel_length_m: Option<f64>,
 }
@@ -214,7 +215,7 @@ pub struct Truth {
     pub pose: Pose,
     /// Distance from the hull to the nearest solid object, metres; negative in a collision.
     pub clearance_m: f64,
-    /// Whether a contact of the hull began in this tick.
+    /// Whether the hull came into contact with something in this tick.
     pub collided: bool,
     /// True geometry of the tether; `None` without one.
     pub tether: Option<TetherTruth>,
@@ -223,7 +224,7 @@ pub struct Truth {
 /// The true geometry of the tether.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TetherTruth {
-    /// Length between anchor and robot, metres.
+    /// Length of cable between anchor and robot, metres.
     pub length_m: f64,
     /// Maximum wrap on one obstacle, radians.
     pub wrap_max_rad: f64,

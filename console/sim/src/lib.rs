@@ -1,8 +1,8 @@
 //! The simulator: where the robot really is, and what its sensors read there.
 //!
 //! The simulator has two main calls, [`Simulator::sense`] and [`Simulator::act`]. It has no clock: time is the number of
-//! ticks. All randomness comes from one seed; the same seed and the same drives give the same readings on every machine.
-//! A tick costs a few distance queries, which take some microseconds.
+//! ticks. All randomness comes from one seed; the same seed and the same drives produce the same readings on every
+//! machine. A tick costs a few distance queries, which take a few microseconds.
 
 mod config;
 mod motion;

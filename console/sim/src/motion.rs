@@ -4,13 +4,14 @@ use crate::config::RobotConfig;
 use geometry::{Drive, Pose, Vector, unit_vector, wrap_angle_rad};
 use world::Pace;
 
-/// Maximum motion in one tick, metres or radians; keeps absurd settings finite.
+/// Maximum motion in one tick, metres or radians; keeps the results finite even with absurd settings.
 const LONGEST: f64 = 1e6;
 
-/// The motion of the tracks in one tick, robot frame: straight ahead while the heading turns at a constant rate.
+/// The motion of the tracks in one tick, in the robot frame: forward along the heading, while the heading turns at a
+/// constant rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Arc {
-    /// Change of heading before the start, radians; a point robot turns instantly.
+    /// Change of heading before the motion starts, radians; a point robot turns instantly.
     pub turn_first_rad: f64,
     /// Distance ahead, metres; negative backward.
     pub way_m: f64,
@@ -41,13 +42,13 @@ impl Tracks {
         }
     }
 
-    /// Sets new limits. A robot that is faster than they allow brakes as hard as it can.
+    /// Sets new limits. A robot that is faster than these limits brakes as hard as it can.
     pub(crate) fn set_limits(&mut self, pace: Pace) {
         self.v_max_m_per_s = pace.v_max_m_per_s.max(0.0);
         self.w_max_rad_per_s = pace.w_max_rad_per_s.max(0.0);
     }
 
-    /// Follows a drive for one tick as far as the limits allow. A number that is not finite counts as zero.
+    /// Follows a drive for one tick as closely as the limits allow. Numbers that are not finite count as zero.
     pub(crate) fn drive(&mut self, drive: Drive, pose: &Pose) -> Arc {
         match drive {
             Drive::Twist { v_m_per_s, w_rad_per_s } => {
@@ -98,14 +99,14 @@ impl Arc {
         turned.moved(self.way_m * share, 0.0, self.turn_rad * share)
     }
 
-    /// The same motion as a single arc from the previous heading: distance ahead and to the left, metres, and change of
-    /// heading, radians.
+    /// The same motion as a single arc that starts with the previous heading: distance forward and to the left, metres,
+    /// and change of heading, radians.
     pub(crate) fn seen_from_start(&self) -> (f64, f64, f64) {
         if self.turn_first_rad == 0.0 {
             return (self.way_m, 0.0, self.turn_rad);
         }
-        // A chord as long as the distance, at half the turn from the previous heading; the arc itself is longer than its
-        // chord.
+        // A chord as long as the distance, in the direction halfway through the turn from the previous heading; the arc
+        // itself is longer than its chord.
         let half = self.turn_first_rad / 2.0;
         let length = self.way_m * if half.abs() < 1e-6 { 1.0 } else { half / half.sin() };
         (length * half.cos(), length * half.sin(), self.turn_first_rad)
@@ -121,7 +122,7 @@ fn finite(number: f64) -> f64 {
     if number.is_finite() { number.clamp(-LONGEST, LONGEST) } else { 0.0 }
 }
 
-/// The number, limited to the maximum that a motion can have.
+/// The number, limited to the maximum motion in one tick.
 pub(crate) fn bounded(number: f64) -> f64 {
     number.clamp(-LONGEST, LONGEST)
 }

@@ -21,7 +21,7 @@ enum Course {
     Straight {
         velocity_m_per_s: Vector2<f64>,
     },
-    /// Visits the stops in a cycle; `next` is the index of the next one.
+    /// Visits the stops in a cycle; `next` is the index of the next stop.
     Stops {
         stops: Vec<Point>,
         next: usize,
@@ -30,7 +30,7 @@ enum Course {
 }
 
 impl Movers {
-    /// Creates the movers; entries without an obstacle or a finite speed are ignored.
+    /// Creates the moving obstacles; entries without an obstacle or a finite speed are ignored.
     pub(crate) fn new(movers: &[Mover], obstacles: &[Obstacle]) -> Self {
         let index_of = |id: ObstacleId| obstacles.iter().position(|obstacle| obstacle.id == id);
         let moving = |mover: &Mover| {
@@ -46,7 +46,7 @@ impl Movers {
         self.0.is_empty()
     }
 
-    /// Moves all of them for `dt_s` seconds.
+    /// Moves all obstacles for `dt_s` seconds.
     pub(crate) fn advance(&mut self, obstacles: &mut [Obstacle], boundary: &Boundary, dt_s: f64) {
         for moving in &mut self.0 {
             let shape = &mut obstacles[moving.index].shape;
@@ -89,7 +89,8 @@ impl Course {
             }
             Self::Stops { stops, next, speed_m_per_s } => {
                 let (mut here, mut left_m) = (at, *speed_m_per_s * dt_s);
-                // Each stop at most once per tick; otherwise coincident stops would be visited forever.
+                // Each stop is visited at most once per tick; if several stops coincided, they would otherwise be visited
+                // forever.
                 for _ in 0..stops.len() {
                     let way = stops[*next % stops.len()] - here;
                     if way.norm() > left_m {

@@ -9,7 +9,7 @@ use rand_pcg::Pcg64;
 const SHORTEST_M: f64 = 1e-6;
 /// Maximum range that is reported, metres.
 const LONGEST_M: f64 = 1e9;
-/// Degrees of freedom of the heavy-tailed noise: the smallest integer for which the variance exists.
+/// Degrees of freedom of the heavy-tailed noise: the smallest whole number for which the variance exists.
 const TAIL_FREEDOM: f64 = 3.0;
 
 /// The streams; they are independent of each other.
@@ -25,9 +25,9 @@ pub(crate) struct RandomStreams {
     pub slip: Pcg64,
     /// Disturbances of ranges other than their random error.
     pub disturbance: Pcg64,
-    /// Survey errors of the stations.
+    /// Survey errors of the station positions.
     pub survey: Pcg64,
-    /// Errors of times.
+    /// Timing errors of the ranges.
     pub timing: Pcg64,
     /// Errors of the pressure sensor.
     pub pressure: Pcg64,
@@ -83,7 +83,7 @@ impl NoiseModel {
 
 /// A distance with its error, metres, limited to the ranges that can be reported; always positive.
 pub(crate) fn reported_m(range_m: f64) -> f64 {
-    // NaN if the error overflows: then the maximum range is reported.
+    // The result is NaN if the error overflows; in that case, the maximum range is reported.
     if range_m.is_nan() { LONGEST_M } else { range_m.clamp(SHORTEST_M, LONGEST_M) }
 }
 

@@ -1,4 +1,4 @@
-//! Acoustic-emission ranging: the timing of cycles, and their ranges.
+//! Acoustic-emission ranging: the timing of the cycles, and the ranges that they give.
 
 mod path;
 
@@ -11,12 +11,12 @@ use rand::RngExt;
 use rand_distr::{Distribution, Exp1};
 use world::{Point, RangeSet, Station, Vector, World};
 
-/// Tolerance for comparing the time with a multiple of the period, as a share of the period.
+/// Tolerance for deciding whether the time is a multiple of the period, as a share of the period.
 const SLACK: f64 = 1e-6;
 
 /// The stations of a tank at their true positions, and the random errors of their ranges.
 ///
-/// The same configuration, tank, seed and positions give the same ranges on every machine.
+/// The same configuration, tank, seed and positions produce the same ranges on every machine.
 #[derive(Clone)]
 pub struct Sounder {
     config: AeConfig,
@@ -28,7 +28,7 @@ pub struct Sounder {
 }
 
 impl Sounder {
-    /// The stations of `world`, moved to their true positions by the survey error of `config`.
+    /// Creates the stations of `world`, moved to their true positions by the survey error in `config`.
     pub fn new(config: AeConfig, world: &World, seed: u64) -> Self {
         let mut streams = RandomStreams::new(seed);
         let mut stations = world.stations.clone();
@@ -40,14 +40,15 @@ impl Sounder {
         Self { config, stations, propagation, streams, ended: 0.0 }
     }
 
-    /// Adds a fault of a station to those of the configuration.
+    /// Adds a fault of a station to the faults in the configuration.
     pub(crate) fn inject(&mut self, fault: StationFault) {
         self.config.disturbances.faults.push(fault);
     }
 
-    /// The ranges of a cycle if one ends at time `t_s`, otherwise `None`; empty if no station was heard.
+    /// The ranges of a cycle if one ends at time `t_s`; `None` if no cycle ends then, and an empty list if no station was
+    /// heard.
     ///
-    /// The first cycle ends after one period. A period shorter than a tick means one cycle in every tick.
+    /// The first cycle ends after one period. If the period is shorter than a tick, there is one cycle in every tick.
     pub(crate) fn due_cycle(&mut self, t_s: f64, truth: Point) -> Option<Vec<RangeSet>> {
         let period_s = self.config.period_s.max(1e-9);
         let cycles = (t_s / period_s + SLACK).floor();
@@ -61,7 +62,7 @@ impl Sounder {
     /// The ranges of one cycle that ends at time `t_s`.
     pub fn cycle(&mut self, t_s: f64, truth: Point) -> Vec<RangeSet> {
         let Self { config, stations, propagation, streams, .. } = self;
-        // Random numbers are drawn for every station, heard or not, so that a loss does not change later ranges.
+        // Random numbers are drawn for every station, whether it is heard or not, so a loss does not change later ranges.
         let mut sets: Vec<RangeSet> =
             stations.iter().map(|station| measure(config, propagation, station, truth, streams)).collect();
         sets.retain(|_| streams.dropout.random::<f64>() >= config.dropout_probability);
@@ -124,7 +125,7 @@ fn timed_m(timing: TimingErrors, range_m: f64, streams: &mut RandomStreams) -> f
     if resolution_m > 0.0 { (jittered_m / resolution_m).round() * resolution_m } else { jittered_m }
 }
 
-/// An exponentially distributed number with mean 1.
+/// An exponentially distributed random number with mean 1.
 fn exponential(streams: &mut RandomStreams) -> f64 {
     Exp1.sample(&mut streams.disturbance)
 }

@@ -6,12 +6,12 @@ use geometry::{
 };
 use world::{Boundary, Obstacle, ObstacleMap, Point, Pose, Shape, Sighting};
 
-/// Distance from an outline at which a ray counts as having hit it, metres.
+/// A ray that comes this close to an outline counts as having hit it, metres.
 const TOUCH_M: f64 = 1e-6;
 /// Number of points tested on a round outline.
 const ROUND_POINTS: u32 = 24;
 
-/// The obstacles of which some part is within `reach_m` of the robot's centre and in its line of sight.
+/// The obstacles that have some part within `reach_m` of the robot's centre and in its line of sight.
 pub(crate) fn sightings(
     map: &ObstacleMap,
     boundary: &Boundary,
@@ -39,7 +39,7 @@ pub(crate) fn sightings(
         .collect()
 }
 
-/// Whether a ray toward a point of an obstacle's outline hits that obstacle before any other.
+/// Whether a ray towards a point on an obstacle's outline hits that obstacle before any other.
 fn is_first_hit(map: &ObstacleMap, shape: &Shape, eye: Point, point: Point) -> bool {
     let way = point - eye;
     let distance = way.norm();
@@ -53,7 +53,7 @@ fn is_first_hit(map: &ObstacleMap, shape: &Shape, eye: Point, point: Point) -> b
     }
 }
 
-/// Points on an outline, enough to see an obstacle whose nearest point is hidden.
+/// Points on an outline: enough of them to see an obstacle even if its nearest point is hidden.
 pub(crate) fn outline_points(shape: &Shape) -> Vec<Point> {
     match shape {
         Shape::Disc { center, radius_m } => (0..ROUND_POINTS)
@@ -71,7 +71,7 @@ fn with_midpoints(points: &[Point], closing: Option<&Point>) -> Vec<Point> {
     corners.iter().copied().chain(midpoints).collect()
 }
 
-/// Whether a straight wall is between two points; a round wall never is.
+/// Whether a straight wall is between two points; a round wall is never between them.
 fn is_behind_wall(boundary: &Boundary, a: Point, b: Point) -> bool {
     let Boundary::Polygon { vertices } = boundary else { return false };
     edges(vertices).any(|(c, d)| segments_cross(a, b, c, d))

@@ -12,12 +12,12 @@ use crate::{
 use geometry::Drive;
 use world::{Medium, Mode, ObstacleMap, Odometry, Point, Pose, Readings, StationId, tether::Cable};
 
-/// A contact of the hull ends only when the gap is wider than this, metres.
+/// A contact of the hull ends only once the gap is wider than this, metres.
 const CONTACT_GAP_M: f64 = 1e-3;
 
 /// One robot in one tank; time is the number of ticks.
 ///
-/// In every tick call [`Simulator::sense`] once, then [`Simulator::act`] once.
+/// In every tick, call [`Simulator::sense`] once and then [`Simulator::act`] once.
 #[derive(Clone)]
 pub struct Simulator {
     config: SimConfig,
@@ -59,7 +59,7 @@ impl Simulator {
         simulator
     }
 
-    /// Creates a robot at rest at any place, with its cable in a given position: the start of a forecast.
+    /// Creates a robot at rest at any place, with its cable in a given position, as at the start of a forecast.
     pub fn resumed(config: SimConfig, seed: u64, pose: Pose, cable: Option<Cable>) -> Self {
         let robot = RobotConfig { start: pose, ..config.robot.clone() };
         let mut simulator = Self::new(SimConfig { robot, ..config }, seed);
@@ -116,8 +116,8 @@ impl Simulator {
         self.tick += 1;
     }
 
-    /// Adds a fault of a station from this tick on: for some seconds its ranges are too long by some metres, or missing.
-    /// Has no effect without acoustic-emission ranging.
+    /// Adds a station fault that begins with this tick: for some seconds, the ranges from the station are too long by
+    /// some metres, or missing. Has no effect if there is no acoustic-emission ranging.
     pub fn inject(&mut self, station: StationId, for_s: f64, excess_range_m: Option<f64>) {
         let from_s = self.tick as f64 * self.config.tick_s.max(0.0);
         if let Some(sounder) = &mut self.sounder {
@@ -145,7 +145,7 @@ impl Simulator {
         self.tick
     }
 
-    /// Advances a transition between walking and swimming by one step, if the floor under the robot requires it.
+    /// Advances a transition between walking and swimming by one step, if the floor under the robot requires one.
     fn update_mode(&mut self) {
         let Some(amphibious) = self.config.robot.amphibious else { return };
         let medium = Medium::at(&self.config.world.zones, self.pose.position);
@@ -164,7 +164,7 @@ impl Simulator {
         self.clearance_m() < 0.0
     }
 
-    /// Whether a move needs more tether than the reel holds. A move that needs less tether than before is always
+    /// Whether a move needs more tether than the reel has. A move that needs no more tether than before is always
     /// possible.
     fn is_reel_empty(&self, moved: Option<&Cable>) -> bool {
         let (Some(reel_length_m), Some(before), Some(after)) =
@@ -189,7 +189,7 @@ impl Simulator {
         (robot.slip_mean + robot.slip_sigma * normal(&mut self.streams.slip)).clamp(0.0, 1.0)
     }
 
-    /// The odometry of a motion. The tracks sense neither slip nor a collision; the gyro measures the turn but drifts.
+    /// The odometry of a motion. The tracks sense neither slip nor collisions; the gyro measures the turn but drifts.
     fn measure_odometry(&mut self, by_tracks: &Arc) -> Odometry {
         let robot = &self.config.robot;
         let mut erring = || bounded(1.0 + robot.odometry_sigma_ratio * normal(&mut self.streams.odometry));
@@ -209,7 +209,7 @@ fn dragged(cable: &Cable, to: Point) -> Cable {
     cable
 }
 
-/// The cable from its anchor straight to the robot; `None` if the anchor is invalid.
+/// The cable, straight from its anchor to the robot; `None` if the anchor is invalid.
 fn initial_cable(config: &SimConfig) -> Option<Cable> {
     let shapes: Vec<_> = config.world.obstacles.iter().map(|o| o.shape.clone()).collect();
     let mut cable = Cable::new(config.tether_anchor?, &config.world.boundary, &shapes).ok()?;

@@ -3,9 +3,9 @@
 use crate::motion::Arc;
 use world::{ObstacleMap, Pose};
 
-/// Minimum step along an arc, metres; the gap that remains at a contact is smaller.
+/// Minimum step along an arc, metres; the gap that remains at a contact is smaller than this.
 const STEP_M: f64 = 1e-4;
-/// Maximum number of steps along one arc; no realistic motion needs more.
+/// Maximum number of steps along one arc; no realistic motion needs more steps.
 const MAX_STEPS: usize = 20_000;
 
 /// The result of moving along an arc.
@@ -18,8 +18,8 @@ pub(crate) struct Reached {
 /// Moves along an arc to its end or to the first contact.
 ///
 /// Every step is as long as the gap to the nearest solid object, so even thin objects are not missed. The heading turns
-/// to the end even if the robot is blocked, because a round hull can turn on the spot. A hull that already overlaps
-/// something can move wherever the overlap does not grow.
+/// all the way even if the robot is blocked, because a round hull can turn on the spot. A hull that already overlaps
+/// something can move in any way that does not increase the overlap.
 pub(crate) fn sweep(map: &ObstacleMap, radius_m: f64, start: &Pose, arc: &Arc) -> Reached {
     let length_m = arc.way_m.abs();
     let gap_m = |share: f64| map.clearance_m(arc.pose_after(start, share).position) - radius_m;
@@ -30,7 +30,7 @@ pub(crate) fn sweep(map: &ObstacleMap, radius_m: f64, start: &Pose, arc: &Arc) -
         }
         let next = (share + gap.max(STEP_M) / length_m).min(1.0);
         let next_gap = gap_m(next);
-        // Also false for a gap that is NaN.
+        // This is also false if the gap is NaN.
         let is_free = next_gap >= gap.min(0.0);
         if !is_free {
             break;

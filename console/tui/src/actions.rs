@@ -1,5 +1,5 @@
-//! Everything the operator can do, in one table. Keys, footer, help, commands, their reference and `keys.toml` are
-//! all derived from this table.
+//! Everything the operator can do, in one table. The keys, the footer, the help, the commands with their reference,
+//! and `keys.toml` are all derived from this table.
 
 mod action;
 mod argument;
@@ -19,9 +19,9 @@ use crate::screens::Screen;
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 
-/// The id of an action; the row of the table describes the action.
+/// The id of an action; the action is described by its row in the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "each variant is described by its row of the table")]
+#[expect(missing_docs, reason = "each variant is described by its row in the table")]
 pub enum ActionId {
     Hold,
     Interrupt,
@@ -63,7 +63,7 @@ pub enum ActionId {
     Exclude,
     DrawZone,
     Include,
-    /// The action with this number (from 1) in the list of the selected alarm.
+    /// The action with this number (from 1) in the selected alarm's list.
     Remedy(u8),
     ShowPlace,
     NextLike,

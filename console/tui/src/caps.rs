@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// How many colours the terminal has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Colours {
-    /// No colours, or none wanted: bold and reverse video only.
+    /// No colours are available or wanted: bold and reverse video only.
     None,
     /// The terminal's own sixteen colours.
     Sixteen,
@@ -24,7 +24,8 @@ pub enum Glyphs {
     Half,
     /// Braille as well.
     Braille,
-    /// The octants of Unicode 16 as well: dots without gaps. No environment variable shows that a terminal has them.
+    /// The octants of Unicode 16 as well: dots without gaps. No environment variable tells whether a terminal has
+    /// them.
     Octant,
 }
 
@@ -42,7 +43,7 @@ pub struct Caps {
     pub colours: Colours,
     /// Its characters.
     pub glyphs: Glyphs,
-    /// Whether the console runs over a slow connection, so that it should draw fewer frames.
+    /// Whether the console runs over a slow connection and should therefore draw fewer frames.
     pub ssh: bool,
 }
 
@@ -75,7 +76,7 @@ fn glyphs(term: &str, locale: Option<String>) -> Glyphs {
     let locale = locale.map(|name| name.to_lowercase().replace('-', ""));
     match (term, locale) {
         ("dumb" | "vt100" | "", _) => Glyphs::Ascii,
-        // The plain C locale of containers is no evidence about the terminal; other character sets are.
+        // Containers use the plain C locale, which says nothing about the terminal; other character sets do.
         (_, Some(name)) if !name.contains("utf8") && name != "c" && name != "posix" => Glyphs::Ascii,
         ("linux", _) => Glyphs::Half,
         _ => Glyphs::Braille,

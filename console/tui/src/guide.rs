@@ -59,8 +59,8 @@ pub fn guide(cause: &Cause) -> Guide {
         },
         Cause::Tether(word) => tether::guide(word),
         Cause::Certificate => Guide {
-            cause: "If run to its end, the plan would exceed a limit of the tether, touch something, or \
-            finish with tether still out.",
+            cause: "If it ran to its end, the plan would exceed a tether limit, touch something, or finish \
+            with the tether still out.",
             effect: "A refused plan is not run: the robot is held. An uncertified plan is run only on the \
             operator's order.",
             remedies: const {
@@ -74,12 +74,13 @@ pub fn guide(cause: &Cause) -> Guide {
         },
         Cause::Planner => Guide {
             cause: "The planner panicked, crashed, hung, or sent an invalid answer; its process has ended.",
-            effect: "Robot is held. If the scenario names a fallback planner, it takes over automatically.",
+            effect: "The robot is held. If the scenario names a fallback planner, it takes over \
+            automatically.",
             remedies: const { &[RESUME, OTHER_PLANNER, PARAMETERS, END] },
         },
         Cause::Stuck => Guide {
-            cause: "The robot made no progress for longer than the mission allows (scenario: stuck_s).",
-            effect: "Robot is held until the operator decides.",
+            cause: "The robot has made no progress for longer than the mission allows (scenario: stuck_s).",
+            effect: "The robot is held until the operator decides.",
             remedies: const { &[RESUME, OTHER_PLANNER, PARAMETERS, END] },
         },
         Cause::Ended => Guide {

@@ -54,28 +54,28 @@ pub struct KeyPress {
     pub key: Key,
     /// Whether the terminal reports the press as a repeat; only movement actions act on repeats.
     pub repeat: bool,
-    /// The time since the same key last went down, if no other key was pressed in between: many terminals do not
-    /// report that a key repeats. `None` for a press that follows a different key, and for one that did not come from
-    /// a keyboard.
+    /// The time since the same key last went down, if no other key was pressed in between; it is needed because many
+    /// terminals do not report key repeats. `None` for a press that follows a different key, and for one that did not
+    /// come from a keyboard.
     #[serde(default)]
     pub since_same: Option<Duration>,
 }
 
-/// The kind of a key press, as far as the time since the last press of the same key reveals it.
+/// The kind of a key press, judged by the time since the last press of the same key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Freshness {
     /// The key is held down.
     Held,
-    /// Either the first repeat of a key that is held down, or a second press; only the next press can tell.
+    /// Either the first repeat of a key that is held down, or a second press; only the next press can show which.
     Unclear,
     /// The key was pressed.
     Fresh,
 }
 
 impl KeyPress {
-    /// A held key repeats at least this often.
+    /// A key pressed again within this time is being held down.
     pub const REPEATS_WITHIN: Duration = Duration::from_millis(300);
-    /// A held key repeats for the first time within this time.
+    /// A key that is held down starts to repeat within this time.
     const BEGINS_WITHIN: Duration = Duration::from_secs(2);
 
     /// Classifies the press by the time since the last press of the same key.

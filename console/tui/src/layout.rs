@@ -12,12 +12,12 @@ use ratatui::layout::{Constraint, Layout, Rect};
 
 /// Minimum and maximum width of a stack of panes, columns.
 const STACK: (u16, u16) = (30, 50);
-/// Width of the map for a given number of floor rows, columns: the round tank, its legend and the frame.
+/// Width of the map, in columns, for a given number of floor rows: the round tank, its legend and the frame.
 const MAP: (u16, u16) = (2, 22);
 /// Rows of the map that show no floor: the frame and the readout.
 const MAP_FRAME: u16 = 3;
 
-/// The rows that a pane requests, with its frame. Panes at the beginning of a list rank highest.
+/// The rows that a pane requests, including its frame. Panes earlier in a list rank higher.
 struct Wish {
     pane: Pane,
     least: u16,
@@ -28,7 +28,7 @@ const fn wish(pane: Pane, least: u16, rows: u16) -> Wish {
     Wish { pane, least, rows }
 }
 
-/// What the layout must show beyond the panes of every mission.
+/// What the layout must show in addition to the panes that every mission has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Shown {
     /// Whether there is a tether.
@@ -102,7 +102,7 @@ fn first(shown: Shown, wide: bool) -> Vec<Wish> {
         .collect()
 }
 
-/// The panes of the second stack.
+/// The panes in the second stack.
 fn second(shown: Shown, alarms: bool) -> Vec<Wish> {
     let chart = |chart| wish(Pane::Chart(chart), 6, 11);
     let tether = [chart(Chart::TetherOut), chart(Chart::Wrap)];

@@ -59,11 +59,11 @@ pub use what_if::{Candidate, Forecast, WhatIf};
 use mission::{PlannerChoice, PlannerInfo, Severity};
 use serde::{Deserialize, Serialize};
 
-/// Seconds for which a refusal or an announcement stays in the line above the keys.
+/// Seconds for which a refusal or an announcement stays on the line above the keys.
 const NOTICE_S: f64 = 8.0;
 /// Characters per second that an operator reads while doing other work.
 const READ_PER_S: f64 = 10.0;
-/// Seconds without an event after which a running mission counts as silent.
+/// Seconds without an event after which a running mission is considered silent.
 const SILENCE_S: f64 = 2.0;
 
 /// The state of the screens.
@@ -74,7 +74,7 @@ pub struct Model {
     /// The review screen: the list of past runs.
     #[serde(default)]
     pub review: Review,
-    /// The open run, and the exchange between the operator and its mission.
+    /// The open run, and the communication between the operator and its mission.
     pub live: Live,
     /// The initial simulation speed of a mission.
     #[serde(default)]
@@ -86,7 +86,7 @@ pub struct Model {
 }
 
 impl Model {
-    /// Makes a console that opens on the plan of a mission; the home screen is one key away.
+    /// Creates a console that opens on the plan of a mission; the home screen is one key away.
     pub fn opened(id: RunId, source: Source, speed: Speed) -> Self {
         let live = Live { id, source: Some(source), is_opening: true, speed, ..Live::default() };
         let mut model = Self { live, first_speed: speed, ..Self::default() };
@@ -94,7 +94,7 @@ impl Model {
         model
     }
 
-    /// Makes a console that only watches the run in a folder.
+    /// Creates a console that only watches the run in a folder.
     pub fn looking_on(id: RunId, folder: String) -> Self {
         let mut model = Self::opened(id, Source::File(folder), Speed::default());
         model.live.access = Access::LookOnly;
@@ -102,7 +102,7 @@ impl Model {
         model
     }
 
-    /// Makes a console that replays a past run, optionally beside a second one; there is no engine.
+    /// Creates a console that replays a past run, optionally beside a second one; there is no engine.
     pub fn replaying(id: RunId, run: String, with: Option<String>) -> Self {
         let mut model = Self::default();
         model.replay(id, run);
@@ -141,7 +141,7 @@ impl Model {
         driving.into_iter().chain(&self.console.planners).find(|info| info.id == id)
     }
 
-    /// The planner whose parameters are listed, with the choice that the parameters belong to: a forecast draft if
+    /// The planner whose parameters are listed, and the choice to which these parameters belong: a forecast draft if
     /// there is one, otherwise the active planner.
     pub fn edited(&self) -> Option<(&PlannerInfo, Option<&PlannerChoice>)> {
         match self.live.what_if.as_ref().and_then(|what_if| what_if.draft.as_ref()) {
@@ -150,7 +150,7 @@ impl Model {
         }
     }
 
-    /// The selected alarm, or the first one of the table if none is selected.
+    /// The selected alarm, or the first one in the table if none is selected.
     pub fn selected_alarm(&self) -> Option<&Alarm> {
         let alarms = &self.live.run.alarms;
         let chosen = self.ui.alarm.as_ref().and_then(|cause| alarms.get(cause));
@@ -163,7 +163,7 @@ impl Model {
         (self.is_heard() && silence_s > SILENCE_S).then_some(silence_s)
     }
 
-    /// Whether the mission sends events as long as it runs.
+    /// Whether a mission is running whose events should keep arriving.
     fn is_heard(&self) -> bool {
         self.live.run.is_running() && !self.live.is_replay()
     }
@@ -182,7 +182,7 @@ impl Model {
     }
 
     /// The time at which the screen next changes without any input, on the console's own clock, seconds; `None` if it
-    /// does not.
+    /// does not change.
     pub fn wakes_at_mono_s(&self) -> Option<f64> {
         let notice = self.notice().map(|notice| notice.until_mono_s);
         let silence = self.is_heard().then(|| match self.silent_s() {
@@ -197,7 +197,7 @@ impl Model {
         [notice, silence, busy, health, settling].into_iter().flatten().reduce(f64::min)
     }
 
-    /// Shows the operator a message in the line above the keys.
+    /// Shows the operator a message on the line above the keys.
     pub(crate) fn say(&mut self, severity: Severity, text: impl Into<String>) {
         let text = text.into();
         let reading_s = text.chars().count() as f64 / READ_PER_S;

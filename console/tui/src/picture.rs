@@ -26,8 +26,8 @@ struct Look {
     dim: bool,
 }
 
-/// Renders the screen as an SVG document. The document takes about 100 bytes for each word and for each run of cells
-/// that look alike.
+/// Renders the screen as an SVG document, which takes about 100 bytes for each word and for each run of cells that
+/// look alike.
 pub fn svg(screen: &Buffer) -> String {
     let (width, height) = (f64::from(screen.area.width) * CELL.0, f64::from(screen.area.height) * CELL.1);
     let mut svg = format!(
@@ -61,7 +61,7 @@ fn draw(svg: &mut String, run: &[Cell], (column, row): (usize, usize)) {
     let opacity = if look.dim { " opacity=\"0.65\"" } else { "" };
     let y = y + CELL.1 - FOOT;
     let mut column = column;
-    // Draw word by word: a viewer that stretches a text to its length stretches spaces and letters differently.
+    // Draw word by word: a viewer that stretches text to a given length stretches spaces and letters differently.
     for word in run.chunk_by(|one, other| is_blank(one) == is_blank(other)) {
         let (x, width) = (column as f64 * CELL.0, word.len() as f64 * CELL.0);
         column += word.len();

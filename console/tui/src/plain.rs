@@ -9,7 +9,7 @@ use crate::view::{question, standing};
 use mission::Outcome;
 use world::coverage::percent;
 
-/// What has already been printed.
+/// What has been printed so far.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Said {
     screen: Option<Screen>,
@@ -49,7 +49,7 @@ impl Said {
         lines
     }
 
-    /// The forecasts finished since the last call, in the order of the table.
+    /// The forecasts finished since the last call, in the order of the what-if table.
     fn forecasts(&mut self, model: &Model) -> Vec<String> {
         let candidates = model.live.what_if.as_ref().map_or(&[][..], |what_if| &what_if.candidates);
         let made: Vec<String> = candidates.iter().map_while(forecast).collect();
@@ -62,7 +62,7 @@ impl Said {
         let log = &model.live.run.log;
         // A new run begins with a new log.
         let from = match log.end() < self.next_line {
-            // Lines that a replay passes again have already been printed.
+            // When a replay passes the same lines again, they have already been printed.
             true if model.live.is_replay() => log.end(),
             true => 0,
             false => self.next_line,
@@ -71,7 +71,7 @@ impl Said {
         (from.max(log.oldest())..log.end()).filter_map(|number| log.get(number)).cloned().collect()
     }
 
-    /// Reports every further tenth of the floor.
+    /// Reports each further tenth of the floor that has been scanned.
     fn coverage(&mut self, model: &Model) -> Option<String> {
         let scanned = model.live.run.progress.as_ref()?.covered_reachable;
         let tenths = (10.0 * scanned).floor().clamp(0.0, 10.0) as u8;
@@ -100,7 +100,7 @@ fn forecast(candidate: &Candidate) -> Option<String> {
     })
 }
 
-/// Remembers the current text; returns the text if it is new.
+/// Remembers the current text; returns it if it is new.
 fn newly(last: &mut Option<String>, now: Option<String>) -> impl Iterator<Item = String> + use<> {
     let is_new = *last != now;
     last.clone_from(&now);

@@ -1,6 +1,6 @@
-//! The screens, one row each: digit and name, contents, and the effect of Enter, the arrow keys and a filter.
+//! The screens, one row each: digit and name, contents, and the effect of Enter, of the arrow keys and of a filter.
 //!
-//! A new screen needs a variant and a row here, and a folder for the functions that its row names.
+//! A new screen needs a variant and a row here, and a folder for the functions named in its row.
 
 use crate::actions::context::Context::{self, Cursor, Map, On, Pan, Replay, Rows};
 use crate::actions::{Action, ActionId, action};
@@ -41,8 +41,8 @@ pub(crate) struct Row {
     go: Action,
     /// Draws the screen between the top line and the bottom lines.
     pub draw: Draw,
-    /// The sets of contexts that can be active on the screen; on a screen with a map, the last sets are those of its
-    /// cursor.
+    /// The sets of contexts that can be active on the screen; on a screen with a map, the last sets apply while the
+    /// map cursor is open.
     contexts: &'static [&'static [Context]],
     /// The index of the active set of contexts.
     active: fn(&Model) -> usize,
@@ -50,11 +50,11 @@ pub(crate) struct Row {
     pub opens: fn(&Model) -> Option<&'static str>,
     /// The effect of Enter, if there is anything to open.
     pub enter: fn(&mut Model) -> Vec<Effect>,
-    /// Moves the selection down by some lines.
+    /// Moves the selection down by the given number of lines.
     pub select: fn(&mut Model, isize),
     /// The filter of the screen's list; `None` if it uses the event filter.
     pub filter: Option<Filter>,
-    /// The run that a command on this screen applies to.
+    /// The run to which a command on this screen applies.
     pub run: fn(&Model) -> Option<String>,
     /// Whether the screen lists files; the disk is then rescanned whenever the screen is shown.
     pub lists_runs: bool,
@@ -64,7 +64,7 @@ pub(crate) struct Row {
 type Filter = (fn(&Model) -> &str, fn(&mut Model) -> &mut String);
 type Draw = fn(&Look, &mut Frame, Rect, Arrangement);
 
-/// Makes a screen on which Enter opens nothing and no line can be selected.
+/// Creates a screen on which Enter opens nothing and no line can be selected.
 const fn row(go: Action, name: &'static str, contexts: &'static [&'static [Context]], draw: Draw) -> Row {
     Row {
         name,
@@ -81,7 +81,7 @@ const fn row(go: Action, name: &'static str, contexts: &'static [&'static [Conte
     }
 }
 
-/// Makes the action that shows a screen.
+/// Creates the action that shows a screen.
 const fn shows(screen: Screen, name: &'static str, about: &'static str, keys: &'static [Key]) -> Action {
     action(ActionId::Go(screen), name, about, keys, &[Context::Screen])
 }
@@ -93,7 +93,7 @@ const ROWS: &[Row] = &[
         filter: Some((|m| &m.home.filter, |m| &mut m.home.filter)), run: go::run_at_home,
         ..row(shows(Screen::Home, "home", "Screen 1: scenarios and past runs", &[Key::Char('1')]), "Home",
             &[&[On(Screen::Home), Rows]], view::home::draw) },
-    // Esc closes the cursor here, and does nothing else.
+    // Esc closes the cursor here and does nothing else.
     row(shows(Screen::Plan, "plan", "Screen 2: the plan before the start", &[Key::Char('2')]).when(offer::is_open), "Plan",
         &[&[On(Screen::Plan), Map, Pan], &[Map, Pan, Cursor]], view::plan::draw),
     Row { active: of_mission, opens: |m| (m.ui.pane == Pane::Events).then_some("open"), enter: events::enter,

@@ -25,9 +25,9 @@ const MOUSE_ON: &[u8] = b"\x1b[?1000h\x1b[?1002h\x1b[?1006h";
 /// Turns off mouse reports.
 const MOUSE_OFF: &[u8] = b"\x1b[?1006l\x1b[?1002l\x1b[?1000l";
 
-/// Owns the terminal while the console uses it, and restores the terminal when dropped.
+/// Owns the terminal while the console uses it; restores the terminal when dropped.
 ///
-/// The thread that calls [`Self::enter`] owns the terminal; a panic of any other thread does not restore it.
+/// The thread that calls [`Self::enter`] owns the terminal; a panic in any other thread does not restore it.
 pub struct TerminalGuard {
     terminal: Terminal<CrosstermBackend<FrameOutput>>,
     has_mouse: bool,
@@ -76,7 +76,7 @@ impl TerminalGuard {
         Ok(())
     }
 
-    /// Copies a text to the terminal's clipboard, if the terminal allows it; the terminal does not confirm.
+    /// Copies text to the terminal's clipboard, if the terminal allows this; the terminal does not confirm it.
     ///
     /// # Errors
     /// Fails if writing to the terminal fails.
@@ -86,7 +86,7 @@ impl TerminalGuard {
         out.flush()
     }
 
-    /// Restores the terminal temporarily, before the process is stopped.
+    /// Temporarily restores the terminal before the process is stopped.
     pub fn suspend(&mut self) {
         restore();
     }

@@ -1,4 +1,4 @@
-//! The roles of marks on the screen, and how each terminal shows them.
+//! The roles of marks on the screen, and how each terminal displays them.
 
 mod colours;
 
@@ -37,7 +37,7 @@ roles! {
     Title 'T',
     /// Frame of a pane.
     Border 'b',
-    /// Frame of the pane that takes the arrow keys.
+    /// Frame of the pane that responds to the arrow keys.
     Focus 'F',
     /// Name of a key.
     Key 'k',
@@ -134,7 +134,8 @@ impl ThemeName {
         Self::ALL.into_iter().find(|theme| theme.name() == name)
     }
 
-    /// The theme for the background reported by the terminal's `COLORFGBG`, such as `0;15`; dark if it is not set.
+    /// The theme for the background that the terminal reports in `COLORFGBG`, such as `0;15`; dark if the variable is
+    /// not set.
     pub fn for_background(colorfgbg: Option<&str>) -> Self {
         let background = colorfgbg.and_then(|colours| colours.rsplit(';').next());
         match background.and_then(|number| number.parse().ok()) {
@@ -151,8 +152,8 @@ pub struct Theme {
 }
 
 impl Theme {
-    /// The styles for a terminal: on terminals with few colours the terminal's own, and never a colour that the
-    /// terminal lacks.
+    /// The styles for a terminal. A terminal with few colours gets its own colours, and no terminal gets a colour
+    /// that it lacks.
     pub fn new(name: ThemeName, caps: &Caps) -> Self {
         Self { styles: Role::ALL.map(|role| style(role, name, caps.colours)) }
     }
@@ -180,7 +181,7 @@ impl Theme {
 
 fn style(role: Role, name: ThemeName, colours: Colours) -> Style {
     let plain = Style::new().add_modifier(weight(role));
-    // Colours reduce the prominence on their own; dimming as well would make the text too faint.
+    // Colours already make the text less prominent; dimming it as well would make it too faint.
     let coloured = Style::new().add_modifier(weight(role) - Modifier::DIM);
     match colours {
         Colours::None => plain,

@@ -90,7 +90,7 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
     effects
 }
 
-/// The conditions that outrank an earlier message to the operator.
+/// The conditions that take precedence over an earlier message to the operator.
 struct Pressing {
     hold_asked: bool,
     hold: Option<Hold>,
@@ -143,7 +143,7 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
         return unknown(model, press.key);
     };
     match action.id {
-        // A repeat of a held key still stops the robot, and does nothing else.
+        // A repeat of a held key still stops the robot, but does nothing else.
         ActionId::Hold if press.repeat && model.live.may_move() && !model.live.hold_asked => hold_now(model),
         _ if press.repeat && !action.repeats => Vec::new(),
         id if held_keys::is_agreement(model, id) && !held_keys::is_pressed(model, press) => Vec::new(),
@@ -152,7 +152,7 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
 }
 
 /// Reports a key that has no action here. The key also cancels a question: an operator who types anything but an
-/// answer has not read it, and a later Enter must not agree to it.
+/// answer has not read the question, and a later Enter must not confirm it.
 fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
     match model.ui.overlay {
         Overlay::None => {
@@ -194,7 +194,7 @@ fn take_planners(model: &mut Model, found: Vec<PlannerInfo>, refused: Vec<Refuse
     (model.console.planners, model.console.refused) = (found, refused);
 }
 
-/// Writes a message about the console to the log and the line above the keys; a critical one becomes an alarm.
+/// Writes a message about the console to the log and to the line above the keys; a critical message becomes an alarm.
 fn news(model: &mut Model, cause: &Cause, severity: Severity, text: String) {
     model.live.run.log.add(model.live.run.clock.t_s, severity, "console", text.clone());
     if severity == Severity::Crit {

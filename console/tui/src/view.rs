@@ -57,7 +57,7 @@ pub fn view(model: &Model, caps: &Caps, frame: &mut Frame) {
     view_cached(model, caps, &mut Cache::default(), frame);
 }
 
-/// Draws the model, reusing the cache of the previous frame; the cells are the same as without a cache.
+/// Draws the model using the cache of the previous frame; the cells are the same as without a cache.
 pub fn view_cached(model: &Model, caps: &Caps, cache: &mut Cache, frame: &mut Frame) {
     draw(model, *caps, &Theme::new(model.ui.theme, caps), cache, frame);
 }

@@ -78,7 +78,7 @@ impl Counts {
 /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
 /// # let boundary = Boundary::Circle { radius_m: 5.0 };
 /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-/// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+/// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
 /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
 /// grid.mark(Tool::Bar { swath_m: 0.6 }, Pose::new(0.0, 0.0, 0.0), Pose::new(2.0, 0.0, 0.0));
 /// assert!((grid.counts().covered as f64 * grid.floor().cell_m2() - 1.2).abs() < 0.1);
@@ -91,13 +91,13 @@ pub struct CoverageGrid {
 }
 
 impl CoverageGrid {
-    /// Creates a floor of which nothing has been scanned.
+    /// Creates a floor on which nothing has been scanned yet.
     ///
     /// ```
     /// use world::{Boundary, CoverageGrid, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
     /// assert_eq!(grid.counts().covered, 0);
     /// ```
@@ -115,13 +115,13 @@ impl CoverageGrid {
         }
     }
 
-    /// Changes the kind of some cells; scanned cells stay scanned.
+    /// Changes the kinds of some cells; scanned cells stay scanned.
     ///
     /// ```
     /// use world::{Boundary, CoverageGrid, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
     /// let before = grid.counts().reachable;
     /// grid.change(&[world::KindRun(world::Cell::Outside, 5050, 4)]);
@@ -138,7 +138,7 @@ impl CoverageGrid {
     /// use world::{Boundary, CoverageGrid, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
     /// assert_eq!(grid.floor().width, 100);
     /// ```
@@ -147,13 +147,13 @@ impl CoverageGrid {
     }
 
     /// Marks the cells that a disc with a diameter of `swath_m` scans from `a` to `b`; returns the floor cells that
-    /// are newly scanned.
+    /// were not scanned before.
     ///
     /// ```
     /// use world::{Boundary, CoverageGrid, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
     /// let (a, b) = (Point::new(-2.0, 0.0), Point::new(2.0, 0.0));
     /// assert!(!grid.mark_swath(a, b, 0.6).is_empty());
@@ -172,7 +172,7 @@ impl CoverageGrid {
     /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
     /// grid.mark(Tool::Bar { swath_m: 0.6 }, Pose::new(0.0, 0.0, 0.0), Pose::new(2.0, 0.0, 0.0));
     /// assert!(grid.is_covered(grid.floor().cell_at(Point::new(1.0, 0.2)).unwrap()));
@@ -182,13 +182,13 @@ impl CoverageGrid {
         self.apply(&runs);
     }
 
-    /// Returns the floor cells that a tool would newly scan between two poses that are close together.
+    /// Returns the floor cells, not yet scanned, that a tool would scan between two poses that are close together.
     ///
     /// ```
     /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
     /// let (a, b) = (Pose::new(0.0, 0.0, 0.0), Pose::new(2.0, 0.0, 0.0));
     /// let new = grid.not_covered_under(Tool::Bar { swath_m: 0.6 }, a, b);
@@ -212,7 +212,7 @@ impl CoverageGrid {
     /// use world::{Boundary, CoverageGrid, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
     /// grid.apply(&[world::CellRun(5050, 4)]);
     /// assert_eq!(grid.counts().covered_reachable, 4);
@@ -231,13 +231,13 @@ impl CoverageGrid {
         }
     }
 
-    /// Marks all cells that have been scanned on an aligned grid.
+    /// Marks every cell that has been scanned on another grid with the same cells.
     ///
     /// ```
     /// use world::{Boundary, CoverageGrid, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
     /// let mut other = grid.clone();
     /// other.apply(&[world::CellRun(5050, 4)]);
@@ -255,7 +255,7 @@ impl CoverageGrid {
     /// use world::{Boundary, CoverageGrid, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
     /// grid.apply(&[world::CellRun(5050, 4)]);
     /// assert!(grid.is_covered(5053) && !grid.is_covered(5054));
@@ -270,7 +270,7 @@ impl CoverageGrid {
     /// use world::{Boundary, CoverageGrid, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
     /// assert!(grid.counts().reachable < grid.counts().floor);
     /// ```
@@ -284,7 +284,7 @@ impl CoverageGrid {
     /// use world::{Boundary, CoverageGrid, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
     /// grid.apply(&[world::CellRun(0, 10_000)]);
     /// assert_eq!(grid.fraction_reachable(), 1.0);
@@ -299,7 +299,7 @@ impl CoverageGrid {
     /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
     /// grid.mark(Tool::Bar { swath_m: 0.6 }, Pose::new(0.0, 0.0, 0.0), Pose::new(2.0, 0.0, 0.0));
     /// assert!((grid.fraction_whole() - 1.2 / 78.54).abs() < 0.002);

@@ -2,8 +2,8 @@
 //! shortest paths, the tether and the preset spiral.
 //!
 //! Frame: the tank frame, with its origin at the tank's centre, x east, y north, metres; angles in radians,
-//! counter-clockwise. Cost: distance queries use a bounding volume hierarchy and grow with the logarithm of the
-//! number of obstacles.
+//! counter-clockwise. Cost: distance queries use a bounding volume hierarchy, so their cost grows with the logarithm of
+//! the number of obstacles.
 
 pub mod coverage;
 pub mod medium;

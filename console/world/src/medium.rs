@@ -1,4 +1,4 @@
-//! Dry and flooded floor, and the way of moving for each.
+//! Dry and flooded floor, and how an amphibious robot moves on each.
 
 use crate::tank::{Zone, ZoneKind};
 use geometry::Point;
@@ -22,7 +22,7 @@ pub struct Mode {
 
 /// Gauge pressure under one metre of fresh water, pascals.
 const PA_PER_M: f64 = 9_806.65;
-/// The evidence that decides the medium, as a log-likelihood ratio: one decision in a million is wrong.
+/// The evidence needed to decide on a medium, as a log-likelihood ratio: one decision in a million is wrong.
 const DECIDED: f64 = 13.815_510_558;
 
 /// A pressure sensor with which an amphibious robot detects whether the floor under it is flooded (Yang et al. 2021,
@@ -37,8 +37,8 @@ pub struct PressureSensor {
 
 /// The medium according to the readings of a pressure sensor.
 ///
-/// Readings accumulate until they decide (a sequential test of the two expected pressures, Wald 1945). A decision
-/// holds until later readings decide differently, so noise at the waterline changes nothing.
+/// Readings accumulate until they are decisive (a sequential test between the two expected pressures, Wald 1945). A
+/// decision stands until later readings outweigh it, so noise at the waterline changes nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SensedMedium {
     known: Option<Medium>,
@@ -47,7 +47,7 @@ pub struct SensedMedium {
 }
 
 impl PressureSensor {
-    /// Returns the expected gauge pressure in a medium without noise, pascals.
+    /// Returns the gauge pressure to expect in a medium, without noise, pascals.
     ///
     /// ```
     /// use world::{Medium, PressureSensor};
@@ -71,8 +71,8 @@ impl PressureSensor {
         (2.0 * DECIDED / (apart * apart)).max(1.0)
     }
 
-    /// Returns the largest standard deviation of a reading, pascals, with which the given number of readings decides
-    /// the medium on average.
+    /// Returns the largest standard deviation of a reading, pascals, at which the given number of readings is enough,
+    /// on average, to decide on the medium.
     ///
     /// ```
     /// use world::PressureSensor;
@@ -90,7 +90,7 @@ impl PressureSensor {
 }
 
 impl SensedMedium {
-    /// The medium; `None` until the readings have decided.
+    /// The medium; `None` until the readings are decisive.
     ///
     /// ```
     /// assert_eq!(world::SensedMedium::default().known(), None);
@@ -124,8 +124,8 @@ impl SensedMedium {
 }
 
 impl Medium {
-    /// Returns the medium at a point, tank frame: that of the last dry or flooded zone that contains it, otherwise
-    /// dry floor.
+    /// Returns the medium at a point, tank frame: that of the last dry or flooded zone that contains the point or,
+    /// outside such zones, that of dry floor.
     ///
     /// ```
     /// use world::{Medium, Point, Shape, Zone, ZoneKind};

@@ -1,7 +1,7 @@
 //! Distance, ray and neighbour queries among many obstacles.
 //!
-//! parry2d computes the geometry with the types of glam; only this file and `boxes` convert between nalgebra and
-//! glam. Cost: every query descends a bounding volume hierarchy, so it grows with the logarithm of the number of
+//! parry2d computes the geometry with the types of glam; only this file and `boxes` convert between nalgebra and glam.
+//! Cost: every query descends a bounding volume hierarchy, so its cost grows with the logarithm of the number of
 //! obstacles, plus the number of obstacles nearby.
 
 mod boxes;
@@ -46,7 +46,7 @@ pub struct Near {
     pub id: ObstacleId,
     /// Distance from the point to the outline, metres; negative inside.
     pub distance_m: f64,
-    /// Nearest point of the outline, tank frame.
+    /// Nearest point on the outline, tank frame.
     pub closest: Point,
 }
 
@@ -69,7 +69,7 @@ pub struct ObstacleMap {
 }
 
 impl ObstacleMap {
-    /// Creates a map of obstacles within a wall; costs `n log n` once.
+    /// Creates a map of obstacles within a wall, at a single cost of `n log n`.
     ///
     /// ```
     /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape};
@@ -136,7 +136,7 @@ impl ObstacleMap {
         &self.boundary
     }
 
-    /// Returns the obstacles within a range of a point, metres, each once, in order of their index.
+    /// Returns the obstacles within a given range of a point, metres. Each is listed once, in order of index.
     ///
     /// ```
     /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape};
@@ -217,7 +217,7 @@ impl ObstacleMap {
 
 /// Returns the smallest distance from a segment to the wall, metres.
 ///
-/// Inside a round wall, the distance to it is concave along a segment, so its minimum is at an end.
+/// Inside a round wall, the distance to the wall is concave along a segment, so it is smallest at one of the ends.
 pub(crate) fn wall_clearance_m(boundary: &Boundary, a: Point, b: Point) -> f64 {
     let ends = boundary.wall_distance_m(a).min(boundary.wall_distance_m(b));
     let Boundary::Polygon { vertices } = boundary else { return ends };
@@ -254,7 +254,7 @@ impl Outline {
         }
     }
 
-    /// Returns the signed distance to the outline, and the nearest point of it.
+    /// Returns the signed distance to the outline, and the nearest point on the outline.
     fn project(&self, point: Point) -> (f64, Point) {
         match self {
             Self::Disc { center, radius_m } => {

@@ -77,7 +77,7 @@ impl PlateLayout {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RegularPlates {
-    /// Width of the annular ring, from the shell inwards, metres; 0 without a ring.
+    /// Width of the annular ring, from the shell inwards, metres; 0 if there is no ring.
     pub annular_m: f64,
     /// Number of plates in the ring; the first one begins due east.
     pub n_annular: u32,
@@ -115,16 +115,16 @@ impl fmt::Display for PlateKind {
 pub struct Plate {
     /// The kind of the plate.
     pub kind: PlateKind,
-    /// The name, which is that in the drawing if there is one. Otherwise, `A-07` is the seventh annular plate,
-    /// counter-clockwise from east; `R-03-05` and `S-03-01` are the fifth plate (rectangular) and the first plate
-    /// (sketch) from the west in the third row from the south.
+    /// The name: the one in the drawing, if the plates come from a drawing. Otherwise, `A-07` is the seventh annular
+    /// plate, counter-clockwise from east; `R-03-05` and `S-03-01` are the fifth plate (rectangular) and the first
+    /// plate (sketch) from the west in the third row from the south.
     pub name: String,
 }
 
 /// The plate of every cell of a floor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlateMap {
-    /// The plates that have floor, in order of kind and name.
+    /// The plates that cover any floor, in order of kind and name.
     pub plates: Vec<Plate>,
     /// For every cell, the index of its plate; [`NONE`] where there is no floor.
     of_cell: Vec<u32>,
@@ -133,7 +133,8 @@ pub struct PlateMap {
 /// The plate index of a cell without a plate.
 const NONE: u32 = u32::MAX;
 
-/// The position of a plate: its kind, its row from 1 (0 in the ring), and its number from 1.
+/// The position of a plate: its kind, its row, counted from 1 (0 in the ring), and its number in the row, counted from
+/// 1.
 type Place = (PlateKind, i64, i64);
 
 impl RegularPlates {
@@ -198,7 +199,7 @@ impl RegularPlates {
         for index in of_cell.iter_mut().filter(|index| **index != NONE) {
             *index = sorted[*index as usize];
         }
-        // Plates are counted from the first plate of their row that has floor.
+        // Plates are numbered from the first plate in their row that covers any floor.
         let mut firsts: BTreeMap<i64, i64> = BTreeMap::new();
         for (_, row, number) in order.keys() {
             let first = firsts.entry(*row).or_insert(*number);
@@ -216,7 +217,7 @@ impl RegularPlates {
     }
 }
 
-/// The step length with which a seam is followed to its end, metres.
+/// The length of the steps in which a seam is followed to its end, metres.
 const SEAM_STEP_M: f64 = 0.1;
 
 impl RegularPlates {
@@ -284,7 +285,7 @@ impl RegularPlates {
         let far_m = (high - low).norm();
         let seam = |k: u32| {
             let angle = TAU * f64::from(k) / f64::from(n);
-            // Plates are counted by their direction as seen from the origin.
+            // Plates are numbered by their bearing from the origin.
             let from = |share: f64| Point::new(far_m * share * angle.cos(), far_m * share * angle.sin());
             let is_in = |share: f64| {
                 boundary.contains(from(share)) && boundary.wall_distance_m(from(share)) < self.annular_m
@@ -300,8 +301,8 @@ impl RegularPlates {
     }
 }
 
-/// Returns where a line enters or leaves an area, as a share of the line, to a thousandth of the step between two
-/// places on it.
+/// Returns where a line enters or leaves an area, as a share of the line: between a place inside and a place outside,
+/// and accurate to a thousandth of the step from one to the other.
 fn edge(is_in: impl Fn(f64) -> bool, mut inside: f64, mut outside: f64) -> f64 {
     for _ in 0..10 {
         let half = f64::midpoint(inside, outside);
@@ -320,7 +321,7 @@ fn inset(vertices: &[Point], by_m: f64) -> Vec<Point> {
             Vector::new(-way.y, way.x)
         };
         let (one, other) = (inward(before, at), inward(at, after));
-        // The intersection of both edges after they are moved inwards.
+        // The intersection of both edges after they have been moved inwards.
         at + (one + other) * (by_m / (1.0 + one.dot(&other)).max(0.1))
     };
     (0..=n).map(corner).collect()

@@ -28,7 +28,7 @@ use search::Search;
 /// The length limit of the first search is this multiple of the straight distance, plus `FIRST_M` metres.
 const FIRST_SHARE: f64 = 1.2;
 const FIRST_M: f64 = 1.0;
-/// A restricted search is tried only if it uses fewer than one in this many corners.
+/// A restricted search is tried only if it uses fewer than one corner in this many.
 const FEW: usize = 8;
 /// A difference in path length that exceeds any rounding error, metres.
 const SURE_M: f64 = 1e-6;
@@ -54,8 +54,8 @@ impl GrownFloor {
         keep_going: &mut dyn FnMut() -> bool,
     ) -> Result<Way, NoWay> {
         self.check_ends(start, goal)?;
-        // With many corners, those far from both ends are left out at first. A path shorter than any path by way of
-        // the omitted corners is the shortest of all.
+        // If there are many corners, those far from both ends are left out at first. If the path found is shorter than
+        // any path by way of an omitted corner could be, it is the shortest of all.
         let mut within_m = FIRST_SHARE * (goal - start).norm() + FIRST_M;
         loop {
             let near = self.corners_within(within_m, start, goal);
@@ -72,7 +72,7 @@ impl GrownFloor {
         self.search(start, goal, &all, keep_going)
     }
 
-    /// Returns the corners that a path of this length can turn about, metres.
+    /// Returns the corners that a path of this length, metres, can turn about.
     fn corners_within(&self, within_m: f64, start: Point, goal: Point) -> Vec<usize> {
         let least_m = |Corner { center, radius_m, .. }: &Corner| {
             (center - start).norm() + (goal - center).norm() - 2.0 * radius_m
@@ -81,7 +81,7 @@ impl GrownFloor {
     }
 
     /// Pulls a path taut: returns the shortest path that turns only about discs and corners within `reach_m` of the
-    /// given one.
+    /// given path.
     ///
     /// The given path may pass through anything; only its ends and its neighbourhood matter.
     ///

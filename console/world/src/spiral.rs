@@ -6,8 +6,8 @@ use std::f64::consts::TAU;
 
 /// An inward, counter-clockwise Archimedean spiral about the tank's centre.
 ///
-/// `theta_i = i * step_rad`, `r_i = outer_radius_m - pitch_m * theta_i / (2 pi)`. The paper prints the radius without
-/// the index, which would be a circle; its Section 3.3 uses the formula above.
+/// `theta_i = i * step_rad`, `r_i = outer_radius_m - pitch_m * theta_i / (2 pi)`. In print, the paper's radius lacks
+/// the index, which would give a circle; its Section 3.3 uses the formula above.
 ///
 /// ```
 /// use world::spiral::Spiral;
@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 pub struct Spiral {
     /// Radius of the first point, metres.
     pub outer_radius_m: f64,
-    /// The points end at the first radius below this, metres (0.1 in the paper).
+    /// The spiral ends at the first point with a radius below this, metres (0.1 in the paper).
     pub inner_radius_m: f64,
     /// Distance between adjacent turns, metres.
     pub pitch_m: f64,

@@ -35,7 +35,7 @@ pub struct Station {
     pub position: Point,
 }
 
-/// The special property of a part of the floor.
+/// A special property of a part of the floor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ZoneKind {
@@ -71,9 +71,9 @@ pub struct Zone {
 pub struct World {
     /// The wall.
     pub boundary: Boundary,
-    /// Obstacles such as columns, pipes and sumps, in order of their ids.
+    /// Obstacles such as columns, pipes and sumps, in order of id.
     pub obstacles: Vec<Obstacle>,
-    /// Acoustic-emission stations, in order of their ids.
+    /// Acoustic-emission stations, in order of id.
     pub stations: Vec<Station>,
     /// Zones; where they overlap, the last one counts.
     pub zones: Vec<Zone>,

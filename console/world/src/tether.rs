@@ -1,12 +1,12 @@
 //! The tether: a taut cable from an anchor to the robot, among columns, pipes and walls.
 //!
 //! Model: the cable cannot stretch; a reel at the anchor takes up all slack; friction does not change the cable's
-//! shape; the cable may touch obstacles; the floor is flat. The cable is then the only shortest line into which the
-//! path driven can be deformed without lifting it over an obstacle. The model gives no bounds for slack or dragged
-//! tether.
+//! shape; the cable may touch obstacles; the floor is flat. The cable is then the one shortest line into which the path
+//! driven can be deformed without lifting the cable over an obstacle. For a slack or dragging tether, the model gives
+//! no bounds.
 //!
-//! Read the files in this order: `cable` (the exact taut line), `cable_obstacles` (the obstacles that it can bear
-//! on), `certify` (the effect of a whole path on it), `homotopy` (the cheap cross-check), `geodesic` (the shortest
+//! Read the files in this order: `cable` (the exact taut line), `cable_obstacles` (the obstacles that it can bear on),
+//! `certify` (the effect of a whole path on the cable), `homotopy` (the cheap cross-check), `geodesic` (the shortest
 //! cable that would suffice).
 
 mod cable;

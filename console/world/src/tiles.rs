@@ -1,4 +1,5 @@
-//! One value for every cell of a grid, in square tiles. A copy shares all tiles that neither side has changed since.
+//! One value for every cell of a grid, in square tiles. A copy shares with its original all tiles that neither has
+//! changed since.
 
 use serde::{Deserialize, Serialize};
 use std::{ops::Range, sync::Arc};
@@ -7,7 +8,7 @@ use std::{ops::Range, sync::Arc};
 const SHIFT: usize = 5;
 /// The number of cells along the edge of a tile.
 const EDGE: usize = 1 << SHIFT;
-/// The number of cells of a tile.
+/// The number of cells in a tile.
 const AREA: usize = EDGE * EDGE;
 
 /// One value for every cell of a grid, row by row. In a short time a robot passes over few tiles, whatever its
@@ -30,7 +31,7 @@ pub struct Tiles<T> {
     squares: Vec<Arc<[T; AREA]>>,
 }
 
-/// The values without tiles.
+/// The values row by row, as they are serialised.
 #[derive(Serialize, Deserialize)]
 struct Flat<T> {
     width: usize,
@@ -62,22 +63,22 @@ impl<T: Copy> Tiles<T> {
         self.squares[tile][cell]
     }
 
-    /// Returns the value of a cell for changing it. Panics beyond the last cell, as a slice does.
+    /// Returns a mutable reference to the value of a cell. Panics beyond the last cell, as a slice does.
     #[inline]
     pub fn at_mut(&mut self, index: usize) -> &mut T {
         let (tile, cell) = self.place(index);
         &mut Arc::make_mut(&mut self.squares[tile])[cell]
     }
 
-    /// Iterates over the values of some cells, piece by piece, each with the index of its first cell. Panics beyond
-    /// the last cell, as a slice does.
+    /// Iterates over the values of some cells, piece by piece; each piece comes with the index of its first cell.
+    /// Panics beyond the last cell, as a slice does.
     #[inline]
     pub fn slices(&self, cells: Range<usize>) -> impl Iterator<Item = (usize, &[T])> {
         self.pieces(cells).map(|(first, tile, cells)| (first, &self.squares[tile][cells]))
     }
 
-    /// Calls `change` on the values of some cells, piece by piece, each with the index of its first cell. Panics
-    /// beyond the last cell, as a slice does.
+    /// Calls `change` on the values of some cells, piece by piece; each piece comes with the index of its first cell.
+    /// Panics beyond the last cell, as a slice does.
     #[inline]
     pub fn change(&mut self, cells: Range<usize>, mut change: impl FnMut(usize, &mut [T])) {
         for (first, tile, cells) in self.pieces(cells) {
@@ -85,8 +86,8 @@ impl<T: Copy> Tiles<T> {
         }
     }
 
-    /// Splits some cells into pieces that each lie in one row of one tile: index of the first cell, tile, positions
-    /// in the tile.
+    /// Splits some cells into pieces that each lie in one row of one tile. A piece is the index of its first cell, its
+    /// tile, and its positions in the tile.
     #[inline]
     fn pieces(&self, cells: Range<usize>) -> impl Iterator<Item = (usize, usize, Range<usize>)> + use<T> {
         assert!(cells.end <= self.len, "cell {} of {}", cells.end, self.len);

@@ -1,4 +1,4 @@
-//! Lengths as the keys of a priority queue.
+//! Lengths as keys in a priority queue.
 
 use std::cmp::Ordering;
 

@@ -13,23 +13,23 @@ use world::{Point, Vector};
 const STALL_STEPS: usize = 60;
 /// A smaller movement over these steps counts as no progress, metres.
 const STALL_M: f64 = 0.12;
-/// A corner closer than this counts as passed, metres.
+/// A corner closer than this is considered passed, metres.
 const PASSED_M: f64 = 0.35;
-/// Initial room beside the path, in addition to the distance that the window keeps, metres; halved until a path is
+/// Initial clearance beside the path, in addition to the distance that the window keeps, metres; halved until a path is
 /// found.
 const ROOM_M: f64 = 0.25;
-/// Number of attempts with less and less room.
+/// Number of attempts with less and less clearance.
 const ATTEMPTS: u32 = 6;
 /// Interval between checks whether the path is still free, steps. The path is replanned if it is not free, and whenever
 /// the map changes.
 const LOOK_STEPS: usize = 20;
 /// The path is replanned after this many steps in any case, because the robot has moved sideways.
 const FRESH_STEPS: usize = 40;
-/// If the place to aim for is this far beyond the end of the path, the path is too short, metres.
+/// The path is too short if the point to aim for is this far beyond its end, metres.
 const AIM_MOVED_M: f64 = 1.0;
 /// Interval between checks whether a moving obstacle blocks the path, steps.
 const MOVING_STEPS: usize = 5;
-/// A path counts as free with this much less room than the window keeps, metres.
+/// A path is considered free even with this much less clearance than the window keeps, metres.
 const SLACK_M: f64 = 0.03;
 /// On a map of many parts, the push is limited to these shares of the pull: against the direction of the pull, and
 /// across it.
@@ -58,7 +58,7 @@ pub struct Field {
     pub keep_m: f64,
 }
 
-/// The virtual goals and what is remembered of them from step to step.
+/// The virtual goals, and what is remembered about them from step to step.
 #[derive(Debug, Clone)]
 pub struct Guide {
     goals: VirtualGoals,
@@ -91,7 +91,7 @@ impl Guide {
         }
     }
 
-    /// Takes note of a change of the map.
+    /// Takes note of a change to the map.
     pub fn take_change(&mut self, changed: Changed) {
         if changed.parts {
             self.nearby.forget();
@@ -225,7 +225,8 @@ pub fn shortest_way(
     let first = if around.is_everything() { 0..ATTEMPTS } else { ATTEMPTS / 2..ATTEMPTS };
     for attempt in first {
         let room_m = if attempt + 1 == ATTEMPTS { 0.0 } else { ROOM_M / f64::from(1 << attempt) };
-        // A robot whose start or goal is closer to an obstacle than this finds a path in an attempt with less room.
+        // A robot whose start or goal is closer to an obstacle than this finds a path in an attempt with less
+        // clearance.
         let wished_m = keep_m + room_m;
         if wished_m > ends_m + 1e-6 {
             continue;

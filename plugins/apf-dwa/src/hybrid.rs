@@ -91,7 +91,7 @@ impl Hybrid {
         self.mode.map(Mode::weight)
     }
 
-    /// Takes note of a change of the map.
+    /// Takes note of a change to the map.
     pub fn take_change(&mut self, changed: Changed) {
         self.guide.take_change(changed);
     }

@@ -23,7 +23,7 @@ const K_ATT: ParamSpec = float("k_att", "Attraction gain", "N/m", 0.001, 1000.0,
     .help("Pull toward the goal per metre of distance; Table 2 of the paper has 15.")
     .group(FIELD);
 const K_REP: ParamSpec = float("k_rep", "Repulsion gain", "N m3", 0.0, 1000.0, 5.0)
-    .help("Gain of the push of obstacles; Table 2 of the paper has 5.")
+    .help("Gain of the push from obstacles; Table 2 of the paper has 5.")
     .group(FIELD);
 const RHO_0: ParamSpec = float("rho_0_m", "Obstacle range", "m", 0.05, 50.0, 1.0)
     .help("Distance from the hull at which obstacles begin to push.")

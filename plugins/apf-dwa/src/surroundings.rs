@@ -14,7 +14,7 @@ use world::{Boundary, Point, Shape, shortest::GrownFloor};
 const PARTS_MOST: usize = 100;
 /// The nearby parts are looked up again after this distance, metres.
 const SLACK_M: f64 = 1.0;
-/// Distance at which a wall has no effect, metres.
+/// Distance at which a wall no longer has any effect, metres.
 const FAR_M: f64 = 1e6;
 
 /// The map around a robot.
@@ -70,7 +70,7 @@ impl Surroundings {
         Self::new(KnownMap::standing(site))
     }
 
-    /// Creates surroundings that hold a whole map, for a search without a time limit per step.
+    /// Creates surroundings that contain a whole map, for a search without a time limit per step.
     pub fn whole(charted: KnownMap) -> Self {
         let mut whole = Self::new(charted);
         let indices = (0..whole.charted.solids.len()).collect();
@@ -113,7 +113,7 @@ impl Surroundings {
         Changed { parts: true, ways }
     }
 
-    /// The nearby floor for a robot that keeps a distance, metres.
+    /// The nearby floor for a robot that keeps this distance, metres.
     pub fn floor(&self, keep_m: f64) -> GrownFloor {
         let mut shapes: Vec<Shape> = self.here.solids.iter().map(|solid| solid.part.to_shape()).collect();
         let (Some(cut), Boundary::Polygon { vertices }) = (&self.cut, &self.here.wall) else {

@@ -33,7 +33,7 @@ pub struct Twist {
 pub struct Weights {
     /// Pointing along the reference at the end of the arc.
     pub heading: f64,
-    /// Room beside the arc.
+    /// Clearance beside the arc.
     pub distance: f64,
     /// Speed.
     pub velocity: f64,
@@ -90,7 +90,7 @@ impl Window {
         self.best(&candidates).unwrap_or_else(|| turned_on_the_spot(pose, speeds, turns, pace, reference))
     }
 
-    /// The room beyond the distance to keep at some points, metres, capped.
+    /// The clearance at some points beyond the distance to keep, metres, capped.
     fn spare_m(&self, near: &NearThings, points: &[Point]) -> f64 {
         near.distance_m(points, CAP_M + self.keep_m) - self.keep_m
     }

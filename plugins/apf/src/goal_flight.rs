@@ -9,7 +9,7 @@ use world::{Point, Vector};
 const DETOUR: f64 = 10.0;
 const SPARE_STEPS: usize = 2000;
 
-/// A map and a pilot that flies over it.
+/// A map, and a pilot that flies the robot over it.
 pub(crate) struct GoalFlight {
     /// The map as known so far.
     pub map: KnownMap,

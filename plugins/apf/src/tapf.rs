@@ -20,7 +20,7 @@ pub(crate) struct Tapf {
 
 const FIELD: &str = "Field";
 const K_REP: ParamSpec = float("k_rep", "Repulsion gain", "N m3", 0.0, 1000.0, 10.0)
-    .help("Gain of the push and the tangent force of obstacles; mu in the paper.")
+    .help("Gain of the push and the tangent force from obstacles; mu in the paper.")
     .group(FIELD);
 const RHO_0: ParamSpec = float("rho_0_m", "Obstacle range", "m", 0.05, 50.0, 2.0)
     .help("Distance from the hull at which obstacles begin to act.")
@@ -36,12 +36,12 @@ const TANGENT: ParamSpec = choice("tangent", "Tangent force", &["off", "always",
 const WEIGHT: ParamSpec = float("tangent_weight", "Tangent force weight", "", 0.0, 100.0, 1.0)
     .help("Tangent force as a multiple of the repulsion gain.")
     .group(FIELD);
-/// The wall's share of the repulsion gain is 1/500 of the other planners' share, because this planner's gain is much
-/// larger. With theirs, the wall would push the robot back from goals a metre away from it.
+/// The wall's share of the repulsion gain is 1/500 of that of the other planners, because this planner's gain is much
+/// larger. With their share, the wall would push the robot away from goals a metre from the wall.
 const WALL: ParamSpec = float("wall_gain", "Wall repulsion", "", 0.0, 10.0, 0.001)
     .help(
-        "Push of the wall as a share of the repulsion gain, within half the obstacle range. The paper has \
-         no wall: 0.",
+        "Push from the wall within half the obstacle range, as a share of the repulsion gain. 0: none, as \
+         in the paper, which has no wall.",
     )
     .group(FIELD)
     .live();
@@ -49,7 +49,10 @@ const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.05)
     .help("Length of a step when planning; the paper gives no value.")
     .group("Plan");
 const WINDOW: ParamSpec = float("window_m", "Oscillation window", "m", 0.1, 50.0, 2.0)
-    .help("The field counts as trapped when the latest steps, over this length, make almost no headway.")
+    .help(
+        "The planned path counts as trapped when it makes almost no headway over its last steps, taken \
+           over this length.",
+    )
     .group("Plan");
 
 impl Planner for Tapf {

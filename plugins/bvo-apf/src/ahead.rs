@@ -1,7 +1,7 @@
 //! Mode pre: a path that begins its detours before the robot enters a trap, found by simulation and pulled taut.
 //!
-//! If the simulated walk is trapped, the simpler modes are tried in turn, and last the outlines are followed from the
-//! start. On maps of many parts the outlines come before the simpler modes.
+//! If the simulated walk is trapped, the simpler modes are tried in turn; as a last resort, the outlines are followed
+//! from the start. On maps with many parts, the outlines come before the simpler modes.
 
 use crate::{
     machine::{Machine, News},
@@ -23,18 +23,18 @@ pub enum By {
     Outlines,
 }
 
-/// The attempts, in this order.
+/// The attempts, in the order in which they are made.
 const ATTEMPTS: [By; 5] =
     [By::Thought, By::Mode(Mode::Rollout), By::Mode(Mode::Hull), By::Mode(Mode::Literal), By::Outlines];
 
-/// The order on a map of many parts. There each simpler mode takes a long time to find out that it is trapped in a
+/// The order on a map with many parts. There, each simpler mode takes a long time to find out that it is trapped in a
 /// room.
 const ATTEMPTS_IN_ROOMS: [By; 5] =
     [By::Thought, By::Outlines, By::Mode(Mode::Rollout), By::Mode(Mode::Hull), By::Mode(Mode::Literal)];
-/// A map with more parts than this counts as one of many parts.
+/// A map with more parts than this is treated as one with many parts.
 const MANY_PARTS: usize = 200;
 
-/// Up to this number of parts, the paper's own result is shown as well if the outlines were followed.
+/// Up to this number of parts, the result of the paper's own mode is shown as well if the outlines were followed.
 const SHOWN_PARTS: usize = 1000;
 
 /// The outcome of an attempt.

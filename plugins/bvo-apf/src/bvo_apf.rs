@@ -43,7 +43,7 @@ pub(crate) struct BvoApf {
     flying: Option<Flying>,
 }
 
-/// State kept from tick to tick. If it is lost in a change of planner, it is built up again.
+/// State kept from tick to tick. If it is lost when planners change, it is built up again.
 struct Flying {
     goal: Point,
     machine: Machine,
@@ -222,7 +222,7 @@ fn report(news: &[News], ctx: &Ctx<'_>) {
     }
 }
 
-/// Logs how a path was found if not by the configured method.
+/// Logs how a path was found, unless by the configured method.
 fn report_attempts(ahead: &Ahead, ctx: &Ctx<'_>) {
     let follows = ahead.news.iter().filter(|item| matches!(item, News::Follows { .. }));
     let said: Vec<String> = follows.map(ToString::to_string).collect();

@@ -9,7 +9,7 @@ use world::{Point, Vector};
 const LOOK_M: f64 = 0.25;
 /// Solids further ahead on the way to the tangent point are ignored for now, metres.
 const AHEAD_M: f64 = 4.0;
-/// Rate at which the distance to the group is corrected along the way, per metre.
+/// Rate at which the distance to the group is corrected as the robot goes around it, per metre.
 const HUG_PER_M: f64 = 2.0;
 /// After this many times around the group, its outline is followed closely, because the way out must be in one of its
 /// bays.
@@ -36,7 +36,7 @@ pub struct Escape {
 
 #[derive(Debug, Clone, Copy)]
 enum Look {
-    /// Outside the hull: the corner at its end.
+    /// Outside the hull of the group: the corner at the end of the group, as seen by the robot.
     Toward((Point, f64)),
     /// Inside a bay.
     Within,
@@ -118,7 +118,7 @@ impl Escape {
         first.is_some()
     }
 
-    /// The unit vector of the way around the group.
+    /// The unit vector along the way around the group.
     pub fn direction(
         &mut self,
         at: Point,

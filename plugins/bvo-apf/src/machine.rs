@@ -161,7 +161,7 @@ impl Machine {
         self.map.solids.iter().filter(|s| is_virtual(s)).map(|s| (s.center, s.radius_m))
     }
 
-    /// Takes over the sensed bodies. If that changes the map, the group of the detour is recomputed.
+    /// Adds the sensed bodies to the map. If that changes the map, the group of the detour is recomputed.
     pub fn learn(&mut self, bodies: &[Body]) {
         if self.map.learn(bodies) {
             self.outline = None;

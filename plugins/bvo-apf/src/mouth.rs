@@ -7,9 +7,9 @@ use world::{Point, Vector};
 
 /// Gain of the minimum angle at an edge circle, per metre of its radius (the paper's `N delta`).
 const THETA_PER_M: f64 = 0.15;
-/// Room that the seal needs before the robot, in addition to the edge's radius and twice the hull radius, metres.
+/// Space that the seal needs in front of the robot, in addition to the edge's radius and twice the hull radius, metres.
 const ROOM_M: f64 = 0.5;
-/// If the opening is wider than this, the robot counts as outside, radians.
+/// If the opening is wider than this, the robot is considered to be outside, radians.
 const OPEN_RAD: f64 = 0.98 * PI;
 /// A mouth seen under a smaller angle is the inside of a spiral, radians.
 const NARROW_RAD: f64 = 0.15;
@@ -59,8 +59,8 @@ impl Mouth {
     ///
     /// The paper's angle theta (eq. 14) is a cotangent of a cosine, for an angle that never changes sign. We read it as
     /// the angle between the mouth and the robot at an edge, negative inside. The paper's bound (eq. 17) can never
-    /// hold; we read it as `N R delta`. An angle alone leaves a hole beside the robot, so there must also be room for
-    /// the seal.
+    /// hold; we read it as `N R delta`. The angle alone would leave a hole beside the robot, so there must also be
+    /// space for the seal.
     pub fn is_withdrawn(&self, at: Point, hull_m: f64, gap_rad: f64) -> bool {
         let along = (self.edges[1].0 - self.edges[0].0).try_normalize(1e-9).unwrap_or_else(Vector::x);
         let beyond = |(edge, radius_m): &(Point, f64)| {
@@ -72,8 +72,8 @@ impl Mouth {
         gap_rad >= OPEN_RAD && self.edges.iter().all(beyond)
     }
 
-    /// The mouth of a spiral that the robot has left, if it has. If a different mouth was seen from inside, the robot
-    /// must be further out.
+    /// The mouth of a spiral, if the robot has left it. If a different mouth was seen from inside, the robot must be
+    /// further out.
     pub fn left_behind(at: Point, view: &View, had_seen: bool) -> Option<Self> {
         let out_rad = if had_seen { FAR_OUT_RAD } else { OUT_RAD };
         (view.gap_rad > out_rad).then(|| Self::from_outside(at, view))

@@ -30,7 +30,7 @@ const HAND_M: f64 = 0.2;
 const HAND_RAD: f64 = 0.6 * PI;
 /// Number of directions tried.
 const DIRECTIONS: u32 = 96;
-/// Difference below which distances to the goal count as equal, metres.
+/// Distances to the goal that differ by less than this are considered equal, metres.
 const ROUNDING_M: f64 = 1e-9;
 /// If the robot comes no closer to the goal over this many times the length of all outlines, it gives up, whatever else
 /// it remembers.
@@ -212,8 +212,8 @@ impl Follow {
         self.along.is_some() && before.along.is_none() && is_far
     }
 
-    /// The direction toward the outline that the robot follows: of those in reach, the one that best matches the last
-    /// move.
+    /// The direction toward the outline that the robot follows: of the outlines within reach, the one that best matches
+    /// the last move.
     fn hand(&self, at: Point, way: Vector, outline: &mut Outline) -> Vector {
         let share = |away: &Vector| self.side.along(*away).dot(&way);
         let out = outline.ways_out(at, self.keep_m + HAND_M).max_by(|a, b| share(a).total_cmp(&share(b)));

@@ -40,7 +40,7 @@ const N: ParamSpec = float("n", "Pull near the goal", "N", 0.0, 1e6, 0.0)
     )
     .group(FIELD);
 const K_REP: ParamSpec = float("k_rep", "Repulsion gain", "N m3", 0.0, 1000.0, 10.0)
-    .help("Gain of the push and the tangent force of obstacles; mu in the papers.")
+    .help("Gain of the push and the tangent force from obstacles; mu in the papers.")
     .group(FIELD);
 const RHO_0: ParamSpec = float("rho_0_m", "Obstacle range", "m", 0.05, 50.0, 2.0)
     .help("Distance from the hull at which obstacles begin to act.")
@@ -57,7 +57,7 @@ const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.05)
 const MARGIN: ParamSpec = float("margin_m", "Detour margin", "m", 0.02, 5.0, 0.14)
     .help(
         "Distance from whatever the robot bypasses. Gaps that leave less than this on either side of the \
-           hull count as closed.",
+         hull are treated as closed.",
     )
     .group(TRAP);
 const TAUT_MARGIN: ParamSpec = float("taut_margin_m", "Taut path margin", "m", 0.0, 5.0, 0.05)
@@ -67,7 +67,10 @@ const TAUT_MARGIN: ParamSpec = float("taut_margin_m", "Taut path margin", "m", 0
     )
     .group(TRAP);
 const WINDOW: ParamSpec = float("window_m", "Oscillation window", "m", 0.1, 50.0, 2.0)
-    .help("The robot counts as trapped when its latest steps, over this length, make almost no headway.")
+    .help(
+        "The robot is considered trapped when it makes almost no headway over its latest steps, taken \
+           over this length.",
+    )
     .group(TRAP);
 const ESCAPES: ParamSpec = int("escapes_max", "Maximum escapes", "", 1, 1000, 12)
     .help("Number of escapes after which the planner gives up.")

@@ -5,15 +5,15 @@ use field::{GoalLaw, Pull};
 /// How the robot goes around a trap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
-    /// Around one circle that encloses the whole trap, always on the left, after walking in: as in the paper, where it
-    /// is clear.
+    /// Around one circle that encloses the whole trap, always on the left, after walking in: as in the paper, as far as
+    /// the paper is clear.
     Literal,
     /// Along the hull of the trap instead of the circle, always on the left.
     Hull,
     /// Along the hull, on the side with the shorter simulated detour.
     Rollout,
-    /// As a rollout, pulled taut and begun before the robot enters the trap. If that finds no path, the other modes are
-    /// tried.
+    /// Like a rollout, but pulled taut, and begun before the robot enters the trap. If that finds no path, the other
+    /// modes are tried.
     Pre,
 }
 
@@ -41,8 +41,8 @@ pub struct MachineSettings {
     pub law: GoalLaw,
     /// Length of a step, metres.
     pub step_m: f64,
-    /// Distance kept from what the robot goes around, metres. Gaps that leave less than this on both sides count as
-    /// closed.
+    /// Distance kept from what the robot goes around, metres. Gaps that leave less than this on both sides are treated
+    /// as closed.
     pub margin_m: f64,
     /// Distance between the hull and the solids around which a path is pulled taut, metres.
     pub taut_margin_m: f64,

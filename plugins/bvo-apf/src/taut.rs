@@ -48,7 +48,7 @@ impl Sight<'_> {
     }
 }
 
-/// From every corner, skips to the furthest visible point among those a stride apart.
+/// From every corner, skips to the farthest visible point among those a stride apart.
 fn shortcut(path: &[Point], stride: usize, is_free: impl Fn(Point, Point) -> bool) -> Vec<Point> {
     let mut way = Vec::new();
     let mut from = 0;
@@ -60,7 +60,7 @@ fn shortcut(path: &[Point], stride: usize, is_free: impl Fn(Point, Point) -> boo
     way
 }
 
-/// Replaces every corner by the longest free cut across it.
+/// Replaces every corner with the longest free cut across it.
 fn corners_cut(path: &[Point], is_free: impl Fn(Point, Point) -> bool) -> Vec<Point> {
     let Some((first, last)) = path.first().zip(path.last()) else { return Vec::new() };
     let mut way = vec![*first];
@@ -94,7 +94,7 @@ fn largest_share(is_free: impl Fn(f64) -> bool) -> f64 {
     low
 }
 
-/// The path in steps of one length; the last step is shorter.
+/// The path in steps of equal length; the last step is shorter.
 ///
 /// At bends a step is the chord, so the result is slightly shorter than the path.
 pub fn paced(way: &[Point], step_m: f64) -> Vec<Point> {

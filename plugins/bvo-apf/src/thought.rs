@@ -64,7 +64,7 @@ pub fn walk<E>(
 pub fn shorter_side(machine: &Machine, at: Point, goal: Point, steps_most: usize) -> (Side, usize) {
     let mut sides = [Side::Left, Side::Right].map(|side| Detour::new(machine, at, side));
     let mut steps = 0;
-    // Both sides step in turns. When one of them ends, the other need not be simulated beyond that length.
+    // The two sides take turns. When one of them ends, the other need not be simulated beyond its length.
     while steps < steps_most {
         let costs_m = sides.each_ref().map(|detour| detour.cost_m.unwrap_or(f64::INFINITY));
         let least_m = costs_m[0].min(costs_m[1]);

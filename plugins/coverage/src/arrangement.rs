@@ -12,8 +12,8 @@ pub(crate) struct Border {
     pub is_closed: bool,
 }
 
-/// The border of convex counter-clockwise rings. Where edges of two rings lie within `near_m` of each other, only the edge of
-/// the first ring counts, so pieces that meet may end up to `near_m` apart.
+/// The border of convex counter-clockwise rings. Where edges of two rings lie within `near_m` of each other, only the
+/// edge of the first ring is used, so neighbouring pieces may end up to `near_m` apart.
 pub(crate) fn border(rings: &[Vec<Point>], near_m: f64) -> Vec<Border> {
     let boxes: Vec<(Point, Point)> = rings.iter().map(|ring| bounds_of(ring)).collect();
     let border_of = |(own, ring): (usize, &Vec<Point>)| {
@@ -28,15 +28,16 @@ pub(crate) fn border(rings: &[Vec<Point>], near_m: f64) -> Vec<Border> {
     rings.iter().enumerate().flat_map(border_of).collect()
 }
 
-/// A ring that may cover edges of another one.
+/// A ring that may cover edges of another ring.
 struct Cover<'a> {
     ring: &'a [Point],
     bounds: (Point, Point),
-    /// It covers what lies deeper than this within it; negative: also what lies that near outside it.
+    /// The ring covers everything deeper inside it than this; if negative, also everything outside it within this
+    /// distance.
     depth_m: f64,
 }
 
-/// What some covers leave of the outline of a ring.
+/// The pieces of a ring's outline that its covers leave uncovered.
 fn border_under(ring: &[Point], covers: &[Cover<'_>], near_m: f64) -> Vec<Border> {
     let uncovered = |(a, b): (Point, Point)| {
         let near = covers.iter().filter(move |cover| may_meet(bounds_of(&[a, b]), cover.bounds, near_m));
@@ -48,7 +49,7 @@ fn border_under(ring: &[Point], covers: &[Cover<'_>], near_m: f64) -> Vec<Border
     pieces.chunk_by(|piece, next| piece.1 == next.0).map(|chain| joined(chain, ring.len())).collect()
 }
 
-/// Pieces that follow each other, as one; closed if they are all the edges of their ring.
+/// Joins consecutive pieces into one, which is closed if it contains all the edges of their ring.
 fn joined(chain: &[(Point, Point)], n_edges: usize) -> Border {
     let (begin, end) = (chain[0].0, chain[chain.len() - 1].1);
     let is_closed = chain.len() == n_edges && begin == end;
@@ -61,7 +62,8 @@ fn may_meet(a: (Point, Point), b: (Point, Point), near_m: f64) -> bool {
     gap.x <= near_m && gap.y <= near_m
 }
 
-/// The share of a segment that lies deeper than `deep_m` in a convex ring, as the fractions at which it begins and ends.
+/// The part of a segment that lies deeper than `deep_m` inside a convex ring: its start and end, as fractions of the
+/// segment.
 fn share_within(ring: &[Point], a: Point, b: Point, deep_m: f64) -> Option<(f64, f64)> {
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
     for (p, q) in edges(ring) {
@@ -77,7 +79,7 @@ fn share_within(ring: &[Point], a: Point, b: Point, deep_m: f64) -> Option<(f64,
     (from < to).then_some((from, to))
 }
 
-/// The intervals of 0 to 1 that the covered ones leave open.
+/// The intervals within 0 to 1 that are not covered.
 fn open_parts(mut covered: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     covered.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (mut open, mut at) = (Vec::new(), 0.0);

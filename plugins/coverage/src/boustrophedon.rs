@@ -1,4 +1,4 @@
-//! The traditional planner: parallel lanes over the whole floor in order, as if there were no tether.
+//! The traditional planner: parallel lanes over the whole floor, one after another, as if there were no tether.
 
 use crate::floor::ReachableFloor;
 use crate::follow::Follow;
@@ -23,12 +23,12 @@ const DIRECTION: ParamSpec = float("direction_deg", "Lane direction", "deg", -18
     .help("Direction of the lanes, counter-clockwise from east.")
     .group("Plan");
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.05)
-    .help("Edge length of the cells used to count floor when unreachable floor is reported.")
+    .help("Edge length of the cells in which scanned and unreachable floor is counted.")
     .group("Plan");
 const SHELL_LAP: ParamSpec = flag("shell_lap", "Shell lap", false)
     .help(
-        "A lap along the shell after the lanes, as close as hull and clearance allow. Floors between \
-           inner walls always get one.",
+        "After the lanes, a lap along the shell, as close to it as hull and clearance allow. Floors \
+         between inner walls always get one.",
     )
     .group("Plan");
 
@@ -43,9 +43,9 @@ pub struct Boustrophedon {
 impl Planner for Boustrophedon {
     const ID: &'static str = "boustrophedon";
     const NAME: &'static str = "Boustrophedon";
-    const ABOUT: &'static str = "Traditional: parallel lanes over the whole floor in order, around columns \
-                                 on the shorter side. Ignores the tether and treats moving obstacles as \
-                                 stationary.";
+    const ABOUT: &'static str = "Traditional: parallel lanes over the whole floor, one after another, \
+                                 passing columns on the shorter side. Ignores the tether and treats moving \
+                                 obstacles as stationary.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::COVERAGE);
     const PARAMS: &'static [ParamSpec] =
         &[DIRECTION, SHELL_LAP, CELL, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
@@ -85,7 +85,7 @@ impl Planner for Boustrophedon {
 }
 
 impl Boustrophedon {
-    /// The lanes over the requested floor: straight lanes, and between inner walls a lap along the walls.
+    /// The lanes over the requested floor: laps along the walls, if required, and straight lanes.
     fn lanes(
         &self,
         domain: &SlitDomain<'_>,
@@ -117,8 +117,8 @@ impl Boustrophedon {
         Ok((laps, rows))
     }
 
-    /// Orders the lanes row by row, every other row backward; then the nearest lap each time. Adds the connectors and
-    /// the way home.
+    /// Orders the lanes row by row, every other row backward; the laps follow, always the nearest one next. Adds the
+    /// connectors and the path home.
     fn in_order(
         &self,
         lanes: &[Lane],

@@ -12,7 +12,7 @@ pub(crate) struct Buckets {
 }
 
 impl Buckets {
-    /// Sorts bounding boxes, grown by a margin, into buckets with this edge length, metres.
+    /// Sorts bounding boxes, grown by a margin, into buckets of this edge length, metres.
     pub(crate) fn new(edge_m: f64, margin_m: f64, boxes: &[(Point, Point)]) -> Self {
         let far = f64::INFINITY;
         let low = boxes.iter().fold(Point::new(far, far), |low, (from, _)| low.inf(from));
@@ -35,8 +35,8 @@ impl Buckets {
         if is_inside { &self.numbers[y as usize * self.columns + x as usize] } else { &[] }
     }
 
-    /// The indices of all points within a distance of a position, and of some further points. Larger objects may appear
-    /// twice.
+    /// The indices of all points within a distance of a position, and of some points slightly farther away. Larger
+    /// objects may appear several times.
     pub(crate) fn near(&self, at: Point, reach_m: f64) -> impl Iterator<Item = usize> {
         self.meeting(at, at, reach_m).flat_map(|bucket| &self.numbers[bucket]).map(|number| *number as usize)
     }

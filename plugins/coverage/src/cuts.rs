@@ -1,8 +1,8 @@
-//! Cuts: lines outward from every obstacle, so that wall, obstacles and cuts are connected and the rest of the floor is
-//! simply connected.
+//! Cuts: lines that lead outward from every obstacle and connect all obstacles to the wall, so that the rest of the
+//! floor is simply connected.
 //!
-//! A robot that never crosses a cut can take its tether back from anywhere by any path: for the tether all paths are
-//! equivalent. The cuts form a forest rooted at the wall.
+//! A robot that never crosses a cut can return from anywhere by any path without winding its tether around anything:
+//! for the tether, all paths are equivalent. The cuts form a forest rooted at the wall.
 
 mod cluster;
 mod extension;
@@ -20,9 +20,10 @@ pub(crate) use forest::CutRule;
 use forest::{Ban, cuts};
 use world::{Point, polyline};
 
-/// The domain between the cuts of a workspace; `None` if there is no room at home.
+/// The domain between the cuts of a workspace; `None` if the hull does not fit at home.
 ///
-/// If cuts seal floor off, the last-made cut around the sealed region must end elsewhere.
+/// If cuts seal off floor, the last cut made around the sealed region is banned, and the cuts are made again; the best
+/// attempt is kept.
 pub(crate) fn domain<'a>(
     workspace: &'a Workspace,
     pattern: &Pattern,
@@ -45,22 +46,22 @@ pub(crate) fn domain<'a>(
     Some(domain)
 }
 
-/// The domain of a floor between inner walls. Every island is cut where the shortest paths from home around its two
-/// sides meet, so the cable is never much longer than necessary. `None` if there is no room at home.
+/// The domain of a floor between inner walls. Every island gets a cut where the shortest paths from home around its two
+/// sides meet, so the cable is never much longer than necessary. `None` if the hull does not fit at home.
 pub(crate) fn domain_between_walls(workspace: &Workspace) -> Option<SlitDomain<'_>> {
     let mut domain = SlitDomain::new(workspace, Vec::new())?;
     domain.close_up();
     Some(domain)
 }
 
-/// Estimates how many lanes the cuts of a workspace would break: the cost of a pattern before any lanes are laid.
+/// Estimates how many lanes the cuts in a workspace would break: the cost of a pattern before any lanes are laid.
 pub(crate) fn broken_lanes(workspace: &Workspace, pattern: &Pattern, rule: &CutRule) -> f64 {
     let broken = |side: &[Point]| pattern.broken_lanes(&workspace.wall, side[0], side[1], workspace.swath_m);
     let cuts = cuts(workspace, pattern, rule, &[]);
     cuts.iter().flat_map(|cut| cut.windows(2)).map(broken).sum()
 }
 
-/// The last-made of the cuts that keep the robot out of sealed floor.
+/// The most recent of the cuts that keep the robot out of sealed floor.
 fn last_at_rim<'a>(cuts: &'a [Vec<Point>], sealed: &SealedRegion) -> Option<&'a [Point]> {
     let is_at_rim = |cut: &&[Point]| sealed.rim.iter().any(|p| polyline::distance_m(cut, *p) < SNAPPED_M);
     cuts.iter().map(Vec::as_slice).rev().find(is_at_rim)

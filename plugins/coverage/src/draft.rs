@@ -20,13 +20,13 @@ pub(crate) struct Draft<'a> {
     scope: Scope<'a>,
     effort: Effort,
     domain: SlitDomain<'a>,
-    /// The floor to scan, without sweep counts: with them, a large floor takes many megabytes.
+    /// The floor to scan, without sweep counts, which take many megabytes for a large floor.
     floor: ReachableFloor,
     lanes: Vec<Lane>,
     /// The known costs of connectors between lane ends.
     costs: Costs,
     pieces: Vec<Piece>,
-    /// Length of the path plus estimated touch-ups, metres.
+    /// Length of the path plus the estimated length of touch-ups, metres.
     length_m: f64,
     turns: f64,
 }
@@ -93,7 +93,7 @@ impl<'a> Draft<'a> {
         Ok(pieces)
     }
 
-    /// The pieces of lanes that are in reach and have floor to scan.
+    /// The pieces of lanes that are within reach and have floor to scan.
     fn wanted(&self, lanes: Vec<Lane>) -> Vec<Lane> {
         let Scope { reel_length_m, regions, .. } = self.scope;
         if reel_length_m.is_infinite() && regions.is_empty() {
@@ -130,7 +130,7 @@ impl<'a> Draft<'a> {
         Ok(self)
     }
 
-    /// Polishes a candidate in fine cells, after it was polished in coarse cells.
+    /// Polishes a candidate in fine cells, after it has been polished in coarse cells.
     pub(crate) fn finished(self, job: &Job) -> Result<Scan<'a>> {
         let is_wanted = |at| self.scope.is_in_reach(&self.domain, at);
         let terms = Terms::of(&self.scope, self.effort, self.domain.workspace.swath_m, &is_wanted, job);
@@ -143,7 +143,7 @@ impl<'a> Draft<'a> {
         Ok(Scan { pieces, domain: self.domain, swept })
     }
 
-    /// Measures length and turns of the current path, including what it misses.
+    /// Measures the length and the turns of the current path, with an allowance for the floor that it misses.
     fn measure(&mut self, swept: &SweptFloor) {
         let path = joined(&self.pieces);
         let missed_m2 = (self.scope.enough - swept.coverage()).max(0.0) * swept.floor.area_m2();
@@ -153,7 +153,7 @@ impl<'a> Draft<'a> {
     }
 }
 
-/// Edge length of the cells used before finishing, metres.
+/// Edge length of the cells used until a candidate is finished, metres.
 fn rough_m(scope: &Scope<'_>) -> f64 {
     scope.cell_m * tuning::polish::ROUGH
 }

@@ -1,4 +1,4 @@
-//! Counts cell by cell what a path scans.
+//! Counts, cell by cell, what a path scans.
 
 mod bar;
 mod raster;
@@ -12,14 +12,15 @@ use raster::Raster;
 pub(crate) use reachable::ReachableFloor;
 use world::Point;
 
-/// Initial count of a cell that the tool cannot reach. The count never becomes 0 or 1, so no extra check is needed.
+/// Initial count of a cell that the tool cannot reach: so high that the count never falls to 1 or 0, and no extra check
+/// is needed.
 const OUT_OF_REACH: u16 = 1 << 15;
 
 /// Reachable floor with the number of times that each cell was swept.
 #[derive(Clone)]
 pub(crate) struct SweptFloor {
     pub floor: ReachableFloor,
-    /// Number of times each cell was swept; from [`OUT_OF_REACH`] on for cells that the tool cannot reach.
+    /// Number of times each cell was swept; [`OUT_OF_REACH`] or more for cells that the tool cannot reach.
     swept: Vec<u16>,
     /// Number of reachable cells that were swept.
     n_swept: usize,
@@ -31,7 +32,7 @@ pub(crate) struct SweptFloor {
 }
 
 impl SweptFloor {
-    /// Creates a floor with nothing swept.
+    /// Creates a floor on which nothing has been swept.
     pub(crate) fn new(floor: ReachableFloor) -> Self {
         let n = floor.cells.len();
         let begin = |is_reachable: &bool| if *is_reachable { 0 } else { OUT_OF_REACH };
@@ -39,7 +40,7 @@ impl SweptFloor {
         Self { floor, swept, n_swept: 0, stamps: vec![0; n], n_looks: 0, n_exchanges: 0 }
     }
 
-    /// Sweeps along a path.
+    /// Sweeps the floor along a path.
     pub(crate) fn sweep(&mut self, path: &[Point]) {
         let swept = &mut self.swept;
         self.floor.raster.along(path, |cells| swept[cells].iter_mut().for_each(|n| *n = n.saturating_add(1)));
@@ -50,7 +51,7 @@ impl SweptFloor {
         self.n_swept as f64 / self.floor.n.max(1) as f64
     }
 
-    /// The number of cells that may be lost while this share stays swept.
+    /// The number of swept cells that may be lost before the swept share falls below this value.
     pub(crate) fn spare(&self, share: f64) -> i64 {
         (self.n_swept as f64 - share * self.floor.n as f64).floor().max(0.0) as i64
     }
@@ -93,8 +94,8 @@ impl SweptFloor {
         cell.is_some_and(|cell| self.swept[cell] == 1)
     }
 
-    /// The number of reachable cells under some runs that were swept this often. Cells under several runs count several
-    /// times.
+    /// The number of reachable cells in some runs that were swept exactly this often. A cell in several runs is counted
+    /// several times.
     pub(crate) fn count(&self, often: u16, runs: &[Run]) -> u32 {
         let count = |cells: std::ops::Range<usize>| {
             self.swept[cells].iter().map(|n| u16::from(*n == often)).sum::<u16>()
@@ -110,11 +111,11 @@ impl SweptFloor {
     }
 }
 
-/// The effect of an exchange on the floor.
+/// The effect on the floor of exchanging sweeps.
 struct Exchanged {
     /// Net number of reachable cells lost.
     lost: i64,
-    /// Whether no reachable cell's count was reduced below zero.
+    /// Whether every reachable cell had as many sweeps as were removed from it.
     is_sound: bool,
 }
 
@@ -124,12 +125,12 @@ impl SweptFloor {
         self.exchanged(old, new).lost
     }
 
-    /// The result of [`Self::exchange`], which is made and then undone.
+    /// Returns the result of [`Self::exchange`] and undoes the exchange.
     pub(crate) fn lost_by(&mut self, old: &[Run], new: &[Run]) -> i64 {
         let before = self.n_swept;
         let Exchanged { lost, is_sound } = self.exchanged(old, new);
         if !is_sound {
-            // Some cells were removed more often than they had been swept, so undoing must count them as well.
+            // Some cells had fewer sweeps than were removed from them, so cells must be counted while undoing, too.
             self.exchanged(new, old);
             return lost;
         }
@@ -169,8 +170,8 @@ impl SweptFloor {
         Exchanged { lost: left as i64 - won as i64, is_sound: left == unswept }
     }
 
-    /// Whether replacing one sweep by another certainly loses more than `most` reachable cells, net. A quick check that
-    /// stops as soon as it is certain. The old sweep is given side by side.
+    /// A quick check whether replacing one sweep with another certainly loses more than `most` reachable cells, net. It
+    /// stops as soon as this is certain. The old sweep is given as the runs of each side of the path.
     pub(crate) fn loses_more<'a>(
         &mut self,
         old: impl IntoIterator<Item = &'a [Run]>,

@@ -1,8 +1,8 @@
 //! Follows a plan: straight along it, slower at bends, and never across a cut.
 //!
-//! Lanes end at cuts, so position noise occasionally shows the robot a little beyond a cut. That winds nothing as long
-//! as the robot comes back the way it went. What counts is therefore not whether the line to the path crosses a cut,
-//! but whether it ends on the same side as the path.
+//! Lanes end at cuts, so position noise occasionally makes the robot appear slightly beyond a cut. This winds nothing
+//! as long as the robot returns the way it came. So the line back to the path may cross a cut, as long as it ends on
+//! the same side of the cut as the path.
 
 mod steer;
 
@@ -17,12 +17,13 @@ use world::{Boundary, Point, polyline, tether::crossings};
 const LOOK_M: f64 = 0.25;
 /// The path is checked for obstacles this far ahead, metres.
 const WATCH_M: f64 = 1.0;
-/// An obstacle counts as blocking the path if it still does with the path shifted by this many standard deviations.
+/// An obstacle is considered to block the path if it still blocks it with the path shifted by this many standard
+/// deviations.
 const PATH_SIGMAS: f64 = 2.0;
-/// Distance at which the robot counts as having reached the point from which the cuts apply, metres.
+/// Within this distance of the point from which the cuts apply, the robot is considered to have reached it, metres.
 const THERE_M: f64 = 0.3;
-/// Largest share of the mission's clearance that the guard keeps. A path is planned with the full clearance; a guard
-/// that also asked for all of it would push the robot off lanes beside walls and columns.
+/// Largest share of the mission's clearance that the guard maintains. A path is planned with the full clearance; a
+/// guard that maintained all of it would push the robot off lanes beside walls and columns.
 const GUARD_SHARE: f64 = 0.75;
 /// Distance that a pilot adds to the clearance, metres.
 const PILOT_SPARE_M: f64 = 0.02;
@@ -34,7 +35,7 @@ pub(crate) struct Follow {
     wall: Boundary,
     keep_m: f64,
     cuts: Vec<Cut>,
-    /// The point of the path from which the cuts apply; `None` once the robot has been there.
+    /// The point on the path from which the cuts apply; `None` once the robot has reached it.
     from: Option<Point>,
     seen_at: Option<Point>,
     has_reported: bool,
@@ -81,13 +82,13 @@ impl Follow {
         self.has_reported = false;
     }
 
-    /// Updates the side of every cut on which the robot is.
+    /// Updates, for every cut, the side on which the robot is.
     fn look(&mut self, at: Point) {
         let before = self.seen_at.replace(at);
         if self.from.is_some_and(|from| (at - from).norm() > THERE_M) {
             return;
         }
-        // The robot ignored the cuts on the way there.
+        // On the way to that point, the cuts did not apply.
         let Some(before) = before.filter(|_| self.from.is_none()) else {
             self.from = None;
             return;
@@ -102,13 +103,13 @@ impl Follow {
         self.from.is_some() || self.cuts.iter().all(|cut| cut.is_beyond == cut.is_crossed(at, target))
     }
 
-    /// Returns the velocity until the next tick.
+    /// Returns the command for one tick.
     pub(crate) fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
         let at = sensed.pose.position;
         self.look(at);
         let bodies = self.pilot.bodies(sensed);
-        // Obstacles are sensed relative to the robot, so the path is shifted by the position error against them.
+        // Obstacles are sensed relative to the robot, so an error in its position shifts the path relative to them.
         let off_m = (PATH_SIGMAS * position_sigma_m(&sensed.pose)).min(0.5 * self.keep_m);
         let is_blocked = |p: &Point| {
             let too_near_m = self.keep_m - off_m;
@@ -149,7 +150,7 @@ impl Follow {
     }
 }
 
-/// The point of the path slightly ahead; at corners the robot drives to the corner before turning.
+/// The point to aim at, slightly ahead on the path; at corners the robot drives to the corner before turning.
 fn aim(at: Point, sensed: &Sensed<'_>) -> Point {
     let Some(first) = sensed.path_ahead.first() else { return sensed.target };
     let mut aim = *first;

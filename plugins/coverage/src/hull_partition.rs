@@ -29,16 +29,16 @@ use world::{Boundary, Point, Vector, polyline};
 
 const BACKTRACKING: ParamSpec = choice("backtracking", "Backtracking", &["tree", "direct"], 0)
     .help(
-        "The paper mentions backtracking but gives no algorithm. Tree: back through the cells in the \
-           order in which they were entered. Direct: the shortest path from cell to cell, which winds the \
-           tether around columns.",
+        "The paper mentions backtracking but gives no algorithm. Tree: back through the same cells that \
+         the robot came through. Direct: the shortest path from cell to cell, which winds the tether \
+         around columns.",
     )
     .group("Plan");
 const ORDER: ParamSpec = choice("order", "Order of cells", &["genetic", "exact"], 0)
     .help("The published genetic algorithm, or the exact order for up to 13 cells.")
     .group("Plan");
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.05)
-    .help("Edge length of the cells used to count floor when unreachable floor is reported.")
+    .help("Edge length of the cells in which scanned and unreachable floor is counted.")
     .group("Plan");
 /// The published planner.
 pub struct HullPartition {
@@ -79,8 +79,8 @@ impl Planner for HullPartition {
         if self.is_tree && !division.domain.is_simple {
             ctx.log(
                 LogLevel::Warn,
-                "columns too close together leave a way around them, which the method does not rule out: \
-                 closed by an added cut",
+                "columns that are too close together leave a path around them, which the method does not \
+                 prevent: closed by an added cut",
             );
             division.domain.close_up();
         }
@@ -132,7 +132,7 @@ impl HullPartition {
             domain.contains(at) && is_off_cuts(at) && (scope.regions.is_empty() || within.is_near(at))
         };
         let order = self.order(cells, *first, seed, &stages.next(0.1, "order of cells"));
-        let stage = stages.next(0.88, "lanes of cells");
+        let stage = stages.next(0.88, "lanes in the cells");
         let (mut pieces, mut at) = (Vec::new(), domain.start(scope.start));
         for (k, cell) in order.into_iter().enumerate() {
             ctx.check()?;
@@ -160,7 +160,7 @@ impl HullPartition {
     }
 }
 
-/// The reason why there can be no hull rings, if so.
+/// Why hull rings are impossible, if they are.
 fn no_rings(workspace: &Workspace) -> Option<String> {
     let n = workspace.parts.len();
     match &workspace.wall {
@@ -168,15 +168,15 @@ fn no_rings(workspace: &Workspace) -> Option<String> {
             Some("hull rings need a convex wall; choose tether-safe".to_owned())
         }
         _ if workspace.is_room && n > MOST_COLUMNS => Some(format!(
-            "hull rings are built from columns, and there are {n} convex obstacles between the walls; at \
-             most {MOST_COLUMNS} can be planned: choose tether-safe"
+            "hull rings are built from columns, but there are {n} convex obstacles between the walls, and \
+             at most {MOST_COLUMNS} can be planned: choose tether-safe"
         )),
         _ => None,
     }
 }
 
-/// The lanes of a cell, driven to and fro along the long side of its smallest rectangle. The first lane is on the side
-/// of the corner nearest to the centre (as published). Lanes are broken where the floor is not open.
+/// The lanes in a cell, driven to and fro along the long side of the smallest rectangle around the cell. The first lane
+/// is on the side of the corner nearest to the centre (as published). Lanes are broken where the floor is not open.
 fn lanes(cell: &Cell, workspace: &Workspace, is_open: impl Fn(Point) -> bool) -> Vec<Vec<Point>> {
     let hull = cell.hull();
     let Some((ahead, (low, high))) = smallest_rectangle(&hull) else { return Vec::new() };
@@ -208,7 +208,7 @@ fn lanes(cell: &Cell, workspace: &Workspace, is_open: impl Fn(Point) -> bool) ->
     lanes
 }
 
-/// The long direction and the extent across it of the smallest rectangle around a convex polygon.
+/// The smallest rectangle around a convex polygon: its long direction, and its extent across that direction.
 fn smallest_rectangle(hull: &[Point]) -> Option<(Vector, (f64, f64))> {
     let spread = |way: Vector| extent(hull.iter().map(|p| p.coords.dot(&way)));
     let rectangle = |along: Vector| {

@@ -5,10 +5,10 @@ use geometry::convex::Part;
 use std::f64::consts::{PI, TAU};
 use world::{Boundary, Point, polyline::edges};
 
-/// Tolerance between the planned distance and the one that the mission requires, metres.
+/// Margin by which the planned distance exceeds the one that the mission requires, metres.
 pub(crate) const SLACK_M: f64 = 2e-3;
-/// Largest angle between neighbouring tangents of an outline, radians. Larger angles keep the tool off columns by a
-/// centimetre at their corners, which adds up where many columns are close together.
+/// Largest angle between neighbouring tangents of an outline, radians. With larger angles, the corners of outlines
+/// would keep the tool a centimetre farther from columns, which adds up where many columns are close together.
 const FACET_RAD: f64 = TAU / 24.0;
 /// Largest distance of a facet of a round wall from the circle, metres.
 const WALL_SAGITTA_M: f64 = 2e-3;
@@ -29,7 +29,7 @@ pub(crate) fn wall_rings(wall: &Boundary, keep_m: f64) -> Vec<Vec<Point>> {
     }
 }
 
-/// A convex outline of a part grown by the distance to keep, drawn around the exact outline.
+/// A convex outline of a part, grown by the distance to keep. It encloses the exact outline.
 pub(crate) fn outline(part: &Part, keep_m: f64) -> Vec<Point> {
     let corners = part.corners();
     let radius_m = corners.first().map_or(0.0, |c| c.1) + keep_m + SLACK_M / 2.0;
@@ -58,7 +58,8 @@ fn around(corners: &[Point], radius_m: f64) -> Vec<Point> {
     ring
 }
 
-/// Corners of the polygon whose sides touch an arc: tangents from its first to its last normal.
+/// Corners of a polygon that encloses an arc: its sides are tangents to the arc, spread evenly from its start to its
+/// end.
 fn arc(center: Point, from_rad: f64, turn_rad: f64, radius_m: f64) -> Vec<Point> {
     let n = (turn_rad / FACET_RAD).ceil().max(1.0);
     let step = turn_rad / n;

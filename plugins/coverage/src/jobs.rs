@@ -7,7 +7,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, OnceLock};
 use std::{collections::VecDeque, thread, time::Duration};
 
-/// Interval at which the console is asked whether it cancels.
+/// Interval at which the console is asked whether the work is cancelled.
 const ASK: Duration = Duration::from_millis(2);
 
 /// The work on one item: its progress and whether it is cancelled, for threads that cannot ask the console themselves.
@@ -26,7 +26,7 @@ impl Job {
         self.end.get().map_or(Ok(()), |error| Err(error.clone()))
     }
 
-    /// Ends the previous stage and starts one that leads up to this share of the item.
+    /// Ends the previous stage and starts the next, which ends at this share of the item.
     pub(crate) fn stage(&self, to: f64) {
         self.reached(1.0);
         self.from.store(self.to.load(Ordering::Relaxed), Ordering::Relaxed);
@@ -51,7 +51,7 @@ impl Job {
 /// stage of the plan.
 ///
 /// # Errors
-/// The first error of any item, in the order of the items.
+/// The first error, in the order of the items.
 pub(crate) fn run_all<T: Send, R: Send>(
     items: Vec<T>,
     stage: &Stage<'_>,

@@ -1,4 +1,4 @@
-//! The lanes of a pattern, not yet in order: broken where there is no room and at the cuts.
+//! The lanes of a pattern, not yet ordered: broken at the cuts and where the hull does not fit.
 
 use crate::inflation::SLACK_M;
 use crate::pattern::Pattern;
@@ -10,7 +10,7 @@ use world::{Point, Vector, polyline, shape::bounds_of};
 
 /// Sampling step along lanes, metres.
 const STEP_M: f64 = 0.04;
-/// Number of samples examined together: only a few fences are close to any of them.
+/// Number of samples examined together: only a few fences are close to such a group.
 const STRETCH: usize = 64;
 
 /// A lane in the direction in which it was created: at least two points.
@@ -23,7 +23,7 @@ pub(crate) fn lanes(domain: &SlitDomain<'_>, pattern: &Pattern, least_m: f64) ->
     lanes
 }
 
-/// The same, with lanes along walls and cuts separate from the straight rows.
+/// The same, with the lanes along walls and cuts separate from the straight rows.
 pub(crate) fn laps_and_rows(
     domain: &SlitDomain<'_>,
     pattern: &Pattern,
@@ -49,8 +49,8 @@ pub(crate) fn laps_and_rows(
     (along, rows.iter().flat_map(|line| clip(line, &fences, spare_m)).collect())
 }
 
-/// Lines along every cut across the lanes, always on its left as seen from its start. A cut along the lanes already has
-/// a lane beside it.
+/// A line along every cut that crosses the lanes, always on the cut's left as seen from its start. A cut that runs with
+/// the lanes already has a lane beside it.
 fn corridors(domain: &SlitDomain<'_>, pattern: &Pattern, swath_m: f64) -> Vec<Vec<Point>> {
     let corridor = |cut: &Vec<Point>| {
         let (a, b) = (cut[cut.len() - 2], cut[cut.len() - 1]);
@@ -62,7 +62,7 @@ fn corridors(domain: &SlitDomain<'_>, pattern: &Pattern, swath_m: f64) -> Vec<Ve
     domain.cuts.iter().filter_map(corridor).collect()
 }
 
-/// A line with the distance that lanes keep from it, and the bounding box of what may be too close.
+/// A line with the distance that lanes keep from it, and the bounding box of everything that may be too close to it.
 #[derive(Clone, Copy)]
 struct Fence<'a> {
     line: &'a [Point],
@@ -92,7 +92,8 @@ fn fences(lines: &[Vec<Point>], far_m: f64) -> Vec<Fence<'_>> {
     lines.iter().map(|line| Fence::new(line, far_m)).collect()
 }
 
-/// The pieces of a line that can be driven with some room to spare and keep away from the fences, except short pieces.
+/// The pieces of a line that can be driven with some clearance to spare and that keep away from the fences; short
+/// pieces are left out.
 fn clipped(
     domain: &SlitDomain<'_>,
     line: &[Point],
@@ -117,7 +118,7 @@ fn clipped(
     if is_ring {
         begin_behind_a_break(&mut points, &mut spots);
     }
-    // The line may be open on both sides of a gap that is closed only at its narrowest point.
+    // Two samples may both be open even though the passage between them is blocked at its narrowest point.
     let sees = |a: Spot, b: Option<Spot>| b.is_some_and(|b| domain.sees_between(a, b));
     let last_open =
         |open: Spot, closed: Point| last_open(open.at, closed, &|at| sees(open, spot_among(&near, at)));
@@ -146,7 +147,7 @@ fn begin_behind_a_break(points: &mut Vec<Point>, spots: &mut Vec<Option<Spot>>) 
     spots.push(spots[0]);
 }
 
-/// The last open position between an open and a closed one.
+/// The last open position on the way from an open position to a closed one.
 fn last_open(open: Point, closed: Point, is_open: &dyn Fn(Point) -> bool) -> Point {
     let (mut from, mut to) = (0.0, 1.0);
     for _ in 0..7 {
@@ -171,7 +172,7 @@ pub(crate) fn wanted_pieces(lane: &Lane, is_wanted: impl Fn(Point) -> bool) -> V
     runs(&wanted, |a, b| a == b).filter(is_wanted).map(|run| thinned(&fine[run])).collect()
 }
 
-/// The ranges in which neighbours belong together.
+/// The ranges of consecutive items that belong together.
 fn runs<T>(items: &[T], is_together: impl Fn(&T, &T) -> bool) -> impl Iterator<Item = Range<usize>> {
     let mut past = 0;
     items.chunk_by(is_together).map(move |run| {
@@ -181,7 +182,7 @@ fn runs<T>(items: &[T], is_together: impl Fn(&T, &T) -> bool) -> impl Iterator<I
     })
 }
 
-/// The same line with fewer points; it passes within a millimetre of those left out.
+/// The same line with fewer points; it passes within a millimetre of the points left out.
 pub(crate) fn thinned(points: &[Point]) -> Lane {
     if points.len() < 3 {
         return points.to_vec();

@@ -1,10 +1,10 @@
-//! Planners that scan the whole floor: with consideration of the tether, as published, and without a tether.
+//! Planners that scan the whole floor: one that protects the tether, one as published, and one that ignores the tether.
 //!
-//! A tether-safe plan is made as follows. `cuts` divide the `workspace` of the site into a `slit_domain`, which has no
-//! way around an obstacle. `lanes` are laid into it, ordered (`tour`) and joined to a path (`draft`). The path is
-//! shortened and bent until it sweeps enough of the `floor` (`polish`). [`tether_safe`] does this for several patterns
-//! of lanes and chooses the best. If obstacles are found during the mission, `repair` changes the plan only around
-//! them. `tuning` holds the numbers.
+//! A tether-safe plan is made as follows. `cuts` turn the `workspace` of the site into a `slit_domain`, in which no
+//! path leads around an obstacle. `lanes` are laid in it, ordered (`tour`) and joined into a path (`draft`). The path
+//! is shortened and bent until it sweeps enough of the `floor` (`polish`). [`tether_safe`] does this for several
+//! patterns of lanes and chooses the best. If obstacles are found during the mission, `repair` changes the plan only
+//! around them. `tuning` contains the numbers.
 #![forbid(unsafe_code)]
 
 pub mod boustrophedon;

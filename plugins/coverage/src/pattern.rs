@@ -14,18 +14,18 @@ use world::{Boundary, Point, Vector, polyline};
 const STEP_M: f64 = 0.04;
 /// Chord length of a lane along a round wall, metres.
 const CHORD_M: f64 = 0.15;
-/// Width above which a sliver along the wall counts, metres.
+/// Only slivers along the wall that are wider than this are counted, metres.
 const LEAST_SLIVER_M: f64 = 0.02;
 
 /// The layout of lanes on the floor.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Pattern {
-    /// At equal distances from the wall.
+    /// Lanes that follow the wall at constant distances.
     Contours,
-    /// Straight lanes, inside some contours along the wall.
+    /// Straight lanes, surrounded by some contours along the wall.
     Straight {
         rows: Rows,
-        /// Contours along the wall around the straight lanes.
+        /// Number of contours along the wall around the straight lanes.
         laps: usize,
     },
 }
@@ -70,8 +70,8 @@ impl Pattern {
         }
     }
 
-    /// The unbroken lines of the pattern: those along walls, and straight ones. Between inner walls, one lap runs along
-    /// all walls and around every obstacle.
+    /// The unbroken lines of the pattern: those along walls, and the straight ones. Between inner walls, one lap runs
+    /// along all walls and around every obstacle.
     pub(crate) fn lines(&self, domain: &SlitDomain<'_>) -> (Vec<Vec<Point>>, Vec<Vec<Point>>) {
         let workspace = domain.workspace;
         let start_m = workspace.keep_m + SLACK_M;
@@ -100,7 +100,7 @@ fn moved_left(ring: &[Point], by_m: f64) -> Vec<Point> {
     moved
 }
 
-/// Lines at equal distances from the wall, outermost first. In a round tank the last is a small circle around the
+/// Lines at constant distances from the wall, outermost first. In a round tank, the last is a small circle around the
 /// centre.
 fn contours(workspace: &Workspace, start_m: f64, most: usize) -> Vec<Vec<Point>> {
     let swath_m = workspace.swath_m;
@@ -180,8 +180,8 @@ impl Rows {
         Self { shift_m: self.shift_m + share * self.spacing_m, ..self }
     }
 
-    /// Estimates how many rows obstacles break. A row that an obstacle would only graze bends around it and counts as a
-    /// fraction.
+    /// Estimates how many rows the obstacles break. A row that an obstacle only grazes bends around it and counts as a
+    /// fraction of a row.
     pub(crate) fn broken(&self, workspace: &Workspace) -> f64 {
         let side = left_of(self.ahead());
         let by = |part: &Part| {

@@ -1,5 +1,5 @@
-//! Makes a path shorter and straighter without losing floor. Floor that other parts of the path also sweep need not be
-//! swept here, and missed floor is worth a detour only if it is large enough.
+//! Makes a path shorter and straighter without losing floor. No part of the path need sweep floor that other parts also
+//! sweep, and missed floor is worth a detour only if there is enough of it.
 
 mod bends;
 pub(crate) mod shell;
@@ -19,9 +19,9 @@ pub(crate) use track::{Terms, Track};
 const SHORTENED: f64 = 0.63;
 const BENT: f64 = 0.92;
 
-/// Shortens a path, bends it to floor that it misses, and ties in short lanes if that is not enough. A second round
-/// pays: new bends and lanes sweep floor on their way that other parts then need not sweep. `time` is the share of the
-/// candidate's time that the round takes.
+/// Shortens a path, bends it to floor that it misses, and ties in short lanes if that is not enough. A second round is
+/// worthwhile: on their way, new bends and lanes sweep floor that other parts then need not sweep. `time` is the share
+/// of the candidate's time that the round takes.
 pub(crate) fn polish(
     track: &mut Track<'_>,
     terms: &Terms<'_>,
@@ -35,7 +35,7 @@ pub(crate) fn polish(
     track.reopen();
     track.shorten(terms)?;
     if let Some(whole) = whole.filter(|whole| track.coverage() < tuning::KEPT * whole.coverage()) {
-        // A little floor far away is not worth the distance, but here it is all that was requested.
+        // A small area far away is not worth the trip, but here it is all that was requested.
         *track = whole;
         track.shorten(&careful)?;
     }
@@ -63,8 +63,8 @@ pub(crate) fn settle(track: &mut Track<'_>, terms: &Terms<'_>, other: &Reachable
     track.pass_along_shell(&terms)
 }
 
-/// If much is still missing, as in slivers around many columns that are close together, pays higher and higher prices
-/// to bend the path to it.
+/// If much floor is still missing, for example in slivers around many columns close together, accepts higher and higher
+/// prices for bending the path to it.
 fn scan_dear_floor(track: &mut Track<'_>, terms: &Terms<'_>, careful: &Terms<'_>) -> Result<()> {
     let enough = terms.enough - tuning::LEFT;
     for times in tuning::DEARER {
@@ -78,8 +78,8 @@ fn scan_dear_floor(track: &mut Track<'_>, terms: &Terms<'_>, careful: &Terms<'_>
     Ok(())
 }
 
-/// The same for a path that was polished before and has changed in places. What it does along the shell stays, and
-/// floor already scanned there is not scanned again.
+/// Polishes a path that was polished before and has changed in places. It gets no new pass along the shell, which would
+/// scan floor there a second time.
 pub(crate) fn polish_again(track: &mut Track<'_>, terms: &Terms<'_>) -> Result<()> {
     let careful = Terms { floor_m_per_m2: tuning::CAREFUL_M_PER_M2, ..*terms };
     let at = |share: f64| share;
@@ -89,7 +89,7 @@ pub(crate) fn polish_again(track: &mut Track<'_>, terms: &Terms<'_>) -> Result<(
     tie(track, terms, &careful, &at)
 }
 
-/// Bends the path and shortens the new parts, until nothing more pays.
+/// Bends the path and shortens the new parts, round by round, until no bend is worthwhile.
 fn bend(
     track: &mut Track<'_>,
     terms: &Terms<'_>,
@@ -114,7 +114,7 @@ fn bend(
 }
 
 /// Ties in short lanes and shortens the new parts, until the required coverage is reached. Late rounds accept slightly
-/// less coverage but use smaller places. If nothing large is left, the late rounds start immediately.
+/// less coverage but fill smaller gaps. If no large gap is left, the late rounds start immediately.
 fn tie(track: &mut Track<'_>, terms: &Terms<'_>, careful: &Terms<'_>, at: &dyn Fn(f64) -> f64) -> Result<()> {
     let late = Terms { enough: terms.enough - tuning::LATE_SHARE, ..*terms };
     let (mut share, mut is_late) = (BENT, false);

@@ -1,9 +1,9 @@
-//! Repair of the current plan: obstacles found during the mission change the plan only around them.
+//! Repair of the current plan: it changes only around the obstacles found during the mission.
 //!
-//! The cuts stay. An obstacle not connected by any cut gets a new cut, placed where it crosses the rest of the path
-//! least. Parts of the path that can still be driven are kept as sections: long sections far away, single lanes near
-//! the change. The sections are reordered, starting from their planned order. The connectors between them are polished
-//! like those of any path.
+//! The cuts stay. An obstacle not connected by any cut gets a new cut, placed where it crosses the rest of the path as
+//! seldom as possible. Parts of the path that can still be driven are kept as sections: long sections far away, single
+//! lanes near the change. The sections are reordered, starting from their planned order. The connectors between them
+//! are polished like those of any path.
 
 mod current;
 
@@ -48,9 +48,9 @@ pub(crate) struct Repaired<'a> {
 /// A repaired path before polishing.
 pub(crate) struct Laid<'a> {
     pub domain: SlitDomain<'a>,
-    /// The pieces of the path, each with whether it is new.
+    /// The pieces of the path, each with a flag for new pieces.
     pieces: Vec<(Piece, bool)>,
-    /// Length of lanes of the previous plan that are missing from this one, metres.
+    /// Total length of the previous plan's lanes that are missing from this path, metres.
     lost_m: f64,
 }
 
@@ -99,16 +99,16 @@ impl<'a> Repair<'a, '_> {
         Ok(Repaired { scan: Scan { pieces, domain, swept }, enough })
     }
 
-    /// The domains that a repair may use, with different cuts for the found obstacles. Empty if all of them seal floor
-    /// off.
+    /// The domains that a repair may use, with different cuts for the found obstacles. Empty if all of these domains
+    /// seal off floor.
     pub(crate) fn domains(&self) -> Vec<Extended<'a>> {
         let cuts = &self.current.cuts;
         let domains = self.domains_between(cuts);
         if !domains.is_empty() {
             return domains;
         }
-        // A found obstacle may stand in a cut and plug the passage to another cut or the wall. Then the cut ends at the
-        // obstacle.
+        // An obstacle found in the line of a cut may plug the passage to another cut or to the wall. In that case the
+        // cut ends at the obstacle.
         let shortened = cuts_up_to_found(self.workspace, cuts).into_iter();
         shortened.flat_map(|cuts| self.domains_between(&cuts)).collect()
     }
@@ -130,7 +130,7 @@ impl<'a> Repair<'a, '_> {
         (domain.sealed.area_m2 <= SLIVER_M2).then_some(Extended { domain, new_cuts })
     }
 
-    /// Sections and connectors in a good order, from the start to home; each with whether it is new.
+    /// Sections and connectors in a good order, from the start to home, each with a flag for new pieces.
     fn joined(
         &self,
         domain: &SlitDomain<'_>,

@@ -19,7 +19,7 @@ pub(crate) struct Piece {
 pub(crate) struct Scan<'a> {
     /// Lanes and connectors in turn.
     pub pieces: Vec<Piece>,
-    /// The domain in which the path stays, with the cuts that it does not cross.
+    /// The domain within which the path stays, with the cuts that the path does not cross.
     pub domain: SlitDomain<'a>,
     /// The floor that the path sweeps.
     pub swept: SweptFloor,
@@ -40,10 +40,7 @@ impl<'a> Scan<'a> {
         let is_enough = share >= COMPLETE_WITH_SLIVERS;
         if !is_enough {
             let scanned = format!("the plan scans {} % of the requested floor", percent_text(share, 1));
-            ctx.log(
-                LogLevel::Warn,
-                &format!("{scanned}: the rest lies beside its lanes; choose tether-safe"),
-            );
+            ctx.log(LogLevel::Warn, &format!("{scanned}: its lanes miss the rest; choose tether-safe"));
         }
         is_enough && is_all_in_reach
     }

@@ -17,13 +17,13 @@ pub(crate) struct Scope<'a> {
     pub tether: Option<TetherLimits>,
     /// Longest path from home, metres.
     pub reel_length_m: f64,
-    /// Distance from home at which the robot counts as back, metres.
+    /// Within this distance of home the robot is considered to be back, metres.
     pub tolerance_m: f64,
     /// Polygons still to scan; all floor if empty.
     pub regions: &'a [&'a [Point]],
     /// Required coverage, as a share of the remaining reachable floor.
     pub enough: f64,
-    /// All floor that is or was to be scanned, as a multiple of the remaining floor.
+    /// All floor to be scanned, including floor already scanned, as a multiple of the remaining floor.
     pub whole: f64,
     /// Edge length of a cell of the floor, metres.
     pub cell_m: f64,
@@ -60,7 +60,7 @@ impl<'a> Scope<'a> {
         })
     }
 
-    /// The same for a robot that has already driven a path: the floor that it scanned counts toward the whole.
+    /// The same for a robot that has already driven a path: the floor that the path scanned counts toward the whole.
     pub(crate) fn after(self, flown: &[Point], workspace: &Workspace) -> Self {
         if self.regions.is_empty() || flown.is_empty() {
             return self;

@@ -1,8 +1,8 @@
 //! The slit domain: the floor for the hull centre, less the cuts, in triangles.
 //!
-//! With a cut from every obstacle to the wall the domain is simply connected, so the triangles form a tree. The
-//! shortest path between two points is then found by a funnel through the one sleeve that joins them: exact, without a
-//! search. For the tether, any two paths between the same ends are equivalent.
+//! With a cut from every obstacle to the wall, the domain is simply connected, so the triangles form a tree. The
+//! shortest path between two points then follows from a funnel through the one sleeve that joins them: exactly, and
+//! without a search. For the tether, any two paths between the same ends are equivalent.
 
 mod funnel;
 #[cfg(test)]
@@ -17,8 +17,8 @@ use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 use world::{Point, polyline};
 
-/// Distance by which a path passes beside the end of a cut, metres: less than the distance between any two corners. A
-/// path through the end itself would be on both sides of the cut, and could continue on the wrong side.
+/// Distance at which a path passes the end of a cut, metres: less than the distance between any two corners. A path
+/// through the end itself would be on both sides of the cut, and could continue on the wrong side.
 const ASIDE_M: f64 = SNAP_M / 4.0;
 
 /// The triangles of the floor that can be reached from home without crossing a cut.
@@ -45,7 +45,7 @@ pub(crate) struct Spot {
 }
 
 impl<'a> SlitDomain<'a> {
-    /// Creates the domain between some cuts; `None` if there is no room at home.
+    /// Creates the domain between some cuts; `None` if the hull does not fit at home.
     pub(crate) fn new(workspace: &'a Workspace, cuts: Vec<Vec<Point>>) -> Option<Self> {
         let walk = workspace.triangulation().walk(&cuts, workspace.home)?;
         let Walk { points, triangles, hinges, is_simple, sealed } = walk;
@@ -58,8 +58,8 @@ impl<'a> SlitDomain<'a> {
         Some(Self { workspace, cuts, points, triangles, buckets, hinges, is_simple, sealed })
     }
 
-    /// Adds cuts across the remaining ways around obstacles, each where the paths from home on the two sides meet. No
-    /// floor is lost, and the domain becomes simply connected.
+    /// Adds cuts across the remaining routes around obstacles, each where the paths from home around the two sides
+    /// meet. No floor is lost, and the domain becomes simply connected.
     pub(crate) fn close_up(&mut self) {
         if self.is_simple {
             return;
@@ -195,7 +195,7 @@ impl<'a> SlitDomain<'a> {
         Some(self.path_between(self.spot(a)?, self.spot(b)?))
     }
 
-    /// The shortest path between two spots. It passes at a tiny distance from the ends of cuts.
+    /// The shortest path between two spots. It passes the ends of cuts at a tiny distance.
     pub(crate) fn path_between(&self, a: Spot, b: Spot) -> Vec<Point> {
         if a.triangle == b.triangle {
             return vec![a.at, b.at];
@@ -215,11 +215,11 @@ impl<'a> SlitDomain<'a> {
         self.path(self.workspace.home, from).map(|path| polyline::length_m(&path))
     }
 
-    /// Whether no corner of the domain is further from home than this on the shortest path, metres.
+    /// Whether every corner of the domain is within this distance of home by the shortest path, metres.
     ///
-    /// A corner on a cut can be reached on either side; the path found first counts. That is a lenient measure. Few
-    /// complete paths along cuts ever reach the far side of the last corner, and their effect on the cable is certified
-    /// anyway.
+    /// A corner on a cut can be reached on either side of the cut; only the path found first is measured. This is
+    /// lenient, but few finished paths along cuts ever reach the far side of the last corner, and their effect on the
+    /// cable is certified anyway.
     pub(crate) fn is_all_within(&self, most_m: f64) -> bool {
         let Some(start) = self.spot(self.workspace.home) else { return most_m >= 0.0 };
         let mut seen = vec![false; self.points.len()];
@@ -248,7 +248,8 @@ impl<'a> SlitDomain<'a> {
         a.triangle == b.triangle || is_straight()
     }
 
-    /// The left and right ends of the sides between two triangles, in order: up the tree from both to where they meet.
+    /// The left and right ends of the sides between two triangles, in order: from both triangles up the tree to where
+    /// their branches meet.
     fn sleeve(&self, from: usize, to: usize) -> Vec<(Point, Point)> {
         let above = |triangle: usize| self.triangles[triangle].parent as usize;
         let depth = |triangle: usize| self.triangles[triangle].depth as usize;

@@ -8,7 +8,7 @@ pub(crate) struct Stages<'a> {
     /// The console.
     pub ctx: Ctx<'a>,
     done: f64,
-    /// The share of the plan at which the coming stages end.
+    /// The share of the plan at which the next stages end.
     pub end: f64,
 }
 
@@ -27,7 +27,7 @@ impl<'a> Stages<'a> {
         Self { ctx: *ctx, done: 0.0, end: 1.0 }
     }
 
-    /// The point that is this far along from the present progress to a share of the plan.
+    /// The point that is this share of the way from the current progress to `end`.
     pub(crate) fn toward(&self, end: f64, share: f64) -> f64 {
         self.done + (end - self.done) * share
     }

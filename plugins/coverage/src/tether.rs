@@ -7,11 +7,11 @@ use std::sync::Arc;
 use world::tether::{Cable, Case, Certificate, Ground, Limits, Strain, certify_on, strain};
 use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, tether};
 
-/// A cable with at most this length outside the anchor counts as reeled in, metres.
+/// A cable with at most this length outside the anchor is considered reeled in, metres.
 const IN_M: f64 = 1e-3;
 
-/// Approximately the longest straight line from the anchor to a position that the robot can reach: the minimum cable
-/// length, metres.
+/// The minimum cable length, metres: approximately the longest straight line from the anchor to a position that the
+/// robot can reach.
 pub(crate) fn least_cable_m(workspace: &Workspace) -> f64 {
     let Workspace { wall, anchor, keep_m, .. } = workspace;
     match wall {
@@ -41,8 +41,8 @@ pub(crate) fn return_path(workspace: &Workspace, site: &Site<'_>, cable: &Cable)
     cable.return_path(&roomy, &ObstacleMap::new(&workspace.wall, &obstacles), keep_m)
 }
 
-/// Whether the cable is reeled in when the robot drives home through a domain. A cable that lies across a cut stays
-/// around an obstacle.
+/// Whether the cable is reeled in once the robot has driven home through a domain. A cable that lies across a cut
+/// remains wound around an obstacle.
 pub(crate) fn comes_in(domain: &SlitDomain<'_>, cable: &Cable) -> bool {
     let Workspace { home, anchor, .. } = *domain.workspace;
     let start = domain.beside(cable.tip());
@@ -102,7 +102,7 @@ impl Tethered<'_> {
     }
 }
 
-/// The obstacles of a site without no-go zones: those stop the robot but not its cable.
+/// The obstacles of a site, without no-go zones, which stop the robot but not its cable.
 fn obstacles(site: &Site<'_>) -> Vec<Obstacle> {
     let obstacle = |o: &planner_api::Obstacle<'_>| Obstacle {
         id: ObstacleId(o.id),

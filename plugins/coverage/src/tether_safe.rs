@@ -1,5 +1,5 @@
-//! The tether-safe planner: lanes of a slit domain, so that the cable can be reeled in whatever their order, with a
-//! certificate.
+//! The tether-safe planner: its lanes lie in a slit domain, so that the cable can be reeled in whatever the order of
+//! the lanes, and each plan has a certificate.
 
 mod candidate;
 mod parameters;
@@ -126,8 +126,8 @@ fn limited<'a>(scope: Scope<'a>, workspace: &Workspace, preferences: &Preference
     Scope { reel_length_m, cell_m: scope.cell_m.max(least_cell_m), ..scope }
 }
 
-/// The candidates from the robot's position. If the cable as it lies rules all of them out, the candidates from home
-/// after a return along the cable.
+/// The candidates from the robot's position. If the cable's current position rules all of them out, the candidates from
+/// home after a return along the cable.
 fn tried_from_here_or_home<'a>(
     pipeline: &Pipeline<'a>,
     stages: &mut Stages<'_>,
@@ -135,9 +135,10 @@ fn tried_from_here_or_home<'a>(
     let Pipeline { site, workspace, scope, cable, .. } = *pipeline;
     let away_m = (scope.start - workspace.home).norm();
     let is_away = away_m > scope.tolerance_m;
-    // During a mission, the cable may lie across the cuts of every new plan. Then it is reeled in first.
+    // During a mission, the cable may cross the cuts of any plan that could be made; in that case it is reeled in
+    // first.
     let way = cable.filter(|_| is_away).and_then(|cable| return_path(workspace, site, cable));
-    // A cable that is far out may have to be reeled in, and then everything is computed again.
+    // If the robot is far from home, its cable may have to be reeled in, and then everything is computed again.
     let is_far_out = cable.is_some() && away_m > FAR * workspace.swath_m;
     stages.end = if is_far_out { 0.49 } else { 0.98 };
     let tried = Pipeline { must_come_in: way.is_some(), ..*pipeline }.run(stages)?;
@@ -153,18 +154,19 @@ fn tried_from_here_or_home<'a>(
     Ok((tried, way))
 }
 
-/// Why not even one lane can be planned, if so: the swath is wider than the floor, or the reel does not reach a lane.
+/// Why not even one lane can be planned, if that is so: the swath is wider than the floor, or the reel does not reach a
+/// lane.
 fn no_lane(workspace: &Workspace, reel_length_m: f64) -> Option<String> {
     let Workspace { swath_m, home, anchor, .. } = *workspace;
     let (low, high) = workspace.wall.bounds();
     let floor_m = (high.x - low.x).min(high.y - low.y);
     if swath_m > floor_m {
         return Some(format!(
-            "the swath of {swath_m:.2} m is wider than the floor of {floor_m:.2} m; it must be narrower"
+            "the swath of {swath_m:.2} m is wider than the floor of {floor_m:.2} m; choose a narrower swath"
         ));
     }
-    // The nearest lane that is not at the anchor itself is a swath away; a robot beside the anchor is already away from
-    // it.
+    // The nearest lane that is not at home itself is a swath away from home, and home may be some distance from the
+    // anchor.
     let farthest_m = least_cable_m(workspace);
     let needed_m = (home - anchor).norm() + swath_m.min(farthest_m);
     (reel_length_m < needed_m).then(|| {
@@ -175,7 +177,7 @@ fn no_lane(workspace: &Workspace, reel_length_m: f64) -> Option<String> {
     })
 }
 
-/// Warns of deficiencies of a plan. If the plan is not complete, the last warning gives the reason.
+/// Warns of deficiencies in a plan. If the plan is not complete, the last warning gives the reason.
 fn warn(worth: &Worth, preferences: &Preferences, scope: &Scope<'_>, scans_enough: bool, ctx: &Ctx<'_>) {
     let warn = |message: &str| ctx.log(LogLevel::Warn, message);
     let (share, has_reel) = (percent_text(worth.coverage, 1), scope.reel_length_m.is_finite());

@@ -58,7 +58,7 @@ fn axis(points: &[Point]) -> (Point, Vector) {
     (middle, direction((2.0 * xy).atan2(xx - yy) / 2.0))
 }
 
-/// The nearest position with room, found by moving away from whatever is in the way.
+/// The nearest position where the hull fits, found by moving away from whatever is in the way.
 fn with_room(domain: &SlitDomain<'_>, from: Point) -> Option<Point> {
     let workspace = domain.workspace;
     let mut at = from;

@@ -14,7 +14,7 @@ pub(crate) use costs::{Costs, Tour};
 use planner_api::Result;
 pub(crate) use search::Effort;
 
-/// Improves a tour of few lanes.
+/// Improves a given tour of a few lanes.
 pub(crate) fn tour_from(
     entries: Tour,
     connectors: &Connectors<'_>,

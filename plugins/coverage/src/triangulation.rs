@@ -10,17 +10,17 @@ use spade::{CdtEdge, ConstrainedDelaunayTriangulation, Point2 as Vertex, Triangu
 use std::collections::BTreeMap;
 use world::{Boundary, Point, polyline::edges, shape::bounds_of};
 
-/// Corners are snapped to multiples of this, so that corners of touching outlines coincide instead of lying slightly
-/// apart, metres.
+/// Corners are snapped to multiples of this, metres, so that corners of touching outlines coincide instead of lying
+/// slightly apart.
 pub(crate) const SNAP_M: f64 = 1.0 / 65536.0;
-/// Maximum displacement by snapping or by splitting lines, metres.
+/// Maximum displacement caused by snapping or by splitting lines, metres.
 pub(crate) const SNAPPED_M: f64 = 8.0 * SNAP_M;
 
 /// Edge length of the buckets in which outlines are looked up, metres.
 const BUCKET_M: f64 = 1.0;
-/// A point this far outside a triangle still counts as inside, square metres of signed area.
+/// Tolerance by which a point may be outside a triangle and still be taken as inside, as signed area, square metres.
 pub(crate) const NEARLY: f64 = 1e-9;
-/// No triangle.
+/// Stands for no triangle.
 pub(crate) const NONE: u32 = u32::MAX;
 
 type Cdt = ConstrainedDelaunayTriangulation<Vertex<f64>>;
@@ -57,7 +57,7 @@ impl Triangulation {
         Self { cdt, wall: wall.clone(), keep_m, outlines, buckets: Buckets::new(BUCKET_M, 0.0, &boxes) }
     }
 
-    /// The floor that can be reached from home without crossing a cut; `None` if there is no room at home.
+    /// The floor that can be reached from home without crossing a cut; `None` if the hull does not fit at home.
     pub(crate) fn walk(&self, cuts: &[Vec<Point>], home: Point) -> Option<Walk> {
         let mut cdt = self.cdt.clone();
         for cut in cuts {
@@ -94,7 +94,7 @@ fn constrain(cdt: &mut Cdt, line: &[Point], is_closed: bool) {
     }
 }
 
-/// The smallest signed area between a point and the sides of a triangle; not below zero inside.
+/// The smallest signed area between a point and the sides of a triangle; not negative if the point is inside.
 pub(crate) fn least_side([a, b, c]: [Point; 3], at: Point) -> f64 {
     let side = |p: Point, q: Point| (q - p).perp(&(at - p));
     side(a, b).min(side(b, c)).min(side(c, a))

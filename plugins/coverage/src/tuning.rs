@@ -19,12 +19,12 @@ pub(crate) mod cuts {
     /// of a sliver, square metres.
     pub(crate) const TRIES: usize = 12;
     pub(crate) const SLIVER_M2: f64 = 0.02;
-    /// Shares of the cable's slack by which a cut across the lanes, or along them, may lengthen the path to its far
-    /// end. They are tried in this order until the cable keeps its limits. The cable is rarely as long as a single cut
-    /// suggests.
+    /// Shares of the cable's slack by which a cut may lengthen the path to its far end, where cuts run across the lanes
+    /// and where they may run along them. The shares are tried in this order until the cable stays within its limits.
+    /// They may exceed 1 because the cable is rarely as long as a single cut suggests.
     pub(crate) const SLACKS_ACROSS: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
     pub(crate) const SLACKS_ALONG: [f64; 7] = [3.0, 2.2, 1.7, 1.3, 1.0, 0.8, 0.5];
-    /// Allowance for the hull, which passes columns further out than the cable does, metres, whatever the size of the
+    /// Allowance for the hull, which passes columns farther out than the cable does, metres; the same for every size of
     /// tank.
     pub(crate) const AROUND_M: f64 = 0.25;
 }
@@ -43,13 +43,14 @@ pub(crate) mod lanes {
     pub(crate) const INTO_LAP: f64 = 0.5;
     /// Spacing of straight lanes in a round tank: slightly less than the swath, so that no row of cells is missed.
     pub(crate) const SPACING: f64 = 0.997;
-    /// Lanes shorter than the swath divided by this are dropped: if touch-ups follow, and if not.
+    /// Lanes shorter than the swath divided by this are dropped: the first value applies if touch-ups follow, the
+    /// second if not.
     pub(crate) const LEAST_IN_SWATH: f64 = 3.0;
     pub(crate) const LEAST_TO_AND_FRO_IN_SWATH: f64 = 12.0;
-    /// The traditional and the published planner leave slivers, up to 12 % in tanks of many columns. Below this share
-    /// of the floor their plans are not complete.
+    /// The traditional and the published planner leave slivers, up to 12 % of the floor in tanks with many columns.
+    /// Plans that scan less than this share of the floor are not complete.
     pub(crate) const COMPLETE_WITH_SLIVERS: f64 = 0.85;
-    /// Sine of the smallest angle at which a cut counts as crossing straight lanes and needs a corridor.
+    /// Sine of the smallest angle at which a cut is considered to cross straight lanes and needs a corridor.
     pub(crate) const ACROSS: f64 = 0.6;
 }
 
@@ -67,8 +68,8 @@ pub(crate) mod tour {
 
 /// Prices and limits of polishing. Floor is priced in multiples of the length of path needed to sweep it.
 pub(crate) mod polish {
-    /// Value of floor for shortcuts. Bends cover the dropped floor more cheaply: together they shorten paths by 2 to 3
-    /// % (tuning.md).
+    /// Value of floor for shortcuts. Bends then scan the floor that shortcuts lose more cheaply: together, the two
+    /// shorten paths by 2 to 3 % (tuning.md).
     pub(crate) const FLOOR: f64 = 11.0;
     /// Maximum price of floor gained by a bend, turns included.
     pub(crate) const BENT_FLOOR: f64 = 28.0;
@@ -76,7 +77,7 @@ pub(crate) mod polish {
     /// the end (tuning.md).
     pub(crate) const DEARER: [f64; 3] = [2.0, 4.0, 8.0];
     pub(crate) const LEFT: f64 = 0.0008;
-    /// Value of floor after the path was bent to it, metres of path per square metre: none of it may be lost again.
+    /// Value of floor once the path has been bent to it, metres of path per square metre: none of it may be lost again.
     pub(crate) const CAREFUL_M_PER_M2: f64 = 1e6;
     /// Cell size of the first round as a multiple of that of the second: finer cells do not help to choose between
     /// candidates.
@@ -84,7 +85,7 @@ pub(crate) mod polish {
     /// Prices at which floor beyond the required coverage is given up, as multiples of the usual price; expensive floor
     /// first.
     pub(crate) const PRICES: [f64; 3] = [3.0, 1.0, 0.4];
-    /// Share of the scanned floor that shortcuts must leave if only part of the floor is requested.
+    /// Share of the scanned floor that must remain after shortcuts if only part of the floor is requested.
     pub(crate) const KEPT: f64 = 0.9;
     /// Number of bend rounds, tie rounds and early tie rounds, and the coverage that late tie rounds may miss.
     pub(crate) const BENDS: usize = 5;
@@ -121,12 +122,12 @@ pub(crate) mod shortcuts {
 
 /// Bends of a path to missed floor.
 pub(crate) mod bends {
-    /// Path points within this distance of missed floor are tried, metres, up to this number.
+    /// Path points within this distance of missed floor are tried, metres, and at most this many of them.
     pub(crate) const NEAR_M: f64 = 0.75;
     pub(crate) const PLACES: usize = 5;
-    /// Number of sides that a bend replaces on either side of its point.
+    /// Numbers of sides that a bend may replace, both before its point and after it.
     pub(crate) const BASES: [usize; 3] = [1, 2, 4];
-    /// Floor that a bend may gain, as a multiple of the floor for which it is made.
+    /// Largest gain of floor considered for a bend, as a multiple of the missed floor for which it is made.
     pub(crate) const AND_BESIDE: f64 = 2.0;
     /// Offsets of a bend, as shares of the swath.
     pub(crate) const ASIDE: [f64; 4] = [0.1, 0.2, 0.35, 0.55];
@@ -140,10 +141,10 @@ pub(crate) mod touch_ups {
     pub(crate) const LEAST: f64 = 0.55;
     /// Expected length of touch-ups over missed floor, as a multiple of its area divided by the swath.
     pub(crate) const MISSED: f64 = 2.5;
-    /// Distance from cuts, and minimum length, metres.
+    /// Distance of touch-ups from cuts, and their minimum length, metres.
     pub(crate) const CUT_M: f64 = 0.03;
     pub(crate) const LEAST_LANE_M: f64 = 0.06;
-    /// Sides of a finished path within this distance are tried for a tie, metres, up to this number.
+    /// Sides of a finished path within this distance are tried for a tie, metres, and at most this many of them.
     pub(crate) const TIE_M: f64 = 2.0;
     pub(crate) const SIDES: usize = 10;
     /// Maximum cost of a tie in addition to the length of its lane, metres, and minimum floor that it must gain, square
@@ -154,13 +155,13 @@ pub(crate) mod touch_ups {
 
 /// The pass along the shell.
 pub(crate) mod shell {
-    /// Width of the zone examined, metres, and the tolerated width not scanned, metres: lanes keep a little slack, and
-    /// a robot does not drive to the millimetre.
+    /// Width of the zone examined, metres, and the unscanned width that is tolerated, metres: lanes keep a little
+    /// slack, and no robot drives to the millimetre.
     pub(crate) const ZONE_M: f64 = 0.075;
     pub(crate) const NEAR_M: f64 = 0.0101;
-    /// A path closer than this to its minimum distance from the shell is moved there, metres.
+    /// A path that exceeds its minimum distance from the shell by less than this is moved to that distance, metres.
     pub(crate) const PRESSED_M: f64 = 0.03;
-    /// Floor that may be lost by that, in square metres per metre of path.
+    /// Floor that this move may lose, in square metres per metre of path.
     pub(crate) const MOST_LOST_M: f64 = 0.02;
     /// Step along the shell, and the shortest lane that is worth its turns, metres.
     pub(crate) const STEP_M: f64 = 0.15;
@@ -172,43 +173,43 @@ pub(crate) mod choice {
     /// Shares of the largest cut angle, tried until a candidate meets the preferences for the cable. The first is
     /// sufficient in about half of all tanks (tuning.md).
     pub(crate) const ANGLES: [f64; 3] = [1.0, 0.5, 0.0];
-    /// Number of directions of straight lanes examined in a round tank before any lanes are laid, and of offsets for
-    /// each.
+    /// Number of directions of straight lanes examined in a round tank before any lanes are laid, and number of offsets
+    /// for each direction.
     pub(crate) const LOOKED_AT: usize = 24;
     pub(crate) const PLACES: usize = 6;
     /// Cost of a lane broken by an obstacle, and of a metre of sliver along the wall, in lanes broken by a cut. An
     /// obstacle costs less because the way around it is short.
     pub(crate) const BY_OBSTACLE: f64 = 0.5;
     pub(crate) const SLIVER_PER_M: f64 = 0.5;
-    /// Angle between a lane and the side of an obstacle in its way, radians, from which the lane is broken instead of
-    /// bent around. Going around takes four such turns; turning back takes half a turn.
+    /// If the angle between a lane and the side of an obstacle in its way exceeds this, radians, the lane is broken
+    /// rather than bent around the obstacle. Going around takes four such turns; turning back takes half a turn.
     pub(crate) const BENT_RAD: f64 = std::f64::consts::FRAC_PI_4;
     /// Total length of lanes that get a first tour, metres; it determines the number of candidates, with a minimum of
     /// two. More candidates take longer, and an additional one gains least in large tanks.
     pub(crate) const TOURED_M: f64 = 14_000.0;
     pub(crate) const LEAST_TOURED: usize = 2;
-    /// The number of directions between straight walls: along the longest wall, and across it. There cuts are tried up
-    /// to several angles, as multiples of the largest, with an upper limit in radians: different cuts break different
-    /// lanes (tuning.md).
+    /// Number of directions between straight walls: along the longest wall, and across it. There, cuts are tried up to
+    /// several angles, given as multiples of the largest cut angle, with an upper limit in radians: different cuts
+    /// break different lanes (tuning.md).
     pub(crate) const BETWEEN_WALLS: usize = 2;
     pub(crate) const ANGLES_BETWEEN_WALLS: [f64; 4] = [1.0, 1.2, 1.4, 1.6];
     pub(crate) const MOST_ANGLE_RAD: f64 = 80.0 * std::f64::consts::PI / 180.0;
     /// A tank with more obstacles than this is crowded: only the best direction is tried, with straight cuts. Oblique
     /// cuts did not meet the preferences for the tether there, so planning with them would waste time (tuning.md).
     pub(crate) const CROWDED: usize = 800;
-    /// Maximum number of candidates polished in coarse cells, and of those finished in fine cells: the ranking by first
-    /// tours is almost that of finished paths (tuning.md).
+    /// Maximum number of candidates polished in coarse cells, and of those finished in fine cells: first tours rank
+    /// almost like finished paths (tuning.md).
     pub(crate) const MOST_ROUGHED: usize = 2;
     pub(crate) const MOST_FINISHED: usize = 2;
     /// Factors by which the tether of a first tour may exceed the preferred length and wraps: polishing changes them by
     /// less.
     pub(crate) const DRAFT_CABLE: f64 = 1.015;
     pub(crate) const DRAFT_WRAP: f64 = 1.1;
-    /// First tours that cost more than the best by this share are never chosen.
+    /// First tours that cost more than the best by at least this share never lead to the chosen candidate.
     pub(crate) const HOPELESS: f64 = 0.02;
     /// The same after polishing in coarse cells.
     pub(crate) const CLOSE: f64 = 0.01;
-    /// Within this many swaths of home no cable lies across a cut.
+    /// Within this many swaths of home, no cable lies across a cut.
     pub(crate) const FAR: f64 = 4.0;
     /// A plan is complete with this share of the reachable floor even if more is requested. With a short reel it may
     /// miss the second share of the requested coverage.
@@ -221,15 +222,15 @@ pub(crate) mod choice {
 
 /// Floors between inner walls.
 pub(crate) mod rooms {
-    /// Maximum lane length and number of convex obstacles that can be planned well within a minute on one core: 5,000 m
-    /// took 16 s.
+    /// Maximum total lane length, and maximum number of convex obstacles, that can be planned well within a minute on
+    /// one core: 5,000 m took 16 s.
     pub(crate) const MOST_LANES_M: f64 = 8_000.0;
     pub(crate) const MOST_PARTS: usize = 3_000;
-    /// A plan between inner walls is complete with this share of the reachable floor. Coverage is counted with the
-    /// width of the lanes, which is the tool width less the overlap. The overlap also scans corners beyond that: maps
-    /// with 98.3 to 98.9 % have 99.8 to 99.9 % by the tool width (decisions.md).
+    /// A plan between inner walls is complete with this share of the reachable floor. Coverage is counted with the lane
+    /// width, which is the tool width less the overlap. The tool also scans corners beyond that width: maps with 98.3
+    /// to 98.9 % by lane width have 99.8 to 99.9 % by tool width (decisions.md).
     pub(crate) const COMPLETE: f64 = 0.98;
-    /// With more convex obstacles than this, a floor with straight walls counts as divided by inner walls.
+    /// With more convex obstacles than this, a floor with straight walls is treated as divided by inner walls.
     pub(crate) const FEW_PARTS: usize = 200;
 }
 
@@ -241,8 +242,8 @@ pub(crate) mod repair {
     pub(crate) const RAYS: i32 = 16;
     /// Cost of a metre of such a cut, in broken lanes.
     pub(crate) const COST_PER_M: f64 = 0.1;
-    /// Largest angles between these cuts and that ray, tried one after another: an oblique cut breaks fewer lanes, a
-    /// straight cut bends the tether less.
+    /// Largest angles between these cuts and the ray from the anchor, tried one after another: an oblique cut breaks
+    /// fewer lanes, a straight cut bends the tether less.
     pub(crate) const ANGLES_RAD: [f64; 3] = [FRAC_PI_2, 0.8, 0.2];
     /// Factors by which a certified repair may exceed the preferred tether length and wraps.
     pub(crate) const LONGER_CABLE: f64 = 1.1;
@@ -253,8 +254,8 @@ pub(crate) mod repair {
     pub(crate) const KICKS: f64 = 30.0;
     /// Lanes that can no longer be driven are divided into pieces of this length, metres.
     pub(crate) const BIT_M: f64 = 0.1;
-    /// For a blocked robot, a new path must leave the old one by the second distance within the first, metres: by more
-    /// than a bend does.
+    /// For a blocked robot, a new path must deviate from the old one by the second distance within the first, metres; a
+    /// bend deviates by less.
     pub(crate) const AHEAD_M: f64 = 1.0;
     pub(crate) const AS_BEFORE_M: f64 = 0.35;
     /// Share of all floor that a repaired path may miss in addition to what the previous plan could miss.
@@ -271,15 +272,15 @@ pub(crate) mod hull_partition {
     pub(crate) const WALL_SIDES: usize = 96;
     /// Minimum width of a gate, metres.
     pub(crate) const LEAST_GATE_M: f64 = 0.1;
-    /// Cells smaller than the square of this many swaths are merged if the result is this convex and no column is
-    /// deeper inside it than this, metres.
+    /// Cells smaller than the square of this many swaths are merged if the result is at least this convex and no column
+    /// is deeper inside it than this, metres.
     pub(crate) const SMALL_SWATHS: f64 = 4.0;
     pub(crate) const CONVEX_ENOUGH: f64 = 0.95;
     pub(crate) const DEEP_M: f64 = 0.05;
     /// Cuts extend this far beyond the corners of cells, and outermost lanes stay this far inside cells, metres.
     pub(crate) const SEAM_M: f64 = 0.02;
     pub(crate) const INSIDE_M: f64 = 3e-3;
-    /// Maximum number of convex obstacles of a floor between inner walls: with more, walls would be mistaken for
+    /// Maximum number of convex obstacles on a floor between inner walls: with more, walls would be mistaken for
     /// columns.
     pub(crate) const MOST_COLUMNS: usize = 40;
     /// Sealed area that justifies another gate or a warning, square metres.

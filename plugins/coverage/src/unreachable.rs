@@ -62,8 +62,8 @@ pub(crate) fn report(scan: &Scan<'_>, scope: &Scope<'_>, ctx: &Ctx<'_>) -> bool 
         log(&why, &|cell| scan.swept.is_missed(cell) && is_far(raster.center(cell)));
     }
     let whole = ReachableFloor::new(&scan.domain, scope.cell_m);
-    // During a mission, the rest comes in blocks of cells. Some are slivers that only the full width of the tool
-    // reaches.
+    // During a mission, the remaining floor is given as blocks of cells. Some are slivers that only the full width of
+    // the tool reaches.
     let least_m2 = if scope.whole > 1.0 { LEAST_M2 } else { 0.0 };
     let closed: Vec<Point> = scope
         .regions
@@ -90,8 +90,8 @@ fn shell_left(scan: &Scan<'_>, scope: &Scope<'_>) -> Vec<String> {
     let rim_m = keep_m - swath_m / 2.0;
     if rim_m > LEAST_RIM_M {
         lines.push(format!(
-            "shell: {rim_m:.2} m along it not reachable: hull radius {hull_m:.2} m + clearance {:.2} m - \
-             half the lane width of {swath_m:.2} m (swath less overlap)",
+            "shell: a rim of {rim_m:.2} m along it cannot be reached: hull radius {hull_m:.2} m + \
+             clearance {:.2} m - half the lane width of {swath_m:.2} m (swath less overlap)",
             keep_m - hull_m
         ));
     }
@@ -119,7 +119,7 @@ fn shell_left(scan: &Scan<'_>, scope: &Scope<'_>) -> Vec<String> {
         let causes = causes.iter().filter(|(length_m, _)| *length_m >= 0.05);
         let causes: Vec<String> = causes.map(|(length_m, why)| format!("{length_m:.1} m {why}")).collect();
         lines.push(format!(
-            "shell: {open_m:.1} m of it not scanned to the usual distance: {}",
+            "shell: {open_m:.1} m of it not scanned as close to the wall as usual: {}",
             causes.join(", ")
         ));
     }

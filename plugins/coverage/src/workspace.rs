@@ -1,4 +1,4 @@
-//! The tank as a coverage planner sees it: wall, solid parts, and the room for the hull centre.
+//! The tank as a coverage planner sees it: the wall, the solid parts, and the space for the hull centre.
 
 use crate::floor::{Grain, ReachableFloor};
 use crate::inflation::SLACK_M;
@@ -18,8 +18,8 @@ use world::{
     tether::Ground,
 };
 
-/// A cut is extended into solids that are no further from its ends than this multiple of the distance to keep, because
-/// outlines are drawn around the exact ones.
+/// A cut is extended into solids that are no farther from its ends than this multiple of the distance to keep:
+/// outlines, at which cuts may end, are slightly larger than the exact ones.
 const ROOT_SHARE: f64 = 1.1;
 /// Depth to which a cut is extended into solids, metres.
 const ROOT_M: f64 = 0.01;
@@ -31,17 +31,17 @@ pub(crate) struct Workspace {
     pub parts: Vec<Part>,
     /// Radius of the hull, metres.
     pub hull_m: f64,
-    /// Distance between the hull centre and any solid, metres.
+    /// Distance that the hull centre keeps from any solid, metres.
     pub keep_m: f64,
     /// Width of the floor scanned in one pass, metres.
     pub swath_m: f64,
     pub anchor: Point,
-    /// Where the robot starts and ends: the anchor, or the nearest position with room.
+    /// Where the robot starts and ends: the anchor, or the nearest position where the hull fits.
     pub home: Point,
-    /// The room for the hull centre, with exact distances.
+    /// The space for the hull centre, with exact distances.
     pub room: Room,
-    /// Whether inner walls bend paths on the floor: a straight wall has inward corners, an obstacle touches it, or
-    /// there are too many obstacles for columns.
+    /// Whether inner walls bend paths on the floor: a straight wall has inward corners, an obstacle leaves no passage
+    /// to it, or there are too many obstacles for them to be columns.
     pub is_room: bool,
     triangulation: OnceLock<Triangulation>,
     /// The floor that the tool can reach if no cut seals any off, for several cell sizes; computed when first
@@ -92,18 +92,18 @@ impl Workspace {
         self.triangulation.get_or_init(|| Triangulation::new(&self.wall, &self.parts, self.keep_m))
     }
 
-    /// Whether a tank has so many obstacles that fewer candidates are worth their time.
+    /// Whether the tank has so many obstacles that only few candidates are worth computing.
     pub(crate) fn is_crowded(&self) -> bool {
         !self.is_room && self.parts.len() > CROWDED
     }
 
-    /// Whether wall and obstacles allow the hull centre at a position.
+    /// Whether wall and obstacles leave space for the hull centre at a position.
     pub(crate) fn is_free(&self, at: Point) -> bool {
         self.room.spare_m(at) >= 0.0
     }
 
-    /// Whether there is room for the hull centre within a distance of a position, in the direction straight away from
-    /// the nearest solid.
+    /// Whether there is space for the hull centre within a distance of a position, straight away from the nearest
+    /// solid.
     pub(crate) fn is_in_reach(&self, at: Point, reach_m: f64) -> bool {
         /// Step of the differences used to find the direction away, metres.
         const STEP_M: f64 = 1e-4;
@@ -123,15 +123,16 @@ impl Workspace {
         !self.room.is_solid(at)
     }
 
-    /// Extends a cut from solid to solid: if it ends at the edge of the room of a wall or an obstacle, it is continued
-    /// into the solid. A robot that cuts a corner slightly can then not get around its end.
+    /// Extends a cut from solid to solid: an end just outside a wall or an obstacle is continued into that solid, so
+    /// that a robot that cuts a corner slightly cannot get around the end.
     pub(crate) fn rooted(&self, cut: &[Point]) -> Vec<Point> {
         let before = cut.first().and_then(|end| self.root(*end));
         let behind = cut.last().and_then(|end| self.root(*end));
         before.into_iter().chain(cut.iter().copied()).chain(behind).collect()
     }
 
-    /// A point slightly inside the solid from which a position keeps exactly the hull's distance.
+    /// A point slightly inside the nearest solid, if the position is about as far from the solid as the hull centre
+    /// must be.
     fn root(&self, at: Point) -> Option<Point> {
         let of_parts = self.parts.iter().map(|part| part.distance(at));
         let (distance_m, away) = of_parts.chain(self.wall_beside(at)).min_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -195,7 +196,7 @@ fn has_inner_walls(wall: &Boundary, parts: &[Part], keep_m: f64) -> bool {
     parts.len() > FEW_PARTS || reflex_corners(vertices).next().is_some() || parts.iter().any(is_at_wall)
 }
 
-/// The room between wall and part, metres; zero or negative if the part reaches the wall.
+/// The gap between wall and part, metres; zero or negative if the part reaches the wall.
 pub(crate) fn wall_gap_m(wall: &Boundary, part: &Part) -> f64 {
     let corners = part.corners();
     let ends = corners.iter().map(|c| wall.wall_distance_m(c.0) - c.1).fold(f64::INFINITY, f64::min);
@@ -203,7 +204,7 @@ pub(crate) fn wall_gap_m(wall: &Boundary, part: &Part) -> f64 {
     edges(vertices).map(|(a, b)| part.segment_distance_m(a, b)).fold(ends, f64::min)
 }
 
-/// The extent of a part from its centre, metres.
+/// The largest distance from a part's centre to its outline, metres.
 pub(crate) fn reach_m(part: &Part) -> f64 {
     let at = part.middle();
     part.corners().iter().map(|c| (c.0 - at).norm() + c.1).fold(0.0, f64::max)
@@ -233,7 +234,7 @@ fn refused_anchor(wall: &Boundary, parts: &[Part], anchor: Point) -> Option<(Cod
     Some((Code::StartOccupied, message))
 }
 
-/// The anchor, or the nearest position with room on circles around it, up to 2 m away.
+/// The anchor, or the nearest position where the hull fits, on circles of up to 2 m around the anchor.
 fn home(room: &Room, anchor: Point) -> Point {
     let is_roomy = |at: &Point| room.spare_m(*at) >= SLACK_M;
     places_around(anchor, 2.0).find(is_roomy).unwrap_or(anchor)

@@ -1,4 +1,4 @@
-//! The faults: one function for each that takes more than a line.
+//! The faults: one function for each fault that takes more than one line.
 
 use nalgebra::Point2;
 use planner_api::{Code, Ctx, Layer, PlannerError, Result};
@@ -53,7 +53,7 @@ pub(crate) fn happens_once(kind: &str) -> bool {
     kind == "nap"
 }
 
-/// Commits the fault of this name. Returns only if the fault can be survived.
+/// Commits the fault with this name. Returns only if the fault can be survived.
 pub(crate) fn commit(kind: &str, ctx: &Ctx<'_>) -> Result<()> {
     match kind {
         "panic" => look_up_nothing(),
@@ -147,7 +147,8 @@ fn print_flood() {
 
 #[cfg(unix)]
 mod process {
-    //! The faults that need unsafe code. The numbers are those of Linux; SIGSTOP has a different number on macOS.
+    //! The faults that need unsafe code. The signal numbers are those of Linux; SIGSTOP has a different number on
+    //! macOS.
 
     pub(super) const SIGKILL: i32 = 9;
     pub(super) const SIGSTOP: i32 = if cfg!(target_os = "macos") { 17 } else { 19 };

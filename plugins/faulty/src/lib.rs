@@ -1,6 +1,6 @@
 //! A planner that misbehaves in every way the tests can think of.
 //!
-//! The planner drives straight to the target, as a correct one would, until its step number `at_step`. Then it
+//! The planner drives straight to the target, as a correct one would, until its step number `at_step`. At that step, it
 //! commits the fault named by the parameter `fault`. Faults whose names begin with `configure_` or `plan_` occur in
 //! those calls; those that begin with `replan_` occur in every plan after the first.
 
@@ -29,7 +29,7 @@ impl Planner for Faulty {
     const PARAMS: &'static [ParamSpec] = &[
         choice("fault", "Fault", FAULTS, 0).help("The fault to commit."),
         int("at_step", "Step of the fault", "", 0, 1_000_000, 5)
-            .help("The number of good steps before the fault."),
+            .help("The number of correct steps before the fault."),
     ];
 
     fn configure(config: &Config<'_>, site: &Site<'_>, ctx: &Ctx<'_>) -> Result<Self> {

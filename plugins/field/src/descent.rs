@@ -15,7 +15,7 @@ const PATIENCE_MOVES: usize = 2000;
 /// Maximum number of moves, as a multiple of those of the straight path.
 const DETOUR: f64 = 20.0;
 
-/// A goal and how to walk there.
+/// A goal, and how to walk to it.
 #[derive(Debug, Clone, Copy)]
 pub struct Descent {
     /// The start.
@@ -24,7 +24,7 @@ pub struct Descent {
     pub goal: Point,
     /// Length of a move, metres.
     pub step_m: f64,
-    /// Distance at which the goal counts as reached, metres.
+    /// Within this distance the goal is reached, metres.
     pub tolerance_m: f64,
 }
 

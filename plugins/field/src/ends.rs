@@ -5,7 +5,7 @@ use geometry::Point;
 use planner_api::{Code, PlanRequest, PlannerError, Result, Site, Task};
 use steering::evade;
 
-/// Outside the floor by at most this much counts as rounding, metres.
+/// A position outside the floor by at most this much is put down to rounding, metres.
 const ROUNDING_M: f64 = 1e-6;
 
 /// Returns the goal of a request and its tolerance, metres, after checking start and goal. `id` names the planner in
@@ -15,7 +15,7 @@ const ROUNDING_M: f64 = 1e-6;
 /// [`Code::Unsupported`] for a preset path, and those of [`check_start`] and [`check_goal`].
 pub fn single_goal(request: &PlanRequest<'_>, id: &str) -> Result<(Point, f64)> {
     let Task::Goto { goal, tolerance_m } = request.task else {
-        let message = format!("{id} plans to single goals; for preset paths choose apf or rpf");
+        let message = format!("{id} plans to single goals only; for preset paths choose apf or rpf");
         return Err(PlannerError::new(Code::Unsupported, message));
     };
     // An obstacle moving over the goal now will be gone when the robot arrives.

@@ -1,7 +1,7 @@
 //! Escapes from a trap that add a force for a while: a virtual target, or a sideways push.
 //!
-//! Wang et al. 2023 compare with both methods by name only. Positions, gains and durations here are reconstructed, so
-//! results of these planners are not evidence about the originals.
+//! Wang et al. 2023 compare their method with both by name only. Positions, gains and durations here are reconstructed,
+//! so results of these planners are not evidence about the originals.
 
 use crate::law::{Law, nearest_obstacle};
 use geometry::{Point, Vector};
@@ -11,7 +11,7 @@ use steering::{Contact, Forces};
 const TARGET_MOVES: usize = 25;
 /// Distance of the virtual target from the obstacle, as a share of the obstacle range.
 const TARGET_OFF: f64 = 0.7;
-/// Pull of the virtual target, as a multiple of the pull of a target as far away as the obstacle range.
+/// Pull of the virtual target, as a multiple of the pull of a target at the obstacle range.
 const TARGET_PULL: f64 = 3.0;
 /// Duration of a held push, moves.
 const PUSH_MOVES: usize = 5;
@@ -21,7 +21,7 @@ const PUSH: f64 = 2.0;
 const PUSH_AHEAD: f64 = 0.5;
 /// Strength of a half-pull push, as a multiple of the target's pull.
 const HALF: f64 = 0.5;
-/// Seed of the random sides at the start of every plan and flight.
+/// Seed for the random sides; every plan and every flight starts with it.
 const FIRST_RANDOM: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// The response to a trap.
@@ -29,8 +29,7 @@ const FIRST_RANDOM: u64 = 0x9e37_79b9_7f4a_7c15;
 pub enum Escape {
     /// None.
     None,
-    /// A target beside the nearest obstacle, on the side away from the obstacle as seen along the path, after Yang
-    /// 2018.
+    /// A target beside the nearest obstacle, on the obstacle's side that faces the path, after Yang 2018.
     VirtualTarget,
     /// A sideways push, after Zhao 2022. The side is chosen again in every trap, so it may alternate.
     Push {
@@ -86,7 +85,7 @@ pub struct Situation<'a> {
     pub goal: Point,
     /// The contacts that act on the robot.
     pub contacts: &'a [Contact],
-    /// The law in force.
+    /// The law that applies.
     pub law: &'a Law,
     /// Length of a move, metres.
     pub step_m: f64,
@@ -98,7 +97,7 @@ impl Escaping {
         Self { rule, target: None, side: 1.0, random: FIRST_RANDOM, left: 0 }
     }
 
-    /// Takes over the situation of the next move, and whether it is a trap. Returns the force to add.
+    /// Processes the situation before the next move, and whether it is a trap. Returns the force to add.
     pub fn update(&mut self, now: &Situation<'_>, is_trapped: bool) -> Vector {
         let Some(ahead) = (now.goal - now.at).try_normalize(1e-9) else { return Vector::zeros() };
         match self.rule {

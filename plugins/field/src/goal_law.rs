@@ -32,7 +32,7 @@ pub struct GoalLaw {
     pub pull: Pull,
     /// Gain of push and tangent force; mu or `k_rep` in the papers.
     pub k_rep: f64,
-    /// How the push falls with distance.
+    /// How the push decreases with distance.
     pub push: PushForm,
     /// Distance between hull and outline at which both forces begin, metres.
     pub rho_m: f64,
@@ -74,7 +74,7 @@ impl Sides {
 }
 
 impl GoalLaw {
-    /// The forces on a robot at `at` bound for `goal`; `nearby` must reach as far as the law.
+    /// The forces on a robot at `at` bound for `goal`; `nearby` must contain everything within range of the law.
     pub fn forces(
         &self,
         at: Point,
@@ -125,7 +125,7 @@ fn not_too_near(contact: Contact) -> Contact {
     Contact { distance_m: contact.distance_m.max(CLOSEST_M), ..contact }
 }
 
-/// Strength of the tangent force, `w mu / L` (Xu et al. 2022, eq. 13); `L` below 0.3 m counts as 0.3 m.
+/// Strength of the tangent force, `w mu / L` (Xu et al. 2022, eq. 13); `L` below 0.3 m is taken as 0.3 m.
 fn tangent_strength(weight: f64, mu: f64, length_m: f64) -> f64 {
     weight * mu / length_m.max(SHORTEST_M)
 }

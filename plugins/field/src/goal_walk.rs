@@ -13,13 +13,13 @@ pub struct Trip {
     pub start: Point,
     /// The goal.
     pub goal: Point,
-    /// Distance at which the goal counts as reached, metres.
+    /// Within this distance the goal is reached, metres.
     pub tolerance_m: f64,
     /// Maximum number of steps.
     pub steps_max: usize,
 }
 
-/// Walks until the goal is reached or `next` returns nothing more. `check` can end the walk early.
+/// Walks until the goal is reached or `next` returns no more steps. `check` can end the walk early.
 ///
 /// If the goal is no further than `tolerance_m`, the last step is left to the mission.
 ///

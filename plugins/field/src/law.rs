@@ -9,12 +9,12 @@ use steering::{Contact, Forces, Side, Source};
 pub enum Repulsion {
     /// Khatib's.
     Classic,
-    /// Weighted with the distance to the goal, with a component toward it (Ge and Cui 2000).
+    /// Weighted with the distance to the goal, with a component toward the goal (Ge and Cui 2000).
     Improved {
         /// Power of the distance to the goal.
         exponent: f64,
     },
-    /// Weighted with the distance to the goal, without that component; a reading of Wang et al. 2023.
+    /// Weighted with the distance to the goal, without that component; one interpretation of Wang et al. 2023.
     Scaled {
         /// Power of the distance to the goal.
         exponent: f64,
@@ -56,7 +56,7 @@ pub struct Law {
     pub wall_gain: f64,
     /// The form of repulsion.
     pub repulsion: Repulsion,
-    /// How the push falls with distance.
+    /// How the push decreases with distance.
     pub form: PushForm,
     /// Whether only the nearest obstacle pushes, instead of all in range.
     pub nearest_only: bool,
@@ -121,7 +121,7 @@ impl Law {
 }
 
 impl Beside {
-    /// The forces without those that are replaced while the rotating force or push acts.
+    /// The forces without those that are replaced while the rotating force or the sideways push acts.
     pub(crate) fn left_of(self, forces: Forces, acts: bool) -> Forces {
         if !acts {
             return forces;

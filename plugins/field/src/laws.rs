@@ -18,15 +18,15 @@ pub fn repulsion(k_rep: f64, rho_0_m: f64, contact: &Contact) -> Vector {
     PushForm::Khatib.repulsion(k_rep, rho_0_m, contact)
 }
 
-/// How repulsion falls with the distance from an obstacle.
+/// How repulsion decreases with the distance from an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PushForm {
     /// Khatib's `(1/rho - 1/rho_0) / rho^2`.
     Khatib,
-    /// `1/rho - 1/rho_0`: a reading of Wang et al. 2023, whose text does not print the force.
+    /// `1/rho - 1/rho_0`: one interpretation of Wang et al. 2023, whose text does not print the force.
     Inverse,
-    /// `1/rho`, which ends at `rho_0` with a jump: eq. 8 of Xu et al. 2022. The paper gives no range, and by its eq. 9
-    /// the force points toward the obstacle; here it points away.
+    /// `1/rho`, which ends at `rho_0` with a jump: eq. 8 of Xu et al. 2022. The paper gives no range and, according to
+    /// its eq. 9, the force points toward the obstacle; here it points away.
     Hyperbola,
 }
 
@@ -41,7 +41,7 @@ impl PushForm {
         }
     }
 
-    /// The push away from the outline for a gain.
+    /// The push away from the outline, for a given gain.
     pub fn repulsion(self, k_rep: f64, rho_0_m: f64, contact: &Contact) -> Vector {
         contact.away * (k_rep * self.strength(rho_0_m, contact.distance_m))
     }
@@ -50,7 +50,7 @@ impl PushForm {
 /// Repulsion weighted with the distance to the goal, so that a goal beside an obstacle can be reached (GNRON, Ge and
 /// Cui 2000): `k_rep (1/rho - 1/rho_0) rho_g^n / rho^2` away from the outline plus `n/2 k_rep (1/rho - 1/rho_0)^2
 /// rho_g^(n-1)` toward the goal. Wang et al. 2023 give no `n`; two is the textbook value. `form` states how the first
-/// part falls with `rho`.
+/// part decreases with `rho`.
 pub fn improved_repulsion(
     form: PushForm,
     k_rep: f64,

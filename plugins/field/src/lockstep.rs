@@ -1,5 +1,5 @@
-//! Follows preset points in lock step: the target advances with every move, reached or not. It advances by one point
-//! unless configured otherwise.
+//! Follows preset points in lock step: the target advances with every move, whether or not it was reached. It advances
+//! by one point unless configured otherwise.
 
 use crate::{
     descent::{self, Descent},
@@ -11,8 +11,8 @@ use crate::{
 use geometry::{Point, polyline};
 use planner_api::{Ctx, Result};
 
-/// Stopping near the last point is allowed only within this share of the end of the list. Otherwise a push through the
-/// middle of a spiral ends the path early, as seems to happen in the paper's runs.
+/// Stopping near the last point is allowed only in this last share of the list. Otherwise, a push through the middle of
+/// a spiral would end the path early, as seems to happen in the paper's runs.
 const TAIL_SHARE: f64 = 0.02;
 
 /// Walks along preset points (Wang et al. 2023, section 2).
@@ -79,7 +79,7 @@ pub struct PresetPath<'a> {
     pub start: Point,
     /// The preset points; no two neighbours are further apart than a step.
     pub points: &'a [Point],
-    /// Distance at which the last point counts as reached, metres.
+    /// Within this distance the last point is reached, metres.
     pub tolerance_m: f64,
 }
 

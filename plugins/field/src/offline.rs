@@ -33,7 +33,7 @@ pub fn plan(settings: &FieldSettings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) 
         Task::Cover { .. } => {
             return Err(PlannerError::new(
                 Code::Unsupported,
-                "plans to goals and along preset paths, and does not cover floors",
+                "plans to goals and along preset paths, but does not cover floors",
             ));
         }
     }

@@ -1,8 +1,8 @@
-//! Points that the texts of Wang et al. 2023 and Xu et al. 2022 leave open, as parameters. The defaults are our
+//! Parameters for points that the texts of Wang et al. 2023 and Xu et al. 2022 leave open. The defaults are our
 //! choices.
 //!
 //! Other choices come closer to Wang's Table 1, but they were selected to match it. They show that the table is
-//! compatible with a reading, not what the authors did.
+//! compatible with an interpretation, not what the authors did.
 
 use crate::{
     escape::{Escape, PushSide, PushStrength},
@@ -15,11 +15,11 @@ use planner_api::{Config, ParamSpec, choice};
 
 const GROUP: &str = "Open points of the paper";
 
-/// When the robot counts as trapped.
+/// When the robot is considered trapped.
 pub const GATE: ParamSpec = choice("gate", "Gate", &["detected", "backward", "opposed"], 0)
     .help(
-        "When the robot counts as trapped. Detected: recent moves make almost no headway. The other two \
-         are checked at every move. Backward: the sum of pull and push points away from the target. \
+        "When the robot is considered trapped. Detected: recent moves make almost no headway. The other \
+         two are checked at every move. Backward: the sum of pull and push points away from the target. \
          Opposed: the push exceeds 0.8 of the pull and opposes it.",
     )
     .group(GROUP);
@@ -27,14 +27,17 @@ pub const GATE: ParamSpec = choice("gate", "Gate", &["detected", "backward", "op
 pub const TARGETS: ParamSpec = choice("targets", "Next target", &["lock-step", "ahead"], 0)
     .help(
         "Lock-step: the next preset point after every move. Ahead: the point after the nearest one ahead, \
-         if that is further on.",
+         if that point is further on.",
     )
     .group(GROUP);
 /// The length of a move.
 pub const MOVE_LENGTH: ParamSpec = choice("move_length", "Move length", &["to-target", "by-force"], 0)
-    .help("Up to the step: as far as the target, or as far as the force divided by the attraction gain.")
+    .help(
+        "As far as the target, or as far as the force divided by the attraction gain; never more than \
+           the step.",
+    )
     .group(GROUP);
-/// How the push falls with distance.
+/// How the push decreases with distance.
 pub const PUSH_FORM: ParamSpec = choice("push_form", "Repulsion form", &["khatib", "inverse"], 0)
     .help("Khatib: (1/rho - 1/rho0) / rho2. Inverse: 1/rho - 1/rho0.")
     .group(GROUP);
@@ -90,7 +93,7 @@ pub fn read(settings: FieldSettings, config: &Config<'_>) -> FieldSettings {
     read
 }
 
-/// Reads how the push of a goal planner falls with distance.
+/// Reads how the push of a goal planner decreases with distance.
 pub fn goal_push_form(config: &Config<'_>) -> PushForm {
     if config.choice("push_form") == "hyperbola" { PushForm::Hyperbola } else { PushForm::Khatib }
 }

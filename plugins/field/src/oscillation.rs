@@ -1,12 +1,12 @@
-//! Decides when the robot counts as trapped. The paper says "oscillates" and gives no rule; this rule is ours.
+//! Decides when the robot is considered trapped. The paper says "oscillates" and gives no rule; this rule is ours.
 
 use geometry::Point;
 use std::collections::VecDeque;
 
 /// An oscillation: the net displacement is below this share of the distance covered.
 const SHARE: f64 = 0.15;
-/// Number of windows without a new best distance to the goal after which the robot counts as trapped, unless more are
-/// allowed.
+/// Number of windows without a new best distance to the goal after which the robot is considered trapped, unless more
+/// are allowed.
 const PATIENCE_WINDOWS: usize = 20;
 
 /// Examines a sliding window of steps.

@@ -17,8 +17,9 @@ pub struct Walk {
 }
 
 impl Walk {
-    /// Converts the walk to a plan. `clearance_m` is the smallest distance between the hull and any solid along it, and
-    /// `demanded_m` the required distance, both in metres. If the plan is not complete, the first reason is logged.
+    /// Converts the walk to a plan. `clearance_m` is the smallest distance between the hull and any solid along the
+    /// walk, and `demanded_m` the required distance, both in metres. If the plan is not complete, the first reason is
+    /// logged.
     pub fn into_plan(self, clearance_m: f64, demanded_m: f64, ctx: &Ctx<'_>) -> Plan {
         self.into_plan_or(clearance_m, demanded_m, "", ctx)
     }

@@ -24,7 +24,10 @@ pub const K_ATT: ParamSpec = float("k_att", "Attraction gain", "N/m", 0.001, 100
     .live();
 /// Gain of the push.
 pub const K_REP: ParamSpec = float("k_rep", "Repulsion gain", "N m3", 0.0, 1000.0, 0.02)
-    .help("Gain of the push of obstacles. A larger gain keeps further away and closes narrow passages.")
+    .help(
+        "Gain of the push from obstacles. A larger gain keeps the robot farther away and closes narrow \
+           passages.",
+    )
     .group(FIELD)
     .live();
 /// Range of the push.
@@ -40,18 +43,19 @@ pub const REPULSION_IMPROVED: ParamSpec =
     choice("repulsion", "Repulsion", REPULSIONS, 1).help(REPULSION_HELP).group(FIELD).live();
 const REPULSIONS: &[&str] = &["classic", "improved", "scaled"];
 const REPULSION_HELP: &str = "Improved repulsion fades near the target, so that a target beside an \
-                              obstacle can be reached; it passes obstacles more closely. Scaled fades too, \
-                              but lacks the improved form's component toward the target.";
+                              obstacle can be reached, but it passes obstacles more closely. Scaled \
+                              repulsion fades, too, but lacks the improved form's component toward the \
+                              target.";
 /// Power of the distance to the goal.
 pub const EXPONENT: ParamSpec = float("exponent", "Improved repulsion exponent", "", 0.0, 4.0, 2.0)
-    .help("Power of the distance to the target with which improved or scaled repulsion fades.")
+    .help("Improved or scaled repulsion fades with this power of the distance to the target.")
     .group(FIELD)
     .live();
 /// Push of the wall.
 pub const WALL_GAIN: ParamSpec = float("wall_gain", "Wall repulsion", "", 0.0, 10.0, 0.1)
     .help(
-        "Push of the wall as a share of the repulsion gain, within half the obstacle range. The papers \
-           have no wall: 0.",
+        "Push from the wall within half the obstacle range, as a share of the repulsion gain. 0: none, as \
+         in the papers, which have no wall.",
     )
     .group(FIELD)
     .live();
@@ -64,13 +68,13 @@ pub const K_ROT: ParamSpec = float("k_rot", "Rotation gain", "N", 0.0, 1000.0, 1
 /// Form of the rotating force.
 pub const ROTATION: ParamSpec = choice("rotation", "Rotating force", &["literal", "smooth"], 0)
     .help(
-        "Literal: eq. 3 of the paper, which jumps at the obstacle range. Smooth: starts there at zero. \
-         When rotation steers by gaps, it is always smooth.",
+        "Literal: eq. 3 of the paper, which jumps at the obstacle range. Smooth: starts at zero there. If \
+         rotation in flight is set to gaps, the force is always smooth.",
     )
     .group(FIELD)
     .live();
 /// When the rotating force acts.
-pub const READING: ParamSpec = choice("reading", "Reading of the paper", &["literal", "gated"], 1)
+pub const READING: ParamSpec = choice("reading", "Interpretation of the paper", &["literal", "gated"], 1)
     .help(
         "Literal: the rotating force always acts. Gated: it acts only while the gate is open, by default \
          from a trap until ten moves later.",
@@ -80,8 +84,8 @@ pub const READING: ParamSpec = choice("reading", "Reading of the paper", &["lite
 /// Direction of the rotating force.
 pub const SENSE: ParamSpec = choice("sense", "Rotation direction", &["counter-clockwise", "side-aware"], 0)
     .help(
-        "The paper always turns counter-clockwise. Side-aware turns toward the target and keeps to that \
-         side.",
+        "The paper always turns counter-clockwise. Side-aware turns to the side of the target and keeps to \
+         it.",
     )
     .group(FIELD)
     .live();

@@ -1,5 +1,5 @@
-//! Flies a robot by a law: the forces at its estimated position give the direction, and the pilot limits speed and
-//! distance.
+//! Flies a robot according to a law: the forces at its estimated position give the direction, and the pilot limits
+//! speed and distance.
 
 use crate::{
     escape::Situation,
@@ -55,7 +55,7 @@ impl ForcePilot {
         self.response.turning = Turning::new(settings.reading, settings.rule, settings.gate);
     }
 
-    /// Returns the velocity until the next tick, and draws the forces.
+    /// Returns the command for one tick, and draws the forces.
     ///
     /// # Errors
     /// When the console requests a stop.
@@ -149,8 +149,8 @@ impl ForcePilot {
 }
 
 /// A tick is much longer than a move of a plan. In a local minimum, a robot at full speed would therefore oscillate
-/// around the point where the plan stops, and bounce along a wall far from it. Its speed is adapted by the sign of the
-/// force, as Riedmiller and Braun 1993 adapt steps.
+/// around the point where the plan stops, and bounce along a wall far from that point. So the robot's speed is adapted
+/// according to the sign of the force, as Riedmiller and Braun 1993 adapt steps.
 #[derive(Debug, Clone, Copy)]
 struct Settling {
     share: f64,
@@ -158,7 +158,7 @@ struct Settling {
 }
 
 impl Settling {
-    /// The share of the speed to use, given the present force.
+    /// The share of the speed to use, given the current force.
     fn share(&mut self, force: Vector) -> f64 {
         let turns_back = force.dot(&self.last) < 0.0;
         let share = self.share * if turns_back { TURNED_BACK } else { GOES_ON };

@@ -3,10 +3,10 @@
 use geometry::{Point, Vector};
 use std::f64::consts::LN_2;
 
-/// Smaller distances count as this distance, metres: the laws are singular at the goal.
+/// Smaller distances are taken as this distance, metres: the laws are singular at the goal.
 const FLOOR_M: f64 = 1e-9;
 
-/// The reading of the logarithmic pull near the goal.
+/// The interpretation of the logarithmic pull near the goal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NearLaw {
     /// `n log2(1/rho + 1)`: grows without bound toward the goal, as the text of Xu et al. claims.

@@ -12,7 +12,7 @@ use steering::Tick;
 
 /// Distance covered in a tick at full speed, metres.
 const MOVE_M: f64 = 0.05;
-/// A preset point counts as passed at this distance, metres, which is how far the mission looks ahead.
+/// Within this distance a preset point is considered passed, metres; it is also how far the mission looks ahead.
 const LOOKAHEAD_M: f64 = 0.5;
 /// Obstacles further from the robot than this do not affect the pilot, metres.
 const RANGE_M: f64 = 4.5;

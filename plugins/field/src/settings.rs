@@ -11,7 +11,7 @@ use steering::Flight;
 /// How a plan is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Planning {
-    /// As in the paper: moves of the law toward targets in lock step.
+    /// As in the paper: moves according to the law, toward targets in lock step.
     Walked,
     /// By simulated flight over the known map at the exact position, which predicts what the robot will do.
     Flown,
@@ -59,7 +59,7 @@ pub struct Walking {
 /// How the rotating force is used in flight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RotationUse {
-    /// As in the plan, with the configured reading and direction.
+    /// As in the plan, with the configured interpretation and direction.
     Paper,
     /// Around whatever blocks the path, on the side of the smaller detour, with narrow gaps closed; our addition.
     Gaps,
@@ -74,7 +74,7 @@ pub struct FieldSettings {
     pub reading: Reading,
     /// Direction of the rotating force.
     pub rule: SenseRule,
-    /// When the robot counts as trapped.
+    /// When the robot is considered trapped.
     pub gate: Gate,
     /// The additional response to a trap.
     pub escape: Escape,
@@ -86,7 +86,7 @@ pub struct FieldSettings {
     pub rotation_use: RotationUse,
     /// How the robot is flown.
     pub flight: Flight,
-    /// Whether moving obstacles are evaded in flight and left out of plans; otherwise they count as stationary where
-    /// they are seen.
+    /// Whether moving obstacles are evaded in flight and left out of plans; otherwise they are treated as stationary
+    /// where they are seen.
     pub evades: bool,
 }

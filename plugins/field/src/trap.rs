@@ -1,4 +1,4 @@
-//! When a law counts as trapped.
+//! When a law is considered trapped.
 
 use geometry::Point;
 use std::collections::VecDeque;
@@ -45,7 +45,7 @@ const SHARE: f64 = 0.35;
 /// Detects a trap from the last six moves. It is a trap if their net displacement is less than 0.35 of the distance
 /// they could have covered, the target is more than a step away, and an obstacle acts.
 ///
-/// Wang et al. 2023 do not state when the robot counts as trapped; window and share are our choices.
+/// Wang et al. 2023 do not state when the robot is considered trapped; window and share are our choices.
 #[derive(Debug, Clone, Default)]
 pub struct TrapDetector {
     recent: VecDeque<Point>,

@@ -8,14 +8,14 @@ use steering::{Contact, Side, Source};
 /// Number of moves for which a gate stays open after the detector has fired.
 const HOLD_MOVES: usize = 10;
 
-/// The reading of the rotating force of Wang et al. 2023.
+/// The interpretation of the rotating force of Wang et al. 2023.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reading {
     /// No rotating force.
     Off,
     /// As printed: around every obstacle in range, always.
     Literal,
-    /// Only while the gate is open. Of all readings tried, only this kind comes close to the printed figures.
+    /// Only while the gate is open. Of all interpretations tried, only this kind comes close to the printed figures.
     Gated,
 }
 
@@ -46,7 +46,7 @@ impl Turning {
         Self { reading, rule, hold, open_for: 0, kept: BTreeMap::new() }
     }
 
-    /// Takes over the state of the next move: whether the law is trapped, and the nearby contacts.
+    /// Processes the state before the next move: whether the law is trapped, and the nearby contacts.
     pub fn update(&mut self, is_trapped: bool, contacts: &[Contact], to_goal: Vector) {
         self.open_for = if is_trapped { self.hold } else { self.open_for.saturating_sub(1) };
         self.kept.retain(|source, _| contacts.iter().any(|c| c.source == *source));

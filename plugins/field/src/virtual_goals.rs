@@ -12,13 +12,14 @@ use geometry::{Point, Vector};
 use std::collections::VecDeque;
 use steering::KnownMap;
 
-/// Below this share of the attraction gain a force counts as zero (eq. 17 says "= 0", which discrete steps never meet).
+/// Below this share of the attraction gain, a force is treated as zero (eq. 17 says "= 0", which discrete steps never
+/// meet).
 const ZERO_SHARE: f64 = 0.5;
 /// Number of steps over which the robot must have moved.
 const STALL_STEPS: usize = 6;
-/// The robot counts as moving if it moved further than this many steps.
+/// The robot is considered to be moving if it moved further than this many steps.
 const STALL_SHARE: f64 = 1.5;
-/// A virtual goal counts as reached within this many steps.
+/// Within this many steps a virtual goal is reached.
 const REACHED_STEPS: f64 = 2.0;
 /// Maximum number of steps for which a virtual goal is kept.
 pub const HOLD_STEPS: usize = 30;
@@ -28,7 +29,7 @@ pub const HOLD_STEPS: usize = 30;
 pub struct SquareLaw {
     /// Attraction gain.
     pub k_att: f64,
-    /// Range of the goal, metres: closer than this the pull is constant and no virtual goal is used.
+    /// Range of the goal, metres: within it, the pull is constant and no virtual goal is used.
     pub d_0_m: f64,
     /// Distance of the virtual goals from the goal, metres; the paper gives no value.
     pub square_m: f64,
@@ -61,7 +62,7 @@ impl SquareLaw {
         }
     }
 
-    /// The matching push of obstacles and wall. Gain and ranges are as in [`GoalLaw`].
+    /// The matching push from obstacles and wall. Gain and ranges are as in [`GoalLaw`].
     pub fn push(&self, k_rep: f64, rho_m: f64, wall_gain: f64) -> GoalLaw {
         let pull = Pull::Capped { k: self.k_att, d_0_m: self.d_0_m };
         let push = PushForm::Khatib;
@@ -75,8 +76,8 @@ impl SquareLaw {
             .map(|(x, y)| goal + Vector::new(x * half_m, y * half_m))
     }
 
-    /// The corner furthest from the blocked direction (eq. 18 with its second vector reversed; as printed, the blocked
-    /// direction itself scores best). `push` is the sum of all repulsion. If scores are equal, the first corner counts.
+    /// The corner farthest from the blocked direction (eq. 18 with its second vector reversed; as printed, the blocked
+    /// direction itself scores best). `push` is the sum of all repulsion. If scores are equal, the first corner wins.
     pub fn best_corner(
         &self,
         at: Point,

@@ -10,7 +10,7 @@ use geometry::{Point, Vector};
 use std::collections::VecDeque;
 use steering::Contact;
 
-/// A walk counts as trapped after this many moves without headway.
+/// A walk is considered trapped after this many moves without headway.
 const TRAP_MOVES: usize = 25;
 
 /// A walk in progress and its state.
@@ -53,7 +53,7 @@ impl<'a> Walker<'a> {
         }
     }
 
-    /// The present position.
+    /// The current position.
     pub fn at(&self) -> Point {
         self.at
     }
@@ -69,7 +69,7 @@ impl<'a> Walker<'a> {
         self.path
     }
 
-    /// Moves along the resultant, no further than the target or than the force allows. An unobstructed path ends
+    /// Moves along the resultant, but no further than to the target or than the force allows. An unobstructed path ends
     /// exactly at the target.
     pub fn advance(&mut self, next: &Move) {
         let to_target = next.target - self.at;

@@ -20,7 +20,7 @@ impl Flyer {
         self.flight = flight;
     }
 
-    /// Returns the velocity until the next tick. Without a plan the robot waits for one.
+    /// Returns the command for one tick. Without a plan, the robot waits for one.
     ///
     /// # Errors
     /// When the console requests a stop.

@@ -8,7 +8,7 @@
 //! The cleared area is then marched again from its rim. When cells are freed, the march starts from them. Nothing else
 //! is touched. Marching stops when the robot's cell is settled; the rest is left for the next call.
 
-/// A value counts as supported by its neighbours up to this error, as a share of a cell.
+/// A value is considered supported by its neighbours up to this error, as a share of a cell.
 const ROUNDING: f32 = 1e-4;
 
 /// Distances to the goal.
@@ -27,7 +27,7 @@ pub struct Field {
     buckets: Vec<Vec<(u32, f32)>>,
     /// Emptied buckets for reuse, so that only the front of the march takes memory.
     spare: Vec<Vec<(u32, f32)>>,
-    /// The first bucket that may hold anything.
+    /// The first bucket that may contain anything.
     first: usize,
     n_settled: usize,
 }

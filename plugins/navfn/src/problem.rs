@@ -9,7 +9,7 @@ use world::{
     shortest::{GrownFloor, NoWay, Way},
 };
 
-/// Kept in addition to the required distance, so that rounding never counts as contact, metres.
+/// Distance kept in addition to the required one, so that rounding never causes contact, metres.
 const ROUNDING_M: f64 = 1e-6;
 /// Largest distance between points of a plan, so that the mission can locate the robot along it, metres.
 const SPACING_M: f64 = 0.2;
@@ -95,7 +95,7 @@ impl PlanningProblem {
     /// Turns a path into a plan, and logs a warning if something was discovered on the goal.
     ///
     /// The plan leads up to a disc, because moving obstacles are seen as discs and the console replans only when
-    /// something enters the path. Before any other shape the plan ends.
+    /// something enters the path. It ends in front of any other shape.
     pub(crate) fn plan_of(&self, way: &Way, ctx: &Ctx<'_>) -> Plan {
         let mut path = polyline::resampled(&way.points(), SPACING_M);
         for (name, grown) in &self.on_goal {

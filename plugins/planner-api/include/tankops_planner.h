@@ -8,17 +8,18 @@
  *     TP_STAMP(TP_ABI_MAJOR, TP_ABI_MINOR);
  *
  * Rules
- *  - Neither side frees memory of the other. Inputs belong to the console and are valid only during the call. Results
+ *  - Neither side frees the other's memory. Inputs belong to the console and are valid only during the call. Results
  *    are passed to the console's functions in tp_host, which copy them before they return.
- *  - Functions return TP_OK or one of TP_E_...; before an error, pass a sentence for the operator to host->error.
+ *  - Functions return TP_OK or one of TP_E_...; before returning an error, pass a sentence for the operator to
+ *    host->error.
  *  - One instance is called from one thread, one call at a time. Call host->should_stop in every long loop.
  *  - No exception and no longjmp may leave a function.
- *  - Structs grow only at the end. `size` is the size that the writer of the struct knew: read and write nothing beyond
- *    it. Where an array has a stride, step by the stride and not by sizeof.
- *  - The planner runs in a process of its own: a crash or an endless loop ends that process, not the console.
- *  - The planner may allocate 256 MB of memory (1 GB on coverage missions), whether it uses it or not, and start up to
- *    62 threads. The stack of a thread counts in full: 8 MB unless set with pthread_attr_setstacksize. Threads must end
- *    within the call that starts them.
+ *  - Structs grow only at the end. `size` is the size of the struct as its writer knew it: read and write nothing
+ *    beyond that size. Where an array has a stride, step by the stride and not by sizeof.
+ *  - The planner runs in a separate process: a crash or an endless loop ends that process, not the console.
+ *  - The planner may allocate up to 256 MB of memory (1 GB on coverage missions) and start up to 62 threads. Memory
+ *    counts whether it is used or not. The stack of a thread counts in full: 8 MB unless set with
+ *    pthread_attr_setstacksize. Threads must end within the call that starts them.
  *
  * Units and frame: SI units; the tank frame has x east and y north; angles in radians, counter-clockwise from east.
  */
@@ -48,22 +49,22 @@ enum tp_code {
   TP_E_START_OUTSIDE = 4,
   TP_E_GOAL_OCCUPIED = 5,
   TP_E_GOAL_OUTSIDE = 6,
-  TP_E_NO_PATH = 7,        /* the points passed so far are the part of the path that was found */
+  TP_E_NO_PATH = 7,        /* the points already passed to host->points are the part of the path that was found */
   TP_E_TIMEOUT = 8,        /* should_stop returned 2 */
   TP_E_CANCELLED = 9,      /* should_stop returned 1 */
-  TP_E_STUCK = 10,         /* caught in a local minimum */
-  TP_E_STATE = 11,         /* called in the wrong order, or the state does not fit */
-  TP_E_UNSUPPORTED = 12,   /* the planner does not offer this */
+  TP_E_STUCK = 10,         /* the planner is caught in a local minimum */
+  TP_E_STATE = 11,         /* a function was called in the wrong order, or the state does not fit */
+  TP_E_UNSUPPORTED = 12,   /* the planner does not offer this function or task */
   TP_E_INTERNAL = 13       /* an internal error of the planner; 14 and 15 are reserved */
 };
 enum tp_cap { TP_CAP_GLOBAL = 1, TP_CAP_LOCAL = 2, TP_CAP_COVERAGE = 4, TP_CAP_SNAPSHOT = 8, TP_CAP_LIVE_PARAMS = 16 };
 enum tp_outline_kind { TP_DISC = 0, TP_POLYGON = 1, TP_POLYLINE = 2 };
-enum tp_obstacle_flag { TP_DISCOVERED = 1 /* found during the mission: its position carries the position error */ };
+enum tp_obstacle_flag { TP_DISCOVERED = 1 /* found during the mission: its position includes the position error */ };
 enum tp_zone_kind { TP_ZONE_NO_GO = 0, TP_ZONE_LAND = 1, TP_ZONE_UNDERWATER = 2 };
 enum tp_motion { TP_POINT = 0 /* moves in any direction */, TP_UNICYCLE = 1 /* drives forward and backward, and turns */ };
 enum tp_reason {
   TP_REASON_START = 0, TP_REASON_BLOCKED = 1, TP_REASON_MAP_CHANGED = 2, TP_REASON_OPERATOR = 3,
-  TP_REASON_SWAP = 4 /* `from` is the previous planner */, TP_REASON_RECOVER = 5
+  TP_REASON_SWAP = 4 /* `from` names the previous planner */, TP_REASON_RECOVER = 5
 };
 enum tp_task {
   TP_GOTO = 0,   /* one target */
@@ -81,11 +82,11 @@ enum tp_param_kind {
 };
 enum tp_leg_tag { /* since 1.1 */
   TP_LEG_SWATH = 0,     /* the tool scans new floor */
-  TP_LEG_CONNECTOR = 1, /* leads from the end of one lane to the beginning of another */
-  TP_LEG_RETRACT = 2,   /* retraces the path so that the tether is reeled in */
-  TP_LEG_TRAVEL = 3     /* leads to the first lane, or home */
+  TP_LEG_CONNECTOR = 1, /* the robot drives from the end of one lane to the beginning of another */
+  TP_LEG_RETRACT = 2,   /* the robot retraces its path so that the tether is reeled in */
+  TP_LEG_TRAVEL = 3     /* the robot drives to the first lane, or home */
 };
-enum tp_param_flag { TP_PARAM_LIVE = 1 /* may change during a mission, through reconfigure */ };
+enum tp_param_flag { TP_PARAM_LIVE = 1 /* may change during a mission, by a call of reconfigure */ };
 enum tp_draw_kind {
   TP_DRAW_ARROW = 0,  /* a: foot, b: vector from foot to tip */
   TP_DRAW_CIRCLE = 1, /* a: centre, value: radius */
@@ -113,31 +114,31 @@ typedef struct tp_outline {
 typedef struct tp_obstacle { /* may grow: use the stride */
   uint32_t id, flags;
   tp_outline outline;
-  tp_vec2 velocity;      /* m/s, estimated; zero if it stands still or is not sensed now (since 1.1) */
+  tp_vec2 velocity;      /* m/s, estimated; zero if it stands still or is not currently sensed (since 1.1) */
 } tp_obstacle;
 typedef struct tp_zone { uint32_t kind, reserved; tp_outline outline; } tp_zone;    /* may grow: use the stride */
 
 /* ---- what the console passes --------------------------------------------------------------------------------- */
 
 typedef struct tp_site {
-  uint32_t size, revision;  /* revision increases whenever anything here changes */
+  uint32_t size, revision;  /* revision increases whenever anything in this struct changes */
   uint64_t seed;            /* seed for all random choices, so that a plan can be reproduced */
   tp_outline boundary;      /* disc about the origin, or polygon */
   const tp_obstacle *obstacles;
   uint32_t n_obstacles, obstacle_stride;
-  const tp_zone *zones;     /* where zones overlap, the later one counts */
+  const tp_zone *zones;     /* where zones overlap, the later one applies */
   uint32_t n_zones, zone_stride;
   uint32_t motion, reserved;
   double v_max, w_max;      /* largest speed and turn rate of the robot */
-  double radius;            /* radius of the smallest circle around the robot */
+  double radius;            /* radius of the smallest circle that encloses the robot */
   double sensing_range;     /* how far the robot senses obstacles */
   double swath;             /* lane spacing: the width scanned in one pass, less the overlap */
-  double clearance;         /* distance to keep between hull and anything solid */
+  double clearance;         /* distance to keep between the hull and anything solid */
   /* since 1.4 */
   double acceleration;      /* largest change of speed, m/s2; 0 if the console does not state it */
-  double tick;              /* length of a tick, for which a command takes effect */
+  double tick;              /* length of a tick, the time for which a command applies */
   uint32_t is_amphibious;   /* 1 for a robot that walks and swims: v_max and w_max are then the larger limits */
-  uint32_t transition_ticks; /* for a complete change from walking to swimming, ticks */
+  uint32_t transition_ticks; /* time for a complete change from walking to swimming, ticks */
   double land_v_max, land_w_max;             /* on dry floor */
   double underwater_v_max, underwater_w_max; /* on flooded floor */
 } tp_site;
@@ -149,8 +150,8 @@ typedef struct tp_plan_in {
   double covariance[6];     /* of x, y, heading: xx xy xh yy yh hh */
   uint32_t task, n_targets;
   const tp_vec2 *targets;
-  double tolerance;         /* distance from the last target at which it counts as reached */
-  const tp_vec2 *previous;  /* the path flown so far */
+  double tolerance;         /* the last target is reached when the robot is within this distance */
+  const tp_vec2 *previous;  /* the path driven so far */
   uint32_t n_previous, reserved;
   const tp_site *site;
   /* since 1.1, with TP_COVER */
@@ -159,8 +160,8 @@ typedef struct tp_plan_in {
   double reel;              /* length of tether on the reel */
   double max_wrap;          /* largest wrap angle around one obstacle, radians */
   double max_sum_wrap;      /* largest sum of the wrap angles, radians */
-  /* since 1.3, with TP_COVER: the plan to keep to as far as possible, such as the rest of the current one */
-  const tp_vec2 *way;       /* its path; without points, plan from scratch */
+  /* since 1.3, with TP_COVER: the plan to keep to as far as possible, such as the rest of the current plan */
+  const tp_vec2 *way;       /* path of that plan; if it has no points, plan from scratch */
   const tp_leg *way_legs;
   uint32_t n_way, n_way_legs;
   const tp_outline *way_cuts; /* polylines */
@@ -184,7 +185,7 @@ typedef struct tp_step_in {
 
 /* ---- what the planner passes back ---------------------------------------------------------------------------- */
 
-typedef struct tp_param {   /* passed to host->param in describe */
+typedef struct tp_param {   /* pass it to host->param in describe */
   uint32_t size, kind, flags, reserved;
   tp_str key, label, unit, help, group;
   tp_str options;           /* words of a choice, joined by '|' */
@@ -202,7 +203,7 @@ typedef struct tp_host {    /* the first argument is always host->ctx */
   uint32_t (*should_stop)(void *ctx);      /* 0 continue, 1 cancelled, 2 deadline passed; costs one clock read */
   double (*time_left_s)(void *ctx);
   uint32_t (*wants_drawing)(void *ctx);    /* 0 when drawings are not shown */
-  void (*error)(void *ctx, const char *message, size_t len); /* the sentence of a refusal */
+  void (*error)(void *ctx, const char *message, size_t len); /* the sentence that explains a refusal */
   void (*log)(void *ctx, uint32_t level, const char *message, size_t len);
   void (*param)(void *ctx, const tp_param *param);           /* in describe */
   void (*points)(void *ctx, const tp_vec2 *points, size_t n); /* in plan: the path, in one or more pieces */
@@ -211,27 +212,27 @@ typedef struct tp_host {    /* the first argument is always host->ctx */
   void (*bytes)(void *ctx, const uint8_t *bytes, size_t n);  /* in snapshot */
   /* since 1.1: check with TP_HOST_HAS first */
   void (*legs)(void *ctx, const tp_leg *legs, size_t n);     /* in plan: the purpose of each stretch, in order */
-  void (*cut)(void *ctx, const tp_vec2 *points, size_t n);   /* in plan: one line that the robot never crosses */
+  void (*cut)(void *ctx, const tp_vec2 *points, size_t n);   /* in plan: one line that the robot must never cross */
   /* since 1.2: check with TP_HOST_HAS first */
   void (*progress)(void *ctx, double share, const char *what, size_t len); /* in plan: the share done, 0 to 1, and the
                     activity in a few words; shown while the plan is computed, and not stored. Call it freely. */
 } tp_host;
 
-typedef struct tp_planner { /* the first five functions are required, the others may be null */
+typedef struct tp_planner { /* the first five functions are required; the others may be null */
   uint32_t size, caps, state_version, reserved;
   tp_str id;                /* stable, [a-z0-9_-]{1,32}: used in scenarios and recordings */
   tp_str name, version, about;
   int32_t (*describe)(const tp_host *);
   int32_t (*create)(const tp_host *, const tp_site *, const tp_value *values, uint32_t n, void **instance);
-  void (*destroy)(void *instance); /* called when the mission no longer needs the instance: at its end, when a different
-                    planner or a new build takes over, and before the next instance is created in this process. If
-                    it takes more than 0.1 s, the process is killed. A crash, a forbidden call or a timeout here is
-                    reported but harms no mission. If the process was killed, after a fault or with the console, destroy
-                    is not called. */
+  void (*destroy)(void *instance); /* called when the mission no longer needs the instance: when the mission ends, when a
+                    different planner or a new build takes over, and before the next instance is created in this
+                    process. If this takes more than 0.1 s, the process is killed. A crash, a forbidden call or a
+                    timeout here is reported but harms no mission. destroy is not called if the process was killed,
+                    whether after a fault or together with the console. */
   int32_t (*plan)(void *instance, const tp_host *, const tp_plan_in *, tp_plan_out *);
   int32_t (*step)(void *instance, const tp_host *, const tp_step_in *, tp_step_out *);
   int32_t (*reconfigure)(void *instance, const tp_host *, const tp_value *values, uint32_t n);
-  uint32_t (*stopping)(void *instance, const tp_host *); /* returns 1 to be given a few more steps */
+  uint32_t (*stopping)(void *instance, const tp_host *); /* returns 1 to request a few more steps, otherwise 0 */
   int32_t (*snapshot)(void *instance, const tp_host *);
   int32_t (*restore)(void *instance, const tp_host *, uint32_t version, const uint8_t *state, size_t n);
   const void *(*get_extension)(tp_str name);
@@ -278,7 +279,7 @@ typedef struct tp_stamp { uint8_t magic[8]; uint32_t abi_major, abi_minor; } tp_
 #    define TP_SECTION ".tankplan"
 #    define TP_VISIBLE __attribute__((visibility("default")))
 #  endif
-#  ifdef __cplusplus /* in C++ a const object is local to its file unless it is declared extern first */
+#  ifdef __cplusplus /* in C++ a const object is local to its file unless it was first declared extern */
 #    define TP_EXPORT extern "C" TP_VISIBLE const tp_entry tank_planner_entry;
 #    define TP_STAMP(major, minor) extern "C" TP_VISIBLE const tp_stamp tank_planner_stamp; \
        __attribute__((used, section(TP_SECTION))) \

@@ -22,7 +22,7 @@ pub const MAJOR: u32 = 1;
 pub const MINOR: u32 = 4;
 /// The one symbol that a library exports.
 pub const SYMBOL: &str = "tank_planner_entry";
-/// The section that holds the stamp, as file readers name it on Linux, macOS and Windows.
+/// The name of the section that contains the stamp, as file readers report it on Linux, macOS and Windows.
 pub const SECTIONS: [&str; 3] = [".tankplan", "__tankplan", ".tankpln"];
 
 /// UTF-8 text without a terminating zero; it belongs to the side that passed it.
@@ -35,11 +35,11 @@ pub struct Str {
     pub len: usize,
 }
 
-// SAFETY: in a static, a `Str` only ever points at a `&'static str`.
+// SAFETY: in a static, a `Str` only ever points to a `&'static str`.
 unsafe impl Sync for Str {}
 
 impl Str {
-    /// Lends a text; the pointer is valid as long as the text.
+    /// Lends a text; the pointer is valid for as long as the text exists.
     pub const fn of(text: &str) -> Self {
         Self { ptr: text.as_ptr(), len: text.len() }
     }
@@ -47,7 +47,7 @@ impl Str {
     /// Reads at most `most` bytes of the text, with invalid UTF-8 replaced.
     ///
     /// # Safety
-    /// `ptr` is null or points at `len` readable bytes.
+    /// `ptr` is null or points to `len` readable bytes.
     pub unsafe fn to_text(self, most: usize) -> String {
         // SAFETY: promised by the caller.
         String::from_utf8_lossy(unsafe { slice(self.ptr, self.len.min(most)) }).into_owned()
@@ -100,10 +100,10 @@ pub struct Pose {
     pub heading: f64,
 }
 
-/// Borrows an array that came over the boundary; a null, empty or unaligned one gives an empty slice.
+/// Borrows an array that was passed across the boundary; a null, empty or unaligned array becomes an empty slice.
 ///
 /// # Safety
-/// `ptr` is null or points at `len` readable values that do not change during `'a`.
+/// `ptr` is null or points to `len` readable values that do not change during `'a`.
 pub unsafe fn slice<'a, T>(ptr: *const T, len: usize) -> &'a [T] {
     if ptr.is_null() || len == 0 || !ptr.is_aligned() {
         return &[];
@@ -115,17 +115,17 @@ pub unsafe fn slice<'a, T>(ptr: *const T, len: usize) -> &'a [T] {
 /// A struct that begins with its writer's `size` and is valid when all its bytes are zero.
 ///
 /// # Safety
-/// Implement it only for `repr(C)` structs that begin with a `u32` size and consist of numbers, raw pointers and
-/// `Option` function pointers.
+/// Implement this trait only for `repr(C)` structs that begin with a `u32` size and consist of numbers, raw pointers
+/// and `Option` function pointers.
 pub unsafe trait Sized32: Copy {}
 
-/// Copies a struct that an older or newer side may have written; fields that the writer did not have are zero.
+/// Copies a struct that may come from an older or newer writer; fields that the writer did not know are zero.
 ///
 /// # Safety
-/// `from` is aligned and points at a struct that begins with a `u32`, the number of its readable bytes.
+/// `from` is aligned and points to a struct that begins with a `u32`, the number of its readable bytes.
 pub unsafe fn copy_sized<T: Sized32>(from: *const T) -> T {
     let mut to = std::mem::MaybeUninit::<T>::zeroed();
-    // SAFETY: the caller promises that the first `size` bytes are readable, and at most the size of `T` is written.
+    // SAFETY: the caller promises that the first `size` bytes are readable, and no more than the size of `T` is copied.
     // All-zero bytes are a valid `T` because it is `Sized32`.
     unsafe {
         let written = from.cast::<u32>().read() as usize;

@@ -3,7 +3,7 @@
 use geometry::Drive;
 use nalgebra::Vector2;
 
-/// The planner's view of its progress.
+/// How the planner sees its progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Status {
@@ -17,13 +17,13 @@ pub enum Status {
     Waiting,
 }
 
-/// The answer to one step.
+/// A planner's answer to one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Command {
     /// How to move until the next tick.
     pub drive: Drive,
-    /// The planner's view of its progress.
+    /// How the planner sees its progress.
     pub status: Status,
 }
 

@@ -37,8 +37,8 @@ impl fmt::Display for LogLevel {
     }
 }
 
-/// What the host offers during a call. The glue implements it with the functions of the C ABI, tests implement it in
-/// memory.
+/// What the host offers during a call. The glue implements this trait with the functions of the C ABI; tests implement
+/// it in memory.
 pub trait Services {
     /// The reason to stop, if there is one.
     fn stop(&self) -> Option<StopReason>;
@@ -63,7 +63,7 @@ pub struct Ctx<'a> {
 }
 
 impl<'a> Ctx<'a> {
-    /// Wraps services for the length of a call.
+    /// Wraps services for the duration of a call.
     ///
     /// ```
     /// use planner_api::{Ctx, testing::Bench};
@@ -76,7 +76,7 @@ impl<'a> Ctx<'a> {
         Self { services }
     }
 
-    /// Returns an error when the planner must stop. Call it in every loop: it costs one clock read.
+    /// Returns an error when the planner must stop. Call this in every loop: it costs one clock read.
     ///
     /// ```
     /// use planner_api::{Code, StopReason, testing::Bench};
@@ -113,7 +113,7 @@ impl<'a> Ctx<'a> {
         self.services.time_left()
     }
 
-    /// Whether drawings are shown. If not, skip those that are costly to make.
+    /// Whether drawings are shown. If they are not, skip drawings that are costly to make.
     ///
     /// ```
     /// use planner_api::{Layer, Point2, testing::Bench};
@@ -185,9 +185,9 @@ impl<'a> Ctx<'a> {
     }
 
     /// Reports the progress of a plan while it is being computed: the share done, from 0 to 1 and roughly proportional
-    /// to time, and the current activity in a few plain words (`candidate 3 of 8`). The console shows it while it
-    /// waits, and does not store it; outside `plan` it is ignored. Call it as often as you like: updates that come
-    /// faster than people can read are dropped.
+    /// to time, and the current activity in a few plain words (`candidate 3 of 8`). The console shows the progress
+    /// while it waits for the plan, and does not store it; progress reported outside `plan` is ignored. Call this as
+    /// often as you like: updates that come faster than people can read are dropped.
     ///
     /// ```
     /// use planner_api::testing::Bench;
@@ -208,7 +208,7 @@ impl<'a> Ctx<'a> {
     /// use planner_api::{LogLevel, testing::Bench};
     ///
     /// let bench = Bench::new();
-    /// bench.ctx().log(LogLevel::Warn, "0.4 m² of the floor are left out");
+    /// bench.ctx().log(LogLevel::Warn, "0.4 m² of the floor is left out");
     /// assert_eq!(bench.logs()[0].0, LogLevel::Warn);
     /// ```
     pub fn log(&self, level: LogLevel, message: &str) {

@@ -38,7 +38,7 @@ impl Layer {
         Self::Other,
     ];
 
-    /// Converts a number that came over the boundary; unknown numbers become `Other`.
+    /// Converts a number that was passed across the boundary; unknown numbers become `Other`.
     ///
     /// ```
     /// use planner_api::Layer;

@@ -1,4 +1,4 @@
-//! Why a planner cannot do what the console asked.
+//! The reasons why a planner cannot do what the console asked.
 
 use std::fmt;
 
@@ -30,7 +30,7 @@ pub enum Code {
     Stuck = 10,
     /// A function was called in the wrong order, or the state passed to `restore` does not fit.
     State = 11,
-    /// The planner does not offer this function.
+    /// The planner does not offer this function or task.
     Unsupported = 12,
     /// An internal error of the planner.
     Internal = 13,
@@ -81,7 +81,7 @@ impl Code {
         Self::Poisoned,
     ];
 
-    /// Converts a number that came over the boundary; `None` if it is not a code.
+    /// Converts a number that was passed across the boundary; `None` if it is not a code.
     ///
     /// ```
     /// use planner_api::Code;
@@ -118,7 +118,7 @@ impl PlannerError {
         Self { code, message: message.into(), partial: Vec::new() }
     }
 
-    /// Creates the refusal of a function that this planner does not offer.
+    /// Creates the refusal for a function that this planner does not offer.
     ///
     /// ```
     /// use planner_api::{Code, PlannerError};
@@ -129,7 +129,7 @@ impl PlannerError {
         Self::new(Code::Unsupported, "not offered by this planner")
     }
 
-    /// Creates a refusal for a goal that cannot be reached; `partial` is the path as far as it leads.
+    /// Creates a refusal for a goal that cannot be reached; `partial` is the part of the path that was found.
     ///
     /// ```
     /// use planner_api::{Code, Point2, PlannerError};

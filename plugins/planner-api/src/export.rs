@@ -38,7 +38,7 @@ macro_rules! export_planners {
 /// Builds the function table of one planner. An id or a parameter that the console would refuse does not compile.
 #[doc(hidden)]
 pub const fn table<P: Planner>(version: &'static str) -> abi::Planner {
-    assert!(is_id(P::ID), "a planner's ID must be 1 to 32 characters of a-z, 0-9, _ and -");
+    assert!(is_id(P::ID), "a planner's ID must be 1 to 32 characters from a-z, 0-9, _ and -");
     let mut i = 0;
     while i < P::PARAMS.len() {
         assert!(!P::PARAMS[i].key.is_empty(), "a parameter has no key");
@@ -67,7 +67,7 @@ pub const fn table<P: Planner>(version: &'static str) -> abi::Planner {
     }
 }
 
-/// Whether a text is a valid planner id: 1 to 32 characters of a-z, 0-9, `_` and `-`.
+/// Whether a text is a valid planner id: 1 to 32 characters from a-z, 0-9, `_` and `-`.
 ///
 /// ```
 /// use planner_api::export::is_id;
@@ -96,7 +96,7 @@ const fn default_fits(spec: &ParamSpec) -> bool {
     }
 }
 
-/// Words are joined by `|` when they cross the boundary, so they must not contain it.
+/// Words are joined by `|` when they cross the boundary, so no word may contain that character.
 const fn are_words(options: &[&str]) -> bool {
     let mut i = 0;
     while i < options.len() {

@@ -1,7 +1,7 @@
 //! The functions of the C ABI for any [`Planner`]; only `export_planners!` and the console's tests name them.
 //!
-//! All code of the author runs under `catch_unwind`, `destroy` included. An instance that panicked is poisoned: it
-//! answers every further call with [`Code::Poisoned`].
+//! All of the author's code runs under `catch_unwind`, including in `destroy`. An instance that panicked is poisoned:
+//! every further call returns [`Code::Poisoned`].
 
 mod guard;
 mod inputs;
@@ -17,7 +17,7 @@ use inputs::{
 use services::HostServices;
 use std::ffi::c_void;
 
-/// A boxed planner; the console holds the pointer to it.
+/// A boxed planner; the console keeps the pointer to it.
 struct Slot<P> {
     planner: P,
     poisoned: bool,
@@ -49,7 +49,7 @@ unsafe fn on<P: Planner>(
 /// Passes every declared parameter to the console.
 ///
 /// # Safety
-/// `host` points at the console's services.
+/// `host` points to the console's services.
 pub unsafe extern "C" fn describe<P: Planner>(host: *const abi::Host) -> i32 {
     // SAFETY: promised by the caller.
     let services = unsafe { HostServices::read(host) };
@@ -92,7 +92,7 @@ fn declare(spec: &ParamSpec, services: &HostServices) {
 /// Configures a planner and gives the console a pointer to it.
 ///
 /// # Safety
-/// `host` and `site` point at structs of the console, `values` at an array of `n` values, `instance` at space for a
+/// `host` and `site` point to structs of the console, `values` to an array of `n` values, and `instance` to space for a
 /// pointer.
 pub unsafe extern "C" fn create<P: Planner>(
     host: *const abi::Host,
@@ -147,10 +147,10 @@ pub unsafe extern "C" fn reconfigure<P: Planner>(
     }
 }
 
-/// Requests a plan: passes its points to the console one array at a time, and writes cost and completeness to `out`.
+/// Requests a plan: passes its points, legs and cuts to the console, and writes its cost and completeness to `out`.
 ///
 /// # Safety
-/// For `instance` see [`destroy`]; `host`, `input` and `out` point at structs of the console.
+/// For `instance` see [`destroy`]; `host`, `input` and `out` point to structs of the console.
 pub unsafe extern "C" fn plan<P: Planner>(
     instance: *mut c_void,
     host: *const abi::Host,
@@ -210,10 +210,10 @@ pub unsafe extern "C" fn step<P: Planner>(
     }
 }
 
-/// Announces to a planner that it will be stopped; returns 1 if it needs a few more steps.
+/// Tells a planner that it will be stopped; returns 1 if it needs a few more steps.
 ///
 /// # Safety
-/// For `instance` see [`destroy`]; `host` points at the console's services.
+/// For `instance` see [`destroy`]; `host` points to the console's services.
 pub unsafe extern "C" fn stopping<P: Planner>(instance: *mut c_void, host: *const abi::Host) -> u32 {
     let mut answer = Stopping::Done;
     // SAFETY: promised by the caller.
@@ -245,7 +245,7 @@ pub unsafe extern "C" fn snapshot<P: Planner>(instance: *mut c_void, host: *cons
 /// Passes the state of an earlier instance to a planner.
 ///
 /// # Safety
-/// See [`stopping`]; `state` points at `n` bytes.
+/// See [`stopping`]; `state` points to `n` bytes.
 pub unsafe extern "C" fn restore<P: Planner>(
     instance: *mut c_void,
     host: *const abi::Host,

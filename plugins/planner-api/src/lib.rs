@@ -2,7 +2,7 @@
 //! # Rust
 //!
 //! Write a type, implement [`Planner`] for it, and export it with `export_planners!(MyPlanner)` from a crate of type
-//! `cdylib`. This crate does the rest (the C ABI, catching panics, copying); the author's crate may
+//! `cdylib`. This crate does the rest (the C ABI, catching panics, copying), so your crate can
 //! `#![forbid(unsafe_code)]`.
 //!
 //! Units and frame: SI units throughout; the tank frame has x east and y north, in metres; angles are in radians,

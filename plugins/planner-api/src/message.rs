@@ -1,6 +1,6 @@
 //! The messages from the console to a planner, each defined once.
 //!
-//! The type parameters (`P` and others) determine how a message holds its arrays. By default it owns them, so that it
+//! The type parameters (`P` and others) determine how a message stores its arrays. By default it owns them, so that it
 //! can be stored or sent to another process. Planners receive borrowed messages: [`crate::Site`],
 //! [`crate::PlanRequest`] and [`crate::Sensed`] are the same types with slices, and `lend` turns an owned message into
 //! a borrowed one.
@@ -23,11 +23,11 @@ pub struct Obstacle<P = Vec<Point>> {
     pub id: u32,
     /// Outline in the tank frame.
     pub outline: Shape<P>,
-    /// Whether the obstacle was found during the mission, so that its position carries the position error of the robot.
-    /// Otherwise it is on the drawing.
+    /// Whether the obstacle was found during the mission, which means that its position includes the position error of
+    /// the robot. If not, the obstacle is on the drawing.
     pub discovered: bool,
-    /// Estimated velocity in the tank frame, metres per second. It is zero for an obstacle that stands still, and for
-    /// one that is not sensed now.
+    /// Estimated velocity in the tank frame, metres per second. It is zero for obstacles that stand still or are not
+    /// currently sensed.
     pub velocity_m_per_s: Vector2<f64>,
 }
 
@@ -51,7 +51,7 @@ pub struct Site<P = Vec<Point>, O = Vec<Obstacle>, Z = Vec<Zone>> {
     pub boundary: Boundary<P>,
     /// The known obstacles: those on the drawing and those found since.
     pub obstacles: O,
-    /// The zones; where zones overlap, the later one counts.
+    /// The zones; where zones overlap, the later one applies.
     pub zones: Z,
     /// The capabilities of the robot.
     #[cfg_attr(feature = "serde", serde(serialize_with = "whole"))]
@@ -64,7 +64,7 @@ pub struct Site<P = Vec<Point>, O = Vec<Obstacle>, Z = Vec<Zone>> {
     pub seed: u64,
 }
 
-/// The task of the mission from now on.
+/// What the mission requires from now on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Task<P = Vec<Point>, R = Vec<Vec<Point>>> {
@@ -72,27 +72,27 @@ pub enum Task<P = Vec<Point>, R = Vec<Vec<Point>>> {
     Goto {
         /// The goal.
         goal: Point,
-        /// Distance from the goal at which it counts as reached, metres.
+        /// The goal has been reached when the robot is within this distance of it, metres.
         tolerance_m: f64,
     },
     /// Follow preset points in order, as closely as the obstacles allow.
     Follow {
         /// The remaining points, the next one first.
         targets: P,
-        /// Distance from the last point at which it counts as reached, metres.
+        /// The last point has been reached when the robot is within this distance of it, metres.
         tolerance_m: f64,
     },
     /// Scan the floor and return to the anchor.
     Cover {
-        /// The end of the path; the tether, if there is one, is attached here.
+        /// The end of the path, where the tether, if there is one, enters the tank.
         anchor: Point,
-        /// The floor still to be scanned: closed polygons, counter-clockwise, which do not overlap. If empty: all
-        /// reachable floor. The polygons may be ragged (built of square cells), and may contain obstacles or floor too
-        /// close to them.
+        /// The floor still to be scanned: closed, counter-clockwise polygons that do not overlap. An empty list means
+        /// all reachable floor. The polygons may be ragged (built from square cells), and may contain obstacles or
+        /// floor that is too close to obstacles.
         regions: R,
-        /// The limits of the tether; `None` without a tether.
+        /// The limits of the tether; `None` if there is no tether.
         tether: Option<TetherLimits>,
-        /// Distance from the anchor at which the robot counts as back, metres.
+        /// The robot is back when it is within this distance of the anchor, metres.
         tolerance_m: f64,
     },
 }
@@ -110,12 +110,12 @@ pub struct PlanRequest<P = Vec<Point>, R = Vec<Vec<Point>>, W = Reason, S = Arc<
     pub task: Task<P, R>,
     /// The tank, its obstacles and the robot.
     pub site: S,
-    /// The path flown so far, oldest point first, followed by the return path that the robot will take before it starts
-    /// the plan; empty at the start of a mission.
+    /// The path driven so far, oldest point first, followed by the return path that the robot will take before it
+    /// starts the plan; empty at the start of a mission.
     pub previous: P,
     /// On coverage missions, the plan to keep to as far as possible, or `None` to plan from scratch. It is either the
-    /// rest of the plan that the robot is flying, beginning where the robot is being led, or the plan that this planner
-    /// has just made. Its cost is not set. It may lead through obstacles found since.
+    /// rest of the robot's current plan, beginning at the point to which the robot is being led, or the plan that this
+    /// planner has just made. Its cost is not set. It may pass through obstacles that were found after it was made.
     pub under_way: Option<Y>,
 }
 
@@ -137,12 +137,13 @@ pub struct Sensed<P = Vec<Point>, O = Vec<Obstacle>> {
     pub w_rad_per_s: f64,
     /// Where to go next: the goal, or the next preset point.
     pub target: Point,
-    /// The preset points from the target on, for a few metres.
+    /// The preset points of the next few metres, starting with the target.
     pub targets_ahead: P,
-    /// The plan from here on, for a few metres.
+    /// The next few metres of the plan.
     pub path_ahead: P,
-    /// Known obstacles within the robot's sensing range. An obstacle in sight is where the robot sees it now, so that
-    /// its distance from `pose` is right even if `pose` is not. One out of sight is where the chart has it.
+    /// Known obstacles within the robot's sensing range. An obstacle in sight is given where the robot sees it now, so
+    /// its distance from `pose` is right even if `pose` is wrong. An obstacle out of sight is given where the chart
+    /// shows it.
     pub obstacles: O,
 }
 
@@ -162,7 +163,7 @@ impl Zone {
 }
 
 impl Site {
-    /// Borrows the site for the length of `call`.
+    /// Borrows the site for the duration of `call`.
     pub fn lend<T>(&self, call: impl FnOnce(&crate::Site<'_>) -> T) -> T {
         let obstacles: Vec<_> = self.obstacles.iter().map(Obstacle::lend).collect();
         let zones: Vec<_> = self.zones.iter().map(Zone::lend).collect();
@@ -173,7 +174,7 @@ impl Site {
 }
 
 impl PlanRequest {
-    /// Borrows the request for the length of `call`.
+    /// Borrows the request for the duration of `call`.
     pub fn lend<T>(&self, call: impl FnOnce(&crate::PlanRequest<'_>) -> T) -> T {
         let regions: Vec<&[Point]> = match &self.task {
             Task::Cover { regions, .. } => regions.iter().map(Vec::as_slice).collect(),
@@ -193,7 +194,7 @@ impl PlanRequest {
 }
 
 impl crate::Sensed<'_> {
-    /// The view of a robot that stands still at a pose, with a target and nothing around it; a tick takes `dt_s`
+    /// The view of a robot that stands still at a pose, with a target and nothing around it; a tick lasts `dt_s`
     /// seconds.
     pub fn new(tick: u64, dt_s: f64, pose: PoseEstimate, target: Point) -> Self {
         Self {
@@ -212,7 +213,7 @@ impl crate::Sensed<'_> {
 }
 
 impl Sensed {
-    /// Borrows the view for the length of `call`.
+    /// Borrows the view for the duration of `call`.
     pub fn lend<T>(&self, call: impl FnOnce(&crate::Sensed<'_>) -> T) -> T {
         let obstacles: Vec<_> = self.obstacles.iter().map(Obstacle::lend).collect();
         let Self { tick, t_s, dt_s, pose, v_m_per_s, w_rad_per_s, target, .. } = *self;
@@ -231,8 +232,8 @@ impl Sensed {
     }
 }
 
-/// Serialises the limits with their last field even when it is `None`. Journals leave it out then, but a format without
-/// field names could not be read back without it.
+/// Serialises the limits with their last field even when it is `None`. Journals omit it in that case, but a format
+/// without field names could not be read back if it were missing.
 #[cfg(feature = "serde")]
 fn whole<S: serde::Serializer>(limits: &Limits, to: S) -> Result<S::Ok, S::Error> {
     serde::Serialize::serialize(&(Limits { amphibious: None, ..*limits }, limits.amphibious), to)

@@ -1,4 +1,4 @@
-//! Typed parameters: declared once as constants, checked by the host, read by key.
+//! Typed parameters: declared once as constants, checked by the host, and read by key.
 
 /// The values that a parameter accepts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,7 +41,7 @@ pub enum Kind {
 /// use planner_api::{ParamSpec, float};
 ///
 /// const GAIN: ParamSpec =
-///     float("k_rep", "Repulsion gain", "m3/s", 0.0, 10.0, 0.4).help("More keeps a larger distance.");
+///     float("k_rep", "Repulsion gain", "m3/s", 0.0, 10.0, 0.4).help("A larger gain keeps a larger distance.");
 /// assert_eq!((GAIN.key, GAIN.unit, GAIN.live), ("k_rep", "m3/s", false));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -199,7 +199,7 @@ pub struct Config<'a> {
 }
 
 impl<'a> Config<'a> {
-    /// Combines declared parameters with the values set; missing values take their defaults.
+    /// Combines declared parameters with the values that were set; parameters without a value take their defaults.
     pub fn new(specs: &'a [ParamSpec], values: &'a [Value<'a>]) -> Self {
         Self { specs, values }
     }
@@ -207,7 +207,7 @@ impl<'a> Config<'a> {
     /// Returns the value of a real parameter.
     ///
     /// # Panics
-    /// If the planner does not declare this parameter: an author's mistake that the first test finds.
+    /// If the planner does not declare this parameter, a mistake that the author's first test reveals.
     pub fn float(&self, key: &str) -> f64 {
         self.number(key)
     }

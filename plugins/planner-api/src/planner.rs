@@ -9,7 +9,7 @@ use crate::{
 pub struct Caps(pub u32);
 
 impl Caps {
-    /// Plans on the whole known map.
+    /// Plans over the entire known map.
     pub const GLOBAL: Self = Self(1);
     /// Reacts to what the robot senses, step by step.
     pub const LOCAL: Self = Self(2);
@@ -46,10 +46,11 @@ impl Caps {
     }
 }
 
-/// A planner: it is asked for a plan when the mission needs one, and for a command in every tick.
+/// A planner. It is asked for a plan when the mission needs one, and for a command on every tick.
 ///
-/// An instance is called from one thread, one call at a time. The console keeps what a different planner would need to
-/// take over (path flown, targets left, coverage), so a planner only keeps what is its own.
+/// An instance is called from one thread, one call at a time. The console keeps everything that a different planner
+/// would need to take over (the path driven, the targets left, the coverage), so a planner need only keep its own
+/// private state.
 ///
 /// ```
 /// use planner_api::*;
@@ -83,11 +84,11 @@ pub trait Planner: Sized + 'static {
     const ID: &'static str;
     /// The name on screen.
     const NAME: &'static str;
-    /// One sentence: what the planner does, and its source.
+    /// One sentence: what the planner does, and the source of its method.
     const ABOUT: &'static str = "";
     /// The planner's abilities.
     const CAPS: Caps;
-    /// Version of the format of [`Planner::snapshot`]; raise it when the format changes.
+    /// Version of the format of the data from [`Planner::snapshot`]; raise it when the format changes.
     const STATE_VERSION: u32 = 1;
     /// The planner's parameters.
     const PARAMS: &'static [ParamSpec];
@@ -101,7 +102,7 @@ pub trait Planner: Sized + 'static {
     /// Accepts new values of live parameters.
     ///
     /// # Errors
-    /// With [`crate::Code::Unsupported`] the console configures a new instance instead.
+    /// After [`crate::Code::Unsupported`] the console configures a new instance instead.
     fn reconfigure(&mut self, _config: &Config<'_>, _ctx: &Ctx<'_>) -> Result<()> {
         Err(PlannerError::unsupported())
     }
@@ -109,7 +110,7 @@ pub trait Planner: Sized + 'static {
     /// Plans a path for the task, based on what is known now.
     ///
     /// # Errors
-    /// The reason why there is no path; [`PlannerError::no_path_but`] can carry the part that was found.
+    /// The reason why there is no path; use [`PlannerError::no_path_but`] to return the part that was found.
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan>;
 
     /// Decides how the robot moves until the next tick.

@@ -1,4 +1,4 @@
-//! The requests to a planner, and the information they carry.
+//! The requests to a planner, and the information that they carry.
 
 use crate::message;
 use crate::site::{Obstacle, Site};
@@ -38,7 +38,7 @@ pub enum Reason {
     Recover,
 }
 
-/// The task of the mission from now on, lent by the console.
+/// What the mission requires from now on, lent by the console.
 pub type Task<'a> = message::Task<&'a [Point2<f64>], &'a [&'a [Point2<f64>]]>;
 
 /// The limits of a tether. The tether runs taut from the anchor to the robot, and may touch obstacles.
@@ -74,7 +74,7 @@ impl<'a> PlanRequest<'a> {
     }
 }
 
-/// A plan: a path to fly, with the purposes of its stretches and the cuts.
+/// A plan: a path to drive, the purposes of its stretches, and the cuts.
 ///
 /// ```
 /// use planner_api::{Plan, Point2};
@@ -88,24 +88,25 @@ impl<'a> PlanRequest<'a> {
 pub struct Plan {
     /// The points of the path, the start first.
     pub path: Vec<Point2<f64>>,
-    /// The cost in a measure of the planner's choice; length in metres unless the planner documents a different one.
+    /// The cost, in a measure of the planner's choice: the length in metres, unless the planner documents something
+    /// else.
     pub cost: f64,
     /// Whether the path achieves the whole task.
     pub complete: bool,
     /// The purposes of the stretches of the path, in order; empty if the planner does not state them. Two consecutive
-    /// legs may share a point. A stretch that belongs to no leg counts as the way from one place to the next.
+    /// legs may share a point. A stretch that belongs to no leg is treated as a transfer from one place to another.
     pub legs: Vec<Leg>,
-    /// Lines that the tethered robot never crosses, neither on the path nor when it leaves it.
+    /// Lines that the tethered robot must never cross, neither on the path nor off it.
     pub cuts: Vec<Vec<Point2<f64>>>,
 }
 
 impl Plan {
     /// The longest path that the console accepts, metres. The console may sample paths at centimetre spacing, and a
-    /// longer one would exhaust its memory.
+    /// longer path would exhaust its memory.
     pub const MOST_LENGTH_M: f64 = 1e6;
 
-    /// Checks that all points are finite, that the path is not too long, and that the legs lie on the path, in order,
-    /// and share at most a point.
+    /// Checks that all points are finite, that the path is not too long, and that the legs are within the path, in
+    /// order, and share at most one point.
     ///
     /// ```
     /// use planner_api::{Leg, LegTag, Plan, Point2};
@@ -117,14 +118,14 @@ impl Plan {
     /// ```
     ///
     /// # Errors
-    /// What is wrong: a sentence that continues after the planner's name.
+    /// States what is wrong; the text completes a sentence that begins with the planner's name.
     pub fn check(&self) -> Result<(), String> {
         let is_finite = |p: &Point2<f64>| p.x.is_finite() && p.y.is_finite();
         if let Some(index) = self.path.iter().position(|p| !is_finite(p)) {
             return Err(format!("gave a path whose point {index} is not finite"));
         }
         let (length_m, limit_m) = (self.length_m(), Self::MOST_LENGTH_M);
-        // A sum of finite lengths may be infinite; this refuses it, too.
+        // The sum of finite lengths may be infinite; this check refuses that, too.
         if length_m > limit_m {
             return Err(format!("gave a path of {length_m:.0} m; the limit is {limit_m:.0} m"));
         }
@@ -163,11 +164,11 @@ impl Plan {
 pub enum LegTag {
     /// The tool scans new floor.
     Swath = 0,
-    /// Leads from the end of one lane to the beginning of another.
+    /// The robot drives from the end of one lane to the beginning of another.
     Connector = 1,
-    /// Retraces the path so that the tether is reeled in.
+    /// The robot retraces its path so that the tether is reeled in.
     Retract = 2,
-    /// Leads to the first lane, or home.
+    /// The robot drives to the first lane, or home.
     Travel = 3,
 }
 
@@ -198,7 +199,7 @@ impl LegTag {
         }
     }
 
-    /// Converts a number that came over the boundary; `None` if it is not a tag.
+    /// Converts a number that was passed across the boundary; `None` if it is not a tag.
     ///
     /// ```
     /// use planner_api::LegTag;

@@ -13,8 +13,8 @@ use crate::{Config, Ctx, Drawing, LogLevel, Planner, Result, Services, Site, Sto
 use std::cell::{Cell, RefCell};
 use std::time::Duration;
 
-/// Collects what a planner draws, reports and logs. Unless a test changes it, the deadline is an hour away and drawings
-/// are shown.
+/// Collects what a planner draws, reports and logs. Unless a test changes this, the deadline is an hour away and
+/// drawings are shown.
 #[derive(Debug)]
 pub struct Bench {
     stop: Cell<Option<StopReason>>,
@@ -59,8 +59,8 @@ impl Bench {
         Ctx::new(self)
     }
 
-    /// Creates a planner with these parameter values (0 or 1 for a flag, the index of the word for a choice); the
-    /// others take their defaults.
+    /// Creates a planner with these parameter values (0 or 1 for a flag, the index of the word for a choice); all other
+    /// parameters take their defaults.
     ///
     /// ```
     /// # use planner_api::*;
@@ -91,7 +91,7 @@ impl Bench {
     /// ```
     ///
     /// # Errors
-    /// The planner's `configure` refuses the values or the site.
+    /// The planner's `configure` refused the values or the site.
     pub fn configure<P: Planner>(&self, values: &[(&str, f64)], site: &Site<'_>) -> Result<P> {
         let values: Vec<Value<'_>> = values.iter().map(|&(key, number)| Value { key, number }).collect();
         P::configure(&Config::new(P::PARAMS, &values), site, &self.ctx())

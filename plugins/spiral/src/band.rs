@@ -1,9 +1,9 @@
-//! An elastic band: pulls a path as close to its course as clearance, wall and turn limit allow.
+//! An elastic band: pulls a path as close to its course as the clearance, the wall and the turn limit allow.
 //!
 //! The alternating direction method of multipliers (Boyd et al. 2011) minimises the sum of squared distances between
-//! points with the same index. In each round it solves a banded linear system and projects the solution onto every
-//! limit. The limits are those of the final path: the distances of its segments from solids, and the angle between
-//! chords of [`SPAN_M`] at any position along the path.
+//! points of the path and of the course with the same index. In each round it solves a banded linear system and
+//! projects the solution onto every limit. The limits are those of the final path: the distances of its segments from
+//! solids, and the angle between chords of [`SPAN_M`] at any position along the path.
 
 mod banded;
 mod rows;
@@ -17,26 +17,26 @@ use world::{Boundary, Point, Vector, polyline};
 
 /// Length of path over which a change of heading is measured, metres.
 pub(crate) const SPAN_M: f64 = 0.2;
-/// Once a path has been found, the band aims at this share of the turn limit.
+/// Once a path has been found, the band aims for this share of the turn limit.
 const TURN_SHARE: f64 = 0.985;
 /// Extra margin added to clearances, metres.
 const SPARE_M: f64 = 2e-4;
-/// Weights of the first and second differences of offsets, which keep the points in order.
+/// Weights of the first and second differences of the offsets; they keep the points in order.
 const ORDER_WEIGHT: f64 = 0.02;
 const BEND_WEIGHT: f64 = 0.1;
 /// Weight of a fixed point.
 const FIXED_WEIGHT: f64 = 1e6;
-/// The wall has rows for points closer to it than this, metres.
+/// Points closer to the wall than this have a row for it, metres.
 const WALL_REACH_M: f64 = 0.25;
 /// Over-relaxation of the multiplier updates.
 const OVER: f64 = 1.6;
-/// Rounds of solving and projecting with one set of rows.
+/// The number of rounds of solving and projecting with one set of rows.
 const ROUNDS: usize = 10;
 /// The largest factor by which penalties grow.
 const MOST_GROWN: f64 = 100.0;
 /// The search ends when a new set of rows reduces the cost by less than this share.
 const GAIN: f64 = 0.002;
-/// In the end points may slide along the path this many times, initially by this share of their deviation.
+/// At the end, points may slide along the path this many times, initially by this share of their deviation.
 const SLIDES: usize = 12;
 const SLIDE_SHARE: f64 = 0.5;
 
@@ -60,7 +60,7 @@ pub(crate) struct Patience {
     pub sets: usize,
     /// Growth of the penalties from one set to the next while a limit is violated.
     pub growth: f64,
-    /// The share of the turn limit to aim at.
+    /// The share of the turn limit to aim for.
     pub turn_share: f64,
 }
 
@@ -114,16 +114,16 @@ impl<'a> Band<'a> {
         way.iter().zip(self.knots).map(|(p, knot)| knot.weight * (p - knot.at).norm_squared()).sum()
     }
 
-    /// Whether a path keeps every limit.
+    /// Whether a path meets every limit.
     pub(crate) fn is_allowed(&self, way: &[Point]) -> bool {
         way.windows(2).all(|w| self.room.is_free(w[0], w[1])) && self.turns_slowly(way)
     }
 
-    /// Whether every two adjacent chords of [`SPAN_M`] turn no faster than allowed.
+    /// Whether the path turns no faster than allowed between any two adjacent chords of [`SPAN_M`].
     fn turns_slowly(&self, way: &[Point]) -> bool {
         let stations_m = polyline::stations_m(way);
         let length_m = stations_m[way.len() - 1];
-        // As the chords slide along the path, the turn is largest where an end of a chord is at a point of the path.
+        // As the chords slide along the path, the turn is largest where one end of a chord is at a point of the path.
         let marks_m = stations_m.iter().flat_map(|s_m| [s_m - SPAN_M, *s_m, s_m + SPAN_M]);
         marks_m.filter(|s_m| *s_m >= SPAN_M && s_m + SPAN_M <= length_m).all(|s_m| {
             let (index, share) = piece(&stations_m, s_m);
@@ -180,7 +180,7 @@ impl<'a> Band<'a> {
         rows
     }
 
-    /// Builds the rows for the turn limit: the second difference over the span at every point.
+    /// Builds the rows for the turn limit, which restrict the second difference over the span at every point.
     fn turn_rows(&self, way: &[Point], share: f64, rows: &mut Vec<Row<'a>>) {
         let stations_m = polyline::stations_m(way);
         let last = way.len() - 1;
@@ -206,7 +206,7 @@ impl<'a> Band<'a> {
         }
     }
 
-    /// Slides the points along the path, closer to those of the course, as long as no limit is violated.
+    /// Slides the points along the path towards those of the course, without violating a limit.
     fn slid_home(&self, mut cost: f64, mut way: Vec<Point>) -> Vec<Point> {
         let mut share = SLIDE_SHARE;
         for _ in 0..SLIDES {
@@ -238,7 +238,7 @@ impl<'a> Band<'a> {
         slid
     }
 
-    /// Solves and projects several times; returns the points of the last solution.
+    /// Solves and projects a number of times; returns the points of the last solution.
     fn rounds(&self, rows: &mut [Row<'a>]) -> Vec<Point> {
         let mut matrix =
             Banded::new(self.knots.len(), rows.iter().map(|row| row.factors.len()).max().unwrap_or(2).max(3));

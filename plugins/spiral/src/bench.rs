@@ -1,10 +1,11 @@
-//! Shared by the tests of our own planners: plans for the paper's layouts, and their figures over many seeds.
+//! Shared by the tests of our own planners: plans for the paper's layouts, and the figures of these plans over many
+//! seeds.
 
 use planner_api::{Motion, Plan, PlanRequest, Planner, Reason, Result, Task, testing::Bench};
 use std::time::Duration;
 use trials::{Distribution, Layout, Safety, Sampling, Score, exact_pose, floor_rmse_m, safety, score};
 
-/// Clearance in the paper's layouts in our tests, metres.
+/// The clearance that our tests use in the paper's layouts, metres.
 pub(crate) const CLEARANCE_M: f64 = 0.3;
 
 /// Plans a path through a layout.
@@ -19,7 +20,8 @@ pub(crate) fn plan<P: Planner>(layout: &Layout, values: &[(&str, f64)]) -> Resul
     planner.plan(&request, &bench.ctx())
 }
 
-/// Returns the CPU time of this thread, so that figures are valid on a busy machine; zero where it is not available.
+/// Returns the CPU time of this thread, so that figures are valid even on a busy machine; zero where the system does
+/// not report it.
 fn on_cpu() -> Duration {
     let stat = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
     let nanoseconds = stat.split_whitespace().next().and_then(|word| word.parse().ok());

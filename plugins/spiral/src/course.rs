@@ -1,4 +1,4 @@
-//! The course to follow: preset points with stations and directions, checked once.
+//! The course to follow: preset points with stations and directions. They are checked once.
 
 use planner_api::{Code, Config, Ctx, LogLevel, ParamSpec, PlanRequest, PlannerError, Result, Site, Task};
 use std::{f64::consts::TAU, ops::Range};
@@ -9,11 +9,11 @@ use world::{Point, Vector, geometry::wrap_angle_rad, polyline};
 const SPACING_M: f64 = 0.2;
 /// Courses with more points than this are refused.
 const MOST_POINTS: usize = 200_000;
-/// A start closer to the first point than this is on the course, metres.
+/// A start that is closer than this to the first point is on the course, metres.
 const ON_COURSE_M: f64 = 1e-3;
-/// Being outside the floor by no more than this is a rounding error, metres.
+/// A point outside the floor by no more than this is there because of rounding, metres.
 const ROUNDING_M: f64 = 1e-6;
-/// Turns of the path closer to each other than this count as coincident, metres.
+/// Turns of the path that are closer together than this coincide, metres.
 const LEAST_PITCH_M: f64 = 1e-3;
 
 /// Points to follow in order.
@@ -23,7 +23,7 @@ pub(crate) struct Course {
     pub points: Vec<Point>,
     /// Distance along the course to every point, metres.
     pub stations_m: Vec<f64>,
-    /// Distance from the last point at which it counts as reached, metres.
+    /// The last point has been reached when the robot is within this distance of it, metres.
     pub tolerance_m: f64,
 }
 
@@ -31,14 +31,14 @@ impl Course {
     /// Creates the course of a task, beginning at the robot.
     ///
     /// # Errors
-    /// [`Code::Invalid`] for points that are missing, not finite or too many, and for turns that coincide.
+    /// [`Code::Invalid`] if points are missing, not finite or too many, or if turns coincide.
     pub(crate) fn new(request: &PlanRequest<'_>) -> Result<Self> {
         let start = request.start.position;
         let (targets, tolerance_m) = match request.task {
             Task::Goto { goal, tolerance_m } => (vec![goal], tolerance_m),
             Task::Follow { targets, tolerance_m } => (targets.to_vec(), tolerance_m),
             Task::Cover { .. } => {
-                let message = "it drives to points and along paths and does not cover floors";
+                let message = "it drives to points and along paths, but does not cover floors";
                 return Err(PlannerError::new(Code::Unsupported, message));
             }
         };
@@ -51,10 +51,10 @@ impl Course {
         points.extend(targets);
         let split = polyline::length_m(&points) / SPACING_M + points.len() as f64;
         if split > MOST_POINTS as f64 {
-            let message = format!("the preset path has {split:.0} points; {MOST_POINTS} are allowed");
+            let message = format!("the preset path has {split:.0} points; at most {MOST_POINTS} are allowed");
             return Err(invalid(message));
         }
-        // Slightly more than one step, so that rounding does not split gaps of exactly one step.
+        // This is slightly more than one step, so that rounding does not split gaps of exactly one step.
         let most_m = SPACING_M * (1.0 + 1e-6);
         let has_gaps = points.windows(2).any(|w| (w[1] - w[0]).norm() > most_m);
         let points = if has_gaps { polyline::resampled(&points, most_m) } else { points };
@@ -80,7 +80,7 @@ impl Course {
         along.try_normalize(1e-12).unwrap_or_else(Vector::x)
     }
 
-    /// Returns how fast the course itself turns at a point, radians per metre.
+    /// Returns how sharply the course itself turns at a point, radians per metre.
     pub(crate) fn turn_per_m(&self, index: usize) -> f64 {
         let before = self.leg(index.saturating_sub(1));
         let after = self.leg(index);
@@ -90,8 +90,9 @@ impl Course {
     }
 }
 
-/// Returns the space for the robot. Obstacles are cleared by the mission's clearance or a larger one. The wall is
-/// cleared by the mission's clearance, unless the course itself passes closer to it; the hull never touches the wall.
+/// Returns the space for the robot. It keeps away from obstacles by the larger of this clearance and the mission's. It
+/// keeps away from the wall by the mission's clearance, unless the course itself passes closer; the hull never touches
+/// the wall.
 ///
 /// # Errors
 /// [`Code::Config`] when hull and clearance exceed the distance between the turns.
@@ -105,8 +106,8 @@ pub(crate) fn room(site: &Site<'_>, clearance_m: f64, course: &Course) -> Result
     Ok(Room::new(site, Keep { obstacle_m, wall_m }))
 }
 
-/// Returns the distance between the first point and the one a full turn further, metres; `None` if the path turns less
-/// than one and a half times around the centre.
+/// Returns the distance between the first point and the point one full turn later, metres; `None` if the path turns
+/// less than one and a half times around the centre.
 fn pitch_m(points: &[Point]) -> Option<f64> {
     let mut turned_rad = 0.0_f64;
     let mut one_turn_on = None;
@@ -127,8 +128,8 @@ fn invalid(message: impl Into<String>) -> PlannerError {
     PlannerError::new(Code::Invalid, message)
 }
 
-/// Refuses a start outside the tank or with half of the hull in an obstacle. If the start itself is closer to something
-/// than the clearance, logs that the path begins beside it.
+/// Refuses a start outside the tank or with half of the hull in an obstacle. If the start is closer to something than
+/// the clearance allows, logs that the path begins beside the start.
 ///
 /// # Errors
 /// [`Code::StartOutside`] or [`Code::StartOccupied`].
@@ -143,7 +144,7 @@ pub(crate) fn check_start(
     if room.wall().wall_distance_m(start) < -ROUNDING_M {
         return Err(PlannerError::new(Code::StartOutside, format!("{place} is outside the tank")));
     }
-    // The estimated start may be slightly wrong, so it is refused only if half of the hull is inside.
+    // The estimated start may be slightly wrong, so it is refused only if half of the hull is inside an obstacle.
     let distances_m = solid_parts(request.site).map(|(_, part)| part.distance(start).0);
     let outline_m = distances_m.fold(f64::INFINITY, f64::min);
     if outline_m < hull_m / 2.0 || outline_m <= 0.0 {
@@ -214,7 +215,7 @@ pub(crate) fn nearest_free(course: &Course, room: &Room) -> Point {
     places_about(start, 0..80).find(|place| room.spare_m(*place) >= 0.0).unwrap_or(start)
 }
 
-/// Returns points around a center, nearest first, on rings 2.5 cm apart.
+/// Returns points around a center, nearest first, on rings that are 2.5 cm apart.
 pub(crate) fn places_about(center: Point, rings: Range<u32>) -> impl Iterator<Item = Point> {
     rings.map(|k| f64::from(k) * 0.025).flat_map(move |radius_m| {
         let bearings = (0..48).map(|k| f64::from(k) * TAU / 48.0);

@@ -1,11 +1,11 @@
-//! The two potential fields for comparison with the rotating one: they leave traps with a virtual target, or with a
-//! sideways push.
+//! The two potential fields that are compared with the rotating field. One escapes from traps by a virtual target, the
+//! other by a sideways push.
 
 use crate::potential::{Kind, Potential};
 use field::{Escape, FieldSettings, open_points as o, params as p};
 use planner_api::{Config, ParamSpec};
 
-/// The list of parameters: those that both fields share, and those given.
+/// The list of parameters: those that both fields share, followed by those given.
 macro_rules! params {
     ($($own:expr),*) => {
         &[
@@ -36,10 +36,11 @@ macro_rules! params {
     };
 }
 
-/// A potential field that leaves traps with a virtual target beside the obstacle; Yang 2018, reconstructed.
+/// A potential field that escapes from traps by a virtual target beside the obstacle, reconstructed from a description
+/// of Yang 2018.
 pub type Vt = Potential<VirtualTarget>;
 
-/// A potential field that leaves traps with a sideways push; Zhao 2022, reconstructed.
+/// A potential field that escapes from traps by a sideways push, reconstructed from a description of Zhao 2022.
 pub type Iapf = Potential<Push>;
 
 /// Selects the force law of [`Vt`].
@@ -51,9 +52,9 @@ pub enum Push {}
 impl Kind for VirtualTarget {
     const ID: &'static str = "vt";
     const NAME: &'static str = "Virtual target";
-    const ABOUT: &'static str = "Potential field that leaves traps with a virtual target, reconstructed \
-                                 from the description of Yang 2018 in Wang et al. 2023. Evades moving \
-                                 obstacles.";
+    const ABOUT: &'static str = "Potential field that escapes from traps by a virtual target, \
+                                 reconstructed from the description of Yang 2018 in Wang et al. 2023. \
+                                 Evades moving obstacles.";
     const PARAMS: &'static [ParamSpec] = params!();
 
     fn settings(config: &Config<'_>) -> FieldSettings {
@@ -64,9 +65,9 @@ impl Kind for VirtualTarget {
 impl Kind for Push {
     const ID: &'static str = "iapf";
     const NAME: &'static str = "Improved potential field";
-    const ABOUT: &'static str = "Potential field that leaves traps with a sideways push, reconstructed \
-                                 from the description of Zhao 2022 in Wang et al. 2023. Evades moving \
-                                 obstacles.";
+    const ABOUT: &'static str = "Potential field that escapes from traps by a sideways push, \
+                                 reconstructed from the description of Zhao 2022 in Wang et al. 2023. \
+                                 Evades moving obstacles.";
     const PARAMS: &'static [ParamSpec] = params!(o::PUSH, o::PUSH_SIDE, o::BESIDE);
 
     fn settings(config: &Config<'_>) -> FieldSettings {

@@ -1,5 +1,5 @@
-//! Plans by offsets from the course: the path stays on the course where it is free, and passes beside it at the lowest
-//! cost where it is not.
+//! Plans by offsets from the course: where the course is free, the path stays on it; elsewhere, the path passes beside
+//! it at the lowest cost.
 
 use crate::{
     band::{Band, Knot, Patience, SPAN_M},
@@ -13,32 +13,34 @@ use world::{Point, Vector};
 
 /// Smallest distance between stations in the first search, metres.
 const COARSE_M: f64 = 0.15;
-/// Distance between the offsets in the first search, metres.
+/// Distance between neighbouring offsets in the first search, metres.
 const CELL_M: f64 = 0.05;
-/// Preset points closer to each other than this are moved together, metres.
+/// Preset points that are closer to each other than this are moved together, metres.
 const FINE_M: f64 = 0.1;
-/// The same distance for the case that no smooth path is found otherwise, metres.
+/// The same distance for the last search, used when no other finds a smooth path, metres.
 const FINEST_M: f64 = 0.05;
 /// Space before and after a blockage of the course, metres: enough to leave the course and return to it.
 const RAMPS_M: [f64; 2] = [1.0, 3.0];
-/// Length of course next to a window over which the heading must be smooth, metres.
+/// On either side of a window, the heading must be smooth over this length of the course, metres.
 const BESIDE_M: f64 = SPAN_M * 1.3;
-/// Anything that a path passes at no more than this beyond the clearance might be passed on the other side, metres.
+/// If a path passes something at no more than the clearance plus this, a path on the other side may be tried, metres.
 const TOUCH_M: f64 = 0.1;
-/// Few alternatives are tried at first, and many if none of them is smooth.
+/// At first few alternatives are tried; if none of them is smooth, many are.
 const FEW: Others = Others { cost: 2.0, number: 2 };
 const MANY: Others = Others { cost: 6.0, number: 8 };
-/// Most paths are soon tightened; the others deserve more attempts.
+/// Most paths are tightened after a few attempts; the others are given more.
 const HASTE: Patience = Patience { sets: 40, growth: 1.1, turn_share: 0.95 };
 const PATIENCE: Patience = Patience { sets: 80, growth: 1.2, turn_share: 0.92 };
 /// The last point has a higher weight than all others, so that the path reaches the end.
 const END_WEIGHT: f64 = 20.0;
-/// Beyond what the clearance requires, the path may miss a last point inside an obstacle by this much, metres.
+/// If the last point is inside an obstacle, the path may end this much further from it than the clearance requires,
+/// metres.
 const NEARLY_M: f64 = 0.1;
-/// The course itself may turn faster than the limit. There the path may turn faster than the course by this factor.
+/// The course itself may turn more sharply than the limit. There the path may turn more sharply than the course by this
+/// factor.
 const OWN_TURN: f64 = 1.15;
 
-/// The limits that the plan must keep.
+/// The limits that the plan must meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Limits {
     /// Largest offset from the course, metres.
@@ -52,7 +54,7 @@ pub(crate) struct Limits {
 pub(crate) struct Path {
     /// One point for every point of the course.
     pub points: Vec<Point>,
-    /// Index ranges of the course within which the turn limit could not be kept.
+    /// Index ranges of the course in which the turn limit could not be met.
     pub sharp: Vec<RangeInclusive<usize>>,
 }
 
@@ -65,11 +67,11 @@ pub(crate) struct Blocked {
     pub partial: Vec<Point>,
 }
 
-/// The result within one window, with a point for every point of the course there.
+/// The result in one window; a path has one point for every point of the course there.
 enum Beside {
     /// A path within the turn limit.
     Smooth(Vec<Point>),
-    /// A path that turns faster.
+    /// A path that turns more sharply.
     Sharp(Vec<Point>),
     /// No path.
     Blocked { station: usize },
@@ -78,9 +80,9 @@ enum Beside {
 /// Which alternatives to the cheapest path are tried.
 #[derive(Debug, Clone, Copy)]
 struct Others {
-    /// Largest cost, as a multiple of the cheapest.
+    /// Largest cost, as a multiple of the cheapest path's.
     cost: f64,
-    /// Largest number.
+    /// Largest number of alternatives.
     number: usize,
 }
 
@@ -95,7 +97,7 @@ struct Attempt {
     begins_on: bool,
     patience: Patience,
     others: Others,
-    /// Points of the course closer to each other than this are moved together, metres.
+    /// Points of the course that are closer to each other than this are moved together, metres.
     fine_m: f64,
 }
 
@@ -106,7 +108,7 @@ struct Search<'a> {
     limits: Limits,
 }
 
-/// Finds the path along a course that keeps its distance from everything, with the smallest sum of squared offsets.
+/// Finds the path along a course that has the smallest sum of squared offsets and keeps its distance from everything.
 ///
 /// # Errors
 /// The console asked to stop.
@@ -139,7 +141,7 @@ pub(crate) fn plan(
 }
 
 impl Search<'_> {
-    /// Returns the points of the course where the robot cannot be, or from which it cannot reach the next one.
+    /// Returns the points of the course where the robot cannot be, or from which it cannot reach the next point.
     fn blocked(&self) -> Vec<usize> {
         let points = &self.course.points;
         let is_blocked = |index: &usize| {
@@ -170,7 +172,7 @@ impl Search<'_> {
         windows
     }
 
-    /// Finds a way round within a window: one within the turn limit if possible, otherwise any.
+    /// Finds a way round within a window, within the turn limit if possible.
     fn beside(&self, window: &RangeInclusive<usize>, is_wide: bool) -> Beside {
         let far_m = self.limits.offset_m;
         let mut furthest = *window.start();
@@ -196,7 +198,7 @@ impl Search<'_> {
             Attempt { sharper: f64::INFINITY, offset_m: far_m * 2.0, ..near },
         ]);
         if begins_on && *window.start() == 0 {
-            // If nothing leads on from the start itself, the path begins beside it.
+            // If no path continues from the start itself, the path begins beside it.
             attempts.push(Attempt { sharper: f64::INFINITY, begins_on: false, ..far });
         }
         for attempt in attempts {
@@ -217,8 +219,8 @@ impl Search<'_> {
         *window.end() < self.course.last() || (points[points.len() - 1] - end).norm() <= allowed_m
     }
 
-    /// Finds the best way round within a window, with one point for every point of the course. The error is the point
-    /// that cannot be passed.
+    /// Finds the best way round within a window, with one point for every point of the course. The error is the index
+    /// of the point that cannot be passed.
     fn within(
         &self,
         window: &RangeInclusive<usize>,
@@ -332,7 +334,7 @@ impl Search<'_> {
         Some((cost, points[window.start() - around.start()..=window.end() - around.start()].to_vec()))
     }
 
-    /// Extends a window by the sections of course on both sides over which the heading must be smooth.
+    /// Extends a window by the sections of the course on both sides over which the heading must be smooth.
     fn around(&self, window: &RangeInclusive<usize>) -> RangeInclusive<usize> {
         let stations_m = &self.course.stations_m;
         let first = stations_m.partition_point(|s| *s < stations_m[*window.start()] - BESIDE_M);
@@ -340,7 +342,7 @@ impl Search<'_> {
         first..=last
     }
 
-    /// Selects points of the course at this spacing. They are moved, and those in between follow.
+    /// Selects points of the course at this spacing. The search moves these points, and those in between follow.
     fn knots(&self, window: &RangeInclusive<usize>, apart_m: f64) -> Vec<usize> {
         let stations_m = &self.course.stations_m;
         let mut knots = vec![*window.start()];

@@ -1,4 +1,4 @@
-//! Planners for the preset spiral.
+//! Planners that follow a preset spiral.
 #![forbid(unsafe_code)]
 
 pub mod potential;

@@ -1,5 +1,5 @@
-//! Shared by all potential fields on a preset path: plans simulate a walk over the known map, and in flight the field
-//! acts tick by tick.
+//! Shared by all potential fields on a preset path: a plan simulates a walk over the known map, and during the mission
+//! the field acts tick by tick.
 
 use crate::course;
 use field::{FieldSettings, ForcePilot, offline};
@@ -14,7 +14,7 @@ pub trait Kind: 'static {
     const ID: &'static str;
     /// The name for people.
     const NAME: &'static str;
-    /// One sentence about the field, with its source.
+    /// One sentence about the field, including its source.
     const ABOUT: &'static str;
     /// The parameters.
     const PARAMS: &'static [ParamSpec];

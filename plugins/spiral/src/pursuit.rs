@@ -1,11 +1,12 @@
-//! Follows a plan or a preset path in flight: straight to the next point, and along the tangent of anything in the way.
+//! Follows a plan or a preset path during the mission: straight to the next point, and past anything in the way along
+//! its tangent.
 
 use crate::tangent::Around;
 use geometry::{Point, convex::Part};
 use planner_api::{Command, Ctx, Result, Sensed, Site};
 use steering::{Flight, Forces, Keep, Pilot, Tick};
 
-/// How far ahead the way is checked, metres.
+/// How far ahead the robot checks whether its way is free, metres.
 const REACH_M: f64 = 0.4;
 
 /// Follows a plan, or the preset points if there is no plan, with a noisy pose and obstacles found during the mission.
@@ -16,12 +17,12 @@ pub(crate) struct Pursuit {
 }
 
 impl Pursuit {
-    /// Creates a pursuit that keeps this clearance, metres, or the mission's if that is larger.
+    /// Creates a pursuit that keeps this clearance, metres, or the mission's clearance if that is larger.
     pub(crate) fn new(flight: Flight, clearance_m: f64, site: &Site<'_>) -> Self {
         Self { flight, clearance_m, pilot: Pilot::pursuing(site) }
     }
 
-    /// Changes the settings during a mission; everything else is kept.
+    /// Changes the settings during a mission; everything else stays as it is.
     pub(crate) fn set(&mut self, flight: Flight, clearance_m: f64) {
         (self.flight, self.clearance_m) = (flight, clearance_m);
     }
@@ -40,7 +41,7 @@ impl Pursuit {
         Ok(self.pilot.pursue(&self.flight, &tick, aim).into())
     }
 
-    /// Returns where to head now if something is in the way: along its tangent.
+    /// If something is in the way, returns where to head now: along its tangent.
     fn aim(&mut self, tick: &Tick<'_>) -> Option<Point> {
         let at = tick.pose.position;
         let keep_m = self.pilot.keep_m(&self.flight, &tick.pose).max(self.clearance_m);

@@ -1,4 +1,4 @@
-//! Refuses a plan with a reason: where the course is blocked, and by which ring of obstacles, if that is proved.
+//! Refuses a plan with a reason: where the course is blocked, and which ring of obstacles blocks it, if that is proved.
 
 use crate::{
     course::Course,
@@ -41,8 +41,8 @@ fn proof_by(ring: &Ring) -> String {
     format!("proved: a ring of obstacles {}{wall} closes off that point", ids.join(", "))
 }
 
-/// If the end of the course cannot be reached, returns the first free point from the blocked one on that cannot be
-/// reached either, and the ring around it.
+/// If the end of the course cannot be reached, returns the first free point, at or after the blocked point, that cannot
+/// be reached either, and the ring around it.
 fn cut_off(
     course: &Course,
     (site, room): (&Site<'_>, &Room),

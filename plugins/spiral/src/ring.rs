@@ -1,10 +1,10 @@
 //! Proves that no path leads from one place to another: finds a closed chain of solids between which the hull does not
 //! fit.
 //!
-//! The forbidden area is the union of all solids, each grown by its clearance. Where two of them overlap, a line from
-//! one to the other is inside the union. Two places are separated if and only if such lines form a closed curve that
-//! encloses one of them and not the other. A straight line between the places crosses such a curve more often in one
-//! direction than in the other. Counting crossings along a spanning tree finds the curve without trying all of them.
+//! The forbidden area is the union of all solids, each grown by its clearance. Where two grown solids overlap, a line
+//! from one to the other is inside the union. Two places are separated if and only if such lines form a closed curve
+//! that encloses one place and not the other. A straight line between the places crosses such a curve more often in one
+//! direction than in the other. Counting crossings along a spanning tree finds the curve without trying all curves.
 
 use geometry::{convex::Part, polyline::edges};
 use planner_api::Site;
@@ -12,9 +12,9 @@ use std::collections::{BTreeSet, VecDeque};
 use steering::{Keep, solid_parts};
 use world::{Boundary, Point, Vector};
 
-/// Sites with more solids than this are not examined.
+/// A site with more solids than this is not examined.
 const MOST_PARTS: usize = 3000;
-/// A gap must be closed by more than this rounding margin, metres.
+/// A gap is closed only if the solids overlap by more than this rounding margin, metres.
 const ROUNDING_M: f64 = 1e-9;
 
 /// The elements of a ring.
@@ -88,7 +88,7 @@ impl Node {
     }
 }
 
-/// Returns the links of every node to the others.
+/// Returns the links from every node to the others.
 fn links(nodes: &[Node], keep: Keep, wall: &Boundary, (a, b): (Point, Point)) -> Vec<Vec<Link>> {
     let mut links: Vec<Vec<Link>> = nodes.iter().map(|_| Vec::new()).collect();
     let mut add = |i: usize, j: usize, line: &[Point]| {
@@ -121,7 +121,7 @@ fn links(nodes: &[Node], keep: Keep, wall: &Boundary, (a, b): (Point, Point)) ->
 }
 
 /// Returns the corner or end of a part that is furthest from the centre of the tank, and how far the part extends
-/// beyond it.
+/// beyond that point.
 fn outermost(part: &Part) -> (Point, f64) {
     let furthest = |points: &[Point]| {
         let by_radius = |p: &&Point, q: &&Point| p.coords.norm().total_cmp(&q.coords.norm());
@@ -143,7 +143,7 @@ fn crossing(a: Point, b: Point, from: Point, to: Point) -> i32 {
     if sides.0 { 1 } else { -1 }
 }
 
-/// Returns a closed chain of nodes whose crossings do not add up to zero.
+/// Returns a closed chain of nodes with crossings that do not add up to zero.
 fn odd_cycle(links: &[Vec<Link>]) -> Option<Vec<usize>> {
     let mut sums: Vec<Option<i32>> = vec![None; links.len()];
     let mut parents: Vec<usize> = (0..links.len()).collect();
@@ -172,7 +172,7 @@ fn odd_cycle(links: &[Vec<Link>]) -> Option<Vec<usize>> {
     None
 }
 
-/// Joins the paths of two nodes up the tree to where they meet.
+/// Joins the paths from two nodes up the tree at the node where they meet.
 fn closed_chain(parents: &[usize], a: usize, b: usize) -> Vec<usize> {
     let up = |node: usize| {
         std::iter::successors(Some(node), |node| Some(parents[*node]).filter(|parent| parent != node))

@@ -4,12 +4,12 @@ use crate::potential::{Kind, Potential};
 use field::{FieldSettings, open_points as o, params as p};
 use planner_api::{Config, ParamSpec};
 
-/// The rotating potential field of Wang et al. 2023, in both readings.
+/// The rotating potential field of Wang et al. 2023, in both interpretations.
 ///
-/// For a point robot, planning walks the force law in lock step as in the paper. For a robot with a hull this nearly
-/// always fails, so planning simulates a flight over the known map instead. In flight the rotating force, unless
-/// configured differently, acts around whatever is in the way, on the side of the smaller detour; as printed in the
-/// paper it gets stuck.
+/// For a point robot, planning applies the force law step by step, as in the paper. For a robot with a hull this nearly
+/// always fails, so planning simulates a mission over the known map instead. During the mission the rotating force acts
+/// around whatever is in the way, on the side of the smaller detour, unless it is configured differently; as printed in
+/// the paper, the method gets stuck.
 pub type Rpf = Potential<Rotating>;
 
 /// Selects the force law of [`Rpf`].

@@ -1,4 +1,4 @@
-//! The offset lattice: our global planner for preset paths.
+//! The offset lattice, our global planner for preset paths.
 
 use crate::{
     course::{self, Course},
@@ -20,15 +20,18 @@ const TURN: ParamSpec = float("turn_deg", "Turn limit per 0.2 m", "deg", 0.0, 18
     .group("Plan")
     .live();
 const MAX_OFFSET: ParamSpec = float("max_offset_m", "Largest offset", "m", 0.1, 5.0, 1.25)
-    .help("How far from the preset path to search for a way round at first; twice as far if there is none.")
+    .help(
+        "How far from the preset path to search for a way round at first; if there is none, the search \
+         extends twice as far.",
+    )
     .group("Plan")
     .live();
 
-/// Plans along a preset path: the plan stays on it where it is free, and passes beside it at the lowest cost where it
-/// is not.
+/// Plans along a preset path: where the path is free, the plan stays on it; elsewhere, the plan passes beside it at the
+/// lowest cost.
 ///
-/// Clearance, wall and change of heading are hard limits of the search. In flight the plan is followed with the guard
-/// active; obstacles found on the way are bypassed with a new plan.
+/// Clearance, wall and change of heading are hard limits of the search. During the mission the robot follows the plan
+/// with the guard active; obstacles found on the way are bypassed with a new plan.
 pub struct SpiralLattice {
     wishes: Wishes,
     pursuit: Pursuit,
@@ -105,7 +108,7 @@ fn plan_of(path: lattice::Path, course: &Course, room: &Room, ctx: &Ctx<'_>) -> 
         ctx.log(
             LogLevel::Warn,
             &format!(
-                "no path leads on from the start along the preset path; the plan begins {beside_m:.2} m \
+                "no path continues from the start along the preset path; the plan begins {beside_m:.2} m \
                  beside it"
             ),
         );

@@ -1,4 +1,4 @@
-//! The tangent follower: our reactive planner for preset paths.
+//! The tangent follower, our reactive planner for preset paths.
 
 use crate::{
     course::{self, Course},
@@ -25,15 +25,16 @@ const RANGE: ParamSpec = float("range_m", "Sensing range", "m", 0.5, 10.0, 1.2)
     .group("Plan");
 const STEP: ParamSpec = float("step_m", "Longest move", "m", 0.01, 0.3, 0.1)
     .help(
-        "Length of a move in the plan; with shorter moves the path passes obstacles closer to the clearance.",
+        "Length of a move in the plan; with shorter moves, the path passes obstacles at a distance closer to \
+         the clearance.",
     )
     .group("Plan");
 
-/// Follows a preset path, or a plan of a different planner, by what the robot senses.
+/// Follows a preset path, or a different planner's plan, according to what the robot senses.
 ///
 /// It heads straight for the next free point. It passes obstacles along the tangent of the headings that they block, on
-/// the side where less floor is missed. In a pocket, where neither side leads on, it takes the shortest path back to
-/// the course, given everything sensed so far. It never enters places where hull and clearance do not fit.
+/// the side where it misses less floor. In a pocket, where neither side leads back to the course, it takes the shortest
+/// path out, given everything sensed so far. It never enters places where hull and clearance do not fit.
 pub struct SpiralTangent {
     clearance_m: f64,
     range_m: f64,
@@ -44,9 +45,9 @@ pub struct SpiralTangent {
 impl Planner for SpiralTangent {
     const ID: &'static str = "spiral-tangent";
     const NAME: &'static str = "Tangent follower";
-    const ABOUT: &'static str = "Reactive: follows a preset path or a plan by what the robot senses, and \
-                                 passes obstacles along their tangents, with clearance and wall as hard \
-                                 limits. Treats moving obstacles as stationary.";
+    const ABOUT: &'static str = "Reactive: follows a preset path or a plan according to what the robot \
+                                 senses, and passes obstacles along their tangents, with clearance and \
+                                 wall as hard limits. Treats moving obstacles as stationary.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL);
     const PARAMS: &'static [ParamSpec] =
         &[p::CLEARANCE, RANGE, STEP, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];

@@ -1,10 +1,10 @@
-//! Finds the cheapest path through a strip of offsets beside a course by dynamic programming. This decides on which
-//! side to pass each obstacle.
+//! Finds the cheapest path through a strip of offsets beside a course, by dynamic programming. The result decides on
+//! which side each obstacle is passed.
 
 use steering::{Room, room::MOST_SPARE_M};
 use world::{Point, Vector};
 
-/// Weight of the squared change of offset, relative to the squared offset.
+/// Weight of the squared change in offset, relative to that of the squared offset.
 const SLOPE_WEIGHT: f64 = 0.5;
 const NOWHERE: u8 = u8::MAX;
 
@@ -30,7 +30,7 @@ pub(crate) struct Bar {
     pub to_m: f64,
 }
 
-/// The grid to search for a path.
+/// The grid in which a path is searched for.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Strip<'a> {
     /// The stations, at least two.
@@ -39,7 +39,7 @@ pub(crate) struct Strip<'a> {
     pub cell_m: f64,
     /// The number of offsets on either side of the course.
     pub half: usize,
-    /// The maximum change of offset from one station to the next, cells.
+    /// The maximum change in offset from one station to the next, cells.
     pub most_change: usize,
     /// Whether the path must begin on the course, and whether it must end on it.
     pub on_course: [bool; 2],
@@ -52,11 +52,11 @@ pub(crate) struct Strip<'a> {
 pub(crate) struct Way {
     /// The offset at every station, metres to the left.
     pub offsets_m: Vec<f64>,
-    /// Weighted sum of the squared offsets and of their squared changes, square metres.
+    /// Weighted sum of the squared offsets and of the squared changes in offset, square metres.
     pub cost: f64,
 }
 
-/// The offsets of one station and the cost of reaching them.
+/// The offsets of one station, and the cost of reaching each.
 struct Front {
     places: Vec<Point>,
     spare_m: Vec<f64>,
@@ -67,7 +67,7 @@ impl Strip<'_> {
     /// Finds the path with the smallest cost that keeps its distance from everything.
     ///
     /// # Errors
-    /// Index of the first station that no path reaches.
+    /// The index of the first station that no path reaches.
     pub(crate) fn cheapest(&self, room: &Room) -> Result<Way, usize> {
         let mut front = self.front(room, 0);
         for offset in 0..self.width() {
@@ -101,7 +101,7 @@ impl Strip<'_> {
         (offset as f64 - self.half as f64) * self.cell_m
     }
 
-    /// Returns the offsets of a station, with none reached yet; barred offsets have no room.
+    /// Returns the offsets of a station, none of them reached yet; barred offsets have no free space.
     fn front(&self, room: &Room, station: usize) -> Front {
         let Station { at, left, .. } = self.stations[station];
         let places: Vec<Point> = (0..self.width()).map(|offset| at + left * self.offset_m(offset)).collect();
@@ -116,7 +116,8 @@ impl Strip<'_> {
         Front { places, spare_m, cost: vec![f64::INFINITY; self.width()] }
     }
 
-    /// Computes the costs of a station's offsets; returns the offset from which each is reached.
+    /// Computes the cost of each of a station's offsets; returns the previous station's offset from which each is
+    /// reached.
     fn reach(&self, room: &Room, station: usize, front: &Front, next: &mut Front) -> Vec<u8> {
         let weight = self.stations[station].weight;
         let mut came_from = vec![NOWHERE; self.width()];
@@ -154,7 +155,7 @@ fn leads(room: &Room, (from, a): (&Front, usize), (to, b): (&Front, usize)) -> b
         return false;
     }
     let length_m = (to.places[b] - from.places[a]).norm();
-    // The free space around both ends covers the line.
+    // True if the free space around both ends covers the line.
     let is_covered = from.spare_m[a] + to.spare_m[b] > length_m && length_m < 2.0 * MOST_SPARE_M;
     is_covered || room.is_free(from.places[a], to.places[b])
 }

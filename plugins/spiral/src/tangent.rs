@@ -1,5 +1,5 @@
-//! Follows a course by what is sensed: straight to its next free point, and past obstacles along the tangents of the
-//! headings that they block.
+//! Follows a course according to what is sensed: straight to the next free point of the course, and past obstacles
+//! along the tangents of the headings that they block.
 
 use geometry::convex::Part;
 use std::f64::consts::TAU;
@@ -8,7 +8,7 @@ use world::{Boundary, Point, Vector, geometry::wrap_angle_rad};
 
 /// How far ahead the nearest point of the course is searched for, metres.
 const WINDOW_M: f64 = 1.5;
-/// A place closer to the course than this is on it, metres.
+/// A place that is closer than this to the course is on it, metres.
 const ON_COURSE_M: f64 = 0.01;
 /// The margin between a heading and blocked headings, radians.
 const MARGIN_RAD: f64 = 1e-6;
@@ -16,7 +16,7 @@ const MARGIN_RAD: f64 = 1e-6;
 const THOUGHT_MOVES: usize = 120;
 /// The follower is stuck after this many moves without progress along the course.
 const PATIENCE_MOVES: usize = 40;
-/// Closer by no more than this is a rounding error, metres.
+/// Coming too close by no more than this is a rounding error, metres.
 const ROUNDING_M: f64 = 1e-7;
 
 /// A course with the distances along it.
@@ -35,7 +35,7 @@ pub(crate) struct Around<'a> {
     pub wall: &'a Boundary,
     /// Everything sensed, as parts.
     pub parts: Vec<&'a Part>,
-    /// The distances to keep.
+    /// The distances to keep from the wall and from the parts.
     pub keep: Keep,
 }
 
@@ -53,7 +53,7 @@ pub(crate) struct Follower {
     pub at: Point,
     /// Index of the nearest point of the course; it only increases.
     pub nearest: usize,
-    /// The side on which the follower is passing an obstacle, if it is.
+    /// The side on which the follower is passing an obstacle, if it is passing one.
     pub side: Option<Side>,
     best: usize,
     idle: usize,
@@ -64,7 +64,7 @@ pub(crate) struct Follower {
 pub(crate) struct Stuck;
 
 impl Around<'_> {
-    /// Returns the free space at a place, metres; negative where the centre of the hull may not be.
+    /// Returns the free space at a place, metres; negative where the centre of the hull is not allowed.
     pub(crate) fn spare_m(&self, at: Point) -> f64 {
         let wall_m = self.wall.wall_distance_m(at) - self.keep.wall_m + 1e-9;
         self.parts.iter().map(|part| part.distance(at).0 - self.keep.obstacle_m).fold(wall_m, f64::min)
@@ -76,8 +76,8 @@ impl Around<'_> {
             && self.parts.iter().all(|part| part.segment_distance_m(a, b) >= self.keep.obstacle_m)
     }
 
-    /// Whether the centre of the hull can move straight from one place to another, with a rounding margin so that it
-    /// may touch obstacles.
+    /// Whether the centre of the hull can move straight from one place to another, with a rounding margin that lets the
+    /// hull touch obstacles.
     pub(crate) fn is_nearly_free(&self, a: Point, b: Point) -> bool {
         self.wall.wall_distance_m(b) >= self.keep.wall_m - ROUNDING_M
             && self
@@ -105,7 +105,7 @@ impl Around<'_> {
         blocked
     }
 
-    /// Returns the heading nearest to the desired one, turning only to one side; `None` if all are blocked.
+    /// Returns the first free heading from the desired one on, turning only to this side; `None` if all are blocked.
     pub(crate) fn tangent(&self, at: Point, wanted: Vector, reach_m: f64, side: Side) -> Option<Vector> {
         let blocked = self.blocked(at, reach_m);
         let sign = side.sign();
@@ -158,7 +158,7 @@ impl Follower {
     /// Makes one move of at most this length.
     ///
     /// # Errors
-    /// [`Stuck`] when no move leads on.
+    /// [`Stuck`] when no move makes progress.
     pub(crate) fn advance(
         &mut self,
         track: &Track<'_>,
@@ -193,7 +193,7 @@ impl Follower {
         left_m < tolerance_m && (track.points[last] - self.at).norm() < tolerance_m
     }
 
-    /// Whether the follower is on the course and not on a way round.
+    /// Whether the follower is on the course rather than on a way round.
     pub(crate) fn is_on(&self, track: &Track<'_>) -> bool {
         self.off_m(track) < ON_COURSE_M
     }

@@ -1,5 +1,5 @@
-//! Simulates a walk along a course: obstacles that come into range are sensed and remembered, and the remembered ones
-//! are used to find the way out of pockets.
+//! Simulates a walk along a course. Obstacles that come into range are sensed and remembered; those remembered are used
+//! to find the way out of pockets.
 
 use crate::{
     course::{self, Course},
@@ -11,7 +11,7 @@ use planner_api::{Ctx, Result};
 use steering::Room;
 use world::{Point, polyline};
 
-/// The distance between two looks at the surroundings, metres.
+/// The surroundings are sensed again after this distance, metres.
 const LOOK_M: f64 = 0.2;
 /// The maximum number of moves, as a multiple of those that the course takes.
 const DETOUR: f64 = 4.0;
@@ -48,7 +48,7 @@ enum Left {
 }
 
 impl<'a> Walk<'a> {
-    /// Creates a walk from the beginning of a course among these parts.
+    /// Creates a walk among these parts, from the beginning of a course.
     pub(crate) fn new(
         course: &'a Course,
         room: &'a Room,
@@ -93,7 +93,7 @@ impl<'a> Walk<'a> {
         Ok((self.path, Err(self.follower.nearest)))
     }
 
-    /// Senses the surroundings if the follower has moved far enough since the last look. Returns whether something new
+    /// Senses the surroundings if the follower has moved far enough since it last did. Returns whether something new
     /// came into range.
     fn look(&mut self) -> bool {
         let at = self.follower.at;

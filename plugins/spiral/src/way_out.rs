@@ -8,18 +8,18 @@ use geometry::convex::Part;
 use steering::Room;
 use world::{Point, Shape, shortest::GrownFloor};
 
-/// A detour up to this length to the next section of course is accepted, metres. Before a longer one, the sections
-/// further on are tried.
+/// A detour of up to this length to the next section of the course is accepted, metres. If it would be longer, the
+/// sections after it are tried first.
 const SHORT_M: f64 = 6.0;
 
 /// A way back to the course.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct WayOut {
-    /// The points, from the position of the follower on.
+    /// The points, beginning at the position of the follower.
     pub way: Vec<Point>,
-    /// Index of the point of the course where it ends.
+    /// Index of the point of the course where the way ends.
     pub nearest: usize,
-    /// Whether it ends at the free place nearest to a blocked last point.
+    /// Whether the way ends at the free place nearest to a blocked last point.
     pub is_end: bool,
 }
 
@@ -30,8 +30,8 @@ pub(crate) fn floor<'a>(room: &Room, seen: impl Iterator<Item = &'a Part>) -> Gr
     GrownFloor::new(room.wall(), keep.wall_m, shapes.iter().map(|shape| (shape, keep.obstacle_m)))
 }
 
-/// Finds the path to the first free section of the course ahead that needs only a short detour, or else to the section
-/// with the shortest path. `None` if all of them are proved to be closed off.
+/// Finds the path to the first free section of the course ahead that can be reached by a short detour, or else to the
+/// section with the shortest path. Returns `None` if all sections are proved to be closed off.
 pub(crate) fn onward(
     track: &Track<'_>,
     follower: &Follower,

@@ -1,4 +1,4 @@
-//! Finds what blocks the path. Obstacles with no passage between them, or to the wall, count as one.
+//! Finds what blocks the path. Obstacles with no passage between them, or to the wall, are treated as one.
 
 use crate::{body::Body, side::Side, tick::Tick};
 use geometry::{
@@ -16,13 +16,14 @@ const AHEAD_M: f64 = 2.5;
 const HORIZON_M: f64 = 4.0;
 /// At most this many obstacles are considered, nearest first.
 const MOST_BODIES: usize = 48;
-/// A path blocked by less than this share of the guard distance counts as free: the guard slides past.
+/// A path blocked by less than this share of the guard distance is considered free: the guard lets the robot slide
+/// past.
 const BLOCKING_SHARE: f64 = 0.7;
-/// The last part of the path to a preset point need not be free, metres. Preset points pass close to obstacles, and the
-/// mission looks half a metre ahead.
+/// The last part of the path to a preset point, of this length, need not be free, metres. Preset points pass close to
+/// obstacles, and the mission looks half a metre ahead.
 const PASSING_M: f64 = 0.35;
 
-/// The surroundings in one tick, and the room that the hull needs.
+/// The surroundings in one tick, and the clearance that the hull needs.
 #[derive(Debug, Clone, Copy)]
 pub struct View<'a> {
     /// The robot's pose, its target and the bodies it senses.
@@ -95,7 +96,7 @@ impl Blockage {
         Some(blockage)
     }
 
-    /// The side that requires the smaller turn away from the target; the present heading has a small weight.
+    /// The side that requires the smaller turn away from the target; the current heading has a small weight.
     pub(crate) fn shorter_side(&self, view: &View<'_>) -> Side {
         let bearing_rad = bearing(view.way());
         let room_m = view.hull_m + view.keep_m;
@@ -159,8 +160,8 @@ fn narrow_passages(view: &View<'_>, bodies: &[&Body]) -> Vec<Narrow> {
     narrow
 }
 
-/// If the gap between a body and the wall is too narrow, returns the line across it, from the body's corner nearest to
-/// the wall.
+/// If the gap between a body and the wall is too narrow, returns the line across the gap, from the body's corner
+/// nearest to the wall.
 fn narrow_to_wall(wall: &Boundary, body: &Body, room_m: f64) -> Option<(Point, Point)> {
     let corners = body.parts.iter().flat_map(Part::corners);
     let gaps = corners.map(|(corner, radius_m)| (wall.wall_distance_m(corner) - radius_m, corner));

@@ -7,7 +7,7 @@ use geometry::{
 };
 use planner_api::{Outline, Sensed, Site, ZoneKind};
 
-/// Ids of no-go zones count down from here, so that they never collide with those of obstacles.
+/// Ids of no-go zones count down from here, so that they never collide with ids of obstacles.
 const LAST_ID: u32 = u32::MAX;
 
 /// All outlines of a site that the robot must not touch, no-go zones included, with their ids.

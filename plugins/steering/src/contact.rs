@@ -27,7 +27,7 @@ pub struct Contact {
     pub away: Vector,
 }
 
-/// The wall as contacts of a hull: one for a round wall, or one for every segment in reach of a straight wall.
+/// The wall as contacts of a hull: one for a round wall, or one for every segment within reach of a straight wall.
 pub fn wall_contacts(wall: &Boundary, at: Point, hull_m: f64, reach_m: f64) -> Vec<Contact> {
     let contact =
         |outline_m: f64, away: Vector| Contact { source: Source::Wall, distance_m: outline_m - hull_m, away };

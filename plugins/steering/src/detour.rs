@@ -52,7 +52,7 @@ impl Detours {
         Some(Detour { members: blockage.members, closed: blockage.closed, side })
     }
 
-    /// Switches to the other side because the present one led nowhere.
+    /// Switches to the other side because the current one led nowhere.
     pub fn flip(&mut self) {
         if let Some(kept) = &mut self.kept {
             kept.side = kept.side.other();

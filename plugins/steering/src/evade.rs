@@ -2,8 +2,8 @@
 //!
 //! In every tick, a set of velocities is simulated, including the turn that the robot needs to follow each one. Moving
 //! obstacles are assumed to keep their observed velocities. Of the velocities that stay clear, the one closest to the
-//! wanted velocity is taken. A little more room is preferred, because moving obstacles may turn. After the velocity
-//! obstacles of Fiorini and Shiller 1998 and the dynamic window of Fox et al. 1997.
+//! desired velocity is taken. A little more distance is preferred, because moving obstacles may turn. After the
+//! velocity obstacles of Fiorini and Shiller 1998 and the dynamic window of Fox et al. 1997.
 
 use crate::body::Body;
 use geometry::{
@@ -12,22 +12,23 @@ use geometry::{
 };
 use planner_api::{Ctx, Layer, Obstacle, PoseEstimate, Sensed, Site};
 
-/// Below this speed an obstacle counts as stationary, metres per second.
+/// Below this speed an obstacle is treated as stationary, metres per second.
 const STILL_M_PER_S: f64 = 0.02;
 /// Moving obstacles are predicted this far ahead, seconds, in steps of [`STEP_S`].
 const HORIZON_S: f64 = 5.0;
 const STEP_S: f64 = 0.2;
-/// Stationary obstacles are checked this far ahead, seconds. Beyond that, the wanted velocity avoids them.
+/// Stationary obstacles are checked this far ahead, seconds. Beyond that, the desired velocity avoids them.
 const STANDING_S: f64 = 1.6;
 /// Number of headings tried, and the speeds tried as shares of the maximum.
 const HEADINGS: u32 = 24;
 const SHARES: [f64; 3] = [1.0, 0.6, 0.3];
-/// Room to a moving obstacle in addition to the clearance, metres: kept if possible, and preferred.
+/// Extra distance from a moving obstacle, in addition to the clearance, metres: kept if possible, and preferred.
 const ROOM_M: f64 = 0.1;
 const LIKED_M: f64 = 0.8;
-/// The predicted position of a moving obstacle becomes uncertain by this much every second, metres.
+/// The uncertainty of a moving obstacle's predicted position grows by this much every second, metres.
 const DOUBT_M_PER_S: f64 = 0.04;
-/// Cost of a metre of missing room, in metres per second of deviation from the wanted velocity.
+/// Cost of each metre by which the extra distance falls short, expressed as deviation from the desired velocity, metres
+/// per second.
 const WORTH_PER_S: f64 = 0.25;
 
 /// Whether an obstacle moves.
@@ -43,7 +44,7 @@ pub fn standing<'a>(site: &Site<'a>) -> Vec<Obstacle<'a>> {
 /// A moving obstacle.
 #[derive(Debug, Clone)]
 pub struct Mover {
-    /// The obstacle at its present position.
+    /// The obstacle at its current position.
     pub body: Body,
     /// Its velocity, metres per second.
     pub velocity: Vector,
@@ -56,13 +57,13 @@ impl Mover {
     }
 }
 
-/// Splits bodies into those to evade and those that count as stationary. Without evasion, all count as stationary.
+/// Splits bodies into those to evade and those to treat as stationary. Without evasion, all are treated as stationary.
 pub fn sorted_if(evades: bool, sensed: &Sensed<'_>, bodies: Vec<Body>) -> (Vec<Mover>, Vec<Body>) {
     if evades { sorted(sensed, bodies) } else { (Vec::new(), bodies) }
 }
 
-/// Splits the sensed obstacles into moving and stationary ones. `bodies` holds the sensed bodies and further stationary
-/// ones.
+/// Splits the sensed obstacles into moving and stationary ones. `bodies` contains the sensed bodies and other
+/// stationary ones.
 pub fn sorted(sensed: &Sensed<'_>, bodies: Vec<Body>) -> (Vec<Mover>, Vec<Body>) {
     let mut movers = Vec::new();
     let mut standing = Vec::new();
@@ -99,7 +100,7 @@ struct Outlook {
     room_m: f64,
 }
 
-/// Returns the velocity to use instead of the wanted one, tank frame, metres per second.
+/// Returns the velocity to use instead of the desired one, in the tank frame, metres per second.
 pub fn evade(wish: Vector, pose: &PoseEstimate, around: &Around<'_>) -> Vector {
     let v_max = around.limits.v_max_m_per_s;
     let headings = (0..HEADINGS).map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(HEADINGS));
@@ -131,7 +132,7 @@ fn outlook(velocity: Vector, pose: &PoseEstimate, around: &Around<'_>) -> Outloo
         let bodies = around.standing.iter().map(|body| body.hull_distance_m(at, hull_m));
         bodies.fold(around.wall.wall_distance_m(at) - hull_m, f64::min)
     };
-    // If the robot is already too close to a stationary obstacle, it must at least not come closer.
+    // If the robot is already too close to a stationary obstacle, it must at least not move closer.
     let keep_m = around.clearance_m.min(standing_m(at) - 1e-6);
     let mut room_m = f64::INFINITY;
     let n_steps = (HORIZON_S / STEP_S).round() as u32;
@@ -149,7 +150,7 @@ fn outlook(velocity: Vector, pose: &PoseEstimate, around: &Around<'_>) -> Outloo
     Outlook { until_s: HORIZON_S, room_m }
 }
 
-/// Position and heading one step later, by the console's rule for turning a robot toward a velocity.
+/// Position and heading one step later, according to the console's rule for turning a robot toward a velocity.
 fn moved(at: Point, heading_rad: f64, velocity: Vector, limits: &Limits) -> (Point, f64) {
     match drive_for(Drive::Velocity(velocity), heading_rad, limits, TURN_FIRST_RAD) {
         Drive::Velocity(velocity) => (at + velocity * STEP_S, heading_rad),

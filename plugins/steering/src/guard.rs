@@ -17,8 +17,8 @@ struct HalfPlane {
     least: f64,
 }
 
-/// The maximum speed toward a solid with this much room before it, metres per second; negative if there is too little
-/// room.
+/// The maximum speed toward a solid with this much distance left, metres per second; negative if the distance is
+/// already too small.
 fn fastest_toward(room_m: f64, braking: &Braking) -> f64 {
     let used_up = room_m / BRAKING_S;
     if room_m > 0.0 { used_up.min(braking.speed_within(room_m)) } else { used_up }
@@ -27,9 +27,9 @@ fn fastest_toward(room_m: f64, braking: &Braking) -> f64 {
 /// Returns the velocity closest to `wanted` that keeps a distance `keep_m` from every contact.
 ///
 /// Toward a contact at distance `d`, the speed is limited to `(d - keep_m) / 0.5 s` and to the speed from which the
-/// robot can stop within `d - keep_m`. The robot therefore slides along an obstacle instead of running into it. Closer
-/// than `keep_m` it is driven away. Where that is impossible, as in a gap too narrow for both distances, it may move
-/// along the gap but not across.
+/// robot can stop within `d - keep_m`. The robot therefore slides along an obstacle instead of running into it. If it
+/// is closer than `keep_m`, it is driven away. Where that is impossible, as in a gap too narrow for the distance on
+/// both sides, it may move along the gap but not across.
 pub fn slide(wanted: Vector, contacts: &[Contact], keep_m: f64, v_max: f64, braking: &Braking) -> Vector {
     let planes: Vec<HalfPlane> = contacts
         .iter()
@@ -59,7 +59,7 @@ pub fn braked(
         let room_m = (contact.distance_m - keep_m).max(0.0);
         if closing > 0.05 { allowed.min(fastest_toward(room_m, braking) / closing) } else { allowed }
     });
-    // Never fully stopped: the robot turns into the direction of the command.
+    // The robot is never fully stopped, because it must turn into the direction of the command.
     let share = if speed > 0.0 { (allowed / speed).max(0.02) } else { 0.0 };
     velocity * share
 }

@@ -47,7 +47,7 @@ impl KnownMap {
         self.solids.len() < n_before
     }
 
-    /// Replaces known obstacles by their sensed versions. Returns true if that changed the map.
+    /// Replaces known obstacles with their sensed versions. Returns true if that changed the map.
     pub fn learn(&mut self, bodies: &[Body]) -> bool {
         let mut changed = false;
         for body in bodies {
@@ -133,7 +133,7 @@ impl Nearby {
         self.looked_from = None;
     }
 
-    /// Updates the list for a new position. Returns the indices of all solids in reach, and possibly some more.
+    /// Updates the list for a new position. Returns the indices of all solids within reach, and possibly of some more.
     pub fn update(&mut self, map: &KnownMap, at: Point) -> &[usize] {
         if self.looked_from.is_none_or(|from| (from - at).norm_squared() > SLACK_M * SLACK_M) {
             self.looked_from = Some(at);
@@ -151,7 +151,7 @@ impl Nearby {
         &self.indices
     }
 
-    /// Whether the wall may be in reach.
+    /// Whether the wall may be within reach.
     pub fn sees_wall(&self) -> bool {
         self.wall_m < self.reach_m + SLACK_M
     }

@@ -8,8 +8,8 @@ const FLIGHT: &str = "Flight";
 /// Guard distance.
 pub const GUARD: ParamSpec = float("guard_m", "Guard distance", "m", 0.0, 1.0, 0.1)
     .help(
-        "Hull distance below which no motion toward an obstacle is allowed. Always slightly larger than \
-           the mission's clearance.",
+        "No motion toward an obstacle is allowed if the hull is closer to it than this. Always slightly \
+         larger than the mission's clearance.",
     )
     .group(FLIGHT)
     .live();
@@ -39,8 +39,8 @@ pub const STUCK: ParamSpec = float("stuck_s", "Stuck after", "s", 1.0, 600.0, 30
 /// Whether moving obstacles are evaded.
 pub const EVADE: ParamSpec = flag("evade", "Evade moving obstacles", true)
     .help(
-        "The robot avoids the positions that moving obstacles will have over the next five seconds. Turned \
-         off, it treats them as stationary where it sees them, as in the papers.",
+        "The robot avoids the positions that moving obstacles will have over the next five seconds. If \
+         this is off, it treats them as stationary where it sees them, as in the papers.",
     )
     .group(FLIGHT)
     .live();

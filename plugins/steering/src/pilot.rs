@@ -20,11 +20,11 @@ use planner_api::{Command, Ctx, Drive, PoseEstimate, Sensed, Site, Status};
 const SPARE_M: f64 = 0.02;
 /// The position error widens the guard distance by at most this much, metres, so that a lost robot can still move.
 const MOST_WIDENING_M: f64 = 0.15;
-/// If the guard leaves less than this share of the wanted speed, the robot is wedged.
+/// If the guard leaves less than this share of the desired speed, the robot is wedged.
 const WEDGED_SHARE: f64 = 0.05;
 /// Within this distance of the last point the robot slows down, metres.
 const ARRIVING_M: f64 = 0.5;
-/// Interval between remedies, as a share of the time after which the robot counts as stuck.
+/// Interval between remedies, as a share of the time after which the robot is considered stuck.
 const REMEDY_SHARE: f64 = 0.3;
 /// Longest distance between two commands, metres: the robot aims only slightly ahead.
 const TICK_MOST_M: f64 = 0.1;
@@ -37,7 +37,7 @@ const SMOOTHING: f64 = 0.5;
 
 /// Drives a robot in the direction that a planner wants.
 ///
-/// The command is a velocity in the wanted direction from the estimated position. It is slowed down near obstacles and
+/// The command is a velocity in the desired direction from the estimated position. It is slowed down near obstacles and
 /// passes the guard last.
 #[derive(Debug, Clone)]
 pub struct Pilot {
@@ -123,7 +123,7 @@ impl Pilot {
     }
 
     /// Returns the command for a decision, or the closest velocity that stays clear of moving obstacles. The bodies of
-    /// the tick count as stationary.
+    /// the tick are treated as stationary.
     pub fn past(&self, movers: &[Mover], decision: Decision, tick: &Tick<'_>, ctx: &Ctx<'_>) -> Command {
         if movers.is_empty() {
             return decision.into();
@@ -162,7 +162,7 @@ impl Pilot {
         flight.guard_m.max(self.clearance_m + SPARE_M) + if widening_m.is_finite() { widening_m } else { 0.0 }
     }
 
-    /// The wanted direction, or the direction to the target if there is none, smoothed with the previous direction.
+    /// The desired direction, or the direction to the target if there is none, smoothed with the previous direction.
     fn smoothed(&mut self, wanted: Option<Vector>, tick: &Tick<'_>) -> Vector {
         let toward = (tick.target - tick.pose.position).try_normalize(1e-9);
         let Some(wanted) = wanted.or(toward) else { return Vector::zeros() };

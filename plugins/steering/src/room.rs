@@ -6,7 +6,7 @@ use planner_api::Site;
 
 /// Edge length of a bucket, metres.
 const BUCKET_M: f64 = 1.0;
-/// Spare room is measured up to this value, metres; larger room is reported as this value.
+/// Spare distance is measured up to this value, metres; anything larger is reported as this value.
 pub const MOST_SPARE_M: f64 = 0.6;
 /// Tolerance for rounding, metres.
 const ROUNDING_M: f64 = 1e-9;
@@ -58,7 +58,7 @@ pub struct Keep {
     pub wall_m: f64,
 }
 
-/// The floor available to the hull centre.
+/// The floor that is open to the hull centre.
 ///
 /// Obstacles are looked up in buckets of one metre, so the cost of a query depends only on what is nearby.
 #[derive(Debug, Clone)]
@@ -94,7 +94,7 @@ impl Room {
         room
     }
 
-    /// The spare room at a position, metres: negative where the hull centre must not be, and at most 0.6.
+    /// The spare distance at a position, metres: negative where the hull centre must not be, and at most 0.6.
     pub fn spare_m(&self, at: Point) -> f64 {
         let wall = self.wall.wall_distance_m(at) - self.keep.wall_m + ROUNDING_M;
         self.near(at).fold(wall.min(MOST_SPARE_M), |spare_m, s| {

@@ -2,13 +2,13 @@
 
 use geometry::Point;
 
-/// Leaving a circle of this radius counts as moving, metres.
+/// A robot that leaves a circle of this radius is moving, metres.
 const MOVING_M: f64 = 0.5;
-/// Coming closer to the target by this much counts as progress, metres.
+/// A robot that comes closer to its target by this much makes progress, metres.
 const GAIN_M: f64 = 0.1;
 /// A target that shifts by more than this is a new target, metres.
 const OTHER_TARGET_M: f64 = 0.2;
-/// Moving without coming closer is tolerated this many times as long as standing still.
+/// Moving without coming closer is tolerated for this many times as long as standing still.
 const PATIENCE: f64 = 3.0;
 /// A longer interval between ticks means that the robot was held, seconds; a held robot could not make progress.
 const HELD_S: f64 = 1.0;
@@ -62,7 +62,7 @@ pub struct Remedy {
 }
 
 impl Remedy {
-    /// Takes the time without progress. Returns true when the robot should change the side now.
+    /// Processes the time without progress. Returns true when the robot should change sides now.
     pub fn update(&mut self, idle_s: f64, pause_s: f64) -> bool {
         if idle_s < self.due_s - pause_s || idle_s < pause_s {
             *self = Self { tried: 0, due_s: pause_s };

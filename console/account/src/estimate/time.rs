@@ -6,9 +6,9 @@ use world::{ObstacleMap, Point, Vector, geometry::Braking, polyline};
 
 /// Distance between the places at which the speed is computed, metres.
 const STEP_M: f64 = 0.1;
-/// At a corner sharper than this the robot stops to turn, radians; otherwise it turns while driving.
+/// Corner angle, radians, above which the robot stops to turn; below it, the robot turns while driving.
 pub(super) const CORNER_RAD: f64 = 0.5;
-/// Clearance that a robot keeps when it brakes straight ahead: this share of the space beside its hull, at most
+/// Clearance that a robot keeps when braking straight ahead: this share of the space beside its hull, at most
 /// `ROOM_MOST_M` metres.
 const ROOM_SHARE: f64 = 0.5;
 const ROOM_MOST_M: f64 = 0.1;
@@ -27,7 +27,7 @@ pub fn time_s(mission: &MissionConfig, map: &ObstacleMap, path: &[Point]) -> f64
     time_s
 }
 
-/// The stretches of a path between its corners. Each has the turn at its end, radians, if it ends at a corner.
+/// The stretches of a path between its corners, each with the turn at its end, radians, if the end is a corner.
 fn stretches(path: &[Point]) -> Vec<(Vec<Point>, Option<f64>)> {
     let mut all = Vec::new();
     let mut stretch: Vec<Point> = Vec::new();
@@ -91,7 +91,7 @@ fn squared_speeds(mission: &MissionConfig, map: &ObstacleMap, places: &[Point], 
     squares
 }
 
-/// The largest speed at a place from which the robot can stop straight ahead before it touches a drawn object, and
+/// The highest speed at a place from which the robot can stop straight ahead before it touches a drawn object, and
 /// within its sensing range, metres per second.
 fn free_speed(mission: &MissionConfig, map: &ObstacleMap, at: Point, ahead: Vector) -> f64 {
     let limits = &mission.limits;

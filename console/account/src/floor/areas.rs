@@ -38,7 +38,7 @@ pub struct Cause<R> {
     pub reason: R,
     /// The part of the area that it applies to, square metres.
     pub area_m2: f64,
-    /// The value behind the reason; absent if it has none.
+    /// The value behind the reason; absent if the reason has none.
     pub measure: Option<Measure>,
     /// The reason with its value, as a sentence.
     pub text: String,
@@ -63,7 +63,7 @@ impl<R> Default for Slivers<R> {
 }
 
 impl<R> Slivers<R> {
-    /// The causes as one sentence; several causes state their areas.
+    /// The causes as one sentence; if there are several, each states its area.
     pub fn why(&self) -> String {
         why(&self.causes)
     }
@@ -86,7 +86,7 @@ pub trait Explained: Copy + Ord {
 }
 
 impl<R> Area<R> {
-    /// The causes as one sentence; several causes state their parts of the area.
+    /// The causes as one sentence; if there are several, each states its part of the area.
     pub fn why(&self) -> String {
         why(&self.causes)
     }
@@ -105,7 +105,7 @@ impl<R> fmt::Display for Area<R> {
 }
 
 /// Returns the areas of the cells that have a reason, the largest first, and the areas too small to be listed. Cells
-/// are adjacent if they touch, even at a corner, whatever their plates and reasons.
+/// are adjacent if they touch, even at a corner, regardless of their plates and reasons.
 pub fn areas<R: Explained>(
     floor: &Floor,
     plates: Option<&PlateMap>,
@@ -131,7 +131,7 @@ pub fn areas<R: Explained>(
     (listed, slivers)
 }
 
-/// Groups cells, given in ascending order, by contact, including contact at a corner; the groups are in order of
+/// Groups cells by contact, even at a corner. The cells are given in ascending order; the groups are in order of
 /// their first cells.
 pub fn together(floor: &Floor, cells: impl IntoIterator<Item = usize>) -> Vec<Vec<usize>> {
     let all: Vec<usize> = cells.into_iter().collect();

@@ -1,5 +1,4 @@
-//! Evidence for the reasons of missed floor: where plans led, where the robot went, and where its position was
-//! uncertain.
+//! Evidence of why floor was missed: where plans led, where the robot went, and where its position was uncertain.
 
 use super::{reasons::Reasons, zone::CRITICAL_ZONE_M};
 use crate::sampled::sampled;
@@ -11,9 +10,9 @@ use world::{
 
 /// Plans are drawn on the floor in pieces no longer than this, metres.
 const PIECE_M: f64 = 0.5;
-/// The error of a cell over which no uncounted pass went.
+/// The error of a cell without an uncounted pass.
 const NEVER: u16 = u16::MAX;
-/// The zone index of a cell that no zone made unreachable.
+/// The zone index of a cell that was not made unreachable by any zone.
 const OF_NONE: u16 = u16::MAX;
 /// Distances along a plan that differ by less count as equal, metres.
 const NEARLY_M: f64 = 0.01;
@@ -23,19 +22,19 @@ const NEARLY_M: f64 = 0.01;
 pub struct Evidence {
     grid: Floor,
     tool: Tool,
-    /// Distance from a found obstacle within which it counts as a cause, metres.
+    /// Distance from a found obstacle within which the obstacle counts as a cause, metres.
     beside_m: f64,
     /// The current plan.
     plan: Planned,
-    /// The plan before the latest one, until the latest one is started: it may still be refused.
+    /// The plan before the latest one, kept until the latest one is started, because that may still be refused.
     before: Option<Box<Planned>>,
-    /// Cells that a plan led to and that the robot passed along the plan.
+    /// Cells that a plan led to and that the robot passed while following the plan.
     passed: Vec<bool>,
     /// The smallest 95 % error of an uncounted pass of the tool, millimetres; [`NEVER`] if there was none.
     uncertain_mm: Vec<u16>,
-    /// The present 95 % error, metres.
+    /// The current 95 % error, metres.
     error_m: f64,
-    /// The floor that was to be scanned; `None` for all of it.
+    /// The floor that had to be scanned; `None` for all of it.
     asked: Option<Vec<bool>>,
     found: Vec<(ObstacleId, Solid)>,
     drawn: Vec<Solid>,
@@ -74,7 +73,7 @@ impl Evidence {
         }
     }
 
-    /// Adds a plan for the remaining floor; it replaces the plan before.
+    /// Adds a plan for the remaining floor; it replaces the previous plan.
     pub fn plan(&mut self, path: &[Point], cuts: &[Vec<Point>], is_whole: bool) {
         self.leave_behind();
         let path = sampled(path, PIECE_M);
@@ -98,7 +97,7 @@ impl Evidence {
         self.before = Some(Box::new(std::mem::replace(&mut self.plan, plan)));
     }
 
-    /// Drops the latest plan because it is not run; the plan before remains valid.
+    /// Drops the latest plan because it is not run; the previous plan remains valid.
     pub fn refuse_plan(&mut self) {
         if let Some(before) = self.before.take() {
             self.plan = *before;
@@ -257,12 +256,12 @@ impl Evidence {
         self.found.iter().map(|(id, solid)| (*id, solid))
     }
 
-    /// Whether the whole floor was to be scanned.
+    /// Whether the whole floor had to be scanned.
     pub fn asks_for_everything(&self) -> bool {
         self.asked.is_none()
     }
 
-    /// Whether a cell was to be scanned.
+    /// Whether a cell had to be scanned.
     pub fn is_asked(&self, index: usize) -> bool {
         self.asked.as_ref().is_none_or(|asked| asked[index])
     }
@@ -297,7 +296,7 @@ impl Evidence {
         obstacles.fold(shell, |least, other| if other.1 < least.1 { other } else { least })
     }
 
-    /// The same including no-go zones, from which the robot keeps the same distance.
+    /// Like [`Self::nearest_solid`], but includes no-go zones, from which the robot keeps the same distance.
     pub(super) fn nearest_kept_from(&self, place: Point) -> (&str, f64) {
         let solid = self.nearest_solid(place);
         let zone = self.nearest_no_go(place).map(|(zone, m)| (zone.name.as_str(), m));
@@ -325,7 +324,7 @@ impl Evidence {
         self.is_ahead(index).then(|| f64::from(self.plan.due_m[index]) - self.plan.along_m)
     }
 
-    /// Whether a plan led to a cell and the robot passed it along the plan.
+    /// Whether a plan led to a cell and the robot passed the cell while following the plan.
     pub(super) fn is_passed(&self, index: usize) -> bool {
         self.passed[index] || self.plan.is_past(self.plan.due_m[index])
     }
@@ -359,7 +358,8 @@ impl Solid {
 /// A plan and the progress along it.
 #[derive(Debug, Clone)]
 struct Planned {
-    /// Distance along the plan at which it last leads over each cell, metres; NaN where it does not lead nearby.
+    /// Distance along the plan at which it last passes over each cell, metres; NaN for cells that it does not pass
+    /// near.
     due_m: Vec<f32>,
     /// Its length, metres.
     length_m: f64,
@@ -379,7 +379,8 @@ impl Planned {
         Self { due_m, length_m: 0.0, along_m: 0.0, flown_m: 0.0, is_whole: true, cuts: Vec::new() }
     }
 
-    /// Whether the robot passed a cell along the plan; never for a cell that the plan does not lead near.
+    /// Whether the robot passed a cell while following the plan; never true for a cell that the plan does not pass
+    /// near.
     fn is_past(&self, due_m: f32) -> bool {
         f64::from(due_m) <= self.along_m + NEARLY_M
     }

@@ -46,7 +46,7 @@ impl Measure {
         )
     }
 
-    /// The same with the name of an object.
+    /// This value with the name of an object.
     pub(crate) fn beside(self, near: &str) -> Self {
         Self { near: Some(near.to_owned()), ..self }
     }

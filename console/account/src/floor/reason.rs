@@ -12,7 +12,7 @@ pub enum MissReason {
     PositionUncertain,
     /// Beside an obstacle that was found during the run.
     FoundObstacle,
-    /// Outside the areas that the mission was to scan.
+    /// Outside the areas that the mission had to scan.
     NotAsked,
     /// Beyond the lanes, which are narrower than the swath by the overlap.
     Narrow,
@@ -28,7 +28,7 @@ pub enum MissReason {
     BeyondReel,
     /// A plan led to the floor, but the mission ended first.
     NotReached,
-    /// A plan led to the floor, but the robot passed beside it.
+    /// A plan led to the floor, but the robot passed to one side of it.
     PassedBeside,
 }
 
@@ -47,7 +47,7 @@ pub enum OutOfReach {
 }
 
 impl OutOfReach {
-    /// The reason why cells of a class are unreachable, if they are.
+    /// The reason why cells of a class are unreachable; `None` for other classes.
     pub(crate) fn of(kind: Cell) -> Option<Self> {
         match kind {
             Cell::Outside | Cell::Reachable => None,
@@ -78,7 +78,7 @@ impl Explained for MissReason {
             }
             Self::Clearance => {
                 format!(
-                    "not planned: {} from {near}, hull and clearance require {limit_m:.2} m",
+                    "not planned: {} from {near}, but hull and clearance require {limit_m:.2} m",
                     measure.range()
                 )
             }
@@ -110,11 +110,11 @@ impl MissReason {
             Self::FoundObstacle => "beside a found obstacle",
             Self::NotAsked => "not requested",
             Self::Narrow => "beyond the lanes",
-            Self::Clearance => "not planned, clearance",
-            Self::Wrap => "not planned, tether",
+            Self::Clearance => "not planned (clearance)",
+            Self::Wrap => "not planned (tether)",
             Self::NotPlanned => "not planned",
             Self::NoPlan => "the run had no plan",
-            Self::BeyondReel => "not planned, beyond the reel",
+            Self::BeyondReel => "not planned (beyond the reel)",
             Self::NotReached => "the mission ended first",
             Self::PassedBeside => "the robot passed to one side",
         }
@@ -127,11 +127,11 @@ impl MissReason {
             Self::FoundObstacle => "beside an obstacle found during the run",
             Self::NotAsked => "not requested",
             Self::Narrow => "beyond the lanes, which are narrower than the swath by the overlap",
-            Self::Clearance => "not planned, hull and clearance",
-            Self::Wrap => "not planned, along a line that keeps the tether unwound",
+            Self::Clearance => "not planned (too little room for hull and clearance)",
+            Self::Wrap => "not planned (along a line that keeps the tether unwound)",
             Self::NotPlanned => "not planned",
             Self::NoPlan => "the run had no plan when it ended",
-            Self::BeyondReel => "not planned, beyond the reel",
+            Self::BeyondReel => "not planned (beyond the reel)",
             Self::NotReached => "planned, but the mission ended first",
             Self::PassedBeside => "planned, but the robot passed to one side",
         }
@@ -142,8 +142,8 @@ impl OutOfReach {
     /// The reason without its value.
     pub fn plainly(self) -> &'static str {
         match self {
-            Self::ShellMargin => "clearance to the shell",
-            Self::BesideObstacle => "clearance to an obstacle",
+            Self::ShellMargin => "clearance from the shell",
+            Self::BesideObstacle => "clearance from an obstacle",
             Self::NoGo => "in a no-go zone",
             Self::ClosedOff => "no passage wide enough",
         }
@@ -156,11 +156,11 @@ impl Explained for OutOfReach {
             (Self::ShellMargin | Self::BesideObstacle, Some(measure)) => {
                 let near = measure.near.as_deref().unwrap_or("a solid object");
                 let limit_m = measure.limit_m.unwrap_or(0.0);
-                format!("{} from {near}, hull and clearance require {limit_m:.2} m", measure.range())
+                format!("{} from {near}, but hull and clearance require {limit_m:.2} m", measure.range())
             }
             (Self::ClosedOff, Some(Measure { value_m, near, .. })) => {
                 let by = near.as_ref().map(|zone| format!("closed off by {zone}: ")).unwrap_or_default();
-                format!("{by}no passage as wide as hull and clearance, {value_m:.2} m")
+                format!("{by}no passage at least {value_m:.2} m wide (hull and clearance)")
             }
             (Self::NoGo, Some(Measure { value_m, near, .. })) => {
                 let zone = near.as_deref().unwrap_or("a no-go zone");

@@ -8,7 +8,7 @@ use super::{
 use std::collections::BTreeMap;
 use world::{Cell, CoverageGrid, Point, polyline, tether::Reach};
 
-/// The names of the zones of some cells, the zone with most cells first; `None` without zones.
+/// The names of some cells' zones, the zone with most cells first; `None` without zones.
 fn named<'a>(zones: impl Iterator<Item = &'a Solid>) -> Option<String> {
     let mut cells: BTreeMap<&str, usize> = BTreeMap::new();
     zones.for_each(|zone| *cells.entry(&zone.name).or_default() += 1);
@@ -21,7 +21,7 @@ fn named<'a>(zones: impl Iterator<Item = &'a Solid>) -> Option<String> {
 /// Finds the reasons for missed floor.
 pub struct Reasons<'a> {
     pub(super) evidence: &'a Evidence,
-    /// The floor within reach of the cable; `None` if no plan omitted floor because of it.
+    /// The floor within reach of the cable; `None` if no plan omitted floor that is out of reach.
     pub(super) reach: Option<Reach>,
     /// Whether the robot drags a tether.
     pub(super) has_tether: bool,
@@ -54,8 +54,8 @@ impl Reasons<'_> {
         }
     }
 
-    /// The distance of a position beyond any lane, given that lanes keep hull and clearance from solid objects,
-    /// metres; negative within reach of a lane.
+    /// The distance by which a position is beyond every lane, given that lanes keep hull and clearance from solid
+    /// objects, metres; negative within reach of a lane.
     pub fn beyond_lanes_m(&self, place: Point) -> f64 {
         let (_, solid_m) = self.evidence.nearest_kept_from(place);
         self.room_m - solid_m - self.lane_m / 2.0
@@ -77,7 +77,7 @@ impl Reasons<'_> {
         }
     }
 
-    /// The value behind the reason for some cells, at least one.
+    /// The value behind the reason for some cells, of which there is at least one.
     pub fn measure(&self, grid: &CoverageGrid, reason: MissReason, cells: &[usize]) -> Option<Measure> {
         let (floor, evidence) = (grid.floor(), self.evidence);
         let most =
@@ -149,7 +149,7 @@ impl Reasons<'_> {
             .reduce(f64::min)
     }
 
-    /// Whether a cell was to be scanned, but no plan led there because it is beyond the reel.
+    /// Whether a cell had to be scanned, but no plan led there because the cell is beyond the reel.
     fn is_left_beyond_reel(&self, index: usize, center: Point) -> bool {
         let evidence = self.evidence;
         let is_left = evidence.is_asked(index) && !evidence.is_passed(index) && !evidence.is_ahead(index);

@@ -181,7 +181,7 @@ fn every_gap_has_a_cause_with_its_number() {
         why(&run, &evidence, |p| p.x > 4.0 && p.coords.norm() > 4.77 && p.y.abs() < 0.3),
         "m outside the nearest lane (lanes are 0.40 m wide: the swath less the overlap)",
     );
-    says(why(&run, &evidence, square(0.0, 3.4)), "m from column, hull and clearance require 0.45 m");
+    says(why(&run, &evidence, square(0.0, 3.4)), "m from column, but hull and clearance require 0.45 m");
     says(why(&run, &evidence, square(0.0, 0.2)), "m from a line that keeps the tether unwound");
     let untethered =
         RunOpened { mission: mission::MissionConfig { tether: None, ..run.mission.clone() }, ..run.clone() };

@@ -33,7 +33,7 @@ pub struct CriticalZone {
     pub gap_m: f64,
     /// Whether the zone is done: its full width is scanned along 99.5 % of the shell.
     pub done: bool,
-    /// The reason why not, as a sentence; absent if it is done.
+    /// The reason why the zone is not done, as a sentence; absent if it is done.
     pub why: Option<String>,
     /// The zone plate by plate, in the order along the shell; empty if the plate layout is not known.
     #[serde(default)]

@@ -41,7 +41,7 @@ impl Folder {
         if self.0.has(Path::new(FROZEN)) {
             let there = self.campaign()?;
             if !there.is_same(&campaign) {
-                let what = "holds a different campaign: plan, scenarios, program or plugins differ";
+                let what = "contains a different campaign: its plan, scenarios, program or plugins differ";
                 return Err(bad_input(format!("{} {what}; choose another --out", self.path().display())));
             }
             return Ok(there);
@@ -91,7 +91,7 @@ impl Folder {
         self.publish(&Self::part(block), part)
     }
 
-    /// The blocks without an intact part, and a description of every damaged part.
+    /// The blocks without an intact part, and a description of each damaged part.
     pub(crate) fn missing(&self, campaign: &Campaign) -> (Vec<u64>, Vec<String>) {
         let (mut missing, mut damaged) = (Vec::new(), Vec::new());
         for block in 0..campaign.blocks() {
@@ -118,17 +118,17 @@ impl Folder {
         self.0.publish(name, bytes)
     }
 
-    /// Removes temporary files of killed workers.
+    /// Removes temporary files that killed workers left behind.
     pub(crate) fn tidy(&self) {
         self.0.tidy(&["parts", "cost", "."]);
     }
 
-    /// Claims a block for this worker; returns `false` if another worker holds it.
+    /// Claims a block for this worker; returns `false` if another worker holds the block.
     pub(crate) fn claim(&self, block: u64) -> bool {
         self.0.claim(&claim_of(block))
     }
 
-    /// Refreshes a claim, so that other workers see that its holder is alive.
+    /// Refreshes a claim, so other workers see that its holder is alive.
     pub(crate) fn keep_claim(&self, block: u64) {
         self.0.keep_claim(&claim_of(block));
     }

@@ -1,4 +1,4 @@
-//! Runs the missions of a campaign one after the other on the calling thread.
+//! Runs the missions of a campaign one after another on the calling thread.
 
 use account::Summary;
 use campaign::{Campaign, Case, Row, Status};
@@ -12,7 +12,7 @@ use planner_host::{Host, HostConfig, PluginDirs};
 use scenario::Scenario;
 use std::{any::Any, panic::AssertUnwindSafe};
 
-/// The number of attempts before a failed mission counts as failed.
+/// The number of attempts after which a mission that keeps failing counts as failed.
 const TRIES: u32 = 3;
 
 /// Runs missions; the planners' processes are reused from mission to mission.
@@ -37,7 +37,7 @@ impl<'a> Pilot<'a> {
         Self { campaign, plugins, found, hosts: Vec::new() }
     }
 
-    /// Runs a mission; returns its row and the number of attempts, or `None` if it was stopped.
+    /// Runs a mission; returns its row and the number of attempts, or `None` if the mission was stopped.
     pub(crate) fn fly(&mut self, case: &Case<'_>, is_stopped: impl Fn() -> bool) -> Option<(Row, u32)> {
         let scenario = match self.scenario(case) {
             Ok(scenario) => scenario,

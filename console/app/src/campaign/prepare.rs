@@ -1,4 +1,4 @@
-//! Turns a plan into a frozen campaign; everything is checked before the first mission.
+//! Turns a plan into a frozen campaign; checks everything before the first mission.
 
 use campaign::{Campaign, Plan, PlanKey, ScenarioText};
 use command::here::Here;
@@ -11,7 +11,7 @@ use scenario::{Scenario, Settings};
 use sha2::{Digest, Sha256};
 use std::{collections::BTreeMap, path::Path};
 
-/// Reads a plan and freezes it with the texts of its scenarios.
+/// Reads a plan and freezes it together with the texts of its scenarios.
 pub(crate) fn freeze(file: &Path, here: &Here) -> anyhow::Result<Campaign> {
     let shown = file.display().to_string();
     let text = texts::read_regular(file)?;
@@ -49,7 +49,7 @@ fn scenarios(plan: &Plan, folder: &Path) -> anyhow::Result<Vec<ScenarioText>> {
     Ok(texts)
 }
 
-/// Refuses a plan whose bounds no scenario accepts, or with a key that every scenario refuses, since this must be a
+/// Refuses a plan if no scenario accepts its bounds, or if every scenario refuses one of its keys: this must be a
 /// typing error. A value that only some combinations refuse becomes a row of the table.
 fn check_values(plan: &Plan, campaign: &Campaign, found: &Found) -> anyhow::Result<()> {
     let tried = |set: Vec<String>, planner: Option<&String>, scenario: &ScenarioText| {

@@ -15,8 +15,8 @@ pub(crate) struct Results {
     pub sha256: String,
 }
 
-/// The blocks that have not been run yet; empty if the blocks completed without a gap are enough. Warns of damaged
-/// parts.
+/// The blocks that still have to run; none if the stopping rule is met by the blocks completed without a gap. Warns
+/// about damaged parts.
 pub(crate) fn missing(folder: &Folder, campaign: &Campaign) -> anyhow::Result<Vec<u64>> {
     let (missing, damaged) = folder.missing(campaign);
     let whole = missing.first().copied().unwrap_or(campaign.blocks());
@@ -30,7 +30,7 @@ pub(crate) fn missing(folder: &Folder, campaign: &Campaign) -> anyhow::Result<Ve
     Ok(missing)
 }
 
-/// The number of seeds after which the stopping rule is met, taking the parts in order.
+/// The number of seeds after which the stopping rule is met, with the parts taken in order.
 fn enough(
     campaign: &Campaign,
     parts: impl Iterator<Item = anyhow::Result<Table>>,
@@ -44,7 +44,7 @@ fn enough(
     Ok(None)
 }
 
-/// Combines the parts and writes the table, summary and page; with `partial`, also while parts are missing.
+/// Combines the parts and writes the table, summary and page; with `partial`, even if parts are missing.
 pub(crate) fn merge(folder: &Folder, campaign: &Campaign, partial: bool) -> anyhow::Result<Results> {
     let missing = missing(folder, campaign)?;
     if !missing.is_empty() && !partial {
@@ -77,7 +77,7 @@ pub(crate) fn merge(folder: &Folder, campaign: &Campaign, partial: bool) -> anyh
     Ok(Results { findings, sha256: hex::encode(Sha256::digest(&bytes)) })
 }
 
-/// The table in a campaign folder, or in a file.
+/// Reads a campaign's table, given its folder or the file itself.
 pub(crate) fn read(path: &Path) -> anyhow::Result<Table> {
     let file = if path.is_dir() { path.join("results.parquet") } else { path.to_owned() };
     let shown = file.display();
@@ -86,13 +86,13 @@ pub(crate) fn read(path: &Path) -> anyhow::Result<Table> {
     let (table, is_proven) = Table::read(open).map_err(|error| bad_input(format!("{shown} {error}")))?;
     if !is_proven {
         let why =
-            "it was written by an older tankops or by another program, and damage to it cannot be detected";
+            "it was written by an older tankops or by another program, so damage to it cannot be detected";
         warn_line(&format!("{shown} has no digest: {why}"));
     }
     Ok(table)
 }
 
-/// Numbers with ranges, as Slurm writes them: `3,7-9`.
+/// Numbers, with consecutive ones as ranges, as Slurm writes them: `3,7-9`.
 pub(crate) fn list(numbers: &[u64]) -> String {
     let runs = numbers.chunk_by(|a, b| *b == a + 1);
     let run = |run: &[u64]| match run {

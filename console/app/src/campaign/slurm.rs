@@ -14,8 +14,8 @@ pub(crate) fn script(
 ) -> anyhow::Result<PathBuf> {
     let folder =
         Folder::new(&fs::canonicalize(folder.path()).with_context(|| folder.path().display().to_string())?);
-    fs::create_dir_all(folder.path().join("slurm")).context("creating a folder for the output of Slurm")?;
-    let program = std::env::current_exe().context("locating the program itself")?;
+    fs::create_dir_all(folder.path().join("slurm")).context("creating a folder for Slurm's output")?;
+    let program = std::env::current_exe().context("locating the program's own file")?;
     let quoted = |path: &std::path::Path| format!("'{}'", path.display().to_string().replace('\'', r"'\''"));
     let folders = plugins.folders.iter().filter_map(|folder| fs::canonicalize(folder).ok());
     let plugin_dirs =

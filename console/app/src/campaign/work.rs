@@ -1,5 +1,5 @@
-//! Runs blocks of a campaign on several threads. Threads take single missions, so that no thread waits for another
-//! thread's block.
+//! Runs blocks of a campaign on several threads. Each thread takes one mission at a time, so no thread waits for
+//! another thread's block.
 
 use super::{folder::Folder, pilot::Pilot};
 use crate::stop_signal::StopSignal;
@@ -51,7 +51,7 @@ struct Queue<'a> {
 type Whole = (u64, Vec<(Row, String)>);
 
 impl Work<'_> {
-    /// Runs until no blocks remain or there is a reason to stop early. An incomplete block writes nothing.
+    /// Runs until no blocks remain or there is a reason to stop early. Nothing is written for an incomplete block.
     pub(crate) fn fly(&self) -> anyhow::Result<()> {
         let queue = Mutex::new(Queue {
             blocks: self.blocks.iter().copied().collect(),
@@ -112,7 +112,7 @@ impl Work<'_> {
         }
     }
 
-    /// Stores a row; returns the whole block if this row completes it.
+    /// Stores a row; returns the block with all its rows if this row completes it.
     fn keep(&self, queue: &mut Queue<'_>, block: u64, row: (Row, String), wall_s: f64) -> Option<Whole> {
         queue.spent_s += wall_s;
         let rows = queue.open.get_mut(&block)?;
@@ -139,7 +139,7 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Checks whether the blocks completed without a gap are enough.
+    /// Checks whether the blocks completed without a gap meet the stopping rule.
     fn look(&self, queue: &Mutex<Queue<'_>>, is_enough: &AtomicBool) -> anyhow::Result<()> {
         let mut queue = lock(queue);
         let Some((watch, next)) = &mut queue.until else { return Ok(()) };

@@ -10,11 +10,11 @@ pub(crate) struct NewPlannerArgs {
     /// Language of the planner.
     #[arg(long, value_name = "LANG", default_value = "rust")]
     pub lang: Lang,
-    /// Folder to create the new folder in.
+    /// Folder in which to create the planner's folder.
     #[arg(long, value_name = "DIR", default_value = ".")]
     pub out: PathBuf,
-    /// Folder of the crate `planner-api` (Rust only); default: the crate installed with tankops or the one it was built
-    /// with, else the published crate.
+    /// Folder of the crate `planner-api` (Rust only); default: the crate installed with tankops, else the one that
+    /// tankops was built with, else the published crate.
     #[arg(long, value_name = "DIR")]
     pub api: Option<PathBuf>,
 }
@@ -38,7 +38,7 @@ pub(crate) struct ReplayWorkerArgs {
     /// Run the plugin's process in gdb, without deadlines.
     #[arg(long, conflicts_with = "core")]
     pub gdb: bool,
-    /// Have gdb write a core dump and the backtraces of all threads into the bundle if the plugin crashes again.
+    /// Have gdb write a core dump and the backtraces of all threads to the bundle if the plugin crashes again.
     #[arg(long)]
     pub core: bool,
 }

@@ -25,7 +25,7 @@ pub(crate) enum CampaignCommand {
         #[arg(long)]
         partial: bool,
     },
-    /// Compare a metric of two campaigns, mission by mission.
+    /// Compare one metric between two campaigns, mission by mission.
     Compare(CompareArgs),
 }
 
@@ -60,7 +60,7 @@ pub(crate) struct RunCampaignArgs {
     /// Start no further block after this many core hours, for example 5ch, counted over all runs of the campaign.
     #[arg(long, value_name = "TIME", value_parser = core_hours)]
     pub budget: Option<f64>,
-    /// With --engine slurm: write the script, and print the command that submits it.
+    /// With --engine slurm: write the script, and print the command that submits it instead of running that command.
     #[arg(long)]
     pub print: bool,
 }
@@ -72,10 +72,10 @@ pub(crate) struct WorkArgs {
     /// Run this block only.
     #[arg(long, value_name = "N", conflicts_with_all = ["shard", "pull"])]
     pub block: Option<u64>,
-    /// Run every Nth block, beginning with block I; I counts from 0.
+    /// Run every Nth block, beginning with block I (counted from 0).
     #[arg(long, value_name = "I/N", value_parser = shard)]
     pub shard: Option<(u64, u64)>,
-    /// Share the blocks with other workers in the same folder: each takes a block that nobody else holds.
+    /// Share the blocks with other workers in the same folder: each worker takes a block that no other worker holds.
     #[arg(long)]
     pub pull: bool,
     /// Number of missions run in parallel; 0: one per core.
@@ -87,7 +87,7 @@ pub(crate) struct WorkArgs {
 pub(crate) struct CompareArgs {
     /// Folder of a campaign, or its results.parquet.
     pub first: PathBuf,
-    /// Folder or results.parquet of the campaign to compare it with.
+    /// Folder of the campaign to compare with, or its results.parquet.
     pub second: PathBuf,
     /// Column to compare.
     #[arg(long, value_name = "METRIC", default_value = "success")]

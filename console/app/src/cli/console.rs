@@ -1,18 +1,18 @@
-//! The options of the console and of the replay.
+//! Options of the console and of the replay.
 
 use super::{Changes, LogsArg};
 use clap::Args;
 use interactive::{By, Drill, Options, Replay};
 use std::path::PathBuf;
 
-/// The output of the console: a terminal, a script's result or plain sentences.
+/// Options for how the console is shown: on a terminal, by a script or in plain sentences.
 #[derive(Debug, Default, Args)]
 pub(crate) struct ScreenArgs {
     /// Number of colours: none, 16, 256 or true (24 bit); default: the setting in config.toml, or what the terminal
     /// supports.
     #[arg(long, value_name = "NUMBER", visible_alias = "color", value_parser = interactive::config::colours)]
     pub colour: Option<tui::Colours>,
-    /// Run console commands from a file instead of the keyboard, without a terminal; exit code 1 if a line fails.
+    /// Read console commands from a file instead of the keyboard, without a terminal; exit code 1 if a line fails.
     #[arg(long, value_name = "FILE", conflicts_with = "plain")]
     pub script: Option<PathBuf>,
     /// Print changes as sentences, one per line, and read console commands from stdin: for screen readers and logs.
@@ -37,8 +37,8 @@ pub(crate) struct ConsoleArgs {
     pub speed: Option<tui::Speed>,
     #[command(flatten)]
     pub screen: ScreenArgs,
-    /// Watch a run that another console has open, or view a past run: its folder, or its name in the logs folder. No
-    /// orders can be given.
+    /// Watch a run that is open in another console, or view a past run, given by its folder or its name in the logs
+    /// folder. No orders can be given.
     #[arg(long, value_name = "RUN", conflicts_with_all = ["scenario", "Changes", "speed", "script", "drill"])]
     pub view: Option<PathBuf>,
     /// Make a part of the console fail while the robot moves, to test that the run and the terminal survive.
@@ -73,7 +73,7 @@ impl From<ReplayArgs> for Options {
 /// A character set for the map and the charts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum GlyphSet {
-    /// Unicode 16 octants: dots without gaps; need support by terminal and font
+    /// Unicode 16 octants: dots without gaps; the terminal and its font must support them
     Octant,
     /// Braille dots.
     Braille,

@@ -8,8 +8,8 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[allow(clippy::struct_excessive_bools, reason = "each is a separate option")]
 pub(crate) struct LocateArgs {
-    /// Readings as CSV, or as MCAP with JSON messages that use the same names: `t_s`, `station`, and `range_m`,
-    /// `arrival_s` (with or without `emitted_s`) or `tdoa_s`; also in mm, ms and us. `-` reads standard input.
+    /// Readings: CSV with the columns `t_s`, `station`, and `range_m`, `arrival_s` (with or without `emitted_s`) or
+    /// `tdoa_s` (also in mm, ms and us), or MCAP with JSON messages that use the same names. `-` reads standard input.
     pub readings: PathBuf,
     /// Scenario that provides the tank, stations, start and noise.
     #[arg(long, value_name = "FILE")]
@@ -19,17 +19,17 @@ pub(crate) struct LocateArgs {
     /// Speed of sound in metres per second; required for arrival times.
     #[arg(long, value_name = "M_PER_S", value_parser = sound_speed)]
     pub sound_speed: Option<f64>,
-    /// Estimate this from the readings as well; repeatable.
+    /// Also estimate this quantity from the readings; repeatable.
     #[arg(long, value_name = "WHAT")]
     pub find: Vec<FindArg>,
-    /// CSV file that states when the tool was on, as `from_s` and `to_s` by the clock of the readings, if the readings
-    /// have no column `tool_on`.
+    /// CSV file with the periods in which the tool was on (`from_s`, `to_s`, by the clock of the readings), for
+    /// readings without a column `tool_on`.
     #[arg(long, value_name = "FILE")]
     pub tool_on: Option<PathBuf>,
     /// Skip bad rows instead of refusing the file.
     #[arg(long)]
     pub skip_bad_rows: bool,
-    /// Write fixes and track to this CSV file.
+    /// Write the fixes and the track to this CSV file.
     #[arg(short = 'o', long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Overwrite existing files.
@@ -50,19 +50,20 @@ pub(crate) struct LocateArgs {
 pub(crate) enum FindArg {
     /// The speed of sound; needs four stations per emission.
     SoundSpeed,
-    /// The offset between the clocks of robot and stations; needs four stations per emission, or five to find both.
+    /// The offset between the clocks of the robot and the stations; needs four stations per emission, or five if the
+    /// speed of sound is also estimated.
     ClockOffset,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct MapArgs {
-    /// YAML file of the map, as given by `map` in the `[tank]` section of a scenario.
+    /// YAML file of the map; a scenario names it with the key `map` in its section `[tank]`.
     pub map: PathBuf,
     /// Keep the floor area that contains this point, in metres; default: the largest area.
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
     pub start: Option<[f64; 2]>,
     /// Largest distance, in metres, by which solid areas may grow into the floor to simplify the outlines; default:
-    /// half a cell. In a scenario: `map_tolerance_m`.
+    /// half a cell. The key in a scenario is `map_tolerance_m`.
     #[arg(long, value_name = "M", value_parser = tolerance)]
     pub simplify: Option<f64>,
     /// Draw the wall and the convex pieces to this file.
@@ -76,8 +77,8 @@ pub(crate) struct MapArgs {
 #[derive(Debug, Args)]
 pub(crate) struct ImportArgs {
     /// Drawing (.dxf) with layers SHELL, COLUMNS, PIPES, SUMP, NOGO and PLATES, or list of columns (.csv) with the
-    /// fields `x_m`, `y_m`, `radius_m` or `diameter_m` (also in mm, cm, in, ft), and `name`; `-` reads either from
-    /// standard input.
+    /// fields `x_m`, `y_m`, `radius_m` or `diameter_m` (also in mm, cm, in, ft), and optionally `name`; `-` reads
+    /// either from standard input.
     pub file: PathBuf,
     /// Scenario file to write.
     #[arg(short = 'o', long, value_name = "SCENARIO")]
@@ -85,14 +86,14 @@ pub(crate) struct ImportArgs {
     /// Inner radius of the tank, in metres; required for a list of columns.
     #[arg(long, value_name = "M", value_parser = length)]
     pub tank_radius: Option<f64>,
-    /// Unit of the drawing; required if the header states none; overrides the header.
+    /// Unit of length of the drawing; overrides the unit in its header, and is required if the header states none.
     #[arg(long, value_name = "UNIT")]
     pub units: Option<UnitArg>,
-    /// Assigns a layer of the drawing to SHELL, COLUMNS, PIPES, SUMP, NOGO, PLATES or IGNORE, for example
-    /// COLUMNS=Posts; repeatable. A layer assigned to both SHELL and COLUMNS holds the shell and the columns inside it.
+    /// Assign a layer of the drawing to SHELL, COLUMNS, PIPES, SUMP, NOGO, PLATES or IGNORE, for example COLUMNS=Posts;
+    /// repeatable. A layer assigned to both SHELL and COLUMNS contains the shell and the columns inside it.
     #[arg(long, value_name = "WHAT=LAYER", value_parser = layer)]
     pub layer: Vec<(Role, String)>,
-    /// Width in metres of pipes drawn as lines without a width.
+    /// Width, in metres, of pipes drawn as lines without a width.
     #[arg(long, value_name = "M", value_parser = length, default_value_t = import::drawing::PIPE_WIDTH_M)]
     pub pipe_width: f64,
     /// Draw the floor to this file.

@@ -1,4 +1,4 @@
-//! Options for running, planning and forecasting a mission.
+//! Options for running a mission, planning it, and forecasting its position accuracy.
 
 use super::{Changes, LogsArg};
 use clap::Args;
@@ -15,8 +15,8 @@ pub(crate) struct RunArgs {
     /// Do not write a journal or a recording.
     #[arg(long)]
     pub no_record: bool,
-    /// Hold planners to the console's real-time deadlines (for planner authors): a step that is not answered within 60 %
-    /// of a tick is late. The result then depends on the machine; the journal can still be verified.
+    /// Hold planners to the console's real-time deadlines (for planner authors): a step that is not answered within 60
+    /// % of a tick is late. The result then depends on the machine, but the journal can still be verified.
     #[arg(long)]
     pub live_deadlines: bool,
     #[command(flatten)]
@@ -29,13 +29,13 @@ pub(crate) struct RunArgs {
 /// Options for a planner in shadow.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct ShadowArgs {
-    /// Run this planner in shadow: it plans and commands beside the driving planner, but moves nothing.
+    /// Run this planner in shadow: it plans and commands alongside the active planner, but moves nothing.
     #[arg(long, value_name = "ID")]
     pub shadow: Option<String>,
     /// Set a parameter of the planner in shadow.
     #[arg(long, value_name = "KEY=VALUE", requires = "shadow")]
     pub shadow_set: Vec<String>,
-    /// Swap the driving planner and the planner in shadow at this interval, in seconds of mission time.
+    /// Swap the active planner and the planner in shadow at this interval, in seconds of mission time.
     #[arg(long, value_name = "SECONDS", requires = "shadow", value_parser = seconds, allow_negative_numbers = true)]
     pub promote_every: Option<f64>,
 }
@@ -66,7 +66,7 @@ pub(crate) struct AccuracyArgs {
     pub scenario: PathBuf,
     #[command(flatten)]
     pub changes: Changes,
-    /// Print the forecast of every cell as JSON on stdout.
+    /// Print the forecast for every cell as JSON on stdout.
     #[arg(long)]
     pub json: bool,
     /// Draw the forecast to this file.

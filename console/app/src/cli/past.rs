@@ -8,13 +8,13 @@ use std::path::PathBuf;
 pub(crate) struct EventsArgs {
     /// Run folder, or its name in the logs folder.
     pub run: PathBuf,
-    /// Print only events of this kind, the value of the key `event`; repeatable.
+    /// Print only events of this kind (the value of the key `event`); repeatable.
     #[arg(long, value_name = "KIND")]
     pub kind: Vec<String>,
-    /// Print only events from this mission time on, in seconds.
+    /// Print only events at or after this mission time, in seconds.
     #[arg(long, value_name = "T_S", value_parser = mission_time, allow_negative_numbers = true)]
     pub from: Option<f64>,
-    /// Print only events up to this mission time, in seconds.
+    /// Print only events at or before this mission time, in seconds.
     #[arg(long, value_name = "T_S", value_parser = mission_time, allow_negative_numbers = true)]
     pub to: Option<f64>,
     #[command(flatten)]
@@ -41,8 +41,8 @@ pub(crate) struct ExportTo {
     /// Write the run as ROS 2 messages (map, coverage, plan, pose, fixes, log) for Foxglove and the MCAP tools.
     #[arg(long, value_name = "FILE")]
     pub mcap: Option<PathBuf>,
-    /// Write range and odometry readings, with the true positions, as CSV in the format of `locate`; recomputes the
-    /// run.
+    /// Write range and odometry readings, with the true positions, as CSV in the format that `tankops locate` reads;
+    /// recomputes the run.
     #[arg(long, value_name = "FILE")]
     pub ranges: Option<PathBuf>,
 }
@@ -58,7 +58,7 @@ pub(crate) struct RescanArgs {
     /// Overwrite existing files.
     #[arg(long)]
     pub force: bool,
-    /// Ignore missed areas smaller than this, in square metres; areas that are close together count as one.
+    /// Ignore missed areas smaller than this, in square metres; areas that are close together count as one area.
     #[arg(long, value_name = "AREA", default_value_t = review::MIN_AREA_M2)]
     pub min_area_m2: f64,
     #[command(flatten)]
@@ -67,7 +67,7 @@ pub(crate) struct RescanArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct ReportArgs {
-    /// Run folders, or their names in the logs folder; all of them must be of the same floor.
+    /// Run folders, or their names in the logs folder; all runs must be on the same floor.
     #[arg(required = true, value_name = "RUN")]
     pub runs: Vec<PathBuf>,
     /// Print JSON.
@@ -76,10 +76,10 @@ pub(crate) struct ReportArgs {
     /// Write the inspection report to this file: .html, .json, .csv (several files), .geojson or .dxf.
     #[arg(short = 'o', long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// TOML file with facts for `[inspection]` that were not known before the run; they override those of the scenario.
+    /// TOML file with facts for `[inspection]` that were not known before the run; they override those in the scenario.
     #[arg(long, value_name = "FILE", requires = "output")]
     pub inspection: Option<PathBuf>,
-    /// CSV file of the instrument's indications: `t_s`, and optionally `left_m`, `ahead_m`, `kind`, `size_mm`,
+    /// CSV file with the instrument's indications: `t_s`, and optionally `left_m`, `ahead_m`, `kind`, `size_mm`,
     /// `depth_mm`, `note`.
     #[arg(long, value_name = "FILE", requires = "output")]
     pub indications: Option<PathBuf>,

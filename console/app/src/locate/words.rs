@@ -8,10 +8,10 @@ use report::forecast::line_of_stations;
 use scenario::Scenario;
 use std::fmt::Write as _;
 
-/// If the speed of sound is less certain than this, as a share, it is not good enough to correct ranges.
+/// If the relative uncertainty of the speed of sound exceeds this, ranges cannot be corrected with it reliably.
 const DOUBTFUL_SCALE: f64 = 0.005;
 
-/// An error of the speed of sound is reported if it exceeds this many standard deviations.
+/// An error in the speed of sound is reported if it exceeds this many standard deviations.
 const SURE_SIGMAS: f64 = 4.0;
 
 /// Lines that each begin with a label.
@@ -67,7 +67,7 @@ pub(super) fn human(
     }
     let metres = |[mean_m, most_m]: [f64; 2]| format!("{mean_m:.3} m mean, {most_m:.3} m maximum");
     let figures = [
-        ("track", "95 % error by covariance", tally.error_95_m),
+        ("track", "95 % error from covariance", tally.error_95_m),
         ("true error", "of fixes", tally.fix_error_m),
         ("", "of the track", tally.track_error_m),
     ];
@@ -135,7 +135,7 @@ fn of_sound(
     }
 }
 
-/// Errors of the speed of sound, the clocks and the stations that the residuals prove.
+/// Errors in the speed of sound, the clocks and the stations, as proven by the residuals.
 fn residuals(args: &LocateArgs, scenario: &Scenario, survey: &Survey) -> Vec<String> {
     let mut lines = Vec::new();
     if let Some(scale) = survey.verdict.scale.filter(|scale| scale.is_proven) {
@@ -161,7 +161,8 @@ fn residuals(args: &LocateArgs, scenario: &Scenario, survey: &Survey) -> Vec<Str
     let harmless = |scale: &Wrong| !scale.is_proven && scale.value.abs() > SURE_SIGMAS * scale.sigma;
     if let Some(scale) = survey.verdict.scale.filter(harmless).filter(|_| !survey.verdict.is_wrong()) {
         lines.push(format!(
-            "ranges differ from the scenario by {:+.3} ± {:.3} % throughout, which moves fixes by less than their stated errors",
+            "all ranges differ by {:+.3} ± {:.3} % from those that the scenario implies; this moves fixes by \
+             less than their stated errors",
             scale.value * 100.0,
             scale.sigma * 100.0
         ));
@@ -179,13 +180,13 @@ fn residuals(args: &LocateArgs, scenario: &Scenario, survey: &Survey) -> Vec<Str
     lines
 }
 
-/// Stations with several readings in one emission that scatter too widely to be repetitions.
+/// Stations whose readings of one emission scatter too widely to be repetitions.
 fn repetitions(scenario: &Scenario, survey: &Survey) -> Vec<String> {
     let repeats = &survey.repeats;
     if repeats.are_narrow() {
         return vec![format!(
-            "readings of one station in one emission have {:.2} times the scatter of the noise in the scenario: \
-             they count as one reading",
+            "readings of one station in one emission scatter {:.2} times as widely as the noise in the \
+             scenario: they count as one reading",
             repeats.factor()
         )];
     }
@@ -202,14 +203,17 @@ fn repetitions(scenario: &Scenario, survey: &Survey) -> Vec<String> {
     let emissions = repeats.emissions;
     lines.push(if repeats.are_wide() {
         format!(
-            "in {emissions} emissions, readings of one station have {:.1} times the scatter of the noise in the \
-             scenario: none of their fixes is ok; give each emission its own time, or its own name in a column \
-             `emission`",
+            "in {emissions} emissions, readings of one station scatter {:.1} times as widely as the noise in \
+             the scenario: none of their fixes is ok; give each emission its own time, or its own name in a \
+             column `emission`",
             repeats.factor()
         )
     } else {
-        format!("{} of {emissions} emissions with several readings of a station scatter too widely: their fixes \
-                 are not ok", repeats.wide)
+        format!(
+            "in {} of {emissions} emissions with several readings from one station, these readings scatter too \
+             widely: their fixes are not ok",
+            repeats.wide
+        )
     });
     lines
 }
@@ -248,7 +252,7 @@ fn sides(scenario: &Scenario, doubts: &Doubts) -> Vec<String> {
     let mut lines =
         vec![format!("{all} fixes have a mirror image on the other side of {line}, which fits equally well")];
     if sides_by_walls > 0 {
-        lines.push(format!("{sides_by_walls} decided by the wall: the other position is behind it"));
+        lines.push(format!("{sides_by_walls} decided by the wall: the other position is outside it"));
     }
     if sides_by_track > 0 {
         lines.push(format!("{sides_by_track} decided by robot.start_m and the track from there"));
@@ -284,7 +288,7 @@ fn tool(survey: &Survey) -> String {
     format!("on for {on_s:.1} s in {stretches}{heading}")
 }
 
-/// The distance in metres of the first fix from the start in the scenario, if it exceeds what the errors of both and
+/// The distance in metres from the start in the scenario to the first fix, if it exceeds what the errors of both and
 /// the robot's motion can explain.
 fn start_off_m(scenario: &Scenario, tally: &Tally) -> Option<f64> {
     let (first, error_95_m) = tally.first_fix_m.zip(tally.first_fix_error_95_m)?;

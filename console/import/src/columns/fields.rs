@@ -1,11 +1,11 @@
-//! The fields of a list of columns, and parsing of their numbers.
+//! The fields of a list of columns, and how their numbers are parsed.
 
 use super::marks::Marks;
 use csv::StringRecord;
 
-/// The longest part of a field name that messages repeat, in characters.
+/// The largest number of characters of a field name that messages repeat.
 const LONGEST_NAME: usize = 40;
-/// Units of length, with their size in metres.
+/// Units of length, with their sizes in metres.
 const UNITS: [(&str, f64); 7] = [
     ("m", 1.0),
     ("cm", 1e-2),
@@ -27,14 +27,14 @@ pub(super) enum Quantity {
 /// The fields of a list: their positions and units.
 pub(super) struct Fields {
     names: Vec<String>,
-    /// The position and the unit in metres, indexed by [`Quantity`].
+    /// The position, and the size of the unit in metres, indexed by [`Quantity`].
     lengths: [(usize, f64); 3],
     name: Option<usize>,
     /// The names of unused fields.
     pub unused: Vec<String>,
 }
 
-/// A result whose error is a field and its problem.
+/// A result; its error is a field and the field's problem.
 type Wrong<T> = Result<T, (String, String)>;
 
 impl Fields {
@@ -62,7 +62,8 @@ impl Fields {
         let found = |quantity: Quantity, field: &str| {
             lengths[quantity as usize].ok_or_else(|| {
                 let what =
-                    "missing in the first line; write for example x_m,y_m,radius_m (also diameter; mm, cm, in, ft)";
+                    "missing from the first line; write, for example, x_m,y_m,radius_m (also diameter; mm, cm, \
+                     in, ft)";
                 let there = format!("{what}; the fields are: {}", names.join(", "));
                 (field.to_owned(), there.chars().take(400).collect())
             })

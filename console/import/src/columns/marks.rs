@@ -1,5 +1,5 @@
-//! Determines whether the numbers of a list use a decimal point or a decimal comma, and whether this mark might
-//! separate thousands instead.
+//! Determines whether the numbers of a list use a decimal point or a decimal comma, and whether this mark might instead
+//! separate thousands.
 
 /// One millimetre in metres. Columns are not measured to the micrometre, so three digits after a mark in millimetres
 /// may be a group of thousands.
@@ -54,8 +54,8 @@ impl Marks {
                 [comma, point]
             };
             let what = format!(
-                "`{}`, and `{}` in line {}: two decimal marks in one list; use only one of them, and no \
-                 thousands separators",
+                "`{}`, and `{}` in line {}: two decimal marks in one list; use only one, and no thousands \
+                 separators",
                 second.written, first.written, first.line
             );
             return Some((second.line, second.field.clone(), what));

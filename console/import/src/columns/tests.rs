@@ -68,7 +68,7 @@ fn errors_name_line_and_field() {
     );
     assert_eq!(
         message("x_m,y_m,Nr\n1,2,3\n"),
-        "c.csv, line 1, radius_m: missing in the first line; write for example x_m,y_m,radius_m (also diameter; mm, cm, in, ft); \
+        "c.csv, line 1, radius_m: missing from the first line; write, for example, x_m,y_m,radius_m (also diameter; mm, cm, in, ft); \
          the fields are: x_m, y_m, Nr"
     );
     assert_eq!(
@@ -107,8 +107,8 @@ fn thousands_beside_decimals_are_refused_with_both_lines() {
     let text = b"name;x_mm;y_mm;diameter_mm\nA;4.000;250,5;500\nB;-4.000;1.250;500,0\n";
     assert_eq!(
         read_bytes(text).unwrap_err(),
-        "c.csv, line 2, y_mm: `250,5`, and `4.000` in line 2: two decimal marks in one list; use only one of \
-         them, and no thousands separators"
+        "c.csv, line 2, y_mm: `250,5`, and `4.000` in line 2: two decimal marks in one list; use only one, \
+         and no thousands separators"
     );
 }
 

@@ -5,13 +5,13 @@ use crate::plan::{MOST_CORNERS, hull, round};
 use std::f64::consts::{PI, TAU};
 use world::{Boundary, Point, Shape, Vector, shape::ring_area_m2};
 
-/// The largest distance in metres between the two drawn sides of a shell.
+/// The largest distance in metres between the two sides of a shell, if both are drawn.
 const PLATE_M: f64 = 0.25;
-/// Tolerances in metres for the floor that may be lost by removing corners of the shell, tried in this order.
+/// Tolerances in metres for the floor that may be lost when corners of the shell are removed; tried in this order.
 const TOLERANCES_M: [f64; 4] = [1e-3, 2e-3, 5e-3, 1e-2];
-/// Discs whose positions and radii differ by less than this, in metres, are one disc drawn twice.
+/// Discs whose positions and radii differ by less than this, in metres, count as one disc drawn twice.
 const TWICE_M: f64 = 5e-3;
-/// Outlines of a smaller radius than this, in metres, enclose nothing.
+/// Outlines with a radius smaller than this, in metres, enclose nothing.
 const SMALLEST_M: f64 = 1e-3;
 /// The number of corners of the polygon that replaces the round tip of a wide line.
 const N_TIP: usize = 16;
@@ -21,7 +21,7 @@ const N_TIP: usize = 16;
 pub(super) struct Area {
     /// The corners; empty for a circle.
     points: Vec<Point>,
-    /// The centre, the smallest and the largest radius, if the outline is round.
+    /// The centre, and the smallest and largest radius, if the outline is round.
     round: Option<(Point, f64, f64)>,
     /// Half the width of the line in metres.
     half_width_m: f64,
@@ -95,8 +95,8 @@ impl Area {
     }
 }
 
-/// A convex polygon with fewer corners that contains the given one. Its sides touch the given polygon in evenly spread
-/// directions.
+/// A convex polygon that contains the given one but has fewer corners. Its sides touch the given polygon in evenly
+/// spread directions.
 fn of_few_corners(ring: Vec<Point>) -> Vec<Point> {
     const N_SIDES: usize = 96;
     if ring.len() <= MOST_CORNERS {
@@ -115,7 +115,7 @@ fn of_few_corners(ring: Vec<Point>) -> Vec<Point> {
     hull(&(0..N_SIDES).map(corner).collect::<Vec<_>>())
 }
 
-/// The convex shapes of all areas without duplicates, and the numbers, from 1, of the shapes that were not convex.
+/// The convex shapes of all areas without duplicates, and the numbers, counted from 1, of those that were not convex.
 pub(super) fn shapes(areas: &[Area]) -> (Vec<Shape>, Vec<usize>) {
     let (mut shapes, mut grown): (Vec<Shape>, Vec<usize>) = (Vec::new(), Vec::new());
     for area in areas {
@@ -152,8 +152,8 @@ pub(super) fn shell(mut areas: Vec<Area>, notes: &mut Vec<String>) -> Option<(Ar
     Some((areas.pop()?, rest))
 }
 
-/// The floor inside the shell, and its centre if it is round. If there are more than [`MOST_CORNERS`] corners, some are
-/// removed where this loses hardly any floor. The scenario reader refuses a shell that still has too many.
+/// The floor inside the shell, and the shell's centre if it is round. If there are more than [`MOST_CORNERS`] corners,
+/// some are removed if this loses hardly any floor. The scenario reader refuses a shell that still has too many.
 pub(super) fn boundary(shell: &Area, notes: &mut Vec<String>) -> (Boundary, Option<Point>) {
     if let Some((center, least_m, _)) = shell.round {
         return (Boundary::Circle { radius_m: least_m - shell.half_width_m }, Some(center));

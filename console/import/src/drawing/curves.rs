@@ -27,7 +27,7 @@ pub(super) fn along_arc(center: Point, radius: f64, from: f64, sweep: f64) -> Ve
     (0..=n).map(point).collect()
 }
 
-/// Points of a polyline. A bulge is the tangent of a quarter of the arc's angle to the next vertex.
+/// Points of a polyline. A bulge is the tangent of a quarter of the angle of the arc to the next vertex.
 pub(super) fn chain(vertices: &[(Point, f64)], is_closed: bool) -> Vec<Point> {
     let n = vertices.len();
     let mut points = Vec::new();
@@ -50,7 +50,7 @@ pub(super) fn chain(vertices: &[(Point, f64)], is_closed: bool) -> Vec<Point> {
 }
 
 /// Points of an elliptic arc, given by its centre, long half axis, ratio of the half axes, and parameters in radians.
-/// Also returns whether it is a whole ellipse; then the first point is left out.
+/// Also returns whether this is a complete ellipse; if so, the first point is left out.
 pub(super) fn ellipse(center: Point, long: Vector, share: f64, [from, to]: [f64; 2]) -> (Vec<Point>, bool) {
     let short = Vector::new(-long.y, long.x) * share;
     let sweep = if to > from { (to - from).min(TAU) } else { (to - from).rem_euclid(TAU) };
@@ -108,8 +108,8 @@ pub(super) fn spline(spline: &Spline) -> Option<Vec<Point>> {
     (points.len() > 1 && points.iter().all(|p| p.x.is_finite() && p.y.is_finite())).then_some(points)
 }
 
-/// Points of a smooth curve through given points (Catmull–Rom). Drawings that state only these points leave the curve
-/// to the program that displays them.
+/// Points of a smooth curve through given points (Catmull–Rom). For drawings that state only these points, the program
+/// that displays them determines the curve.
 pub(super) fn through(points: &[Point]) -> Vec<Point> {
     let n = points.len();
     if n < 3 || n * SPLINE_POINTS > SPLINE_MOST {

@@ -22,7 +22,7 @@ pub(super) enum Outline {
     Chain { points: Vec<Point>, is_closed: bool, width_m: f64 },
 }
 
-/// An entity with its outlines; empty if it has no usable outlines.
+/// An entity with its outlines; `outlines` is empty if none can be used.
 pub(super) struct Drawn {
     pub layer: String,
     /// The name of its type in DXF.
@@ -32,8 +32,8 @@ pub(super) struct Drawn {
     pub label: Option<(Point, String)>,
 }
 
-/// Expands everything in the model space of a drawing; `None` if there is more than [`MOST`]. `unit_m` is the size of
-/// the drawing's unit in metres.
+/// Expands everything in the model space of a drawing; `None` if there are more than [`MOST`] entities. `unit_m` is the
+/// size of the drawing's unit in metres.
 pub(super) fn all(drawing: &Drawing, unit_m: f64) -> Option<Vec<Drawn>> {
     let blocks = drawing.blocks.iter();
     // Names in drawings are not case-sensitive.
@@ -74,7 +74,7 @@ fn scaling(x: f64, y: f64) -> Affine2<f64> {
     Affine2::from_matrix_unchecked(nalgebra::Matrix3::new_nonuniform_scaling(&Vector::new(x, y)))
 }
 
-/// Adds an entity, or the contents of the block that it inserts; `None` if there are too many.
+/// Adds an entity, or the contents of the block that it inserts; `None` if there are too many entities.
 fn collect(
     entity: &Entity,
     blocks: &Blocks<'_>,
@@ -114,8 +114,8 @@ fn collect(
     Some(())
 }
 
-/// Adds the attributes of an insertion. One of them serves as its name: the first attribute with a name tag, else the
-/// first.
+/// Adds the attributes of an insertion. One attribute serves as the name of the insertion: the first with a name tag,
+/// else the first of all.
 fn attributes(insert: &Entity, layer: &str, map: &Affine2<f64>, unfolded: &mut Unfolded) -> Option<()> {
     let naming = insert.parts.iter().position(labels::is_name_tag).unwrap_or(0);
     for (index, attribute) in insert.parts.iter().enumerate() {
@@ -148,7 +148,7 @@ fn label(entity: &Entity, map: &Affine2<f64>) -> Option<(Point, String)> {
         let map = if entity.kind == "MTEXT" { *map } else { *map * mirroring(entity.number(230, 1.0)) };
         return Some((map * at, text));
     }
-    // A text that is not aligned left has a second point, which is its position.
+    // A text that is not left-aligned has a second point, which is its position.
     let [x, y] = [(11, 10), (21, 20)].map(|(own, first)| entity.number(own, entity.number(first, 0.0)));
     Some((*map * mirroring(entity.number(230, 1.0)) * Point::new(x, y), text))
 }
@@ -190,7 +190,8 @@ fn outline(entity: &Entity, map: &Affine2<f64>) -> Option<Outline> {
             let angles_deg = [entity.number(50, 0.0), entity.number(51, 360.0)];
             chain_of(arc(at(10, 20)?, entity.number(40, 0.0), angles_deg), &in_plane, false)
         }
-        // In the coordinates of the drawing: the centre, the long half axis from there, and the ratio of the half axes.
+        // In the coordinates of the drawing: the centre, the long half axis as a vector from there, and the ratio of
+        // the half axes.
         "ELLIPSE" => {
             let ends = [entity.number(41, 0.0), entity.number(42, TAU)];
             let (points, is_closed) = ellipse(at(10, 20)?, at(11, 21)?.coords, entity.number(40, 1.0), ends);
@@ -231,7 +232,7 @@ fn polyline(entity: &Entity, in_plane: &Affine2<f64>, scale: f64) -> Option<Outl
     (points.len() > 1).then_some(Outline::Chain { points, is_closed, width_m: width * scale })
 }
 
-/// In a plane that is seen from below, x points the other way.
+/// In a plane that is seen from below, x points in the opposite direction.
 fn mirroring(normal_z: f64) -> Affine2<f64> {
     scaling(if normal_z < 0.0 { -1.0 } else { 1.0 }, 1.0)
 }

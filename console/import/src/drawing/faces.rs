@@ -1,7 +1,7 @@
-//! The faces that crossing and meeting lines enclose.
+//! The faces enclosed by lines that cross or meet.
 //!
-//! Lines are cut where other lines cross or end at them, loose ends are removed, and each face is traced along its half
-//! edges.
+//! Lines are cut where other lines cross them or end at them, loose ends are removed, and each face is traced along its
+//! half edges.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use world::{
@@ -9,12 +9,13 @@ use world::{
     shape::{bounds_of, ring_area_m2},
 };
 
-/// Points closer than this, in metres, are merged: seams in drawings end this far short of other seams, or beyond them.
+/// Points closer together than this, in metres, are merged: in drawings, seams end up to this far short of other seams,
+/// or beyond them.
 const SAME_M: f64 = 5e-3;
 /// The largest number of straight pieces that are compared with each other.
 const MOST_PIECES: usize = 20_000;
-/// A remainder of a line beyond the last line that it meets does not count as a loose line if it is shorter than this,
-/// in metres.
+/// The remainder of a line beyond the last line that it meets counts as a loose line only if it is longer than this, in
+/// metres.
 const LOOSE_M: f64 = 0.1;
 
 type Piece = [Point; 2];
@@ -49,7 +50,7 @@ pub(super) fn faces(lines: &[Vec<Point>]) -> Option<Faces> {
     Some(Faces { rings: graph.rings(&nodes.places), n_loose })
 }
 
-/// The positions at which each piece is cut, as ascending shares of its length.
+/// The positions at which each piece is cut, as shares of the piece's length, ascending.
 fn cuts(pieces: &[Piece]) -> Vec<Vec<f64>> {
     let boxes: Vec<(Point, Point)> = pieces.iter().map(|piece| bounds_of(piece)).collect();
     let mut from_west: Vec<usize> = (0..pieces.len()).collect();
@@ -76,7 +77,7 @@ fn cuts(pieces: &[Piece]) -> Vec<Vec<f64>> {
     cuts
 }
 
-/// The position of a point on a piece as a share of its length, if the point is on it.
+/// The position of a point on a piece, as a share of the piece's length, if the point is on the piece.
 fn foot([a, b]: Piece, place: Point) -> Option<f64> {
     let along = b - a;
     let share = (place - a).dot(&along) / along.norm_squared();
@@ -84,7 +85,7 @@ fn foot([a, b]: Piece, place: Point) -> Option<f64> {
     is_on.then_some(share)
 }
 
-/// The position on each of two pieces, as a share of its length, at which they cross.
+/// The position on each of two pieces, as a share of that piece's length, at which they cross.
 fn crossing([a, b]: Piece, [c, d]: Piece) -> Option<(f64, f64)> {
     let (one, other, between) = (b - a, d - c, c - a);
     let turn = one.perp(&other);

@@ -1,4 +1,4 @@
-//! Parser for DXF text: pairs of lines, a code and a value, in sections.
+//! Parser for DXF text, which consists of sections with pairs of lines: a code and a value.
 
 use super::curves::Spline;
 use crate::{
@@ -11,7 +11,7 @@ use world::Point;
 /// An entity as its codes and values.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Entity {
-    /// The type as in the file: `LINE`, `CIRCLE`, `INSERT`, ...
+    /// The type as named in the file: `LINE`, `CIRCLE`, `INSERT`, ...
     pub kind: String,
     groups: Vec<(i32, String)>,
     /// The vertices of a `POLYLINE`, or the attributes of an `INSERT`.
@@ -26,7 +26,7 @@ pub(super) struct Block {
     pub entities: Vec<Entity>,
 }
 
-/// The parts of a drawing that floors need.
+/// The parts of a drawing from which a floor is read.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Drawing {
     /// The value of `$INSUNITS` in the header.
@@ -69,7 +69,7 @@ impl Entity {
         self.numbers(x).zip(self.numbers(y)).map(|(x, y)| Point::new(x, y)).collect()
     }
 
-    /// The data of a `SPLINE`; without control points if it is given by the points that it passes through.
+    /// The data of a `SPLINE`; there are no control points if the spline is given by the points that it passes through.
     pub(super) fn spline(&self) -> Spline {
         Spline {
             degree: self.number(71, 3.0).max(0.0) as usize,

@@ -51,7 +51,7 @@ pub(super) fn rings(groups: &[(i32, String)]) -> Vec<Vec<Point>> {
 }
 
 fn path(groups: &mut Groups<'_>) -> Option<Vec<Vec<Point>>> {
-    /// The path is a single polyline.
+    /// The flag of a path that is a single polyline.
     const POLYLINE: u32 = 2;
     let flags = groups.number(92)? as u32;
     if flags & POLYLINE != 0 {

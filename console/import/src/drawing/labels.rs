@@ -1,11 +1,11 @@
-//! Texts of a drawing, which may be names of plates.
+//! Texts in a drawing, which may be names of plates.
 
 use super::groups::{Entity, unescaped};
 
-/// The number of letters of a name that are kept.
+/// The largest number of characters of a name; the rest is cut off.
 const LONGEST: usize = 40;
 
-/// Words in the tags of attributes that hold a name or number.
+/// Words in the tags of those attributes that contain a name or a number.
 const NAME_TAGS: [&str; 12] =
     ["NO", "NR", "NUM", "NUMBER", "NUMMER", "NAME", "ID", "TAG", "MARK", "POS", "PLATE", "BLECH"];
 
@@ -26,7 +26,7 @@ pub(super) fn text(entity: &Entity) -> Option<String> {
     (!name.is_empty()).then_some(name)
 }
 
-/// Whether the tag of an attribute indicates a name or number.
+/// Whether the tag of an attribute indicates a name or a number.
 pub(super) fn is_name_tag(attribute: &Entity) -> bool {
     let tag = attribute.text(2).unwrap_or_default().to_uppercase();
     let mut words = tag.split(|letter: char| !letter.is_alphabetic());

@@ -2,7 +2,7 @@
 
 use world::{Point, shape::bounds_of};
 
-/// The largest number of lines whose ends are compared with each other; the longest are taken.
+/// The largest number of lines whose ends are compared with each other; the longest lines are taken.
 const MOST_LINES: usize = 400;
 /// A gap wider than this share of the outline is obvious to the user and is not reported.
 const WIDEST_SHARE: f64 = 0.25;
@@ -21,7 +21,7 @@ pub(super) struct NearMiss {
 }
 
 impl NearMiss {
-    /// A description with positions in the units of the drawing.
+    /// A description, with positions in the drawing's units.
     pub(super) fn told(&self, unit_m: f64) -> String {
         let [a, b] = self.widest;
         let gap = match self.n_gaps {
@@ -40,7 +40,7 @@ impl NearMiss {
 
 /// Formats a position in the coordinates of a drawing.
 pub(super) fn place(at: Point, unit_m: f64) -> String {
-    // At least a thousandth of a millimetre, in any unit.
+    // Resolves at least a thousandth of a millimetre, in any unit.
     let digits = if unit_m > 0.1 { 6 } else { 3 };
     let shown = |v: f64| {
         let text = format!("{:.digits$}", v / unit_m + 0.0);
@@ -62,7 +62,7 @@ struct Joined {
     gaps: Vec<[Point; 2]>,
 }
 
-/// The largest outline that lines would close but for gaps; ends are joined in pairs, nearest first.
+/// The largest outline that lines would form if gaps were closed; ends are joined in pairs, nearest first.
 pub(super) fn nearest(open: &[Vec<Point>]) -> Option<NearMiss> {
     let extent = |lines: &[usize]| {
         let corners: Vec<Point> =
@@ -116,7 +116,7 @@ pub(super) fn nearest(open: &[Vec<Point>]) -> Option<NearMiss> {
     best
 }
 
-/// The ring of joined lines, if its gaps are small compared with its size.
+/// The ring of joined lines, if the gaps are small compared with the ring.
 fn miss(joined: &Joined, across_m: f64) -> Option<NearMiss> {
     let width_m = |gap: &[Point; 2]| (gap[1] - gap[0]).norm();
     let widest = *joined.gaps.iter().max_by(|a, b| width_m(a).total_cmp(&width_m(b)))?;
@@ -126,7 +126,8 @@ fn miss(joined: &Joined, across_m: f64) -> Option<NearMiss> {
     is_near.then_some(NearMiss { across_m, n_gaps, widest })
 }
 
-/// The point at which a closed outline crosses itself, if any; `None` if it has more sides than [`MOST_SIDES`].
+/// The point at which a closed outline crosses itself, if any; also `None` if the outline has more sides than
+/// [`MOST_SIDES`].
 pub(super) fn crossing(ring: &[Point]) -> Option<Point> {
     let n = ring.len();
     if n > MOST_SIDES {

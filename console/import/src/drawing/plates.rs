@@ -15,9 +15,9 @@ use world::{
     shape::{mean_of, ring_area_m2, ring_contains},
 };
 
-/// The number of corners of a round plate, and of a round shell divided by seams.
+/// The number of corners with which a round plate, or a round shell divided by seams, is approximated.
 const N_ROUND: [usize; 2] = [120, 720];
-/// A strip narrower than this, in metres, is between the two edges of an overlap and is not a plate.
+/// A strip narrower than this, in metres, lies between the two edges of an overlap and is not a plate.
 const NARROWEST_M: f64 = 0.1;
 /// A point closer than this, in metres, to the line between its neighbours is not a corner.
 const STRAIGHT_M: f64 = 2e-4;
@@ -33,12 +33,12 @@ pub(super) struct Label {
     pub text: String,
     /// Whether the text is on a layer of plates.
     pub is_of_plates: bool,
-    /// The layer and type, for a note on unused entities.
+    /// The layer and the type of entity, for a note on unused entities.
     pub what: String,
 }
 
-/// Finds the plates in the tank frame. `moved` maps the drawing to this frame, and `unit_m` is the size of its unit in
-/// metres. Afterwards, `labels` holds only the labels that name no plate.
+/// Finds the plates in the tank frame. `moved` maps the drawing to this frame, and `unit_m` is the size of the
+/// drawing's unit in metres. Afterwards, `labels` holds only the labels that name no plate.
 pub(super) fn plates(
     outlines: Vec<Outline>,
     labels: &mut Vec<Label>,
@@ -62,8 +62,8 @@ pub(super) fn plates(
     if rings.len() > MOST_PLATES {
         let n = rings.len();
         notes.push(format!(
-            "PLATES: {n} plates were not read, the limit is {MOST_PLATES}; keep only the seams of the floor on \
-             the layer"
+            "PLATES: {n} plates were not read because the limit is {MOST_PLATES}; keep only the seams of the \
+             floor on the layer"
         ));
         return Vec::new();
     }
@@ -161,18 +161,18 @@ fn rings(
     faces.rings
 }
 
-/// The width in metres of a strip with the area and perimeter of an outline.
+/// The width in metres of a strip that has the same area and perimeter as an outline.
 fn width_m(ring: &[Point]) -> f64 {
     let around_m: f64 = ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| (b - a).norm()).sum();
     2.0 * ring_area_m2(ring).abs() / around_m
 }
 
-/// Removes corners at which an outline goes straight.
+/// Removes corners at which an outline does not turn.
 fn straighten(ring: &mut Vec<Point>) {
     without_corners(ring, STRAIGHT_M);
 }
 
-/// Reduces the corners of an outline to the limit of a scenario.
+/// Reduces the number of corners of an outline to the limit for a scenario.
 fn coarsen(ring: &mut Vec<Point>, notes: &mut Vec<String>) {
     let (n, mut off_m) = (ring.len(), STRAIGHT_M);
     while ring.len() > MOST_CORNERS && off_m < COARSEST_M {
@@ -181,12 +181,13 @@ fn coarsen(ring: &mut Vec<Point>, notes: &mut Vec<String>) {
     }
     if n > ring.len() {
         let kept = ring.len();
-        notes
-            .push(format!("PLATES: an outline of {n} corners was reduced to {kept}, to within {off_m:.4} m"));
+        notes.push(format!(
+            "PLATES: an outline of {n} corners was reduced to {kept}, which changes it by at most {off_m:.4} m"
+        ));
     }
 }
 
-/// Removes corners if the line between their neighbours is within a distance of everything that it replaces.
+/// Removes corners as long as the line that replaces them stays within a distance of all of them.
 fn without_corners(ring: &mut Vec<Point>, off_m: f64) {
     let corners = std::mem::take(ring);
     let n = corners.len();
@@ -208,7 +209,7 @@ fn without_corners(ring: &mut Vec<Point>, off_m: f64) {
     }
 }
 
-/// Names the plates, and puts small plates first, so that a plate within another takes precedence.
+/// Names the plates, and puts small plates first, so that a plate inside another plate takes precedence.
 fn named(rings: Vec<Vec<Point>>, labels: &mut Vec<Label>, notes: &mut Vec<String>) -> Vec<DrawnPlate> {
     let mut sorted: Vec<(Point, Vec<Point>)> = rings.into_iter().map(|ring| (mean_of(&ring), ring)).collect();
     let row = |at: &Point| (at.y / ROW_M).round() as i64;
@@ -244,8 +245,8 @@ fn named(rings: Vec<Vec<Point>>, labels: &mut Vec<Label>, notes: &mut Vec<String
     order.into_iter().map(plate).collect()
 }
 
-/// The label of each plate: the first label on a layer of plates inside it, else the only label of any other layer
-/// inside it. A label inside several plates names none of them.
+/// The label of each plate: the first label inside the plate that is on a layer of plates, else the only label inside
+/// it. A text that would name several plates names none of them.
 fn given(plates: &[(Point, Vec<Point>)], order: &[usize], labels: &[Label]) -> BTreeMap<usize, usize> {
     let mut within: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (index, label) in labels.iter().enumerate() {

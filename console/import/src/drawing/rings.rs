@@ -1,4 +1,4 @@
-//! Joins lines that begin where others end into closed outlines.
+//! Joins lines into closed outlines where one line begins at the end of another.
 
 use std::collections::HashMap;
 use world::Point;
@@ -9,7 +9,7 @@ pub(super) const SAME_M: f64 = 2e-3;
 /// Points, and whether the last is joined to the first.
 pub(super) type Chain = (Vec<Point>, bool);
 
-/// Chains by their ends, so that a drawing of a hundred thousand lines is joined quickly.
+/// Chains, indexed by their ends so that a drawing of a hundred thousand lines is joined quickly.
 struct Ends {
     chains: Vec<Option<Vec<Point>>>,
     by_cell: HashMap<(i64, i64), Vec<usize>>,
@@ -26,7 +26,7 @@ impl Ends {
         Self { chains: chains.into_iter().map(Some).collect(), by_cell }
     }
 
-    /// Removes and returns a chain that begins or ends at a point, reversed if necessary so that it begins there.
+    /// Removes and returns a chain that begins or ends at a point, reversed if necessary, so that it begins there.
     fn take_at(&mut self, place: Point) -> Option<Vec<Point>> {
         let (x, y) = cell(place);
         let around =

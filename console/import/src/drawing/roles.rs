@@ -57,7 +57,7 @@ impl Role {
     }
 }
 
-/// The roles of layers: as assigned, else by a word of the layer's name.
+/// The roles of layers: as assigned, else according to a word in the layer's name.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Layers(Vec<(Role, String)>);
 
@@ -90,7 +90,7 @@ fn is_same(one: &str, other: &str) -> bool {
     one.trim().to_uppercase() == other.trim().to_uppercase()
 }
 
-/// The role of a layer by a word of its name.
+/// The role of a layer, according to a word in its name.
 fn by_name(layer: &str) -> Option<Role> {
     let whole = layer.replace(['-', '_', ' '], "");
     let mut words = layer.split(|c: char| !c.is_alphanumeric()).chain([whole.as_str()]);

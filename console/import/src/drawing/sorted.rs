@@ -16,7 +16,7 @@ pub(super) struct Sorted {
     /// The size of the drawing's unit in metres, for positions in messages.
     unit_m: f64,
     by_role: BTreeMap<Role, Vec<Outline>>,
-    /// Whether the layer of the shell also holds columns.
+    /// Whether the layer of the shell also contains columns.
     is_shared: bool,
     /// Texts that may name plates; empty if there are no plates.
     labels: Vec<Label>,
@@ -73,7 +73,8 @@ impl Sorted {
     /// The shell, and other areas on its layer, which are columns.
     ///
     /// # Errors
-    /// Why there is no shell; empty if there is no outline at all. An outline may be nearly closed, or cross itself.
+    /// The reason why there is no shell, such as an outline that is nearly closed or crosses itself; empty if there is
+    /// no outline at all.
     pub(super) fn shell(
         &mut self,
         notes: &mut Vec<String>,
@@ -126,7 +127,7 @@ impl Sorted {
         shapes
     }
 
-    /// The plates of the floor; texts that name no plate are noted.
+    /// The plates of the floor; notes the texts that name no plate.
     pub(super) fn plates(
         &mut self,
         boundary: &Boundary,
@@ -177,8 +178,8 @@ impl Sorted {
     }
 }
 
-/// The layers with lines of their own. A text on such a layer names these lines; layer 0 is exempt, since it can hold
-/// anything.
+/// The layers with lines of their own. A text on such a layer names these lines; layer 0 is exempt, since anything can
+/// be on it.
 fn lined_layers(all: &[Drawn]) -> BTreeSet<String> {
     let lined = all.iter().filter(|drawn| !drawn.outlines.is_empty() && drawn.layer != "0");
     lined.map(|drawn| drawn.layer.clone()).collect()

@@ -107,7 +107,7 @@ fn what_is_missing_is_named() {
     let error = |units: &str, entities: &str| read_text(units, "", entities, &plain()).unwrap_err();
     assert_eq!(
         error("", SHELL),
-        "d.dxf: the header ($INSUNITS) states no unit of length; state it with --units, for example --units mm"
+        "d.dxf: the header ($INSUNITS) states no unit of length; give it with --units, for example --units mm"
     );
     assert_eq!(
         error(",9 $INSUNITS,70 6", "0 LINE,8 SHELL,10 0,20 0,11 1,21 1"),
@@ -268,7 +268,7 @@ fn a_stated_unit_counts_more_than_the_header_and_a_tank_of_a_wrong_size_is_refus
     let in_millimetres = |unit_m| read_text(",9 $INSUNITS,70 4", "", small, &Assumed { unit_m, ..plain() });
     assert_eq!(
         in_millimetres(None).unwrap_err(),
-        "d.dxf: the shell is 0.024000 m across if a unit of the drawing is 0.001 m; tanks must be 1 to 1000 m across: \
+        "d.dxf: the shell is 0.024000 m across if the drawing's unit is 0.001 m; tanks must be 1 to 1000 m across: \
          state the unit, for example --units mm"
     );
     let plan = in_millimetres(Some(1.0)).unwrap();

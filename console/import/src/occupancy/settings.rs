@@ -20,7 +20,7 @@ struct Written {
     occupied_thresh: Option<Spanned<f64>>,
     free_thresh: Option<Spanned<f64>>,
     mode: Option<Spanned<String>>,
-    /// Converters of ROS 1 maps write `occupancy`, which adds nothing to the other keys.
+    /// Converters of ROS 1 maps write `occupancy`, which adds nothing to what the other keys state.
     map_type: Option<Spanned<String>>,
 }
 
@@ -31,19 +31,19 @@ enum Negate {
     Number(i64),
 }
 
-/// The conversion of a pixel's brightness to an occupancy.
+/// How the brightness of a pixel is converted to an occupancy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Mode {
     /// Free, occupied or unknown.
     Trinary,
-    /// As trinary, but with a share between the thresholds.
+    /// Like trinary, but with a share for values between the thresholds.
     Scale,
     /// The value is a percentage; above 100 means unknown.
     Raw,
 }
 
 impl Mode {
-    /// The mode of this name; case-insensitive, as in the map server.
+    /// The mode with this name; case-insensitive, as in the map server.
     fn named(name: &str) -> Option<Self> {
         match name.to_lowercase().as_str() {
             "trinary" => Some(Self::Trinary),
@@ -125,8 +125,8 @@ impl Settings {
         };
         let occupied = share(written.occupied_thresh.as_ref(), 0.65)?;
         let free = share(written.free_thresh.as_ref(), 0.196)?;
-        // Equal thresholds leave nothing between them, which the map server allows; but scale divides by their
-        // difference.
+        // The map server allows equal thresholds, which leave nothing between them; but the mode `scale` divides by
+        // their difference.
         if free > occupied || (free >= occupied && mode == Mode::Scale) {
             let line = written.free_thresh.as_ref().or(written.occupied_thresh.as_ref());
             let line = line.map_or(1, |share| share.referenced.line());
@@ -160,7 +160,7 @@ impl Settings {
         !self.is_unseen(pixel) && self.is_bright(pixel)
     }
 
-    /// Whether a pixel has the grey of unseen cells although it would be floor by the thresholds.
+    /// Whether a pixel has the grey of unseen cells although the thresholds would make it floor.
     pub(super) fn is_unseen_but_bright(&self, pixel: Pixel) -> bool {
         self.is_unseen(pixel) && self.is_bright(pixel)
     }
@@ -174,13 +174,13 @@ impl Settings {
         self.unseen_grey() == Some(pixel.grey)
     }
 
-    /// Whether a pixel is free by the thresholds alone.
+    /// Whether a pixel is free according to the thresholds alone.
     fn is_bright(&self, pixel: Pixel) -> bool {
         let bright = f64::from(pixel.grey) / 255.0;
         let occupancy = if self.negate { bright } else { 1.0 - bright };
         match self.mode {
             Mode::Trinary => pixel.is_opaque && occupancy <= self.free && occupancy < self.occupied,
-            // A share that rounds to 0 % between the thresholds is also free.
+            // A value between the thresholds is also free if its share rounds to 0 %.
             Mode::Scale => {
                 pixel.is_opaque && (occupancy - self.free) / (self.occupied - self.free) * 100.0 < 0.5
             }
@@ -226,7 +226,7 @@ fn place(numbers: &[f64]) -> Result<[f64; 3], String> {
     Ok(origin)
 }
 
-/// An error at a line; its key is the key in that line, or the nearest key above it.
+/// An error on a line; its key is the key in that line, or the nearest key above it.
 fn wrong(file: &Path, text: &str, line: Option<usize>, what: String) -> ImportError {
     let above = text.lines().take(line.unwrap_or_default()).collect::<Vec<_>>();
     let key_of = |line: &&str| {

@@ -12,7 +12,7 @@ pub(super) struct Fault {
     pub what: String,
     /// The byte offset of a second position that is part of the problem.
     pub other: Option<usize>,
-    /// The consequence, as a clause; empty if `what` states it.
+    /// The consequence, as a clause; empty if `what` already states it.
     pub instead: String,
     /// Whether the line takes effect nevertheless.
     pub is_warning: bool,

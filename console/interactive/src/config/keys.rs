@@ -22,7 +22,7 @@ struct Written {
     keys_at: Vec<usize>,
 }
 
-/// Reads the key bindings; a faulty line keeps the keys of the preset.
+/// Reads the key bindings; for a faulty line, the preset's keys stay in effect.
 pub(super) fn read(config: &mut Config, text: &str) -> Vec<Fault> {
     let mut faults = Vec::new();
     let Some(document) = document(text, &mut faults) else { return faults };

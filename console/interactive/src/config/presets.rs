@@ -1,4 +1,4 @@
-//! Named parameter sets of planners: one file each in the folder `presets` of the configuration.
+//! Named parameter sets of planners: one file each, in the subfolder `presets` of the configuration folder.
 
 use super::{
     fault::{Fault, Place, document, each, start},
@@ -27,7 +27,7 @@ pub(crate) fn load(planners: &[PlannerInfo]) -> Vec<Preset> {
 /// Writes a preset to a new file and returns its path.
 ///
 /// # Errors
-/// The configuration folder is unknown, a preset of this name exists, or writing fails.
+/// The configuration folder is unknown, a preset with this name exists, or writing fails.
 pub(crate) fn save(name: &str, choice: &PlannerChoice) -> anyhow::Result<PathBuf> {
     save_into(&presets().context("neither XDG_CONFIG_HOME nor HOME is set")?, name, choice)
 }
@@ -90,7 +90,7 @@ fn read_file(file: &Path, planners: &[PlannerInfo]) -> Result<PlannerChoice, Str
     read(&text, planners).map_err(|faults| faults.iter().map(describe).collect::<Vec<_>>().join("; "))
 }
 
-/// Reads a preset. Unlike a configuration, a preset is accepted or refused as a whole.
+/// Reads a preset. Unlike a configuration file, a preset is accepted or refused as a whole.
 fn read(text: &str, planners: &[PlannerInfo]) -> Result<PlannerChoice, Vec<Fault>> {
     let mut faults = Vec::new();
     let (mut id, mut parameters) = (None, None);

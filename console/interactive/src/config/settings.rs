@@ -8,10 +8,10 @@ use mission::Severity;
 use toml_edit::Item;
 use tui::{Colours, Speed, ThemeName, model::console::Bell};
 
-/// The longest time that an alarm can be shelved, in minutes.
+/// The longest time for which an alarm can be shelved, in minutes.
 const SHELVE_MAX_MIN: i64 = 24 * 60;
 
-/// Reads the settings; a faulty line keeps its default.
+/// Reads the settings; for a faulty line, the default stays in effect.
 pub(super) fn read(config: &mut Config, text: &str) -> Vec<Fault> {
     let mut faults = Vec::new();
     let Some(document) = document(text, &mut faults) else { return faults };

@@ -1,4 +1,4 @@
-//! Estimates of the plans made before or at the start, computed on a separate thread so that the engine does not wait.
+//! Estimates for the plans made before or at the start, computed on a separate thread so that the engine does not wait.
 
 use super::EngineThread;
 use account::Estimate;

@@ -1,4 +1,4 @@
-//! Keeping the run on disk, and reporting its recording to the screen.
+//! Keeps the run on disk, and reports the health of its recording to the screen.
 
 use super::EngineThread;
 use crate::pace::Reached;
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use tui::{Health, Recording, RunMsg, RunResult};
 
 /// The interval at which the screen receives the recorder's health. Together with the recorder's own check of its
-/// files, the operator learns within a second that the run is not being recorded.
+/// files, this interval lets the operator learn within a second if the run is not being recorded.
 pub(super) const HEALTH_PERIOD: Duration = Duration::from_millis(400);
 
 impl EngineThread {
@@ -54,7 +54,7 @@ impl EngineThread {
         self.send(RunMsg::Health(Health { recording, reached_speed, recorder_lag: health.lag }));
     }
 
-    /// Closes journal and recording and writes the report.
+    /// Closes the journal and the recording, and writes the report.
     pub(super) fn close_log(&mut self, within: Duration) {
         if self.log.is_none() {
             return;

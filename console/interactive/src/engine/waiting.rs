@@ -9,16 +9,16 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// The number of messages waiting for the screen above which the simulation waits.
+/// If more messages than this are waiting for the screen, the simulation waits.
 const MOST_BACKLOG: usize = 64;
-/// The interval at which this wait rechecks, unless an order arrives.
+/// The interval at which this wait checks again, unless an order arrives.
 const LOOK_AGAIN: Duration = Duration::from_millis(1);
 /// The interval at which ending workers are checked while no ticks pass.
 const LOOK_AFTER: Duration = Duration::from_millis(20);
 
 impl EngineThread {
     /// Waits for the next tick or, while no ticks pass, for a request. Returns the orders received; the second value is
-    /// `Some` if the engine must close, and states whether in a hurry.
+    /// `Some` if the engine must close, and states whether it must do so in a hurry.
     pub(super) fn wait_for(&mut self, pace: &Pace) -> (Vec<Order>, Option<bool>) {
         // A wake-up after this point belongs to a request that has not been taken yet.
         self.host.clear_wake_ups();
@@ -36,7 +36,7 @@ impl EngineThread {
                 return (orders, None);
             };
             match request {
-                // Key thread and screen both order a hold; the second order has nothing left to stop.
+                // The key thread and the screen both order a hold; the second order has nothing left to stop.
                 Ok(Request::Order(Order::Hold, _)) if orders.is_empty() && self.is_held_for_good() => {}
                 // An order that stops the robot does not wait for the next due tick: it triggers a tick immediately.
                 Ok(Request::Order(order @ (Order::Hold | Order::Abort), at)) => {
@@ -56,7 +56,8 @@ impl EngineThread {
                     let _ = answer.send(());
                 }
                 Ok(Request::Close { hurry }) => return (orders, Some(hurry)),
-                // If ticks are further apart than health reports, send the report between ticks.
+                // If the time between ticks is longer than the time between health reports, send a report between
+                // ticks.
                 Err(RecvTimeoutError::Timeout) if is_ahead || Instant::now() < due => self.send_health(),
                 Err(RecvTimeoutError::Timeout) => return (orders, None),
                 Err(RecvTimeoutError::Disconnected) => return (orders, Some(false)),

@@ -6,13 +6,13 @@ use recording::{JournalError, JournalReader};
 use std::sync::Arc;
 use tui::model::Run;
 
-/// Times within this many seconds of the end of a tick count as that moment.
+/// A time within this many seconds of the end of a tick counts as the end of that tick.
 const SAME_S: f64 = 1e-6;
 
-/// The change of the run between two moments.
+/// The change in the run between two moments.
 #[derive(Debug)]
 pub(super) enum Moved {
-    /// The run continued with these events.
+    /// The run continues with these events.
     On(Vec<Event>),
     /// The run was replaced by this one, after a seek.
     To(Box<Run>),
@@ -34,7 +34,7 @@ impl Deck {
         Self { reel, reader: None, ahead: None, t_s: f64::NEG_INFINITY }
     }
 
-    /// Seeks to a moment and returns the change. Returns `None` if nothing of the run is loaded yet.
+    /// Seeks to a moment and returns the change. Returns `None` if no part of the run is loaded yet.
     ///
     /// # Errors
     /// The journal cannot be read at this position.

@@ -24,9 +24,9 @@ use tui::{
 
 /// The interval at which a playing run advances.
 const FRAME: Duration = Duration::from_millis(33);
-/// The number of messages waiting for the screen above which playback pauses.
+/// If more messages than this are waiting for the screen, playback pauses.
 const MOST_BACKLOG: usize = 8;
-/// The longest time that is made up after a late frame.
+/// The longest delay that is made up after a late frame.
 const MOST_LATE: Duration = Duration::from_millis(250);
 /// The factor used for the speed `max`.
 const FASTEST: f64 = 1024.0;
@@ -50,7 +50,7 @@ impl Drop for Player {
 pub(in super::super) struct Player(Sender<Request>);
 
 impl Player {
-    /// Begins to play back a run, paused at its first moment.
+    /// Starts to play back a run, paused at its first moment.
     ///
     /// # Errors
     /// The thread cannot be started.
@@ -95,7 +95,7 @@ struct Playing {
     moved: Option<Instant>,
     /// The mission time shown, in seconds.
     t_s: f64,
-    /// Whether the requested moment is not loaded yet.
+    /// Whether the requested moment has not been loaded yet.
     waits: bool,
 }
 
@@ -177,7 +177,7 @@ impl Playing {
         }
     }
 
-    /// Advances by the time that has passed.
+    /// Advances by the time that has passed since the last advance.
     fn go_on(&mut self) -> Result<(), JournalError> {
         let now = Instant::now();
         let Some(before) = self.moved.replace(now) else { return Ok(()) };
@@ -235,7 +235,7 @@ fn load(folder: &Path, side: Side, screen: &RunOutbox, wake: &Sender<Request>) -
     })?;
     let (own, folder) = (screen.clone(), folder.to_owned());
     let began = thread::Builder::new().name("replay report".into()).spawn(move || {
-        // Without a trustworthy report, only the journal remains.
+        // Without a trustworthy report, only the journal can be shown.
         let summary = match standing(&folder) {
             Standing::Ended(summary) | Standing::NotRecorded(summary, _) => summary,
             Standing::Running => return,
@@ -244,7 +244,7 @@ fn load(folder: &Path, side: Side, screen: &RunOutbox, wake: &Sender<Request>) -
                     Ok(summary) => Box::new(summary),
                     Err(_) => return,
                 },
-                // The loader reports the problem of the journal.
+                // The loader reports the problem in the journal.
                 Err(_) => return,
             },
         };

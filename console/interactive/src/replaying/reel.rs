@@ -29,7 +29,7 @@ const NEWS: Duration = Duration::from_millis(100);
 /// The largest number of events read in one batch. A batch also ends after [`BATCH_BYTES`] of lines.
 const BATCH: usize = 512;
 const BATCH_BYTES: u64 = 1 << 18;
-/// The bytes of lines that are read ahead.
+/// The number of bytes of lines that are read ahead.
 const AHEAD_BYTES: u64 = 1 << 20;
 
 /// The state of the run at a moment, folded from its events.
@@ -53,14 +53,14 @@ pub(super) struct Content {
     pub is_whole: bool,
 }
 
-/// A journal that a separate thread reads as long as this is held.
+/// A journal that a separate thread reads until this handle is dropped.
 pub(super) struct Reel {
     pub journal: PathBuf,
     content: Mutex<Content>,
 }
 
 impl Reel {
-    /// Begins to read the journal in a folder. The reading thread calls `report` with its progress.
+    /// Starts to read the journal in a folder. The reading thread calls `report` with its progress.
     ///
     /// # Errors
     /// There is no journal, or a thread cannot be started.
@@ -118,7 +118,7 @@ struct Batch {
     end: Option<End>,
 }
 
-/// The end of a journal, and the problem if it could not be read completely.
+/// The end of a journal, and the problem if the journal could not be read completely.
 struct End(Option<String>);
 
 /// Reads a journal until its end, or until the receiver is dropped.

@@ -32,7 +32,7 @@ impl Answers {
         match msg {
             RunMsg::Events(events) => events.iter().for_each(|event| self.take(&event.kind)),
             RunMsg::OrderFailed { order, why } => self.answer(order, Some(why)),
-            // The mission is closed and answers nothing more.
+            // The mission is closed and gives no more answers.
             RunMsg::Closed(_) | RunMsg::OpenFailed(_) => self.awaited.clear(),
             _ => {}
         }

@@ -20,7 +20,7 @@ enum What {
     Screen(String),
     /// At least this percentage of the reachable floor is scanned.
     Coverage(f64),
-    /// The text of an alarm contains this; if empty, any alarm.
+    /// The text of an alarm contains this text; if empty, any alarm.
     Alarm(String),
     /// The screen contains this text.
     Text(String),
@@ -62,7 +62,7 @@ impl Condition {
             _ => {
                 return Err(format!(
                     "unknown condition `{text}`; write phase WORD, screen NAME, coverage >= PERCENT, alarm \
-                     [TEXT] or text TEXT, optionally with not before it"
+                     [TEXT] or text TEXT, optionally preceded by not"
                 ));
             }
         };
@@ -86,7 +86,7 @@ impl Condition {
                 Some(alarm) => format!("the most severe alarm is: {}", alarm.text),
                 None => "there are no alarms".into(),
             },
-            What::Text(_) => "the screen does not match".into(),
+            What::Text(_) => "the screen does not contain it".into(),
         }
     }
 }

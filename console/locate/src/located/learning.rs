@@ -10,9 +10,9 @@ use crate::{
 use flight::failure::bad_input;
 use positioning::{Calibration, Integrity, Possible, Ranging, Session, SolverKind, Unknowns};
 
-/// The estimate of clock and sound errors stops after this many passes over the session, ...
+/// The estimate of clock and sound errors stops after at most this many passes over the session.
 const ROUNDS: usize = 10;
-/// ... or once it changes by less than this share of its standard deviation.
+/// The estimate of clock and sound errors stops once it changes by less than this share of its standard deviation.
 const SETTLED: f64 = 0.1;
 /// Standard deviation that is assumed for clock offsets before the search, metres.
 const OFFSET_SIGMA_M: f64 = 20.0;
@@ -29,7 +29,7 @@ impl Task<'_> {
     }
 
     /// # Errors
-    /// An estimate was requested that readings of this kind cannot give.
+    /// The estimate that was requested cannot be obtained from readings of this kind.
     pub(super) fn check_findable(&self, columns: &Columns) -> anyhow::Result<()> {
         if self.finds_clock_offset && columns.kind() == Kind::Differences {
             return Err(bad_input(format!(
@@ -110,7 +110,7 @@ impl Task<'_> {
         let known = if sigma.is_finite() {
             format!("is known only to ± {:.0} %", sigma * 100.0)
         } else {
-            "remains unknown".into()
+            "cannot be found".into()
         };
         Err(bad_input(format!(
             "{}: the speed of sound {known} from these arrival differences; to find it, \
@@ -119,7 +119,7 @@ impl Task<'_> {
         )))
     }
 
-    /// Collects the residuals of all fixes, after correcting the ranges for the errors found.
+    /// Collects the residuals of all fixes, after the ranges have been corrected for the errors found.
     pub(super) fn judged(
         &self,
         (columns, repeats): (&Columns, &Repeats),
@@ -145,7 +145,7 @@ impl Task<'_> {
         Ok(session)
     }
 
-    /// Returns one range of each station that was heard, without impossible ranges.
+    /// Returns one range for each station that was heard, leaving out impossible ranges.
     fn rangings(&self, possible: &Possible, moment: &Moment, kind: Kind) -> Vec<Ranging> {
         let locating = &self.scenario.mission.locating;
         let (sets, _) = match kind {
@@ -155,8 +155,8 @@ impl Task<'_> {
             Kind::Differences => possible.differences(&moment.ranges),
         };
         let mut rangings = locating.aggregation.aggregate(&sets, &self.noise()).unwrap_or_default();
-        // Differences only show that no station is nearer than the first one. This assumption gives the least spread
-        // of the ranges, and so the smallest independent part of the error.
+        // Differences show only which station is nearest, not how near. A distance of zero is assumed: it gives the
+        // least spread of the ranges, and so the smallest independent part of the error.
         let excess_m = match kind {
             Kind::Ranges => 0.0,
             Kind::Differences => rangings.iter().map(|r| r.range_m).fold(f64::INFINITY, f64::min),

@@ -11,7 +11,7 @@ const BEGINNING: u64 = 64;
 /// The longest line that is read, bytes.
 const LONGEST_LINE: u64 = 1 << 16;
 
-/// Returns the problem with a file that has two or four bytes a character; `None` for any other file.
+/// Returns the problem with a file that has two or four bytes per character; `None` for any other file.
 pub(super) fn wide(file: &Path) -> Option<String> {
     let mut beginning = Vec::new();
     open_regular(file).ok()?.take(BEGINNING).read_to_end(&mut beginning).ok()?;
@@ -19,7 +19,7 @@ pub(super) fn wide(file: &Path) -> Option<String> {
     Some(format!("line 1: text in {name} (\"Unicode text\" in spreadsheets); {}", remedy(name)))
 }
 
-/// Returns the problem with a line that is not UTF-8, with its first invalid byte.
+/// Returns the problem with a line that is not UTF-8; the problem names the first invalid byte.
 pub(super) fn narrow(file: &Path, line: u64) -> String {
     let bytes = bytes_of(file, line).unwrap_or_default();
     let byte = std::str::from_utf8(&bytes).err().and_then(|error| bytes.get(error.valid_up_to()));

@@ -10,7 +10,7 @@ use mcap::{
 use serde_json::{Map, Value};
 use std::{collections::HashMap, fs::File, io::Read};
 
-/// The longest record that is read, bytes. A damaged length must not make us allocate huge amounts of memory.
+/// The longest record that is read, bytes. A damaged length must not cause huge amounts of memory to be allocated.
 const LONGEST_RECORD: usize = 64_000_000;
 
 /// The longest message that is accepted as a row, bytes.
@@ -26,7 +26,7 @@ pub(crate) struct Messages {
     /// Topic and encoding of each channel.
     channels: HashMap<u16, (String, String)>,
     header: StringRecord,
-    /// The first message, whose keys give the header, until it is returned as a row.
+    /// The first message, kept until it is returned as a row; its keys form the header.
     first: Option<Map<String, Value>>,
     count: u64,
     /// The number of bytes read, and of the record bytes they contained.
@@ -92,7 +92,7 @@ impl Messages {
         }
         match message.keys().find(|key| !self.header.iter().any(|name| name == *key)) {
             Some(new) => {
-                let what = format!("the key `{new}` is missing in the first message");
+                let what = format!("the key `{new}` is missing from the first message");
                 Err(Problem { line: self.count, column: None, what, is_end: false })
             }
             None => Ok(Some(self.count)),

@@ -18,13 +18,14 @@ pub enum Comparison {
 
 impl Comparison {
     /// Compares two answers to one ask. `as_sent` converts a command to the form in which the robot receives it, because
-    /// that is the form recorded for the active planner. Applying `as_sent` twice changes nothing.
+    /// commands of the active planner are recorded in that form. Applying `as_sent` twice has the same effect as applying
+    /// it once.
     pub fn of(own: &Answer, recorded: &Answer, as_sent: impl Fn(Command) -> Command) -> Self {
         let why = match (&own.result, &recorded.result) {
             (Ok(Given::Opened(_)), Err(Fault { cause: Cause::Quarantined | Cause::Refused, .. })) => {
                 return Self::NotComparable;
             }
-            // Valid by itself, but refused by the mission for this tank, so the journal does not hold it.
+            // The plan is valid in itself, but the mission refused it for this tank, so it is not in the journal.
             (Ok(Given::Plan(_)), Err(Fault { cause: Cause::BadOutput, .. })) => return Self::NotComparable,
             (Ok(own_given), Ok(given)) => differs(own_given, given, as_sent)
                 .or_else(|| {
@@ -41,7 +42,7 @@ impl Comparison {
     }
 }
 
-/// How a planner that was opened differs from the recorded one.
+/// How an opened planner differs from the recorded one.
 fn another_planner(own: &PlannerInfo, then: &PlannerInfo) -> String {
     if own.sha256 == then.sha256 {
         return "has different properties or parameters".to_owned();

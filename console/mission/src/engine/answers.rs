@@ -1,4 +1,4 @@
-//! Processes the answers of planners.
+//! Processes the answers from planners.
 
 use super::{
     Mission,
@@ -18,7 +18,7 @@ use crate::{
 use planner_api::{Code, Plan, Reason};
 
 impl Mission {
-    /// Processes the answer to an ask. Answers that are no longer expected are ignored.
+    /// Processes the answer to an ask. An answer that is no longer expected is ignored.
     pub fn answer(&mut self, answer: Answer) {
         if let Some(pending) = self.driving.worker.answered(answer.ask) {
             return self.answer_driving(pending, answer);
@@ -103,12 +103,12 @@ impl Mission {
         });
     }
 
-    /// Switches to a plan. This ends a hold that waited for the plan or was caused by another planner.
+    /// Switches to a plan. This ends a hold that was waiting for the plan, or one that was caused by another planner.
     pub(super) fn take_plan(&mut self, plan: &Plan) {
         self.drop_better_plan("a different plan has been taken");
         self.better_plan_due_s = None;
         self.known.task.take_plan(plan);
-        // From here progress is counted along the new plan.
+        // From here on, progress is measured along the new plan.
         self.rules.stuck.restart();
         self.driving.take_plan(plan, &self.known);
         let was_ordered = std::mem::take(&mut self.driving.prepare) == Prepare::Plan;
@@ -116,7 +116,8 @@ impl Mission {
         if hold.resumes == Resumes::ByFallback {
             self.go_on(Gait::Steady);
         } else if was_ordered && (hold.by.blames_planner() || matches!(hold.by, HoldReason::Stuck { .. })) {
-            // The cause is gone with the planner; now the operator decides when the robot moves again.
+            // The cause of the hold is gone together with the planner; now the operator decides when the robot moves
+            // again.
             self.hold(Hold { by: HoldReason::PlannerReplaced, resumes: Resumes::Never });
         }
     }
@@ -128,10 +129,10 @@ impl Mission {
         self.note_fault(ask, fault, info.as_ref());
         let says_no = matches!(cause, Cause::Planner(_) | Cause::Refused);
         match kind {
-            // The planner keeps its current values; a new instance may accept the new ones.
+            // The planner keeps its current values, but a new instance of it may accept the new ones.
             PendingKind::Reconfigure(choice) if says_no => {
                 let unsupported = cause == Cause::Planner(Code::Unsupported);
-                // If another planner has been ordered meanwhile, that order stands.
+                // If another planner has been ordered in the meantime, that order stands.
                 if unsupported && self.preparing.is_none() && !self.known.is_running() {
                     let prepare = self.driving.prepare;
                     self.choose(choice, Reason::Operator);

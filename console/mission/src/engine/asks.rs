@@ -1,11 +1,11 @@
 //! The next ask to a planner.
 
-use super::{Mission, preparing::Preparing, worker::Worker};
+use super::{Mission, role::Preparing, worker::Worker};
 use crate::ask::{Ask, Awaits};
 
 impl Mission {
-    /// Returns the next ask to a planner, if any. Call it until it returns `None`, after [`Mission::sense`] and after
-    /// every [`Mission::answer`].
+    /// Returns the next ask to a planner, if there is one. Call it until it returns `None`, after [`Mission::sense`] and
+    /// after every [`Mission::answer`].
     pub fn poll_ask(&mut self) -> Option<Ask> {
         let waits_for_other = self.preparing.as_ref().is_some_and(Preparing::robot_waits);
         let Self { known, workers, driving, .. } = self;
@@ -16,7 +16,7 @@ impl Mission {
             .or_else(|| self.shadow.as_mut()?.next_ask(&self.known, &mut self.workers))
     }
 
-    /// The answer that the mission would like before the tick ends.
+    /// The answer that the mission would like to have before the tick ends.
     pub fn awaits(&self) -> Awaits {
         if let Some(awaited) = self.driving.awaits(&self.known) {
             return awaited;
@@ -31,7 +31,7 @@ impl Mission {
         }
     }
 
-    /// Whether a planner is being opened or is making a plan, even if the robot does not wait for it.
+    /// Whether a planner is being opened or is making a plan, even if the robot is not waiting for it.
     pub fn is_preparing(&self) -> bool {
         let preparing = self.preparing.as_ref().map(|preparing| &preparing.worker);
         let shadow = self.shadow.as_ref().map(|shadow| &shadow.worker);

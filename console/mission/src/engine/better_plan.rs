@@ -1,77 +1,45 @@
 //! Better plans. After a repair, a second worker of the same planner makes a plan for all that is left while the robot
 //! continues.
 //!
-//! The second worker has no plan to keep to. Its plan begins at a place ahead on the current plan: floor on the way there
-//! counts as scanned, and the cable as laid up to there. If the new plan saves more than a change is worth, it is offered
-//! or taken when the robot reaches that place. Any earlier change of the current plan drops it.
+//! The second worker receives no plan to keep to. Its plan begins at a place ahead on the current plan: floor on the way
+//! there counts as scanned, and the cable counts as laid up to there. If the new plan saves more time than a change of
+//! plan is worth, it is offered, or taken when the robot reaches that place. If the current plan changes before then, the
+//! new plan is dropped.
 
 mod worth;
 
 use super::{
     Mission,
     driving::{Driving, Prepare},
-    preparing::{Preparing, Role},
     requests::AskedPlan,
+    role::{Better, Offer, Preparing, Role},
     worker::Worker,
 };
 use crate::{
     ask::{AskId, Said},
     config::BetterPlan,
     event::{Effort, EventKind},
-    task::{Joint, rest_of},
+    task::rest_of,
 };
 use geometry::PathFollower;
 use planner_api::{Plan, Reason};
 use world::Point;
 
-/// Time between a find and the search for a better plan, seconds: obstacles are often found in groups, and their outlines
-/// are corrected while the robot passes.
+/// Time between finding an obstacle and searching for a better plan, seconds: obstacles are often found in groups, and
+/// their outlines are corrected while the robot passes.
 const SETTLE_S: f64 = 20.0;
-/// Distance along the path at which the robot counts as having reached the start of the better plan, metres.
+/// Distance along the path within which the robot counts as having reached the start of the better plan, metres.
 const AT_JOINT_M: f64 = 0.05;
 
-/// Progress of the better plan, which begins at a place on the current one.
-#[derive(Clone)]
-pub(super) enum Better {
-    /// The planner is being opened.
-    Opening,
-    /// The plan is being made, to begin at this place.
-    Planning(Joint),
-    /// The plan is better and is offered.
-    Offered(Box<Offer>),
-}
-
-/// A better plan that is offered.
-#[derive(Clone)]
-pub(super) struct Offer {
-    joint: Joint,
-    plan: Plan,
-    flown: Effort,
-    better: Effort,
-    /// Whether the operator ordered it to be taken.
-    is_ordered: bool,
-}
-
-impl Better {
-    /// The place where the better plan begins; `None` until the planner is asked for it.
-    pub(super) fn joint(&self) -> Option<Joint> {
-        match self {
-            Self::Opening => None,
-            Self::Planning(joint) => Some(*joint),
-            Self::Offered(offer) => Some(offer.joint),
-        }
-    }
-}
-
 impl Mission {
-    /// Schedules the search for a better plan, after a repaired one was taken and if the mission wants better plans.
+    /// Schedules the search for a better plan after a repaired plan has been taken, if the mission wants better plans.
     pub(super) fn want_better_plan(&mut self) {
         let wanted = self.known.config.wants_better_plans() && self.known.is_coverage();
         self.better_plan_due_s = wanted.then(|| self.known.now_s() + SETTLE_S);
     }
 
-    /// Handles a change of the map: a better plan being made is out of date, and a scheduled search waits until the map
-    /// has settled.
+    /// Handles a change of the map: a better plan that is being made is out of date, and a scheduled search waits until
+    /// the map has settled.
     pub(super) fn postpone_better_plan(&mut self) {
         let is_under_way = self.better().is_some();
         self.drop_better_plan("the map has changed");
@@ -87,7 +55,7 @@ impl Mission {
         }
     }
 
-    /// Whether a better plan is offered and not ordered yet.
+    /// Whether a better plan is offered and has not been ordered yet.
     pub(super) fn has_offer(&self) -> bool {
         matches!(self.better(), Some(Better::Offered(offer)) if !offer.is_ordered)
     }
@@ -99,7 +67,7 @@ impl Mission {
         }
     }
 
-    /// Abandons a better plan that is being made or offered, if any.
+    /// Abandons a better plan that is being made or offered, if there is one.
     pub(super) fn drop_better_plan(&mut self, why: &str) {
         let dropped = self.preparing.take_if(|preparing| matches!(preparing.role, Role::Better(_)));
         if let Some(Preparing { worker, .. }) = dropped {
@@ -112,7 +80,8 @@ impl Mission {
         self.happened.push(EventKind::BetterPlanDropped { planner: worker.choice.id, why });
     }
 
-    /// Starts the search for a better plan if one is due. Takes or drops an offered plan where it begins.
+    /// Starts the search for a better plan if one is due. When the robot reaches the place where an offered plan begins,
+    /// takes or drops that plan.
     pub(super) fn lead_better_plan(&mut self) {
         if self.is_better_plan_due() {
             self.better_plan_due_s = None;
@@ -144,7 +113,7 @@ impl Mission {
         is_due && is_steady && self.preparing.is_none() && self.known.is_running()
     }
 
-    /// Judges a plan for all that is left; returns its planner if the plan is offered.
+    /// Judges a plan for all that is left; returns the planner if its plan is offered.
     pub(super) fn better_plan_arrived(
         &mut self,
         mut worker: Worker,
@@ -155,7 +124,7 @@ impl Mission {
         let (cover, joint) = (self.known.task.cover()?, better.joint()?);
         let way = cover.way_to(&joint);
         let rest = cover.path_from(&joint);
-        // The turn where the two plans join counts, too.
+        // The turn at the point where the two plans join counts, too.
         let before = &way[way.len().saturating_sub(2)..way.len().saturating_sub(1)];
         let effort = |path: &[Point]| Effort::of(&[before, path].concat(), &self.known.config.limits);
         let (flown, better) = (effort(&rest), effort(&plan.path));

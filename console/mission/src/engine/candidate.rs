@@ -4,55 +4,25 @@ use super::{
     Mission,
     course::Due,
     driving::{Driving, Prepare},
-    known::Known,
     planning::planned,
-    preparing::{Preparing, Role},
     requests::AskedPlan,
+    role::{Candidate, Preparing, Role},
     worker::Worker,
 };
 use crate::{
-    ask::{AskId, PlanAsk, Said},
+    ask::{AskId, Said},
     event::EventKind,
 };
-use planner_api::{Plan, Reason};
-use world::Shape;
+use planner_api::Plan;
 
-/// If the candidate's plan begins farther from the robot than this, the candidate plans again, metres.
+/// If the candidate's plan begins farther from the robot than this, the candidate must plan again, metres.
 pub(super) const NEAR_PLAN_M: f64 = 0.5;
-/// When it plans again, it keeps to its first plan if the robot has moved no farther than this, metres; beyond that, too
-/// much floor would be scanned twice.
+/// When the candidate plans again, it keeps to its first plan if the robot has moved no farther than this, metres; beyond
+/// that, too much floor would be scanned twice.
 const MOST_GONE_M: f64 = 3.0;
 
-/// A planner that takes over as soon as it has an acceptable plan.
-#[derive(Clone)]
-pub(super) struct Candidate {
-    /// The plan that is due.
-    due: Due,
-    /// The candidate's own plan to keep to, different from the one in use.
-    keep: Option<Plan>,
-    /// Obstacles found since its plan was requested.
-    pub found_since: Vec<Shape>,
-    /// Whether the robot stands still until the candidate has planned, because the robot had moved too far during the
-    /// first attempt.
-    pub robot_waits: bool,
-}
-
-impl Candidate {
-    /// Prepares a planner that is still to be opened, with the reason for the change and a plan to keep to.
-    pub(super) fn prepare(worker: Worker, reason: Reason, keep: Option<Plan>) -> Preparing {
-        let due = Due::from_here(reason);
-        let candidate = Self { due, keep, found_since: Vec::new(), robot_waits: false };
-        Preparing { worker, role: Role::Candidate(candidate) }
-    }
-
-    pub(super) fn plan_ask(&mut self, known: &Known) -> (AskedPlan, PlanAsk) {
-        self.found_since.clear();
-        known.plan_ask(&self.due, known.trail.len(), self.keep.clone())
-    }
-}
-
 impl Mission {
-    /// Processes the plan of a candidate; returns the candidate unless it has taken over or is closed.
+    /// Processes the plan of a candidate; returns the candidate unless it has taken over or has been closed.
     pub(super) fn candidate_planned(
         &mut self,
         worker: Worker,
@@ -63,7 +33,7 @@ impl Mission {
     ) -> Option<Preparing> {
         let gone_m = (self.known.position() - asked.here).norm();
         if gone_m > NEAR_PLAN_M {
-            // The robot moved on meanwhile. The candidate plans again from here, and this time the robot waits.
+            // The robot has moved on in the meantime. The candidate plans again from here, and this time the robot waits.
             self.happened.pass_on(said, worker.id());
             let is_kept = gone_m <= MOST_GONE_M && self.known.is_coverage();
             // Recorded because the next ask to the planner includes it.
@@ -93,9 +63,9 @@ impl Mission {
         self.happened.push(EventKind::PlannerRejected { planner: worker.choice.id, why });
     }
 
-    /// Rejects the planner being prepared because a different one takes over.
+    /// Rejects the planner that is being prepared, because a different one takes over.
     pub(super) fn reject_preparing(&mut self, why: &str) {
-        self.drop_better_plan("a different planner drives");
+        self.drop_better_plan("a different planner is active");
         if let Some(Preparing { worker, .. }) = self.preparing.take() {
             self.reject(worker, why.to_owned());
         }

@@ -1,4 +1,4 @@
-//! Which answers of planners are refused, and which faults count against a plugin.
+//! Which answers from planners are refused, and which faults count against a plugin.
 
 use super::{Mission, known::Known, worker::Worker, workers};
 use crate::{
@@ -41,19 +41,20 @@ impl Mission {
         self.known.fitting(worker, given)
     }
 
-    /// Why a planner cannot drive again in this mission; `None` if it can.
+    /// Why a planner cannot be used again in this mission; `None` if it can.
     pub(super) fn barred(&self, info: &PlannerInfo) -> Option<String> {
         let (faults, window_s) = (workers::MOST_FAULTS, workers::WINDOW_S);
         let message = || {
             format!(
-                "planner {} failed {faults} times within {window_s} s and cannot drive again in this mission",
+                "planner {} failed {faults} times within {window_s} s and cannot be used again in this \
+                 mission",
                 info.id
             )
         };
         self.workers.quarantine.holds(&info.sha256).then(message)
     }
 
-    /// Reports a fault of a planner. Counts it against the plugin if its cause is of a kind that counts.
+    /// Reports a fault of a planner. The fault counts against the plugin if its cause is of a kind that counts.
     pub(super) fn note_fault(&mut self, ask: AskId, fault: Fault, of: Option<&PlannerInfo>) {
         let counts =
             !matches!(fault.cause, Cause::Planner(_) | Cause::Refused | Cause::Quarantined | Cause::Starved);
@@ -70,7 +71,7 @@ fn refused(info: &PlannerInfo, during: During, cause: Cause, message: String) ->
     Fault { plugin_sha256: Some(info.sha256.clone()), ..fault(&info.id, during, cause, message) }
 }
 
-/// The fault of an answer whose kind does not match the ask.
+/// The fault for an answer that does not match the kind of the ask.
 pub(super) fn mismatch(planner: &str) -> Fault {
     let message = format!("planner {planner} sent an answer that does not match the request");
     fault(planner, During::Step, Cause::Protocol, message)

@@ -15,15 +15,15 @@ use world::{ObstacleMap, Point, Shape};
 /// The plan of a planner: in use, or still to be made.
 #[derive(Clone, Default)]
 pub(super) struct Course {
-    /// The plan that is due or being made.
+    /// The plan that is still due or being made.
     pub due: Option<Due>,
-    /// Whether the last plan was for all that was left of the task.
+    /// Whether the last plan covered all that was left of the task.
     pub is_whole: bool,
     /// Progress along the plan, for tasks that do not track it themselves.
     pub follower: Option<PathFollower>,
     /// The lines that the plan never crosses.
     pub cuts: CutsRule,
-    /// Obstacles found since the plan being made was requested.
+    /// Obstacles found since the plan that is now being made was requested.
     pub found_since: Vec<Shape>,
 }
 
@@ -32,8 +32,8 @@ pub(super) struct Course {
 pub(super) struct Due {
     /// The reason for the plan.
     pub reason: Reason,
-    /// Whether the plan begins at the anchor, after a return path. The plan from the robot's position was refused because of
-    /// the tether.
+    /// Whether the plan begins at the anchor, after a return path, because the plan from the robot's position was refused
+    /// for the tether.
     pub from_anchor: bool,
 }
 
@@ -55,12 +55,12 @@ impl Course {
         Self { due: Some(Due::from_here(reason)), ..Self::default() }
     }
 
-    /// Whether there is a plan and no new one is due.
+    /// Whether there is a plan and no new plan is due.
     pub(super) fn has_plan(&self) -> bool {
         self.due.is_none()
     }
 
-    /// Whether the plan is for all that was left of the task; assumed true while a plan is due.
+    /// Whether the plan covers all that was left of the task; assumed to be true while a plan is due.
     pub(super) fn is_whole(&self) -> bool {
         self.is_whole || self.due.is_some()
     }
@@ -83,7 +83,7 @@ impl Course {
         }
     }
 
-    /// Begins to watch the cuts of a plan that begins here.
+    /// Starts watching the cuts of a plan that begins here.
     pub(super) fn keep_to_cuts(&mut self, plan: &Plan, known: &Known) {
         let anchor = known.tether.as_ref().map(Tether::anchor);
         let lines = if anchor.is_some() { plan.cuts.as_slice() } else { &[] };
@@ -93,7 +93,7 @@ impl Course {
         self.cuts = CutsRule::new(lines, plan.path.get(from).copied(), known.position(), &solids);
     }
 
-    /// Obstacles found while the plan was being made may block the task; if so, requests a new plan immediately.
+    /// Obstacles found while the plan was being made may block the task; if they do, requests a new plan immediately.
     pub(super) fn doubt_fresh_plan(&mut self, task: &Task, room_m: f64) {
         let found = std::mem::take(&mut self.found_since);
         if found.iter().any(|shape| task.is_in_the_way(shape, room_m)) {
@@ -101,8 +101,7 @@ impl Course {
         }
     }
 
-    /// Whether the robot has left its plan across a cut. If so, requests a new plan that starts from the tether as it
-    /// lies.
+    /// Whether the robot has left its plan by crossing a cut. If so, requests a new plan for the tether as it lies now.
     pub(super) fn has_strayed(&mut self, known: &Known) -> bool {
         let is_lost = known.locator.is_lost();
         let strays = !is_lost && self.cuts.update(known.position(), known.config.limits.radius_m);
@@ -114,7 +113,7 @@ impl Course {
         has_strayed
     }
 
-    /// Obstacles that do not block the rest of the plan may still block its tether; if so, requests a new plan.
+    /// Obstacles that do not block the rest of the plan may still obstruct its tether; if they do, requests a new plan.
     pub(super) fn doubt_for_tether(&mut self, known: &Known) {
         let Some(tether) = known.tether.as_ref().filter(|tether| !tether.flies_uncertified()) else { return };
         let Some(rest) = known.task.lanes_left().filter(|_| self.has_plan()) else { return };

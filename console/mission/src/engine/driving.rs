@@ -23,17 +23,17 @@ use world::{Point, Shape};
 pub(super) struct Driving {
     pub worker: Worker,
     pub course: Course,
-    /// The planner's own plan to keep to, different from the one in use.
+    /// The plan that the planner is to keep to; it is the planner's own, different from the one in use.
     pub keep: Option<Plan>,
     /// How far to prepare the planner while the robot stands still.
     pub prepare: Prepare,
-    /// The plan made before the start, or why it cannot be run; `None` if it is not shown to anyone.
+    /// The plan made before the start, or why it cannot be run; `None` if no plan is shown to anyone.
     pub first_plan: Option<Result<PlanId, String>>,
     /// New values for its live parameters, not yet sent.
     pub reconfigure: Option<PlannerChoice>,
-    /// Whether a snapshot of its state is due, for the instance that replaces it.
+    /// Whether a snapshot of the planner's state is due, for the instance that will replace it.
     pub snapshot_due: bool,
-    /// Mission time of the last snapshot or, before that, of the first command, seconds.
+    /// Mission time of the last snapshot or, until there is one, of the first command, seconds.
     saved_at_s: Option<f64>,
     /// Command of the planner for this tick.
     command: Option<Arrived>,
@@ -63,25 +63,26 @@ pub(super) struct LeftPlan {
     choice: PlannerChoice,
     /// The rest of the plan.
     plan: Plan,
-    /// The robot's position then.
+    /// The position of the robot when the other planner took over.
     at: Point,
 }
 
 impl LeftPlan {
-    /// The plan, if `choice` is the planner that made it, with the same values, and the robot is still within `near_m` of
-    /// where it left the plan: a planner that is switched back to continues its old plan.
+    /// The plan, provided that `choice` is the planner that made it, with the same values, and that the robot is still
+    /// within `near_m` of the point where it left the plan. A planner that is switched back to continues its old plan.
     pub(super) fn to_go_on_with(&self, choice: &PlannerChoice, here: Point, near_m: f64) -> Option<Plan> {
         (self.choice == *choice && (self.at - here).norm() < near_m).then(|| self.plan.clone())
     }
 }
 
 impl Driving {
-    /// A planner that drives as soon as it has a plan, with the reason for the plan and how far to prepare it.
+    /// A planner that becomes active as soon as it has a plan, with the reason for the plan and how far to prepare the
+    /// planner.
     pub(super) fn new(worker: Worker, reason: Reason, prepare: Prepare) -> Self {
         Self { worker, course: Course::new(reason), prepare, ..Self::default() }
     }
 
-    /// A planner that already has a plan; obstacles found since may block it.
+    /// A planner that already has a plan; obstacles found since it was requested may block it.
     pub(super) fn with_plan(worker: Worker, found_since: Vec<Shape>, prepare: Prepare) -> Self {
         let course = Course { found_since, ..Course::default() };
         Self { worker, course, prepare, ..Self::default() }
@@ -125,7 +126,7 @@ impl Driving {
         self.course.doubt_fresh_plan(&known.task, known.config.room_m());
     }
 
-    /// The rest of the current plan, in case the planner is switched back to.
+    /// The rest of the current plan, in case the planner becomes active again.
     pub(super) fn left_plan(&self, known: &Known) -> Option<LeftPlan> {
         let plan = self.course.has_plan().then(|| known.task.under_way()).flatten()?;
         Some(LeftPlan { choice: self.worker.choice.clone(), plan, at: known.position() })
@@ -137,7 +138,7 @@ impl Driving {
         workers.close(self.leave_worker());
     }
 
-    /// Forgets the instance, which the host closes, and its open asks.
+    /// Forgets the instance, which the host closes, and the open asks of that instance.
     pub(super) fn leave_worker(&mut self) -> Option<WorkerId> {
         (self.snapshot_due, self.command, self.reconfigure) = (false, None, None);
         self.worker.leave()

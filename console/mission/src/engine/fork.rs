@@ -4,12 +4,13 @@ use super::Mission;
 use crate::config::BetterPlan;
 use world::{Pose, World, tether::Cable};
 
-/// A copy of the mission, with everything that a simulation of its continuation starts from.
+/// A copy of the mission, with everything needed to start a simulation of its continuation.
 #[derive(Clone)]
 pub struct Fork {
     /// The mission. No planner is open: the first order has to choose one.
     pub mission: Mission,
-    /// The tank as the mission knows it: the drawing, and what was found. Obstacles that were not seen yet are missing.
+    /// The tank as the mission knows it: the drawing, and what was found. Obstacles that have not been seen yet are
+    /// missing.
     pub world: World,
     /// The robot's estimated pose.
     pub pose: Pose,
@@ -18,15 +19,15 @@ pub struct Fork {
 }
 
 impl Mission {
-    /// Copies the mission as it is now, from the estimate and the map alone.
+    /// Copies the mission as it is now, using only the estimate and the map.
     ///
-    /// Copies the coverage grid and the map.
+    /// Cost: copies the coverage grid and the map.
     pub fn fork(&self) -> Fork {
         let mut mission = self.clone();
         (mission.preparing, mission.shadow) = (None, None);
         // In the forecast the robot starts at rest.
         mission.known.governor.stand();
-        // No operator is present to take one.
+        // No operator is present to take a better plan.
         if mission.known.config.better_plan == BetterPlan::Offer {
             mission.known.config.better_plan = BetterPlan::Off;
         }

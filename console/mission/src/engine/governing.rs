@@ -1,78 +1,22 @@
-//! Limiting of commands: the robot's speed as the mission knows it, and the reports about planners that are slowed down.
+//! Limits commands: the robot's speed as the mission knows it, and the reports about planners that are slowed down.
+
+pub(super) mod state;
 
 use super::known::Known;
 use crate::{
-    config::MissionConfig,
     event::{EventKind, rounded_command},
-    governor::{self, Here, Momentum, Surroundings},
+    governor::{self, Here, Surroundings},
 };
 use geometry::{Braking, Drive};
 use planner_api::{Command, Limits};
-use world::{Medium, Mode, SensedMedium, Zone};
+use world::{Medium, Mode};
 
-/// A planner is reported after being slowed down for this long, seconds.
-const NAMED_AFTER_S: f64 = 2.0;
-/// A planner is reported again only after not being slowed down for this long, seconds.
-const NAMED_AGAIN_S: f64 = 10.0;
-/// A speed counts as limited if less than this share of it is sent.
+/// A speed counts as limited if the speed sent is less than this share of it.
 const LIMITED_SHARE: f64 = 0.9;
 
-/// State of the rule that limits commands.
-#[derive(Debug, Clone)]
-pub(super) struct Governor {
-    momentum: Momentum,
-    /// Whether an amphibious robot walks or swims.
-    mode: Mode,
-    /// The medium according to the pressure sensor, for a robot that has one.
-    sensed: SensedMedium,
-    has_said_that_it_waits: bool,
-    limited: Limited,
-}
-
-/// How long a planner has been slowed down, or not.
-#[derive(Debug, Clone, Copy, Default)]
-struct Limited {
-    for_s: f64,
-    free_s: f64,
-    is_named: bool,
-}
-
-impl Limited {
-    /// Records one more command; returns whether to report now that the planner is slowed down.
-    fn update(&mut self, is_limited: bool, tick_s: f64) -> bool {
-        if !is_limited {
-            self.for_s = 0.0;
-            self.free_s += tick_s;
-            self.is_named &= self.free_s < NAMED_AGAIN_S;
-            return false;
-        }
-        self.free_s = 0.0;
-        self.for_s += tick_s;
-        self.for_s >= NAMED_AFTER_S && !std::mem::replace(&mut self.is_named, true)
-    }
-}
-
-impl Governor {
-    /// The state for a robot at rest at its start.
-    pub(super) fn new(config: &MissionConfig, zones: &[Zone]) -> Self {
-        let mode = Mode::of(Medium::at(zones, config.start.position));
-        Self {
-            momentum: Momentum::NONE,
-            mode,
-            sensed: SensedMedium::default(),
-            has_said_that_it_waits: false,
-            limited: Limited::default(),
-        }
-    }
-
-    /// Records that the robot has stopped.
-    pub(super) fn stand(&mut self) {
-        self.momentum = Momentum::NONE;
-    }
-}
-
 impl Known {
-    /// The robot's own speed, metres per second: the speed commanded, as far as the robot's acceleration allows it.
+    /// The robot's own speed, metres per second: the commanded speed, to the extent that the robot's acceleration has
+    /// allowed it to be reached.
     pub(super) fn speed_m_per_s(&self) -> f64 {
         self.governor.momentum.speed_m_per_s()
     }
@@ -91,7 +35,7 @@ impl Known {
         rounded_command(Command { drive, ..command })
     }
 
-    /// Reports a planner that has been slowed down for long.
+    /// Reports a planner once it has been slowed down for long enough.
     pub(super) fn note_limit(&mut self, asked: Command, sent: Command) -> Option<EventKind> {
         let (asked_m_per_s, sent_m_per_s) = (speed(asked.drive), speed(sent.drive));
         let is_limited = sent_m_per_s < LIMITED_SHARE * asked_m_per_s;
@@ -100,7 +44,7 @@ impl Known {
         is_named.then_some(EventKind::SpeedLimited { asked_m_per_s, sent_m_per_s, needs_m })
     }
 
-    /// Records the motion that the robot is sent.
+    /// Records the motion that is sent to the robot.
     pub(super) fn follow_drive(&mut self, drive: Drive) {
         let here = self.as_governed();
         self.governor.momentum = self.governor.momentum.after(drive, &here);
@@ -117,13 +61,13 @@ impl Known {
         Some(EventKind::MediumKnown { medium, pressure_pa })
     }
 
-    /// Whether the robot can move: one with a pressure sensor waits until the sensor has decided whether to walk or to
-    /// swim.
+    /// Whether the robot can move: a robot with a pressure sensor waits until the sensor has decided whether it is to
+    /// walk or swim.
     pub(super) fn knows_medium(&self) -> bool {
         self.config.pressure.is_none() || self.governor.sensed.known().is_some()
     }
 
-    /// Switches between walking and swimming as the floor under the robot requires.
+    /// Switches between walking and swimming, as required by the floor under the robot.
     pub(super) fn update_mode(&mut self) -> Option<EventKind> {
         let amphibious = self.config.limits.amphibious?;
         let by_place = || Medium::at(&self.chart.world().zones, self.locator.position());

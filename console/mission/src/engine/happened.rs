@@ -9,7 +9,7 @@ use crate::{
 #[derive(Clone, Default)]
 pub(super) struct Happened {
     events: Vec<EventKind>,
-    /// Results of the answers of the planner in shadow: reported last, whatever order answers arrive in.
+    /// Results of the answers from the planner in shadow: reported last, in whatever order the answers arrive.
     pub of_shadow: Vec<EventKind>,
     /// The end of the mission, reported after all other events of the tick.
     pub ending: Option<EventKind>,
@@ -36,7 +36,7 @@ impl Happened {
 
     /// The events of a tick that ends at this mission time, seconds.
     pub(super) fn report(&mut self, tick: u64, t_s: f64) -> Vec<Event> {
-        // The capacity is kept for the next tick.
+        // The capacity of the list is kept for the next tick.
         let happened = self.events.drain(..).chain(self.of_shadow.drain(..)).chain(self.ending.take());
         happened.map(|kind| Event { tick, t_s, kind }).collect()
     }

@@ -1,4 +1,4 @@
-//! Carries out the verdicts of rules: the robot is held or resumes, or the mission ends.
+//! Carries out the verdicts of the rules: holds the robot, lets it resume, or ends the mission.
 
 use super::{
     Mission,
@@ -26,8 +26,8 @@ impl Mission {
         }
     }
 
-    /// After a fault, or where the planner finds no path, the fallback takes over if there is one. In an unattended
-    /// mission without one, the mission ends.
+    /// After a fault, or if the planner finds no path, the fallback planner takes over if there is one. If there is none
+    /// and the mission is unattended, the mission ends.
     pub(super) fn replace_failed_planner(&mut self) {
         let Phase::Held(Hold { by, resumes }) = &self.known.phase else { return };
         if *resumes == Resumes::ByFallback {
@@ -51,8 +51,8 @@ impl Mission {
         }
     }
 
-    /// Holds the robot. If the robot already moves again only by order, or is only being stepped, this hold ends only by
-    /// order, too: the operator's HOLD stays whatever happens to planners meanwhile.
+    /// Holds the robot. If the robot is already under a hold that ends only by order, or is only being stepped, the new
+    /// hold ends only by order, too: the operator's HOLD stays, whatever happens to planners in the meantime.
     pub(super) fn hold(&mut self, Hold { by, resumes }: Hold) {
         let only_by_order = match &self.known.phase {
             Phase::Held(before) => before.resumes.is_never(),

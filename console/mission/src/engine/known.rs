@@ -1,6 +1,6 @@
 //! The state of a mission, apart from its planners.
 
-use super::{floor::ScannedFloor, governing::Governor};
+use super::{floor::ScannedFloor, governing::state::Governor};
 use crate::{
     chart::Chart,
     config::MissionConfig,
@@ -13,10 +13,10 @@ use crate::{
 use planner_api::Drive;
 use world::{Floor, Point, World};
 
-/// A robot that turns at least this fast can turn round within the time allowed at a corner, radians per second.
+/// A robot that turns at least this fast can turn round within the time limit for reaching a corner, radians per second.
 const BRISK_RAD_PER_S: f64 = 0.75;
 
-/// The mission's knowledge of robot, tank and task, and its progress.
+/// What the mission knows about robot, tank and task, and its progress.
 #[derive(Clone)]
 pub(super) struct Known {
     pub config: MissionConfig,
@@ -26,9 +26,9 @@ pub(super) struct Known {
     pub chart: Chart,
     pub task: Task,
     pub floor: ScannedFloor,
-    /// `None` without a tether, or if the anchor is not at a possible place.
+    /// `None` without a tether, or if the anchor is at an impossible place.
     pub tether: Option<Tether>,
-    /// The path driven, one point per decimetre.
+    /// The path driven, with one point per decimetre.
     pub trail: Vec<Point>,
     /// State of the rule that limits commands.
     pub governor: Governor,
@@ -88,7 +88,7 @@ impl Known {
         }
     }
 
-    /// The rate at which a corner's time limit runs: a robot that turns slowly has more time to turn.
+    /// The rate at which the time limit for reaching a corner runs: a robot that turns slowly is given more time to turn.
     pub(super) fn briskness(&self) -> f64 {
         (self.config.limits.w_max_rad_per_s / BRISK_RAD_PER_S).min(1.0)
     }

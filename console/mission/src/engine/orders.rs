@@ -1,9 +1,10 @@
-//! The effect of each order. Whether it is accepted is decided by [`Standing::allows`](crate::Standing::allows) alone.
+//! The effect of each order. [`Standing::allows`](crate::Standing::allows) alone decides whether an order is accepted.
 
 use super::{
     Mission,
-    candidate::{Candidate, NEAR_PLAN_M},
+    candidate::NEAR_PLAN_M,
     driving::{Driving, Prepare},
+    role::Candidate,
 };
 use crate::{
     event::EventKind,
@@ -64,7 +65,7 @@ impl Mission {
         }
     }
 
-    /// The planner makes its plan while the mission waits, so that the operator sees the plan before anything moves.
+    /// The planner makes its plan before the start, so the operator sees the plan before anything moves.
     fn plan_ahead(&mut self) {
         self.driving.course.want_plan(Reason::Start);
         self.driving.prepare = Prepare::Plan;
@@ -75,7 +76,7 @@ impl Mission {
         self.known.phase = Phase::Running(Gait::Steady);
     }
 
-    /// From now on only an order lets the robot move; a hold that already ends only by order keeps its reason.
+    /// From now on, the robot moves only by order; a hold that already ends only by order keeps its reason.
     fn hold_by_order(&mut self) {
         if self.known.phase.may_move() {
             self.hold(Hold { by: HoldReason::Operator, resumes: Resumes::Never });
@@ -83,7 +84,7 @@ impl Mission {
     }
 
     /// A hold that would have ended automatically now ends only by order: someone who changes planners or excludes
-    /// stations does not expect the robot to move.
+    /// stations does not expect the robot to start moving.
     pub(super) fn stay_held(&mut self) {
         if let Phase::Held(hold) = &self.known.phase
             && !hold.resumes.is_never()
@@ -94,9 +95,9 @@ impl Mission {
 
     /// Changes to another planner, or to the same one with other parameters.
     ///
-    /// The current planner stays until the new one has a plan that may be run. If the current one could not continue
-    /// anyway, it is replaced immediately. The operator can then run the new planner's plan even if that is refused
-    /// because of the tether.
+    /// The current planner stays until the new one has a plan that may be run. If the current planner could not continue
+    /// anyway, it is replaced immediately; the operator can then run the new planner's plan even if it is refused because
+    /// of the tether.
     pub(super) fn choose(&mut self, choice: PlannerChoice, reason: Reason) {
         self.stay_held();
         self.cancel_promotion();
@@ -127,7 +128,7 @@ impl Mission {
 
     fn set_parameter(&mut self, key: &str, value: &ParamValue) {
         self.drop_better_plan("a parameter was changed");
-        // A change on top of one that is still in progress.
+        // This is a change on top of one that is still in progress.
         let prepared = self.preparing.as_ref().map(|preparing| &preparing.worker.choice);
         let newest = prepared.filter(|choice| choice.id == self.driving.id());
         let base = newest.or_else(|| self.driving.newest_change());

@@ -5,14 +5,14 @@ use crate::{ask::AskId, event::EventKind};
 use planner_api::{Leg, LegTag, Plan};
 use world::{Point, polyline};
 
-/// A shorter plan leads nowhere, metres.
+/// A plan shorter than this leads nowhere, metres.
 const NO_WAY_M: f64 = 0.01;
 
 /// A plan as it would be run, with its events.
 pub(super) struct Evaluated {
-    /// The plan, after the return path that the mission put before it.
+    /// The plan, including the return path that the mission put before it.
     pub plan: Plan,
-    /// The event that the plan was made, and its certificate for the tether.
+    /// The event that says that the plan was made, and the plan's certificate for the tether.
     pub events: Vec<EventKind>,
     /// Why the plan is not run.
     pub objection: Option<Objection>,
@@ -28,7 +28,7 @@ pub(super) struct Objection {
 }
 
 impl Known {
-    /// Evaluates a plan on the map as known now.
+    /// Evaluates a plan against the map as known now.
     pub(super) fn evaluate(
         &self,
         ask: Option<AskId>,
@@ -42,7 +42,7 @@ impl Known {
         Evaluated { plan, events, objection }
     }
 
-    /// Why a plan is not run; its certificate is added to the events.
+    /// Why a plan is not run, or `None`; its certificate is added to the events.
     pub(super) fn objection(
         &self,
         planner: &str,
@@ -53,7 +53,7 @@ impl Known {
         by_tether.or_else(|| self.objection_to_way(planner, plan))
     }
 
-    /// Why a plan is not safe for the tether; its certificate is added to the events.
+    /// Why a plan is not safe for the tether, or `None`; its certificate is added to the events.
     fn certified(&self, planner: &str, plan: &Plan, events: &mut Vec<EventKind>) -> Option<Objection> {
         let tether = self.tether.as_ref()?;
         let certificate = tether.certify(plan, self.chart.world(), self.task_ends_at_anchor());
@@ -64,8 +64,8 @@ impl Known {
         refused.then(|| Objection { by_tether: true, message: message() })
     }
 
-    /// Refuses a first plan that leads nowhere while there is floor to scan: the robot would be back at the anchor
-    /// immediately, and the mission complete.
+    /// Refuses a first plan that leads nowhere although there is floor to scan: the robot would be back at the anchor
+    /// immediately, and the mission would count as complete.
     fn objection_to_way(&self, planner: &str, plan: &Plan) -> Option<Objection> {
         let coverage = &self.floor.coverage;
         if polyline::length_m(&plan.path) >= NO_WAY_M || self.task.lanes_left().is_some() {

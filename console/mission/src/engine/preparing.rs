@@ -1,12 +1,12 @@
-//! Preparations in the background while a planner drives: a candidate, or a better plan.
+//! Prepares a second planner in the background while another one is active: a candidate, or a planner that makes a better
+//! plan.
 
 use super::{
     Mission,
-    better_plan::Better,
-    candidate::Candidate,
     checking::mismatch,
     driving::Driving,
     planning::Evaluated,
+    role::{Better, Preparing, Role},
     worker::{Pending, PendingKind, Worker},
 };
 use crate::{
@@ -14,29 +14,6 @@ use crate::{
     event::EventKind,
     planner::Fault,
 };
-
-/// A planner that is being prepared while another one drives.
-#[derive(Clone)]
-pub(super) struct Preparing {
-    pub worker: Worker,
-    pub role: Role,
-}
-
-/// The purpose of the preparation.
-#[derive(Clone)]
-pub(super) enum Role {
-    /// The planner takes over as soon as it has an acceptable plan.
-    Candidate(Candidate),
-    /// The planner makes a plan for all that is left, to replace the repaired plan in use.
-    Better(Better),
-}
-
-impl Preparing {
-    /// Whether the robot stands still until the planner has planned.
-    pub(super) fn robot_waits(&self) -> bool {
-        matches!(&self.role, Role::Candidate(candidate) if candidate.robot_waits)
-    }
-}
 
 impl Mission {
     pub(super) fn ask_preparing(&mut self) -> Option<Ask> {
@@ -112,7 +89,7 @@ impl Mission {
         }
     }
 
-    /// Promotes the planner that was being prepared to the active one, with its plan.
+    /// Promotes the planner that was being prepared, which becomes the active planner, with its plan.
     pub(super) fn take_over(
         &mut self,
         driving: Driving,

@@ -1,4 +1,4 @@
-//! The inputs that planners receive with an ask for a plan or a command.
+//! The inputs that planners receive when they are asked for a plan or a command.
 
 use super::{course::Due, known::Known};
 use crate::{
@@ -10,7 +10,7 @@ use planner_api::{Drive, Plan, PoseEstimate, Reason};
 use std::sync::Arc;
 use world::{CoverageGrid, Point};
 
-/// Length of the targets and of the plan that a planner receives ahead of the robot, metres.
+/// Length, ahead of the robot, of the targets and of the plan that a planner receives, metres.
 const AHEAD_M: f64 = 4.0;
 
 /// What the mission remembers about a plan that is being made.
@@ -19,16 +19,16 @@ pub(super) struct AskedPlan {
     pub reason: Reason,
     /// The return path before the plan; empty for a plan from the robot's position.
     pub return_path: Vec<Point>,
-    /// Whether the plan begins at the anchor because the first one was refused for the tether.
+    /// Whether the plan begins at the anchor because the first plan was refused for the tether.
     pub from_anchor: bool,
-    /// Whether the planner was asked to keep to its plan and change it only where the map has changed.
+    /// Whether the planner was asked to keep to its plan and to change it only where the map has changed.
     pub is_repair: bool,
     /// The robot's position at the time of the ask.
     pub here: Point,
 }
 
 impl AskedPlan {
-    /// A plan from the robot's position, without asking the planner.
+    /// A plan that begins at the robot's position, for which the planner is not asked.
     pub(super) fn from_here(reason: Reason, here: Point) -> Self {
         Self { reason, return_path: Vec::new(), from_anchor: false, is_repair: false, here }
     }
@@ -38,8 +38,8 @@ impl Known {
     /// The inputs of a plan from the end of a return path, or from the robot's position.
     ///
     /// A caught cable is freed first. If a plan was refused because of the cable that is out, the planner is asked once
-    /// more from the anchor, after a return along the cable; so no planner has to know how the cable lies. The planner
-    /// receives the first `n_flown` points of the path driven.
+    /// more, this time for a plan that begins at the anchor after a return along the cable; in this way, no planner has
+    /// to know how the cable lies. The planner receives the first `n_flown` points of the path driven.
     pub(super) fn plan_ask(
         &self,
         Due { reason, from_anchor }: &Due,
@@ -58,8 +58,8 @@ impl Known {
         (asked, ask)
     }
 
-    /// The inputs of a plan for what is left of the task at some place: the path from the start of the mission to there,
-    /// the floor scanned by then, the reason for the plan, and the plan to keep to.
+    /// The inputs of a plan for what is left of the task at some place: the path from the start of the mission to that
+    /// place, the floor scanned by then, the reason for the plan, and the plan to keep to.
     pub(super) fn plan_from(
         &self,
         start: PoseEstimate,
@@ -71,7 +71,7 @@ impl Known {
         PlanAsk { reason, start, task, site: Arc::new(self.chart.site()), previous, under_way }
     }
 
-    /// Whether to ask once more, from the anchor, for a plan that was refused because of the tether.
+    /// Whether to ask once more, this time from the anchor, for a plan that was refused because of the tether.
     pub(super) fn may_try_from_anchor(&self, asked: &AskedPlan) -> bool {
         asked.return_path.is_empty() && !asked.from_anchor && self.way_to_anchor().is_some()
     }
@@ -83,7 +83,7 @@ impl Known {
             Drive::Twist { w_rad_per_s, .. } => w_rad_per_s,
             Drive::Velocity(_) => 0.0,
         };
-        // For lanes the task itself tracks the progress.
+        // In a task with lanes, the task itself tracks the progress.
         let path_ahead = match task {
             Task::Cover(_) => task.targets_ahead(AHEAD_M),
             Task::Goto(_) | Task::Follow { .. } => plan.map_or(&[][..], |plan| plan.ahead(AHEAD_M)),
@@ -103,7 +103,7 @@ impl Known {
     }
 }
 
-/// The rest of a plan that the same planner is asked to continue with a change.
+/// The rest of the plan that the same planner is asked to continue, with a change.
 pub(super) fn under_way(task: &Task, reason: &Reason) -> Option<Plan> {
     let goes_on = matches!(reason, Reason::MapChanged | Reason::Blocked | Reason::Recover);
     goes_on.then(|| task.under_way()).flatten()

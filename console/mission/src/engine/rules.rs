@@ -1,7 +1,7 @@
 //! The rules that hold the robot, let it move again, request a plan, or end the mission.
 //!
-//! Each rule is a type with its own state and an `update` method, which receives one tick and returns a verdict, if any.
-//! A rule's state is changed by that rule alone.
+//! Each rule is a type with its own state and an `update` method, which processes one tick and may return a verdict. The
+//! state of a rule is changed by that rule alone.
 
 mod blocked;
 mod cuts;
@@ -28,7 +28,7 @@ use crate::{
     phase::{Hold, HoldReason, Outcome, Phase, Resumes},
 };
 
-/// The rules that do not depend on which planner drives.
+/// The rules that do not depend on which planner is active.
 #[derive(Clone)]
 pub(super) struct Rules {
     pub time_limit: TimeLimitRule,
@@ -74,7 +74,7 @@ impl Rules {
             .or_else(|| if seen.planner.is_waited_for { None } else { stuck.update(seen) })
     }
 
-    /// The rules that resume a robot that is held until a condition has cleared.
+    /// The rules that let the robot resume from holds that last until a condition has cleared.
     fn update_held(&mut self, seen: &Seen<'_>, hold: &Hold) -> Option<Verdict> {
         if hold.resumes != Resumes::WhenCleared {
             return None;
@@ -87,7 +87,7 @@ impl Rules {
         }
     }
 
-    /// Resets the rules when the robot moves again: earlier counts say nothing about what follows.
+    /// Resets the rules when the robot moves again: what was counted before says nothing about what follows.
     pub(super) fn restart(&mut self) {
         self.lost_position = LostPositionRule::default();
         self.stuck.restart();

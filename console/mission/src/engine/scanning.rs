@@ -1,16 +1,16 @@
-//! Updates the map and the coverage from what is seen and scanned in one tick.
+//! Updates the map with what is seen, and the coverage with what is scanned, in one tick.
 
 use super::{
     Mission,
     happened::Happened,
     known::Known,
-    preparing::{Preparing, Role},
+    role::{Preparing, Role},
 };
 use crate::{chart::Seen, event::EventKind, passage::Passage, task::Task};
 use planner_api::Reason;
 use world::{Cell, Pose, Readings, Shape, coverage::percent_text, tether::Reach};
 
-/// A smaller area left out is not mentioned at the end, square metres.
+/// An area left out is mentioned at the end only if it is larger than this, square metres.
 const WORTH_TELLING_M2: f64 = 0.05;
 /// Maximum number of unreachable areas named at the end.
 const MOST_NAMED: usize = 4;
@@ -20,7 +20,7 @@ impl Mission {
     pub(super) fn look_around(&mut self, readings: &Readings) -> bool {
         let (now_s, pose) = (self.known.now_s(), self.known.locator.pose());
         self.known.chart.sight(&readings.sightings, &pose);
-        // Found obstacles are placed by the estimated pose, so nothing is charted while the position is lost.
+        // Found obstacles are placed using the estimated pose, so nothing is charted while the position is lost.
         if self.known.locator.is_lost() {
             return false;
         }
@@ -28,7 +28,7 @@ impl Mission {
         if events.is_empty() && !changes_plans {
             return false;
         }
-        // Moving obstacles are not part of the floor.
+        // Moving obstacles do not change the floor.
         let still = events.iter().filter(|event| !self.known.chart.moves(event));
         let shapes: Vec<Shape> = still.filter_map(shape_of).collect();
         let is_due = |task: &Task| {
@@ -59,8 +59,8 @@ impl Mission {
 }
 
 impl Known {
-    /// A newly found obstacle blocks a path within the required clearance. An obstacle that was already planned for and
-    /// whose place was corrected blocks it only within half the clearance.
+    /// A newly found obstacle blocks a path if the path comes closer than the required clearance. An obstacle that was
+    /// already planned for, and whose position has merely been corrected, blocks a path only within half that clearance.
     fn is_in_the_way(&self, task: &Task, event: &EventKind) -> bool {
         let (radius_m, clearance_m) = (self.config.limits.radius_m, self.config.clearance_m);
         match event {
@@ -130,8 +130,8 @@ impl Known {
         }
     }
 
-    /// Describes the requested areas that cannot be reached, as a sentence; in a mission over the whole floor, the amount
-    /// of floor that cannot be reached.
+    /// Describes the requested areas that the tool cannot reach, as a sentence; in a mission over the whole floor, states
+    /// how much floor cannot be reached.
     fn out_of_reach(&self) -> Option<String> {
         let named = |places: &[String]| {
             let more = places.len().saturating_sub(MOST_NAMED);
@@ -148,7 +148,7 @@ impl Known {
             .collect();
         if !areas.is_empty() {
             let what = if areas.len() == 1 { "the area" } else { "the areas" };
-            return Some(format!("the tool cannot reach any floor in {what} about {}", named(&areas)));
+            return Some(format!("the tool cannot reach any floor in {what} around {}", named(&areas)));
         }
         let floor = coverage.floor();
         let closed = (0..floor.len()).filter(|cell| floor.kind(*cell) == Cell::Unreachable).count();
@@ -157,7 +157,7 @@ impl Known {
         is_worth.then(|| format!("no path leads to {closed_m2:.1} m² of floor"))
     }
 
-    /// The floor that the plan left out because the cable does not reach it, as a sentence.
+    /// The floor that is not in the plan because the cable does not reach it, as a sentence.
     fn left_beyond_reel(&self) -> Option<String> {
         let (anchor, reach_m) = self.config.cable_reach()?;
         let world = self.chart.world();
@@ -168,9 +168,8 @@ impl Known {
         let beyond = left.iter().filter(|index| reach.is_beyond(floor.center(**index))).count();
         let beyond_m2 = beyond as f64 * floor.cell_m2();
         let reel_length_m = self.config.tether.as_ref()?.limits.reel_length_m;
-        (beyond_m2 > WORTH_TELLING_M2).then(|| {
-            format!("INCOMPLETE: {beyond_m2:.1} m² beyond the reel of {reel_length_m} m not planned")
-        })
+        (beyond_m2 > WORTH_TELLING_M2)
+            .then(|| format!("INCOMPLETE: {beyond_m2:.1} m² not planned, beyond the {reel_length_m} m reel"))
     }
 }
 

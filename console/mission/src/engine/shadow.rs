@@ -1,4 +1,4 @@
-//! A planner in shadow: it has its own worker, its own plan, and its own progress along it. It computes commands in
+//! A planner in shadow has its own worker, its own plan, and its own progress along that plan. It computes commands in
 //! parallel with the active planner, but its commands are not sent to the robot. If it fails, only the shadow ends.
 
 mod answers;
@@ -23,9 +23,9 @@ use planner_api::{Plan, Reason};
 use promotion::Promotion;
 use world::{Point, Shape};
 
-/// A robot farther from the shadow's plan than this has left it, metres.
+/// A robot farther from the shadow's plan than this counts as having left the plan, metres.
 const NEAR_PLAN_M: f64 = 0.5;
-/// Minimum time between two plans when the robot has left the shadow's plan, seconds.
+/// Minimum time between two plans for a robot that has left the shadow's plan, seconds.
 const PLAN_AGAIN_S: f64 = 10.0;
 
 /// A planner in shadow.
@@ -37,34 +37,35 @@ pub(super) struct Shadow {
     stepped_at: Option<u64>,
     /// The planner's record in shadow.
     pub tally: ShadowTally,
-    /// The progress of the task along its own plan.
+    /// The progress of the task along the planner's own plan.
     pub task: Task,
     plan: Plan,
-    /// Whether its plan begins at the anchor because the one from the robot's position was refused for the tether.
+    /// Whether the plan begins at the anchor because the plan from the robot's position was refused for the tether.
     from_anchor: bool,
-    /// Number of points of the path driven when its plan was requested.
+    /// Number of points in the path driven when the planner's plan was requested.
     n_flown: usize,
     /// Mission time of that request, seconds.
     asked_at_s: f64,
-    /// What it can be asked in this tick; depends on the sensor readings alone, not on another planner's answers.
+    /// What the planner can be asked in this tick; depends on the sensor readings alone, not on another planner's
+    /// answers.
     now: Now,
-    /// Whether it has been ordered to take over.
+    /// Whether the planner has been ordered to take over.
     promotion: Promotion,
 }
 
 /// What a planner in shadow can be asked in a tick, fixed at the start of the tick.
 #[derive(Debug, Clone, Copy, Default)]
 struct Now {
-    /// Whether the robot runs.
+    /// Whether the robot is running.
     is_running: bool,
-    /// Whether there is anything to plan for: in coverage missions not until the active planner has a plan.
+    /// Whether there is anything to plan for; in coverage missions, only once the active planner has a plan.
     may_plan: bool,
-    /// Number of points of the path driven.
+    /// Number of points in the path driven.
     n_flown: usize,
 }
 
 impl Mission {
-    /// Starts a planner in shadow; it replaces the current one.
+    /// Starts a planner in shadow; it replaces the planner that is in shadow now.
     pub(super) fn begin_shadow(&mut self, choice: PlannerChoice) {
         self.drop_shadow();
         let reason = Reason::Swap { from: self.driving.id().to_owned() };
@@ -114,7 +115,7 @@ impl Shadow {
         }
     }
 
-    /// Advances along its own plan to the robot's position; `driving` is the id of the active planner.
+    /// Advances along the shadow's own plan to the robot's position; `driving` is the id of the active planner.
     pub(super) fn lead(&mut self, known: &Known, driving: &str) {
         let here = known.position();
         self.advance(here, known);
@@ -138,7 +139,7 @@ impl Shadow {
         self.course.advance(here, chart.map());
     }
 
-    /// Handles a change of the map: obstacles that were found, and whether they block its plan.
+    /// Handles a change of the map: obstacles that were found, and whether they block the shadow's plan.
     pub(super) fn map_changed(&mut self, found: &[Shape], is_in_the_way: bool) {
         self.course.found_since.extend_from_slice(found);
         if is_in_the_way {
@@ -172,12 +173,12 @@ impl Shadow {
         self.worker.ask(tick, PendingKind::Step { usable: true }, What::Step(Box::new(step)))
     }
 
-    /// Progress along its own plan, if the plan has a path.
+    /// Progress along the shadow's own plan, if the plan has a path.
     fn route(&self) -> Option<&PathFollower> {
         self.task.lanes().or(self.course.follower.as_ref())
     }
 
-    /// Whether a place is close to its plan; always true if the plan has no path.
+    /// Whether a place is close to the shadow's plan; always true if the plan has no path.
     fn is_near(&self, here: Point) -> bool {
         self.route().is_none_or(|route| route.cross_track_m(here) <= NEAR_PLAN_M)
     }

@@ -1,22 +1,21 @@
-//! A robot that is ordered to move until something happens: the end of a lane, or an event.
+//! Steps: the robot is ordered to move until it reaches the end of a lane, or until an event.
 
 use super::{Mission, known::Known};
 use crate::{
     event::{Event, EventKind, Severity},
-    order::StepTo,
-    phase::{Gait, Hold, HoldReason, Phase, Resumes},
+    phase::{Gait, Hold, HoldReason, Phase, Resumes, StepTo},
 };
 use world::Point;
 
-/// Length of a step without lanes, metres.
+/// Length of a step if there are no lanes, metres.
 const STEP_M: f64 = 1.0;
 
-/// The place on its plan where the robot was released.
+/// Where the robot was on its plan when it was released.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PlaceOnPlan {
-    /// Number of the stretch of the plan under the robot; `None` without lanes.
+    /// Index of the stretch of the plan that the robot was on; `None` without lanes.
     leg: Option<usize>,
-    /// The robot's position then.
+    /// The robot's position at that time.
     at: Point,
 }
 
@@ -33,7 +32,7 @@ impl Known {
 }
 
 impl Mission {
-    /// Holds the robot again once the awaited event has happened.
+    /// Holds the robot again once the awaited end of a lane or event has come.
     pub(super) fn end_step(&mut self) {
         let (Phase::Running(Gait::To(to)), Some(from)) = (&self.known.phase, self.stepped_from) else {
             return;

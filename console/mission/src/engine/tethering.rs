@@ -20,7 +20,7 @@ impl Known {
         if map_changed {
             tether.lay_again(world);
         }
-        // With a lost position the cable would be wound round obstacles that only the estimate passes.
+        // If the position is lost, moving the cable would wind it round obstacles that only the estimate has passed.
         let error_m = (!self.locator.is_lost()).then(|| self.locator.error_95_m());
         if error_m.is_some() {
             tether.drag_to(self.locator.position());
@@ -35,23 +35,21 @@ impl Known {
         reached
     }
 
-    /// Whether plans are run although they are refused for the tether.
+    /// Sets whether plans are run even if they are refused for the tether.
     pub(super) fn allow_uncertified(&mut self, fly: bool) {
         if let Some(tether) = &mut self.tether {
             tether.allow_uncertified(fly);
         }
     }
 
-    /// The return path along the cable with as much room as possible; `None` at the anchor, or if there is no return
-    /// path.
+    /// The return path along the cable that leaves the most room; `None` at the anchor, or if there is no return path.
     pub(super) fn way_to_anchor(&self) -> Option<Vec<Point>> {
         let (here, tether) = (self.locator.position(), self.tether.as_ref()?);
         let is_out = self.task_ends_at_anchor() && (here - tether.anchor()).norm() > HOME_M;
         if is_out { self.widest(|room_m| tether.return_path(self.chart.world(), room_m)) } else { None }
     }
 
-    /// The path that frees a caught cable and reels it in, with as much room as possible; `None` if the cable is not
-    /// caught.
+    /// The path that frees a caught cable and reels it in, with the most room; `None` if the cable is not caught.
     pub(super) fn way_out(&self) -> Option<Vec<Point>> {
         let tether = self.tether.as_ref().filter(|tether| tether.is_snagged())?;
         if self.plans_ways_home() {
@@ -61,7 +59,7 @@ impl Known {
         }
     }
 
-    /// Searches for a path with a sequence of decreasing room beside the hull; returns the first one found.
+    /// Searches for a path with decreasing amounts of room beside the hull; returns the first path found.
     fn widest(&self, way: impl Fn(f64) -> Option<Vec<Point>>) -> Option<Vec<Point>> {
         let rooms =
             [1.0, 0.5, 0.0].map(|share| share * self.config.clearance_m + self.config.limits.radius_m);
@@ -70,7 +68,7 @@ impl Known {
 }
 
 impl Mission {
-    /// Ends a task that is done: if the robot is back at the anchor but cable is still out, the outcome is entangled.
+    /// Ends a task that is done. If the robot is back at the anchor but cable is still out, the outcome is entangled.
     pub(super) fn end_done(&mut self) {
         let back = self.known.task_ends_at_anchor();
         let left =

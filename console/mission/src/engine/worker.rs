@@ -7,19 +7,19 @@ use crate::{
 };
 use std::sync::Arc;
 
-/// A planner with its worker process and its open ask, whatever its role.
+/// A planner with its worker process and its open ask, whatever its role in the mission.
 #[derive(Clone, Default)]
 pub(super) struct Worker {
     pub choice: PlannerChoice,
-    /// Its description, known once it has been opened for the first time.
+    /// Its description, known once the planner has been opened for the first time.
     pub info: Option<PlannerInfo>,
     /// Description of the planner that drove before it.
     pub before: Option<PlannerInfo>,
-    /// The last state that it saved.
+    /// The last state that the planner saved.
     pub saved: Option<AskId>,
     /// The open ask.
     pub pending: Option<Pending>,
-    /// The running instance; `None` before the first one is started, and after a fault.
+    /// The running instance; `None` until the first one is started, and after a fault.
     instance: Option<WorkerId>,
     n_asks: u32,
 }
@@ -28,33 +28,35 @@ pub(super) struct Worker {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Pending {
     pub id: AskId,
-    /// The tick of the ask.
+    /// The tick in which the ask was issued.
     pub tick: u64,
     pub kind: PendingKind,
 }
 
-/// The kind of ask, with what the mission must remember until the answer.
+/// The kind of ask, with what the mission must remember until the answer comes.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum PendingKind {
     Open,
     Reconfigure(PlannerChoice),
     Plan(AskedPlan),
     Step {
-        /// Whether the answer can still be used: the robot has not been held and no new plan has been taken since.
+        /// Whether the answer can still be used: the robot has not been held, and no new plan has been taken, since the
+        /// ask.
         usable: bool,
     },
     Snapshot,
-    /// A step requested in shadow, before the planner took over: the answer is not used and does not count as late.
+    /// A step requested in shadow, before the planner took over: its answer is not used and does not count as late.
     StepInShadow,
 }
 
 impl Worker {
-    /// A planner that has not been opened.
+    /// Creates a planner that has not been opened.
     pub(super) fn new(choice: PlannerChoice) -> Self {
         Self { choice, ..Self::default() }
     }
 
-    /// A worker for the same planner with other parameters, or for a different one, that will replace this one.
+    /// Creates a worker that will replace this one: for the same planner with other parameters, or for a different
+    /// planner.
     pub(super) fn successor(&self, choice: PlannerChoice) -> Self {
         let saved = self.saved.filter(|_| choice.id == self.choice.id);
         Self { saved, before: self.seen().cloned(), ..Self::new(choice) }
@@ -65,23 +67,23 @@ impl Worker {
         &self.choice.id
     }
 
-    /// Its description or, until it is opened, that of the planner before it.
+    /// Its description or, until the planner is opened, that of the planner before it.
     pub(super) fn seen(&self) -> Option<&PlannerInfo> {
         self.info.as_ref().or(self.before.as_ref())
     }
 
-    /// Whether it is open and configured, and has not failed since.
+    /// Whether the planner is open and configured, and has not failed since.
     pub(super) fn is_ready(&self) -> bool {
         self.instance.is_some()
             && !matches!(&self.pending, Some(pending) if pending.kind == PendingKind::Open)
     }
 
-    /// Whether it is being opened or is making a plan.
+    /// Whether the planner is being opened or is making a plan.
     pub(super) fn is_being_prepared(&self) -> bool {
         matches!(&self.pending, Some(Pending { kind: PendingKind::Open | PendingKind::Plan(_), .. }))
     }
 
-    /// Starts a new instance of this planner.
+    /// Starts a new instance of the planner.
     pub(super) fn open(&mut self, known: &Known, workers: &mut Workers) -> Ask {
         let instance = workers.next();
         (self.instance, self.n_asks) = (Some(instance), 0);
@@ -99,7 +101,7 @@ impl Worker {
         self.ask(tick, PendingKind::Plan(asked), What::Plan(Box::new(ask)))
     }
 
-    /// Numbers the next ask and remembers it until its answer arrives.
+    /// Numbers the next ask, and remembers it until its answer arrives.
     fn number(&mut self, worker: WorkerId, tick: u64, kind: PendingKind, what: What) -> Ask {
         self.n_asks += 1;
         let id = AskId { worker, n: self.n_asks };
@@ -107,12 +109,12 @@ impl Worker {
         Ask { id, what }
     }
 
-    /// Takes the open ask if this is the id of its answer.
+    /// Takes the open ask if it has this id.
     pub(super) fn answered(&mut self, ask: AskId) -> Option<Pending> {
         self.pending.take_if(|pending| pending.id == ask)
     }
 
-    /// Forgets the instance, which the caller must close.
+    /// Forgets the instance; the caller must close it.
     pub(super) fn leave(&mut self) -> Option<WorkerId> {
         self.pending = None;
         self.instance.take()

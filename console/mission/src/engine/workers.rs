@@ -1,4 +1,4 @@
-//! The numbers of workers, the workers to close, and the plugins that failed too often.
+//! The numbers of workers, the workers to be closed, and the plugins that have failed too often.
 
 mod quarantine;
 
@@ -26,7 +26,7 @@ impl Workers {
         self.closing.extend(worker);
     }
 
-    /// The next worker to close, as an ask without an answer.
+    /// The next worker to be closed, as an ask that has no answer.
     pub(super) fn poll(&mut self) -> Option<Ask> {
         let worker = self.closing.pop_front()?;
         Some(Ask { id: AskId { worker, n: u32::MAX }, what: What::Close })

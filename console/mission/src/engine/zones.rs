@@ -2,21 +2,21 @@
 
 use super::{
     Mission,
-    candidate::Candidate,
     driving::{Driving, Prepare},
     known::Known,
+    role::Candidate,
 };
 use crate::{config::TaskConfig, event::EventKind, order::Order};
 use planner_api::Reason;
 use world::{Boundary, Point, Shape, Zone, ZoneKind, shape::ring_area_m2, shortest::GrownFloor};
 
-/// Smaller zones are refused as a slip of the hand, square metres. Zones with a corner farther away than the next limit,
-/// metres, are refused, too. Scenarios have the same limits.
+/// Zones smaller than this are refused as a slip of the hand, square metres. Zones with a corner farther away than the
+/// next limit, metres, are refused, too. The same limits apply to scenarios.
 const LEAST_M2: f64 = 0.01;
 const FARTHEST_M: f64 = 1e4;
 
 impl Known {
-    /// Refuses an impossible zone: one that the robot is in, or that covers a place where the robot must go.
+    /// Refuses an impossible zone: one that contains the robot, or that covers a place where the robot must go.
     ///
     /// # Errors
     /// What is wrong, as a sentence.
@@ -61,7 +61,8 @@ impl Known {
         }
     }
 
-    /// The floor available to the hull's centre outside the no-go zones: those already drawn, and optionally a new one.
+    /// The floor that is available to the hull's centre outside the no-go zones: those already drawn and, if given, a new
+    /// one.
     fn floor_outside(&self, zone: Option<&Shape>) -> GrownFloor {
         let (world, room_m) = (self.chart.world(), self.config.room_m());
         let zones = world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo).map(|zone| &zone.shape);
@@ -69,7 +70,7 @@ impl Known {
         GrownFloor::new(&world.boundary, room_m, solids.map(|shape| (shape, room_m)))
     }
 
-    /// A name that no other zone has.
+    /// A name that no other zone has yet.
     fn free_name(&self) -> String {
         let zones = &self.chart.world().zones;
         let is_free = |name: &String| zones.iter().all(|zone| zone.name != *name);
@@ -78,8 +79,8 @@ impl Known {
 }
 
 impl Mission {
-    /// Closes a part of the floor: it need not be scanned, and planners receive a map with the zone and plan again. The
-    /// active planner keeps to its plan as far as possible.
+    /// Closes a part of the floor: the part need not be scanned, and planners receive a map with the zone and plan again.
+    /// The active planner keeps to its plan as far as possible.
     pub(super) fn draw_zone(&mut self, corners: &[Point]) {
         let shape = Shape::Polygon { vertices: corners.to_vec() };
         let zone = Zone { name: self.known.free_name(), kind: ZoneKind::NoGo, shape };
@@ -96,7 +97,7 @@ impl Mission {
         let waiting = self.known.is_waiting();
         let reason = if waiting { Reason::Start } else { Reason::MapChanged };
         let again = self.driving.worker.successor(self.driving.worker.choice.clone());
-        // Before the start the old plan is marked for repair: a plan that is already on the screen is made again.
+        // Before the start, the old plan is marked for repair, so a plan that is already on the screen is made again.
         let stays = waiting && !self.driving.course.has_plan();
         let prepare = if stays { self.driving.prepare } else { Prepare::Plan };
         self.replace_driving(Driving::new(again, reason, prepare));
@@ -108,7 +109,7 @@ impl Mission {
     }
 }
 
-/// Whether a shape is outside a wall. Beside straight walls, everything within the bounding box of the wall counts as
+/// Whether a shape is outside a wall. With straight walls, everything within the bounding box of the wall counts as
 /// inside.
 fn is_outside(shape: &Shape, wall: &Boundary) -> bool {
     if let Boundary::Circle { radius_m } = wall {

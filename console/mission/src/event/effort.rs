@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use world::{Point, polyline};
 
-/// The effort of driving a path at the robot's own speeds. The robot is assumed to drive straight and to turn on the
-/// spot.
+/// The effort of driving a path at the robot's maximum speeds. The robot is assumed to drive straight between points and
+/// to turn on the spot.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Effort {
-    /// Its length, metres.
+    /// Length of the path, metres.
     pub length_m: f64,
     /// Sum of all changes of direction, radians.
     pub rotation_rad: f64,
@@ -29,7 +29,7 @@ impl Effort {
         Self { length_m, rotation_rad, time_s: length_m / limits.v_max_m_per_s + turning_s }
     }
 
-    /// Describes how much is saved compared with a larger effort.
+    /// Describes how much this effort saves compared with a larger one.
     pub fn saving(&self, other: &Self) -> String {
         let turns = (other.rotation_rad - self.rotation_rad) / TAU;
         format!(

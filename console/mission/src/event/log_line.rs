@@ -5,8 +5,8 @@ use super::{
     severity::{self, Severity},
 };
 use crate::{
-    order::{Injection, Note, Noted, Order, RangeFault, StepTo},
-    phase::Outcome,
+    order::{Injection, Note, Noted, Order, RangeFault},
+    phase::{Outcome, StepTo},
 };
 use planner_api::LogLevel;
 use positioning::Exclusion;
@@ -17,15 +17,15 @@ use world::{Station, StationId, tether::Certificate};
 pub struct LogLine {
     /// Severity.
     pub severity: Severity,
-    /// `cmd`, `ae`, `plan`, `map`, `robot`, `tether` or `mission`.
+    /// Source: `cmd`, `ae`, `plan`, `map`, `robot`, `tether` or `mission`.
     pub source: &'static str,
     /// One sentence.
     pub text: String,
 }
 
 impl Event {
-    /// The event as a line of text for the screen's log, the recording and the command line; `None` for events that occur
-    /// every tick. Stations have the names given by the run's first event.
+    /// The event as a line of text for the log on the screen, the recording and the command line; `None` for events that
+    /// occur in every tick. Stations are given the names that they have in the run's first event.
     #[allow(clippy::too_many_lines, reason = "one line for each kind of event")]
     pub fn log_line(&self, stations: &[Station]) -> Option<LogLine> {
         Some(match &self.kind {
@@ -190,18 +190,18 @@ fn of_planner(kind: &EventKind) -> Option<LogLine> {
 fn of_better_plan(kind: &EventKind) -> Option<LogLine> {
     Some(match kind {
         EventKind::BetterPlanned { planner, flown, better, objection: None, .. } => {
-            let text = format!("{planner} has a better plan, which saves {}", better.saving(flown));
+            let text = format!("{planner} has a better plan; it saves {}", better.saving(flown));
             line(Severity::Watch, "plan", text)
         }
         EventKind::BetterPlanned { planner, objection: Some(why), .. } => {
             line(Severity::Info, "plan", format!("{planner} has no better plan: {why}"))
         }
         EventKind::BetterPlanTaken { planner, flown, better } => {
-            let text = format!("better plan of {planner} taken, which saves {}", better.saving(flown));
+            let text = format!("better plan of {planner} taken; it saves {}", better.saving(flown));
             line(Severity::Info, "plan", text)
         }
         EventKind::BetterPlanDropped { planner, why } => {
-            line(Severity::Info, "plan", format!("no better plan of {planner}: {why}"))
+            line(Severity::Info, "plan", format!("better plan of {planner} dropped: {why}"))
         }
         _ => return None,
     })
@@ -210,9 +210,9 @@ fn of_better_plan(kind: &EventKind) -> Option<LogLine> {
 fn of_shadow(kind: &EventKind) -> Option<LogLine> {
     Some(match kind {
         EventKind::ShadowBegan { choice, info, .. } => {
-            line(Severity::Info, "plan", format!("planner {} {} flies in shadow", choice.id, info.version))
+            line(Severity::Info, "plan", format!("planner {} {} runs in shadow", choice.id, info.version))
         }
-        // Faults in shadow require no action by the operator, who is driving with a different planner.
+        // Faults in shadow require no action by the operator, because a different planner is active.
         EventKind::Shadowed { of } => {
             let LogLine { severity, source, text } = match &**of {
                 EventKind::Certified { .. } => of_tether(of)?,
@@ -233,13 +233,13 @@ fn of_shadow(kind: &EventKind) -> Option<LogLine> {
             line(Severity::Info, "plan", text)
         }
         EventKind::ShadowEnded { planner, why } => {
-            line(Severity::Watch, "plan", format!("planner {planner} no longer flies in shadow: {why}"))
+            line(Severity::Watch, "plan", format!("planner {planner} no longer runs in shadow: {why}"))
         }
         _ => return None,
     })
 }
 
-/// How late a planner answered, without a full stop.
+/// How late a planner answered, as a phrase without a full stop.
 pub fn late_text(planner: &str, ticks: u64) -> String {
     format!("planner {planner} answered {} late", ticks_text(ticks))
 }
@@ -286,7 +286,7 @@ fn order_text(order: &Order, stations: &[Station]) -> String {
         Order::Abort => "end mission".into(),
         Order::Terminate => "end mission, by a signal to the process".into(),
         Order::ChoosePlanner(choice) => format!("change planner to {}", choice.id),
-        Order::Shadow(choice) => format!("fly planner {} in shadow", choice.id),
+        Order::Shadow(choice) => format!("run planner {} in shadow", choice.id),
         Order::Promote => "promote the planner in shadow".into(),
         Order::DropShadow => "end the shadow".into(),
         Order::TakePlan => "take the better plan".into(),
@@ -301,7 +301,7 @@ fn order_text(order: &Order, stations: &[Station]) -> String {
     }
 }
 
-/// The end of a sentence that tells who acted: ` by NAME`, or empty.
+/// The end of a sentence that tells who acted: ` by NAME`, or nothing.
 fn by_text(by: Option<&String>) -> String {
     by.map_or_else(String::new, |name| format!(" by {name}"))
 }
@@ -343,7 +343,7 @@ fn certificate_text(planner: &str, refused: bool, certificate: &Certificate) -> 
     }
 }
 
-/// The name of a station, or its number if the tank does not name it.
+/// The name of a station, or its number if the tank gives it no name.
 fn station_text(id: StationId, stations: &[Station]) -> String {
     let found = stations.iter().find(|station| station.id == id);
     found.map_or_else(|| format!("station {}", id.0), |station| format!("station {}", station.name))

@@ -1,4 +1,4 @@
-//! The readings behind a located run, which came from another system, and the floor that its tool passed.
+//! The readings behind a located run, which came from another system, and the floor that its tool passed over.
 
 use crate::config::MissionConfig;
 use planner_api::PoseEstimate;
@@ -6,10 +6,10 @@ use positioning::fix::{ellipse_95, position_covariance};
 use serde::{Deserialize, Serialize};
 use world::{Pose, Tool};
 
-/// Number of standard deviations within which a normally distributed error stays in 95 of 100 cases.
+/// Number of standard deviations that a normally distributed error stays within in 95 of 100 cases.
 const NORMAL_95: f64 = 1.96;
 
-/// Times that differ by less count as equal, seconds: they were computed in two different ways.
+/// Times that differ by less than this count as equal, seconds: the same time can be computed in two different ways.
 const TIE_S: f64 = 1e-6;
 
 /// The file of readings behind a located run.
@@ -19,22 +19,22 @@ pub struct Measured {
     pub file: String,
     /// SHA-256 of the file, hexadecimal.
     pub sha256: String,
-    /// The options of the command that are not in the scenario.
+    /// The options that were given on the command line and are not in the scenario.
     #[serde(default)]
     pub asked: Asked,
     /// Whether the motion between the readings was measured; without it the heading is unknown.
     #[serde(default)]
     pub has_motion: bool,
-    /// Periods in which the tool was on, mission time, seconds, in order; absent if not recorded.
+    /// Periods of mission time in which the tool was on, seconds, in order; absent if not recorded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tool_on_s: Option<Vec<[f64; 2]>>,
 }
 
-/// The options with which the readings were located. Together with the scenario they reproduce the same result.
+/// The options with which the readings were located. Together with the scenario, they reproduce the same result.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Asked {
-    /// Speed of sound, metres per second; absent for readings that are distances.
+    /// Speed of sound, metres per second; absent if the readings are distances.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sound_speed_m_per_s: Option<f64>,
     /// Whether the speed of sound was estimated from the readings.
@@ -46,23 +46,24 @@ pub struct Asked {
 }
 
 impl Measured {
-    /// How long the tool was on, seconds; `None` if not recorded.
+    /// Total time for which the tool was on, seconds; `None` if not recorded.
     pub fn on_for_s(&self) -> Option<f64> {
         Some(self.tool_on_s.as_ref()?.iter().map(|[from_s, to_s]| to_s - from_s).sum())
     }
 
-    /// Whether the tool was on for the whole time between two moments, seconds.
+    /// Whether the tool was on throughout the time between two moments, seconds.
     fn is_on(&self, from_s: f64, to_s: f64) -> bool {
         let is_within = |[first_s, last_s]: &[f64; 2]| *first_s <= from_s + TIE_S && to_s <= *last_s + TIE_S;
         self.tool_on_s.iter().flatten().any(is_within)
     }
 }
 
-/// Determines where the tool passed floor that counts as scanned, from successive position estimates.
+/// Determines, from successive position estimates, where the tool passed over floor that counts as scanned.
 ///
 /// A stretch between two estimates counts if four conditions are met: the tool was on all the time; the position error
-/// was within the limit at both ends; the heading is known well enough for the ends of a bar; and the robot cannot have
-/// strayed from the straight line by more than the limit in the meantime. Otherwise only the place itself can count.
+/// was within the limit at both ends; if the tool is a bar, the heading is known well enough to place the ends of the
+/// bar; and the robot cannot have strayed from the straight line by more than the limit in the meantime. If a stretch
+/// does not count, the place of the second estimate alone may count.
 #[derive(Debug, Clone)]
 pub struct ToolTrack {
     measured: Measured,
@@ -73,7 +74,7 @@ pub struct ToolTrack {
 }
 
 impl ToolTrack {
-    /// The tool of the mission with which the readings were located.
+    /// Creates a track for the tool of the mission with which the readings were located.
     pub fn new(measured: &Measured, mission: &MissionConfig) -> Self {
         Self {
             measured: measured.clone(),
@@ -90,7 +91,7 @@ impl ToolTrack {
     }
 
     /// Adds the next estimate, at a mission time in seconds. If floor counts as scanned, returns the two poses between
-    /// which the tool passed it; both are the same if only a single place counts.
+    /// which the tool passed over it; both are the same if only a single place counts.
     pub fn visit(&mut self, t_s: f64, estimate: &PoseEstimate) -> Option<(Pose, Pose)> {
         let here = Pose { position: estimate.position, heading_rad: estimate.heading_rad };
         let is_good = self.is_good(estimate);
@@ -107,7 +108,7 @@ impl ToolTrack {
         Some((stretch.map_or(here, |(_, from, _)| from), here))
     }
 
-    /// Whether a place counts: every end of the tool is known to within the limit.
+    /// Whether a place counts, that is, whether the positions of all ends of the tool are known to within the limit.
     fn is_good(&self, estimate: &PoseEstimate) -> bool {
         let error_m = ellipse_95(&position_covariance(&estimate.covariance)).0;
         let sideways_m = match self.tool {
@@ -118,7 +119,7 @@ impl ToolTrack {
         error_m <= self.limit_m && sideways_m <= self.limit_m
     }
 
-    /// How far a robot can have strayed from a straight line of length `way_m` in a given time at its top speed: the
+    /// How far a robot can have strayed from a straight line of length `way_m` in a given time at its maximum speed: the
     /// height of the triangle over that line.
     fn strays_m(&self, way_m: f64, time_s: f64) -> f64 {
         let half_m = self.v_max_m_per_s * time_s / 2.0;

@@ -1,4 +1,4 @@
-//! Answers from a journal. Each event that answers an ask carries what a mission needs to repeat it.
+//! Answers from a journal. Each event that answers an ask contains what a mission needs to repeat that answer.
 
 use super::EventKind;
 use crate::{
@@ -25,7 +25,8 @@ struct Recorded {
 }
 
 impl RecordedAnswers {
-    /// Takes the recorded events of the tick that begins; answers of earlier ticks that were not asked for are dropped.
+    /// Takes the recorded events of the tick that begins; answers recorded for earlier ticks for which there was no ask
+    /// are dropped.
     pub fn begin_tick<'a>(&mut self, events: impl IntoIterator<Item = &'a EventKind>) {
         self.due.clear();
         let mut said = Said::default();
@@ -47,7 +48,7 @@ impl RecordedAnswers {
         }
     }
 
-    /// Registers an ask of the mission.
+    /// Registers an ask from the mission.
     pub fn submit(&mut self, ask: &Ask) {
         if ask.what == What::Close {
             self.open.retain(|(open, _)| open.worker != ask.id.worker);
@@ -56,10 +57,10 @@ impl RecordedAnswers {
         }
     }
 
-    /// The next answer of this tick to an open ask, and whether the original mission used it; the journal does not hold
-    /// the content of unused answers.
+    /// The next answer in this tick to an open ask, and whether the original mission used the answer; the journal does
+    /// not contain the contents of unused answers.
     pub fn next_answer(&mut self) -> Option<(Answer, bool)> {
-        // A worker's answers are recorded when they are used, which may be after the next ask to that worker.
+        // Answers are recorded when they are used, which may be after the next ask to the same worker.
         let is_open = |recorded: &Recorded| self.open.iter().position(|(open, _)| *open == recorded.ask);
         let (at, open) =
             self.due.iter().enumerate().find_map(|(at, recorded)| Some((at, is_open(recorded)?)))?;
@@ -73,7 +74,7 @@ impl RecordedAnswers {
 }
 
 impl EventKind {
-    /// The ask that this event answers. Each ask is answered by exactly one event, in the tick in which the answer
+    /// The ask that this event answers. Each ask is answered by exactly one event, in the tick in which its answer
     /// arrived.
     pub fn closes(&self) -> Option<AskId> {
         match self {
@@ -93,11 +94,11 @@ impl EventKind {
         }
     }
 
-    /// The planner's answer, as far as the mission used it; `None` for events that answer no ask.
+    /// The planner's answer, to the extent that the mission used it; `None` for events that answer no ask.
     ///
-    /// The cost of a plan is not recorded, since nothing reads it. A command is returned as it was sent, or as requested
-    /// if it was limited. A plan that no planner can have made, because the journal was edited, is a fault. `is_plan`
-    /// tells whether the ask was for a plan.
+    /// The cost of a plan is not recorded, since nothing reads it. A command is returned as it was sent or, if it was
+    /// limited, as the planner requested it. A plan that no planner can have made, because the journal was edited, is
+    /// returned as a fault. `is_plan` tells whether the ask was for a plan.
     pub fn recorded_answer(&self, is_plan: bool) -> Option<Result<Given, Fault>> {
         Some(match self {
             Self::PlannerChosen { ask: Some(_), info, .. }
@@ -124,7 +125,7 @@ impl EventKind {
     }
 }
 
-/// The planner's own plan, without the return path of `return_path` points that the mission put before it.
+/// The planner's own plan, without the first `return_path` points: the return path that the mission put before it.
 ///
 /// # Errors
 /// No planner can have made this plan.
@@ -135,7 +136,7 @@ fn without_return_path(
     legs: &[Leg],
     cuts: &[Vec<world::Point>],
 ) -> Result<Plan, Fault> {
-    // The return path has a leg of its own, the first one.
+    // The return path has its own leg, the first one.
     let own = legs.iter().skip(usize::from(return_path > 0));
     let shifted = |leg: &Leg| {
         let (first, last) = (leg.first.checked_sub(return_path)?, leg.last.checked_sub(return_path)?);

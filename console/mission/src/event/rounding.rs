@@ -1,9 +1,9 @@
 //! Rounds the numbers in events to the precision with which quantities in a tank can be known.
 //!
-//! Lengths, angles and shares are rounded to a millionth of their unit, covariances to four significant digits. This
-//! happens once, where an event leaves the mission, so journal, recording, screen and report have the same numbers, and a
-//! tick takes a third of the bytes. Plans are not rounded, because the planners' answers are replayed from the journal.
-//! Commands are rounded before they are sent ([`crate::Sending::as_sent`]).
+//! Lengths, angles and shares are rounded to a millionth of their unit, covariances to four significant digits. Numbers
+//! are rounded once, where an event leaves the mission. As a result, journal, recording, screen and report contain the
+//! same numbers, and a tick takes a third of the bytes. Plans are not rounded, because the planners' answers are replayed
+//! from the journal. Commands are rounded before they are sent ([`crate::Sending::as_sent`]).
 
 use super::{Event, EventKind, TetherContact};
 use crate::ask::Said;
@@ -14,7 +14,7 @@ use world::{Point, Pose};
 
 /// Rounding steps per unit.
 const STEPS: f64 = 1e6;
-/// Numbers above this are not rounded, and do not occur in a tank.
+/// Numbers above this are not rounded; they do not occur in a tank.
 const MOST: f64 = 1e9;
 
 /// Rounds a number to the nearest millionth; never returns `-0.0`.
@@ -28,8 +28,9 @@ fn significant(x: f64) -> f64 {
     quickly_significant(x).unwrap_or_else(|| format!("{x:.3e}").parse().map_or(x, |x: f64| x + 0.0))
 }
 
-/// Rounds without a conversion to text, for numbers where rounding errors cannot change the last digit. A number of four
-/// digits and a power of ten up to the 22nd are both exact, so their quotient is the number nearest to the decimal one.
+/// Rounds without a conversion to text; works only for numbers for which rounding errors cannot change the last digit. A
+/// number of four digits and a power of ten up to the 22nd are both exact, so their quotient is the number nearest to the
+/// decimal one.
 fn quickly_significant(x: f64) -> Option<f64> {
     if x == 0.0 {
         return Some(0.0);
@@ -67,7 +68,7 @@ impl Said {
     }
 }
 
-/// Rounds a number to a millionth towards zero, so that a value within a limit stays within it.
+/// Rounds a number to a millionth towards zero, so that a value within a limit stays within the limit.
 fn toward_zero(x: f64) -> f64 {
     let nearest = rounded(x);
     if nearest.abs() > x.abs() { rounded(nearest - x.signum() / STEPS) } else { nearest }

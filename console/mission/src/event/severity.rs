@@ -22,8 +22,8 @@ pub enum Severity {
 }
 
 impl Fault {
-    /// The severity of a fault. A late answer may be the machine's doing, a refused planner has not driven the robot, and
-    /// "no path exists" is an answer rather than a fault.
+    /// The severity of a fault. A late answer may be due to the machine, a refused planner was never active, and "no path
+    /// exists" is an answer rather than a fault.
     pub fn severity(&self) -> Severity {
         match self.cause {
             _ if self.is_no_way() => Severity::Warn,
@@ -47,8 +47,8 @@ pub(super) fn of_hold(by: &HoldReason) -> Severity {
     }
 }
 
-/// The severity of a plan's certificate. A refused plan is not run; what follows has its own event: a plan from the
-/// anchor, a hold, or nothing if a different planner drives.
+/// The severity of a plan's certificate. A refused plan is not run; whatever follows has its own event: a plan from the
+/// anchor, or a hold. If a different planner is active, nothing follows.
 pub(super) fn of_certificate(certificate: &Certificate) -> Severity {
     if certificate.certified { Severity::Info } else { Severity::Warn }
 }

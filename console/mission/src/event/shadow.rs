@@ -4,7 +4,7 @@
 use super::EventKind;
 use serde::{Deserialize, Serialize};
 
-/// Number of steps in a row that a planner in shadow must answer before it can take over.
+/// Number of steps in a row that a planner in shadow must have answered before it can take over.
 pub const READY_AFTER: u64 = 10;
 
 /// The record of a planner in shadow.

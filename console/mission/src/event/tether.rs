@@ -9,13 +9,13 @@ use world::Point;
 pub struct TetherContact {
     /// Name of the obstacle.
     pub on: String,
-    /// Angle by which the cable turns there, radians, counter-clockwise.
+    /// Angle by which the cable bends there, radians, counter-clockwise.
     pub wrap_rad: f64,
     /// Last point of contact, counted from the anchor.
     pub at: Point,
 }
 
-/// The line of the taut cable from its anchor over its bends to the robot.
+/// The line of the taut cable, from its anchor along its bends to the robot.
 pub fn taut_line(anchor: Point, bends: &[Point], robot: Point) -> Vec<Point> {
     let mut line = Vec::with_capacity(bends.len() + 2);
     line.push(anchor);
@@ -32,16 +32,16 @@ pub enum TetherAlarm {
     Reel {
         /// Length of cable paid out, metres.
         out_m: f64,
-        /// Length of the cable, metres.
+        /// Total length of the cable, metres.
         reel_length_m: f64,
     },
     /// The cable wraps one obstacle.
     Wrap {
-        /// Its name.
+        /// Name of the obstacle.
         on: String,
-        /// Angle, radians, without sign.
+        /// Wrap angle, radians, without sign.
         wrap_rad: f64,
-        /// Largest angle allowed, radians.
+        /// Maximum angle allowed, radians.
         limit_rad: f64,
     },
     /// The total wrap is too large.
@@ -51,16 +51,16 @@ pub enum TetherAlarm {
         /// Maximum total wrap, radians.
         limit_rad: f64,
     },
-    /// The reel has paid out more than expected from all obstacles on the map.
+    /// The reel has paid out more than expected from all the obstacles on the map.
     Snag {
         /// Cable paid out, metres.
         paid_out_m: f64,
         /// Expected cable length, metres.
         explained_m: f64,
     },
-    /// The hull does not fit along the cable on the way back.
+    /// The hull does not fit through the return path along the cable.
     NoReturnPath,
-    /// The robot has left its plan across a cut, so a new plan is needed.
+    /// The robot has left its plan by crossing a cut, so a new plan is needed.
     Strayed,
 }
 

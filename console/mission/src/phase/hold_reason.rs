@@ -20,7 +20,7 @@ pub enum HoldReason {
     },
     /// The planner has not answered for too long.
     PlannerSilent {
-        /// The planner, as a sentence.
+        /// A sentence that names the planner.
         message: String,
     },
     /// The robot makes no progress, or the planner reports that there is no path.
@@ -61,7 +61,7 @@ impl HoldReason {
             Self::Stepped,
             Self::PlannerReplaced,
         ];
-        // A new reason does not compile until it is added here; add it to the list above, too.
+        // A new reason does not compile until it is added to this match; add it to the list above, too.
         for by in &all {
             match by {
                 Self::Operator
@@ -79,7 +79,7 @@ impl HoldReason {
         all
     }
 
-    /// Whether the planner is the cause, so that a different planner may be the remedy.
+    /// Whether the planner is the cause, so that a different planner may help.
     pub fn blames_planner(&self) -> bool {
         matches!(self, Self::PlannerFault { .. } | Self::PlannerSilent { .. } | Self::PlanRefused { .. })
     }

@@ -1,14 +1,14 @@
-//! The sandbox of a planner's process, set up before any code of its plugin runs.
+//! The sandbox of a planner's process, which is set up before any code of the plugin runs.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What the system enforces on the process of a planner, strongest level first. Nothing less than [`Self::Full`] may be
-/// displayed as if it were full.
+/// The restrictions that the system enforces on the process of a planner, strongest level first. Nothing less than
+/// [`Self::Full`] may be displayed as if it were full.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sandbox {
-    /// No access to files, network, terminal, other processes or their memory.
+    /// No access to files, the network, the terminal, other processes or their memory.
     Full,
     /// Only some of these restrictions; the text tells why the others are missing.
     Partial(String),

@@ -13,14 +13,14 @@ use crate::{
 use ready::Ready;
 use serde::{Deserialize, Serialize};
 
-/// The standing of a mission as it follows from its events, for code that sees nothing but the events.
+/// The standing of a mission as it follows from its events, for code that sees only the events.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct FoldedStanding {
     /// The phase of the mission.
     pub phase: Phase,
     /// The gait of the last order that released the robot.
     gait: Option<Gait>,
-    /// The limit of the position error, metres, while the position counts as lost.
+    /// The limit on the position error while the position counts as lost, metres.
     lost: Option<f64>,
     /// Whether the ranges contradict each other.
     is_alarmed: bool,
@@ -29,16 +29,16 @@ pub struct FoldedStanding {
     /// The record of the planner in shadow; `None` without one.
     #[serde(default)]
     shadow: Option<ShadowTally>,
-    /// Whether a better plan is offered and not ordered yet.
+    /// Whether a better plan is offered and has not been ordered yet.
     #[serde(default)]
     has_offer: bool,
-    /// The plan that a start would begin with, and its planner.
+    /// The plan with which a start would begin the mission, and its planner.
     #[serde(default)]
     ready: Ready,
 }
 
 impl FoldedStanding {
-    /// Processes one event; events must come in the order of the journal.
+    /// Processes one event; the events must be passed in the order of the journal.
     pub fn apply(&mut self, event: &EventKind) {
         match event {
             EventKind::RunOpened(run) => *self = Self { ready: Ready::of(run), ..Self::default() },
@@ -79,7 +79,7 @@ impl FoldedStanding {
         }
     }
 
-    /// The plan that a start would begin with, if it is ready.
+    /// The plan with which a start would begin the mission, if it is ready.
     pub fn ready_plan(&self) -> Option<PlanId> {
         match self.ready.readiness() {
             Readiness::Plan(plan) => Some(plan),

@@ -1,7 +1,7 @@
 use super::*;
 use crate::{
-    order::{Injection, Note, Noted, RangeFault, StepTo},
-    phase::{Gait, Outcome, Resumes},
+    order::{Injection, Note, Noted, RangeFault},
+    phase::{Gait, Outcome, Resumes, StepTo},
     planner::{ParamValue, Parameters, PlannerChoice},
 };
 use world::StationId;

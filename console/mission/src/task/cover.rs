@@ -7,18 +7,18 @@ use planner_api::{self as api, LegTag, Plan};
 use std::{collections::HashSet, sync::Arc};
 use world::{CoverageGrid, ObstacleMap, Point, Shape, coverage::regions, polyline};
 
-/// Size of the blocks of floor that planners receive, as a share of the lane width.
+/// Size of the blocks of floor that planners receive, as a multiple of the lane width.
 const BLOCK_LANES: f64 = 0.25;
 
-/// A corner closer than this is given up if the robot stops getting closer to it, metres.
+/// A corner closer than this is given up if the robot stops getting closer to the corner, metres.
 const NEAR_CORNER_M: f64 = 0.3;
-/// Time until it is given up, seconds: longer than a turn on the spot takes.
+/// Time after which such a corner is given up, seconds: longer than a turn on the spot takes.
 const CORNER_PATIENCE_S: f64 = 6.0;
 /// Minimum change that counts as getting closer, metres.
 const NEARER_M: f64 = 0.01;
 
 /// Progress of a coverage mission. The scanned floor is recorded in the mission's grid, so any planner can continue from
-/// here.
+/// the current state.
 #[derive(Clone)]
 pub(crate) struct Cover {
     anchor: Point,
@@ -29,7 +29,7 @@ pub(crate) struct Cover {
     lanes: Option<Lanes>,
     /// Distance driven along earlier plans, metres.
     before_m: f64,
-    /// Minimum distance from the corner ahead so far, metres, and the time since then, seconds.
+    /// The minimum distance so far from the corner ahead, metres, and the time since it was reached, seconds.
     at_corner: (f64, f64),
 }
 
@@ -38,7 +38,7 @@ pub(crate) struct Cover {
 pub(crate) struct Joint {
     /// The place.
     pub at: Point,
-    /// Distance along the plan to it, metres.
+    /// Distance along the plan to that place, metres.
     pub station_m: f64,
 }
 
@@ -86,7 +86,7 @@ impl Cover {
         }
     }
 
-    /// Counts time during which the robot was free to move: a corner that it cannot reach is given up.
+    /// Counts time during which the robot was free to move; a corner that the robot cannot reach is given up.
     pub(crate) fn wait(&mut self, passed_s: f64) {
         let Some(lanes) = &mut self.lanes else { return };
         let corner_m = lanes.follower.corner_m(self.position).filter(|corner_m| *corner_m < NEAR_CORNER_M);
@@ -130,8 +130,8 @@ impl Cover {
         Some(Plan { cost: 0.0, ..rest })
     }
 
-    /// Whether at least half of the points of a plan are also points of the current one: a plan made from scratch shares
-    /// a tenth of them, a repaired one more than seven tenths.
+    /// Whether at least half of the points of a plan are also points of the current plan. A plan made from scratch shares
+    /// about a tenth of them; a repaired plan shares more than seven tenths.
     pub(crate) fn keeps_to(&self, plan: &Plan) -> bool {
         let bits = |point: &Point| [point.x.to_bits(), point.y.to_bits()];
         let flown: HashSet<_> = self.lanes.iter().flat_map(|lanes| &lanes.plan.path).map(bits).collect();
@@ -139,8 +139,8 @@ impl Cover {
         2 * kept >= plan.path.len()
     }
 
-    /// The first end of a stretch of the plan that is at least `lead_m` ahead of the robot. If it is more than twice as
-    /// far, the first point of the path at least `lead_m` ahead. `None` if the plan ends before.
+    /// The first place at least `lead_m` ahead of the robot at which a stretch of the plan ends. If that place is more
+    /// than twice as far away, the first point of the path at least `lead_m` ahead. `None` if the plan ends before then.
     pub(crate) fn joint(&self, lead_m: f64) -> Option<Joint> {
         let Lanes { plan, follower, .. } = self.lanes.as_ref()?;
         let stations_m = polyline::stations_m(&plan.path);
@@ -156,7 +156,7 @@ impl Cover {
         Some(Joint { at: plan.path[index], station_m: stations_m[index] })
     }
 
-    /// The path along the plan from the robot to a place on it.
+    /// The path along the plan from the robot to a place on the plan.
     pub(crate) fn way_to(&self, joint: &Joint) -> Vec<Point> {
         let between = self.lanes.iter().flat_map(|Lanes { plan, follower, .. }| {
             let stations_m = polyline::stations_m(&plan.path);
@@ -166,7 +166,7 @@ impl Cover {
         std::iter::once(self.position).chain(between).collect()
     }
 
-    /// The rest of the path from a place on it.
+    /// The rest of the path, from a place on the plan.
     pub(crate) fn path_from(&self, joint: &Joint) -> Vec<Point> {
         self.lanes
             .as_ref()
@@ -178,13 +178,13 @@ impl Cover {
         self.lanes.as_ref().map(|lanes| &lanes.follower)
     }
 
-    /// Purpose of the stretch under the robot.
+    /// Purpose of the stretch that the robot is on.
     pub(crate) fn leg(&self) -> Option<LegTag> {
         let lanes = self.lanes.as_ref()?;
         lanes.plan.legs.get(self.leg_index()?).map(|leg| leg.tag)
     }
 
-    /// Number of the stretch under the robot; at the end of the plan the last one.
+    /// Index of the stretch that the robot is on; at the end of the plan, the last stretch.
     pub(crate) fn leg_index(&self) -> Option<usize> {
         let lanes = self.lanes.as_ref()?;
         let along_m = lanes.follower.along_m();
@@ -204,10 +204,10 @@ impl Cover {
         self.lanes.as_ref().is_none_or(|lanes| lanes.follower.remaining().iter().any(is_in_the_way))
     }
 
-    /// What is left to scan, as boxes of floor. If nothing is left, returns one cell at the anchor: an empty list would
-    /// mean the whole floor.
+    /// What is left to scan, as boxes of floor. If nothing is left, returns one cell at the anchor, because an empty list
+    /// would mean the whole floor.
     fn regions_left(&self, coverage: &CoverageGrid, lane_m: f64) -> Vec<Vec<Point>> {
-        // Before the first plan the tool has only passed the start, which it will pass again.
+        // Before the first plan, the tool has only passed over the start, which it will pass over again.
         if self.regions.is_empty() && self.lanes.is_none() {
             return Vec::new();
         }
@@ -218,7 +218,7 @@ impl Cover {
                 && !coverage.is_covered(index)
                 && wanted.as_ref().is_none_or(|w| w[index])
         };
-        // Requested floor in pieces narrower than a lane could slip between blocks.
+        // Requested areas that are narrower than a lane could be missed if the blocks were larger than a cell.
         let is_narrow = |region: &Vec<Point>| {
             let (low, high) = world::shape::bounds_of(region);
             (high - low).min() < lane_m
@@ -230,8 +230,8 @@ impl Cover {
         left.into_iter().chain(self.regions_out_of_reach(coverage)).collect()
     }
 
-    /// Requested areas without reachable floor, exactly as requested: planners report them, and their plans are
-    /// incomplete.
+    /// Requested areas that contain no reachable floor, exactly as requested: planners report them, and the plans count
+    /// as incomplete.
     pub(crate) fn regions_out_of_reach(&self, coverage: &CoverageGrid) -> impl Iterator<Item = Vec<Point>> {
         let floor = coverage.floor();
         let holds_floor = move |region: &Vec<Point>| {
@@ -262,7 +262,7 @@ impl Cover {
         TaskLeft::Cover { anchor: self.anchor, regions, tether, tolerance_m: self.tolerance_m }
     }
 
-    /// Share of the distance done, 0 to 1: the distance driven along this plan and earlier ones, relative to that
+    /// Share of the distance that is done, 0 to 1: the distance driven along this plan and earlier ones, divided by that
     /// distance plus the rest of this plan.
     pub(crate) fn done(&self) -> f64 {
         let flown_m = self.before_m + self.lanes.as_ref().map_or(0.0, |lanes| lanes.follower.along_m());

@@ -1,9 +1,9 @@
-//! The rest of a plan, from a place along it.
+//! The rest of a plan, from a place on its path.
 
 use planner_api::{Leg, LegTag, Plan};
 use world::{Point, polyline};
 
-/// The part of a plan after a distance `from_m` along its path, preceded by an approach that begins where the robot is.
+/// The part of a plan from a distance `from_m` along its path on, preceded by an approach that begins at the robot.
 pub(crate) fn rest_of(plan: &Plan, along_m: f64, approach: &[Point]) -> Plan {
     let (Some(end), Some(joined)) = (plan.path.len().checked_sub(1), approach.len().checked_sub(1)) else {
         return plan.clone();
@@ -11,7 +11,7 @@ pub(crate) fn rest_of(plan: &Plan, along_m: f64, approach: &[Point]) -> Plan {
     let first = polyline::stations_m(&plan.path).partition_point(|at_m| *at_m <= along_m).min(end);
     let shifted = |index: usize| index - first + approach.len();
     let cut = |leg: &Leg| {
-        // The leg under the robot now begins where the approach ends.
+        // The leg that the robot is on now begins where the approach ends.
         let begin = if leg.first < first { joined } else { shifted(leg.first) };
         (leg.last >= first).then(|| Leg { first: begin, last: shifted(leg.last), ..*leg })
     };

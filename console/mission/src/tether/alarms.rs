@@ -1,4 +1,4 @@
-//! The raised alarms and their levels.
+//! The alarms that have been raised, and their levels.
 
 use crate::event::{EventKind, TetherAlarm};
 use std::collections::BTreeMap;
@@ -24,7 +24,8 @@ pub(super) struct Alarms {
 }
 
 impl Alarms {
-    /// Updates the level of an alarm, as a share of its limit; returns an event if it changed.
+    /// Updates the level of an alarm from its current value, given as a share of its limit; returns an event if the level
+    /// changed.
     pub(super) fn check(&mut self, alarm: TetherAlarm, share: f64) -> Option<EventKind> {
         let level = self.levels.entry(alarm.word()).or_default();
         let now = match share {
@@ -37,7 +38,7 @@ impl Alarms {
             return Some(EventKind::TetherAlarmRaised { alarm, reached: now == Level::Reached });
         }
         if *level == Level::Reached && share <= 1.0 && share > EASED {
-            // Raised again when the limit is exceeded again.
+            // If the limit is exceeded once more, the alarm is raised again.
             *level = Level::Near;
             return Some(EventKind::TetherAlarmRaised { alarm, reached: false });
         }

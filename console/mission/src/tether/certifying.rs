@@ -7,10 +7,10 @@ use world::{
     tether::{Cable, Case, Certificate, certify},
 };
 
-/// Distance from the anchor within which a task counts as ending there, metres.
+/// Distance from the anchor within which a task counts as ending at the anchor, metres.
 const AT_ANCHOR_M: f64 = 0.3;
 
-/// Evaluates a plan of a whole mission on the drawing, before anything has moved.
+/// Evaluates a plan for a whole mission using the drawing, before anything has moved.
 pub fn certify_from_start(
     tether: &TetherConfig,
     config: &MissionConfig,
@@ -22,8 +22,8 @@ pub fn certify_from_start(
     certified(tether, config.limits.radius_m, None, path, cuts, drawing, returns)
 }
 
-/// Index of the point of a plan's path at which a return path along the cable ends; 0 without one. A path that ends away
-/// from the anchor does not count, whatever the planner calls it.
+/// Index of the point in a plan's path at which a return path along the cable ends; 0 if there is no return path. A path
+/// that ends away from the anchor does not count, whatever the planner calls it.
 pub(crate) fn return_path_ends(plan: &Plan, anchor: Point) -> usize {
     let is_home = |last: usize| plan.path.get(last).is_some_and(|end| (end - anchor).norm() <= AT_ANCHOR_M);
     let first = plan.legs.first().filter(|leg| leg.tag == LegTag::Retract && leg.first == 0);
@@ -35,8 +35,8 @@ pub(crate) fn ends_at_anchor(tether: &TetherConfig, config: &MissionConfig) -> b
     config.task.end().is_some_and(|end| (end - tether.anchor).norm() <= AT_ANCHOR_M)
 }
 
-/// Evaluates a path from the current geometry of the cable, or without one from a straight cable; `hull_m` is the room
-/// that the hull's centre needs, metres.
+/// Evaluates a path, starting with the current geometry of the cable or, without a cable, with a straight one; `hull_m`
+/// is the room that the hull's centre needs, metres.
 pub(super) fn certified(
     config: &TetherConfig,
     hull_m: f64,

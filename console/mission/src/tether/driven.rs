@@ -4,7 +4,7 @@ use world::Point;
 
 /// Spacing of the stored points of the path, metres.
 pub(super) const KEPT_M: f64 = 0.05;
-/// A step that comes this close to the second-last point undoes the last step, metres: no obstacle fits into so small a
+/// A step that ends this close to the second-last point undoes the last step, metres: no obstacle fits into so small a
 /// loop of the hull.
 const UNDONE_M: f64 = 0.08;
 
@@ -15,7 +15,7 @@ pub(super) struct Driven {
 }
 
 impl Driven {
-    /// An empty path.
+    /// Creates a path that contains only its start.
     pub(super) fn new(start: Point) -> Self {
         Self { points: vec![start] }
     }
@@ -25,7 +25,8 @@ impl Driven {
         &self.points
     }
 
-    /// Adds a step. A step back over the last one removes it, so that parts driven there and back are not kept.
+    /// Adds a step. A step that goes back over the last one removes it instead, so that parts driven there and back are
+    /// not kept.
     pub(super) fn keep(&mut self, here: Point) {
         let far_from =
             |point: Option<&Point>, apart_m: f64| point.is_none_or(|p| (here - p).norm() >= apart_m);

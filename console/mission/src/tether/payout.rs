@@ -1,23 +1,24 @@
 //! Compares the length paid out by the reel with the length expected from the map.
 //!
-//! The mission's cable passes only obstacles on the map, but the real one may catch on an obstacle that has not been seen
-//! yet. Only the encoder of the reel can reveal this. If two taut cables take the same route among the same obstacles,
-//! their lengths differ by no more than their ends do. A difference larger than the position error therefore means a
-//! different route.
+//! The mission's cable touches only obstacles on the map, but the real one may catch on an obstacle that has not been
+//! seen yet. Only the encoder of the reel can reveal this. If two taut cables take the same route among the same
+//! obstacles, their lengths differ by no more than the distances between their ends. A difference larger than the
+//! position error therefore means that the routes differ.
 
 use super::driven::KEPT_M;
 
-/// Excess length that errors of the map may cause, metres; the position error is added.
+/// Excess length that errors in the map may cause, metres; the position error is added.
 const SLACK_M: f64 = 0.2;
-/// Excess length caused by sag and stretch, as a share of the expected length.
+/// Excess length that sag and stretch may cause, as a share of the expected length.
 const SLACK_SHARE: f64 = 0.02;
 /// A reel with at most this much cable left counts as empty, metres.
 const AT_END_M: f64 = 0.05;
 /// How long the excess must last before the cable counts as caught, seconds.
 const SNAG_S: f64 = 3.0;
-/// Share of the permitted excess below which the cable length counts as expected, and a caught cable as free.
+/// Share of the permitted excess below which the cable length counts as expected again, and a caught cable as free.
 const EXPLAINED: f64 = 0.25;
-/// A caught cable is free at least this far before the place where its length was last as expected, metres.
+/// To free a caught cable, the robot goes back at least this far beyond the place where the cable length was last as
+/// expected, metres.
 const FURTHER_BACK_M: f64 = 0.5;
 
 /// The cable expected from the map.
@@ -31,18 +32,19 @@ pub(super) struct Explained {
     pub points: usize,
 }
 
-/// The readings of the reel's encoder that the mission uses.
+/// What the mission knows from the encoder of the reel.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Payout {
     measured_m: Option<f64>,
     /// How long the excess has lasted, seconds.
     beyond_s: f64,
-    /// Number of points of the path driven up to which the cable length was as expected.
+    /// Number of points of the path driven up to the place where the cable length was last as expected.
     free_points: usize,
 }
 
 impl Payout {
-    /// Processes a measurement after some time. Without a measurement or an expected length, the comparison pauses.
+    /// Processes a measurement after some time has passed. If there is no measurement or no expected length, the
+    /// comparison pauses.
     pub(super) fn take(
         &mut self,
         measured_m: Option<f64>,
@@ -53,7 +55,7 @@ impl Payout {
         self.measured_m = measured_m.filter(|out_m| out_m.is_finite());
         let (Some(out_m), Some(explained)) = (self.measured_m, explained) else { return };
         let sag_m = SLACK_SHARE * explained.length_m;
-        // An empty reel can pay out no more, so a snag not detected by then would never be.
+        // An empty reel can pay out no more cable, so a snag that has not been detected by then would never be detected.
         let is_at_end = out_m >= reel_length_m - AT_END_M;
         let slack_m = SLACK_M + explained.error_m + if is_at_end { 0.0 } else { sag_m };
         let excess_m = out_m - explained.length_m;
@@ -64,7 +66,7 @@ impl Payout {
         }
     }
 
-    /// Tether paid out as measured by the encoder, metres.
+    /// Length of tether paid out, as measured by the encoder, metres.
     pub(super) fn measured_m(&self) -> Option<f64> {
         self.measured_m
     }
@@ -79,14 +81,14 @@ impl Payout {
         self.beyond_s > SNAG_S
     }
 
-    /// Of the `points` of the path driven, the number to go back to so that a caught cable comes free: driving back
-    /// undoes the effect of driving on, among known and unknown obstacles alike.
+    /// Of the `points` of the path driven, the number that is left when the robot has gone back far enough for a caught
+    /// cable to come free: driving back undoes the effect of driving on, among known and unknown obstacles alike.
     ///
-    /// The excess grows with the square of the distance since the cable touched the obstacle. So where the excess became
-    /// noticeable, the cable may already have been caught for the same distance again. Before that place the cable comes
-    /// off on the correct side, and the return path along it is clear.
+    /// The excess grows with the square of the distance driven since the cable touched the obstacle. Where the excess
+    /// became noticeable, the cable may therefore already have been caught for about the same distance as it has been
+    /// dragged since. Before that place, the cable comes off on the correct side, and the return path along it is clear.
     pub(super) fn points_to_go_back_to(&self, points: usize) -> usize {
-        // The path becomes shorter again on the way back.
+        // On the way back, the path becomes shorter again.
         let free = self.free_points.min(points);
         let caught = points - free;
         free.saturating_sub(caught + (FURTHER_BACK_M / KEPT_M) as usize)

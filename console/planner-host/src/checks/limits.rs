@@ -1,13 +1,10 @@
-//! The limits of what the console accepts from a worker. The author of a plugin can write to the socket, too, so the
-//! console trusts only what it has checked itself: counts and lengths while it reads, before it reserves memory for
-//! them, and numbers.
+//! The limits on what the console accepts from a worker. The plugin can write to the socket, too, so the console trusts
+//! only what it has checked itself: numbers, and counts and lengths, which it checks while reading, before it reserves
+//! memory for them.
 
 use crate::Progress;
-use crate::parameters::check;
-use crate::wire::answer::{Described, Parameter};
 use foreign::plain;
-use mission::{ParamInfo, Sandbox};
-use planner_api::export::is_id;
+use mission::Sandbox;
 use planner_api::{Drawing, LogLevel, abi};
 use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
 use std::fmt;
@@ -15,19 +12,19 @@ use std::marker::PhantomData;
 
 /// The maximum number of planners in a library.
 pub(crate) const MOST_PLANNERS: usize = 64;
-/// The maximum numbers of elements in one answer.
+/// The maximum numbers of elements of each kind in one answer.
 pub(crate) const MOST_PARAMS: usize = 256;
 pub(crate) const MOST_DRAWINGS: usize = 4096;
 pub(crate) const MOST_SCALARS: usize = 256;
-/// For the planner; the worker may add one more.
+/// This is the planner's limit; the worker may add one more.
 pub(crate) const MOST_LOGS: usize = 64;
 pub(crate) const MOST_POINTS: usize = 1_000_000;
 pub(crate) const MOST_CUTS: usize = 10_000;
 /// The maximum number of words of a choice parameter: as many as fit into a text with separators between them.
 pub(crate) const MOST_OPTIONS: usize = LONGEST_TEXT;
-/// The maximum length of a text, bytes; workers send shorter ones.
+/// The maximum length of a text, bytes; the texts that workers send are shorter.
 const LONGEST_TEXT: usize = 16 << 10;
-/// The number of elements for which memory is reserved before they are read.
+/// The maximum number of elements for which memory is reserved before they are read.
 const RESERVED: usize = 1024;
 
 struct AtMost<T, const MOST: usize>(PhantomData<T>);
@@ -58,7 +55,7 @@ pub(crate) fn at_most<'de, D: Deserializer<'de>, T: Deserialize<'de>, const MOST
     from.deserialize_seq(AtMost::<T, MOST>(PhantomData))
 }
 
-/// A text that can be displayed safely: it contains no control characters.
+/// A text that is safe to display because it contains no control characters.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Text(pub(crate) String);
 
@@ -75,7 +72,7 @@ fn shown<E: Error>(text: &str) -> Result<Text, E> {
     Ok(Text(plain(text).into_owned()))
 }
 
-/// Reads a text that can be displayed safely.
+/// Reads a text that is safe to display.
 pub(crate) fn text<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
     Text::deserialize(from).map(|Text(text)| text)
 }
@@ -86,13 +83,7 @@ pub(crate) fn words<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<String>, D
     Ok(words.into_iter().map(|Text(word)| word).collect())
 }
 
-/// Reads parameters.
-pub(crate) fn parameters<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<ParamInfo>, D::Error> {
-    let parameters = at_most::<_, Parameter, MOST_PARAMS>(from)?;
-    Ok(parameters.into_iter().map(|Parameter(info)| info).collect())
-}
-
-/// Reads drawings, all of whose numbers must be finite.
+/// Reads drawings; all their numbers must be finite.
 pub(crate) fn drawings<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Drawing>, D::Error> {
     let drawings = at_most::<_, Drawing, MOST_DRAWINGS>(from)?;
     let are_finite = drawings.iter().all(|drawing| abi::Draw::from(drawing).get().is_some());
@@ -103,7 +94,7 @@ pub(crate) fn drawings<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Drawing
     }
 }
 
-/// Reads figures, all of whose values must be finite.
+/// Reads figures; all their values must be finite.
 pub(crate) fn scalars<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(String, f64, String)>, D::Error> {
     let scalars = at_most::<_, (Text, f64, Text), MOST_SCALARS>(from)?;
     if !scalars.iter().all(|(_, value, _)| value.is_finite()) {
@@ -119,23 +110,13 @@ pub(crate) fn logs<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(LogLevel, 
     Ok(logs.into_iter().map(|(level, Text(message))| (level, message)).collect())
 }
 
-/// Reads the extent of a worker's sandbox, with a reason that can be displayed safely.
+/// Reads the extent of a worker's sandbox; the reason must be safe to display.
 pub(crate) fn sandbox<'de, D: Deserializer<'de>>(from: D) -> Result<Sandbox, D::Error> {
     Ok(match Sandbox::deserialize(from)? {
         Sandbox::Full => Sandbox::Full,
         Sandbox::Partial(why) => Sandbox::Partial(shown(&why)?.0),
         Sandbox::None(why) => Sandbox::None(shown(&why)?.0),
     })
-}
-
-/// Reads planners, which must have valid, distinct ids and valid parameters.
-pub(crate) fn planners<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Described>, D::Error> {
-    let planners = at_most::<_, Described, MOST_PLANNERS>(from)?;
-    let is_new = |i: usize, id: &String| planners[..i].iter().all(|earlier| earlier.id != *id);
-    let are_sound = planners.iter().enumerate().all(|(i, planner)| {
-        is_id(&planner.id) && is_new(i, &planner.id) && check(&planner.parameters).is_ok()
-    });
-    if are_sound { Ok(planners) } else { Err(D::Error::custom("invalid planners")) }
 }
 
 /// Reads a share from 0 to 1.

@@ -1,4 +1,4 @@
-//! The plugin files and their modification times, cheap enough to poll.
+//! The plugin files and their modification times; they are cheap enough to poll.
 
 use super::{PluginDirs, named_like_plugins};
 use std::{
@@ -8,13 +8,13 @@ use std::{
 };
 
 /// The coarsest resolution of file times on common file systems. If a folder changed less than this before it was
-/// listed, it may have changed again after the listing without a new time.
+/// listed, it may have changed again afterwards without its time changing.
 const COARSEST: Duration = Duration::from_secs(2);
 
-/// The modification times of all files in some folders that are named like plugins.
+/// The modification times of all files in some folders that have the names of plugins.
 ///
-/// A look costs one system call for each folder and for each such file. A folder is listed again only after something
-/// in it was added or removed, because a build folder contains thousands of other files.
+/// A check costs one system call for each folder and for each such file. A folder is listed again only after something
+/// was added to it or removed from it, because a build folder contains thousands of other files.
 #[derive(Debug)]
 pub struct Stamps {
     folders: Vec<Folder>,
@@ -37,13 +37,14 @@ struct Folder {
 }
 
 impl Stamps {
-    /// Watches these folders; the first look lists them all.
+    /// Watches these folders; the first check lists them all.
     pub fn of(plugins: &PluginDirs) -> Self {
         let folder = |path: &PathBuf| Folder { path: path.clone(), listed: None, files: Vec::new() };
         Self { folders: plugins.folders.iter().map(folder).collect() }
     }
 
-    /// Returns when each file was last modified, and its length, without reading any. A new build changes the result.
+    /// Returns when each file was last modified, and its length, without reading any file. A new build changes the
+    /// result.
     pub fn look(&mut self) -> Vec<FileStamp> {
         let now = SystemTime::now();
         self.folders.iter_mut().flat_map(|folder| folder.look(now)).collect()

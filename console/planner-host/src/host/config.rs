@@ -6,8 +6,8 @@ use std::time::Duration;
 
 /// Budgets and limits of planners.
 ///
-/// Budgets are charged by a fair clock: a planner that computes is charged the processor time it gets, and one that
-/// waits is charged the time that passes.
+/// Budgets are charged according to a fair clock: a planner that computes is charged the processor time that it gets,
+/// and a planner that waits is charged the time that passes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HostConfig {
     /// The command that starts a worker.
@@ -29,7 +29,7 @@ pub struct HostConfig {
 }
 
 impl HostConfig {
-    /// Uses the default budgets, except for this one for a command.
+    /// Uses the default budgets, except that a command has this one.
     pub fn new(step_deadline: Duration) -> Self {
         Self {
             worker_command: WorkerCommand::default(),
@@ -45,7 +45,7 @@ impl HostConfig {
 }
 
 impl Default for HostConfig {
-    /// A command has two seconds: a planner that takes longer counts as hung, not as late.
+    /// A command has two seconds: a planner that takes longer is regarded as hung rather than late.
     fn default() -> Self {
         Self::new(Duration::from_secs(2))
     }

@@ -1,5 +1,5 @@
-//! Describes failures in sentences for the operator. The sentences go into the journal, so they contain no times,
-//! process ids or addresses.
+//! Describes failures in sentences for the operator. The sentences are written to the journal, so they contain no
+//! times, process ids or addresses.
 
 use crate::supervisor::{Failure, overweight};
 use crate::wire::answer::{BAD_OUTPUT, Refusal};
@@ -16,7 +16,7 @@ pub(crate) enum Phase {
     Plan,
     /// Saving or restoring private state.
     State,
-    /// Step with this tick number.
+    /// A step with this tick number.
     Step(u64),
 }
 
@@ -53,12 +53,13 @@ pub(super) fn of_parameters(planner: &str, message: String) -> Fault {
     new(planner, During::Configure, Cause::Refused, message)
 }
 
-/// Creates the fault for an answer that no robot can follow; `what` continues after the planner's name.
+/// Creates the fault for an answer that no robot can follow; `what` completes a sentence that begins with the planner's
+/// name.
 pub(super) fn bad_output(planner: &str, phase: Phase, what: &str) -> Fault {
     new(planner, phase.during(), Cause::BadOutput, format!("planner {planner} {what} during {phase}"))
 }
 
-/// Converts a failure to a fault of a planner.
+/// Converts a failure into a fault of a planner.
 pub(crate) fn of(failure: Failure, planner: &str, phase: Phase) -> Fault {
     let fault = |cause, message| new(planner, phase.during(), cause, message);
     match failure {
@@ -82,7 +83,7 @@ pub(crate) fn of(failure: Failure, planner: &str, phase: Phase) -> Fault {
             ),
         ),
         Failure::Late => {
-            fault(Cause::Late, format!("planner {planner} was too slow: it missed the deadline of {phase}"))
+            fault(Cause::Late, format!("planner {planner} was too slow: it missed the deadline for {phase}"))
         }
         Failure::Starved => fault(
             Cause::Starved,

@@ -1,4 +1,4 @@
-//! Finds the plugin files that may contain a planner, by its id.
+//! Finds the plugin files that may contain the planner with a given id.
 
 use crate::discovery::{PluginDirs, PluginFile};
 use crate::survey::Cache;
@@ -10,7 +10,7 @@ use std::path::PathBuf;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Candidate {
     pub(super) path: PathBuf,
-    /// Name of the file without its folder.
+    /// The name of the file, without its folder.
     pub(super) name: String,
     pub(super) sha256: String,
 }
@@ -20,21 +20,21 @@ pub(super) struct Catalog {
     dirs: PluginDirs,
     cache: Cache,
     plugins: Option<Vec<PluginFile>>,
-    /// Ids of planners that were loaded, each with the first file that contains it; `None` if that is unknown since the
-    /// files were read again.
+    /// Ids of planners that were loaded, each with the first file that contains it; `None` if the files have been read
+    /// again and this file is not known yet.
     known: BTreeMap<String, Option<Candidate>>,
 }
 
-/// How far the search for a planner has progressed.
+/// How far a search for a planner has progressed.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(super) enum Search {
     #[default]
     NotBegun,
     /// Tried the file from which the planner was loaded before.
     Known(Candidate),
-    /// Tried all files as they were read for an earlier planner.
+    /// Tried all files, as they had been read for an earlier planner.
     Remembered,
-    /// Tried all files as they were read for this planner: reading them again would find nothing new.
+    /// Tried all files, as they were read for this planner; reading them again would find nothing new.
     Fresh,
 }
 
@@ -64,7 +64,7 @@ impl Catalog {
                 None => (Search::Remembered, self.candidates(id)),
             },
             Search::Known(tried) => {
-                // This file could be loaded before, so it is tried once more before a different build replaces it.
+                // This file could be loaded earlier, so it is tried once more before a different build replaces it.
                 let mut files = self.candidates(id);
                 files.retain(|file| *file != tried);
                 files.push_front(tried);
@@ -80,7 +80,7 @@ impl Catalog {
     /// Reads the plugin files and returns those that may contain this planner.
     fn read_for(&mut self, id: &str) -> VecDeque<Candidate> {
         self.plugins = Some(self.dirs.plugins());
-        // A new file may come before the file that had a planner so far.
+        // A new file may precede the file that had been the first with a planner.
         self.known.values_mut().for_each(|file| *file = None);
         self.candidates(id)
     }
@@ -105,7 +105,7 @@ impl Catalog {
             .collect()
     }
 
-    /// Notes that a planner was loaded, and from which file if that is the first to contain it.
+    /// Notes that a planner was loaded, and from which file if that file is the first to contain it.
     pub(super) fn learn(&mut self, id: &str, file: Option<Candidate>) {
         self.known.insert(id.to_owned(), file);
     }

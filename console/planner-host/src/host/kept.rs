@@ -6,10 +6,10 @@ use crate::remains::{BadEnd, Crash, Printed};
 const MOST_PRINTED: usize = 256;
 /// The maximum number of crashes kept.
 const MOST_CRASHES: usize = 4;
-/// The maximum number of bad ends kept.
+/// The maximum number kept of planners that ended badly.
 const MOST_BAD_ENDS: usize = 16;
 
-/// What was left behind since the last collection.
+/// What has been left behind since the last collection.
 #[derive(Default)]
 pub(super) struct Kept {
     pub(super) printed: Vec<Printed>,
@@ -31,7 +31,8 @@ impl Kept {
         }
     }
 
-    /// Notes a bad end of a planner. A worker without a planner is ignored, because no author needs to know about it.
+    /// Notes that a planner ended badly. A worker without a planner is ignored, because no author needs to know about
+    /// it.
     pub(super) fn note_bad_end(&mut self, end: BadEnd) {
         if !end.planner.is_empty() && self.bad_ends.len() < MOST_BAD_ENDS {
             self.bad_ends.push(end);

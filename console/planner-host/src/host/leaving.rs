@@ -10,7 +10,7 @@ use std::time::Instant;
 
 /// A worker that is being ended.
 pub(super) struct Leaving {
-    /// The worker's planner; empty if it had none yet.
+    /// The id of the worker's planner; empty if the worker had no planner yet.
     planner: String,
     pub(super) worker: Worker,
 }
@@ -27,13 +27,13 @@ impl Host {
         self.answers.retain(|answer| answer.ask.worker != id);
     }
 
-    /// Asks a worker to exit, and leaves it to finish.
+    /// Asks a worker to exit, and lets it finish.
     pub(super) fn dismiss(&mut self, planner: &str, mut worker: Worker) {
         worker.shut_down();
         self.leave(planner, worker);
     }
 
-    /// Leaves a worker to finish.
+    /// Lets a worker finish.
     pub(super) fn leave(&mut self, planner: &str, mut worker: Worker) {
         self.kept.note_printed(planner, worker.take_printed());
         if !worker.is_gone() {
@@ -41,7 +41,7 @@ impl Host {
         }
     }
 
-    /// Asks all workers to exit, and waits until they have exited or their grace period is over.
+    /// Asks all workers to exit, and waits until they have done so or their grace period is over.
     pub fn finish(&mut self) {
         self.place(None);
         self.answers.clear();
@@ -62,7 +62,7 @@ impl Host {
 
     /// Processes workers that are being ended, without waiting. Returns whether any are left.
     ///
-    /// [`Self::next`] does this as well; call this function while no ask is open.
+    /// [`Self::next`] does this, too; call this function when no ask is open.
     pub fn look_after_leaving(&mut self) -> bool {
         if !self.leaving.is_empty() {
             self.look(Some(Instant::now()));

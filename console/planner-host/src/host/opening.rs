@@ -1,4 +1,4 @@
-//! A planner that is being opened, and its data from stage to stage.
+//! A planner that is being opened, and the data that it takes from stage to stage.
 
 mod stages;
 
@@ -22,7 +22,7 @@ pub(crate) struct Opening {
     /// Plugin files that have not been tried yet.
     candidates: VecDeque<Candidate>,
     search: Search,
-    /// Reported when no file contains the planner.
+    /// The fault to report if no file contains the planner.
     first_fault: Option<Fault>,
 }
 
@@ -32,7 +32,7 @@ pub(super) enum Stage {
     Load(Candidate),
     /// Create the planner.
     Configure(Loaded),
-    /// Restore an earlier state; contains what the planner logged and drew when it was created.
+    /// Restore an earlier state; the value is what the planner logged and drew when it was created.
     Restore(Loaded, Said),
 }
 
@@ -50,7 +50,7 @@ impl Stage {
 pub(super) struct Loaded {
     pub(super) info: PlannerInfo,
     state_version: u32,
-    /// Whether its process has served an earlier mission.
+    /// Whether its process has already served an earlier mission.
     is_reused: bool,
 }
 
@@ -69,7 +69,7 @@ impl WrittenSite {
 }
 
 impl Opening {
-    /// Starts with no file tried.
+    /// Creates the state in which no file has been tried yet.
     pub(crate) fn new(
         planner: &str,
         parameters: &Parameters,
@@ -91,7 +91,7 @@ impl Opening {
     /// contains the planner.
     fn note(&mut self, failure: Failure, candidate: &Candidate) {
         let fault = fault::of(failure, &self.planner, Phase::Load);
-        // While a library is loading, the plugin is to blame and not yet a planner.
+        // While a library is loading, the plugin is to blame rather than one of its planners.
         let (planner, plugin) = (format!("planner {} ", self.planner), format!("plugin {} ", candidate.name));
         let message = fault.message.replacen(&planner, &plugin, 1);
         let plugin_sha256 = Some(candidate.sha256.clone());

@@ -17,14 +17,14 @@ use std::time::{Duration, Instant};
 /// A planner and the worker id that the mission gave it.
 pub(super) struct Planner {
     pub(super) id: WorkerId,
-    /// `None` when the process has ended.
+    /// `None` if the process has ended.
     pub(super) worker: Option<Worker>,
     pub(super) asked: Option<Asked>,
     /// `None` while the planner is being opened, or if that failed.
     pub(super) ready: Option<Ready>,
 }
 
-/// An ask of an opened planner, borrowed.
+/// An ask to an opened planner, borrowed.
 pub(crate) enum Wanted<'a> {
     Reconfigure(&'a Parameters),
     Plan(&'a PlanRequest<'a>),
@@ -53,7 +53,7 @@ pub(super) struct Asked {
 /// The content of an open ask.
 pub(super) enum Doing {
     Open(Box<Opening>, Box<Stage>),
-    /// All parameter values as they will be once the planner has accepted the new ones.
+    /// All parameter values, as they will be once the planner has accepted the new ones.
     Reconfigure(Parameters),
     /// The robot's limits for the commands that follow the plan.
     Plan(Limits),
@@ -92,7 +92,7 @@ impl Ready {
 
     /// Merges new parameter values with the current ones; refuses parameters that are unknown or not live.
     ///
-    /// The mission always sends all values that were set by hand, so most of them are unchanged.
+    /// The mission always sends all values that were set by the user, so most of them are unchanged.
     fn merged(&self, changed: &Parameters) -> Result<Parameters, Fault> {
         let info = &self.loaded.info;
         let refuse = |message| fault::of_parameters(&info.id, message);
@@ -130,7 +130,7 @@ impl Planner {
         budget: Duration,
         write: impl FnOnce(&mut Writer),
     ) -> Result<(), Fault> {
-        // The time is taken first because a worker on this processor may answer before this thread runs again.
+        // The time is taken first, because a worker on this processor may answer before this thread runs again.
         let at = Instant::now();
         let asked = match &mut self.worker {
             Some(worker) => worker.ask(kind, budget, write),
@@ -242,7 +242,7 @@ impl Planner {
         Ok((Given::Command(command), said))
     }
 
-    /// Reads the private state; `None` when the planner cannot provide it now.
+    /// Reads the private state; `None` if the planner cannot provide it now.
     pub(super) fn snapshotted(&mut self, outcome: Result<(), Failure>) -> Result<Option<Vec<u8>>, Fault> {
         let answer = self.read(outcome, |body| Ok(body.0.to_vec()));
         unless_refused(answer.map_err(|failure| self.fault(failure, Phase::State)))
@@ -257,7 +257,7 @@ impl Planner {
         self.blamed(fault::new(self.name(), phase.during(), Cause::Refused, message))
     }
 
-    /// Converts a failure of this planner to a fault.
+    /// Converts a failure of this planner into a fault.
     fn fault(&self, failure: Failure, phase: Phase) -> Fault {
         self.blamed(fault::of(failure, self.name(), phase))
     }
@@ -277,7 +277,7 @@ impl Planner {
 }
 
 /// Turns a refusal into `None`. Saving state is optional: a planner may refuse to save or restore it, but must not fail
-/// doing so.
+/// while doing so.
 pub(super) fn unless_refused<T>(answer: Result<T, Fault>) -> Result<Option<T>, Fault> {
     match answer {
         Ok(answer) => Ok(Some(answer)),

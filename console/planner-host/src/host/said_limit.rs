@@ -1,20 +1,20 @@
 //! Limits what a planner may log, report and draw over time; what it sends in one step is limited where its answer is
-//! read. The limits count steps and not time, so that equal runs have equal journals.
+//! read. The limits are measured in steps rather than in time, so that equal runs have equal journals.
 
 use mission::Said;
 use planner_api::{Drawing, LogLevel};
 use std::collections::BTreeSet;
 
-/// The maximum number of messages in one burst; every step adds one to what is allowed.
+/// The maximum number of messages in one burst; every step allows one more.
 const MOST: usize = 64;
-/// The maximum number of distinct figures: each is a separate curve in the recording.
+/// The maximum number of distinct figures, each of which is a separate curve in the recording.
 const MOST_FIGURES: usize = 128;
 /// The maximum number of drawings in one burst ...
 const MOST_DRAWINGS: usize = 4096;
-/// ... and how many more every step adds.
+/// ... and the number of further drawings that every step allows.
 const DRAWINGS_A_STEP: usize = 512;
 
-/// What a planner may still log, report and draw.
+/// The amount that a planner may still log, report and draw.
 #[derive(Debug, Clone, Default)]
 pub(super) struct SaidLimit {
     logs: LogLimit,
@@ -23,7 +23,7 @@ pub(super) struct SaidLimit {
 }
 
 impl SaidLimit {
-    /// Drops whatever exceeds the limits from what a planner sent in a step, with a warning the first time.
+    /// Drops whatever exceeds the limits from what a planner sent in a step; the first time, adds a warning.
     pub(super) fn take(&mut self, said: &mut Said) {
         self.logs.take(&mut said.logs);
         let warnings = [self.figures.take(&mut said.scalars), self.drawings.take(&mut said.drawings)];
@@ -77,7 +77,7 @@ impl DrawingLimit {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct LogLimit {
     left: usize,
-    /// Whether the planner logged too much; its messages are then dropped until the full burst is allowed again.
+    /// Whether the planner has logged too much; if so, its messages are dropped until the full burst is allowed again.
     is_muted: bool,
 }
 

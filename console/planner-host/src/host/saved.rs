@@ -16,12 +16,12 @@ pub(super) struct Saved {
     pub(super) state: Vec<u8>,
 }
 
-/// The newest state of every worker, in the order in which they were saved. States outlive their workers.
+/// The newest state of every worker, in the order in which the states were saved. States outlive their workers.
 #[derive(Debug, Default)]
 pub(super) struct SavedStates(Vec<Saved>);
 
 impl SavedStates {
-    /// Keeps a state, replacing an earlier one of the same worker.
+    /// Keeps a state, replacing an earlier one from the same worker.
     pub(super) fn keep(&mut self, saved: Saved) {
         self.0.retain(|earlier| earlier.ask.worker != saved.ask.worker);
         self.0.push(saved);
@@ -29,7 +29,7 @@ impl SavedStates {
         self.0.drain(..surplus);
     }
 
-    /// Returns the state that was saved for an ask, if planner, file and version match.
+    /// Returns the state that was saved for an ask, if the planner, the file and the version match.
     pub(super) fn fitting(&self, ask: AskId, info: &PlannerInfo, version: u32) -> Option<&[u8]> {
         let fits = |saved: &&Saved| {
             saved.ask == ask

@@ -3,8 +3,8 @@
 use super::opening::Loaded;
 use crate::supervisor::Worker;
 
-/// The maximum number of processes kept. A mission needs one or two planners, a campaign needs one for each planner
-/// that it compares.
+/// The maximum number of processes kept. A mission needs one or two; a campaign needs one for each planner that it
+/// compares.
 const MOST: usize = 16;
 
 /// An idle worker that has loaded a planner.

@@ -1,7 +1,8 @@
 //! Runs a planner on the processor of the thread that asks it.
 //!
-//! A caller that waits for every command gains nothing from a second processor: one of the two always sleeps. Switching
-//! to the other thread on the same processor takes a fraction of the time that waking up a second processor takes.
+//! A caller that waits for every command gains nothing from a second processor, because one of the two threads always
+//! sleeps. Switching to the other thread on the same processor takes a fraction of the time needed to wake a second
+//! processor.
 
 use crate::supervisor::Worker;
 use rustix::thread::{CpuSet, sched_getaffinity, sched_getcpu, sched_setaffinity};
@@ -14,9 +15,9 @@ const LOOK_EVERY: Duration = Duration::from_millis(1);
 
 /// The asking thread, and possibly the worker that shares its processor.
 pub(super) struct Together {
-    /// The processors that both may use while they are separate; `None` if there is only one.
+    /// The processors that both threads may use while they are separate; `None` if there is only one processor.
     all: Option<CpuSet>,
-    /// The time until which they share a processor; `None` while they are separate.
+    /// The time until which the threads share a processor; `None` while they are separate.
     until: Option<Instant>,
     /// When the last command was requested, and when the worker was last checked for other events.
     asked: Instant,
@@ -24,7 +25,7 @@ pub(super) struct Together {
 }
 
 impl Together {
-    /// Creates the state for the calling thread, with no shared processor.
+    /// Creates the state for the calling thread, which shares its processor with no worker yet.
     pub(super) fn new() -> Self {
         let now = Instant::now();
         let all = sched_getaffinity(None).ok().filter(|all| all.count() > 1);
@@ -37,7 +38,7 @@ impl Together {
         self.asked = now;
         match self.until {
             Some(until) if now < until => {}
-            // This command runs with the two threads separate, so the system may wake each on a different processor.
+            // For this command the two threads are separate, so the system may wake each on a different processor.
             Some(_) => self.part(std::iter::once(worker)),
             None if self.all.is_some() && sched_getcpu() < CpuSet::MAX_CPU => {
                 let mut here = CpuSet::new();
@@ -51,7 +52,8 @@ impl Together {
         }
     }
 
-    /// Whether the two share a processor and only an answer is expected for now. If not, everything must be checked.
+    /// Whether the two threads share a processor and nothing but an answer is expected for now. If not, everything must
+    /// be checked.
     pub(super) fn may_look_later(&mut self) -> bool {
         let may = self.until.is_some() && self.asked.saturating_duration_since(self.looked) < LOOK_EVERY;
         if !may {
@@ -60,7 +62,7 @@ impl Together {
         may
     }
 
-    /// Lets this thread and the workers use all processors again. Call it before anything but a command, since new
+    /// Lets this thread and the workers use all processors again. Call this before anything but a command, because new
     /// processes and threads inherit the setting.
     pub(super) fn part<'a>(&mut self, workers: impl Iterator<Item = &'a Worker>) {
         if let (Some(all), Some(_)) = (&self.all, self.until.take()) {

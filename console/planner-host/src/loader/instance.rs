@@ -22,7 +22,7 @@ fn accept(code: i32, sink: &mut Sink<'_>) -> Result<(), Refusal> {
     Err(Refusal { code, message: sink.take_error(), partial })
 }
 
-/// Checks that the planner passed nothing that is larger than the console accepts.
+/// Checks that nothing that the planner passed is larger than the console accepts.
 fn within_limits(sink: &Sink<'_>) -> Result<(), Refusal> {
     sink.exceeds.map_or(Ok(()), |what| Err(bad_output(format!("gave {what}"))))
 }
@@ -54,7 +54,7 @@ impl Instance {
         let (obstacles, zones) = (lend::obstacles(site.obstacles), lend::zones(site.zones));
         let (site, values) = (lend::site(site, &obstacles, &zones), lend_values(values));
         let mut planner = std::ptr::null_mut();
-        // SAFETY: everything lent lives through the call, as everywhere below.
+        // SAFETY: everything lent outlives the call, here and below.
         let code = sink.during(|host| unsafe {
             create(host, &raw const site, values.as_ptr(), values.len() as u32, &raw mut planner)
         });

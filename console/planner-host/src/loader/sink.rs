@@ -1,4 +1,4 @@
-//! The console's services in the worker: copies what a planner passes, up to a limit.
+//! The console's services in the worker: they copy what a planner passes, up to a limit.
 
 use crate::Progress;
 use crate::checks::limits::{MOST_CUTS, MOST_DRAWINGS, MOST_LOGS, MOST_PARAMS, MOST_POINTS, MOST_SCALARS};
@@ -9,16 +9,16 @@ use planner_api::LogLevel;
 use planner_api::abi::{self, Draw, Host, Leg, Param, Str, Vec2, output};
 use std::ffi::c_void;
 
-/// The maximum size of private state, bytes. State and plans that are too large are refused; surplus drawings, figures
+/// The maximum size of private state, bytes. States and plans that are too large are refused; surplus drawings, figures
 /// and messages are counted and dropped.
 const MOST_STATE_BYTES: usize = 1 << 20;
 const LONGEST_MESSAGE: usize = 1024;
 /// The maximum length of a text in a table, bytes.
 pub(super) const LONGEST_TEXT: usize = 4096;
 
-/// The console's side of a call: deadline, whether drawings are shown, progress.
+/// The console's side of a call: the deadline, whether drawings are shown, and the progress.
 pub(crate) trait Watch {
-    /// Returns 0 to continue, 1 when cancelled, 2 when the deadline has passed.
+    /// Returns 0 to continue, 1 if the call was cancelled, 2 if the deadline has passed.
     fn should_stop(&self) -> u32;
     /// Returns the time until the deadline, seconds.
     fn time_left_s(&self) -> f64;
@@ -34,7 +34,7 @@ pub(crate) struct Sink<'a> {
     error: String,
     said: Said,
     n_dropped: usize,
-    /// The limit that was exceeded, for things that are useless if incomplete.
+    /// The limit that was exceeded, for things that are useless unless complete.
     pub(super) exceeds: Option<&'static str>,
     pub(super) params: Vec<ParamInfo>,
     pub(super) points: Vec<Point2<f64>>,
@@ -105,20 +105,20 @@ impl<'a> Sink<'a> {
     }
 }
 
-/// Converts a text of the plugin for display: at most `most` bytes, without control characters.
+/// Prepares a text from the plugin for display: at most `most` bytes, without control characters.
 pub(super) fn plain(raw: Str, most: usize) -> String {
     // SAFETY: the plugin promises that its texts have the stated length.
     foreign::plain(&unsafe { raw.to_text(most) }).into_owned()
 }
 
-/// Takes as many values as there is room for and counts the rest as dropped.
+/// Takes as many values as there is space for and counts the rest as dropped.
 fn take<'v, T>(values: &'v [T], have: usize, most: usize, n_dropped: &mut usize) -> &'v [T] {
     let (taken, surplus) = values.split_at(values.len().min(most.saturating_sub(have)));
     *n_dropped += surplus.len();
     taken
 }
 
-/// Takes all values, or none if there is no room for all: part of a path is a different path.
+/// Takes all values, or none if there is no space for all, because part of a path is a different path.
 fn whole<'v, T>(
     values: &'v [T],
     have: usize,
@@ -135,7 +135,7 @@ fn whole<'v, T>(
 
 /// Returns the sink behind a service's first argument.
 unsafe fn sink<'s>(ctx: *mut c_void) -> &'s mut Sink<'s> {
-    // SAFETY: `during` passes the sink, nobody else uses it during the call, and services are called one at a time.
+    // SAFETY: `during` passes the sink, nothing else uses it during the call, and services are called one at a time.
     unsafe { &mut *ctx.cast::<Sink<'s>>() }
 }
 
@@ -254,7 +254,7 @@ unsafe extern "C" fn take_param(ctx: *mut c_void, param: *const Param) {
     sink.params.push(param_info(&unsafe { abi::copy_sized(param) }));
 }
 
-/// Converts a level that came over the boundary; unknown ones count as a warning.
+/// Converts a level that was passed across the boundary; an unknown level becomes a warning.
 fn log_level(number: u32) -> LogLevel {
     match number {
         0 => LogLevel::Debug,

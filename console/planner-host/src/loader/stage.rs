@@ -1,5 +1,5 @@
-//! Makes sure that the bytes that run are the bytes that were checked: they are copied to a place where nobody can
-//! change them while they are loaded.
+//! Ensures that the bytes that run are the bytes that were checked, by copying them to a place where nobody can change
+//! them while they are being loaded.
 
 #[cfg(target_os = "linux")]
 use crate::sandbox::PLUGIN_AT;
@@ -38,7 +38,7 @@ impl Drop for Place {
             Self::Memory { .. } => {}
             #[cfg(any(test, not(target_os = "linux")))]
             Self::Copy(path) => {
-                // The library is loaded or refused by now; a leftover copy does no harm.
+                // By now the library has been loaded or refused; a leftover copy does no harm.
                 let _ = std::fs::remove_file(path);
             }
         }
@@ -68,7 +68,7 @@ fn seal(bytes: &[u8]) -> io::Result<Staged> {
     fcntl_add_seals(&file, SealFlags::WRITE | SealFlags::SHRINK | SealFlags::GROW | SealFlags::SEAL)?;
     let fd: OwnedFd = rustix::io::fcntl_dupfd_cloexec(&file, PLUGIN_AT)?;
     let path = PathBuf::from(format!("/proc/self/fd/{}", fd.as_raw_fd()));
-    // Without /proc the loader has no path to the copy.
+    // Without /proc, the loader has no path to the copy.
     std::fs::metadata(&path)?;
     Ok(Staged { path, _place: Place::Memory { _fd: fd } })
 }

@@ -1,4 +1,4 @@
-//! Judges answers as the console would: the same checks and the same sentences as during a mission.
+//! Judges answers as the console would, with the same checks and the same sentences as during a mission.
 
 use crate::checks;
 use crate::host::fault::{self, Phase};
@@ -14,7 +14,7 @@ use planner_api::{Command, Drive, Limits, Status};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// The context from earlier requests on which the judgement of an answer depends.
+/// The context from earlier requests that is needed to judge an answer.
 #[derive(Default)]
 pub(super) struct Judge {
     planner: String,
@@ -22,7 +22,7 @@ pub(super) struct Judge {
     tick: u64,
     /// The robot's limits for the commands that follow.
     limits: Option<Limits>,
-    /// The limits in the pending plan request; they apply once there is a plan.
+    /// The robot's limits in the pending plan request; they apply once there is a plan.
     next_limits: Option<Limits>,
     /// The tank in the latest plan request.
     site: Option<Arc<Site>>,
@@ -50,7 +50,7 @@ impl Judge {
         Ok(())
     }
 
-    /// Returns the name of the latest request; for a step, with the number of its tick.
+    /// Returns the name of the latest request; the name of a step includes the number of its tick.
     pub(super) fn name(&self) -> String {
         match self.kind {
             kind::LOAD => "load".to_owned(),
@@ -104,8 +104,8 @@ impl Judge {
         }
     }
 
-    /// Describes a failure as the fault that the console makes of it. After a timeout it adds the budget, because
-    /// nothing is compared with this text.
+    /// Describes a failure by the fault that the console would report. After a timeout this adds the budget, which is
+    /// possible because nothing is compared with this text.
     pub(super) fn fault(&self, failure: Failure, budget: Duration) -> Fault {
         let is_of_time = matches!(failure, Failure::Hung | Failure::Late | Failure::Starved);
         let mut fault = fault::of(failure, &self.planner, self.phase());

@@ -1,5 +1,5 @@
-//! File status that a planner may receive. The console looks it up itself, because the kernel would use a path that may
-//! have changed since it was checked.
+//! File status that a planner may receive. The console looks up the status itself, because the kernel would use a path
+//! that may have changed since it was checked.
 
 use std::fs::Metadata;
 use std::mem::offset_of;

@@ -13,7 +13,7 @@ type Rules = BTreeMap<i64, Vec<SeccompRule>>;
 /// A placeholder for "ask the console", which the filter compiler does not support.
 const ASK: u32 = 0x7a5c;
 
-/// Calls for computing, waiting, memory, existing threads, and descriptors that are already open.
+/// Calls for computing, waiting, memory, existing threads and descriptors that are already open.
 const FREE: &[i64] = &[
     libc::SYS_read,
     libc::SYS_write,
@@ -54,7 +54,7 @@ const FREE: &[i64] = &[
     libc::SYS_rt_sigreturn,
     libc::SYS_sigaltstack,
     libc::SYS_restart_syscall,
-    // Creates rules that have no effect before `landlock_restrict_self`.
+    // Creates rules that have no effect until `landlock_restrict_self` is called.
     libc::SYS_landlock_create_ruleset,
     libc::SYS_exit,
     libc::SYS_exit_group,
@@ -66,7 +66,8 @@ const OLD_FREE: &[i64] = &[libc::SYS_poll, libc::SYS_time, libc::SYS_alarm];
 #[cfg(not(target_arch = "x86_64"))]
 const OLD_FREE: &[i64] = &[];
 
-/// Installs the filter. Returns the descriptor over which the console receives calls that the filter does not allow.
+/// Installs the filter. Returns the descriptor through which the console receives the calls that the filter does not
+/// allow.
 pub(super) fn install() -> Result<OwnedFd, String> {
     // The C library starts threads with `clone3`, whose flags no filter can see. Without it, the library falls back to
     // `clone`.
@@ -110,7 +111,7 @@ fn rules() -> Result<Rules, String> {
     rules.insert(libc::SYS_prctl, only(0, &names.map(|name| name as u64))?);
     let flags = [libc::F_GETFD, libc::F_SETFD, libc::F_GETFL];
     rules.insert(libc::SYS_fcntl, only(1, &flags.map(|flag| flag as u64))?);
-    // Memory that the memory limit counts: private, writable, and not growing automatically.
+    // Memory that counts towards the memory limit: private, writable, and not growing automatically.
     let kinds = (libc::MAP_SHARED | libc::MAP_PRIVATE | libc::MAP_GROWSDOWN) as u64
         | (libc::MAP_LOCKED | libc::MAP_HUGETLB) as u64;
     let private = argument(3, SeccompCmpOp::MaskedEq(kinds), libc::MAP_PRIVATE as u64)?;
@@ -120,7 +121,7 @@ fn rules() -> Result<Rules, String> {
     };
     rules.insert(libc::SYS_mmap, vec![rule(vec![private, writable()?])?]);
     rules.insert(libc::SYS_mprotect, vec![rule(vec![writable()?])?]);
-    // Everything except taking pages of the machine out of use, which a privileged process could do.
+    // Everything except taking the machine's memory pages out of use, which a privileged process could do.
     let harmless = argument(2, SeccompCmpOp::Lt, libc::MADV_HWPOISON as u64)?;
     rules.insert(libc::SYS_madvise, vec![rule(vec![harmless])?]);
     // `nice` reads its own priority before it tries to change it.

@@ -1,4 +1,4 @@
-//! Systems without Landlock and seccomp: there is no sandbox, and this is reported wherever the sandbox is shown.
+//! For systems without Landlock and seccomp. They have no sandbox, and this is stated wherever the sandbox is shown.
 
 use super::ClosedOff;
 use mission::Sandbox;
@@ -52,7 +52,7 @@ pub(crate) const MAY_RESERVE: u64 = 1 << 30;
 /// Memory of a worker in addition to its planner's limit, bytes.
 pub(crate) const MAY_HIDE: u64 = 32 << 20;
 
-/// Placeholder; this system counts no such memory.
+/// Placeholder; on this system no such memory is counted.
 #[derive(Default)]
 pub(crate) struct Uncounted;
 

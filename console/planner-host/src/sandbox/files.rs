@@ -5,15 +5,15 @@ use landlock::{
     RulesetAttr, RulesetCreatedAttr, RulesetError, RulesetStatus, Scope,
 };
 
-/// The folders in which the loader looks for libraries.
+/// The folders in which the loader searches for libraries.
 pub(super) const LIBRARIES: [&str; 4] = ["/lib", "/lib64", "/usr/lib", "/usr/lib64"];
 /// The index in which the loader looks up the folder of a library.
 pub(super) const LIBRARY_CACHE: &str = "/etc/ld.so.cache";
-/// The newest rules in use. Older kernels enforce the rules they support, and seccomp blocks the calls that the others
-/// would cover.
+/// The newest rules in use. Older kernels enforce the rules that they support, and seccomp blocks the calls that the
+/// other rules would cover.
 const RULES: ABI = ABI::V6;
 
-/// Removes all access except reading libraries, from this thread and those that it starts.
+/// Removes all access except for reading libraries, from this thread and from those that it starts.
 pub(super) fn only_libraries() -> Result<(), String> {
     enforced(restrict(&LIBRARIES, &[LIBRARY_CACHE]))
 }

@@ -1,8 +1,8 @@
 //! Receives system calls that wait for a decision, as reported by the kernel.
 //!
-//! No safe crate offers the calls that this needs: installing a filter with a listener, receiving a report, checking
-//! whether its call still waits, and answering it. Each of them only passes a structure to the kernel. A fifth closes
-//! inherited descriptors.
+//! No safe crate offers the kernel calls that this needs: installing a filter with a listener, receiving a report,
+//! checking whether the reported call is still waiting, and answering it. Each of these four only passes a structure to
+//! the kernel. A fifth call closes inherited descriptors.
 #![expect(unsafe_code, reason = "kernel calls that no safe crate offers")]
 
 use super::Verdict;
@@ -13,15 +13,15 @@ use std::io;
 use std::os::fd::{AsFd, AsRawFd, BorrowedFd, FromRawFd, OwnedFd};
 use std::os::unix::fs::FileExt;
 
-/// Installs a filter in this process; threads that it starts later inherit the filter. Calls that the filter leaves
-/// undecided are reported over the returned descriptor.
+/// Installs a filter in this process; threads that it starts later inherit the filter. Calls that the filter does not
+/// decide are reported through the returned descriptor.
 pub(super) fn install(filter: &BpfProgram) -> io::Result<OwnedFd> {
     let program = libc::sock_fprog {
         len: filter.len() as u16,
         // The kernel only reads the filter, and both types are the same kernel structure.
         filter: filter.as_ptr().cast_mut().cast(),
     };
-    // SAFETY: `program` and the filter behind it outlive the call, which copies them.
+    // SAFETY: `program` and the filter that it points to outlive the call, which copies them.
     let descriptor = unsafe {
         libc::syscall(
             libc::SYS_seccomp,
@@ -41,8 +41,8 @@ pub(super) fn install(filter: &BpfProgram) -> io::Result<OwnedFd> {
 pub(crate) fn close_all_but(kept: BorrowedFd<'_>) {
     let kept = kept.as_raw_fd().cast_unsigned();
     for (first, last) in [(3, kept - 1), (kept + 1, u32::MAX)] {
-        // SAFETY: when a worker starts, only `kept` has an owner. Before Linux 5.9 the kernel does not have this call,
-        // and descriptors inherited from the console stay open.
+        // SAFETY: when a worker starts, only `kept` has an owner. Kernels before Linux 5.9 do not have this call; with
+        // them, descriptors inherited from the console stay open.
         unsafe { libc::syscall(libc::SYS_close_range, first, last, 0) };
     }
 }
@@ -59,13 +59,13 @@ pub(crate) struct Call {
 
 #[cfg(test)]
 impl Call {
-    /// Creates a call made by this process itself.
+    /// Creates a call as if this process had made it.
     pub(super) fn of(number: i64, arguments: [u64; 6]) -> Self {
         Self { id: 0, thread: std::process::id(), number, arguments }
     }
 }
 
-/// The descriptor over which a worker's calls are reported.
+/// The descriptor through which a worker's calls are reported.
 #[derive(Debug)]
 pub(crate) struct Listener(OwnedFd);
 
@@ -83,8 +83,8 @@ impl Listener {
         Self(descriptor)
     }
 
-    /// Returns the next waiting call; use it only when the descriptor is readable. `None` if the calling thread has
-    /// ended meanwhile.
+    /// Returns the next waiting call, or `None` if the calling thread has ended meanwhile. Use this only when the
+    /// descriptor is readable.
     pub(crate) fn next(&self) -> Option<Call> {
         // SAFETY: the kernel requires all zeros, and zero is valid for every field.
         let mut report: libc::seccomp_notif = unsafe { std::mem::zeroed() };
@@ -113,9 +113,8 @@ impl Listener {
     /// Writes into the memory of the thread that made the call.
     fn tell(&self, call: &Call, about: &About) -> io::Result<()> {
         let memory = File::options().write(true).open(format!("/proc/{}/mem", call.thread))?;
-        // While the call waits, its thread still exists and its number cannot have been reused, so the opened file is
-        // the memory of that thread.
-        // SAFETY: the kernel only reads the number.
+        // While the call is waiting, its thread still exists and the thread's number cannot have been reused, so the
+        // opened file is the memory of that thread. SAFETY: the kernel only reads the number.
         if unsafe { libc::ioctl(self.0.as_raw_fd(), IS_WAITING as libc::Ioctl, &raw const call.id) } != 0 {
             return Err(io::Error::last_os_error());
         }

@@ -1,28 +1,29 @@
-//! Limits a planner's memory that the kernel does not count.
+//! Limits the part of a planner's memory that the kernel does not count.
 //!
-//! The kernel counts private writable memory (`RLIMIT_DATA`), which is nearly all of it. There are two gaps: memory
-//! that was written and then made read-only is no longer counted, and read-only address space needs page tables.
-//! `RLIMIT_AS` does not help: when it is reached, the kernel makes memory writable without counting it. So calls that
-//! make memory read-only, or reserve read-only address space, wait for a decision here.
+//! The kernel counts private writable memory (`RLIMIT_DATA`), which is nearly all of a planner's memory. There are two
+//! gaps: memory that was written and then made read-only is no longer counted, and neither are the page tables of
+//! read-only address space. `RLIMIT_AS` does not help: when this limit is reached, the kernel makes memory writable
+//! without counting it. So calls that make memory read-only, or reserve read-only address space, wait for a decision
+//! here.
 
 use super::listener::Call;
 use super::verdict::Verdict;
 
 /// How much memory may be made read-only in large pieces, bytes: enough for the address tables that libraries fix up.
 pub(crate) const MAY_HIDE: u64 = 32 << 20;
-/// Smaller pieces are guard pages of threads and are always allowed. Hiding much memory in small pieces takes so long
-/// that the supervisor, which weighs the process ([`crate::supervisor`]), notices it.
+/// Smaller pieces are guard pages of threads and are always allowed. Hiding a lot of memory in small pieces takes so
+/// long that the supervisor, which measures the memory of the process ([`crate::supervisor`]), notices it.
 const SMALL: u64 = 16 << 10;
 /// Address space in addition to the planner's memory limit, bytes: thread stacks, and 64 MB that the C library reserves
 /// for each thread that allocates.
 pub(crate) const MAY_RESERVE: u64 = 1 << 30;
 
-/// A worker's memory that the kernel does not count.
+/// The part of a worker's memory that the kernel does not count.
 #[derive(Debug, Default)]
 pub(crate) struct Uncounted {
     /// The planner's memory limit, bytes.
     limit: u64,
-    /// Address space at the first check, bytes.
+    /// Address space used at the first check, bytes.
     own_space: Option<u64>,
     /// Memory that was made read-only in large pieces, bytes.
     hidden: u64,
@@ -34,7 +35,7 @@ impl Uncounted {
         Self { limit, ..Self::default() }
     }
 
-    /// Decides about a call that concerns such memory; `None` for any other call.
+    /// Decides on a call that concerns such memory; `None` for any other call.
     pub(crate) fn verdict(&mut self, call: &Call) -> Option<Verdict> {
         let [_, length, new_length, flags, ..] = call.arguments;
         match call.number {

@@ -1,8 +1,8 @@
-//! The console's decisions about system calls that are not allowed outright.
+//! The console's decisions on system calls that are not always allowed.
 //!
-//! A second thread can change the data that a call points at while the console looks at it. So a path only decides how
-//! a call is refused, never whether a file can be reached: Landlock decides what can be opened, and the console looks
-//! up file status itself.
+//! A second thread can change the data that a call points to while the console is reading it. So a path only decides
+//! how a call is refused, never whether a file can be reached: Landlock decides which files can be opened, and the
+//! console looks up file status itself.
 
 use super::about::{self, About};
 use super::files::{LIBRARIES, LIBRARY_CACHE};
@@ -16,8 +16,8 @@ use std::os::unix::fs::FileExt;
 const MOST_THREADS: usize = 64;
 /// The maximum length of a path, bytes.
 const LONGEST_PATH: usize = 256;
-/// Files that libraries try to read but do not need: processors, memory, time zone, language. The C library reads
-/// `overcommit_memory` when it returns memory.
+/// Files that libraries try to read but do not need, about processors, memory, time zone and language. The C library
+/// reads `overcommit_memory` when it returns memory.
 const CURIOUS: [&str; 10] = [
     "/proc/self/",
     "/proc/sys/vm/",
@@ -31,7 +31,7 @@ const CURIOUS: [&str; 10] = [
     "/etc/localtime",
 ];
 
-/// A decision about a call.
+/// A decision on a call.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Verdict {
     /// The call is made.
@@ -40,11 +40,11 @@ pub(crate) enum Verdict {
     Tell(About),
     /// The call fails with this system error, and the planner continues.
     Refuse(i32),
-    /// The call is never made, and the process is killed; the text is what the planner tried.
+    /// The call is never made, and the process is killed; the text states what the planner tried.
     Forbid(String),
 }
 
-/// Decides about a call. `sought` is the folder that was last searched for a library.
+/// Decides on a call. `sought` is the folder that was last searched for a library.
 pub(crate) fn verdict(call: &Call, stage: Stage, sought: &mut String) -> Verdict {
     let Call { number, arguments, .. } = *call;
     match number {
@@ -74,12 +74,12 @@ const LOADER_FLAGS: i32 = libc::O_RDONLY | libc::O_CLOEXEC;
 /// The flags allowed for files that are only read.
 const READING: i32 = LOADER_FLAGS | libc::O_DIRECTORY | libc::O_NONBLOCK | libc::O_NOCTTY | libc::O_LARGEFILE;
 
-/// Whether a worker ends the loading of its plugin with this call.
+/// Whether this is the call that a worker makes when its plugin is loaded.
 pub(crate) fn ends_loading(call: &Call) -> bool {
     call.number == libc::SYS_landlock_restrict_self
 }
 
-/// Decides about `clone`. Only threads are allowed: processes that share everything with their parent.
+/// Decides on `clone`. Only threads are allowed, which are processes that share everything with their parent.
 fn on_clone(call: &Call) -> Verdict {
     const THREAD: u64 = (libc::CLONE_VM | libc::CLONE_FS | libc::CLONE_FILES) as u64
         | (libc::CLONE_SIGHAND | libc::CLONE_THREAD | libc::CLONE_SYSVSEM) as u64;
@@ -101,7 +101,7 @@ fn on_clone(call: &Call) -> Verdict {
     }
 }
 
-/// Decides about opening a file for reading. While the plugin is loading, libraries can be opened, and afterwards only
+/// Decides on opening a file for reading. While the plugin is being loaded, libraries can be opened; afterwards, only
 /// the plugin's own bytes, which contain the names of its functions. By then Landlock allows nothing else to be opened,
 /// even if the path has changed meanwhile.
 fn opened(call: &Call, index: usize, stage: Stage, flags: i32, sought: &mut String) -> Verdict {
@@ -125,8 +125,8 @@ fn opened(call: &Call, index: usize, stage: Stage, flags: i32, sought: &mut Stri
     }
 }
 
-/// Decides about a request for file status: it is answered for open files, and for libraries while the plugin is
-/// loading.
+/// Decides on a request for file status. It is answered for open files and, while the plugin is being loaded, for
+/// libraries.
 fn asked_about(call: &Call, stage: Stage, sought: &str) -> Verdict {
     let [descriptor, path, to, flags, ..] = call.arguments;
     let Some(path) = path_at(call.thread, path) else { return Verdict::Forbid(name(call.number)) };
@@ -149,8 +149,8 @@ fn on_path(call: &Call, index: usize) -> Verdict {
         .map_or_else(|| Verdict::Forbid(name(call.number)), |path| of_path(call, &path))
 }
 
-/// Decides about opening a file for writing. It is always forbidden, except that naming a thread merely fails: the C
-/// library tries it but does not depend on it.
+/// Decides on opening a file for writing. This is forbidden, except that naming a thread merely fails: the C library
+/// tries to do so but does not depend on it.
 fn written(call: &Call, index: usize) -> Verdict {
     let Some(path) = path_at(call.thread, call.arguments[index]) else {
         return Verdict::Forbid(name(call.number));
@@ -159,7 +159,7 @@ fn written(call: &Call, index: usize) -> Verdict {
     if is_name { Verdict::Refuse(libc::EACCES) } else { forbidden(call, &path) }
 }
 
-/// Refuses paths that ordinary libraries ask for; forbids all others.
+/// Refuses paths that ordinary libraries ask for; forbids all other paths.
 fn of_path(call: &Call, path: &str) -> Verdict {
     let is_harmless =
         path.is_empty() || is_library(path) || CURIOUS.iter().any(|known| path.starts_with(known));
@@ -186,12 +186,12 @@ fn is_library(path: &str) -> bool {
     path == LIBRARY_CACHE || (is_there && !leads_back(path))
 }
 
-/// Whether a path contains `..` and may so leave its first folder.
+/// Whether a path contains `..` and may therefore lead out of its first folder.
 fn leads_back(path: &str) -> bool {
     path.split('/').any(|part| part == "..")
 }
 
-/// Whether a path is this folder; false if there is no folder.
+/// Whether a path is this folder; false if no folder is given.
 fn is_folder(folder: &str, path: &str) -> bool {
     !folder.is_empty() && path.trim_end_matches('/') == folder
 }
@@ -204,8 +204,8 @@ fn is_library_name(path: &str) -> bool {
     path.rsplit('/').next().is_some_and(|name| name.contains(".so"))
 }
 
-/// Makes a path fit for display and for the journal: without control characters, and without process ids, which differ
-/// from run to run.
+/// Prepares a path for display and for the journal by removing control characters, and process ids, which differ from
+/// run to run.
 fn for_people(path: &str) -> String {
     let plain = path.replace(|c| !is_plain(c), "?");
     match plain.strip_prefix("/proc/").and_then(|rest| rest.split_once('/')) {

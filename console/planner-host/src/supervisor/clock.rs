@@ -1,4 +1,5 @@
-//! A fair measure of how long a worker has been busy: a planner is not charged for a busy machine.
+//! A fair measure of how long a worker has been busy: a planner is not charged for time that a busy machine takes from
+//! it.
 
 use std::time::Duration;
 
@@ -7,20 +8,20 @@ const MOST_BUDGETS: u32 = 10;
 /// ... but not before this much wall time has passed.
 const LEAST_CAP: Duration = Duration::from_mins(1);
 
-/// The state of a busy process at one look.
+/// The state of a busy process at one check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Load {
     /// Processor time of all threads since the process started.
     pub(super) cpu: Duration,
-    /// Whether any thread is computing, is ready to compute, or waits for a disk.
+    /// Whether any thread is computing, is ready to compute, or is waiting for a disk.
     pub(super) is_running: bool,
 }
 
 /// The time charged against the budget of a request.
 ///
-/// Time is charged from look to look. A process that wants the processor is charged the processor time that it got, but
-/// never more than the wall time. A process that sleeps, is stopped or is deadlocked is charged the wall time. Several
-/// threads cost no more than one.
+/// Time is charged from one check to the next. A process that needs the processor is charged the processor time that it
+/// got, but never more than the wall time. A process that sleeps, is stopped or is deadlocked is charged the wall time.
+/// A process with many threads is charged no more than one with a single thread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct FairClock {
     charged: Duration,
@@ -29,9 +30,10 @@ pub(super) struct FairClock {
 }
 
 impl FairClock {
-    /// Takes a look this long after the request; if there is no `load`, wall time is charged.
+    /// Charges the time of a check that takes place this long after the request; without a `load`, wall time is
+    /// charged.
     ///
-    /// The processor time that a running process used before the first look is unknown, and is not charged.
+    /// The processor time that a running process used before the first check is unknown, and is not charged.
     pub(super) fn advance(&mut self, wall: Duration, load: Option<Load>) {
         let slice = wall.saturating_sub(self.wall);
         self.charged += match load {

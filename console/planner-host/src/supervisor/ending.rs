@@ -1,4 +1,4 @@
-//! Describes how a process ended, in words that are the same in every run.
+//! Describes how a process ended, in words that do not differ from run to run.
 
 use crate::wire::CHANNEL_LOST;
 use foreign::is_plain;
@@ -6,7 +6,7 @@ use rustix::process::Signal;
 use std::os::unix::process::ExitStatusExt;
 use std::process::ExitStatus;
 
-/// Maximum length of the reported line of output.
+/// Maximum length of the line of output that is reported.
 const LONGEST_LINE: usize = 160;
 
 /// Describes the end of a process, such as "was killed by SIGSEGV (invalid memory access)". A process that closed its
@@ -58,15 +58,15 @@ pub(super) fn last_line(output: &[u8]) -> String {
     without_ids(&visible).trim().chars().take(LONGEST_LINE).collect()
 }
 
-/// Whether a line belongs to a backtrace, like `12: main` and `at src/lib.rs:3`. Backtraces are left out because they
-/// depend on the user's settings.
+/// Whether a line belongs to a backtrace, such as `12: main` and `at src/lib.rs:3`. Backtraces are left out because
+/// they depend on the user's settings.
 fn is_of_trace(line: &str) -> bool {
     let line = line.trim_start();
     let is_numbered = line.split_once(": ").is_some_and(|(number, _)| number.chars().all(is_digit));
     is_numbered || line.starts_with("at ") || line == "stack backtrace:"
 }
 
-/// Removes process and thread ids, as in `thread 'main' (4711) panicked`, and the digits of addresses.
+/// Removes process and thread ids, such as the one in `thread 'main' (4711) panicked`, and the digits of addresses.
 fn without_ids(line: &str) -> String {
     let mut kept = String::with_capacity(line.len());
     let mut rest = line;

@@ -2,19 +2,19 @@
 
 use foreign::plain;
 
-/// The maximum number of lines kept until they are collected, enough for a panic's backtrace. Lines beyond it are only
-/// counted.
+/// The maximum number of lines kept until they are collected, enough for a panic's backtrace. Any further lines are
+/// only counted.
 const MOST: usize = 256;
 /// The maximum length of a line, bytes.
 const LONGEST: usize = 400;
 /// Appended to a line that was cut.
 const CUT: &[u8] = b" (rest of the line dropped)";
 
-/// Lines that were printed and not collected yet.
+/// Lines that were printed but not yet collected.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
     partial: Vec<u8>,
-    /// Whether the current line was cut, so that the rest of it is ignored.
+    /// Whether the current line was cut, which means that the rest of it is ignored.
     is_cut: bool,
     whole: Vec<String>,
     n_dropped: usize,
@@ -33,7 +33,7 @@ impl Lines {
         }
     }
 
-    /// Cuts a line that is too long; it might never end.
+    /// Cuts a line that is too long, because it might never end.
     fn cut_line(&mut self) {
         self.partial.extend_from_slice(CUT);
         self.end_line();
@@ -63,7 +63,7 @@ impl Lines {
         lines
     }
 
-    /// Takes the lines since the last call, including an unfinished one; use it when the process prints no more.
+    /// Takes the lines since the last call, including an unfinished line. Use this when the process can print no more.
     pub(super) fn take_rest(&mut self) -> Vec<String> {
         if !self.partial.is_empty() {
             self.end_line();

@@ -6,12 +6,12 @@ use super::worker::Worker;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use std::time::{Duration, Instant};
 
-/// The number of descriptors of two workers and the wake-ups.
+/// The number of descriptors that two workers and the wake-ups need.
 const MOST_USUALLY: usize = 7;
 
 /// Waits until something happens to a worker, a worker must be checked, the host is woken, or the time limit is
-/// reached, whichever comes first. Notes what has happened to each worker, in order. Returns whether the host was
-/// woken; each wake-up is reported once.
+/// reached, whichever comes first. Notes what has happened to each worker, in the order of the workers. Returns whether
+/// the host was woken; each wake-up is reported once.
 pub(crate) fn wait<'a>(
     wake_ups: Option<&WakeReceiver>,
     workers: impl Iterator<Item = &'a Worker> + Clone,
@@ -28,7 +28,7 @@ pub(crate) fn wait<'a>(
         worker.watched(|(_, descriptor, flags)| watched.push(PollFd::from_borrowed_fd(descriptor, flags)));
         wake_at = worker.wake_at().into_iter().chain(wake_at).min();
     }
-    // Between here and the poll nothing may be read from the wake-up socket.
+    // From here to the poll, nothing may be read from the wake-up socket.
     let woken = wake_ups.is_some_and(WakeReceiver::take);
     let left = wake_at.map(|at| at.saturating_duration_since(Instant::now()));
     let left = if woken { Some(Duration::ZERO) } else { left };

@@ -9,9 +9,10 @@ use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::os::unix::net::UnixStream;
 use std::process::{Child, Command, ExitStatus, Stdio};
 
-/// How much of the end of the output is kept, bytes; a panic's backtrace takes a few kilobytes.
+/// The end of the output is kept up to this length, bytes; a panic's backtrace takes a few kilobytes.
 const TAIL: usize = 16 << 10;
-/// The only variables that a worker inherits from the console's environment: whether a panic prints its backtrace.
+/// The only variables that a worker inherits from the console's environment. They decide whether a panic prints its
+/// backtrace.
 const ENVIRONMENT: [&str; 2] = ["RUST_BACKTRACE", "RUST_LIB_BACKTRACE"];
 /// The maximum number of consecutive reads of the output, so that a planner that prints endlessly does not delay the
 /// others.
@@ -20,9 +21,9 @@ const MOST_READS: usize = 16;
 /// A child process and the end of its output.
 pub(super) struct Process {
     child: Child,
-    /// Becomes readable when the process ends; `None` where the system has no such descriptor.
+    /// A descriptor that becomes readable when the process ends; `None` where the system has no such descriptor.
     pidfd: Option<OwnedFd>,
-    /// The exit status, once the process is reaped.
+    /// The exit status, once the process has been reaped.
     status: Option<ExitStatus>,
     output: Option<PipeReader>,
     tail: VecDeque<u8>,
@@ -44,7 +45,7 @@ impl Process {
             .stdout(writer.try_clone()?)
             .stderr(writer);
         let child = start.spawn()?;
-        // Dropping the command closes our copies of the pipe, so that the end of the output can be detected.
+        // Dropping the command closes the console's copies of the pipe, so that the end of the output can be detected.
         drop(start);
         let pidfd = pidfd_of(&child);
         Ok(Self {
@@ -87,9 +88,9 @@ impl Process {
         waitid(WaitId::Pid(self.pid()), look).is_ok_and(|status| status.is_some())
     }
 
-    /// Kills processes that the worker may have started; a sandboxed worker cannot start any.
+    /// Kills any processes that the worker may have started; a sandboxed worker cannot start any.
     fn kill_group(&self) {
-        // A worker that has not left the console's session yet has no process group.
+        // A worker that has not yet left the console's session has no process group of its own.
         let _ = kill_process_group(self.pid(), Signal::KILL);
     }
 

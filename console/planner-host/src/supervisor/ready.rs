@@ -1,9 +1,9 @@
-//! The kinds of events of a worker, and the events that have happened.
+//! The kinds of events that a worker can have, and the events that have happened.
 
 use rustix::event::PollFlags;
 use std::os::fd::BorrowedFd;
 
-/// The purpose of a worker's descriptor.
+/// What a worker's descriptor is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Source {
     /// Receives answers and sends requests.
@@ -36,7 +36,7 @@ impl Ready {
     pub(super) const NOTHING: Self =
         Self { socket: PollFlags::empty(), exited: false, printed: false, called: false };
 
-    /// The assumed state without a poll: an answer may have arrived, preceded by output.
+    /// The state to assume without a poll: an answer may have arrived, preceded by output.
     pub(crate) const PERHAPS_ANSWERED: Self =
         Self { socket: PollFlags::IN, exited: false, printed: true, called: false };
 

@@ -3,9 +3,9 @@
 use crate::wire::kind;
 use std::collections::VecDeque;
 
-/// The maximum number of requests kept from the last plan on.
+/// The maximum number of requests kept, counted from the last plan request.
 const MOST: usize = 200;
-/// The maximum number of requests kept that configured the planner: loading, parameters, state.
+/// The maximum number kept of requests that configured the planner: loading, parameters, state.
 const MOST_LASTING: usize = 64;
 
 /// Frames as they were sent to the worker.

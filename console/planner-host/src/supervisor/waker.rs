@@ -1,10 +1,10 @@
-//! Wakes the thread that waits for planners.
+//! Wakes the thread that is waiting for planners.
 //!
-//! A flag states whether a wake-up is pending; the socket only ends a wait that has already begun. A sender sets the
-//! flag first and then writes to the socket. The receiver begins to wait only if it found the flag cleared and has not
-//! read from the socket since, so a sender that sets the flag later writes a byte that nothing else reads. A sender
-//! whose flag was taken before it wrote leaves a byte in the socket. That byte ends one wait too early, which does no
-//! harm.
+//! A flag states whether a wake-up is pending; the socket only ends a wait that has already begun. A sender first sets
+//! the flag and then writes to the socket. The receiver begins to wait only if it has found the flag cleared and has
+//! not read from the socket since, so if a sender sets the flag later, nothing else reads the byte that it writes. If
+//! the receiver takes the flag before the sender has written, the byte stays in the socket. It then ends one wait too
+//! early, which does no harm.
 
 use std::io::{Read, Write};
 use std::os::fd::{AsFd, BorrowedFd};
@@ -12,15 +12,15 @@ use std::os::unix::net::UnixStream;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Makes the current or the next [`Host::next`](crate::Host::next) return once without an answer. Can be used from any
-/// thread; several pending wake-ups count as one.
+/// Makes the current or the next call of [`Host::next`](crate::Host::next) return once without an answer. It can be
+/// used from any thread; multiple pending wake-ups have the effect of one.
 #[derive(Debug, Clone)]
 pub struct Waker(Arc<Sender>);
 
 #[derive(Debug)]
 struct Sender {
     is_pending: AtomicBool,
-    /// `None` when the system has no descriptors left; then no worker can be started, and nothing ever waits.
+    /// `None` if the system has no descriptors left; in that case no worker can be started, and nothing ever waits.
     socket: Option<UnixStream>,
 }
 
@@ -76,7 +76,7 @@ impl WakeReceiver {
         }
     }
 
-    /// Returns the descriptor that becomes readable when a wake-up comes during a wait.
+    /// Returns the descriptor that becomes readable when a wake-up arrives during a wait.
     pub(super) fn descriptor(&self) -> Option<BorrowedFd<'_>> {
         self.socket.as_ref().map(AsFd::as_fd)
     }

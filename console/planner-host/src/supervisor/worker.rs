@@ -1,5 +1,5 @@
-//! A worker process as a state machine: it receives requests and is polled when something has happened, but is never
-//! waited for.
+//! A worker process as a state machine: it receives requests and is polled when something has happened, but nothing
+//! ever waits for it.
 
 mod end;
 mod exchange;
@@ -35,7 +35,7 @@ pub(crate) struct Worker {
     socket: UnixStream,
     incoming: Incoming,
     guard: Guard,
-    /// The frame that is being sent, or the last one sent.
+    /// The frame that is being sent, or the last frame that was sent.
     writer: Writer,
     /// The number of bytes of that frame already sent.
     n_sent: usize,
@@ -45,12 +45,12 @@ pub(crate) struct Worker {
     tape: Tape,
     /// Whether the worker was idle when it was asked to exit.
     leaves_idle: bool,
-    /// How it exited in that case, if not cleanly; continues after the planner's name.
+    /// How it exited in that case, if not cleanly; completes a sentence that begins with the planner's name.
     bad_end: Option<String>,
 }
 
 impl Worker {
-    /// Starts a worker for a planner with this memory limit, bytes; nothing is loaded yet.
+    /// Starts a worker for a planner with this memory limit, bytes, without loading anything.
     pub(crate) fn spawn(command: &WorkerCommand, memory_limit_bytes: u64) -> Result<Self, Failure> {
         let start = || {
             let (socket, theirs) = UnixStream::pair()?;
@@ -91,8 +91,8 @@ impl Worker {
         sealed.map(|sealed| (sealed, planners)).ok_or_else(|| self.end(Failure::Protocol))
     }
 
-    /// Restricts the worker's first thread, which answers requests, to these processors, as well as threads that it
-    /// starts from then on. If the system refuses, nothing changes.
+    /// Restricts the worker's first thread, which answers requests, and the threads that it starts from now on to these
+    /// processors. If the system refuses, nothing changes.
     #[cfg(target_os = "linux")]
     pub(crate) fn stay_on(&self, processors: &rustix::thread::CpuSet) {
         if !self.process.is_reaped() {
@@ -105,7 +105,8 @@ impl Worker {
         self.process.take_lines()
     }
 
-    /// Takes the description of how the worker exited on request, if not cleanly; continues after the planner's name.
+    /// Takes the description of how the worker exited on request, if it did not exit cleanly. The text completes a
+    /// sentence that begins with the planner's name.
     pub(crate) fn take_bad_end(&mut self) -> Option<String> {
         self.bad_end.take()
     }
@@ -146,7 +147,7 @@ impl Worker {
             return Err(Failure::Gone);
         }
         if self.incoming.has_more() {
-            // The worker sent something after its last answer without being asked.
+            // After its last answer the worker sent something without being asked.
             self.kill();
             return Err(Failure::Protocol);
         }
@@ -165,7 +166,7 @@ impl Worker {
         Ok(())
     }
 
-    /// Writes as much of the frame as the socket accepts.
+    /// Writes as much of the frame as the socket can accept.
     fn send(&mut self, now: Instant) {
         loop {
             let rest = &self.writer.frame()[self.n_sent..];
@@ -192,7 +193,7 @@ impl Worker {
         self.n_sent == self.writer.frame().len()
     }
 
-    /// Reports every descriptor whose events may change the state.
+    /// Reports every descriptor with events that may change the state.
     pub(super) fn watched<'a>(&'a self, mut watch: impl FnMut(Watched<'a>)) {
         match &self.state {
             State::Idle | State::Gone => return,

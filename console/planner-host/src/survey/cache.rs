@@ -15,15 +15,15 @@ use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// With more entries than this the folder is emptied, since each of an author's builds adds a file.
+/// With more entries than this, the folder is emptied, because every build that an author makes adds a file.
 const MOST_ENTRIES: usize = 256;
 
-/// A file that changed more recently than this could change again without a new time, because file times are too
+/// A file that changed more recently than this could change again without its time changing, because file times are
 /// coarse.
 const SETTLED: Duration = Duration::from_secs(1);
 
-/// A folder with one file for each plugin content, which lists its planners, and one file for each path, which states
-/// its content.
+/// A folder with one file for each plugin content, which lists the planners, and one file for each path, which
+/// identifies the content.
 pub(crate) struct Cache {
     folder: Option<PathBuf>,
     circumstances: String,
@@ -47,12 +47,12 @@ struct Place {
     ids: Option<Vec<String>>,
 }
 
-/// Changes whenever the file is written to: device, inode, length, times of the last modification and of the last
+/// Changes whenever the file is written to: its device, inode, length, and the times of its last modification and last
 /// status change.
 type Identity = (u64, u64, u64, (i64, i64), (i64, i64));
 
 impl Cache {
-    /// Opens a cache in this folder; without a folder it stays empty.
+    /// Opens a cache in this folder; without a folder, the cache stays empty.
     pub(crate) fn new(folder: Option<&Path>) -> Self {
         let circumstances = folder.map(|_| circumstances()).unwrap_or_default();
         Self { folder: folder.map(Path::to_owned), circumstances }
@@ -75,7 +75,7 @@ impl Cache {
         }
     }
 
-    /// Returns a plugin file that was read before and has not been modified since.
+    /// Returns a plugin file if it was read earlier and has not been modified since.
     pub(crate) fn seen(&self, path: &Path) -> Option<PluginFile> {
         let Place { identity, sha256, abi, ids } = self.read(&hash_of(path)?)?;
         let (now, _) = identity_of(path)?;
@@ -111,7 +111,7 @@ impl Cache {
         let Some(file) = self.file_of(of) else { return };
         let entry = Entry { circumstances: self.circumstances.clone(), of: of.to_owned(), kept };
         if let Ok(text) = serde_json::to_string(&entry) {
-            // Others that read meanwhile get either the old entry or the new one.
+            // Other processes that read the entry meanwhile get either the old one or the new one.
             let new = file.with_extension(format!("new-{}", std::process::id()));
             let _ = make_room(&file)
                 .and_then(|()| fs::write(&new, format!("{}\n{text}", sha256_hex(text.as_bytes()))))
@@ -130,7 +130,7 @@ fn hash_of(path: &Path) -> Option<String> {
     Some(sha256_hex(absolute.as_os_str().as_encoded_bytes()))
 }
 
-/// Returns what distinguishes a file from others and from its earlier contents, and the time since it changed.
+/// Returns what distinguishes a file from other files and from its own earlier contents, and the time since it changed.
 fn identity_of(path: &Path) -> Option<(Identity, Duration)> {
     let about = fs::metadata(path).ok()?;
     let changed =
@@ -153,7 +153,7 @@ fn circumstances() -> String {
     let program = fs::metadata("/proc/self/exe").or_else(|_| fs::metadata(std::env::current_exe()?)).ok();
     let changed =
         program.as_ref().and_then(|program| program.modified().ok()?.duration_since(UNIX_EPOCH).ok());
-    // On other systems there is no sandbox, so nothing is cached.
+    // Other systems have no sandbox, so nothing is cached there.
     let kernel = |what| fs::read_to_string(format!("/proc/sys/kernel/{what}")).unwrap_or_default();
     format!(
         "tankops {} ({} bytes, changed at {} ns), wire {}, ABI {CONSOLE_ABI}, kernel {} {}",

@@ -1,13 +1,16 @@
-//! Answers: the planners of a library, the results and messages of a planner, its progress, and its refusals. Readers
-//! enforce the limits of `checks/limits.rs`.
+//! Answers: the planners in a library, and the results, messages, progress and refusals of a planner. Readers enforce
+//! the limits in `checks/limits.rs`.
 
-use crate::checks::limits::{self, MOST_CUTS, MOST_POINTS};
+use crate::checks::limits::{self, MOST_CUTS, MOST_PARAMS, MOST_PLANNERS, MOST_POINTS};
+use crate::parameters::check;
 use crate::stamp::Abi;
 pub(crate) use mission::Said;
 use mission::{ParamInfo, ParamKind, Sandbox};
 use nalgebra::Point2;
+use planner_api::export::is_id;
 use planner_api::{Drawing, Leg, LogLevel, Plan};
-use serde::{Deserialize, Serialize};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// A planner's refusal as it is sent: the number of its code, its sentence, and the part of the path that was found.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -18,7 +21,7 @@ pub(crate) struct Refusal {
     pub(crate) partial: Vec<Point2<f64>>,
 }
 
-/// Code of a refusal that the worker itself makes because the planner's answer is invalid.
+/// Code of a refusal that comes from the worker itself because the planner's answer is invalid.
 pub(crate) const BAD_OUTPUT: i32 = 100;
 
 /// The report of a sandboxed worker before it loads a file. The console trusts it because it is sent before any code of
@@ -35,11 +38,11 @@ pub(crate) struct Sealed {
     pub(crate) abi: Abi,
 }
 
-/// The planners of a library.
+/// The planners in a library.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Planners(#[serde(deserialize_with = "limits::planners")] pub(crate) Vec<Described>);
+pub(crate) struct Planners(#[serde(deserialize_with = "read_planners")] pub(crate) Vec<Described>);
 
-/// One planner of a library.
+/// One planner in a library.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Described {
     #[serde(deserialize_with = "limits::text")]
@@ -52,7 +55,7 @@ pub(crate) struct Described {
     pub(crate) about: String,
     pub(crate) caps: u32,
     pub(crate) state_version: u32,
-    #[serde(serialize_with = "parameters", deserialize_with = "limits::parameters")]
+    #[serde(serialize_with = "parameters", deserialize_with = "read_parameters")]
     pub(crate) parameters: Vec<ParamInfo>,
 }
 
@@ -60,7 +63,23 @@ fn parameters<S: serde::Serializer>(parameters: &[ParamInfo], to: S) -> Result<S
     to.collect_seq(parameters.iter().cloned().map(Parameter))
 }
 
-/// A parameter as it is sent. (Its form in journals puts the fields of its kind beside the others, by name.)
+/// Reads parameters.
+fn read_parameters<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<ParamInfo>, D::Error> {
+    let parameters = limits::at_most::<_, Parameter, MOST_PARAMS>(from)?;
+    Ok(parameters.into_iter().map(|Parameter(info)| info).collect())
+}
+
+/// Reads planners, which must have valid, distinct ids and valid parameters.
+fn read_planners<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Described>, D::Error> {
+    let planners = limits::at_most::<_, Described, MOST_PLANNERS>(from)?;
+    let is_new = |i: usize, id: &String| planners[..i].iter().all(|earlier| earlier.id != *id);
+    let are_sound = planners.iter().enumerate().all(|(i, planner)| {
+        is_id(&planner.id) && is_new(i, &planner.id) && check(&planner.parameters).is_ok()
+    });
+    if are_sound { Ok(planners) } else { Err(D::Error::custom("invalid planners")) }
+}
+
+/// A parameter as it is sent. (In journals, the fields of its kind are named and stand beside the other fields.)
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Parameter(#[serde(with = "ParameterFields")] pub(crate) ParamInfo);
 
@@ -106,7 +125,7 @@ enum KindFields {
     },
 }
 
-/// The result of a planner, with what it drew, reported and logged during the call.
+/// The result of a planner, with everything that the planner drew, reported and logged during the call.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Answered<T> {
     pub(crate) given: T,

@@ -1,4 +1,4 @@
-//! Writes frames and reads their bodies. Bodies are encoded by `postcard`: the fields in order, without names.
+//! Writes frames and reads their bodies. Bodies are encoded with `postcard`: the fields in order, without names.
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -30,7 +30,7 @@ impl Writer {
         &self.0
     }
 
-    /// Returns what was written without a frame around it.
+    /// Returns what was written, without a frame around it.
     pub(crate) fn into_bytes(self) -> Vec<u8> {
         self.0
     }
@@ -57,7 +57,7 @@ pub(crate) struct Malformed;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Body<'a>(pub(crate) &'a [u8]);
 
-/// The result of reading from a body.
+/// The result of reading from the body of a frame.
 pub(crate) type Read<T> = Result<T, Malformed>;
 
 impl<'a> Body<'a> {

@@ -73,7 +73,7 @@ proptest! {
             prop_assert!(said.drawings.len() + said.scalars.len() + said.logs.len() <= most);
         }
         if let Ok(Refusal { message, partial, .. }) = body().take() {
-            // A character that is not plain is shown as a character of three bytes.
+            // A character that is not plain is replaced by a character of three bytes.
             prop_assert!(message.chars().count() + partial.len() <= most);
         }
         let _ = (body().take::<Answered<Command>>(), body().take::<Progress>(), body().take::<Sealed>());
@@ -94,7 +94,7 @@ fn what_is_damaged_above_is_good_before() {
 }
 
 /// A frame of maximum length that begins with the largest counts that its first bytes can claim, followed by the
-/// shortest possible elements. A list without a limit would need many times that length as memory.
+/// shortest possible elements. A list without a limit would need many times that length in memory.
 #[test]
 fn a_list_of_the_shortest_elements_ends_at_its_limit() {
     fn is_refused<T: serde::de::DeserializeOwned>(before: &[u8]) -> bool {

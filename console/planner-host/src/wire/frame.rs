@@ -7,7 +7,7 @@ use std::time::Duration;
 
 /// The number of bytes before the body.
 pub(crate) const HEADER: usize = 13;
-/// The position of the kind in a frame.
+/// The position of the byte for the kind in a frame.
 pub(crate) const KIND_AT: usize = 4;
 
 /// The outcome of waiting for a frame.
@@ -34,7 +34,7 @@ pub(crate) enum Filled {
     Broken,
 }
 
-/// The length is not valid for a frame.
+/// The length of a frame is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct NoFrame;
 
@@ -48,11 +48,11 @@ pub(crate) struct Incoming {
     current: usize,
 }
 
-/// Buffer space for the frame of a step, so that most are read with one call.
+/// Buffer space for the frame of a step, so that most of these frames are read with one call.
 const ROOM: usize = 16 << 10;
 
 impl Incoming {
-    /// Waits for a frame without a time limit, on a blocking stream.
+    /// Waits for a frame on a blocking stream, without a time limit.
     pub(crate) fn receive(&mut self, stream: &mut impl Read) -> Received {
         loop {
             match self.next_frame() {
@@ -82,8 +82,8 @@ impl Incoming {
         Some(Ok(()))
     }
 
-    /// Reads what has arrived: at most the rest of the next frame, or as much as the buffer has room for. Call it when
-    /// there was no next frame.
+    /// Reads what has arrived: at most the rest of the next frame, or as much as the buffer has space for. Call this
+    /// when there was no next frame.
     pub(crate) fn fill(&mut self, stream: &mut impl Read) -> Filled {
         let needed = self.front_length().map_or(ROOM, |length| 4 + length.min(LONGEST));
         self.make_room(needed.max(self.filled + 1));

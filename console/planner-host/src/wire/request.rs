@@ -1,4 +1,4 @@
-//! Requests. Those for a plan or a command contain messages of [`planner_api::message`], which are written in their
+//! Requests. Those for a plan or a command contain messages from [`planner_api::message`], which are written in their
 //! borrowed form and read in their owned form.
 
 use super::VERSION;
@@ -9,7 +9,7 @@ use std::ffi::OsStr;
 use std::os::unix::ffi::{OsStrExt, OsStringExt};
 use std::path::Path;
 
-/// Loads a library and keeps the planner with this id. With an empty id, all planners are described.
+/// A request to load a library and keep the planner with this id. If the id is empty, all planners are described.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Load {
     pub(crate) memory_limit_bytes: u64,
@@ -34,7 +34,7 @@ impl Load {
         Path::new(OsStr::from_bytes(&self.path))
     }
 
-    /// Writes the request after the version, which every build can read.
+    /// Writes the version, which every build can read, followed by the request.
     pub(crate) fn write(&self, w: &mut Writer) {
         w.put(&VERSION).put(self);
     }

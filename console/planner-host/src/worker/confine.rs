@@ -1,4 +1,4 @@
-//! Drops the privileges and resources that a worker does not need before it loads anything.
+//! Before a worker loads anything, drops the privileges and resources that it does not need.
 
 use super::Socket;
 use crate::discovery::{MOST_BYTES, PluginDirs, too_large_for_machine};
@@ -17,17 +17,17 @@ use std::os::fd::AsFd;
 use std::os::unix::net::UnixStream;
 use std::sync::{Arc, Barrier};
 
-/// The descriptor of the socket, the only one. It is above the numbers that careless plugins close.
+/// The only descriptor of the socket. Its number is higher than those that careless plugins close.
 const SOCKET_AT: i32 = 200;
 const MOST_FILES: u64 = 256;
-/// Maximum size of the first thread's stack, bytes; it does not count as writable memory.
+/// Maximum size of the first thread's stack, bytes, which is not counted as writable memory.
 const LARGEST_STACK: u64 = 16 << 20;
 
-/// Checks before a worker is started that it can have its two descriptors, and that the system allows a copy of every
+/// Checks, before a worker is started, that it can have its two descriptors and that the system allows a copy of every
 /// plugin in these folders.
 ///
 /// # Errors
-/// A sentence about the limit that is too low.
+/// A sentence that names the limit that is too low.
 pub fn check_limits(plugins: &PluginDirs) -> Result<(), String> {
     check_descriptors()?;
     plugins.candidates().iter().find_map(|path| too_large_for_machine(path)).map_or(Ok(()), Err)
@@ -36,7 +36,7 @@ pub fn check_limits(plugins: &PluginDirs) -> Result<(), String> {
 /// Checks that a worker can have its socket and its plugin at their descriptors.
 ///
 /// # Errors
-/// A sentence about the limit that is too low.
+/// A sentence that names the limit that is too low.
 pub(crate) fn check_descriptors() -> Result<(), String> {
     let last = SOCKET_AT.max(PLUGIN_AT) as u64;
     match getrlimit(Resource::Nofile).current.filter(|limit| *limit <= last) {
@@ -57,8 +57,8 @@ pub(super) fn take_socket() -> io::Result<UnixStream> {
     Ok(socket.into())
 }
 
-/// Drops what a planner does not need, first of all the terminal. Limits that the system does not grant are ignored:
-/// they only guard against accidents, and the deadlines are enforced without them.
+/// Drops what a planner does not need, above all the terminal. If the system does not grant a limit, this is ignored:
+/// these limits only guard against accidents, and the deadlines are enforced without them.
 pub(super) fn confine() {
     let _ = setsid();
     limit(Resource::Core, 0);
@@ -72,10 +72,10 @@ pub(super) fn confine() {
     }
 }
 
-/// Enters the sandbox and reports its extent and the file to the console, before any code of the plugin runs.
+/// Enters the sandbox and reports the sandbox's extent and the file to the console, before any code of the plugin runs.
 ///
 /// # Errors
-/// The console cannot be informed; then nothing may be loaded.
+/// The console cannot be informed, so nothing may be loaded.
 pub(super) fn close_off(
     socket: &Socket,
     sequence: u32,
@@ -103,14 +103,14 @@ pub(super) fn close_off(
 }
 
 /// Limits the planner's memory to this much in addition to what the worker itself uses. The system counts private
-/// writable memory; the console decides about the rest ([`crate::sandbox::Uncounted`]).
+/// writable memory; the console decides on the rest ([`crate::sandbox::Uncounted`]).
 pub(super) fn limit_memory(bytes: u64) {
     let (_, own_data) = own_memory();
     limit(Resource::Data, own_data.saturating_add(bytes));
 }
 
-/// Limits address space where the console cannot decide about it. Where it can, this limit would do harm: once it is
-/// reached, the system makes memory writable without counting it.
+/// Limits address space on systems where the console cannot decide on it. On other systems, this limit would do harm:
+/// once it is reached, the system makes memory writable without counting it.
 fn limit_space(bytes: u64) {
     let (own_space, _) = own_memory();
     limit(Resource::As, own_space.saturating_add(bytes).saturating_add(MAY_RESERVE));
@@ -135,10 +135,10 @@ fn limit(resource: Resource, most: u64) {
 }
 
 /// Starts a thread that ends this process when the console has exited, or when the process ignores a request to shut
-/// down. It works even during an endless loop.
+/// down. This works even if the planner is in an endless loop.
 ///
-/// Returns when that thread is watching. Starting it reserves memory, which the console must allow, and a console that
-/// has already asked the worker to shut down may no longer answer.
+/// Returns once that thread is watching. Starting the thread reserves memory, which the console must allow, and a
+/// console that has already asked the worker to shut down may no longer answer.
 pub(super) fn die_with_the_console(socket: Socket) -> io::Result<()> {
     let watches = Arc::new(Barrier::new(2));
     let begun = Arc::clone(&watches);
@@ -148,7 +148,8 @@ pub(super) fn die_with_the_console(socket: Socket) -> io::Result<()> {
             let mut sockets = [PollFd::new(&socket, SHUTDOWN_REQUESTED)];
             let happened = poll(&mut sockets, None).map_or(PollFlags::empty(), |_| sockets[0].revents());
             if happened.contains(PollFlags::NVAL) {
-                // The planner closed our descriptor; the main thread notices that, too, and ends with its own code.
+                // The planner closed the worker's descriptor; the main thread notices that, too, and ends with its own
+                // code.
                 return;
             }
             if happened == SHUTDOWN_REQUESTED {

@@ -1,6 +1,6 @@
 //! The soft deadline of the current request, as the planner sees it. It charges only the processor time of its own
-//! process, so that a planner is not late because the machine does not schedule it. The console's own clock also
-//! charges a planner that sleeps.
+//! process, so that a planner is not late merely because the machine did not schedule it. The console's own clock also
+//! charges a planner for time in which it sleeps.
 
 use super::Socket;
 use super::progress_reporter::ProgressReporter;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// The socket and the processor time are checked at most this often. Between requests a process computes nothing, so
-/// the processor time at the start of a request is known to this accuracy, too.
+/// this is also the accuracy with which the processor time at the start of a request is known.
 const CHECK_PERIOD: Duration = Duration::from_millis(1);
 
 /// The deadline of a request, and whether a CANCEL has arrived after it.
@@ -31,7 +31,7 @@ pub(super) struct Deadline {
     progress: ProgressReporter,
 }
 
-/// The budget of a request: it is used up when this much wall time has passed and this process has also used that much
+/// The budget of a request. It is used up when this much wall time has passed and this process has also used as much
 /// processor time.
 #[derive(Debug, Clone, Copy)]
 struct Budget {
@@ -59,7 +59,7 @@ fn processor_time() -> Duration {
 }
 
 impl Deadline {
-    /// Creates the deadline before the first request.
+    /// Creates the state before the first request.
     pub(super) fn new(socket: &Socket) -> Self {
         let now = Instant::now();
         Self {
@@ -74,7 +74,7 @@ impl Deadline {
         }
     }
 
-    /// Begins a request; anything that has already arrived after it is a CANCEL.
+    /// Begins a request; anything that has already arrived after the request is a CANCEL.
     pub(super) fn begin(&self, request: &Incoming) {
         let now = Instant::now();
         // Reading the processor time costs a system call, and steps may come every few microseconds.
@@ -89,7 +89,7 @@ impl Deadline {
         self.progress.begin(request.kind(), request.sequence());
     }
 
-    /// Sets whether drawings of this request are shown.
+    /// Sets whether drawings made during this request are shown.
     pub(super) fn set_watched(&self, watched: bool) {
         self.watched.set(watched);
     }

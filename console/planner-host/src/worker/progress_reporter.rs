@@ -1,4 +1,4 @@
-//! Reports the progress of the current plan to the console, no faster than a person can read.
+//! Reports the progress of the current plan to the console, no faster than a person can read it.
 
 use super::Socket;
 use crate::Progress;
@@ -41,7 +41,7 @@ impl ProgressReporter {
         }
     }
 
-    /// Reports waiting progress if it is due.
+    /// Reports the progress kept for later, if it is due.
     pub(super) fn catch_up(&self, now: Instant) {
         let is_too_soon = self.reported_at.get().is_some_and(|at| now - at < REPORT_EVERY);
         if self.waiting.borrow().is_none() || is_too_soon {
@@ -53,7 +53,7 @@ impl ProgressReporter {
         }
     }
 
-    /// Writes a frame completely or not at all, so that a console that does not read blocks nothing.
+    /// Writes a frame completely or not at all, so that nothing blocks if the console does not read.
     fn write(&self, writer: &mut Writer) {
         let Ok(mut rest) = writer.finish() else { return };
         let mut flags = SendFlags::DONTWAIT;
@@ -62,7 +62,7 @@ impl ProgressReporter {
             if rest.is_empty() {
                 return;
             }
-            // A frame that was begun must be completed, or nothing after it could be read.
+            // A frame that was begun must be completed; otherwise nothing after it could be read.
             flags = SendFlags::empty();
         }
     }

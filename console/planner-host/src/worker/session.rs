@@ -18,7 +18,7 @@ use std::sync::Arc;
 pub(super) enum Trouble {
     /// The library is not a plugin, or failed to describe itself.
     Refused(String),
-    /// The machine prevents the worker from running.
+    /// This machine prevents the worker from running.
     Unable(String),
     /// The planner refused.
     Failed(Refusal),
@@ -80,7 +80,8 @@ impl<'a> Session<'a> {
         Sink::new(self.deadline)
     }
 
-    /// Loads a library once. Describes one planner and keeps it, or describes all planners if no id is given.
+    /// Loads a library; a worker does this only once. Describes one planner and keeps it, or describes all planners if
+    /// no id is given.
     fn load(&mut self, body: Body<'_>, sequence: u32, out: &mut Writer) -> Result<(), Trouble> {
         let Some(load) = Load::read(body)? else {
             return Err(Trouble::Refused("worker and console are different builds; restart tankops".into()));
@@ -119,7 +120,7 @@ impl<'a> Session<'a> {
         if requires_sandbox && sandbox != Sandbox::Full {
             return Err(Trouble::Refused(format!("--require-sandbox is set, but the sandbox is {sandbox}")));
         }
-        // A thread that started earlier would not be covered by the sandbox.
+        // The sandbox would not cover a thread that was started earlier.
         die_with_the_console(Arc::clone(self.socket)).map_err(lost)?;
         Ok(reads_libraries)
     }
@@ -128,7 +129,7 @@ impl<'a> Session<'a> {
         let (values, site): (Values, Site) = whole(body)?;
         let table = self.table.as_ref().ok_or(Trouble::Malformed)?;
         let mut sink = self.sink();
-        // An instance of an earlier mission is dropped first.
+        // An instance from an earlier mission is dropped first.
         self.instance = None;
         self.instance = Some(site.lend(|site| table.create(site, &values, &mut sink))?);
         out.put(&Answered { given: (), said: sink.take_said() });

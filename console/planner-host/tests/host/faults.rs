@@ -128,7 +128,7 @@ fn a_planner_that_stops_when_asked_is_late_and_its_process_ends() {
     choose(&mut host, "faulty", &words(&[("fault", "slow")])).unwrap();
     let fault = fly(&mut host).unwrap_err();
     assert_eq!(fault.cause, Cause::Late);
-    assert_eq!(fault.message, "planner faulty was too slow: it missed the deadline of step 5");
+    assert_eq!(fault.message, "planner faulty was too slow: it missed the deadline for step 5");
     let fault = plan(&mut host).unwrap_err();
     assert_eq!(fault.cause, Cause::Died);
     let sentence =

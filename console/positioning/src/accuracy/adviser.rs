@@ -8,15 +8,15 @@ use world::{Boundary, ObstacleMap, Point, Vector, World};
 
 /// The number of candidate places along the wall.
 const CANDIDATES: usize = 72;
-/// The number of cells along the longer side of the floor in which the error is computed.
+/// The error is computed in cells, of which this many lie along the longer side of the floor.
 const CELLS: f64 = 28.0;
-/// The most rounds; each round moves every station once.
+/// The largest number of rounds; each round moves every station once.
 const ROUNDS: usize = 12;
 /// The number of initial layouts: even rings, each rotated by a different part of the spacing.
 const STARTS: usize = 4;
 /// The numbers of stations for which advice is available.
 const COUNTS: std::ops::RangeInclusive<usize> = 3..=32;
-/// The error that a place without a fix counts as, as a share of the tank's size.
+/// The error assumed for a place without a fix, as a share of the tank's size.
 const BLIND_SHARE: f64 = 0.25;
 
 /// The best places for stations, and the expected accuracy.
@@ -24,9 +24,9 @@ const BLIND_SHARE: f64 = 0.25;
 pub struct Advice {
     /// Places on the wall, metres.
     pub places: Vec<Point>,
-    /// Mean over the floor of the longer half axis of the 95 % ellipse, where there is a fix, metres.
+    /// Longer half axis of the 95 % ellipse, metres: the mean over all places on the floor where there is a fix.
     pub mean_error_95_m: f64,
-    /// The largest longer half axis, where there is a fix, metres.
+    /// Longer half axis of the 95 % ellipse, metres: the largest value at any place where there is a fix.
     pub worst_error_95_m: f64,
     /// Share of the floor without a fix.
     pub blind_share: f64,
@@ -48,9 +48,9 @@ pub enum AdviceError {
 
 /// Finds the best places on the wall for a number of stations in a tank as drawn.
 ///
-/// Starts from even rings and moves one station after another to its best place until no move helps (an exchange
-/// search). The criterion is the mean forecast error over the floor, with a large error for places without a fix.
-/// Takes some tens of milliseconds for eight stations.
+/// Starts from even rings and moves the stations, one at a time, to their best places until no move helps (an exchange
+/// search). The criterion is the mean forecast error over the floor, with a large error for places without a fix. Takes
+/// a few tens of milliseconds for eight stations.
 ///
 /// # Errors
 /// [`AdviceError`] for fewer than 3 or more than 32 stations, or a tank without floor.
@@ -70,16 +70,16 @@ pub fn advise(drawing: &World, count: usize, forecast: &Forecast) -> Result<Advi
     Ok(problem.advice(&best.0))
 }
 
-/// Returns candidates evenly spaced around the wall, rotated by `turn` of [`STARTS`] parts of the spacing.
+/// Returns candidates evenly spaced around the wall, rotated by `turn` / [`STARTS`] of the spacing.
 fn even_ring(count: usize, turn: usize) -> Vec<usize> {
     let offset = turn * CANDIDATES / (STARTS * count);
     (0..count).map(|k| (k * CANDIDATES / count + offset) % CANDIDATES).collect()
 }
 
-/// The information of every candidate in every cell.
+/// The information that every candidate provides in every cell.
 struct Problem {
     candidates: Vec<Point>,
-    /// By candidate, then by cell; empty where an obstacle blocks the line of sight.
+    /// One entry for each candidate and cell, in this order; empty where an obstacle blocks the line of sight.
     seen: Vec<Vec<Seen>>,
     n_cells: usize,
     blind_m: f64,

@@ -66,7 +66,7 @@ impl Region {
             let weights: Vec<f64> = cells.iter().map(|cell| weight_at(annuli, cell.middle)).collect();
             let within = weights.iter().filter(|weight| **weight > 0.0).count();
             if within >= ENOUGH || cells.len() >= MOST_CELLS || half.max() < SMALLEST_M {
-                // If no centre is in the region, it may be anywhere in the cells.
+                // If no centre is in the region, the region may be anywhere in the cells.
                 let even = if within == 0 { 1.0 } else { 0.0 };
                 return Self::summed(cells.iter().zip(weights.iter().map(|weight| weight + even)));
             }

@@ -1,4 +1,4 @@
-//! Moves the estimate with the odometry.
+//! Moves the estimate according to the odometry.
 
 use super::{Covariance, Ekf, SLIP, State, TURN_BIAS};
 use crate::fix::ELLIPSE_95;
@@ -7,19 +7,19 @@ use world::Odometry;
 
 /// Odometry beyond this in one tick is not the motion of a robot, metres or radians.
 const MOTION_LIMIT: f64 = 1e3;
-/// The part of the odometry error that is independent for every metre, as a share of the persistent part.
+/// The part of the odometry error that is independent from metre to metre, as a share of the persistent part.
 const FRESH_SHARE: f64 = 0.3;
-/// Independent odometry error across the path, as a share of that along it.
+/// Independent odometry error across the path, as a share of the error along the path.
 const ACROSS_SHARE: f64 = 0.3;
 /// Half width of the 95 % interval of a normal distribution, in standard deviations.
 const HALF_WIDTH_95: f64 = 1.96;
-/// With a standard deviation of the heading above this, the direction of a motion is unknown, radians.
+/// If the standard deviation of the heading is above this, radians, the direction of a motion is unknown.
 const LOST_HEADING_RAD: f64 = 0.35;
 /// Drift of slip and turn error within a metre, as a share of their standard deviations.
 const WANDER_SHARE: f64 = 0.05;
 
 impl Ekf {
-    /// Moves the estimate by the odometry.
+    /// Moves the estimate according to the odometry.
     pub fn predict(&mut self, odometry: &Odometry) {
         self.moved_by(odometry);
     }
@@ -42,7 +42,7 @@ impl Ekf {
         let by_heading = Vector2::new(-step.y, step.x);
         by_state.fixed_view_mut::<2, 1>(0, 2).copy_from(&by_heading);
         by_state.fixed_view_mut::<2, 1>(0, SLIP).copy_from(&-unslipped);
-        // The heading turns evenly along the way, so half of the turn affects the position.
+        // The heading turns evenly during the motion, so half of the turn affects the position.
         by_state.fixed_view_mut::<2, 1>(0, TURN_BIAS).copy_from(&(by_heading * -0.5));
         by_state[(2, TURN_BIAS)] = -1.0;
         let gained = self.gained_m2_rad2(forward_m.hypot(sideways_m), turn_rad);
@@ -54,8 +54,8 @@ impl Ekf {
         by_state
     }
 
-    /// Removes most of the independent variance across the path: tracks err along it, and the heading error covers
-    /// the rest.
+    /// Removes most of the independent variance across the path: tracks err along the path, and the heading error
+    /// covers the rest.
     fn narrow_across(&mut self, step: Vector2<f64>, gained_m2: f64) {
         if let Some(along) = step.try_normalize(1e-9) {
             let across = Vector2::new(-along.y, along.x);
@@ -84,10 +84,10 @@ impl Ekf {
     /// Widens the estimate for an unmeasured motion of at most `most_m` metres in any direction and at most
     /// `most_rad` radians.
     ///
-    /// Every place of the 95 % ellipse, moved by up to `most_m`, lies in the new ellipse, whose longer half axis
-    /// grows by exactly `most_m`. Of all ellipses that contain the sum of an ellipse and a disc (Kurzhanski), this
-    /// one has the shortest longer axis. Several short motions give the same result as one long motion. Here the
-    /// covariance is a bound, not a probability: a robot that drives straight at its top speed is at the rim.
+    /// Every place in the 95 % ellipse, moved by up to `most_m`, lies in the new ellipse; its longer half axis is
+    /// longer by exactly `most_m`. Of all ellipses that contain the sum of an ellipse and a disc (Kurzhanski), this one
+    /// has the shortest longer axis. Several short motions give the same result as one long motion. Here the covariance
+    /// is a bound, not a probability: a robot that drives straight at its top speed is at the rim.
     pub fn wander(&mut self, most_m: f64, most_rad: f64) {
         if !(0.0..=MOTION_LIMIT).contains(&most_m) || !(0.0..=MOTION_LIMIT).contains(&most_rad) {
             return;
@@ -104,7 +104,8 @@ impl Ekf {
         self.keep_sound();
     }
 
-    /// Moves the estimate by the odometry if the heading may be lost: then only the length of the motion counts.
+    /// Moves the estimate according to the odometry when the heading may be lost, so that only the length of the motion
+    /// counts.
     pub fn predict_unsure(&mut self, odometry: &Odometry) {
         let way_m = odometry.forward_m.hypot(odometry.sideways_m);
         let is_lost = self.covariance[(2, 2)] > LOST_HEADING_RAD * LOST_HEADING_RAD;
@@ -117,7 +118,7 @@ impl Ekf {
 
     /// Makes the position as uncertain as if the tracks had spun during the whole last motion.
     ///
-    /// For a filter that refused ranges which the solver accepts.
+    /// For a filter that has refused ranges that the solver accepts.
     pub fn doubt_motion(&mut self, odometry: &Odometry) {
         let way_m = odometry.forward_m.hypot(odometry.sideways_m);
         if way_m <= MOTION_LIMIT {

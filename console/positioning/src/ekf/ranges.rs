@@ -1,4 +1,4 @@
-//! Corrects the estimate by the ranges of a cycle, whether the tracks gripped or spun.
+//! Corrects the estimate with the ranges of a cycle, whether the tracks gripped or spun.
 
 use super::{Ekf, Update};
 use crate::{
@@ -12,7 +12,7 @@ use world::{Point, Station};
 
 /// Normal quantile beyond which ranges are refused: one correct cycle in 10 000.
 const GATE_Z: f64 = 3.719;
-/// The most steps of an iterated update; three are usual.
+/// The largest number of steps in an iterated update; three are usual.
 const UPDATE_STEPS: usize = 12;
 /// The update ends when a step is shorter than this, metres.
 const SETTLED_M: f64 = 1e-5;
@@ -20,7 +20,7 @@ const SETTLED_M: f64 = 1e-5;
 const SLIPPED_THROUGH: (f64, f64) = (0.5, 0.2);
 
 impl Ekf {
-    /// Corrects the estimate by all ranges of a cycle together, unless they are implausibly far off.
+    /// Corrects the estimate with all ranges of a cycle together, unless they are implausibly far off.
     ///
     /// Searches for the position that best fits both estimate and ranges (an iterated update), so curved range
     /// circles do no harm. Heading, slip and bias follow from their correlation with the position. If a range names
@@ -52,7 +52,7 @@ impl Ekf {
         Update { nis, accepted, slipped: share }
     }
 
-    /// Returns the estimate in case the tracks spun in the last motion, weighted by `share`.
+    /// Returns the estimate for the case that the tracks spun in the last motion, weighted by `share`.
     pub(crate) fn slipped_through(&self, share: f64) -> Self {
         let (mean, sigma) = SLIPPED_THROUGH;
         let mut lost = self.clone();
@@ -64,7 +64,7 @@ impl Ekf {
         lost
     }
 
-    /// Returns the estimate corrected by the ranges, and how well both agree.
+    /// Returns the estimate corrected with the ranges, and how well the two agree.
     fn meeting(&self, anchors: &[Anchor]) -> Option<(Self, Meeting)> {
         let prior = self.position_covariance();
         let belief = inverse_of(&prior)?;

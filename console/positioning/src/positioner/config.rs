@@ -25,7 +25,7 @@ pub struct PositionerConfig {
     /// The timing errors of ranges.
     #[serde(default)]
     pub timing: Timing,
-    /// Standard deviation of the scale error of all ranges, as a share, which repetitions do not reduce.
+    /// Standard deviation of the scale error of all ranges, as a share; repetitions do not reduce it.
     #[serde(default)]
     pub scale_sigma_ratio: f64,
     /// The errors of odometry.
@@ -41,7 +41,7 @@ pub struct PositionerConfig {
 }
 
 impl PositionerConfig {
-    /// Returns a configuration with usual errors: start surveyed to 5 cm and 0.05 rad, ranges to 3 %, odometry as in
+    /// Returns a configuration with typical errors: 5 cm and 0.05 rad for the start, 3 % for ranges, and odometry as in
     /// [`MotionNoise::default`].
     pub fn new(stations: Vec<Station>, start: Pose) -> Self {
         Self {

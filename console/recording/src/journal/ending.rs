@@ -19,7 +19,7 @@ const TAIL_BYTES: u64 = 64 * 1024;
 
 /// The final event of a journal; `None` if the journal stops before it.
 ///
-/// Only the last frame, or the last 64 kB, are read. This is for lists of many runs, and proves nothing about the
+/// Only the last frame, or the last 64 kB, is read. This is for lists of many runs, and proves nothing about the
 /// earlier part of the journal.
 ///
 /// # Errors
@@ -67,7 +67,7 @@ pub fn events_sha256(path: &Path) -> io::Result<String> {
 /// lines read.
 ///
 /// # Errors
-/// As [`events_sha256`]; [`io::ErrorKind::Interrupted`] if it was stopped.
+/// Those of [`events_sha256`], and [`io::ErrorKind::Interrupted`] if it was stopped.
 pub fn events_sha256_while(path: &Path, goes_on: impl FnMut(u64) -> bool) -> io::Result<String> {
     let mut lines = Lines::of(open_regular(path)?, path, FrameStart::default())?;
     digest(lines.text(), goes_on)

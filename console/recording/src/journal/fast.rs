@@ -1,6 +1,6 @@
-//! A fast reader for the events of every tick and for plans, which reads lines straight into their fields. The
-//! general reader first parses an event as an untyped value and then determines its kind. That takes several times as
-//! long and, for a plan of a million points, several times the memory.
+//! A fast reader for plans and for the events that occur in every tick, which reads lines straight into their fields.
+//! The general reader first parses an event as an untyped value and then determines its kind. That takes several
+//! times as long and, for a plan of a million points, several times the memory.
 
 mod within;
 
@@ -28,8 +28,8 @@ macro_rules! read {
     }};
 }
 
-/// The event of a line in the form that this program writes, if it is an event of every tick. `None` for any other
-/// line, and for a faulty one: the general reader then reports the fault.
+/// The event in a line that has the form written by this program, if the event is one that occurs in every tick.
+/// `None` for any other line, and for a faulty one: the general reader then reports the fault.
 pub(super) fn event(line: &[u8]) -> Option<Event> {
     let name = name_of(line)?;
     // Checked once for the whole line instead of once for each key.

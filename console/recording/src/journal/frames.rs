@@ -20,7 +20,7 @@ const BLOCK_HEADER_BYTES: u64 = 3;
 const BETWEEN: u64 = 4096;
 
 /// The offsets of frames in the file, bytes, in ascending order: the first frame, and each frame that is far enough
-/// from the one before. If the file contains other data, only the frames before it are listed.
+/// from the one before. If the file contains other data, only the frames before that data are listed.
 pub(super) fn starts(file: &File) -> io::Result<Vec<u64>> {
     let mut walk = Walk { file: BufReader::new(file), at: 0 };
     walk.file.rewind()?;

@@ -11,10 +11,10 @@ use std::io;
 pub(super) const MOST_LINE_BYTES: usize = 40 << 20;
 /// Maximum number of bytes of lines per tick, for readers that compare whole ticks.
 const MOST_TICK_BYTES: u64 = 64 << 20;
-/// Maximum number of lines per tick: many times what two planners at their drawing limit need.
+/// Maximum number of lines per tick: many times as many as two planners at their drawing limit need.
 const MOST_TICK_LINES: u32 = 50_000;
-/// Maximum number of obstacles found and zones drawn in a run: each of them persists, and every figure has to count
-/// it.
+/// Maximum number of obstacles found and zones drawn in a run: they all persist, and every figure has to take them
+/// into account.
 const MOST_LASTING: u32 = 20_000;
 /// Largest ratio of the lines to the file. The lines of a mission on hold, which repeat most, are 11 times as long as
 /// the file (decisions.md).

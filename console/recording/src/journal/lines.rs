@@ -33,7 +33,8 @@ impl Lines {
         }
     }
 
-    /// The file offset from which to read in order to reach a place, given the number of bytes of lines before it.
+    /// The file offset from which to read in order to reach a place, given the number of bytes of lines before that
+    /// place.
     pub(super) fn frame_before(&self, bytes: u64) -> FrameStart {
         match self {
             Self::Plain(_) => FrameStart { file: bytes, content: bytes },

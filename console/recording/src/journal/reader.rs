@@ -34,12 +34,12 @@ pub struct JournalPlace {
     pub bytes: u64,
     /// Number of lines before it.
     lines: usize,
-    /// File offset from which to read to reach it.
+    /// File offset from which to read in order to reach it.
     frame: FrameStart,
 }
 
 impl JournalPlace {
-    /// Number of bytes of the file before it; less by part of a frame if the file is compressed.
+    /// Number of bytes of the file before it; in a compressed file, those before the frame that contains it.
     pub fn file_bytes(&self) -> u64 {
         self.frame.file
     }
@@ -86,7 +86,7 @@ impl JournalReader {
     /// Opens a journal for comparison: texts keep all their characters, even those that are not plain.
     ///
     /// # Errors
-    /// As [`JournalReader::open`].
+    /// See [`JournalReader::open`].
     pub(super) fn open_verbatim(path: &Path) -> Result<Self, JournalError> {
         Ok(Self { is_verbatim: true, ..Self::open(path)? })
     }
@@ -119,7 +119,7 @@ impl JournalReader {
     /// the journal is short. Lines are counted from the place where reading starts.
     ///
     /// # Errors
-    /// As [`JournalReader::open`] and [`JournalReader::next_line`].
+    /// See [`JournalReader::open`] and [`JournalReader::next_line`].
     pub fn open_end(path: &Path) -> Result<Self, JournalError> {
         let mut reader = Self::open(path)?;
         reader.next_line()?;
@@ -140,11 +140,11 @@ impl JournalReader {
         Ok(end)
     }
 
-    /// Opens a journal at or shortly before the first event of a mission time, seconds. Little of the compressed data
-    /// before it is read. Lines are counted from the place where reading starts.
+    /// Opens a journal at or shortly before the first event at a mission time, seconds. Little of the compressed data
+    /// before that event is read. Lines are counted from the place where reading starts.
     ///
     /// # Errors
-    /// As [`JournalReader::open`] and [`JournalReader::next_line`].
+    /// See [`JournalReader::open`] and [`JournalReader::next_line`].
     pub fn open_near(path: &Path, t_s: f64) -> Result<Self, JournalError> {
         let mut reader = Self::open(path)?;
         if t_s <= 0.0 || !is_packed(path) {
@@ -214,7 +214,7 @@ impl JournalReader {
         self.truncated.as_deref()
     }
 
-    /// The error for a caller that needs the opening of the run from a journal that ends before it.
+    /// The error for a caller that needs the opening of the run, if the journal ends before the opening.
     pub fn not_opened(&self) -> JournalError {
         JournalError::NotOpened { path: self.path.clone() }
     }

@@ -34,7 +34,7 @@ impl RecordedTick {
         self.lines.iter().map(|(_, event)| &event.kind)
     }
 
-    /// The orders of the tick, including refused ones.
+    /// The orders in the tick, including refused ones.
     pub fn orders(&self) -> Vec<Order> {
         let order = |event: &EventKind| match event {
             EventKind::Ordered { order } | EventKind::OrderRefused { order, .. } => Some(order.clone()),

@@ -14,9 +14,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Unwritten events are handed to the system at the latest after this time
+/// Time after which unwritten events are handed to the system at the latest.
 const FLUSH_AFTER: Duration = Duration::from_millis(500);
-/// or when they reach this many bytes.
+/// Number of bytes of unwritten events at which they are handed to the system.
 const FLUSH_BYTES: usize = 64 * 1024;
 /// Limit of the events that are kept while the file cannot be written, bytes: about 40 minutes of mission time.
 const MOST_WAITING_BYTES: usize = 4 << 20;
@@ -24,13 +24,13 @@ const MOST_WAITING_BYTES: usize = 4 << 20;
 /// Writes a journal.
 ///
 /// Events are collected, compressed and handed to the operating system at least every half second or every 64 kB, so
-/// that a process that is killed loses no more than that. The deadline is checked at every event and by
+/// that a killed process loses no more than that. The deadline is checked at every event and by
 /// [`JournalWriter::tick`]. Equal runs therefore have equal lines, but the division of the compressed data depends on
 /// the clock.
 ///
-/// Data that cannot be written, for example because the disk is full, is kept and tried again every half second, so
-/// that the journal is complete in the end. If more than 4 MB are waiting, the journal ends; later events are not
-/// written.
+/// Data that cannot be written, for example because the disk is full, is kept, and writing is tried again every half
+/// second, so that the journal is complete in the end. If more than 4 MB are waiting, the journal ends; later events
+/// are not written.
 pub struct JournalWriter {
     backlog: Backlog,
     /// `None` if no file is written.
@@ -108,7 +108,7 @@ impl JournalWriter {
     /// Adds an event; does nothing after the journal has ended.
     ///
     /// # Errors
-    /// As [`JournalWriter::tick`].
+    /// See [`JournalWriter::tick`].
     pub fn append(&mut self, event: &Event, now: Instant) -> Result<(), JournalError> {
         if self.has_ended() {
             return Ok(());
@@ -135,7 +135,7 @@ impl JournalWriter {
     pub fn tick(&mut self, now: Instant) -> Result<(), JournalError> {
         let holds_back = self.packer.as_ref().is_some_and(Packer::holds_back);
         let is_waiting = holds_back || self.backlog.waiting_bytes() > 0;
-        // A full disk is tried again at intervals, not with every event.
+        // Writing to a full disk is tried again at intervals, not with every event.
         let is_much = self.backlog.waiting_bytes() >= FLUSH_BYTES && self.backlog.trouble().is_none();
         let is_old = now.saturating_duration_since(self.flushed_at) >= FLUSH_AFTER;
         if is_old {
@@ -183,7 +183,7 @@ impl JournalWriter {
         self.backlog.written_bytes()
     }
 
-    /// The reason why the journal is not being written at present; `None` if it is.
+    /// The reason why the journal is currently not being written; `None` if it is.
     pub fn trouble(&self) -> Option<JournalError> {
         let bytes = self.written_bytes();
         let stall = self.backlog.trouble().map(|why| JournalError::Stalled { bytes, why: why.to_owned() });
@@ -206,7 +206,7 @@ impl JournalWriter {
         self.unwritable.is_some() || self.backlog.has_ended()
     }
 
-    /// The present problem, if it differs from the one last reported.
+    /// The current problem, if it differs from the one last reported.
     fn report(&mut self) -> Result<(), JournalError> {
         let trouble = self.trouble();
         let is_same_kind = trouble.as_ref().map(std::mem::discriminant)

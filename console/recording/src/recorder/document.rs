@@ -7,7 +7,7 @@ use mission::{Outcome, PlannerChoice, PlannerInfo, TaskConfig, event::RunOpened}
 use std::{fmt::Write, sync::Arc};
 use world::Boundary;
 
-/// A planner that drove in this run.
+/// A planner that was active in this run.
 pub(crate) struct Driver {
     pub choice: PlannerChoice,
     pub info: PlannerInfo,
@@ -54,7 +54,7 @@ impl Document {
             .with_component::<rr::Text>("journal_version", [run.journal_version.to_string()])
     }
 
-    /// Properties of the planners so far, in the order in which they drove.
+    /// Properties of the planners so far, in the order in which they were active.
     pub(crate) fn planner_properties(&self) -> rr::AnyValues {
         let texts = |text: fn(&Driver) -> String| self.drivers.iter().map(text).collect::<Vec<_>>();
         rr::AnyValues::default()
@@ -137,14 +137,17 @@ const LEGEND: &str = "
 
 Green is the true position of the robot, pink its estimated position, with the ellipse that should contain the true
 position in 95 of 100 cases. The bar across the robot is its tool; the key below the tank explains the colours of the
-floor. Red outlines are obstacles on the drawing, dark red ones are still to be found, orange ones were found and are
-drawn where the robot estimates them. Yellow lines are acoustic-emission ranges; red ones were left out of the fix. Arrows are the planner's forces; their length grows with the logarithm of the force.
+floor. Red outlines are obstacles on the drawing; dark red outlines are obstacles still to be found; orange outlines are
+obstacles that were found, drawn where the robot estimates them to be. Yellow lines are acoustic-emission ranges; red
+lines are ranges that were left out of the fix. Arrows are the planner's forces; their length grows with the logarithm of
+the force.
 
 ## How to read the plots
 
 Pink is estimated, green is true, blue is claimed or sent. Tether: pink is the length paid out, green the true length
-out, blue the return path, with gaps where there is none. Wraps: orange is the largest, blue the total. Forces have the
-colours of their arrows. On the timeline `utc` a run starts at the time in its name and continues in mission time.
+out, blue the return path, with gaps where there is no return path. Wraps: orange is the largest, blue the total. Forces
+have the colours of their arrows. On the timeline `utc`, a run starts at the time in its name and continues in mission
+time.
 ";
 
 fn parameters(choice: &PlannerChoice) -> String {

@@ -37,7 +37,7 @@ impl Accounting {
         Self { period_ticks, written: at.tick }
     }
 
-    /// Whether the next account is due. A run that is killed then has a recent one, too.
+    /// Whether the next account is due. Regular accounts ensure that a run that is killed has a recent one, too.
     pub(crate) fn is_due(&self, at: At) -> bool {
         at.tick - self.written >= self.period_ticks
     }

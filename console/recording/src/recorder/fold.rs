@@ -40,13 +40,13 @@ struct Opened {
     accounting: Accounting,
     states: States,
     document: Document,
-    /// Whether the plan before had cuts.
+    /// Whether the previous plan had cuts.
     has_cuts: bool,
 }
 
 impl Fold {
-    /// Adds an event and returns the number of ticks that it closed: none or one. `account` is that of the events
-    /// before it.
+    /// Adds an event and returns the number of ticks that it closed: none or one. `account` is the account of the
+    /// earlier events.
     pub(crate) fn apply(
         &mut self,
         event: &Event,

@@ -42,7 +42,7 @@ pub(crate) const ESTIMATE: &str = "map/world/robot/est";
 pub(crate) const FORCES: &str = "map/world/forces";
 /// Circles and lines of planners, one entity per layer and kind below it.
 pub(crate) const DRAWN: &str = "map/world/drawn";
-/// The taut cable by the estimate, and its contacts.
+/// The taut cable according to the estimate, and its contacts.
 pub(crate) const TETHER: &str = "map/world/tether";
 pub(crate) const TETHER_ANCHOR: &str = "map/world/tether/anchor";
 pub(crate) const TETHER_CONTACTS: &str = "map/world/tether/contacts";

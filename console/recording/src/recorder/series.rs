@@ -51,7 +51,7 @@ struct Changes<T> {
     lane: Lane<T>,
     of: fn(&Tick) -> Option<T>,
     last: Option<T>,
-    /// Time at which the last row occurred again.
+    /// Time at which the last row was last repeated.
     again: Option<At>,
 }
 

@@ -1,4 +1,4 @@
-//! The lanes of the state timeline: the driving planner, the motion of the robot, and the state of its position.
+//! The lanes of the state timeline: the active planner, the motion of the robot, and the state of its position.
 //!
 //! The viewer fits a state timeline only once, to the data that it has read when the first lane appears. Linked to
 //! the time axis of all views ([`super::layout`]), the timeline always shows the whole run.

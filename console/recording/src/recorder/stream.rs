@@ -57,7 +57,7 @@ impl Stream {
         Ok(Self { inner, began_ns: identity.began_ns })
     }
 
-    /// Logs data that holds for the whole recording.
+    /// Logs data that applies to the whole recording.
     pub(crate) fn always(&self, path: &str, what: &dyn rr::AsComponents) -> Done {
         self.inner.log_static(path, what).map_err(|error| RecordingError::sdk(&error))
     }

@@ -56,7 +56,7 @@ pub(crate) struct Estimate {
     pub ellipse_95: (f64, f64, f64),
 }
 
-/// The tether by the estimate.
+/// The tether according to the estimate.
 pub(crate) struct Tether {
     pub line: Vec<Flat>,
     pub contacts: Vec<Flat>,
@@ -67,7 +67,7 @@ pub(crate) struct Tether {
 }
 
 impl Tick {
-    /// The first tick of a run; `anchor`: that of the tether.
+    /// The first tick of a run; `anchor`: the anchor of the tether.
     pub(crate) fn first(at: At, start: Point, anchor: Option<Point>) -> Self {
         Self { at, believed: start, anchor, ..Self::default() }
     }

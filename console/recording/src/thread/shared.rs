@@ -13,7 +13,7 @@ pub(super) struct Shared {
     pub journal_bytes: AtomicU64,
     /// Errors that lose data, each once.
     losses: Mutex<Vec<String>>,
-    /// The present problem, which may pass.
+    /// The current problem, which may pass.
     trouble: Mutex<Option<String>>,
     /// Deadline for merging the chunks of the recording, once a caller waits for the end.
     merge_until: Mutex<Option<Instant>>,

@@ -128,7 +128,7 @@ impl Writer {
         journal.or_else(recording).or_else(|| self.changed.clone())
     }
 
-    /// Reports the present problem in the folder of the run, or removes the report.
+    /// Reports the current problem in the folder of the run, or removes the report.
     fn mark(&mut self) {
         if let Some(marker) = &mut self.marker {
             marker.show(self.shared.error().as_deref());

@@ -6,7 +6,8 @@ use account::Date;
 /// Words that mark a certificate as no longer valid.
 const ENDED: [&str; 7] = ["expired", "lapsed", "invalid", "revoked", "suspended", "withdrawn", "abgelaufen"];
 
-/// Returns the objections to the certificate: its expiry date is missing or past, or its text states that it has ended.
+/// Returns the faults of the certificate: its expiry date is missing or has passed, or its text states that it is no
+/// longer valid.
 pub(super) fn doubts(document: &Document) -> Vec<String> {
     let facts = &document.inspection;
     let mut doubts = Vec::new();
@@ -15,10 +16,15 @@ pub(super) fn doubts(document: &Document) -> Vec<String> {
     match facts.inspector_certificate_expires.as_ref().map(|text| (text, Date::read(text))) {
         None => doubts.push("inspection.inspector_certificate_expires".to_owned()),
         Some((text, None)) => {
-            doubts.push(format!("inspection.inspector_certificate_expires is not a date such as 2027-03-31: `{text}`"));
+            doubts.push(format!(
+                "inspection.inspector_certificate_expires is not a date such as 2027-03-31: `{text}`"
+            ));
         }
         Some((_, Some(end))) => doubts.extend(is_past(end).map(|day| {
-            format!("inspection.inspector_certificate_expires: it expired on {end}, before the inspection on {day}")
+            format!(
+                "inspection.inspector_certificate_expires: the certificate expired on {end}, before the \
+                inspection on {day}"
+            )
         })),
     }
     if inspected.is_none() {
@@ -34,10 +40,14 @@ pub(super) fn doubts(document: &Document) -> Vec<String> {
     let lower = text.to_lowercase();
     let words = || lower.split(|letter: char| !letter.is_alphabetic());
     if let Some(word) = ENDED.into_iter().find(|ended| words().any(|word| word == *ended)) {
-        doubts.push(format!("inspection.inspector_certificate states that it is {word}: `{}`", text.trim()));
+        doubts.push(format!(
+            "inspection.inspector_certificate states that the certificate is {word}: `{}`",
+            text.trim()
+        ));
     } else if let Some(day) = Date::until(text).and_then(is_past) {
         doubts.push(format!(
-            "inspection.inspector_certificate ends before the inspection on {day}: `{}`",
+            "inspection.inspector_certificate states a validity that ends before the inspection on {day}: \
+             `{}`",
             text.trim()
         ));
     }

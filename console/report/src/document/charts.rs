@@ -10,15 +10,15 @@ use mission::{RunOpened, TaskConfig};
 use std::fmt::Write;
 use world::{Boundary, Point, ShellStretch};
 
-/// Left and right end of the time axis, millimetres.
+/// Left and right ends of the time axis, millimetres.
 const AXIS_MM: (f64, f64) = (20.0, 159.0);
 /// Width of a chart, millimetres.
 const WIDTH_MM: f64 = 180.0;
-/// Number of columns of a curve; each column shows the largest value in it.
+/// Number of columns in a curve; each column shows the largest value within it.
 const COLUMNS: usize = 440;
-/// Drawn depth of the critical zone, millimetres of paper.
+/// Depth at which the critical zone is drawn, millimetres on paper.
 const ZONE_MM: f64 = 9.0;
-/// Left end and length of the unrolled shell, millimetres of paper.
+/// Left end and length of the unrolled shell, millimetres on paper.
 const SHELL_MM: (f64, f64) = (8.0, 164.0);
 
 /// A chart, drawn from the top down.
@@ -145,7 +145,7 @@ impl Chart {
     }
 }
 
-/// The largest value in each column of the paper.
+/// The largest value in each column of a curve.
 fn gathered(points: &[(f64, f64)], end_s: f64) -> Vec<(f64, f64)> {
     let mut columns: Vec<Option<f64>> = vec![None; COLUMNS];
     for (t_s, value) in points.iter().filter(|(_, value)| value.is_finite()) {
@@ -203,7 +203,7 @@ pub(super) fn over_time(run: &RunOpened, record: &Record, marks: &[(usize, f64)]
             Limit { value: all, text: format!("{all:.0} in total"), colour: colour::MISSED, dash: "" },
             Limit {
                 value: one,
-                text: format!("{one:.0} one obstacle"),
+                text: format!("{one:.0} per obstacle"),
                 colour: colour::MISSED,
                 dash: "1.2 .8",
             },

@@ -5,7 +5,7 @@ use crate::{geojson::rounded, joined::PastRun};
 use account::{Shares, ZoneArc};
 use csv::Writer;
 
-/// Suffixes that the file names of the tables add to the name of the first.
+/// Suffixes of the file names: each table has the name of the first table with its own suffix.
 pub const SUFFIXES: [&str; 6] = ["", "-missed", "-zone", "-obstacles", "-indications", "-track"];
 
 /// Writes the tables in the order of [`SUFFIXES`]: plates with the whole and the reachable floor, missed areas, arcs
@@ -15,7 +15,7 @@ pub fn tables(document: &Document, past: &[PastRun]) -> [String; SUFFIXES.len()]
     [plates(document), missed(document), zone(document), obstacles(past), indications(document), track(past)]
 }
 
-/// Rows under a header; writing to memory cannot fail.
+/// Writes rows under a header; writing to memory cannot fail.
 fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let mut writer = Writer::from_writer(Vec::new());
     let _ = writer.write_record(head);
@@ -25,7 +25,7 @@ fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
 }
 
-/// A cell in plain characters that no spreadsheet evaluates: a text that begins like a formula gets a leading
+/// A cell in plain characters that no spreadsheet evaluates: text that begins like a formula gets a leading
 /// apostrophe.
 pub fn cell(text: &str) -> String {
     let cell = foreign::plain_lines(text);

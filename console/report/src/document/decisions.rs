@@ -1,5 +1,5 @@
-//! The decisions that the inspector must make before signing: each is a key of `[inspection]` with the reason as its
-//! value.
+//! The decisions that the inspector must make before signing. Each is a key under `[inspection]`, with the reason as
+//! its value.
 
 use super::{Document, located};
 use crate::human::text::counted;
@@ -60,8 +60,8 @@ pub(super) fn decisions(document: &Document) -> Vec<Decision> {
         let (left_m, of_m, width_mm) = (zone.length_m - zone.done_m, zone.length_m, 1000.0 * zone.width_m);
         decisions.push(Decision {
             what: format!(
-                "Critical zone: {left_m:.1} of {of_m:.1} m of shell not scanned over the full \
-                width of {width_mm:.0} mm."
+                "Critical zone: along {left_m:.1} of {of_m:.1} m of shell, the full width of {width_mm:.0} \
+                mm was not scanned."
             ),
             section: 4,
             key: "critical_zone_accepted",

@@ -21,20 +21,20 @@ pub struct GateItem {
     pub what: &'static str,
     /// Whether the item is answered.
     pub is_answered: bool,
-    /// The answer, as far as it is known.
+    /// The answer, or the part of it that is known.
     pub answer: String,
     /// What is missing: keys of `[inspection]`, or an action that is still needed.
     pub missing: Vec<String>,
 }
 
-/// The answer to an item, and what it still lacks.
+/// The answer to an item, and what is still missing from it.
 type Answered = (String, Vec<String>);
 
 /// Returns the thirteen items of a document.
 pub(super) fn gate(document: &Document) -> Vec<GateItem> {
     // Located readings have no planner and no missed floor.
     let [of_equipment, of_missed] = if document.located.is_some() {
-        ["Equipment, version, readings", "Floor not passed by the tool"]
+        ["Equipment, version, readings", "Floor that the tool did not pass over"]
     } else {
         ["Equipment, planner, versions, seed, parameters", "Missed areas, each with a reason"]
     };
@@ -42,7 +42,7 @@ pub(super) fn gate(document: &Document) -> Vec<GateItem> {
         ("Tank: number, size, plates, nominal thickness, drawing", tank(document)),
         ("Scope of the inspection", scope(document)),
         (of_equipment, equipment(document)),
-        ("Calibration before and after, stations, speed of sound", calibration(document)),
+        ("Calibration before and after the run, stations, speed of sound", calibration(document)),
         ("Coverage of every plate", plates(document)),
         (of_missed, missed(document)),
         ("Unreachable floor, each area with a reason", unreachable(document)),
@@ -83,7 +83,7 @@ fn empty(key: &str, text: &str) -> Option<String> {
     says_nothing(text).then(|| format!("inspection.{key} has no content: `{}`", text.trim()))
 }
 
-/// Adds the decisions of an item: those made to its answer, the others to what it lacks.
+/// Adds the decisions that belong to an item: a decision that was made to its answer, any other to what is missing.
 fn decided(document: &Document, item: usize, (answer, mut lacks): Answered) -> Answered {
     let mut answers = vec![answer];
     for decision in decisions(document).into_iter().filter(|decision| decision.item == item) {
@@ -129,11 +129,11 @@ fn scope(document: &Document) -> Answered {
     let what = if document.is_whole_floor { "whole floor" } else { "part of the floor" };
     let facts = &document.inspection;
     let lacks = asked(&[("order", &facts.order), ("procedure", &facts.procedure), ("code", &facts.code)]);
-    let early = if is_complete(document) { "" } else { ", ended early" };
+    let early = if is_complete(document) { "" } else { "; mission ended early" };
     let zone_mm = 1000.0 * document.floor.critical_zone.width_m;
     let answer = match &document.task {
-        Some(task) => format!("{}{early}; no scan of the floor", task.words()),
-        None => format!("{what}{early}, and the critical zone, {zone_mm:.0} mm along the shell"),
+        Some(task) => format!("{}{early}; scanning the floor was not part of the mission", task.words()),
+        None => format!("{what} and the critical zone, {zone_mm:.0} mm along the shell{early}"),
     };
     decided(document, SCOPE, (answer, lacks))
 }
@@ -205,7 +205,7 @@ fn plates(document: &Document) -> Answered {
     };
     let without: Vec<&str> =
         plates.iter().filter(|plate| !has_figure(plate)).map(|plate| &*plate.name).collect();
-    let lacks = without.iter().map(|name| format!("accuracy of plate {name}: none of its floor was scanned"));
+    let lacks = without.iter().map(|name| format!("accuracy on plate {name}: none of its floor was scanned"));
     (format!("figures for {} of {} plates", plates.len() - without.len(), plates.len()), lacks.collect())
 }
 
@@ -218,8 +218,9 @@ fn missed(document: &Document) -> Answered {
         return decided(document, MISSED, located::missed(located));
     }
     let without = floor.missed.iter().filter(|area| area.causes.iter().any(|cause| cause.text.is_empty()));
-    let lacks =
-        without.map(|area| format!("reason for the gap at {:.2}, {:.2} m", area.at.x, area.at.y)).collect();
+    let lacks = without
+        .map(|area| format!("reason for the missed area at {:.2}, {:.2} m", area.at.x, area.at.y))
+        .collect();
     let text = format!(
         "{} with a reason, {} smaller ones, {:.2} m² in total",
         counted(floor.missed.len() as u64, "area"),
@@ -250,7 +251,7 @@ fn unreachable(document: &Document) -> Answered {
 fn accuracy(document: &Document) -> Answered {
     let stated: Vec<_> = document.runs.iter().filter_map(|run| run.accuracy).collect();
     let text = |a: &account::Accuracy| {
-        format!("95 % error p95 {:.3} m, largest {:.3} m, limit {} m", a.p95_m, a.max_m, a.limit_m)
+        format!("95 % error: p95 {:.3} m, largest {:.3} m, limit {} m", a.p95_m, a.max_m, a.limit_m)
     };
     let lacks = if stated.len() < document.runs.len() {
         vec!["an estimated position in every run".to_owned()]
@@ -279,9 +280,7 @@ fn tether(document: &Document) -> Answered {
     let text = |run: &RunPart| {
         run.tether.as_ref().map_or_else(
             || "no tether".to_owned(),
-            |tether| {
-                format!("at most {:.1} m of {:.1} m paid out", tether.length_max_m, tether.reel_length_m)
-            },
+            |tether| format!("up to {:.1} m of {:.1} m paid out", tether.length_max_m, tether.reel_length_m),
         )
     };
     (document.runs.iter().map(text).collect::<Vec<_>>().join("; "), Vec::new())
@@ -342,7 +341,7 @@ fn hashes(document: &Document) -> Answered {
     }
     let recovered = |run: &RunPart| {
         let recovered = run.files.recovered.as_ref()?;
-        Some(format!("{} was killed, and later closed {recovered}", run.run))
+        Some(format!("{} was killed and later closed {recovered}", run.run))
     };
     let bound = "SHA-256 of journal and recording unchanged since the run was closed; report.json agrees \
         with the journal";

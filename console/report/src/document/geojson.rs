@@ -14,9 +14,9 @@ use world::{Point, ZoneKind};
 /// Simplification tolerance of the track, metres.
 const TRACK_M: f64 = 0.01;
 
-/// The report as one feature collection. With a datum in `[inspection]`, coordinates are east and north in that
-/// system, metres, and the collection names the system. Without one they are in the tank frame, declared as a local
-/// system so that no program reads them as degrees.
+/// The report as one feature collection. With a datum in `[inspection]`, coordinates are metres east and north in the
+/// system of the datum, and the collection names that system. Without a datum, coordinates are in the tank frame,
+/// which is declared as a local system so that no program reads them as degrees.
 pub fn geojson(document: &Document, past: &[PastRun]) -> String {
     let datum = Datum::of(&document.inspection);
     let mut features = tracks(&datum, past);

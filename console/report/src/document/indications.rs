@@ -15,9 +15,9 @@ use serde::Serialize;
 use table::{Fault, Table};
 use world::{Point, geometry::unit_vector};
 
-/// Maximum number of faults listed; of the rest only the number is given.
+/// Maximum number of faults listed; any others are only counted.
 const LISTED: usize = 20;
-/// Rounding error of a value that is given in whole millimetres, metres.
+/// Rounding error of a value given in whole millimetres; metres.
 const ROUNDING_M: f64 = 1e-3;
 
 /// An indication with its position.
@@ -50,7 +50,7 @@ pub(super) struct Flown<'a> {
     /// Name of its folder.
     pub(super) name: &'a str,
     pub(super) record: &'a Record,
-    /// The time when mission time was 0, to the second; absent if the folder name does not contain it.
+    /// The date and time at which mission time was 0, to the second; absent if the folder name does not contain it.
     pub(super) began: Option<Timestamp>,
     /// Half the swath, metres.
     pub(super) reach_m: f64,
@@ -66,12 +66,12 @@ pub(super) struct Ground<'a> {
     pub(super) plate_at: &'a dyn Fn(Point) -> Option<String>,
 }
 
-/// Reads indications from a text whose first line names the columns; these are [`row::COLUMNS`]. An indication is
-/// placed at its coordinates, or where the tool was at its time by the estimated position. With several runs the
-/// column `run` is required.
+/// Reads indications from text whose first line names the columns; these are [`row::COLUMNS`]. An indication is
+/// placed at its coordinates or, if it has none, where the tool was at that time according to the estimated position.
+/// With several runs, the column `run` is required.
 ///
 /// # Errors
-/// All faults of the file, one line each: file, line, column, and how to correct it.
+/// All faults in the file, one line each: file, line, column, and how to correct it.
 pub(super) fn indications(
     (file, text): (&str, &str),
     runs: &[Flown<'_>],
@@ -82,7 +82,7 @@ pub(super) fn indications(
     faults.extend(table.mixed_marks());
     if runs.len() > 1 && table.has("t_s").or(table.has("time")).is_some() && table.has("run").is_none() {
         let what = format!(
-            "with several runs, add a column `run` that names the run of each indication: {}",
+            "there are several runs: add a column `run` with the run of each indication, one of {}",
             names(runs)
         );
         return Err(format!("{file}: line 1: {what}"));
@@ -103,7 +103,7 @@ pub(super) fn indications(
     let more = faults.len().saturating_sub(LISTED);
     let mut lines: Vec<String> = faults.iter().take(LISTED).map(|fault| format!("{file}: {fault}")).collect();
     if more > 0 {
-        lines.push(format!("{file}: {more} more like these"));
+        lines.push(format!("{file}: faults not listed: {more}"));
     }
     Err(lines.join("\n"))
 }
@@ -151,17 +151,17 @@ impl Row<'_> {
         let (column, t_s) = self.mission_time(run)?;
         let end_s = run.record.track.last().map_or(0.0, |point| f64::from(point.t_s));
         let point = run.record.at(t_s).filter(|_| (0.0..=end_s + 0.5).contains(&t_s)).ok_or_else(|| {
-            let clock =
-                if column == "time" { format!(" is {t_s:.1} s after its start, and") } else { String::new() };
-            self.fault(
-                column,
-                format!("{}{clock}: the run lasts from 0 to {end_s:.1} s", self.text_of(column)),
-            )
+            let clock = if column == "time" {
+                format!(" ({t_s:.1} s after the start of the run)")
+            } else {
+                String::new()
+            };
+            self.fault(column, format!("{}{clock}: the run covers 0 to {end_s:.1} s", self.text_of(column)))
         })?;
         for (name, offset_m) in [("left_m", self.left_m), ("ahead_m", self.ahead_m)] {
             if offset_m.abs() > run.reach_m + ROUNDING_M {
                 let what = format!(
-                    "{offset_m} is beyond the tool: at most {} m from its centre, half the swath",
+                    "{offset_m} is beyond the tool, which extends {} m from its centre, half the swath",
                     run.reach_m
                 );
                 return Err(self.fault(name, what));
@@ -181,5 +181,5 @@ impl Row<'_> {
     }
 }
 
-/// The run, the mission time, the position, and its 95 % error.
+/// The run, the mission time, the position, and the 95 % error of the position.
 type Placed<'a> = (Option<&'a Flown<'a>>, Option<f64>, Point, Option<f64>);

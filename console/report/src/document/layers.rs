@@ -10,7 +10,7 @@ const LEAST_M2: f64 = 0.01;
 
 /// The floor of a report.
 pub(crate) struct Layers<'a> {
-    /// The last of the runs, as it was opened.
+    /// The last run, as it was opened.
     pub(crate) run: &'a RunOpened,
     /// The cells that were scanned.
     pub(crate) scanned: &'a Scanned,
@@ -49,7 +49,7 @@ impl<'a> Layers<'a> {
         layers
     }
 
-    /// The same. Unless scanning was the task, no floor counts as missed or left out.
+    /// These layers; unless scanning was the task, no floor counts as missed or unreachable.
     pub(super) fn of_scan(mut self, is_to_scan: bool) -> Self {
         self.is_to_scan = is_to_scan;
         if !is_to_scan {
@@ -110,7 +110,7 @@ impl<'a> Layers<'a> {
         }
     }
 
-    /// The plates that have floor, each with its cells in ascending order; empty if the layout is not known.
+    /// The plates that cover any floor, each with its cells in ascending order; empty if the layout is not known.
     pub(crate) fn plate_cells(&self) -> Vec<(&Plate, Vec<usize>)> {
         let Some(map) = &self.plate_map else { return Vec::new() };
         let mut plates: Vec<(&Plate, Vec<usize>)> =
@@ -152,7 +152,7 @@ impl<'a> Layers<'a> {
             cell.and_then(|cell| self.classes.get(cell))
                 .map_or(0, |class| u8::from(*class == FloorClass::Again))
         };
-        // Sums of three along the rows first; no cell on the edge of the grid is scanned.
+        // First the sums of three cells along each row. The first and last cell of a row are never scanned.
         let across = |cell: usize| at(cell.checked_sub(1)) + at(Some(cell)) + at(Some(cell + 1));
         let rows: Vec<u8> = (0..self.classes.len()).map(across).collect();
         let row = |cell: Option<usize>| cell.and_then(|cell| rows.get(cell)).copied().unwrap_or(0);
@@ -161,8 +161,8 @@ impl<'a> Layers<'a> {
         (0..rows.len()).map(|cell| self.is_scanned(cell) && most(cell)).collect()
     }
 
-    /// Four error limits, metres, that divide the scanned floor into five classes, and the class of each cell,
-    /// smoothed for display; `u8::MAX` where the floor was not scanned.
+    /// Four error limits that divide the scanned floor into five classes, metres, and the class of each cell. The
+    /// classes are smoothed for display; `u8::MAX` means that the cell was not scanned.
     pub(crate) fn error_classes(&self) -> ([f64; 4], Vec<u8>) {
         let (floor, passes) = (self.floor(), self.scanned.passes());
         let error_mm = |cell: usize| passes.error_mm(cell).filter(|_| self.is_scanned(cell));
@@ -187,7 +187,7 @@ impl<'a> Layers<'a> {
             error_mm(cell).map_or(u8::MAX, above)
         };
         let rough: Vec<u8> = (0..floor.len()).map(class).collect();
-        // A median of three by three: a single cell tells little about accuracy.
+        // The median of three by three cells: a single cell tells little about accuracy.
         let median = |cell: usize| {
             if rough[cell] == u8::MAX {
                 return u8::MAX;

@@ -1,5 +1,5 @@
 //! A report on located readings: the track with its errors and, if the readings state when the tool was on, the floor
-//! that it passed. Located readings are not a mission: no floor had to be scanned, and none was missed.
+//! that the tool passed over. Located readings are not a mission: no floor had to be scanned, and none was missed.
 
 mod front;
 mod gate;
@@ -42,7 +42,7 @@ pub struct Located {
     /// Time for which the tool was on, seconds, summed over all runs. Absent if the readings of any run do not
     /// contain it; then no coverage is stated.
     pub tool_on_s: Option<f64>,
-    /// Number of estimates of the position.
+    /// Number of estimated positions.
     pub positions: usize,
 }
 
@@ -70,7 +70,7 @@ impl Located {
     }
 }
 
-/// The account of the floor of located readings: without missed floor and without unreachable floor.
+/// The account of the floor for located readings: without missed or unreachable floor.
 pub(super) fn without_task(floor: Account, tool_is_known: bool) -> Account {
     let mut critical_zone = floor.critical_zone;
     let mut plates = floor.plates;
@@ -93,8 +93,8 @@ pub(super) fn without_task(floor: Account, tool_is_known: bool) -> Account {
     }
 }
 
-/// A report on located readings as JSON, without the fields that only a mission has. What the readings do not contain
-/// is `null`, never zero.
+/// A report on located readings as JSON, without the fields that only a mission has. A value that the readings do not
+/// contain is `null`, never zero.
 ///
 /// # Errors
 /// A number that JSON cannot represent.
@@ -141,7 +141,7 @@ pub fn located_json(document: &Document) -> serde_json::Result<Value> {
     Ok(all)
 }
 
-/// How much of a floor the tool passed.
+/// How much of a floor the tool passed over.
 fn passed(shares: &account::Shares, is_known: bool) -> Value {
     json!({
         "area_m2": shares.area_m2,

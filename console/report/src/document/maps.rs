@@ -15,7 +15,7 @@ use serde::Serialize;
 use std::fmt::Write;
 use world::{FloorClass, Point, coverage::percent_text};
 
-/// Widths of maps on paper, millimetres.
+/// Widths of maps, millimetres on paper.
 pub(super) const FULL_MM: f64 = 180.0;
 const HALF_MM: f64 = 88.0;
 /// Maximum number of badges on a map.
@@ -124,29 +124,30 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
     }
     if !indications.is_empty() {
         let mark = dot(&format!("{} stroke=\"{}\"", marks::STYLE, colour::TETHER));
-        entries.push(legend(mark, "indication, I and its number", indications.len().to_string()));
+        entries.push(legend(mark, "indication (I and its number)", indications.len().to_string()));
     }
     let hidden = numbered.len() - shown.len();
     let mut note = String::new();
     if hidden > 0 {
-        let _ = write!(note, " {hidden} areas have no badge; section 3 lists their positions.");
+        let _ = write!(note, " Areas without a badge: {hidden}; section 3 lists their positions.");
     }
     if marks.unnumbered > 0 {
         let unnumbered = counted(marks.unnumbered, "indication");
         let section = number_of(layers.is_to_scan, 7);
-        let _ =
-            write!(note, " {unnumbered} have no number on the map; section {section} lists their positions.");
+        let _ = write!(
+            note,
+            " Without a number on the map: {unnumbered}; section {section} lists the positions."
+        );
     }
     let (once, again) = (cells_of(FloorClass::Scanned), cells_of(FloorClass::Again));
     let overlap = percent_text(again as f64 / (once + again).max(1) as f64, 1);
     let missed = if layers.is_to_scan {
-        " Missed cells are outlined with 0.25 mm so that they stay visible."
+        " Missed cells have an outline of 0.25 mm so that they stay visible."
     } else {
         ""
     };
     let caption = format!(
-        "Floor scanned, by the estimated position; {overlap} % of the scanned floor more than \
-         once.{missed}{note}"
+        "Floor scanned, according to the estimated position; {overlap} % of it more than once.{missed}{note}"
     );
     (Figure { caption, svg: sheet.svg("Coverage map", "full"), legend: entries }, shown)
 }
@@ -191,15 +192,15 @@ pub(super) fn accuracy(layers: &Layers<'_>) -> Figure {
         legend(filled(colour), &text(class), format!("{:.1} %", percents[class]))
     };
     Figure {
-        caption: "95 % error of the best pass: the largest within a ranging period. Percentages are of the \
-             scanned floor."
+        caption: "95 % error of the best pass over each place; the error of a pass is the largest error \
+             within a ranging period. Percentages are of the scanned floor."
             .into(),
         svg: sheet.svg("Position accuracy map", "half"),
         legend: colour::ERROR.into_iter().enumerate().map(entry).collect(),
     }
 }
 
-/// Draws guaranteed floor, and floor that is scanned only if the estimated position was correct.
+/// Draws guaranteed floor, and floor that was scanned only if the estimated position was correct.
 pub(super) fn guaranteed(layers: &Layers<'_>, whole: &account::Shares) -> Figure {
     let (floor, fixtures) = (layers.floor(), layers.fixtures());
     let mut sheet = Sheet::new(fixtures.boundary, "g", HALF_MM, 5.5);
@@ -228,7 +229,7 @@ pub(super) fn guaranteed(layers: &Layers<'_>, whole: &account::Shares) -> Figure
             legend(filled("url(#gmissedL)"), "missed", per_cent(percent.missed)),
             legend(
                 filled(colour::OUT),
-                "unreachable, shell margin",
+                "unreachable or shell margin",
                 per_cent(percent.unreachable + percent.margin),
             ),
         ],
@@ -258,7 +259,7 @@ pub(super) fn track(layers: &Layers<'_>, record: &Record) -> Option<Figure> {
         end.y,
         colour::INK
     ));
-    let caption = "Track by the estimated position; the dot marks its end".into();
+    let caption = "Track according to the estimated position; the dot marks the end".into();
     Some(Figure { caption, svg: sheet.svg("Track of the robot", "half"), legend: Vec::new() })
 }
 

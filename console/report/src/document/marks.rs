@@ -6,12 +6,12 @@ use world::{Point, Vector};
 
 /// Fill and stroke of a mark.
 pub(super) const STYLE: &str = r##"fill="#fff" stroke-width=".5""##;
-/// Radius of a mark on the paper, and the smaller radius for more than [`MANY`] marks, which would otherwise hide the
-/// map, millimetres.
+/// Radius of a mark on paper, and the smaller radius used for more than [`MANY`] marks so that they do not hide the
+/// map; millimetres.
 const RADIUS_MM: f64 = 1.0;
 const SMALL_MM: f64 = 0.4;
 const MANY: usize = 200;
-/// Half the height of a number, and half the width of one of its characters, millimetres.
+/// Half the height of a number, and half the width of one of its digits, millimetres.
 const HALF_MM: (f64, f64) = (1.2, 0.75);
 
 /// The marks that were drawn.
@@ -22,10 +22,11 @@ pub(super) struct Marks {
     pub(super) unnumbered: u64,
 }
 
-/// Marks indications, each with its number where space allows. `names`: boxes of names that numbers must not cover.
+/// Marks indications, each with its number where space allows. `names`: the boxes around names, which numbers must
+/// not cover.
 pub(super) fn draw(sheet: &mut Sheet, indications: &[Indication], names: &[[Point; 2]]) -> Marks {
     let radius_mm = if indications.len() > MANY { SMALL_MM } else { RADIUS_MM };
-    // All marks first: a number must not cover a later mark either.
+    // Draw all marks first, because a number must not cover a later mark either.
     let of_mark = |found: &Indication| {
         let (at, half) = (sheet.at(found.at), Vector::repeat(radius_mm + 0.2));
         [at - half, at + half]

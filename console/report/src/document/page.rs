@@ -1,4 +1,4 @@
-//! The content of the report page as text; the template only sets the layout.
+//! The content of the report page as text; the template only defines the layout.
 
 use super::{Document, maps::Legend, sections::sections};
 use askama::Template;
@@ -14,7 +14,7 @@ struct Html<'a> {
     page: &'a Page,
 }
 
-/// A text, the key that is missing, or both.
+/// A text, the name of a missing key, or both.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Value {
     pub(super) text: Option<String>,
@@ -28,7 +28,7 @@ impl Value {
         Self { text: fact.cloned(), missing }
     }
 
-    /// A fact after a text that is always known.
+    /// A text that is always known, followed by a fact.
     pub(super) fn with_fact(known: impl Into<String>, fact: Option<&String>, key: &str) -> Self {
         let known = known.into();
         let text = fact.map_or_else(|| format!("{known};"), |fact| format!("{known}; {fact}"));
@@ -105,7 +105,7 @@ pub(super) struct Cell {
     /// The label of the cell on a card.
     pub(super) key: &'static str,
     pub(super) span: usize,
-    /// A picture before the text.
+    /// A picture in front of the text.
     pub(super) svg: String,
 }
 
@@ -179,7 +179,7 @@ pub(super) struct Page {
     pub(super) title: String,
     /// The title on the page.
     pub(super) heading: &'static str,
-    /// The notice at the top of a report that is not a simulation.
+    /// The notice at the top of a report on located readings; otherwise empty.
     pub(super) banner: String,
     pub(super) css: &'static str,
     pub(super) head: String,

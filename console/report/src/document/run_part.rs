@@ -10,7 +10,7 @@ use mission::Outcome;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// The recovery of a run whose recording process was killed: its files are fixed by digests.
+/// The recovery of a run whose recording process was killed. Digests pin down the files of the run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Recovered {
     /// The person who recovered the run.
@@ -43,7 +43,7 @@ pub struct Files {
     /// Whether the digests match those in the report that was written when the run ended; absent if there is no such
     /// report.
     pub are_as_reported: Option<bool>,
-    /// The objections to the files.
+    /// The problems found with the files.
     pub doubts: Vec<String>,
     /// Name of the run's folder when the run was closed; absent if it is not recorded.
     pub closed_as: Option<String>,
@@ -52,7 +52,7 @@ pub struct Files {
     pub recovered: Option<Recovered>,
 }
 
-/// A planner that drove.
+/// A planner that was active.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Driver {
     /// Its name, version and interface.
@@ -61,12 +61,12 @@ pub struct Driver {
     pub sha256: String,
 }
 
-/// The tether by the estimated position.
+/// The tether according to the estimated position.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TetherPart {
-    /// Greatest length out, metres.
+    /// Greatest length paid out, metres.
     pub length_max_m: f64,
-    /// Time of the greatest length out, seconds.
+    /// Time of the greatest length paid out, seconds.
     pub length_max_at_s: f64,
     /// Length of the reel, metres.
     pub reel_length_m: f64,
@@ -80,16 +80,16 @@ pub struct TetherPart {
     pub wrap_total_max_at_s: f64,
     /// Largest total wrap allowed, radians.
     pub wrap_total_limit_rad: f64,
-    /// Length out at the end, metres.
+    /// Length paid out at the end, metres.
     pub end_length_m: f64,
-    /// Largest factor by which wraps multiplied the pull.
+    /// Largest factor by which the wraps multiplied the pull.
     pub pull_factor_max: f64,
     /// Assumed friction between tether and steel.
     pub friction: f64,
-    /// Largest difference between the length at the reel and the length by the map, metres; absent without an
-    /// encoder.
+    /// Largest difference between the length at the reel and the length according to the map, metres; absent without
+    /// an encoder.
     pub reel_off_max_m: Option<f64>,
-    /// The same record by the true position; absent outside simulation.
+    /// The same record according to the true position; absent outside simulation.
     pub truth: Option<Tether>,
 }
 
@@ -106,7 +106,7 @@ pub struct RunPart {
     pub journal_version: u32,
     /// Name of its scenario.
     pub scenario: String,
-    /// Seed of all random numbers.
+    /// Seed for all random numbers.
     pub seed: u64,
     /// How it ended; absent if it was cut off.
     pub outcome: Option<Outcome>,
@@ -124,13 +124,13 @@ pub struct RunPart {
     pub clearance_m: f64,
     /// Collisions; absent outside simulation.
     pub collisions: Option<u64>,
-    /// Parameters of the first planner that drove.
+    /// Parameters of the first active planner.
     pub parameters: Vec<String>,
-    /// The planners that drove.
+    /// The planners that were active.
     pub drivers: Vec<Driver>,
-    /// Accuracy of the position by its covariance.
+    /// Accuracy of the position according to its covariance.
     pub accuracy: Option<Accuracy>,
-    /// Accuracy of the position by the truth.
+    /// Accuracy of the position compared with the true position.
     pub positioning: Option<Positioning>,
     /// The tether record.
     pub tether: Option<TetherPart>,
@@ -152,7 +152,7 @@ impl RunPart {
             sha256: info.sha256.clone(),
         };
         let parameters = summary.parameters.iter().flatten();
-        // A located run has a position only, and no data on the vehicle.
+        // A located run has only a position, and no data on the vehicle.
         let is_flown = run.measured.is_none();
         Some(Self {
             run: past.name.clone(),

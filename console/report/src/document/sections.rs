@@ -40,10 +40,10 @@ pub(super) fn sections(document: &Document) -> Page {
     front::page(document, numbered(sections))
 }
 
-/// The sections of a report on a task other than scanning, as section numbers of a scan report.
+/// The sections of a report on a task other than scanning, given as section numbers in a scan report.
 const WITHOUT_SCAN: [usize; 9] = [1, 2, 5, 7, 8, 9, 10, 11, 12];
 
-/// Converts a section number of a scan report to the number in this report.
+/// Converts a section number in a scan report to the number in this report.
 pub(super) fn number_of(is_to_scan: bool, section: usize) -> usize {
     let place = WITHOUT_SCAN.iter().position(|known| *known == section).map_or(section, |index| index + 1);
     if is_to_scan { section } else { place }
@@ -57,7 +57,7 @@ pub(super) fn section(title: &'static str, blocks: Vec<Block>) -> Section {
     Section { number: 0, title, is_new_sheet: false, blocks }
 }
 
-/// A figure that gets a number.
+/// A numbered figure.
 pub(super) fn picture(figure: &Figure) -> Picture {
     let Figure { caption, svg, legend } = figure;
     Picture { number: 0, caption: caption.clone(), svg: svg.clone(), legend: legend.clone() }

@@ -15,13 +15,14 @@ pub enum TaskPart {
     Goto {
         /// The goal, metres.
         goal: Point,
-        /// Distance from the goal at which it counts as reached, metres.
+        /// Distance from the goal within which the goal counts as reached, metres.
         tolerance_m: f64,
         /// Straight-line distance from the start to the goal, metres.
         straight_m: f64,
-        /// Distance to the goal at the end by the estimated position, metres; absent if the end is not known.
+        /// Distance to the goal at the end according to the estimated position, metres; absent if the end is not
+        /// known.
         left_m: Option<f64>,
-        /// Distance to the goal at the end by the true position, metres; absent outside simulation.
+        /// Distance to the goal at the end according to the true position, metres; absent outside simulation.
         left_true_m: Option<f64>,
     },
     /// Follow preset points.
@@ -59,7 +60,7 @@ impl TaskPart {
         }
     }
 
-    /// The figures of the task and of the run by name; unknown ones are omitted.
+    /// The figures of the task and of the run by name; unknown figures are omitted.
     pub(super) fn figures(&self, document: &Document) -> Vec<(&'static str, f64)> {
         let own = match self {
             Self::Goto { goal, straight_m, left_m, left_true_m, .. } => vec![
@@ -95,7 +96,7 @@ impl TaskPart {
         match self {
             Self::Goto { goal, .. } => format!("drive to the goal at {:.2}, {:.2} m", goal.x, goal.y),
             Self::Follow { preset_m, points, .. } => {
-                format!("follow a preset path of {points} points, {preset_m:.1} m")
+                format!("follow a preset path of {points} points ({preset_m:.1} m)")
             }
         }
     }

@@ -89,7 +89,7 @@ fn a_gap_without_a_reason_and_a_plate_without_a_figure_are_open_items() {
     document.gate = gate::gate(&document);
     assert!(!open(&document).contains(&5) && open(&document).contains(&6), "{:?}", document.gate);
     let lacks = &document.gate[5].missing;
-    assert!(lacks.len() == 1 && lacks[0].starts_with("reason for the gap at 1."), "{lacks:?}");
+    assert!(lacks.len() == 1 && lacks[0].starts_with("reason for the missed area at 1."), "{lacks:?}");
 }
 
 #[test]
@@ -153,7 +153,11 @@ fn seams_end_at_the_ring() {
 #[test]
 fn a_run_that_was_cut_off_and_gaps_block_the_signature_until_they_are_decided() {
     let undecided = document(Inspection::default());
-    assert!(undecided.gate[1].answer.starts_with("whole floor, ended early, "), "{:?}", undecided.gate[1]);
+    assert!(
+        undecided.gate[1].answer.starts_with("whole floor and the critical zone, "),
+        "{:?}",
+        undecided.gate[1]
+    );
     let lacks =
         |item: usize, key: &str| undecided.gate[item - 1].missing.contains(&format!("inspection.{key}"));
     assert!(lacks(2, "partial_scope_accepted") && lacks(6, "missed_accepted"), "{:?}", undecided.gate);
@@ -227,7 +231,7 @@ fn indications_have_numbered_marks_on_the_map_that_do_not_cover_one_another() {
     let numbers = map.svg.matches(">I").count();
     assert!(
         (1..300).contains(&numbers)
-            && map.caption.contains(&format!("{} indications have no number on the map", 300 - numbers))
+            && map.caption.contains(&format!("Without a number on the map: {} indications", 300 - numbers))
     );
 }
 
@@ -260,7 +264,7 @@ fn of_many_missed_areas_the_small_ones_are_said_in_few_words_each_with_its_reaso
     let many = Document::new(&[past_without(&places)], Context::default()).unwrap();
     assert_eq!(many.floor.missed.len(), 60);
     let page = html(&many);
-    let key = page.split_once("for each reason. ").unwrap().1.split(" CSV and JSON").next().unwrap();
+    let key = page.split_once("of each reason. ").unwrap().1.split(" CSV and JSON").next().unwrap();
     for number in 1..=60 {
         let entry =
             page.split_once(&format!("<li id=\"m{number}\">")).unwrap().1.split("</li>").next().unwrap();

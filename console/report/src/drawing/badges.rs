@@ -16,7 +16,7 @@ use world::{
 /// Radius of a badge, and height of its digits, millimetres.
 const RADIUS_MM: f64 = 2.05;
 const LETTERS_MM: f64 = 2.35;
-/// Distances from the area at which a badge is tried, millimetres in addition to its radius.
+/// Distances from the area at which a position for the badge is tried, in addition to its radius, millimetres.
 const DISTANCES_MM: [f64; 7] = [1.6, 2.8, 4.5, 7.0, 10.0, 14.0, 19.0];
 /// The number of directions in which a badge is tried.
 const DIRECTIONS: usize = 24;
@@ -33,7 +33,7 @@ pub(crate) struct Numbered<'a> {
     pub(crate) cells: &'a [usize],
 }
 
-/// A circle on the paper, millimetres.
+/// A circle on paper, millimetres.
 type Spot = (Point, f64);
 
 /// The marks and names that badges must not cover.
@@ -47,8 +47,8 @@ struct Crowd {
     names: Vec<[Point; 2]>,
 }
 
-/// Draws badges for areas and returns the numbers of those that fit. `names`: boxes of names that badges must not
-/// cover.
+/// Draws badges for areas and returns the numbers of those that fit. `names`: the boxes around names, which badges
+/// must not cover.
 pub(crate) fn draw(
     sheet: &mut Sheet,
     (floor, fixtures): (&Floor, &Fixtures<'_>),
@@ -155,7 +155,7 @@ impl Crowd {
     }
 }
 
-/// A shape approximated by circles on the paper.
+/// A shape approximated by circles on paper.
 fn spots(sheet: &Sheet, shape: &Shape) -> Vec<Spot> {
     let along = |points: &[Point]| -> Vec<Spot> {
         let thirds = |edge: &[Point]| [0.0, 0.33, 0.66].map(|share| edge[0] + (edge[1] - edge[0]) * share);

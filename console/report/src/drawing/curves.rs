@@ -5,14 +5,14 @@ use std::fmt::Write;
 
 /// Width and height of the picture, millimetres.
 const SIZE_MM: (f64, f64) = (180.0, 90.0);
-/// Left, right, top and bottom end of the plot, millimetres.
+/// Left, right, top and bottom ends of the plot, millimetres.
 const PLOT_MM: [f64; 4] = [16.0, 174.0, 14.0, 78.0];
-/// Columns of the legend, and their width, millimetres.
+/// Number of columns in the legend, and their width, millimetres.
 const LEGEND: (usize, f64) = (6, 26.5);
-/// Maximum number of points of a drawn curve; each shows the largest value of its stretch.
+/// Maximum number of points in a drawn curve; each shows the largest value of its stretch.
 const MOST_POINTS: usize = 600;
-/// This share of all values lies below the peaks. Peaks are cut off if the largest is more than `PEAK` times this
-/// value.
+/// Share of the values that are not peaks. Peaks are cut off if the largest is more than `PEAK` times the largest
+/// value that is not a peak.
 const SHOWN: f64 = 0.98;
 const PEAK: f64 = 2.0;
 /// The minimum number of ticks on an axis.

@@ -9,7 +9,7 @@ use world::{Point, World};
 
 /// Width of the picture, millimetres.
 const WIDTH_MM: f64 = 180.0;
-/// Classes of the error as shares of the limit, above the limit, and without a fix: colour and label.
+/// Classes of the error, each with colour and label: as shares of the limit, above the limit, and without a fix.
 const CLASSES: [(&str, &str); 6] = [
     (colour::ERROR[0], "up to 1/4 of the limit"),
     (colour::ERROR[1], "up to 1/2"),

@@ -20,7 +20,7 @@ pub(crate) struct Fixtures<'a> {
 }
 
 impl<'a> Fixtures<'a> {
-    /// The objects of a world, without found obstacles.
+    /// The objects in a world, without found obstacles.
     pub(crate) fn of(world: &'a World, anchor: Option<Point>) -> Self {
         Self {
             boundary: &world.boundary,
@@ -52,7 +52,7 @@ impl Sheet {
     /// Draws shell, stations, anchor, north arrow and scale bar, with letters of the given height in millimetres.
     pub(crate) fn frame(&mut self, fixtures: &Fixtures<'_>, letters_mm: f64) {
         let ink = colour::INK;
-        // A small map has a thinner line, so that marks along the shell stay visible.
+        // A small map has a thinner line so that marks along the shell stay visible.
         let stroke = if self.width_mm > 120.0 { 0.5 } else { 0.25 };
         self.wall(fixtures.boundary, &format!(r#"fill="none" stroke="{ink}" stroke-width="{stroke}""#));
         for station in fixtures.stations {

@@ -42,7 +42,7 @@ impl PlateLines {
         }
     }
 
-    /// The names with their positions in the tank frame: each on its plate.
+    /// The names with their positions in the tank frame, each on its own plate.
     pub(crate) fn names(&self) -> impl Iterator<Item = (&str, Point)> {
         self.names.iter().map(|plate| (plate.name.as_str(), plate.at))
     }
@@ -88,7 +88,8 @@ impl PlateLines {
     }
 }
 
-/// The point of the plate that is nearest to a given point: the centroid of an L-shaped plate lies outside it.
+/// The point of the plate that is nearest to a given point, because the centroid of an L-shaped plate lies outside
+/// the plate.
 fn on_plate(floor: &Floor, map: &PlateMap, plate: usize, at: Point) -> Point {
     let is_on = |cell: &usize| map.plate_of(*cell) == Some(plate);
     if floor.cell_at(at).as_ref().is_some_and(is_on) {

@@ -52,7 +52,7 @@ pub(crate) fn polygons(floor: &Floor, cells: &[usize]) -> Vec<Polygon> {
     polygons
 }
 
-/// Splits a ring into rings that pass every corner only once.
+/// Splits a ring into rings that pass each corner only once.
 fn simple(ring: &[Corner]) -> Vec<Vec<Corner>> {
     let mut simple = Vec::new();
     let mut way: Vec<Corner> = Vec::new();

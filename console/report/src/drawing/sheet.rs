@@ -1,4 +1,4 @@
-//! A map in millimetres of paper: north up, one scale, and a pattern for each class of floor.
+//! A map in millimetres on paper: north up, one scale, and a pattern for each class of floor.
 
 use super::trace::outlines;
 use std::fmt::{Display, Write};
@@ -33,7 +33,7 @@ pub(crate) struct Sheet {
     pub(crate) width_mm: f64,
     /// Height, millimetres.
     pub(crate) height_mm: f64,
-    /// Millimetres of paper per metre of tank.
+    /// Millimetres on paper per metre of tank.
     pub(crate) scale: f64,
     /// Height of the space below the tank, millimetres.
     pub(crate) foot_mm: f64,
@@ -148,7 +148,8 @@ impl Sheet {
         format!("url(#{}{name})", self.id)
     }
 
-    /// The pattern definitions: for cells of this edge length in metres and, for legends, in millimetres of paper.
+    /// The pattern definitions, scaled for cells with this edge length, metres, and for legends, in millimetres on
+    /// paper.
     pub(crate) fn define_patterns(&mut self, cell_m: f64) {
         let (id, mut defs) = (self.id, String::new());
         for (suffix, scale) in [("", cell_m * self.scale), ("L", 1.0)] {

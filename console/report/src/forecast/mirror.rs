@@ -1,4 +1,4 @@
-//! Floor for which stations on a line leave a mirror image, and what decides between the two positions.
+//! Floor that has a mirror image because the stations are on a line, and what decides between the two positions.
 
 use mission::MissionConfig;
 use positioning::{Accuracy, AccuracyMap};
@@ -9,7 +9,7 @@ use world::{Point, Station, Vector, World};
 const DECIDES_SIGMAS: f64 = 3.72;
 /// The 95 % error of a two-dimensional normal distribution, in standard deviations.
 const SIGMAS_95: f64 = 2.448;
-/// A smaller share of floor with a mirror image is not reported.
+/// If a smaller share of the floor has a mirror image, it is not reported.
 const WORTH_A_WORD: f64 = 0.005;
 /// Maximum number of station names in a message.
 const MOST_NAMES: usize = 6;
@@ -81,7 +81,7 @@ impl Mirrored {
         );
         let start_m = self.start_to_line_m;
         let second = if open < WORTH_A_WORD * 100.0 {
-            "there the side is always known".to_owned()
+            "the side is always known there".to_owned()
         } else if self.start_decides {
             format!(
                 "for {open:.1} % the side follows from robot.start_m, {start_m:.2} m from that line, as \
@@ -91,7 +91,8 @@ impl Mirrored {
         } else {
             format!(
                 "for {open:.1} % the side is ambiguous: robot.start_m is {start_m:.2} m from that line, \
-                 within its own error; add a station off the line, or start further from it"
+                 which is within the error of the start; add a station off the line, or start further from \
+                 it"
             )
         };
         [first, second]

@@ -4,11 +4,11 @@ use super::text::counted;
 use account::{Account, Area, Percent, PlateAccount, Shares, Slivers};
 use world::{Point, coverage::percent_text};
 
-/// Maximum number of unreachable areas listed; the JSON report has all of them.
+/// Maximum number of listed unreachable areas; the JSON report has all of them.
 const MOST_AREAS: usize = 10;
-/// Maximum number of arcs of the critical zone listed.
+/// Maximum number of listed arcs of the critical zone.
 const MOST_ARCS: usize = 3;
-/// Maximum number of plates listed.
+/// Maximum number of listed plates.
 const MOST_PLATES: usize = 30;
 
 /// Labelled lines; every percentage states its floor, and the percentages of one floor add up to 100.0 %.
@@ -46,11 +46,11 @@ fn plates(plates: &[PlateAccount]) -> Vec<String> {
     let left = worst.split_off(worst.len().min(MOST_PLATES));
     worst.sort_unstable();
     let mut lines =
-        vec![format!("{whole} of {} with nothing missed; the JSON report lists all", plates.len())];
+        vec![format!("{whole} of {} with nothing missed; the JSON report lists them all", plates.len())];
     lines.extend(worst.into_iter().map(|index| line(&plates[index])));
     if !left.is_empty() {
         let area_m2: f64 = left.iter().map(missed_m2).sum();
-        lines.push(format!("{} more, each with less missed, {area_m2:.2} m² in total", left.len()));
+        lines.push(format!("{} more, each with less missed floor, {area_m2:.2} m² in total", left.len()));
     }
     lines
 }

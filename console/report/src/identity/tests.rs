@@ -141,7 +141,7 @@ proptest! {
         let key = change(&mut other, which, by, &word);
         for runs in [[one.clone(), other.clone()], [other, one]] {
             let refused = together(runs).unwrap_err();
-            let says_where = refused.starts_with("runs a and b are not of the same floor: ") && refused.contains(key);
+            let says_where = refused.starts_with("runs a and b are not on the same floor: ") && refused.contains(key);
             prop_assert!(says_where && refused.contains(" in a and ") && refused.ends_with(" in b"), "{}", refused);
         }
     }
@@ -170,7 +170,7 @@ fn a_run_of_another_scenario_is_a_rescan_only_by_the_digest_of_a_journal_that_is
     let named = RunOpened { scenario: "tiny-rescan".into(), ..run() };
     let refused = fits(&[("a", run()), ("b", named)]).unwrap_err();
     assert!(
-        refused.contains("name is tiny in a and tiny-rescan in b, and neither is a re-scan"),
+        refused.contains("name is tiny in a and tiny-rescan in b, and neither run is a re-scan"),
         "{refused}"
     );
     let damaged = RunOpened { scenario_toml: "[".into(), ..run() };

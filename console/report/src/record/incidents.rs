@@ -5,7 +5,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use world::Station;
 
-/// Maximum number of incidents stored; a final one states how many more there were.
+/// Maximum number of incidents stored; a final one states how many are left out.
 const MOST: usize = 50_000;
 
 /// An incident.
@@ -46,7 +46,7 @@ pub(super) struct Incidents {
 }
 
 impl Incidents {
-    /// All incidents; if the end of the run is missing, that is the last incident.
+    /// All incidents; if the end of the run is missing, the last incident states this.
     pub(super) fn all(&self) -> Vec<Incident> {
         let mut all = self.all.clone();
         let has_end = all.last().is_some_and(|last| last.kind == "end");

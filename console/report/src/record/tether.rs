@@ -1,9 +1,9 @@
-//! The tether over a run, by the estimated position.
+//! The tether over a run, according to the estimated position.
 
 use mission::{TetherConfig, event::taut_line};
 use world::{Point, tether::Limits};
 
-/// Maximum number of lines of the tether stored for its picture; beyond that, every second line is dropped.
+/// Maximum number of tether lines stored for the picture; beyond that, every second line is dropped.
 const MOST_LINES: usize = 400;
 
 /// The tether in a tick.
@@ -11,7 +11,7 @@ const MOST_LINES: usize = 400;
 pub struct TetherPoint {
     /// Mission time, seconds.
     pub t_s: f32,
-    /// Length out by the map, metres.
+    /// Length out according to the map, metres.
     pub length_m: f32,
     /// Largest wrap on one obstacle, radians.
     pub wrap_max_rad: f32,
@@ -47,7 +47,8 @@ pub struct TetherRecord {
     pub wrap_max_rad: f64,
     /// Largest factor by which the wraps multiplied the pull.
     pub pull_factor_max: f64,
-    /// Largest difference between the length paid out and the length by the map, metres; absent without an encoder.
+    /// Largest difference between the length paid out and the length according to the map, metres; absent without an
+    /// encoder.
     pub reel_off_max_m: Option<f64>,
     anchor: Point,
     every: usize,

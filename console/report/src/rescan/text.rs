@@ -8,7 +8,7 @@ use std::fmt::Write;
 const MOST_LISTED: usize = 10;
 
 impl Rescan {
-    /// The floor to re-scan, and the floor that is left; `min_area_m2` is the smallest area that was wanted.
+    /// The floor to re-scan, and the floor that is left; `min_area_m2` is the smallest area that is worth it.
     pub fn human(&self, min_area_m2: f64) -> String {
         let boxes_m2: f64 = self.boxes.iter().map(|[low, high]| (high.x - low.x) * (high.y - low.y)).sum();
         let mut text = format!(
@@ -22,7 +22,7 @@ impl Rescan {
         text += &listed("not re-scanned, not reached by any lane", &self.out_of_reach);
         if self.not_asked_m2 > 0.0 {
             // Writing to a String cannot fail.
-            let _ = writeln!(text, "not re-scanned: {:.2} m² that no mission was to scan", self.not_asked_m2);
+            let _ = writeln!(text, "not re-scanned: {:.2} m² that no mission had to scan", self.not_asked_m2);
         }
         text
     }

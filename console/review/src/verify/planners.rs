@@ -14,10 +14,10 @@ use std::{
     sync::mpsc::{Receiver, SyncSender},
 };
 
-/// Maximum number of asks and answers by which the planners may be behind.
+/// Maximum number of asks and answers by which the planners may lag behind.
 pub(super) const BEHIND: usize = 512;
 
-/// Answers asks from the journal, and sends both to the thread in which planners answer the asks, too.
+/// Answers asks from the journal, and sends both to the thread in which the planners answer the asks, too.
 pub(crate) struct Replayed {
     recorded: RecordedAnswers,
     /// `None` if the planners are not asked.
@@ -90,7 +90,7 @@ impl Answers for Replayed {
 pub(crate) struct Asked {
     /// Number of answers that were compared and are equal.
     pub same: usize,
-    /// Number of answers that cannot be compared: the mission refused them, or did not use them.
+    /// Number of answers that cannot be compared because the mission refused them or did not use them.
     pub not_comparable: usize,
     /// Number of external or timing faults, by planner.
     pub external: BTreeMap<String, usize>,
@@ -128,7 +128,7 @@ struct Asking {
     host: Host,
     /// Answers that arrived before they were needed.
     early: Vec<Answer>,
-    /// Workers with external or timing faults that are not in the journal yet, with place and fault.
+    /// Workers with external or timing faults that are not in the journal yet; for each, the place and the fault.
     failed: BTreeMap<WorkerId, String>,
     asked: Asked,
 }

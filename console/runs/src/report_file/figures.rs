@@ -16,7 +16,7 @@ pub(super) fn difference(reported: Summary, computed: &Summary) -> Option<String
         logs: reported.logs.clone(),
         ..computed.clone()
     };
-    // Converted to text and back, like the report.
+    // The figures are converted to text and back, like those in the report.
     let text = serde_json::to_string(&computed).ok()?;
     let computed = serde_json::to_value(serde_json::from_str::<Summary>(&text).ok()?).ok()?;
     let found = first_difference(&serde_json::to_value(reported).ok()?, &computed)?;

@@ -5,11 +5,11 @@ use geometry::{polyline::edges, unit_vector};
 use std::f64::consts::TAU;
 use world::{Boundary, Obstacle, ObstacleMap, Point, Vector, World};
 
-/// Distance from a station at which a ray counts as having reached it, metres: stations may be mounted on a column.
+/// A ray that comes this close to a station counts as having reached it, metres: stations may be mounted on a column.
 const REACHED_M: f64 = 1e-3;
-/// Number of points of a round wall that are tested for an echo.
+/// Number of points on a round wall at which an echo is sought.
 const WALL_POINTS: u32 = 720;
-/// Distance from a station within which an echo counts as the direct sound, metres.
+/// An echo that is reflected this close to a station counts as the direct sound, metres.
 const OWN_WALL_M: f64 = 0.1;
 
 /// A path of sound.
@@ -21,12 +21,12 @@ pub(crate) struct SoundPath {
     pub is_late: bool,
 }
 
-/// Wall and obstacles for the propagation of sound.
+/// The wall and the obstacles that affect the propagation of sound.
 #[derive(Clone)]
 pub(crate) struct Propagation {
     boundary: Boundary,
     all: ObstacleMap,
-    /// Each obstacle alone, with points on its outline.
+    /// Each obstacle on its own, with points on its outline.
     single: Vec<(ObstacleMap, Vec<Point>)>,
 }
 
@@ -56,7 +56,7 @@ impl Propagation {
         Some(SoundPath { length_m, is_late })
     }
 
-    /// Length of a taut line round all obstacles between the two points, on the shorter side.
+    /// Length of a taut line from one point to the other round all obstacles in between, on the shorter side.
     fn creeping_m(&self, from: Point, to: Point) -> f64 {
         let direct = to - from;
         let outline: Vec<Point> = self
@@ -72,7 +72,7 @@ impl Propagation {
         side(1.0).min(side(-1.0))
     }
 
-    /// Length of the shortest echo from the wall that is not itself blocked.
+    /// Length of the shortest echo from the wall with a path that is not blocked itself.
     fn echo_m(&self, from: Point, to: Point) -> Option<f64> {
         let mut echoes: Vec<(f64, Point)> = match &self.boundary {
             Boundary::Circle { radius_m } => round_echoes(*radius_m, from, to),
@@ -92,8 +92,8 @@ fn is_blocked(map: &ObstacleMap, from: Point, to: Point) -> bool {
         && map.ray_m(from, way / distance_m, distance_m).is_some_and(|hit_m| hit_m < distance_m - REACHED_M)
 }
 
-/// Length of a string from `from` to `to` round points that are all on one side of the straight line: a chain of the
-/// convex hull.
+/// Length of a taut string from `from` to `to` round points that are all on one side of the straight line: one side of
+/// the convex hull.
 fn taut_m(from: Point, to: Point, mut around: Vec<Point>, sign: f64) -> f64 {
     let direct = to - from;
     around.push(to);
@@ -110,7 +110,7 @@ fn taut_m(from: Point, to: Point, mut around: Vec<Point>, sign: f64) -> f64 {
     chain.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum()
 }
 
-/// Echoes from a round wall: sound is reflected where the length of the path via the wall has an extremum (Fermat's
+/// Echoes from a round wall. Sound is reflected where the length of the path via the wall has an extremum (Fermat's
 /// principle).
 fn round_echoes(radius_m: f64, from: Point, to: Point) -> Vec<(f64, Point)> {
     let at = |k: u32| Point::from(unit_vector(TAU * f64::from(k) / f64::from(WALL_POINTS)) * radius_m);

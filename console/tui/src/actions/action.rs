@@ -1,4 +1,4 @@
-//! An action: a row of the table.
+//! An action: one row of the action table.
 
 use super::ActionId;
 use super::argument::Arg;
@@ -29,7 +29,7 @@ impl Risk {
     }
 }
 
-/// What an action affects beyond the screen, which determines the consoles that offer the action.
+/// What an action affects beyond the screen; this determines which consoles offer the action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Reach {
     /// Only this screen: every console offers the action.
@@ -42,12 +42,12 @@ pub(crate) enum Reach {
     Mission,
 }
 
-/// The effect of an action. An action whose id carries a value has the same effect for every value.
+/// The effect of an action. Actions whose ids carry a value have the same effect for every value.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Deed {
-    /// Opens the command line for the action's value.
+    /// Opens the command line to ask for the action's value.
     Begin,
-    /// Changes only what the operator looks at.
+    /// Changes only what the operator sees.
     Look(fn(&mut Model)),
     /// Changes the model and may return effects for the caller to carry out.
     Act(fn(&mut Model) -> Vec<Effect>),
@@ -62,7 +62,7 @@ pub struct Action {
     pub name: &'static str,
     /// The description in the help.
     pub about: &'static str,
-    /// The word beside the key in the footer; empty if the footer omits the action.
+    /// The word next to the key in the footer; empty if the footer omits the action.
     pub label: &'static str,
     /// The action's keys; the first one is shown.
     pub keys: &'static [Key],
@@ -78,7 +78,8 @@ pub struct Action {
     pub args: &'static [Arg],
     /// What the action affects beyond the screen.
     pub(crate) reach: Reach,
-    /// Checks whether the action is possible now; the error is the reason, with keys written as `<end>`.
+    /// Checks whether the action is possible now; the error is the reason why it is not, with keys written as
+    /// `<end>`.
     pub(crate) can: fn(&Model) -> Result<(), String>,
     /// The effect of the action.
     pub(crate) deed: Deed,
@@ -93,8 +94,8 @@ impl PartialEq for Action {
 
 impl Eq for Action {}
 
-/// Makes a row of the table. By default the action is safe, affects only the screen, is always possible, and opens
-/// the command line for its value.
+/// Creates a row of the table. By default the action is safe, affects only the screen, is always possible, and opens
+/// the command line to ask for its value.
 pub(crate) const fn action(
     id: ActionId,
     name: &'static str,

@@ -45,7 +45,7 @@ pub enum Context {
 }
 
 impl Context {
-    /// The name of the screen, if the context is one.
+    /// The screen's name, if the context is a screen.
     pub fn screen(self) -> Option<&'static str> {
         match self {
             Self::On(screen) => Some(screen.name()),

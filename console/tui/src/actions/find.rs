@@ -29,7 +29,7 @@ pub fn named(word: &str) -> Option<&'static Action> {
     by(|action| vec![action.name]).or_else(|| by(|action| action.synonyms.to_vec()))
 }
 
-/// How well a command matches the typed text, best match first.
+/// How well a command matches the typed text, from the best match to the worst.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Match {
     /// The text equals the name or a synonym.

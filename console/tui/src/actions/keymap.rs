@@ -1,4 +1,4 @@
-//! The key assignments: those of the table, a preset and the operator.
+//! The key assignments: from the table, from a preset and from the operator.
 
 mod presets;
 
@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 /// Key assignments, and aliases for command lines.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Keymap {
-    /// Keys by action, where they differ from the table.
+    /// Keys by action, for actions whose keys differ from those in the table.
     changed: BTreeMap<String, Vec<Key>>,
     /// Command lines by alias.
     pub aliases: BTreeMap<String, String>,
@@ -40,7 +40,7 @@ pub struct Objection {
     pub what: String,
     /// The index of the earlier binding that uses the same key.
     pub other: Option<usize>,
-    /// What happens instead, as a clause.
+    /// The consequence, as a clause.
     pub instead: String,
 }
 
@@ -55,8 +55,8 @@ impl Keymap {
         self.of(action).iter().map(Key::to_string).collect::<Vec<_>>().join(" ")
     }
 
-    /// Replaces each `<end>`-style placeholder in a sentence by the key of the named action; an action without a key
-    /// is shown as its command.
+    /// Replaces each `<end>`-style placeholder in a sentence with the key of the named action; for an action without
+    /// a key, with its command.
     pub fn spelled(&self, sentence: &str) -> String {
         let mut parts = sentence.split('<');
         let mut text = parts.next().unwrap_or_default().to_owned();
@@ -89,7 +89,7 @@ impl Keymap {
             let taken: Vec<(usize, &Binding)> =
                 bindings.iter().enumerate().filter(|(index, _)| !is_out(*index)).collect();
             let map = Self::of_bindings(preset, &taken);
-            // One at a time: an action that keeps its keys may block another binding.
+            // One at a time: an action that keeps its keys may conflict with another binding.
             match taken.iter().find_map(|(index, binding)| map.objection(&base, *index, binding, &taken)) {
                 Some(objection) => objections.push(objection),
                 None => return (map, objections),
@@ -155,7 +155,7 @@ impl Keymap {
         if names.is_empty() { "no key".into() } else { names.join(", ") }
     }
 
-    /// A different action that uses the key in a context of this action, and the screens where the two conflict.
+    /// Another action that uses the key in one of this action's contexts, and the screens where the two conflict.
     fn holder(&self, action: &Action, key: Key) -> Option<(&'static Action, Vec<&'static str>)> {
         let rows = || ACTIONS.iter().filter(|row| row.id == action.id);
         let mut found: Option<(&Action, Vec<&str>)> = None;
@@ -197,7 +197,7 @@ fn is_deliberate(key: Key) -> bool {
     }
 }
 
-/// The keys of a binding, preceded by the keys that cannot be removed from the action.
+/// The keys of a binding, preceded by the action's permanent keys, which no binding can remove.
 fn with_fixed(binding: &Binding) -> Vec<Key> {
     let is_fixed = |action: &&Action| {
         use ActionId::{Accept, Cancel, Commands, Hold, Interrupt};

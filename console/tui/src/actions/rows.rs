@@ -1,4 +1,4 @@
-//! The rows of the table, one per action, in the order of the footer and the help.
+//! The rows of the action table, one per action, in the order of the footer and the help.
 
 mod alarms;
 mod console;

@@ -29,7 +29,7 @@ pub(super) const WRITER: Guide = Guide {
 
 pub(super) const CONSOLE: Guide = Guide {
     cause: "A thread of the console panicked, or an order did not reach the mission.",
-    effect: "If a thread failed, the robot is held. Orders may not be obeyed.",
+    effect: "If a thread failed, the robot is held. Orders may have no effect.",
     remedies: &[HOLD, END, run("Quit the console: holds, then asks.", ActionId::Leave)],
 };
 
@@ -41,8 +41,8 @@ pub(super) const RESPONSE: Guide = Guide {
 };
 
 pub(super) const FRAMES: Guide = Guide {
-    cause: "Drawing does not keep up with the mission: the machine or the terminal is too busy.",
-    effect: "The screen skips some states. Nothing is lost from the journal.",
+    cause: "Drawing cannot keep up with the mission: the machine or the terminal is too busy.",
+    effect: "The screen skips some states. The journal loses nothing.",
     remedies: &[SLOWER, wait("Close other programs, or make the terminal smaller.")],
 };
 

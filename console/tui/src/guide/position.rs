@@ -4,10 +4,10 @@ use super::remedy::{END, Guide, HOLD, SHOW, STAY, run, wait};
 use crate::actions::ActionId;
 
 pub(super) const POSITION_LOST: Guide = Guide {
-    cause: "The 95 % position error is above the limit of the mission: too few stations are heard, their \
+    cause: "The 95 % position error is above the mission's limit: too few stations are heard, their \
     geometry is poor here, or echoes corrupt their ranges.",
-    effect: "Robot is held automatically after a short delay (scenario: position_lost_hold_s). Floor passed \
-    in that time does not count as scanned.",
+    effect: "The robot is held automatically after a short delay (scenario: position_lost_hold_s). Floor \
+    covered during that delay does not count as scanned.",
     remedies: &[
         wait("Wait: the mission resumes automatically when the position is recovered."),
         STAY,
@@ -17,9 +17,9 @@ pub(super) const POSITION_LOST: Guide = Guide {
 };
 
 pub(super) const CONTRADICTION: Guide = Guide {
-    cause: "Several stations report wrong ranges at the same time: sound path blocked by columns, echoes, \
-    or wrong station data. The faulty stations cannot be identified.",
-    effect: "Robot is held automatically. Floor does not count as scanned until the ranges agree.",
+    cause: "Several stations report wrong ranges at the same time: columns block the sound, there are \
+    echoes, or station data are wrong. The faulty stations cannot be identified.",
+    effect: "The robot is held automatically. Floor does not count as scanned until the ranges agree.",
     remedies: &[
         wait("Wait: the mission resumes automatically when the ranges agree again."),
         STAY,
@@ -29,8 +29,8 @@ pub(super) const CONTRADICTION: Guide = Guide {
 };
 
 pub(super) const NO_FIX: Guide = Guide {
-    cause: "The ranges of this cycle give no position: too few stations were heard, or they are all on one \
-    line.",
+    cause: "No position can be computed from the ranges of this cycle: too few stations were heard, or they \
+    are all on one line.",
     effect: "The position is dead-reckoned; its error grows until the next fix.",
     remedies: &[wait("Wait for the next ranging cycle."), HOLD],
 };
@@ -39,5 +39,5 @@ pub(super) const STATION: Guide = Guide {
     cause: "The station's range disagrees with the others by more than its gate, or the station was not \
     heard: echo, blocked sound path, or wrong station data.",
     effect: "The position is computed without this station and is less accurate.",
-    remedies: &[wait("Wait: the station is used again as soon as its range fits."), SHOW, HOLD],
+    remedies: &[wait("Wait: the station is used again as soon as its range agrees."), SHOW, HOLD],
 };

@@ -18,7 +18,7 @@ pub struct Guide {
 pub struct Remedy {
     /// The remedy as a sentence.
     pub text: &'static str,
-    /// The action that carries out the remedy; `None` if the operator must do something himself, or wait.
+    /// The action that carries out the remedy; `None` if the operator must act elsewhere or wait.
     pub action: Option<ActionId>,
 }
 
@@ -30,8 +30,9 @@ pub(super) const fn run(text: &'static str, action: ActionId) -> Remedy {
     Remedy { text, action: Some(action) }
 }
 
-pub(super) const STAY: Remedy = run("Keep held (HOLD): then only the operator can resume.", ActionId::Hold);
-pub(super) const HOLD: Remedy = run("HOLD the robot until this is clear.", ActionId::Hold);
+pub(super) const STAY: Remedy =
+    run("Stay held (HOLD): then only the operator can resume the mission.", ActionId::Hold);
+pub(super) const HOLD: Remedy = run("HOLD the robot until this is resolved.", ActionId::Hold);
 pub(super) const END: Remedy = run("End the mission (<end>): holds, then asks.", ActionId::Abort);
 pub(super) const SHOW: Remedy = run("Show it on the map.", ActionId::ShowPlace);
 pub(super) const SLOWER: Remedy = run("Slow the simulation down (<slower>).", ActionId::Slower);

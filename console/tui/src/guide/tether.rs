@@ -3,7 +3,7 @@
 use super::remedy::{END, Guide, OTHER_PLANNER, RESUME, SHOW, STAY, run, wait};
 use crate::actions::ActionId;
 
-/// The name of a tether alarm; `word` is the word of its event.
+/// The name of a tether alarm; `word` is the word used in its event.
 pub(super) fn name(word: &str) -> String {
     match word {
         "reel" => "tether: reel nearly out".into(),
@@ -21,7 +21,7 @@ pub(super) fn guide(word: &str) -> Guide {
     match word {
         "reel" => Guide {
             cause: "More than 80 % of the tether is out.",
-            effect: "At the end of the reel the robot is held.",
+            effect: "When the reel is empty, the robot is held.",
             remedies: const {
                 &[
                     run(
@@ -47,7 +47,7 @@ pub(super) fn guide(word: &str) -> Guide {
         },
         "snag" => Guide {
             cause: "The reel has paid out more than the map explains: an unmapped object holds the tether.",
-            effect: "Robot is held. Tether position unknown; the return path is UNKNOWN.",
+            effect: "The robot is held. The tether's position is unknown; the return path is UNKNOWN.",
             remedies: const {
                 &[
                     run(
@@ -55,14 +55,14 @@ pub(super) fn guide(word: &str) -> Guide {
                         ActionId::Resume,
                     ),
                     SHOW,
-                    run("Keep held (HOLD), and free the tether by hand.", ActionId::Hold),
+                    run("Stay held (HOLD), and free the tether by hand.", ActionId::Hold),
                     END,
                 ]
             },
         },
         "return path" => Guide {
-            cause: "The hull does not fit along the way back beside the tether.",
-            effect: "Robot is held.",
+            cause: "The hull does not fit along the return path beside the tether.",
+            effect: "The robot is held.",
             remedies: const {
                 &[
                     wait("Wait: the mission resumes automatically as soon as the hull fits again."),

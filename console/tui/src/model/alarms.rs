@@ -1,8 +1,8 @@
 //! The alarms and whether the operator has acknowledged them: a life cycle modelled on ISA-18.2.
 //!
-//! Each cause has one alarm. The alarm is unacknowledged while its cause persists and the operator has not
-//! acknowledged it, acknowledged afterwards, returned if the cause cleared first, shelved while the operator has put
-//! it aside, and cleared when nothing is left to do. CRIT and WARN alarms are latched until they are acknowledged; a
+//! Each cause has one alarm. The alarm is unacknowledged until the operator acknowledges it, and acknowledged
+//! afterwards. If the cause clears before that, the alarm is returned. It is shelved while the operator has put it
+//! aside, and cleared when nothing is left to do. CRIT and WARN alarms are latched until they are acknowledged; a
 //! watch alarm clears with its cause.
 
 mod alarm;

@@ -92,9 +92,9 @@ pub struct Notice {
 pub struct Settling {
     /// The key.
     pub key: Key,
-    /// The overlay that was open at the time; the press applies only to that overlay.
+    /// The overlay that was open at the time; the press applies to that overlay only.
     pub over: Overlay,
-    /// When the question is settled, on the console's own clock, seconds.
+    /// When it becomes clear whether the key is held down, on the console's own clock, seconds.
     pub until_mono_s: f64,
 }
 
@@ -115,7 +115,7 @@ pub struct Preferences {
     pub operator: Option<String>,
     /// Whether the console uses the mouse.
     pub mouse: bool,
-    /// The new alarms that ring the bell.
+    /// Which new alarms ring the bell.
     pub bell: Bell,
     /// The longest time for which an alarm may be shelved, minutes.
     pub shelve_max_min: u32,
@@ -153,7 +153,7 @@ pub struct Console {
     /// The console's own figures that are compared with limits.
     #[serde(default)]
     pub watches: Watches,
-    /// A key that may be held down; its action waits until that is known.
+    /// A key that may be held down; its action waits until it is known whether it is.
     #[serde(default)]
     pub settling: Option<Settling>,
     /// When Ctrl-C was last pressed, on the console's own clock, seconds.

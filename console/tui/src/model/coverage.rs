@@ -14,7 +14,7 @@ struct Level {
     tallies: Tiles<Tally>,
 }
 
-/// The scanned floor, with copies reduced by 2, 4, 8 and so on.
+/// The scanned floor, with copies reduced in scale by 2, 4, 8 and so on.
 ///
 /// Only changed cells are folded in, and drawing looks up one block per dot, so neither cost grows with the mission.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -28,7 +28,7 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// Makes the raster of a floor of which nothing has been scanned.
+    /// Creates the raster of a completely unscanned floor.
     pub fn new(floor: Floor) -> Self {
         let overlap = Overlap::new(floor.width, floor.len());
         let mut raster = Self { grid: CoverageGrid::new(floor), levels: Vec::new(), overlap, stamp: 0 };
@@ -48,7 +48,7 @@ impl Raster {
         self.stamp = (self.stamp ^ change).wrapping_mul(0x0100_0000_01b3);
     }
 
-    /// A stamp that changes with every edit: a drawing stays valid for as long as the stamp is the same.
+    /// A stamp that changes with every edit; a drawing remains valid as long as the stamp stays the same.
     pub fn stamp(&self) -> u64 {
         self.stamp
     }
@@ -58,7 +58,7 @@ impl Raster {
         self.grid.floor()
     }
 
-    /// Changes the kind of some cells, as when an obstacle is found.
+    /// Changes the kind of some cells, for example when an obstacle is found.
     pub fn change(&mut self, changes: &[KindRun]) {
         let len = self.grid.floor().len();
         let cells = changes.iter().flat_map(|KindRun(_, first, count)| {
@@ -91,7 +91,7 @@ impl Raster {
         }
     }
 
-    /// Records that, by the estimate, the robot moved from `a` to `b` with its tool on the floor.
+    /// Records that, according to the estimate, the robot moved from `a` to `b` with its tool on the floor.
     pub fn pass(&mut self, tool: Tool, a: Pose, b: Pose) {
         let way_m = (b.position - a.position).norm();
         if !way_m.is_finite() {
@@ -108,8 +108,8 @@ impl Raster {
         }
     }
 
-    /// The share of the scanned floor that was scanned more than once, by the estimated track, computed as in the
-    /// report; `None` before anything is scanned.
+    /// The share of the scanned floor that was scanned more than once according to the estimated track, computed as
+    /// in the report; `None` before anything is scanned.
     pub fn overlap(&self) -> Option<f64> {
         // The last level is a single block.
         let Tally { scanned, again, .. } = self.levels.last()?.tallies.at(0);

@@ -14,7 +14,7 @@ use mission::{
 use positioning::AccuracyMap;
 use world::{Obstacle, ObstacleId};
 
-/// Cells of the accuracy forecast along the longer side of the floor.
+/// The number of cells of the accuracy forecast along the longer side of the floor.
 const FORECAST_CELLS: f64 = 100.0;
 
 impl Run {
@@ -62,7 +62,7 @@ impl Run {
             | EventKind::RangesConsistent => self.locate(event, &mut change),
             EventKind::ObstacleFound { obstacle } => self.found(event, obstacle),
             EventKind::ZoneDrawn { zone } => {
-                // The previous plan does not take the change into account: a new one is made.
+                // The previous plan does not take the change into account, so a new one is made.
                 self.forget_certificate();
                 if self.is_waiting() {
                     self.forget_plan();
@@ -131,8 +131,8 @@ impl Run {
         change
     }
 
-    /// Forgets the plan before the start when a new one is being made, because the old plan is no longer the one that
-    /// would run.
+    /// Forgets the plan made before the start when a new one is being made: the old plan is no longer the one that
+    /// will run.
     fn forget_plan(&mut self) {
         self.planning.plan = None;
         self.forget_certificate();

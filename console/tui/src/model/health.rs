@@ -3,17 +3,17 @@
 use super::alarms::limit::{Limit, Watch};
 use serde::{Deserialize, Serialize};
 
-/// Time from a key press to its frame, milliseconds: one frame of a 30 Hz screen. The alarm clears when a third of
-/// that is to spare; the delays ignore a single slow frame.
+/// Time from a key press to its frame, milliseconds: one frame of a 30 Hz screen. The alarm clears when the time is a
+/// third below that; because of the delays, a single slow frame has no effect.
 pub const RESPONSE_MS: Limit = Limit { alarm: 33.0, clear: 22.0, on_delay_s: 2.0, off_delay_s: 5.0 };
-/// Frames skipped within ten seconds, out of about 300: above one in ten, the screen stutters. The figure already
-/// spans ten seconds, so it needs no delay.
+/// Frames skipped within ten seconds, out of about 300: if more than one in ten is skipped, the screen stutters. The
+/// figure already spans ten seconds, so the alarm needs no delay.
 pub const FRAMES: Limit = Limit { alarm: 30.0, clear: 10.0, on_delay_s: 0.0, off_delay_s: 5.0 };
-/// Ticks waiting to be written, out of a queue of 8192. When the queue is half full the simulation waits for the
-/// disk, so this limit leaves time to act. A disk that pauses for a second raises no alarm.
+/// Ticks waiting to be written, in a queue of 8192. When the queue is half full, the simulation waits for the disk,
+/// so this limit leaves time to act. A disk that pauses for a second raises no alarm.
 pub const RECORDER_LAG: Limit = Limit { alarm: 1024.0, clear: 128.0, on_delay_s: 1.0, off_delay_s: 2.0 };
-/// Space left for runs, megabytes: a mission takes about 100 MB an hour, so two hours are left. Space that is free
-/// only for a moment does not count.
+/// Space left for runs, megabytes: a mission takes about 100 MB an hour, so two hours are left. Space that is freed
+/// only for a moment does not clear the alarm.
 pub const DISK_MB: Limit = Limit { alarm: 200.0, clear: 300.0, on_delay_s: 0.0, off_delay_s: 5.0 };
 
 /// The state of the recording.
@@ -34,7 +34,7 @@ pub enum Recording {
 pub struct Health {
     /// The state of the recording.
     pub recording: Recording,
-    /// The speed actually reached, as a multiple of the wall clock; `None` when not measured.
+    /// The speed actually achieved, as a multiple of the wall clock; `None` if it is not measured.
     pub reached_speed: Option<f64>,
     /// The number of ticks whose events are waiting to be written.
     #[serde(default)]
@@ -44,7 +44,7 @@ pub struct Health {
 /// A measurement of the console itself.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Measured {
-    /// The performance of the screen.
+    /// The responsiveness of the screen.
     Screen {
         /// The 99th percentile of the time from a key press to its frame, milliseconds; `None` without recent keys.
         response_ms: Option<f64>,
@@ -69,7 +69,7 @@ pub struct Watches {
 }
 
 impl Watches {
-    /// Whether a figure of the screen must be measured again even if nothing happens.
+    /// Whether one of the screen's figures must be measured again even if nothing happens.
     pub(super) fn is_pending(&self) -> bool {
         self.response.is_pending() || self.frames.is_pending()
     }

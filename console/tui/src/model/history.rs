@@ -1,15 +1,15 @@
-//! The values of the last minutes, for curves.
+//! The values over the last minutes, for curves.
 
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
-/// The mission time that a history covers, seconds.
+/// The mission time covered by a history, seconds.
 pub const HISTORY_S: usize = 480;
-/// The length of a slot, seconds of mission time. Only the largest value of a slot is kept, so a curve moves no more
-/// often than this.
+/// The length of a slot, seconds of mission time. Only the largest value in a slot is kept, so a curve moves at most
+/// once per slot.
 pub const SLOT_S: usize = 4;
 
-/// The largest value of each slot of [`SLOT_S`] seconds of mission time over the last [`HISTORY_S`] seconds, newest
+/// The largest value in each slot of [`SLOT_S`] seconds of mission time over the last [`HISTORY_S`] seconds, newest
 /// last.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct History {
@@ -37,7 +37,7 @@ impl History {
         self.slot as f64 * SLOT_S as f64
     }
 
-    /// The values of the last `seconds`, newest last.
+    /// The values from the last `seconds`, newest last.
     pub fn last(&self, seconds: usize) -> impl ExactSizeIterator<Item = f64> + '_ {
         let skipped = self.values.len().saturating_sub(seconds / SLOT_S);
         self.values.iter().skip(skipped).map(|value| f64::from(*value))

@@ -4,7 +4,7 @@ use super::live::Source;
 use mission::Severity;
 use serde::{Deserialize, Serialize};
 
-/// A scenario, with the reason if it cannot be opened.
+/// A scenario, and the reason why it cannot be opened if that is the case.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ScenarioEntry {
     /// The source of the scenario.
@@ -19,7 +19,7 @@ pub struct ScenarioEntry {
     pub tank: String,
     /// The id of the planner.
     pub planner: String,
-    /// The outcome that the scenario's own bounds expect; empty if it has none.
+    /// The outcome expected by the scenario's own bounds; empty if it has none.
     pub expected: String,
     /// Why the scenario cannot be opened, with file, line and key.
     pub problem: Option<String>,
@@ -30,7 +30,7 @@ pub struct ScenarioEntry {
 pub struct PastRun {
     /// The name of the run's folder.
     pub name: String,
-    /// When the run began, UTC, taken from its name; empty if the name has no time.
+    /// When the run began, UTC, taken from the folder's name; empty if the name contains no time.
     pub began: String,
     /// The name of the scenario; empty if unknown.
     pub scenario: String,
@@ -44,7 +44,7 @@ pub struct PastRun {
     pub reachable: Option<f64>,
     /// What is wrong with the run.
     pub note: Option<String>,
-    /// The remark that people have made about the run.
+    /// The remark that was written about the run.
     pub remark: Option<String>,
     /// The number of bookmarks set in the run.
     pub bookmarks: usize,
@@ -55,7 +55,7 @@ pub struct PastRun {
 pub struct Attention {
     /// The severity; INFO means that all is well.
     pub severity: Severity,
-    /// A word for its kind, such as `REFUSED`.
+    /// A word for the kind of information, such as `REFUSED`.
     pub kind: String,
     /// The information, as a sentence.
     pub text: String,
@@ -76,7 +76,7 @@ pub struct Found {
     pub attention: Vec<Attention>,
 }
 
-/// A list of the home screen.
+/// A list on the home screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum HomeList {
     /// Scenarios.
@@ -91,7 +91,7 @@ pub enum HomeList {
 pub struct Home {
     /// The contents of the disk; `None` until the first scan is complete.
     pub found: Option<Found>,
-    /// The list that takes the arrow keys.
+    /// The list that responds to the arrow keys.
     pub list: HomeList,
     /// The index of the selected scenario among those that pass the filter.
     pub scenario: usize,
@@ -119,12 +119,12 @@ impl Home {
         filter.is_empty() || texts.iter().any(|text| text.to_lowercase().contains(&filter))
     }
 
-    /// The newest run of a scenario, which shows how it ended.
+    /// The newest run of a scenario, which shows how the scenario last ended.
     pub fn last_end(&self, scenario: &str) -> Option<&PastRun> {
         self.found.as_ref()?.runs.iter().find(|run| run.scenario == scenario)
     }
 
-    /// Moves the selection in the list that takes the arrow keys down by `by` lines.
+    /// Moves the selection down by `by` lines in the list that responds to the arrow keys.
     pub(crate) fn select(&mut self, by: isize) {
         let (lines, selected) = match self.list {
             HomeList::Scenarios => (self.scenarios().len(), &mut self.scenario),

@@ -10,12 +10,12 @@ const MAX_TYPED: usize = 128;
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct LineEdit {
     text: String,
-    /// The cursor position, as the number of bytes before it.
+    /// The cursor position: the number of bytes before the cursor.
     cursor: usize,
 }
 
 impl From<&str> for LineEdit {
-    /// Makes a line with the given text and the cursor at the end.
+    /// Creates a line with the given text and the cursor at the end.
     fn from(text: &str) -> Self {
         Self { text: text.to_owned(), cursor: text.len() }
     }
@@ -36,7 +36,7 @@ impl LineEdit {
         &self.text[self.cursor..]
     }
 
-    /// Edits the line or moves the cursor; returns whether the key does either.
+    /// Edits the line or moves the cursor; returns whether the key does either of these.
     pub fn press(&mut self, key: Key) -> bool {
         match key {
             Key::Char(letter) => self.insert(letter.encode_utf8(&mut [0; 4])),
@@ -63,7 +63,7 @@ impl LineEdit {
         self.cursor += text.len();
     }
 
-    /// Replaces the word that begins at byte `begin` and contains the cursor, up to the next space.
+    /// Replaces the word around the cursor, from its beginning at byte `begin` to the next space.
     pub fn replace_word(&mut self, begin: usize, with: &str) {
         let rest = self.after().find(' ').map_or("", |at| &self.after()[at..]);
         let front = format!("{}{with}", &self.text[..begin]);

@@ -1,4 +1,4 @@
-//! The open run, and the exchange between the operator and its mission.
+//! The open run, and the communication between the operator and its mission.
 
 use super::{Health, Plans, Preflight, Replay, Run, Speed, WhatIf};
 use account::{Account, Area, Estimate, MissReason, Summary};
@@ -32,7 +32,7 @@ pub enum Source {
     Rescan(Vec<String>),
 }
 
-/// Long work by a planner; ticks and HOLD continue meanwhile.
+/// Long work by a planner; meanwhile ticks continue and HOLD works.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Busy {
     /// The kind of work, such as `Planning (rpf)`.
@@ -56,14 +56,14 @@ impl Busy {
     }
 }
 
-/// What a run leaves behind when it has ended.
+/// What remains of a run that has ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunResult {
     /// The report of the run.
     pub summary: Box<Summary>,
     /// The name of the run's folder; `None` if the run was not recorded.
     pub name: Option<String>,
-    /// The message that states where the run is stored, or why it is not.
+    /// The message that says where the run is stored, or why it is not stored.
     pub kept: String,
     /// Whether the run is stored.
     pub is_kept: bool,
@@ -79,11 +79,11 @@ pub struct Live {
     pub access: Access,
     /// The source of the scenario; `None` until one is opened.
     pub source: Option<Source>,
-    /// Whether the scenario is being read and its floor laid out.
+    /// Whether the scenario is being read and its floor is being laid out.
     pub is_opening: bool,
     /// Why the scenario could not be opened, with file, line and key.
     pub failure: Option<String>,
-    /// The previously open run, while this one is being opened; it stays open if opening fails.
+    /// The previously open run, while this one is being opened; the previous run stays open if opening fails.
     #[serde(default)]
     pub before: Option<Box<Live>>,
     /// The run, folded from its events.
@@ -92,9 +92,9 @@ pub struct Live {
     pub plans: Plans,
     /// The pre-flight check.
     pub preflight: Preflight,
-    /// Forecasts of how the held mission would continue; `None` if nobody has asked for any.
+    /// Forecasts of how the held mission would continue; `None` until they are requested.
     pub what_if: Option<WhatIf>,
-    /// Whether the console that runs the mission has exited, so that no more events will come.
+    /// Whether the console that runs the mission has exited, so no more events will come.
     #[serde(default)]
     pub is_cut_off: bool,
     /// The requested speed of the mission.
@@ -103,9 +103,9 @@ pub struct Live {
     pub health: Health,
     /// The work that a planner is doing.
     pub busy: Option<Busy>,
-    /// An order that makes the robot move and has not been answered yet.
+    /// An order that makes the robot move and that the mission has not answered yet.
     pub asked: Option<Order>,
-    /// Whether HOLD was sent and has not been answered yet.
+    /// Whether HOLD was sent but has not been answered yet.
     pub hold_asked: bool,
     /// When the last events arrived, on the console's own clock, seconds.
     pub heard_mono_s: f64,
@@ -138,13 +138,13 @@ impl Live {
         may_move && !self.is_look_only()
     }
 
-    /// The estimate for the plan that would be flown now; `None` while it is not known.
+    /// The estimate for the plan that would run now; `None` if it is not known yet.
     pub fn estimate(&self) -> Option<&Estimate> {
         let (ask, estimate) = self.plans.estimate.as_ref()?;
         (self.run.planning.plan.as_ref()?.ask == *ask).then_some(estimate)
     }
 
-    /// The requested reachable floor that the run missed, largest area first.
+    /// Reachable floor that was requested but missed by the run, largest area first.
     pub fn missed(&self) -> Vec<&Area<MissReason>> {
         self.areas().filter(|area| area.reason != MissReason::NotAsked).collect()
     }
@@ -160,8 +160,8 @@ impl Live {
         combined.or_else(|| self.result.as_ref()?.summary.floor.as_ref())
     }
 
-    /// The names of the runs that this run re-scans, followed by its own; `None` if a different run is named or this
-    /// is not a re-scan.
+    /// The names of the runs that this run re-scans, followed by its own; `None` if `run` names a different run, or
+    /// this run is not a re-scan.
     pub fn with_earlier(&self, run: &str) -> Option<Vec<String>> {
         let is_open = self.result.as_ref().is_none_or(|result| result.name.as_deref() == Some(run));
         let Some(Source::Rescan(earlier)) = self.source.as_ref().filter(|_| is_open) else { return None };
@@ -177,14 +177,14 @@ impl Live {
         self.run.about.is_some() && *self.run.phase() == Phase::Waiting && !self.is_look_only()
     }
 
-    /// Whether leaving would abort a mission: one that has started and not ended, or whose start was requested.
+    /// Whether leaving would abort a mission: one that has started but not ended, or one whose start was requested.
     pub fn is_under_way(&self) -> bool {
         let is_open = *self.run.phase() != Phase::Waiting || self.may_move();
         is_open && !self.run.has_ended() && !self.is_look_only()
     }
 
-    /// Records that the mission accepted or refused an order. Nothing else ends the wait for the answer: events of an
-    /// earlier tick may arrive after the order was sent.
+    /// Records that the mission accepted or refused an order. Nothing else ends the wait for an answer: events from
+    /// an earlier tick may arrive after the order was sent.
     pub(crate) fn answered(&mut self, order: &Order) {
         if self.asked.as_ref() == Some(order) {
             self.asked = None;

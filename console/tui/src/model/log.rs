@@ -1,4 +1,4 @@
-//! The log: what happened, newest last, limited in lines and bytes.
+//! The log: what happened, newest last, limited both in lines and in bytes.
 
 mod chunk;
 mod entry;

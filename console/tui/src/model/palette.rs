@@ -11,9 +11,9 @@ pub struct Palette {
     pub help: bool,
     /// The typed line.
     pub line: LineEdit,
-    /// The index of the selected line of the list.
+    /// The index of the selected line in the list.
     pub selected: usize,
-    /// How many lines back in the history the line comes from; 0 for a new line.
+    /// How many lines back in the history this line was found; 0 for a new line.
     pub recalled: usize,
     /// The error in the line.
     pub fault: Option<LineFault>,
@@ -29,7 +29,7 @@ pub struct LineFault {
 }
 
 impl Palette {
-    /// A command line that already contains some text.
+    /// Opens a command line that already contains some text.
     pub fn begun(text: &str) -> Self {
         Self { line: text.into(), ..Self::default() }
     }

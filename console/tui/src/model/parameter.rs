@@ -2,7 +2,7 @@
 
 use mission::{ParamInfo, ParamKind, ParamValue, PlannerChoice};
 
-/// The value of a planner parameter: set by hand, or the default.
+/// The value of a planner parameter: the one set by hand, otherwise the default.
 pub fn value(choice: Option<&PlannerChoice>, info: &ParamInfo) -> ParamValue {
     let by_hand = choice.and_then(|choice| choice.parameters.get(&info.key));
     by_hand.cloned().unwrap_or_else(|| default(&info.kind))
@@ -29,7 +29,7 @@ pub fn range(info: &ParamInfo) -> String {
     }
 }
 
-/// The unit, as a table column shows it.
+/// The unit, as shown in a table column.
 pub fn unit(info: &ParamInfo) -> &str {
     if info.unit.is_empty() { "-" } else { &info.unit }
 }

@@ -1,4 +1,4 @@
-//! The planner as the screen shows it.
+//! The planner as shown on the screen.
 
 use mission::{AskId, PlannerChoice, PlannerInfo, WorkerId, event::Effort, planner::Fault};
 use planner_api::{Command, Drawing};
@@ -28,7 +28,7 @@ pub struct Offer {
     pub flown: Effort,
     /// The effort for the better plan.
     pub better: Effort,
-    /// The point where the better plan begins.
+    /// The point at which the better plan begins.
     pub begins: Option<Point>,
     /// Whether the mission will switch to the better plan where it begins, on the operator's order or the scenario's
     /// setting.
@@ -52,15 +52,15 @@ pub struct Planning {
     pub drawings_tick: u64,
     /// The last figures: name, value, unit.
     pub scalars: Vec<(String, f64, String)>,
-    /// The last fault, until the planner is active again.
+    /// The last fault; cleared when the planner is active again.
     pub fault: Option<Fault>,
-    /// The worker of a candidate; its plans are not flown yet.
+    /// The worker of a candidate; its plans do not run yet.
     #[serde(default)]
     pub candidate: Option<WorkerId>,
-    /// Whether the candidate made the last plan: the certificate that follows is then not about the plan being flown.
+    /// Whether the candidate made the last plan; if so, the next certificate is not about the plan that is running.
     #[serde(default)]
     pub proposed: bool,
-    /// A better plan that is on offer, or that was taken and will be flown from the point where it begins.
+    /// A better plan that is on offer, or one that was taken and will run from the point at which it begins.
     #[serde(default)]
     pub offer: Option<Offer>,
 }

@@ -14,7 +14,7 @@ pub struct Plans {
     pub ghost: Option<Ghost>,
 }
 
-/// A different planner's plan, for comparison; it is never flown.
+/// A different planner's plan, for comparison; it never runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Ghost {
     /// The planner, with its parameters.
@@ -27,7 +27,7 @@ pub struct Ghost {
     pub made: Option<Result<GhostPlan, String>>,
 }
 
-/// A plan that is shown but not flown.
+/// A plan that is shown but does not run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GhostPlan {
     /// The points of the path.

@@ -1,4 +1,4 @@
-//! The plugin files with their planners, and the changes that a rescan found.
+//! The plugin files with their planners, and the changes found by a rescan.
 
 use super::{Console, Run};
 use mission::PlannerInfo;
@@ -11,7 +11,7 @@ pub enum PluginState {
     Ready,
     /// One of the plugin's planners is driving.
     Active,
-    /// One of the plugin's planners is driving, but from a different build than the one on the disk.
+    /// One of the plugin's planners is driving, but from a different build than the one on disk.
     Changed,
     /// The plugin cannot be used.
     Refused,
@@ -70,7 +70,7 @@ fn state(planners: &[&PlannerInfo], run: &Run) -> PluginState {
     }
 }
 
-/// The changes that a rescan of the plugins found, as sentences.
+/// The changes found by a rescan of the plugins, as sentences.
 pub fn differences(before: &[PlannerInfo], now: &[PlannerInfo]) -> Vec<String> {
     let find = |list: &[PlannerInfo], id: &str| list.iter().find(|info| info.id == id).cloned();
     let gone =

@@ -9,7 +9,7 @@ use world::{Point, StationId};
 
 /// The time span over which the speed is measured, seconds.
 const SPEED_SPAN_S: f64 = 2.0;
-/// The assumed time between ranging cycles until a second one is received, seconds.
+/// The assumed time between ranging cycles until the second one is received, seconds.
 const FIRST_PERIOD_S: f64 = 1.0;
 
 /// The robot's estimated position and its error.
@@ -104,12 +104,12 @@ impl Position {
     }
 }
 
-/// The 95 % error of a pose: the longer half axis of the ellipse, metres.
+/// The 95 % error of a pose, metres: the longer semi-axis of the ellipse.
 fn error_95_m(pose: &PoseEstimate) -> f64 {
     ellipse_95(pose).0
 }
 
-/// The half axes of a pose's 95 % ellipse, metres, and the direction of the longer one, radians.
+/// The semi-axes of a pose's 95 % ellipse, metres, and the direction of the longer one, radians.
 pub fn ellipse_95(pose: &PoseEstimate) -> (f64, f64, f64) {
     fix::ellipse_95(&fix::position_covariance(&pose.covariance))
 }

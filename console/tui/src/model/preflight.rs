@@ -14,7 +14,7 @@ pub struct Preflight {
     pub found: Option<Vec<Check>>,
     /// Whether the checks are running.
     pub is_checking: bool,
-    /// Whether the mission will start as soon as all checks have passed.
+    /// Whether the mission will start as soon as all checks pass.
     pub is_starting: bool,
     /// The plan that was shown when the operator agreed to the start.
     #[serde(default)]
@@ -59,7 +59,7 @@ impl Model {
         self.blocking_check().map(|failed| format!("start blocked: {}: {}", failed.what, failed.found))
     }
 
-    /// The reason why the start is blocked, judged from the model and the unticked items alone, as a sentence. The
+    /// The reason why the start is blocked, as a sentence, judged only from the model and the items not ticked. The
     /// other checks are repeated when the start is ordered.
     pub(crate) fn start_is_blocked_here(&self) -> Option<String> {
         let mut checks = self.own_checks().into_iter().chain(self.hand_checks());
@@ -72,7 +72,7 @@ impl Model {
         self.checks().into_iter().find(|check| check.outcome == CheckOutcome::Failed)
     }
 
-    /// The checks that can be made from the model alone.
+    /// The checks that need only the model.
     fn own_checks(&self) -> Vec<Check> {
         let mut checks = vec![self.planner_check(), self.plan_check()];
         checks.extend(self.tether_check());
@@ -92,7 +92,7 @@ impl Model {
                     format!("{} {}, ABI {}, sha256 {hash}", info.id, info.version, info.abi),
                 )
             }
-            (None, None) => check("planner", CheckOutcome::Failed, "no planner was found".into()),
+            (None, None) => check("planner", CheckOutcome::Failed, "no planner found".into()),
         }
     }
 
@@ -127,9 +127,11 @@ impl Model {
                 CheckOutcome::Passed,
                 "plan certified: the cable can always be reeled in".into(),
             ),
-            Some(false) if tether.allow_uncertified => {
-                check("tether", CheckOutcome::Warning, "plan NOT certified, allowed by the scenario".into())
-            }
+            Some(false) if tether.allow_uncertified => check(
+                "tether",
+                CheckOutcome::Warning,
+                "plan NOT certified, but allowed by the scenario".into(),
+            ),
             Some(false) => check(
                 "tether",
                 CheckOutcome::Failed,
@@ -176,7 +178,7 @@ impl Model {
             Arrangement::Paged | Arrangement::Strip => check(
                 "terminal",
                 CheckOutcome::Warning,
-                format!("{size}: not all panes fit, 80x24 is needed"),
+                format!("{size}: not all panes fit; 80x24 is needed"),
             ),
         }
     }

@@ -4,7 +4,7 @@ use super::parameter;
 use mission::{ParamInfo, ParamValue, Parameters, PlannerChoice, PlannerInfo};
 use serde::{Deserialize, Serialize};
 
-/// The longest name of a preset, characters.
+/// The maximum length of a preset's name, characters.
 const LONGEST: usize = 40;
 
 /// Named parameters of a planner, as stored in a file.
@@ -21,7 +21,7 @@ pub struct Preset {
 pub struct Difference<'a> {
     /// The parameter.
     pub info: &'a ParamInfo,
-    /// The current value; the default if the planner is not the active one.
+    /// The current value, or the default if the planner is not the active one.
     pub now: ParamValue,
     /// The value in the preset.
     pub then: ParamValue,

@@ -12,15 +12,15 @@ use super::Run;
 use account::{Notes, Summary};
 use serde::{Deserialize, Serialize};
 
-/// Times closer together than this are equal, seconds.
+/// Times closer together than this are treated as equal, seconds.
 const SAME_S: f64 = 1e-6;
 
-/// One of two compared runs.
+/// One of the two compared runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Side {
     /// The run being replayed.
     A,
-    /// The run that it is compared with.
+    /// The run with which it is compared.
     B,
 }
 
@@ -35,12 +35,12 @@ pub struct Reel {
     pub is_whole: bool,
     /// Why the run stops early, as a sentence.
     pub problem: Option<String>,
-    /// The marks to jump to, ascending by time.
+    /// The moments to which the operator can jump, ascending by time.
     pub marks: Vec<Mark>,
 }
 
 impl Reel {
-    /// Adds what has been loaded since.
+    /// Adds what has been loaded since then.
     pub fn grow(&mut self, news: Self) {
         let marks = std::mem::take(&mut self.marks);
         *self = news;
@@ -48,7 +48,7 @@ impl Reel {
     }
 }
 
-/// The run that the replay is compared with.
+/// The run with which the replay is compared.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Other {
     /// The name of the run's folder.
@@ -76,13 +76,13 @@ pub struct Replay {
     pub unreadable: Option<String>,
     /// The run for comparison.
     pub other: Option<Other>,
-    /// How moments of the two runs are matched.
+    /// How moments in the two runs are matched.
     pub align: Align,
     /// Whether the map shows the floor that only one of the runs scanned.
     pub shows_difference: bool,
 }
 
-/// Where a jump goes in a run.
+/// Where a jump goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Jump {
     /// To the previous tick.
@@ -112,17 +112,17 @@ pub enum Jump {
 }
 
 impl Replay {
-    /// Makes a replay of a run of which nothing is loaded yet.
+    /// Creates a replay of a run, with nothing loaded yet.
     pub fn of(name: String) -> Self {
         Self { name, ..Self::default() }
     }
 
-    /// The times of the bookmarks whose time can be read.
+    /// The times of the bookmarks, without those that cannot be read.
     pub fn bookmarks(&self) -> impl DoubleEndedIterator<Item = f64> + '_ {
         self.notes.bookmarks.iter().map(|bookmark| bookmark.t_s)
     }
 
-    /// Mission time that a jump from `from_s` leads to, seconds; `None` if there is nothing to jump to.
+    /// The mission time to which a jump from `from_s` goes, seconds; `None` if there is nothing to jump to.
     pub fn target_s(&self, jump: Jump, from_s: f64, tick_s: f64) -> Option<f64> {
         let marks = || self.reel.marks.iter();
         let times = |kinds: fn(&Mark) -> bool| marks().filter(move |mark| kinds(mark)).map(|mark| mark.t_s);

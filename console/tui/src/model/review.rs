@@ -4,7 +4,7 @@ use super::{Home, PastRun};
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 
-/// The sort order of the list of runs.
+/// The sort order of the list of past runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum SortBy {
     /// By start, newest first.
@@ -61,14 +61,14 @@ impl SortBy {
 pub struct Review {
     /// The index of the selected run among those that pass the filter.
     pub selected: usize,
-    /// The filter: words that a listed run must all contain.
+    /// The filter: words that must all occur in a listed run.
     pub filter: String,
     /// The sort order.
     pub sort: SortBy,
 }
 
 impl Review {
-    /// The past runs that pass the filter, sorted; equal runs stay in order of date.
+    /// The past runs that pass the filter, sorted; runs that rank equally stay in order of date.
     pub fn runs<'a>(&self, home: &'a Home) -> Vec<&'a PastRun> {
         let filter = self.filter.to_lowercase();
         let all = home.found.iter().flat_map(|found| &found.runs);

@@ -9,11 +9,11 @@ use world::{PlateLayout, Point, Station, StationId, World};
 /// A run reconstructed from its events.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Run {
-    /// What the run is about; `None` until the run is opened.
+    /// The subject of the run; `None` until the run is opened.
     pub about: Option<About>,
     /// The phase of the mission, and the orders that it accepts.
     pub standing: FoldedStanding,
-    /// Why the run ended, as a sentence; empty before.
+    /// Why the run ended, as a sentence; empty until then.
     pub end_reason: String,
     /// Mission time.
     pub clock: Clock,
@@ -113,17 +113,17 @@ impl Run {
         matches!(self.phase(), Phase::Ended(_))
     }
 
-    /// Whether the mission is to scan the floor.
+    /// Whether the mission's task is to scan the floor.
     pub fn covers(&self) -> bool {
         self.about.as_ref().is_some_and(|about| matches!(about.mission.task, TaskConfig::Cover { .. }))
     }
 
-    /// Whether unscanned floor counts as missed, which is the case only for missions whose task was to scan.
+    /// Whether unscanned floor counts as missed: only in missions whose task was to scan.
     pub fn has_missed(&self) -> bool {
         self.covers() && self.has_ended()
     }
 
-    /// Why a planner cannot fly this mission; `None` if it can.
+    /// Why a planner cannot run this mission; `None` if it can.
     pub fn cannot_fly(&self, planner: &PlannerInfo) -> Option<&'static str> {
         if self.covers() { planner.why_no_coverage() } else { None }
     }
@@ -133,14 +133,15 @@ impl Run {
         self.planning.choice.as_ref().map(|choice| choice.id.as_str())
     }
 
-    /// Estimated remaining mission time at the pace so far, seconds.
+    /// Estimated remaining mission time at the average pace so far, seconds.
     pub fn left_s(&self) -> Option<f64> {
         let done = self.progress.as_ref()?.done;
         let known = self.clock.moving_s > 10.0 && done > 0.01 && done <= 1.0 && !self.has_ended();
         known.then(|| self.clock.moving_s * (1.0 - done) / done)
     }
 
-    /// Whether a value that arrives with every tick has been missing for two ticks; `t_s` is its last time.
+    /// Whether a value that arrives with every tick has been missing for two ticks; `t_s` is the time of the last
+    /// value.
     pub fn is_overdue(&self, t_s: f64) -> bool {
         let tick_s = self.about.as_ref().map_or(0.1, |about| about.mission.tick_s);
         // Slightly more than two, because times are sums of ticks.

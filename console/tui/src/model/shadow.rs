@@ -1,4 +1,4 @@
-//! The planner in shadow as the screen shows it: its plan, and the ghost of the robot under its command.
+//! The planner in shadow as shown on the screen: its plan, and the ghost of the robot under its command.
 
 use super::{Run, Trail};
 use mission::{PlannerChoice, PlannerInfo, event::ShadowTally};
@@ -23,7 +23,7 @@ pub struct Shadow {
     pub choice: PlannerChoice,
     /// The description of the planner; `None` until it is open.
     pub info: Option<PlannerInfo>,
-    /// The count of its answered and missed steps.
+    /// How many steps it has answered and missed.
     pub tally: ShadowTally,
     /// The points of its plan's path, thinned for drawing.
     pub path: Vec<Point>,
@@ -34,7 +34,7 @@ pub struct Shadow {
 }
 
 impl Shadow {
-    /// Makes the entry of a planner that is about to fly in shadow.
+    /// Creates the entry for a planner that is about to run in shadow.
     pub(super) fn new(choice: PlannerChoice) -> Self {
         Self { choice, ..Self::default() }
     }
@@ -47,7 +47,7 @@ impl Shadow {
 /// The differences between the command of the planner in shadow and the command that drives the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Differences {
-    /// How much faster the planner in shadow would drive, metres per second.
+    /// How much faster it would drive, metres per second.
     pub speed_m_per_s: f64,
     /// How much further to the left it would turn, radians per second.
     pub turn_rad_per_s: f64,
@@ -58,7 +58,7 @@ pub struct Differences {
 }
 
 impl Run {
-    /// Where the command of the planner in shadow would lead the robot; `None` if the command is not recent.
+    /// Where the command of the planner in shadow would take the robot; `None` if the command is not recent.
     pub fn ghost(&self) -> Option<Vec<Point>> {
         let (pose, command) = self.shadow_command()?;
         let mission = &self.about.as_ref()?.mission;
@@ -66,7 +66,7 @@ impl Run {
         Some(way.into_iter().map(|pose| pose.position).collect())
     }
 
-    /// The differences between that command and the command that drives the robot.
+    /// The differences between the command of the planner in shadow and the command that drives the robot.
     pub fn shadow_differences(&self) -> Option<Differences> {
         let (pose, command) = self.shadow_command()?;
         let (_, driving) = self.planning.command.as_ref()?;

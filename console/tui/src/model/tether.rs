@@ -1,4 +1,4 @@
-//! The tether as the screen shows it.
+//! The tether as shown on the screen.
 
 use super::History;
 use mission::{
@@ -8,11 +8,11 @@ use mission::{
 use serde::{Deserialize, Serialize};
 use world::Point;
 
-/// The lie of the cable, and the last certificate of a plan.
+/// The geometry of the cable, and the last certificate of a plan.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Tether {
-    /// The length of cable that is out, metres: as paid out by the reel or, without an encoder, as computed from the
-    /// map.
+    /// The length of cable that is out, metres: as measured by the reel's encoder or, without an encoder, as computed
+    /// from the map.
     pub length_m: f64,
     /// The length left on the reel, metres.
     pub free_m: f64,
@@ -24,13 +24,13 @@ pub struct Tether {
     pub pull_factor: f64,
     /// Length of the return path along the cable, metres; `None` if there is none.
     pub return_length_m: Option<f64>,
-    /// Whether more is paid out than the map explains; the lie of the cable is then unknown.
+    /// Whether more is paid out than the map explains; the geometry of the cable is then unknown.
     pub is_snagged: bool,
     /// The cable from the anchor to the robot.
     pub line: Vec<Point>,
     /// Whether the current plan, or the one last refused, is certified; `None` without such a plan.
     pub certified: Option<bool>,
-    /// Mission time of the last known lie of the cable, seconds; `None` before the first.
+    /// Mission time at which the geometry of the cable was last known, seconds; `None` if it has never been known.
     pub t_s: Option<f64>,
     /// The history of the length out, metres.
     pub length_history_m: History,
@@ -44,7 +44,7 @@ impl Tether {
         self.contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()))
     }
 
-    /// Records the lie of the cable between the anchor and the robot.
+    /// Records the geometry of the cable between the anchor and the robot.
     pub(crate) fn lie(&mut self, t_s: f64, event: &EventKind, ends: Option<(Point, Point)>) {
         if let EventKind::Tethered {
             length_m,

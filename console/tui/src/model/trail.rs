@@ -41,7 +41,7 @@ impl Trail {
         &self.points
     }
 
-    /// All points of a path, or evenly picked ones if it has more than a trail may keep; both ends are kept.
+    /// All points of a path; evenly picked points if the path has more than a trail may keep. Both ends are kept.
     pub fn thinned(path: &[Point]) -> Vec<Point> {
         let step = path.len().div_ceil(MAX_POINTS).max(1);
         let mut points: Vec<Point> =

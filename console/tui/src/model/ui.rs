@@ -1,4 +1,4 @@
-//! The view state of the operator: screen, zoom, filter, selection and overlay.
+//! What the operator is looking at: screen, zoom, filter, selection and overlay.
 
 use super::line_edit::LineEdit;
 use super::palette::Palette;
@@ -9,7 +9,7 @@ use mission::{Order, PlanId, PlannerChoice};
 use serde::{Deserialize, Serialize};
 use world::Point;
 
-/// The view state of the operator.
+/// What the operator is looking at.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Ui {
     /// The width of the terminal, columns.
@@ -18,9 +18,9 @@ pub struct Ui {
     pub height: u16,
     /// The current screen.
     pub screen: Screen,
-    /// The screens to go back to, most recent last.
+    /// The screens to which the operator can go back, most recent last.
     pub back: Vec<Screen>,
-    /// The pane that takes the arrow keys; on a small terminal, the pane shown.
+    /// The pane that responds to the arrow keys; on a small terminal, the pane shown.
     pub pane: Pane,
     /// The part of the tank on the map.
     pub map: MapView,
@@ -39,7 +39,7 @@ pub struct Ui {
     /// The events that pass the filter.
     #[serde(default)]
     pub events: EventList,
-    /// The selected alarm; `None` for the first one of the table.
+    /// The selected alarm; `None` for the first one in the table.
     #[serde(default)]
     pub alarm: Option<Cause>,
     /// The colour theme.
@@ -92,7 +92,7 @@ pub enum Pane {
     Stations,
     /// The missed areas, once the mission has ended.
     Missed,
-    /// A chart of a quantity over the last minutes.
+    /// A chart of a quantity over recent minutes.
     Chart(Chart),
 }
 
@@ -146,7 +146,7 @@ pub enum MapLayer {
 }
 
 impl MapLayer {
-    /// All layers, in the order of the list.
+    /// All layers, in the order of the layer list.
     pub const ALL: [Self; 6] =
         [Self::Scanned, Self::Trail, Self::Plan, Self::Drawings, Self::Stations, Self::Accuracy];
 
@@ -188,13 +188,13 @@ impl Layers {
     }
 }
 
-/// The overlay above the screen, which takes the keys.
+/// The overlay on top of the screen; it receives the keys.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub enum Overlay {
     /// No overlay.
     #[default]
     None,
-    /// The question before the robot moves or the mission ends.
+    /// The question before the robot moves or before the mission ends.
     Confirm(Ask),
     /// The line for single steps.
     Stepping,
@@ -272,7 +272,7 @@ pub enum Purpose {
     Compare,
     /// The planner will forecast how the mission would continue.
     WhatIf,
-    /// The planner will fly in shadow.
+    /// The planner will run in shadow.
     Shadow,
 }
 
@@ -350,7 +350,7 @@ impl Ui {
         Arrangement::of(self.width, self.height)
     }
 
-    /// Goes to a screen; `q` leads back to the previous one.
+    /// Goes to a screen; `q` returns to the previous one.
     pub fn go(&mut self, screen: Screen) {
         if screen == self.screen {
             return;
@@ -385,7 +385,7 @@ impl Ui {
         self.screen.has_map() && self.arrangement() != Arrangement::Strip
     }
 
-    /// The panes that Tab cycles through.
+    /// The panes through which Tab cycles.
     pub fn panes(&self) -> &'static [Pane] {
         if self.screen != Screen::Mission {
             return &[];

@@ -29,7 +29,7 @@ pub struct Candidate {
     pub choice: PlannerChoice,
     /// Share of the task done in the forecast so far, 0 to 1; `None` before it begins.
     pub at: Option<f64>,
-    /// The forecast, or why there is none, as a sentence; `None` while it is being computed.
+    /// The forecast, or the reason why there is none, as a sentence; `None` while the forecast is being computed.
     pub made: Option<Result<Forecast, String>>,
 }
 

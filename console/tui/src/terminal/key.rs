@@ -1,10 +1,10 @@
-//! Converts keys of the terminal library into the console's own.
+//! Converts keys from the terminal library into the console's own.
 
 use crate::keys::{Key, KeyPress};
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use std::time::Instant;
 
-/// The keyboard state: the key that last went down, and when.
+/// The keyboard state: which key last went down, and when.
 #[derive(Debug, Default)]
 pub struct Keyboard {
     last: Option<(Key, Instant)>,
@@ -12,7 +12,7 @@ pub struct Keyboard {
 
 impl Keyboard {
     /// Converts a terminal event to a key press, with the time since the same key last went down. `None` for releases
-    /// and unknown keys; the press after an unknown key counts as new.
+    /// and unknown keys; the press after an unknown key is treated as new.
     pub fn take(&mut self, event: &KeyEvent, now: Instant) -> Option<KeyPress> {
         let press = key_from_crossterm(event);
         let last = self.last.take();

@@ -10,10 +10,10 @@ const BEGIN: &[u8] = b"\x1b[?2026h";
 /// Ends the synchronized update: the terminal shows the frame.
 const END: &[u8] = b"\x1b[?2026l";
 
-/// Buffers everything until the flush and sends it as one synchronized update.
+/// Buffers everything until the flush and then sends it as one synchronized update.
 ///
-/// After the terminal has been restored, further output is dropped: after a panic or at exit, half a frame must not
-/// reach the shell's screen.
+/// After the terminal has been restored, further output is dropped, because half a frame must not reach the shell's
+/// screen after a panic or at exit.
 pub(super) struct FrameOutput<W: Write = Stdout> {
     bytes: Vec<u8>,
     to: W,
@@ -23,7 +23,7 @@ pub(super) struct FrameOutput<W: Write = Stdout> {
 }
 
 impl FrameOutput {
-    /// Makes an output that counts the bytes sent.
+    /// Creates an output that counts the bytes sent.
     pub(super) fn counted(sent: Arc<AtomicUsize>) -> Self {
         Self { bytes: BEGIN.to_vec(), to: io::stdout(), is_ours: is_taken, sent }
     }

@@ -4,7 +4,7 @@ use crate::update::{Mouse, Target};
 use crate::view::Places;
 use crossterm::event::{MouseButton, MouseEvent, MouseEventKind};
 
-/// The mouse state: where the drag began, and whether the mouse moved since the button went down.
+/// The mouse state: where the drag began, and whether the mouse has moved since the button went down.
 #[derive(Debug, Default)]
 pub struct Pointer {
     at: Option<(u16, u16)>,
@@ -12,8 +12,8 @@ pub struct Pointer {
 }
 
 impl Pointer {
-    /// Converts a mouse event, using the places of the last frame. A click counts when the button is released where it
-    /// was pressed.
+    /// Converts a mouse event, using the places recorded for the last frame. A click counts if the button is released
+    /// where it was pressed.
     pub fn take(&mut self, event: &MouseEvent, places: &Places) -> Option<Mouse> {
         let at = (event.column, event.row);
         let on = places.target(at.0, at.1);

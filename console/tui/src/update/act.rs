@@ -13,7 +13,7 @@ use crate::model::ui::{Ask, Purpose};
 use crate::model::{Model, Overlay, Pane, Screen, Speed};
 use mission::{Order, Severity};
 
-/// Seconds within which a second Ctrl-C asks whether to quit.
+/// Seconds within which a second Ctrl-C asks whether to quit the console.
 const INTERRUPT_TWICE_S: f64 = 2.0;
 /// Lines per page.
 pub(crate) const PAGE: isize = 10;
@@ -42,10 +42,10 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
     }
 }
 
-/// Opens the list of planners, with a planner suitable for the purpose selected.
+/// Opens the list of planners, with one that suits the purpose selected.
 pub(crate) fn choose(model: &mut Model, purpose: Purpose) -> Vec<Effect> {
     let driving = driving(model);
-    // For any other purpose the operator wants a planner other than the active one.
+    // For any other purpose, the operator wants a planner other than the active one.
     let others = (1..model.console.planners.len()).map(|by| (driving + by) % model.console.planners.len());
     let other = others
         .filter(|_| purpose != Purpose::Drive)
@@ -105,7 +105,7 @@ pub(crate) fn leave(model: &mut Model) -> Vec<Effect> {
     effects
 }
 
-/// HOLD for callers that cannot see whether the robot moves: it never asks to resume.
+/// HOLD for callers that cannot see whether the robot is moving: it never asks whether to resume.
 pub(super) fn hold_only(model: &mut Model) -> Vec<Effect> {
     if model.live.is_replay() {
         return replay::pause(model);
@@ -189,7 +189,7 @@ pub(crate) fn turn_to(model: &mut Model, by: isize) {
     model.ui.pane = panes.get(next).copied().unwrap_or(Pane::Map);
 }
 
-/// Moves the selection in the list that takes the arrow keys down by `by` lines.
+/// Moves the selection down by `by` lines in the list that responds to the arrow keys.
 pub(crate) fn select(model: &mut Model, by: isize) {
     if palette::recalls(model, by) {
         return;

@@ -22,7 +22,7 @@ pub(crate) fn select(model: &mut Model, by: isize) {
     model.ui.alarm = table.get(next).map(|alarm| alarm.cause.clone());
 }
 
-/// Checks that the alarm that a command is about can be acknowledged.
+/// Checks that the alarm to which a command applies can be acknowledged.
 ///
 /// # Errors
 /// Returns the reason why not, as a sentence.
@@ -51,7 +51,7 @@ fn to_acknowledge(model: &Model) -> Option<&Alarm> {
     model.live.run.alarms.worst_unacknowledged()
 }
 
-/// Acknowledges the alarm that the screen is about.
+/// Acknowledges the alarm shown on the screen.
 pub(crate) fn acknowledge(model: &mut Model) -> Vec<Effect> {
     let Some(alarm) = to_acknowledge(model) else { return Vec::new() };
     let (text, noted) = (alarm.text.clone(), acknowledged(alarm));
@@ -71,8 +71,8 @@ fn acknowledged(alarm: &Alarm) -> Noted {
     Noted::Acknowledged { alarm: alarm.cause.key(), text: alarm.text.clone() }
 }
 
-/// Has the mission record what the operator did, which then takes effect from the journal. After the mission nothing
-/// is recorded, and the action takes effect directly.
+/// Has the mission record what the operator did; the action takes effect when it arrives through the journal. After
+/// the mission nothing is recorded, and the action takes effect directly.
 pub(super) fn note(model: &mut Model, what: Noted) -> Vec<Effect> {
     let order = Order::Note(Note { what, by: model.console.preferences.operator.clone() });
     if model.live.run.about.is_some() && accepted(model, &order).is_ok() {
@@ -85,7 +85,7 @@ pub(super) fn note(model: &mut Model, what: Noted) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Asks how long and why to shelve the selected alarm; unshelves a shelved one.
+/// Asks for how long and why the selected alarm is to be shelved; unshelves a shelved alarm.
 pub(crate) fn shelve(model: &mut Model) -> Vec<Effect> {
     let Some(alarm) = model.selected_alarm() else { return Vec::new() };
     let (cause, text) = (alarm.cause.clone(), alarm.text.clone());
@@ -97,7 +97,7 @@ pub(crate) fn shelve(model: &mut Model) -> Vec<Effect> {
     note(model, Noted::Unshelved { alarm: cause.key(), text })
 }
 
-/// Shelves an alarm as typed, or shows why the input is refused.
+/// Shelves an alarm as typed, or shows why the input was refused.
 pub(super) fn take_shelving(model: &mut Model, shelving: Shelving) -> Vec<Effect> {
     let typed = parse_shelving(shelving.line.text());
     match typed.and_then(|(minutes, reason)| put_aside(model, &shelving.cause, minutes, &reason)) {
@@ -168,8 +168,8 @@ pub(crate) fn open_actions(model: &mut Model) -> Vec<Effect> {
     Vec::new()
 }
 
-/// The action with the given number, from 1, in the open action list, which it closes. Actions that move the robot
-/// still ask first.
+/// Runs the action with the given number, from 1, in the open action list, and closes the list. Actions that move the
+/// robot still ask first.
 ///
 /// # Errors
 /// Returns the reason why no action can be run.
@@ -204,7 +204,7 @@ mod tests {
             assert_eq!(parse_shelving(text), Ok((15.0, "pump noise".to_owned())), "{text}");
         }
         for text in ["", "pump", "m pump"] {
-            assert!(parse_shelving(text).is_err_and(|error| error.contains("minutes first")), "{text}");
+            assert!(parse_shelving(text).is_err_and(|error| error.contains("minutes missing")), "{text}");
         }
         for text in ["15", "15 ", "15 ;"] {
             assert_eq!(parse_shelving(text), Ok((15.0, String::new())), "{text}");

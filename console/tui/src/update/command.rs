@@ -54,8 +54,8 @@ pub(super) fn read(model: &Model, text: &str) -> Result<Command, LineFault> {
     Ok(Command { action, values })
 }
 
-/// Checks a line independently of any mission: the name of the command, the number of values, and those values that
-/// do not depend on a run or on files.
+/// Checks a line independently of any mission: the name of the command, the number of values, and the values that
+/// depend on neither a run nor files.
 ///
 /// # Errors
 /// Returns what is wrong and how to correct it, as a clause.
@@ -103,8 +103,8 @@ fn read_line<V>(text: &str, value: &impl Fn(Kind, &str) -> Result<V, String>) ->
     Ok((action, values))
 }
 
-/// The argument that a word belongs to, and its value. The first word is always the first argument; any other word
-/// belongs to an argument by name or by position.
+/// The argument to which a word belongs, and its value. The first word always belongs to the first argument; any
+/// other word belongs to an argument by name or by position.
 fn arg_of<'a>(
     action: &'static Action,
     index: usize,
@@ -152,7 +152,7 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
     let Some(first) = values.next() else {
         return if action.id == ActionId::Hold { hold_only(model) } else { act(model, action.id) };
     };
-    // A command that names its object does not need a screen with a selection.
+    // A command that names its object does not need a screen on which something is selected.
     let is_named = matches!(first, Value::Run(_) | Value::Duration(_)) && action.id != ActionId::CompareRun;
     let can = if is_named { allowed(model, action) } else { offered(model, action.id) };
     if let Err(why) = can {

@@ -18,7 +18,7 @@ pub(crate) fn is_selected(model: &Model) -> Result<(), String> {
     demand(!model.ui.events.matches.is_empty(), "no event is selected")
 }
 
-/// Opens or closes the detail of an event; from a different screen, opens it.
+/// Opens or closes the detail of an event; from any other screen, opens it.
 pub(crate) fn enter(model: &mut Model) -> Vec<Effect> {
     let Some(selected) = model.ui.events.selected() else {
         return refuse(model, "no event is selected".into());
@@ -73,7 +73,7 @@ pub(crate) fn copy(model: &mut Model) -> Vec<Effect> {
     vec![Effect::Copy(line)]
 }
 
-/// Changes the minimum severity to the next one, as a term of the filter.
+/// Changes the minimum severity, which is a term of the filter, to the next severity.
 pub(crate) fn next_severity(model: &mut Model) {
     let next = match model.ui.events.matches.filter().least() {
         Severity::Info => Severity::Watch,
@@ -84,14 +84,14 @@ pub(crate) fn next_severity(model: &mut Model) {
     set_least(model, next);
 }
 
-/// Lists only events of at least the given severity.
+/// Lists only events of the given severity or above.
 pub(super) fn set_least(model: &mut Model, least: Severity) {
     model.ui.needle = with_least(&model.ui.needle, least);
     model.ui.events.at = None;
     refresh(model);
 }
 
-/// Opens the filter line; what is typed next is a separate term.
+/// Opens the filter line; what is typed next becomes a separate term.
 pub(crate) fn open_filter(model: &mut Model) -> Vec<Effect> {
     let mut text = typing::filtered(model).to_owned();
     if !text.is_empty() && model.ui.screen.row().filter.is_none() && !text.ends_with(' ') {

@@ -1,4 +1,4 @@
-//! Moves between screens and opens what they list: scenarios, past runs, background work.
+//! Moves between screens and opens what is listed on them: scenarios, past runs, background work.
 
 use super::message::{Effect, Job};
 use super::offer::{nothing_under_way, refuse};
@@ -28,7 +28,7 @@ fn looked(screen: Screen) -> Vec<Effect> {
     if screen.row().lists_runs { vec![Effect::Look] } else { Vec::new() }
 }
 
-/// Opens the selected item of the home screen.
+/// Opens the selected item on the home screen.
 pub(crate) fn open_selected(model: &mut Model) -> Vec<Effect> {
     let home = &model.home;
     if home.list == HomeList::Runs {
@@ -52,16 +52,16 @@ fn go_to_run(model: &mut Model) -> Vec<Effect> {
     if is_open { go(model, Screen::Result) } else { begin(model, ActionId::Replay) }
 }
 
-/// Opens a scenario: its mission is laid out and waits for the start; nothing moves.
+/// Opens a scenario: its mission is laid out and waits for its start; nothing moves.
 pub(super) fn open(model: &mut Model, source: Source, planner: Option<PlannerChoice>) -> Vec<Effect> {
     if let Err(why) = nothing_under_way(model) {
         return refuse(model, why);
     }
     let id = RunId(model.live.id.0 + 1);
-    // A speed set for one mission must not carry over: the next mission could be over before anybody looks.
+    // A speed set for one mission must not carry over: the next mission could be over before anybody sees it.
     let speed = model.first_speed;
     let before = std::mem::take(&mut model.live);
-    // If several runs are opened in quick succession, the last one that was fully open is kept.
+    // If several runs are opened in quick succession, the last one that was completely open is kept.
     let before =
         if before.is_opening { before.before } else { before.source.is_some().then(|| Box::new(before)) };
     model.live =
@@ -106,7 +106,7 @@ pub(crate) fn select_missed(model: &mut Model, by: isize) {
     }
 }
 
-/// The run that a command applies to, if there is one.
+/// The run to which a command applies, if there is one.
 pub(super) fn named_run(model: &Model) -> Option<String> {
     (model.ui.screen.row().run)(model)
 }
@@ -129,7 +129,7 @@ fn result_name(model: &Model) -> Option<String> {
     model.live.result.as_ref()?.name.clone()
 }
 
-/// Starts work on the past run that the screen is about.
+/// Starts work on the past run that is selected on the screen.
 pub(crate) fn begin(model: &mut Model, id: ActionId) -> Vec<Effect> {
     match named_run(model) {
         Some(run) => begin_on(model, id, run),
@@ -155,7 +155,8 @@ pub(super) fn begin_on(model: &mut Model, id: ActionId, run: String) -> Vec<Effe
     vec![Effect::Do(job)]
 }
 
-/// The job that opens the recording of a run; if the run is being replayed, at the current moment.
+/// The job that opens the recording of a run; if the run is being replayed, the recording opens at the current
+/// moment.
 fn view(model: &Model, run: String) -> Job {
     match &model.live.replay {
         Some(replay) if replay.name == run => {
@@ -177,7 +178,7 @@ pub(super) fn done(model: &mut Model, job: &Job, result: Result<String, String>)
 }
 
 impl Job {
-    /// The name of the run that the job is about.
+    /// The name of the run that the job works on.
     pub fn run(&self) -> &str {
         match self {
             Self::Verify(run) | Self::Report(run) | Self::View(run) | Self::ViewAt(run, _) => run,

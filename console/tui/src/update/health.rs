@@ -1,4 +1,4 @@
-//! Compares what the console measures of itself with the limits.
+//! Compares the console's measurements of itself with their limits.
 
 use crate::model::alarms::{
     Reading,
@@ -20,12 +20,12 @@ pub(super) fn take(model: &mut Model, measured: Measured) {
     }
 }
 
-/// Takes the number of ticks by which the recorder is behind.
+/// Receives the number of ticks by which the recorder is behind.
 pub(super) fn take_lag(model: &mut Model, ticks: u64) {
     compare(model, &RECORDER_LAG, ticks as f64);
 }
 
-/// A watched figure of the console.
+/// A monitored figure of the console.
 struct Figure {
     cause: Cause,
     severity: Severity,
@@ -75,7 +75,7 @@ fn compare(model: &mut Model, figure: &Figure, value: f64) {
     let watch = watch(&mut model.console.watches);
     let edge = watch.take(limit, value, now_s);
     let run = &mut model.live.run;
-    // A run opened since then has no alarms yet.
+    // A run opened since then does not have the alarms yet.
     let is_lost = watch.is_on() && run.alarms.get(cause).is_none();
     let edge = edge.or(is_lost.then_some(Edge::Raised));
     match edge {

@@ -7,9 +7,9 @@ use crate::model::{
 };
 use mission::{Event, EventKind, Order, PlanId, Severity};
 
-/// Handles a message about a run. A message about a run that is no longer open is late and is dropped. A message
-/// about the previous run, which may stay open if the next one cannot be opened, is folded in but has no other
-/// effect.
+/// Handles a message about a run. A message about a run that is no longer open has come too late and is dropped. A
+/// message about the previous run, which may stay open if the next one cannot be opened, is folded in but has no
+/// other effect.
 pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
     if let Some(before) = model.live.before.take_if(|before| before.id == id) {
         let next = std::mem::replace(&mut model.live, *before);
@@ -58,8 +58,8 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
         }
         RunMsg::WriterGone => {
             model.live.is_cut_off = true;
-            let text = "the run was not closed: its console has exited; the values are the last in its \
-            journal";
+            let text = "the run was not closed: its console has exited; the values shown are the last in \
+            its journal";
             news(model, &Cause::Writer, Severity::Crit, text.into());
         }
         RunMsg::Health(health) => take_health(model, health),
@@ -106,7 +106,7 @@ fn take(model: &mut Model, event: &Event) {
     withdraw_start(model);
 }
 
-/// Withdraws a start that was requested with a plan that has since been replaced.
+/// Withdraws a start that was requested with a plan that has been replaced since.
 fn withdraw_start(model: &mut Model) {
     let ready = model.live.run.standing.ready_plan();
     let is_other = |seen: Option<PlanId>| seen.is_some() && seen != ready;
@@ -149,7 +149,7 @@ fn take_health(model: &mut Model, health: Health) {
     model.live.health = health;
 }
 
-/// The run is over: anybody watching it is shown the result.
+/// The run is over: anybody who was watching it is shown the result.
 fn closed(model: &mut Model, result: RunResult) -> Vec<Effect> {
     let combine =
         result.name.as_ref().filter(|_| result.is_kept).and_then(|name| model.live.with_earlier(name));

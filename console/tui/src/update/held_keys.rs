@@ -1,8 +1,8 @@
 //! Held keys: a key that is held down neither confirms a question nor makes a step.
 //!
-//! Few terminals report that a key repeats, so the console judges by time. A held key first repeats after half a
-//! second or so, and then many times a second. A press within [`KeyPress::REPEATS_WITHIN`] of the same key is a
-//! repeat. A later press may be the first repeat, so it counts only if no other press follows within that time.
+//! Few terminals report that a key repeats, so the console judges by time. A held key first repeats after about half
+//! a second, and then many times a second. A press within [`KeyPress::REPEATS_WITHIN`] of the same key is a repeat. A
+//! later press may be the first repeat, so it counts only if no other press follows within that time.
 
 use super::message::Effect;
 use super::press_key;
@@ -35,7 +35,7 @@ pub(super) fn is_pressed(model: &mut Model, press: KeyPress) -> bool {
     }
 }
 
-/// No further press has followed, so the key was pressed: carries out its action if the overlay is still the same.
+/// No other press has followed, so the key was pressed: carries out its action if the overlay is still the same.
 pub(super) fn settled(model: &mut Model) -> Vec<Effect> {
     let Some(settling) = model.console.settling.take() else { return Vec::new() };
     if settling.over != model.ui.overlay {

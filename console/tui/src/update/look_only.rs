@@ -4,7 +4,7 @@ use super::offer::demand;
 use crate::actions::{Action, Reach};
 use crate::model::{Access, Model};
 
-/// Checks that this console may carry out an action at all.
+/// Checks that this console is allowed to carry out an action.
 pub(super) fn allowed(model: &Model, action: &Action) -> Result<(), String> {
     match model.live.access {
         Access::Control => Ok(()),
@@ -13,7 +13,7 @@ pub(super) fn allowed(model: &Model, action: &Action) -> Result<(), String> {
     }
 }
 
-/// Checks that this console can give orders; the error is the reason why not.
+/// Checks that this console can give orders; the error is the reason why it cannot.
 pub(super) fn no_orders(model: &Model) -> Result<(), String> {
     match model.live.access {
         Access::Control => Ok(()),

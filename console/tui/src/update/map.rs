@@ -31,7 +31,7 @@ pub(crate) fn zoom(model: &mut Model, by: i8) {
     }
 }
 
-/// Zooms the map, keeping a point in place.
+/// Zooms the map while keeping a point in place.
 pub(super) fn zoom_at(model: &mut Model, by: i8, place: Point) {
     let (before, Some(center)) = (model.ui.map.zoom, center(model)) else { return };
     zoom(model, by);
@@ -60,14 +60,14 @@ pub(crate) fn pan(model: &mut Model, direction: Vector) {
     }
 }
 
-/// Pans the map by some distance; it then no longer follows the robot.
+/// Pans the map by a given distance; the map then no longer follows the robot.
 pub(super) fn shift(model: &mut Model, way: Vector) {
     if let Some(center) = center(model) {
         show(model, center + way);
     }
 }
 
-/// Opens the map cursor, at the robot's position if the whole tank is visible, or closes it.
+/// Opens the map cursor, at the robot's position if the whole tank is visible; closes it if it is open.
 pub(crate) fn inspect(model: &mut Model) {
     let robot = model.live.run.position.pose.map(|pose| pose.position);
     let begin = robot.filter(|_| model.ui.map.zoom == 0).or_else(|| center(model));

@@ -18,11 +18,11 @@ use world::Point;
 pub enum Msg {
     /// A key went down.
     Key(KeyPress),
-    /// A key that might have been held down was really pressed: no other press has followed.
+    /// A key that might have been held down was really pressed, because no other press has followed.
     Settled,
     /// Text was pasted.
     Paste(String),
-    /// A command line from a script or from stdin, not typed on the screen.
+    /// A command line that comes from a script or from stdin and was not typed on the screen.
     Line(String),
     /// Mouse input.
     Mouse(Mouse),
@@ -84,7 +84,7 @@ pub enum Mouse {
     },
     /// The wheel was turned.
     Wheel {
-        /// Whether the wheel was turned away from the operator.
+        /// Whether the wheel was turned away from the user.
         up: bool,
         /// The target under the mouse.
         on: Target,
@@ -98,13 +98,13 @@ pub enum Target {
     Map(Point),
     /// A key name.
     Key(ActionId),
-    /// A line of a list, by its index.
+    /// A line in a list, by its index.
     Row(Rows, usize),
     /// Anything else.
     Else,
 }
 
-/// A list of a screen.
+/// A list on a screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Rows {
     /// Scenarios on the home screen.
@@ -164,7 +164,7 @@ pub enum RunMsg {
     Forecast(PlannerChoice, Result<Box<Forecast>, String>),
     /// The run has ended and its files are closed.
     Closed(Box<RunResult>),
-    /// The floor that a re-scan and the runs before it scanned together, or why that is unknown, as a sentence.
+    /// The floor scanned by a re-scan and by the runs before it together, or why that is unknown, as a sentence.
     Combined(Result<Box<Account>, String>),
     /// A message about a replay.
     Replay(ReplayMsg),
@@ -175,7 +175,7 @@ pub enum RunMsg {
 pub enum ReplayMsg {
     /// More of a run has been loaded; contains only the new marks.
     Loaded(Side, Reel),
-    /// The run at a different moment.
+    /// The run at another moment.
     At(Side, Box<Run>),
     /// The events between the previous moment and a later one.
     Moved(Side, Vec<Event>),
@@ -240,7 +240,7 @@ impl fmt::Display for Signal {
 pub enum Job {
     /// Recompute a run and compare it with its journal.
     Verify(String),
-    /// Write the report of a run beside its journal.
+    /// Write the report of a run next to its journal.
     Report(String),
     /// Open the recording of a run in the viewer.
     View(String),

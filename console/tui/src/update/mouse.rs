@@ -1,5 +1,5 @@
-//! Mouse input. The mouse inspects, scrolls, selects and opens; questions about moving or ending can be answered only
-//! on the keyboard.
+//! Mouse input. The mouse inspects, scrolls, selects and opens; questions about moving or ending can only be answered
+//! with the keyboard.
 
 use super::act::{act, select};
 use super::map;
@@ -49,7 +49,7 @@ fn click(model: &mut Model, list: Rows, index: usize) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Gives a list of the home screen the arrow keys; returns whether they were elsewhere before.
+/// Makes a list on the home screen respond to the arrow keys; returns whether a different list did so before.
 fn focus(model: &mut Model, list: Rows) -> bool {
     let wanted = match list {
         Rows::Scenarios => HomeList::Scenarios,

@@ -1,4 +1,4 @@
-//! The actions that are possible now, and why others are not. Footer and keys use the same checks.
+//! The actions that are possible now, and why the others are not. Footer and keys use the same checks.
 
 use super::go::named_run;
 use super::look_only::{allowed, no_orders};
@@ -47,7 +47,7 @@ pub(crate) fn run(model: &Model) -> Result<(), String> {
     demand(named_run(model).is_some(), "no run is selected")
 }
 
-/// Checks that the run's own planner, which is used for the re-scan, can scan.
+/// Checks that the run's own planner, which the re-scan uses, can scan.
 pub(crate) fn rescan(model: &Model) -> Result<(), String> {
     let planner = model.planner().filter(|_| model.ui.screen == Screen::Result);
     match planner.and_then(|planner| Some((planner, planner.why_no_coverage()?))) {
@@ -74,7 +74,7 @@ pub(crate) fn on_screen(model: &Model, screen: Screen) -> Result<(), String> {
     demand(model.ui.screen == screen, &format!("only on screen {} ({})", screen.digit(), screen.name()))
 }
 
-/// Checks that the mission would accept an order, by the mission's own rules.
+/// Checks that the mission would accept an order, according to the mission's own rules.
 pub(crate) fn accepted(model: &Model, order: &Order) -> Result<(), String> {
     no_orders(model)?;
     model.live.run.standing.standing().allows(order).map_err(|why| {
@@ -93,7 +93,7 @@ pub(crate) fn hold(model: &Model) -> Result<(), String> {
     if model.live.may_move() { Ok(()) } else { accepted(model, &Order::Hold) }
 }
 
-/// Checks that the mission can be started.
+/// Checks that the mission can start.
 pub(crate) fn start(model: &Model) -> Result<(), String> {
     demand(model.live.failure.is_none(), "the scenario could not be opened")?;
     demand(model.live.run.about.is_some(), "no mission loaded yet")?;
@@ -110,7 +110,7 @@ pub(crate) fn start(model: &Model) -> Result<(), String> {
     }
 }
 
-/// Checks that the mission was started: ending it before would leave an empty run.
+/// Checks that the mission has been started: ending it earlier would leave an empty run.
 pub(crate) fn abort(model: &Model) -> Result<(), String> {
     let is_waiting = *model.live.run.phase() == Phase::Waiting && !model.live.may_move();
     demand(!is_waiting, "the mission has not been started")?;
@@ -120,7 +120,7 @@ pub(crate) fn abort(model: &Model) -> Result<(), String> {
 /// Checks that the planner can be changed.
 pub(crate) fn swap(model: &Model) -> Result<(), String> {
     let choice = PlannerChoice::default();
-    // Orders are carried out in sequence, so after HOLD the list may open without waiting for the answer.
+    // Orders are carried out in sequence, so the list may open after HOLD without waiting for the answer.
     if !model.live.hold_asked {
         accepted(model, &Order::ChoosePlanner(choice))?;
     }
@@ -148,7 +148,7 @@ pub(crate) fn parameters(model: &Model) -> Result<(), String> {
     }
 }
 
-/// Checks that time is passing at a speed that can be set.
+/// Checks that time is passing, at a speed that can be set.
 pub(crate) fn simulating(model: &Model) -> Result<(), String> {
     if model.live.is_replay() {
         return Ok(());
@@ -185,8 +185,8 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         | Refusal::StepNeedsHold
         | Refusal::SwapNeedsHold => Some("<hold>: HOLD"),
         Refusal::Ended(_) => Some("<home> opens another scenario"),
-        Refusal::NoShadow => Some(":shadow NAME flies one"),
-        // These messages already state what to do, if anything.
+        Refusal::NoShadow => Some(":shadow NAME runs one"),
+        // These messages already say what to do, if anything can be done.
         Refusal::Planning
         | Refusal::OtherPlan { .. }
         | Refusal::NotLive { .. }

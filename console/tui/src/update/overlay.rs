@@ -27,7 +27,7 @@ pub(crate) fn ask(model: &mut Model, ask: Ask) -> Vec<Effect> {
     open(model, Overlay::Confirm(ask))
 }
 
-/// Withdraws a question whose confirmation would move the robot; returns whether one was open.
+/// Withdraws a question whose confirmation would move the robot; returns whether such a question was open.
 pub(super) fn withdraw_motion(model: &mut Model) -> bool {
     let moves = matches!(
         model.ui.overlay,
@@ -40,7 +40,7 @@ pub(super) fn withdraw_motion(model: &mut Model) -> bool {
     moves
 }
 
-/// Confirms the question or takes the selected line; without an overlay, does what Enter does on the screen.
+/// Confirms the question or takes the selected line; without an overlay, has the effect of Enter on the screen.
 pub(crate) fn accept(model: &mut Model) -> Vec<Effect> {
     match model.ui.overlay.clone() {
         Overlay::None => (model.ui.screen.row().enter)(model),
@@ -141,7 +141,7 @@ fn choose_planner(model: &mut Model, purpose: Purpose, selected: usize) -> Vec<E
     choose(model, purpose, planner)
 }
 
-/// Takes a planner for a purpose, if it can fly the mission; asks for confirmation before it drives.
+/// Takes a planner for a purpose, if it can run the mission; asks for confirmation before the planner drives.
 pub(super) fn choose(model: &mut Model, purpose: Purpose, planner: PlannerInfo) -> Vec<Effect> {
     if let Some(why) = model.live.run.cannot_fly(&planner) {
         let why = format!("planner {} {why}", planner.id);
@@ -164,7 +164,7 @@ fn compare(model: &mut Model, choice: PlannerChoice) -> Vec<Effect> {
     vec![Effect::Compare(choice)]
 }
 
-/// Cancels a confirmed start or a plan in progress, or removes the second plan from the map.
+/// Cancels a confirmed start or planning in progress, or removes the second plan from the map.
 pub(crate) fn cancel_plan(model: &mut Model) -> Vec<Effect> {
     if model.live.preflight.is_starting {
         preflight::cancel(model);
@@ -192,7 +192,7 @@ pub(crate) fn edit(model: &mut Model) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Checks that a parameter can be set now; parameters of a draft always can.
+/// Checks that a parameter can be set now; parameters in a draft always can.
 fn settable(model: &Model, key: &str, value: &ParamValue) -> Result<(), String> {
     if is_drafting(model) {
         return Ok(());
@@ -208,7 +208,7 @@ fn take_value(model: &mut Model, selected: usize, edit: Edit) -> Vec<Effect> {
     let info = model.edited().and_then(|(planner, _)| planner.parameters.get(selected));
     let Some(info) = info else { return open(model, Overlay::None) };
     let key = info.key.clone();
-    // Check again: the mission may have changed while the value was typed.
+    // Check again: the mission may have changed while the value was being typed.
     let checked = parameter::parse(info, edit.line.text()).and_then(|value| {
         settable(model, &key, &value)?;
         Ok(value)

@@ -1,4 +1,4 @@
-//! The command line: suggestions, completion, history and execution.
+//! The command line: suggestions, completion, history, and running what was typed.
 
 use super::command::{self, line};
 use super::message::Effect;
@@ -12,10 +12,10 @@ use crate::screens;
 use mission::spelling::nearest;
 use std::cmp::Reverse;
 
-/// The maximum number of command lines remembered.
+/// The maximum number of command lines that are remembered.
 const MAX_HISTORY: usize = 100;
 
-/// A suggestion in the list of the command line.
+/// A suggestion in the command line's list.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Choice {
     /// A command.
@@ -41,7 +41,7 @@ pub fn choices(model: &Model, palette: &Palette) -> Vec<Choice> {
     exact.into_iter().chain(ranked(model, typed).into_iter().map(Choice::Command)).chain(others).collect()
 }
 
-/// The commands that match the typed text, best first; if nothing is typed, those of other screens and panes come
+/// The commands that match the typed text, best first; if nothing is typed, commands for other screens and panes come
 /// last.
 fn ranked(model: &Model, typed: &str) -> Vec<&'static Action> {
     let here = [&[Context::Anywhere, Context::Screen], screens::contexts(model)].concat();
@@ -67,7 +67,7 @@ fn weight(risk: Risk) -> u8 {
     }
 }
 
-/// The position in the history where a command was last used; larger is more recent.
+/// The position in the history where a command was last used; larger means more recent.
 fn last_use(model: &Model, action: &Action) -> Option<usize> {
     let is_of = |line: &String| line.split_whitespace().next() == Some(action.name);
     model.console.history.iter().rposition(is_of)
@@ -156,7 +156,7 @@ fn remember(model: &mut Model, line: &str) {
     history.drain(..surplus);
 }
 
-/// Handles Tab: completes the word at the cursor from the selected line of the list.
+/// Handles Tab: completes the word at the cursor from the selected line in the list.
 pub(super) fn complete(model: &mut Model) {
     let Overlay::Commands(palette) = &model.ui.overlay else { return };
     let mut palette = palette.clone();
@@ -174,8 +174,8 @@ pub(super) fn complete(model: &mut Model) {
     model.ui.overlay = Overlay::Commands(Palette { selected: 0, fault: None, ..palette });
 }
 
-/// Moves through the history: Up on the first line of the list goes back, Down goes forward; returns whether it
-/// moved.
+/// Moves through the history: from the first line of the list, Up goes back, and Down goes forward; returns whether
+/// it moved.
 pub(super) fn recalls(model: &mut Model, by: isize) -> bool {
     let Overlay::Commands(palette) = &mut model.ui.overlay else { return false };
     let recalled = match by {

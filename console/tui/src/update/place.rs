@@ -7,7 +7,7 @@ use crate::model::{Model, Pane, Screen};
 use mission::Severity;
 use world::Point;
 
-/// The minimum zoom when showing a place, in doublings of the scale: a quarter of the tank.
+/// The minimum zoom for showing a place, in doublings of the scale: a quarter of the tank.
 const PLACE_ZOOM: u8 = 2;
 
 /// Shows a place on the mission screen's map, centred and with the cursor on it.

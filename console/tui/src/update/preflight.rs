@@ -8,7 +8,7 @@ use mission::{Check, Order, PlanId, Severity};
 
 /// The growth of a recording, bytes per second of mission time; the measured rate is 90 to 110 MB an hour.
 const BYTES_PER_S: f64 = 30_000.0;
-/// A safety factor: missions take longer than planned.
+/// A safety factor, because missions take longer than planned.
 const MARGIN: f64 = 2.0;
 
 /// Opens the list of checks and repeats the checks.
@@ -17,7 +17,7 @@ pub(crate) fn open(model: &mut Model) -> Vec<Effect> {
     look(model)
 }
 
-/// The operator agreed to start the plan shown: repeats all checks now.
+/// The operator has agreed to start with the plan shown: repeats all checks now.
 pub(super) fn start(model: &mut Model, seen: Option<PlanId>) -> Vec<Effect> {
     (model.live.preflight.is_starting, model.live.preflight.seen) = (true, seen);
     look(model)
@@ -29,7 +29,7 @@ fn look(model: &mut Model) -> Vec<Effect> {
     vec![Effect::Check { needed_bytes: (time_s * MARGIN * BYTES_PER_S) as u64 }]
 }
 
-/// Takes the results of the checks; starts the mission if the operator agreed to that and nothing blocks it.
+/// Receives the results of the checks; starts the mission if the operator has agreed to that and nothing blocks it.
 pub(super) fn checked(model: &mut Model, found: Vec<Check>) -> Vec<Effect> {
     let preflight = &mut model.live.preflight;
     (preflight.found, preflight.is_checking) = (Some(found), false);

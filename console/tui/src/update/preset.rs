@@ -53,12 +53,12 @@ fn loaded(model: &Model, name: &str) -> Result<PlannerChoice, String> {
     Ok(preset::by_hand(&choice, info))
 }
 
-/// Applies a preset after the review. Nothing moves: the planner replans with the parameters.
+/// Applies a preset after the review. Nothing moves: the planner replans with the new parameters.
 pub(super) fn take(model: &mut Model, name: &str, choice: PlannerChoice) -> Vec<Effect> {
     model.ui.overlay = Overlay::None;
     let planner = choice.id.clone();
     let order = Order::ChoosePlanner(choice);
-    // Check again: the mission may have changed meanwhile.
+    // Check again: the mission may have changed in the meantime.
     if let Err(why) = accepted(model, &order) {
         return refuse(model, why);
     }

@@ -9,7 +9,7 @@ use mission::EventKind;
 pub enum Redraw {
     /// Nothing visible changes.
     No,
-    /// Values of a robot that stands still change: draw within a second.
+    /// Only the values of a stationary robot change: draw within a second.
     Calm,
     /// Draw as soon as possible.
     Soon,
@@ -36,7 +36,7 @@ pub fn redraw(model: &Model, msg: &Msg) -> Redraw {
     }
 }
 
-/// Compares everything except the reached speed, which is measured continuously but shown nowhere.
+/// Compares everything except the speed reached, which is measured continuously but shown nowhere.
 fn is_same(one: &Health, other: &Health) -> bool {
     one.recording == other.recording
 }

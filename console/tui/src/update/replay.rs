@@ -9,7 +9,7 @@ use crate::model::{LineEdit, Model, Overlay, Replay, RunId, RunResult, Screen};
 use account::Notes;
 use mission::{Event, Severity};
 
-/// Checks that a run is selected that can be replayed.
+/// Checks that a run that can be replayed is selected.
 pub(crate) fn can_open(model: &Model) -> Result<(), String> {
     nothing_under_way(model)?;
     offer::run(model)
@@ -19,7 +19,7 @@ fn replay(model: &Model) -> Result<&Replay, String> {
     model.live.replay.as_deref().ok_or_else(|| "no run is being replayed; <review>: choose one".into())
 }
 
-/// Checks that a replay is loaded far enough to be shown.
+/// Checks that enough of a replay is loaded to show it.
 pub(crate) fn is_loaded(model: &Model) -> Result<(), String> {
     replay(model)?;
     demand(model.live.run.about.is_some(), "the run is still loading")
@@ -123,7 +123,7 @@ pub(super) fn go_to(model: &mut Model, jump: Jump) -> Vec<Effect> {
     let Some(t_s) = target_s else {
         return refuse(model, nothing_there(jump).into());
     };
-    // An operator who looks for an event wants to see it.
+    // An operator who looks for an event wants to see its line.
     let is_search = !matches!(jump, Jump::Minute | Jump::MinuteBack | Jump::Start);
     let paused = if is_search { pause(model) } else { Vec::new() };
     if let Some(text) = model.live.replay.as_ref().and_then(|replay| replay.notes.bookmark(t_s)) {
@@ -150,7 +150,7 @@ fn seek(t_s: f64) -> Vec<Effect> {
     vec![Effect::Transport(Transport::Seek(t_s))]
 }
 
-/// Seeks to a typed time; a time after the end leads to the end.
+/// Seeks to a typed time; for a time after the end, seeks to the end.
 pub(super) fn seek_to(model: &mut Model, t_s: f64) -> Vec<Effect> {
     let until_s = model.live.replay.as_ref().map_or(0.0, |replay| replay.reel.until_s);
     if t_s > until_s {
@@ -160,7 +160,7 @@ pub(super) fn seek_to(model: &mut Model, t_s: f64) -> Vec<Effect> {
     seek(t_s.clamp(0.0, until_s))
 }
 
-/// Loads a second run for comparison; the same run again removes it.
+/// Loads a second run for comparison; choosing the same run again removes it.
 pub(super) fn compare(model: &mut Model, run: String) -> Vec<Effect> {
     let is_other = |replay: &Replay| replay.other.as_ref().is_some_and(|other| other.name == run);
     if model.live.replay.as_deref().is_some_and(is_other) {
@@ -259,14 +259,14 @@ pub(super) fn hear(model: &mut Model, msg: ReplayMsg) {
     }
 }
 
-/// Folds events into a run. The changes that they would make on a live screen are irrelevant here and are dropped.
+/// Folds events into a run. The changes that they would make to a live screen are irrelevant here and are dropped.
 fn fold(run: &mut crate::model::Run, events: &[Event]) {
     for event in events {
         run.fold(event);
     }
 }
 
-/// Shows the replayed run after it was chosen in a list.
+/// Shows the replayed run after it was selected in a list.
 pub(super) fn show(model: &mut Model) -> Vec<Effect> {
     go::go(model, Screen::Mission)
 }

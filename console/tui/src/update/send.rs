@@ -11,7 +11,7 @@ pub(crate) fn send(model: &mut Model, order: Order) -> Vec<Effect> {
         || order.is_start();
     if moves {
         model.live.asked = Some(order.clone());
-        // An earlier HOLD does not stop a robot that a later order moves.
+        // An earlier HOLD does not stop a robot that was moved by a later order.
         model.live.hold_asked = false;
     }
     // Before the start, every change leads to a new plan.
@@ -20,7 +20,7 @@ pub(crate) fn send(model: &mut Model, order: Order) -> Vec<Effect> {
     std::iter::once(Effect::Order(order)).chain(plan).collect()
 }
 
-/// Sends a new parameter value and shows the old one; while the robot moves, the value takes effect immediately.
+/// Sends a new parameter value and shows the old one; while the robot is moving, the value takes effect immediately.
 pub(super) fn set_parameter(model: &mut Model, key: String, value: ParamValue) -> Vec<Effect> {
     let info = model.planner().and_then(|info| info.parameters.iter().find(|info| info.key == key));
     if let Some(info) = info {
@@ -33,10 +33,10 @@ pub(super) fn set_parameter(model: &mut Model, key: String, value: ParamValue) -
     send(model, Order::SetParameter { key, value })
 }
 
-/// Sends HOLD whenever the mission would accept it, and after an order that makes the robot move.
+/// Sends HOLD whenever the mission would accept it, and also after an order that makes the robot move.
 ///
 /// HOLD also limits the simulation to real time, because an operator who stops the robot is in no hurry; only the
-/// operator raises the speed again.
+/// operator can raise the speed again.
 pub(crate) fn hold_now(model: &mut Model) -> Vec<Effect> {
     preflight::cancel(model);
     model.console.settling = None;

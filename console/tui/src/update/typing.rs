@@ -6,7 +6,7 @@ use crate::keys::Key;
 use crate::model::{LineEdit, Model, Overlay};
 use mission::{ParamKind, Severity};
 
-/// Whether an input line is open, in which letters and space are text.
+/// Whether an input line is open, where letters and spaces are text.
 pub fn is_typing(model: &Model) -> bool {
     use Overlay::{Bookmark, Commands, Filter, Parameters, Shelve};
     let overlay = &model.ui.overlay;
@@ -58,7 +58,7 @@ pub(crate) fn complete(model: &mut Model) {
     }
 }
 
-/// Edits the open input line, if any; an error about the old text is cleared.
+/// Edits the open input line, if there is one; clears an error about the old text.
 fn edit<T>(model: &mut Model, how: impl FnOnce(&mut LineEdit) -> T) -> Option<T> {
     let line = line(&mut model.ui.overlay)?;
     let before = line.text().to_owned();
@@ -92,12 +92,12 @@ fn changed(model: &mut Model) {
     }
 }
 
-/// The filter text of the screen's list.
+/// The filter text for the screen's list.
 pub(super) fn filtered(model: &Model) -> &str {
     model.ui.screen.row().filter.map_or(model.ui.needle.as_str(), |(text, _)| text(model))
 }
 
-/// Filters the screen's list.
+/// Filters the list on the screen.
 pub(super) fn filter(model: &mut Model, text: &str) {
     let filter = match model.ui.screen.row().filter {
         Some((_, text_mut)) => text_mut(model),

@@ -8,7 +8,7 @@ use crate::model::what_if::MOST;
 use crate::model::{Candidate, Forecast, Model, Overlay, WhatIf, preset};
 use mission::{Order, ParamValue, Parameters, PlannerChoice, Severity};
 
-/// Opens the comparison with the unchanged active planner and the others that can fly this mission.
+/// Opens the comparison of the active planner, unchanged, with the others that can run this mission.
 pub(crate) fn open(model: &mut Model) -> Vec<Effect> {
     model.ui.overlay = Overlay::WhatIf;
     if model.live.what_if.is_some() {
@@ -44,7 +44,7 @@ pub(super) fn add(model: &mut Model, choice: PlannerChoice) -> Vec<Effect> {
     vec![Effect::Forecast(open.map(|candidate| candidate.choice.clone()).collect())]
 }
 
-/// Opens the parameters of the selected candidate, to change them for another forecast.
+/// Opens the parameters of the selected candidate so that they can be changed for another forecast.
 pub(crate) fn draft(model: &mut Model) -> Vec<Effect> {
     let chosen = model.live.what_if.as_ref().and_then(WhatIf::candidate).map(|found| found.choice.clone());
     let Some(choice) = chosen else { return Vec::new() };
@@ -87,7 +87,7 @@ pub(crate) fn select(model: &mut Model, by: isize) {
     }
 }
 
-/// Chooses the selected candidate, after asking unless it is the unchanged active planner. The comparison is recorded
+/// Chooses the selected candidate, asking first unless it is the unchanged active planner. The comparison is recorded
 /// in the journal.
 pub(super) fn choose(model: &mut Model) -> Vec<Effect> {
     let Some(what_if) = &model.live.what_if else { return Vec::new() };
@@ -111,7 +111,7 @@ pub(super) fn choose(model: &mut Model) -> Vec<Effect> {
     std::iter::once(noted).chain(ask(model, Ask::Swap(choice))).collect()
 }
 
-/// Closes the comparison; finished forecasts are kept for as long as the mission is held here.
+/// Closes the comparison; finished forecasts are kept until the mission continues.
 pub(super) fn close(model: &mut Model) {
     model.ui.overlay = Overlay::None;
 }

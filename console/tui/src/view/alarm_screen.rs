@@ -1,4 +1,4 @@
-//! The alarm screen: alarms, their causes, and the possible actions.
+//! The alarm screen: alarms, their causes, and possible actions.
 
 mod actions;
 mod detail;
@@ -21,7 +21,7 @@ use ratatui::text::Line;
 const DETAIL: u16 = 72;
 /// Rows of the pane with an alarm's events, including the frame.
 const EVENTS: u16 = 5;
-/// The keys that run the actions of the open list.
+/// The keys that run the actions in the open list.
 const RUN: &str = "<first-action>-<fourth-action> run";
 /// Minimum rows of the table, including the frame.
 const TABLE: u16 = 7;
@@ -34,7 +34,7 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     }
 }
 
-/// Whether the screen itself shows the actions, so that no overlay list is needed.
+/// Whether the screen itself shows the actions, so that no overlay is needed.
 pub(super) fn shows_actions(model: &Model) -> bool {
     let whole = matches!(model.ui.arrangement(), Arrangement::Wide | Arrangement::Narrow);
     whole && model.ui.screen == Screen::Alarms

@@ -1,5 +1,5 @@
-//! Data kept between frames: results that are expensive and rarely change, and the places that the mouse can hit. A
-//! cold cache gives the same cells as a warm one.
+//! Data kept between frames: expensive results that rarely change, and the places that respond to the mouse. A cold
+//! cache gives the same cells as a warm one.
 
 use super::map::{PlateDrawing, PlateKey, ShadeKey, Shades, Window};
 use crate::actions::ActionId;
@@ -19,7 +19,7 @@ pub struct Cache {
     places: Places,
 }
 
-/// The places in the last frame that the mouse can hit.
+/// The places in the last frame that respond to the mouse.
 #[derive(Debug, Clone, Default)]
 pub struct Places {
     map: Option<(Rect, Window)>,
@@ -27,7 +27,7 @@ pub struct Places {
     rows: Vec<(Rect, Rows, usize)>,
 }
 
-/// The inputs of the plate map.
+/// The inputs from which the plate map is computed.
 #[derive(Debug, Clone, PartialEq)]
 struct PlateMapKey {
     layout: world::PlateLayout,
@@ -36,7 +36,7 @@ struct PlateMapKey {
 }
 
 impl Cache {
-    /// The places in the last frame that the mouse can hit.
+    /// The places in the last frame that respond to the mouse.
     pub fn places(&self) -> &Places {
         &self.places
     }

@@ -1,4 +1,4 @@
-//! Charts of the last minutes, with the limit drawn as a line.
+//! Charts of recent minutes, with the limit drawn as a line.
 
 use super::look::Look;
 use super::map::{Stroke, Window};
@@ -15,9 +15,9 @@ use world::Point;
 
 /// Width of the labels beside a curve, columns.
 const LABELS: u16 = 6;
-/// Mission time after which a curve shifts to the left, seconds.
+/// The mission time after which a curve shifts to the left, seconds.
 const PAGE_S: f64 = 60.0;
-/// Headroom above the limit or the largest value, as a factor.
+/// Space above the limit or the largest value, as a factor.
 const HEADROOM: f64 = 1.15;
 
 /// The contents of a chart.
@@ -78,7 +78,8 @@ fn plot(look: &Look, frame: &mut Frame, area: Rect, series: &Series<'_>) {
     let top = HEADROOM * largest.max(limit.unwrap_or(0.0));
     let top = if top > 0.0 && top.is_finite() { top } else { 1.0 };
     let plot = Rect { x: area.x + LABELS, width: area.width - LABELS, ..area };
-    // The curve grows to the right and shifts left once a minute, so the frames in between are cheap.
+    // The curve grows to the right and shifts left once a minute, so most frames change little and are cheap to
+    // draw.
     let newest_s = series.values.newest_s();
     let end_s = ((newest_s / PAGE_S).floor() + 1.0) * PAGE_S;
     let x = [end_s - HISTORY_S as f64, end_s];

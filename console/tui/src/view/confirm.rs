@@ -17,7 +17,7 @@ use ratatui::widgets::Paragraph;
 /// Maximum rows of the question before the start.
 const MOST_ROWS: usize = 3;
 
-/// The rows of the line: more than one only for what nobody may overlook before the robot first moves.
+/// The rows of the line: more than one only for what must not be overlooked before the robot first moves.
 pub(super) fn rows(look: &Look, columns: u16) -> u16 {
     whole_question(look.model, columns).map_or(1, |lines| lines.len() as u16)
 }
@@ -47,7 +47,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
             look,
             frame,
             area,
-            (" Shelve for minutes, reason: ", &shelving.line),
+            (" Shelve (minutes, reason): ", &shelving.line),
             &shelve(look.model, shelving),
         );
     }
@@ -102,7 +102,7 @@ pub(crate) fn question(model: &Model) -> Option<String> {
     asked(model).map(|clauses| clauses.join(" "))
 }
 
-/// The clauses of the open question. The first one contains the question and the keys, and is never left out.
+/// The clauses of the open question. The first one contains the question and its keys, and is never left out.
 fn asked(model: &Model) -> Option<Vec<String>> {
     let moves = || format!("Robot will move (planner {}).", model.live.run.planner_id().unwrap_or("unknown"));
     let clauses = match &model.ui.overlay {
@@ -120,8 +120,8 @@ fn asked(model: &Model) -> Option<Vec<String>> {
         }
         Overlay::Confirm(Ask::FlyUncertified) => vec![
             "Run uncertified plan? <accept>: run, <cancel>: stay held.".into(),
-            "Tether may stay out on return.".into(),
-            "Applies to later plans too, until one fails.".into(),
+            "Tether may stay out after return.".into(),
+            "Applies to later plans too, until planning fails.".into(),
         ],
         Overlay::Confirm(Ask::Abort) => {
             let scanned = format!("{} % of reachable floor scanned.", coverage::shares(&model.live.run).0);
@@ -170,7 +170,7 @@ fn asked(model: &Model) -> Option<Vec<String>> {
     Some(clauses.iter().map(|clause| model.console.keys.spelled(clause)).collect())
 }
 
-/// The plan to be started, as a clause: length and time, and whether it is certified for the tether.
+/// The plan to be started, as a clause: its length and time, and whether it is certified for the tether.
 fn promised(model: &Model) -> String {
     let length = match &model.live.run.planning.plan {
         Some(plan) if plan.path.is_empty() => "Step by step, no path planned".to_owned(),
@@ -191,7 +191,7 @@ fn promised(model: &Model) -> String {
     format!("{length}, {time}, {certificate}.")
 }
 
-/// The note after the input line for shelving an alarm.
+/// The note after the input line in which an alarm is shelved.
 fn shelve(model: &Model, shelving: &Shelving) -> String {
     let keys = model.console.keys.spelled("<accept>: shelve, <cancel>: cancel.");
     match &shelving.refusal {

@@ -1,4 +1,4 @@
-//! The coverage pane: how much of which floor has been scanned, and what is left.
+//! The coverage pane: how much of the reachable and of the whole floor has been scanned, and what is left.
 
 use super::look::{Look, fill, ranked};
 use super::text;
@@ -10,9 +10,9 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-/// The headings of the two columns of shares on a wide screen.
+/// The headings of the two columns of shares, on a wide screen.
 const BASES: &str = "reachable  whole floor";
-/// Columns of a label, of a share of the whole floor, and of the bar on a narrow screen.
+/// Width of a label, of a share of the whole floor, and of the bar on a narrow screen, columns.
 const LABEL: usize = 13;
 const WHOLE: usize = 13;
 const BAR: usize = 8;
@@ -29,7 +29,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     fill(frame, area, block, ranked(lines, usize::from(inner.height)));
 }
 
-/// Whether no progress was reported for two ticks although the mission runs.
+/// Whether no progress has been reported for two ticks although the mission is running.
 fn is_stale(look: &Look) -> bool {
     let at_s = look.run.progress.as_ref().filter(|_| look.run.is_running()).map(|progress| progress.t_s);
     look.is_stale(at_s)
@@ -45,7 +45,7 @@ fn wide_lines(look: &Look, columns: usize) -> Vec<(u8, Line<'static>)> {
     let row = |rank: u8, label: &str, value: String| {
         (rank, look.line([(Role::Dim, format!(" {label:<LABEL$}")), (Role::Text, value)]))
     };
-    // Each share is right-aligned with the name of its floor.
+    // Each share is right-aligned with the name of the floor that it refers to.
     let first = columns.saturating_sub(LABEL + WHOLE + 3);
     let shares = |of_reachable: String, of_whole: &str| {
         format!("{of_reachable:>first$}{:>WHOLE$}", format!("{of_whole} %"))
@@ -91,7 +91,7 @@ fn narrow_lines(look: &Look) -> Vec<(u8, Line<'static>)> {
     ]
 }
 
-/// The scanned shares of the reachable and the whole floor; dashes before the first step.
+/// The scanned shares of the reachable floor and of the whole floor; dashes before the first step.
 pub(super) fn shares(run: &Run) -> (String, String) {
     let scanned = |of: fn(&Raster) -> Shares| percent(run, of, |percent| percent.scanned);
     (scanned(Raster::reachable), scanned(Raster::whole))
@@ -107,7 +107,7 @@ fn bar(run: &Run, columns: usize) -> String {
     text::bar(run.progress.as_ref().map_or(0.0, |progress| progress.covered_reachable), columns)
 }
 
-/// The label for unscanned floor: still to do, or missed once a mission that was to scan has ended.
+/// The label for unscanned floor: still to do, or missed once a mission whose task was to scan has ended.
 fn to_do_label(run: &Run) -> &'static str {
     match (run.has_missed(), run.has_ended()) {
         (true, _) => "missed",

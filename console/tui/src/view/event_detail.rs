@@ -14,7 +14,7 @@ use ratatui::text::Line;
 
 /// Width of the figure names, columns.
 const NAMES: usize = 12;
-/// How many lines are searched for an event of the same kind in every frame.
+/// How many lines are searched for an event of the same kind, in every frame.
 const NEAR: usize = 2000;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, (number, entry): (u64, &Entry)) {
@@ -45,7 +45,7 @@ fn lines(look: &Look, (number, entry): (u64, &Entry), columns: usize) -> Vec<Lin
     fields::lines(look, &all, NAMES, columns)
 }
 
-/// The current state of the alarm that the event belongs to.
+/// The current state of the alarm to which the event belongs.
 fn alarm(look: &Look, entry: &Entry) -> Option<Field> {
     let cause = Cause::of(&entry.what.event()?.kind)?;
     let alarm = look.run.alarms.get(&cause)?;

@@ -62,7 +62,7 @@ fn list(look: &Look, frame: &mut Frame, area: Rect) {
         let hint = if look.model.ui.needle.is_empty() {
             "No events."
         } else {
-            "No event matches. <filter>, then <cancel>: clear."
+            "No event matches. <filter>, then <cancel>: clear filter."
         };
         lines.push(look.line([(Role::Dim, format!(" {}", look.keys(hint)))]));
     }
@@ -79,7 +79,8 @@ fn list(look: &Look, frame: &mut Frame, area: Rect) {
     fill(frame, area, block, lines);
 }
 
-/// The filter with invalid parts underlined, and why they are invalid; while it is being typed, examples of terms.
+/// The filter with its invalid parts underlined, and why they are invalid; while the filter is being typed, examples
+/// of terms.
 fn filter_lines(look: &Look, columns: usize) -> Vec<Line<'static>> {
     let ui = &look.model.ui;
     let is_typed = matches!(ui.overlay, Overlay::Filter(_));
@@ -122,7 +123,7 @@ pub(super) fn role(severity: Severity) -> Role {
     }
 }
 
-/// A log line, cut to some columns.
+/// A log line, cut to a given width.
 pub(super) fn row(entry: &Entry, columns: usize) -> Parts {
     let again = if entry.count > 1 { format!(" (×{})", entry.count) } else { String::new() };
     let front = format!(" T+{} ", text::clock(entry.t_s));

@@ -13,7 +13,7 @@ pub(super) struct Field {
     pub skipped: usize,
 }
 
-/// The part of a line around its cursor that fits into some columns.
+/// The part of a line around its cursor that fits into a given width.
 pub(super) fn field(line: &LineEdit, columns: usize) -> Field {
     let before = line.before();
     let fits = |begin: usize| text::width(&before[begin..]) < columns.max(1);

@@ -1,4 +1,4 @@
-//! Named figures, one below another.
+//! Figures with their names, one below another.
 
 use super::look::{Look, Parts};
 use super::text;
@@ -8,7 +8,7 @@ use ratatui::text::Line;
 /// A name and a value, which may take several lines.
 pub(super) type Field = (&'static str, String);
 
-/// The lines of some fields; the names take the first `names` columns.
+/// The lines for some fields; the names take the first `names` columns.
 pub(super) fn lines(look: &Look, fields: &[Field], names: usize, columns: usize) -> Vec<Line<'static>> {
     let room = columns.saturating_sub(names + 2).max(8);
     let rows = fields.iter().flat_map(|(name, words)| {

@@ -1,4 +1,4 @@
-//! The keys that are active now, from the action table.
+//! The keys that are active now, taken from the action table.
 
 use super::look::Look;
 use super::text;
@@ -61,7 +61,7 @@ fn fitting(model: &Model, columns: usize) -> Vec<Hint> {
     let mut hints = hints(model);
     let paged = model.ui.arrangement() == Arrangement::Paged;
     for id in DISPENSABLE {
-        // With one pane at a time, the others could not be reached without the key to the next one.
+        // With one pane at a time, the other panes could not be reached without the key for the next pane.
         let kept = paged && id == ActionId::NextPane;
         if width(&hints) > columns && !kept {
             hints.retain(|hint| hint.id != id);
@@ -136,7 +136,7 @@ fn label(action: &Action, model: &Model) -> String {
             "resume?"
         }
         (ActionId::Interrupt, _) if is_typing(model) => "HOLD",
-        (ActionId::Cancel, Overlay::None) => "end reading",
+        (ActionId::Cancel, Overlay::None) => "close cursor",
         (ActionId::Accept, Overlay::None) => (model.ui.screen.row().opens)(model).unwrap_or_default(),
         (ActionId::Back, _) if model.ui.screen == Screen::Home => "quit",
         (ActionId::Accept, Overlay::Commands(_) | Overlay::Remedies { .. }) => "run",

@@ -14,7 +14,7 @@ use ratatui::text::Line;
 
 /// Maximum rows of the attention pane, including the frame.
 const ATTENTION: u16 = 10;
-/// Columns of a scenario's task, and the minimum for how its last run ended.
+/// Width of a scenario's task, and the minimum width for how its last run ended, columns.
 const TASK: usize = 7;
 const END: usize = 10;
 
@@ -77,7 +77,7 @@ fn scenarios(look: &Look, frame: &mut Frame, area: Rect) {
     let names = name_columns(&listed, columns);
     let rows: Vec<Parts> = listed.iter().map(|entry| scenario_row(look, entry, names, columns)).collect();
     let selected = (home.list == HomeList::Scenarios).then_some(home.scenario);
-    // Sized for the longest text, so that the height of the list does not depend on the selection.
+    // Sized for the longest text, so that the height does not depend on the selection.
     let longest = listed.iter().map(|entry| about_lines(look, entry, columns).len()).max().unwrap_or(0);
     let about = if height > 12 { longest.min(height / 2) } else { 0 };
     let shown = table::window(selected.unwrap_or(0), rows.len(), height - about);
@@ -122,7 +122,7 @@ fn scenario_row(look: &Look, entry: &ScenarioEntry, names: usize, columns: usize
     parts
 }
 
-/// How a run ended, with its coverage if its task was to scan.
+/// How a run ended, with its coverage if the run's task was to scan.
 fn end(run: &PastRun) -> String {
     match run.reachable {
         Some(share) if run.end == "complete" => format!("{} %", text::percent(share)),
@@ -172,13 +172,13 @@ fn runs(look: &Look, frame: &mut Frame, area: Rect) {
     fill(frame, area, block, lines);
 }
 
-/// Columns of a run's start, duration and coverage, each with a blank.
+/// Width of a run's start, duration and coverage, each with a blank, columns.
 const BEGAN: usize = 12;
 const TIME: usize = 9;
 const REACH: usize = 7;
 
-/// The column widths of the run rows. To make the names fit, the time is dropped first, then everything except the
-/// outcome.
+/// The column widths in the list of runs. To make the names fit, the time is dropped first, then everything except
+/// the outcome.
 fn run_columns(names: usize, columns: usize) -> [usize; 4] {
     let least = 1 + names + END + 1;
     let room = |rest: usize| columns.saturating_sub(1 + END + 1 + rest);
@@ -198,7 +198,7 @@ fn name_of(run: &PastRun) -> &str {
 fn run_row(run: &PastRun, [began, name, time, reach]: [usize; 4]) -> Parts {
     let took = run.mission_time_s.map_or_else(|| "-".into(), text::clock);
     let scanned = run.reachable.map_or_else(String::new, |share| format!("{} %", text::percent(share)));
-    // Without a coverage column, the coverage is more useful than the word "complete".
+    // If there is no column for the coverage, the coverage is more useful here than the word "complete".
     let end = if reach == 0 && run.end == "complete" && run.reachable.is_some() {
         scanned.clone()
     } else {
@@ -237,7 +237,7 @@ fn filter_note(look: &Look) -> String {
     }
 }
 
-/// The number of items that need the operator.
+/// The number of items that require the operator's attention.
 fn open_points(found: &Found) -> usize {
     found.attention.iter().filter(|point| point.severity > Severity::Info).count()
 }

@@ -1,4 +1,4 @@
-//! The context that every part of the view needs: the model, and the way the terminal shows it.
+//! The context needed by every part of the view: the model, and how the terminal shows it.
 
 use super::cache::Cache;
 use super::text;
@@ -12,7 +12,7 @@ use ratatui::widgets::{Block, Paragraph};
 use std::borrow::Cow;
 use std::cell::RefCell;
 
-/// The context that every part of the view needs.
+/// The context needed by every part of the view.
 #[derive(Clone, Copy)]
 pub(crate) struct Look<'a> {
     pub model: &'a Model,
@@ -23,17 +23,16 @@ pub(crate) struct Look<'a> {
     pub cache: &'a RefCell<Cache>,
 }
 
-/// The pieces of a line with their roles.
+/// The pieces of a line, with their roles.
 pub(crate) type Parts = Vec<(Role, String)>;
 
 impl Look<'_> {
-    /// Whether letters replace the colours and half characters used elsewhere.
+    /// Whether letters replace the colours and half-block characters used elsewhere.
     pub(crate) fn is_plain(&self) -> bool {
         self.caps.colours == Colours::None || self.caps.glyphs == Glyphs::Ascii
     }
 
-    /// Whether a value that arrives with every tick has been missing for two ticks, or the mission is silent
-    /// altogether.
+    /// Whether a value that arrives with every tick has been missing for two ticks, or the mission has gone silent.
     pub(crate) fn is_stale(&self, t_s: Option<f64>) -> bool {
         t_s.is_some_and(|t_s| self.model.silent_s().is_some() || self.run.is_overdue(t_s))
     }
@@ -51,7 +50,7 @@ impl Look<'_> {
         Line::from(parts.into_iter().map(|(role, text)| self.span(role, text)).collect::<Vec<_>>())
     }
 
-    /// A sentence with its `<end>`-style placeholders replaced by the operator's keys.
+    /// A sentence in which the `<end>`-style placeholders are replaced by the operator's keys.
     pub(crate) fn keys(&self, sentence: &str) -> String {
         self.model.console.keys.spelled(sentence)
     }
@@ -76,7 +75,7 @@ impl Look<'_> {
     }
 }
 
-/// The highest-ranked lines (lowest numbers) that fit into some rows, in their original order.
+/// The highest-ranked lines (lowest numbers) that fit into a number of rows, in their original order.
 pub(crate) fn ranked(lines: Vec<(u8, Line<'_>)>, rows: usize) -> Vec<Line<'_>> {
     let mut ranks: Vec<u8> = lines.iter().map(|(rank, _)| *rank).collect();
     ranks.sort_unstable();

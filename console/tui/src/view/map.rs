@@ -1,4 +1,4 @@
-//! The map on one canvas: scanned floor at the bottom; walls, obstacles, paths and forces on top.
+//! The map, on one canvas: scanned floor at the bottom; walls, obstacles, paths and forces on top.
 
 mod drawn;
 mod legend;
@@ -25,7 +25,7 @@ use ratatui::widgets::canvas::Canvas;
 
 /// Margin around the tank, as a factor of its size.
 const MARGIN: f64 = 1.04;
-/// Columns and rows from which the map has a legend.
+/// Columns and rows from which the map shows a legend.
 const LEGEND: (u16, u16) = (64, 20);
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
@@ -53,7 +53,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let left = readout::cursor(look, ui, inner.width)
         .or_else(|| window.map(|window| (Role::Dim, scale(window))))
         .unwrap_or((Role::Dim, String::new()));
-    // The operator asked for the cursor, so if space is short the scale is dropped.
+    // The operator asked for the cursor, so the scale is dropped if space is short.
     let room = usize::from(below.width).saturating_sub(text::width(&robot.1));
     let fits = text::width(&left.1) < room;
     if fits || ui.cursor.is_some() {
@@ -74,7 +74,7 @@ fn title(model: &Model) -> String {
     format!("Map{zoom}{follow}")
 }
 
-/// As many keys as fit beside the title.
+/// As many keys as fit next to the title.
 fn keys(look: &Look, width: usize, title: usize) -> String {
     const KEYS: [&str; 2] = [
         "<zoom-in> <zoom-out> zoom  <follow> follow  <whole-tank> whole tank  <layers> layers  <inspect> read",

@@ -1,4 +1,4 @@
-//! The missed areas once the mission has ended: reason and place, largest first.
+//! The missed areas once the mission has ended, with reason and place, largest first.
 
 use super::look::{Look, fill};
 use super::text;
@@ -8,7 +8,7 @@ use account::{Account, Area, MissReason};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
-/// The account of the floor of a run that has ended.
+/// The account of the floor for a run that has ended.
 pub(super) fn account<'a>(look: &Look<'a>) -> Option<&'a Account> {
     look.model.live.result.as_ref()?.summary.floor.as_ref()
 }

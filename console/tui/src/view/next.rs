@@ -1,4 +1,4 @@
-//! The line that states what comes next and whether anybody is needed.
+//! The line that tells what comes next and whether the operator is needed.
 
 use super::{events, text};
 use crate::model::{Busy, Model, Replay, Screen};
@@ -21,7 +21,7 @@ pub(super) fn clauses(model: &Model) -> Clauses {
     (role, clauses.iter().map(|clause| model.console.keys.spelled(clause)).collect())
 }
 
-/// The line of a replay, with the key that plays or pauses.
+/// The line for a replay, with the key that plays or pauses.
 fn played(model: &Model, replay: &Replay) -> String {
     let next = match (model.live.is_opening, replay.is_playing) {
         (true, _) => "reading the run...",
@@ -75,7 +75,7 @@ fn by_phase(model: &Model) -> Clauses {
     }
 }
 
-/// What comes next, without figures that keep changing.
+/// What comes next, without the figures that keep changing.
 pub(crate) fn standing(model: &Model) -> String {
     if let Some(busy) = &model.live.busy {
         return format!("{}.", busy.work);
@@ -86,7 +86,7 @@ pub(crate) fn standing(model: &Model) -> String {
     clauses(model).1.join(" ")
 }
 
-/// The keys that lead on from a mission that has ended.
+/// The keys for what can be done after a mission has ended.
 fn more(model: &Model) -> String {
     match model.ui.screen {
         Screen::Result => "<again>: plan again, <rescan>: re-scan, <home>: home.",
@@ -95,7 +95,7 @@ fn more(model: &Model) -> String {
     .into()
 }
 
-/// The work of a planner with its progress, elapsed time, limit and current activity.
+/// A planner's work: its progress, elapsed time, limit and current activity.
 fn work(model: &Model, busy: &Busy) -> Vec<String> {
     let passed_s = (model.console.now.mono_s - busy.since_mono_s).max(0.0) as u64;
     let time = |limit_s: f64| format!(", {passed_s} s (limit {} s)", limit_s as u64);
@@ -108,7 +108,7 @@ fn work(model: &Model, busy: &Busy) -> Vec<String> {
     std::iter::once(first).chain(what).collect()
 }
 
-/// As many clauses as fit into some columns; the first one is cut if necessary.
+/// As many clauses as fit into a given width; the first one is cut if necessary.
 pub(super) fn joined(clauses: &[String], columns: usize) -> String {
     let mut line = clauses.first().map_or_else(String::new, |first| text::fit(first, columns));
     for clause in clauses.iter().skip(1) {
@@ -141,7 +141,7 @@ fn idle(model: &Model) -> Clauses {
         return (Role::Title, vec!["Start when the plan is ready.".into()]);
     }
     let preflight = "<preflight>: pre-flight check.";
-    // A planner that is still opening does not block the start yet.
+    // A planner that is still being opened does not block the start yet.
     if let Some(failed) = model.blocking_check().filter(|_| is_opened) {
         let (what, why) =
             (format!("Start blocked: {}.", failed.what), format!("{}.", text::capitalized(&failed.found)));
@@ -189,7 +189,7 @@ fn held(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String> {
     clauses.into_iter().chain(message(by)).collect()
 }
 
-/// The problem with the position, and what is needed before the robot may move again.
+/// What is wrong with the position, and what is needed before the robot may move again.
 fn trouble(position: PositionTrust) -> Option<(&'static str, &'static str)> {
     match position {
         PositionTrust::Good => None,
@@ -200,7 +200,7 @@ fn trouble(position: PositionTrust) -> Option<(&'static str, &'static str)> {
     }
 }
 
-/// A hold that ends automatically. The second clause fits into 60 columns, so that nobody is surprised by a robot
+/// A hold that ends automatically. The first two clauses fit into 60 columns, so that nobody is surprised by a robot
 /// that starts to move.
 fn held_for_now(by: &HoldReason, resumes: Resumes) -> Vec<String> {
     let when = match (resumes, by) {
@@ -213,7 +213,7 @@ fn held_for_now(by: &HoldReason, resumes: Resumes) -> Vec<String> {
     vec![format!("{}.", state(by)), when.into(), "<hold>: HOLD (stay held).".into()]
 }
 
-/// A hold that only an order ends, while the mission accepts no order that moves the robot.
+/// A hold that only an order can end, while the mission accepts no order that moves the robot.
 fn held_without_position(by: &HoldReason, (trouble, needs): (&str, &str)) -> Vec<String> {
     let state = match by {
         HoldReason::PositionLost | HoldReason::RangesInconsistent => format!("HELD: {trouble}."),
@@ -223,7 +223,7 @@ fn held_without_position(by: &HoldReason, (trouble, needs): (&str, &str)) -> Vec
     [state, needs.into()].into_iter().chain(planner).collect()
 }
 
-/// A hold that only an order ends.
+/// A hold that only an order can end.
 fn held_for_good(by: &HoldReason) -> Vec<String> {
     const RESUME: &str = "<hold>: resume.";
     const RETRY: &str = "<hold>: retry.";
@@ -243,7 +243,7 @@ fn held_for_good(by: &HoldReason) -> Vec<String> {
     std::iter::once(format!("{state}.")).chain(remedies.iter().map(|remedy| (*remedy).to_owned())).collect()
 }
 
-/// Why the robot is held, without a full stop.
+/// Why the robot is held, without a closing full stop.
 fn state(by: &HoldReason) -> &'static str {
     match by {
         HoldReason::Operator => "HELD by operator",
@@ -259,7 +259,7 @@ fn state(by: &HoldReason) -> &'static str {
     }
 }
 
-/// The details of the hold, shown if there is space.
+/// More about the hold, shown if there is space.
 fn message(by: &HoldReason) -> Option<String> {
     match by {
         HoldReason::PlannerFault { message }

@@ -1,4 +1,4 @@
-//! The latest notice to the operator, in its own lines just above the state; it covers neither the state nor a
+//! The latest notice to the operator, in separate lines just above the state; it covers neither the state nor a
 //! question.
 
 use super::look::Look;

@@ -1,5 +1,5 @@
-//! The plan screen, for a mission before the start: the path on the map, the estimate, changed parameters, and a
-//! different planner's plan beside it.
+//! The plan screen, for a mission before the start: the path on the map, the estimate, the changed parameters, and a
+//! different planner's plan alongside.
 
 mod estimate;
 mod parameters;
@@ -12,9 +12,9 @@ use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
 
-/// Columns of the side panes, on a wide and on a narrow screen.
+/// Width of the side panes on a wide and on a narrow screen, columns.
 const SIDE: (u16, u16) = (50, 34);
-/// Maximum rows of objections to a plan.
+/// Maximum number of rows for objections to a plan.
 const REASONS: usize = 6;
 
 pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
@@ -30,7 +30,7 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     let side = if wide { SIDE.0 } else { SIDE.1 };
     let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(side)]).areas(area);
     map::draw(look, frame, left);
-    // The parameters have at least one row.
+    // The parameters get at least one row.
     let rows = if wide { 10 } else { 7 };
     let [top, middle, bottom] = Layout::vertical([
         Constraint::Length(rows),
@@ -112,7 +112,7 @@ fn objections(look: &Look) -> Vec<String> {
         .collect()
 }
 
-/// The progress of the second plan.
+/// The progress of the plan for comparison.
 fn ghost(look: &Look, columns: usize) -> Vec<Parts> {
     let Some(ghost) = &look.model.live.plans.ghost else { return Vec::new() };
     let id = &ghost.choice.id;

@@ -9,7 +9,7 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-/// Maximum rows of a fault.
+/// Maximum number of rows for a fault.
 const FAULT_ROWS: usize = 2;
 /// Width from which labels are full words, columns.
 const WIDE: usize = 40;
@@ -38,7 +38,7 @@ fn rows_of(look: &Look, wide: bool, room: usize) -> Vec<(u8, &'static str, Value
     let run = look.run;
     let is_stale = look.is_pose_stale();
     let pose = |value: String| marked(is_stale, (Role::Text, value));
-    // The active planner's name is also in the top line, so the differences of the shadow planner matter more.
+    // The active planner's name is also in the top line, so it matters more how the planner in shadow differs.
     let of_name = if run.shadow.is_some() { 3 } else { 2 };
     let mut rows = vec![(of_name, "planner", planner(look))];
     if let Some(fault) = &run.planning.fault {
@@ -59,7 +59,7 @@ fn rows_of(look: &Look, wide: bool, room: usize) -> Vec<(u8, &'static str, Value
     rows
 }
 
-/// The better plan on offer: the saving, and the key that takes the plan.
+/// The better plan on offer: what it saves, and the key that takes it.
 fn better(look: &Look, offer: &Offer, room: usize) -> Value {
     let saves = text::number((offer.flown.time_s - offer.better.time_s) / 60.0, 1);
     let of = text::number(offer.flown.time_s / 60.0, 1);
@@ -108,7 +108,7 @@ fn motion(run: &Run, room: usize) -> String {
     )
 }
 
-/// The last command; marked if it is stale, because the robot does not follow an old command for long.
+/// The last command, marked if it is stale, because the robot does not follow an old command for long.
 fn command(look: &Look, room: usize) -> Value {
     let run = look.run;
     let Some((t_s, command)) = &run.planning.command else { return (Role::Text, "-".into()) };

@@ -1,4 +1,4 @@
-//! The plugins screen: the files found with their states and planners, and why others were refused.
+//! The plugins screen: the files found, with their states and planners, and why others were refused.
 
 use super::look::{Look, Parts, fill};
 use super::{table, text};
@@ -10,7 +10,7 @@ use mission::{ParamInfo, PlannerInfo, Sandbox};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 
-/// The number of hash digits shown.
+/// The number of digits shown of a hash.
 const HASH: usize = 12;
 
 pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {

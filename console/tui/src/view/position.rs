@@ -1,4 +1,4 @@
-//! The position pane: the AE stations' measurements, and how reliable they are.
+//! The position pane: what the AE stations measure, and how reliable it is.
 
 use super::look::{Look, Parts, fill, marked, ranked};
 use super::text;
@@ -10,7 +10,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use world::{Station, StationId};
 
-/// Mission time that the curve covers, seconds.
+/// The mission time covered by the curve, seconds.
 const CURVE_S: usize = 120;
 /// Width from which the pane uses full words, columns.
 const WIDE: usize = 40;
@@ -24,7 +24,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     fill(frame, area, block, ranked(lines, usize::from(inner.height)));
 }
 
-/// The lines of a wide pane. Status words come first, because the ends of lines are cut.
+/// The lines of a wide pane. Status words come first, because lines are cut at their ends.
 fn wide_lines(look: &Look, inner: Rect) -> Vec<(u8, Line<'static>)> {
     let columns = usize::from(inner.width);
     let run = look.run;
@@ -137,7 +137,7 @@ fn state(run: &Run) -> (Role, &'static str) {
     }
 }
 
-/// A few words per station: its residual, or why it was rejected; rejected stations come first.
+/// A few words per station: its residual, or why it was rejected. Rejected stations come first.
 fn station_lines(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>> {
     let mut words = Parts::new();
     if let Some(fix) = &look.run.position.fix {
@@ -164,7 +164,7 @@ fn station_lines(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>>
     lines.into_iter().take(rows).map(|line| look.line(line)).collect()
 }
 
-/// A station that is not used in the fix, and why.
+/// A station that is not used in the fix, and the reason.
 fn rejected(run: &Run, id: StationId, why: &Exclusion) -> String {
     let name = run.station_name(id);
     match why {

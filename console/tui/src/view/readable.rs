@@ -1,4 +1,4 @@
-//! Removes invisible characters from the screen, whoever wrote the text.
+//! Removes invisible characters from the screen, wherever the text came from.
 
 use foreign::is_plain;
 use ratatui::buffer::Buffer;

@@ -1,5 +1,5 @@
-//! The result screen: the achieved figures beside the plan's estimate, the missed areas with their reasons, and what
-//! comes next.
+//! The result screen: the achieved figures alongside the plan's estimate, the missed areas with their reasons, and
+//! what comes next.
 
 mod figures;
 mod floor;
@@ -13,9 +13,9 @@ use mission::Outcome;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 
-/// Columns of the side panes, on a wide and on a narrow screen.
+/// Width of the side panes on a wide and on a narrow screen, columns.
 const SIDE: (u16, u16) = (62, 42);
-/// Minimum rows of the floor shares, including the frame.
+/// Minimum rows for the floor shares, including the frame.
 const FLOOR: u16 = 6;
 /// Rows of the list of missed areas, including the frame.
 const MISSED: u16 = 10;
@@ -39,7 +39,7 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(side)]).areas(above);
     let rows = figures::rows(look, result, right.width.saturating_sub(2)) + 2;
     let [achieved, floor] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(right);
-    // If both do not fit, the shares matter more than the map, which is one key away.
+    // If there is no room for both, the shares matter more than the map, which is one key away.
     let floor = if left.width > 0 && floor.height < FLOOR { left } else { floor };
     if left.width > 0 && floor != left {
         map::draw(look, frame, left);

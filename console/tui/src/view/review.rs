@@ -14,7 +14,7 @@ use ratatui::text::Line;
 
 /// Rows of the panes below the list, including frames.
 const BELOW: (u16, u16) = (18, 10);
-/// Columns of the selected run's details, beside the comparison.
+/// Width of the selected run's details when the comparison is shown, columns.
 const ABOUT: u16 = 56;
 
 pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
@@ -71,16 +71,14 @@ fn runs(look: &Look, frame: &mut Frame, area: Rect) {
         let words = match &model.home.found {
             None => " Looking for runs...".to_owned(),
             Some(found) if found.runs.is_empty() => format!(" No runs in {}.", found.logs),
-            Some(_) => {
-                look.keys(" No run contains all these words. <filter> then <cancel>: clear the filter.")
-            }
+            Some(_) => look.keys(" No run contains all these words. <filter>, then <cancel>: clear filter."),
         };
         lines.push(look.line([(Role::Dim, words)]));
     }
     fill(frame, area, block, lines);
 }
 
-/// The mark of the replayed run or of the run that it is compared with.
+/// The mark of the replayed run, or of the run with which it is compared.
 fn mark(replay: Option<&Replay>, run: &PastRun) -> &'static str {
     let Some(replay) = replay else { return " " };
     let is_other = replay.other.as_ref().is_some_and(|other| other.name == run.name);
@@ -100,9 +98,9 @@ struct Widths {
     notes: usize,
 }
 
-/// Columns of how a run ended, including one blank.
+/// Width for how a run ended, including one blank, columns.
 const END: usize = 10;
-/// Columns of mark, date, outcome and coverage.
+/// Width of mark, date, outcome and coverage, columns.
 const FIXED: usize = 3 + 12 + END + 7;
 
 /// The column widths; if space is short, the time is dropped first, then the planner.

@@ -1,12 +1,12 @@
-//! The planner in shadow, in the planner pane: whether it is ready to take over, and how it differs from the active
-//! planner.
+//! The planner in shadow, as shown in the planner pane: whether it is ready to take over, and how it differs from the
+//! active planner.
 
 use super::text;
 use crate::model::{Run, Shadow, shadow::GHOST_S};
 use crate::theme::Role;
 use mission::event::READY_AFTER;
 
-/// Rows of the planner pane, each with its rank; empty without a planner in shadow.
+/// The rows for the planner pane, each with its rank; empty without a planner in shadow.
 pub(super) fn rows(run: &Run, room: usize) -> Vec<(u8, &'static str, (Role, String))> {
     let Some(shadow) = &run.shadow else { return Vec::new() };
     let mut rows = vec![(2, "shadow", (Role::Ghost, text::wording(state(shadow), room)))];
@@ -32,7 +32,8 @@ fn signed(value: f64, decimals: usize) -> String {
     format!("{sign}{}", text::number(value.abs(), decimals))
 }
 
-/// Whether the planner is ready to take over, and the steps that it missed, from the longest wording to the shortest.
+/// Whether the planner is ready to take over, and how many steps it has missed, from the longest wording to the
+/// shortest.
 fn state(shadow: &Shadow) -> [String; 4] {
     let (id, tally) = (&shadow.choice.id, &shadow.tally);
     let state = match &shadow.info {

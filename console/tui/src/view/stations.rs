@@ -9,8 +9,8 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use world::{Station, StationId};
 
-/// The table columns: heading, width and rank; if space is short, the columns with the highest rank number are
-/// dropped.
+/// The table columns: heading, width and rank; if space is short, columns with the highest rank numbers are dropped
+/// first.
 const TABLE: [(&str, usize, u8); 6] = [
     ("station", 7, 0),
     ("range", 8, 2),
@@ -67,7 +67,7 @@ fn laid_out(cells: [String; 6], columns: usize) -> String {
     cells.join(" ")
 }
 
-/// The result of the last fix for a station: its residual and its gate, metres, and a word.
+/// The result of the last fix for a station: its residual and its gate, metres, and a word for it.
 fn state(look: &Look, station: StationId) -> (Role, Option<f64>, Option<f64>, &'static str) {
     let Some(fix) = &look.run.position.fix else { return (Role::Text, None, None, "-") };
     let left_out = fix.excluded.iter().find(|(excluded, _)| *excluded == station);

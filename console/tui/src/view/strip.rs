@@ -1,4 +1,4 @@
-//! The control strip of a terminal too small for a map: state, alarm, position, and the most important keys.
+//! The control strip, for a terminal too small for a map: state, alarm, position, and the most important keys.
 
 use super::look::Look;
 use super::next::Clauses;
@@ -72,7 +72,7 @@ fn wrapped(look: &Look, (role, clauses): &Clauses, columns: usize) -> Vec<Line<'
     lines.into_iter().map(|line| Line::from(look.span(*role, format!(" {line}")))).collect()
 }
 
-/// Whether a question about moving or quitting is open.
+/// Whether a question about moving or about quitting is open.
 fn asks(model: &Model) -> bool {
     matches!(model.ui.overlay, Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping)
 }

@@ -1,4 +1,4 @@
-//! Tables: as many rows as fit, with a selected one.
+//! Tables: as many rows as fit, one of them selected.
 
 use super::look::{Look, Parts};
 use super::text;
@@ -8,18 +8,18 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use std::ops::Range;
 
-/// The visible part of a list, which always contains the selected line.
+/// The visible part of a list; it always contains the selected line.
 pub(crate) fn window(selected: usize, len: usize, rows: usize) -> Range<usize> {
     let first = (selected + 1).saturating_sub(rows).min(len.saturating_sub(rows));
     first..(first + rows).min(len)
 }
 
-/// The number of rows and, if not all are visible, which of them are: `15`, `1-10 of 15`.
+/// The number of rows and, if not all of them are visible, which ones are: `15`, `1-10 of 15`.
 pub(crate) fn counted(shown: &Range<usize>, len: usize) -> String {
     if shown.len() == len { len.to_string() } else { format!("{}-{} of {len}", shown.start + 1, shown.end) }
 }
 
-/// A row; the selected one begins with a mark and is reversed up to its end.
+/// A row; the selected one begins with a mark and is shown in reverse up to its end.
 pub(crate) fn row(look: &Look, mut parts: Parts, selected: bool, columns: usize) -> Line<'static> {
     parts.insert(0, (Role::Text, if selected { ">" } else { " " }.into()));
     if !selected {
@@ -34,8 +34,8 @@ pub(crate) fn row(look: &Look, mut parts: Parts, selected: bool, columns: usize)
     line
 }
 
-/// The rows of a table that fit, including the selected one; `None` means that the table does not take the arrow
-/// keys.
+/// The rows of a table that fit, including the selected one; `None` means that the table does not respond to the
+/// arrow keys.
 pub(crate) fn rows(
     look: &Look,
     all: Vec<Parts>,
@@ -47,7 +47,7 @@ pub(crate) fn rows(
     numbered.map(|(index, parts)| row(look, parts, selected == Some(index), columns)).collect()
 }
 
-/// Records the areas of the visible rows for the mouse; the first row is at the top of the area.
+/// Records for the mouse where the visible rows are; the first row is at the top of the area.
 pub(crate) fn place(look: &Look, area: Rect, list: Rows, shown: Range<usize>) {
     for (y, index) in (area.top()..area.bottom()).zip(shown) {
         look.cache.borrow_mut().place_row(Rect { y, height: 1, ..area }, list, index);

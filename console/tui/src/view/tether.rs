@@ -32,7 +32,7 @@ fn note(look: &Look) -> &'static str {
 
 fn wide_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> {
     let is_stale = look.is_stale(tether.t_s);
-    // The label takes 13 columns and the stale mark one.
+    // The label takes 13 columns, and the stale mark takes one.
     let room = columns.saturating_sub(14);
     let row = |rank: u8, label: &str, value: (Role, String)| {
         (rank, vec![(Role::Dim, format!(" {label:<12}")), marked(is_stale, value)])
@@ -100,7 +100,7 @@ fn beside_limit(value: f64, limit: Option<f64>) -> Role {
     }
 }
 
-/// The largest wrap and its obstacle.
+/// The largest wrap, and the obstacle that it is on.
 fn worst(look: &Look, tether: &Tether, room: usize) -> String {
     if tether.is_snagged {
         return "UNKNOWN (snagged)".into();

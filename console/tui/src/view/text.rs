@@ -6,12 +6,12 @@ use crate::model::Speed;
 use ratatui::text::Span;
 use world::{Point, coverage::percent_text};
 
-/// A share as a percentage, without the sign.
+/// A share as a percentage, without the per cent sign.
 pub(crate) fn percent(share: f64) -> String {
     if share.is_finite() { percent_text(share, 1) } else { number(share, 1) }
 }
 
-/// A number with some decimals; a dash if it is not finite.
+/// A number with the given number of decimals; a dash if it is not finite.
 pub(crate) fn number(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return "-".into();
@@ -62,14 +62,14 @@ pub(crate) fn fit(text: &str, columns: usize) -> String {
     cut
 }
 
-/// The first of several wordings, longest first, that fits; the last one if none does.
+/// The first wording that fits, in order from longest to shortest; the last one if none fits.
 pub(crate) fn wording<const N: usize>(wordings: [String; N], columns: usize) -> String {
     let fits = wordings.iter().position(|words| width(words) <= columns).unwrap_or(N - 1);
     wordings.into_iter().nth(fits).unwrap_or_default()
 }
 
-/// The leading clauses of a sentence that fit, for a row whose full sentence is shown elsewhere; ends in an ellipsis
-/// only if not even the first clause fits.
+/// The leading clauses of a sentence that fit, for a row whose full sentence is shown elsewhere. The text ends in an
+/// ellipsis only if not even the first clause fits.
 pub(crate) fn clauses(sentence: &str, columns: usize) -> String {
     if width(sentence) <= columns {
         return sentence.to_owned();
@@ -80,7 +80,7 @@ pub(crate) fn clauses(sentence: &str, columns: usize) -> String {
     fitting.map_or_else(|| fit(sentence, columns), str::to_owned)
 }
 
-/// As many names as fit, and the number of further ones.
+/// As many names as fit, and how many more there are.
 pub(crate) fn names(names: &[&str], columns: usize) -> String {
     let wordings = (0..names.len()).map(|left_out| match left_out {
         0 => names.join(" "),
@@ -89,7 +89,7 @@ pub(crate) fn names(names: &[&str], columns: usize) -> String {
     wordings.into_iter().find(|words| width(words) <= columns).unwrap_or_else(|| format!("{}", names.len()))
 }
 
-/// A sentence with a capital letter and without its full stop.
+/// A sentence starting with a capital letter and without its full stop.
 pub(crate) fn capitalized(sentence: &str) -> String {
     let mut letters = sentence.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
@@ -102,7 +102,7 @@ pub(crate) fn column(text: &str, columns: usize) -> String {
     cut + &" ".repeat(blank)
 }
 
-/// The first lines of a text; the last one ends in an ellipsis if there are more.
+/// The first lines of a text; if there are more, the last one ends in an ellipsis.
 pub(crate) fn first_lines(mut lines: Vec<String>, most: usize, columns: usize) -> Vec<String> {
     if lines.len() > most {
         lines.truncate(most);
@@ -118,7 +118,7 @@ pub(crate) fn width(text: &str) -> usize {
     Span::raw(text).width()
 }
 
-/// Wraps a sentence into lines of a maximum width.
+/// Wraps a sentence into lines of a given maximum width.
 pub(crate) fn wrap(sentence: &str, columns: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in sentence.split_whitespace() {
@@ -139,7 +139,7 @@ pub(crate) fn bar(share: f64, columns: usize) -> String {
     "█".repeat(full) + &"░".repeat(columns - full)
 }
 
-/// A sparkline from 0 to `top`; each column shows the largest of its values.
+/// A sparkline, from 0 to `top`; each column shows the largest of its values.
 pub(crate) fn sparkline(
     values: impl ExactSizeIterator<Item = f64>,
     top: f64,

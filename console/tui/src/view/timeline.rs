@@ -13,7 +13,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
 use ratatui::widgets::Paragraph;
 
-/// Columns of a clock time and a blank.
+/// Width of a clock time and a blank, columns.
 const CLOCK: usize = 9;
 
 /// Draws the timeline at the bottom of an area; returns the remaining area.
@@ -35,7 +35,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
 const LEGEND: &str = "· event  ▲ hold  ! alarm  ● bookmark  ┃ now";
 
 fn title(look: &Look, replay: &Replay) -> String {
-    // A short journal is fully read before its first frame is shown.
+    // A short journal is read completely before its first frame is shown.
     let is_whole = replay.reel.is_whole && !look.model.live.is_opening;
     match (is_whole, &replay.other) {
         (false, _) => format!("loading {} %", percent(&replay.reel)),
@@ -64,7 +64,7 @@ fn lines(look: &Look, replay: &Replay, columns: usize, is_framed: bool) -> Vec<L
     lines
 }
 
-/// The bar of a run, from its beginning to the end of the loaded part.
+/// The bar of a run, from its beginning to the end of what is loaded.
 fn bar(
     look: &Look,
     (name, reel, run): (&str, &Reel, &Run),
@@ -97,7 +97,7 @@ fn bar(
     look.line(parts)
 }
 
-/// The rank of a mark where several share one place.
+/// The rank of a mark among those at the same place.
 fn rank(mark: &Mark) -> u8 {
     match (mark.kind, mark.severity) {
         (MarkKind::Event, Severity::Info) => 1,
@@ -129,7 +129,7 @@ fn beside(look: &Look, replay: &Replay, other: &Other, columns: usize) -> Line<'
     } else {
         (" % of reachable: ", format!(" by {align}"))
     };
-    // The colours are those of the map.
+    // The colours match those on the map.
     let roles =
         if replay.shows_difference { [Role::Good, Role::Ghost, Role::Partly] } else { [Role::Text; 3] };
     let words = [format!("only A {a}, "), format!("only B {b}, "), format!("both {both}")];
@@ -137,7 +137,7 @@ fn beside(look: &Look, replay: &Replay, other: &Other, columns: usize) -> Line<'
     look.line([(Role::Dim, head.to_owned())].into_iter().chain(parts).chain([(Role::Dim, foot)]))
 }
 
-/// The bookmark at this moment, otherwise the last log line.
+/// The bookmark at this moment; if there is none, the last log line.
 fn here(look: &Look, replay: &Replay, columns: usize) -> Line<'static> {
     let run = &look.model.live.run;
     if let Some(bookmark) = replay.notes.bookmark(run.clock.t_s) {

@@ -1,4 +1,4 @@
-//! The top line: who is in control, what is running, whether it is recorded, and the alarms.
+//! The top line: who is in control, what is running, whether it is being recorded, and the alarms.
 
 use super::look::{Look, Parts};
 use super::text;
@@ -10,7 +10,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use world::Boundary;
 
-/// Columns of the tank and planner names below which the alarm words are reduced to letters.
+/// Width of the tank and planner names below which the alarm words are reduced to letters, columns.
 const LEAST_NAMES: usize = 24;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
@@ -19,7 +19,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let gap = if wide { "   " } else { " " };
     let state = state(look.model);
     let time = time(look.model);
-    // The names take the remaining columns. The tank is dropped first, because the planner can change.
+    // The names get the remaining columns. The tank's name is dropped first, because the planner can change.
     let screen = look.model.ui.screen;
     let name = format!("{} {} ", screen.digit(), screen.name());
     let screen = if wide { text::width(&name) + gap.len() } else { 0 };
@@ -98,7 +98,7 @@ fn names(model: &Model, wide: bool, gap: &str, room: usize) -> Parts {
         .collect()
 }
 
-/// Mission time, speed and recording.
+/// The mission time, speed and recording.
 pub(super) fn time(model: &Model) -> Parts {
     let clock = match model.silent_s() {
         Some(silent_s) => {
@@ -106,11 +106,11 @@ pub(super) fn time(model: &Model) -> Parts {
         }
         None => (Role::Text, format!("T+{} ", text::clock(model.live.run.clock.t_s))),
     };
-    // The replay speed; no robot is connected.
+    // The speed is that of the replay; no robot is connected.
     if model.live.is_replay() {
         return vec![clock, (Role::Text, format!("{} ", text::speed(model.live.speed)))];
     }
-    // The journal states neither the speed of its mission nor whether it is being recorded.
+    // The journal records neither the speed of its mission nor whether the mission was being recorded.
     if model.live.is_look_only() {
         return vec![clock];
     }
@@ -128,7 +128,7 @@ fn recording(model: &Model) -> (Role, String) {
     }
 }
 
-/// The number of alarms of each severity, marked if any are unacknowledged.
+/// The number of alarms of each severity, marked if any of them are unacknowledged.
 pub(super) fn alarms(model: &Model, wide: bool) -> Parts {
     if model.live.run.alarms.open().next().is_none() {
         return vec![(Role::Dim, if wide { "ALARM none" } else { "! none" }.into())];

@@ -1,4 +1,5 @@
-//! Forecasts of how a held mission would continue with different planners: paths on the map, figures side by side.
+//! Forecasts of how a held mission would continue with different planners: paths on the map, and figures side by
+//! side.
 
 use super::look::{Look, Parts, fill};
 use super::{map, text};
@@ -9,9 +10,9 @@ use mission::Outlook;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 
-/// Columns of a label.
+/// Width of a label, columns.
 const LABEL: usize = 11;
-/// Columns of the table on a wide screen.
+/// Width of the table on a wide screen, columns.
 const TABLE: u16 = 66;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
@@ -89,7 +90,7 @@ const FIGURES: [(&str, Figure); 8] = [
     }),
 ];
 
-/// The end of the selected forecast, and what the forecasts are based on.
+/// How the selected forecast ends, and what the forecasts are based on.
 fn remarks(what_if: &WhatIf, columns: usize) -> Vec<Parts> {
     let selected = what_if.candidate().map(|candidate| match &candidate.made {
         Some(Ok(forecast)) => (Role::Text, format!("{}: {}.", candidate.choice.id, forecast.outlook.reason)),

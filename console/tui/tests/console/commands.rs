@@ -188,7 +188,7 @@ fn a_wrong_value_is_underlined_with_what_would_be_right() {
         (
             "inject S3 noise 20s",
             "noise",
-            "unknown fault `noise`; write dead (silent) or offset=2.5 (reads that many metres long, at most 1000)",
+            "unknown fault `noise`; write dead (silent) or offset=2.5 (ranges 2.5 m too long; at most 1000)",
         ),
         ("hodl", "hodl", "no such command; did you mean hold?"),
     ];

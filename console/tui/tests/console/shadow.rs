@@ -127,7 +127,7 @@ fn a_rebuilt_planner_is_offered_in_shadow_while_the_mission_runs() {
     let mut screen = Screen::running();
     screen.send(rebuilt());
     let said = screen.model.notice().map(|notice| notice.text.clone()).unwrap_or_default();
-    assert_eq!(said, format!("planner {id} was rebuilt: :shadow {id} flies the new build in shadow"));
+    assert_eq!(said, format!("planner {id} was rebuilt: :shadow {id} runs the new build in shadow"));
     let mut screen = Screen::idle();
     screen.send(rebuilt());
     assert!(!screen.model.notice().is_some_and(|notice| notice.text.contains("rebuilt")));

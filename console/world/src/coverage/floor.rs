@@ -5,10 +5,10 @@ use geometry::{Point, Pose, Vector};
 use serde::{Deserialize, Serialize};
 use std::{ops::Range, sync::Arc};
 
-/// Centres this far outside a box are still tested, as a share of a cell, so that rounding never excludes one.
+/// How far outside a box a cell's centre is still tested, as a share of a cell, so that rounding excludes no cell.
 const BESIDE_CELLS: f64 = 1e-3;
 
-/// The kind of a cell of the floor.
+/// The kind of a floor cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cell {
@@ -26,16 +26,16 @@ pub enum Cell {
     Reachable,
 }
 
-/// The floor as a grid of square cells, row by row from the south-west corner, tank frame.
+/// The floor as a grid of square cells in the tank frame, row by row from the south-west corner.
 ///
-/// A cell is floor if its centre is. It is reachable if there is a position that the robot can drive to from the
-/// start and from which the tool covers the centre of the cell. Serialised as runs of equal cells.
+/// A cell is floor if its centre lies on the floor. It is reachable if, from the start, the robot can drive to a
+/// position where the tool covers the centre of the cell. Serialised as runs of equal cells.
 ///
 /// ```
 /// use world::{Boundary, Floor, Point, World};
 /// # let boundary = Boundary::Circle { radius_m: 5.0 };
 /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-/// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+/// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
 /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
 /// let east = floor.cell_at(Point::new(4.9, 0.0)).unwrap();
 /// assert_eq!(floor.kind(east), world::Cell::Margin);
@@ -45,17 +45,17 @@ pub enum Cell {
 pub struct Floor {
     /// South-west corner of cell 0, metres.
     pub origin: Point,
-    /// Edge of a cell, metres.
+    /// Edge length of a cell, metres.
     pub cell_m: f64,
-    /// Cells from west to east.
+    /// Number of cells from west to east.
     pub width: usize,
-    /// Cells from south to north.
+    /// Number of cells from south to north.
     pub height: usize,
-    /// Shared by copies until one of them changes.
+    /// Copies share the cells until one of the copies changes.
     pub(super) cells: Arc<Vec<Cell>>,
 }
 
-/// A run of cells in one row: index of the first, and their number.
+/// A run of cells in one row: the index of the first cell, and the number of cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CellRun(pub u32, pub u32);
 
@@ -70,7 +70,7 @@ impl CellRun {
         self.0 as usize..(self.0 as usize).saturating_add(self.1 as usize)
     }
 
-    /// Appends cells that follow all cells in the list.
+    /// Appends cells that come after all cells already in the list.
     #[inline]
     pub(super) fn append(runs: &mut Vec<Self>, cells: Range<usize>) {
         match runs.last_mut() {
@@ -80,12 +80,13 @@ impl CellRun {
     }
 }
 
-/// A run of adjacent cells of the same kind: kind, index of the first, and their number.
+/// A run of adjacent cells of the same kind: the kind, the index of the first cell, and the number of cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct KindRun(pub Cell, pub u32, pub u32);
 
 impl Floor {
-    /// The most cells of a floor; larger floors are refused, here and when scenarios are checked.
+    /// The largest number of cells that a floor may have; larger floors are refused, here and when scenarios are
+    /// checked.
     pub const MOST_CELLS: usize = 4_000_000;
 
     /// Whether another floor has its cells at the same positions.
@@ -94,7 +95,7 @@ impl Floor {
     /// use world::{Boundary, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
     /// let coarse = Floor::new(&tank, 0.2, 0.5, 0.6, Point::origin());
     /// assert!(floor.is_aligned_with(&floor.clone()) && !floor.is_aligned_with(&coarse));
@@ -111,7 +112,7 @@ impl Floor {
     /// use world::{Boundary, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
     /// assert_eq!(floor.cell_at(Point::origin()), Some(50 * 100 + 50));
     /// assert_eq!(floor.cell_at(Point::new(6.0, 0.0)), None);
@@ -129,7 +130,7 @@ impl Floor {
     /// use world::{Boundary, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
     /// assert!((floor.center(0) - Point::new(-4.95, -4.95)).norm() < 1e-9);
     /// ```
@@ -148,7 +149,7 @@ impl Floor {
     /// use world::{Boundary, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
     /// assert_eq!(floor.kind(0), world::Cell::Outside);
     /// ```
@@ -163,7 +164,7 @@ impl Floor {
     /// use world::{Boundary, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
     /// let n_floor = (0..floor.len()).filter(|cell| floor.is_floor(*cell)).count();
     /// assert!((n_floor as f64 * floor.cell_m2() - 78.54).abs() < 0.5);
@@ -179,7 +180,7 @@ impl Floor {
     /// use world::{Boundary, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
     /// let is_reachable = |x| floor.is_reachable(floor.cell_at(Point::new(x, 0.0)).unwrap());
     /// assert!(is_reachable(4.5) && !is_reachable(4.9));
@@ -195,7 +196,7 @@ impl Floor {
     /// use world::{Boundary, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
     /// assert!((floor.cell_m2() - 0.01).abs() < 1e-12);
     /// ```
@@ -203,13 +204,13 @@ impl Floor {
         self.cell_m * self.cell_m
     }
 
-    /// Changes the kind of some cells; cells beyond the grid are ignored.
+    /// Changes the kinds of some cells; cells beyond the grid are ignored.
     ///
     /// ```
     /// use world::{Boundary, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
     /// let mut floor = floor;
     /// floor.change(&[world::KindRun(world::Cell::NoGo, 5000, 3)]);
@@ -227,14 +228,14 @@ impl Floor {
         Arc::make_mut(&mut self.cells)[index] = kind;
     }
 
-    /// Returns the whole floor as runs of equal cells. Passing them to [`Floor::change`] turns any aligned floor into
-    /// this one.
+    /// Returns the whole floor as runs of equal cells. Passing these runs to [`Floor::change`] turns any floor with the
+    /// same cells into this one.
     ///
     /// ```
     /// use world::{Boundary, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
     /// let mut other = Floor::new(&tank, 0.1, 1.0, 0.6, Point::origin());
     /// other.change(&floor.kinds());
@@ -244,13 +245,13 @@ impl Floor {
         kind_runs(self.cells.iter().copied().enumerate())
     }
 
-    /// The number of cells of the grid.
+    /// The number of cells in the grid.
     ///
     /// ```
     /// use world::{Boundary, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
     /// assert_eq!(floor.len(), floor.width * floor.height);
     /// ```
@@ -264,7 +265,7 @@ impl Floor {
     /// use world::{Boundary, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
     /// assert!(!floor.is_empty());
     /// ```
@@ -276,8 +277,8 @@ impl Floor {
         neighbours(index, self.width, self.cells.len())
     }
 
-    /// Whether the cell under a place and all adjacent floor cells are reachable; `None` if some are and others are
-    /// not, so that the border of the reachable floor runs there.
+    /// Whether the cell under a place and all adjacent floor cells are reachable; `None` if only some of them are,
+    /// which means that the border of the reachable floor runs between them.
     pub(super) fn are_all_reachable_about(&self, place: Point) -> Option<bool> {
         let cell = self.cell_at(place)?;
         let (column, row) = (cell % self.width, cell / self.width);
@@ -298,7 +299,7 @@ impl Floor {
     /// use world::{Boundary, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
     /// let disc = floor.cells_near(Point::origin(), Point::origin(), 1.0);
     /// assert!((disc.len() as f64 * floor.cell_m2() - 3.14).abs() < 0.05);
@@ -308,14 +309,14 @@ impl Floor {
         self.cells_under(Tool::Disc { swath_m: 2.0 * reach_m }, at(a), at(b))
     }
 
-    /// Returns the cells whose centres a tool passes between two poses that are close together, in order of their
+    /// Returns the cells whose centres a tool passes over between two poses that are close together, in order of their
     /// index.
     ///
     /// ```
     /// use world::{Boundary, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
     /// use world::{Pose, Tool};
     /// let (a, b) = (Pose::new(0.0, 0.0, 0.0), Pose::new(1.0, 0.0, 0.0));
@@ -326,14 +327,14 @@ impl Floor {
         self.runs_under(tool, a, b).into_iter().flat_map(CellRun::range).collect()
     }
 
-    /// Returns the cells of [`Self::cells_under`] as runs: one in each row, or several if the tool turned about a
-    /// point of itself.
+    /// Returns the cells of [`Self::cells_under`] as runs: one in each row, or more if the tool turned about one of its
+    /// own points.
     ///
     /// ```
     /// use world::{Boundary, CellRun, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
     /// use world::{Pose, Tool};
     /// let (a, b) = (Pose::new(0.0, 0.0, 0.0), Pose::new(1.0, 0.0, 0.0));
@@ -367,26 +368,26 @@ impl Floor {
         runs
     }
 
-    /// Returns which of `count` rows or columns have their centres between two distances from the origin. One more at
-    /// either end may be included.
+    /// Returns which of `count` rows or columns have their centres between two distances from the origin. One extra row
+    /// or column at either end may be included.
     fn centers(&self, from_m: f64, to_m: f64, count: usize) -> Range<usize> {
         let first = (from_m / self.cell_m - 0.5 - BESIDE_CELLS).max(0.0);
         let last = to_m / self.cell_m - 0.5 + BESIDE_CELLS;
-        // Avoids the rounding functions of the C library, which take as long as the rest of a row.
+        // Avoids the rounding functions of the C library, which take as long as all other work on a row.
         let whole = first as usize;
         let first = whole.saturating_add(usize::from((whole as f64) < first));
         let past = if last >= 0.0 { (last as usize).saturating_add(1) } else { 0 };
         first..past.min(count)
     }
 
-    /// Returns the cells of a box in order of their index; some adjacent cells may be included.
+    /// Returns the cells in a box in order of their index; a few adjacent cells may be included.
     pub(super) fn cells_in(&self, low: Point, high: Point) -> impl Iterator<Item = usize> + use<> {
         let (columns, rows) = self.spans(low, high);
         let width = self.width;
         rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
     }
 
-    /// Returns the columns and rows of a box; some adjacent ones may be included.
+    /// Returns the columns and rows in a box; a few adjacent ones may be included.
     fn spans(&self, low: Point, high: Point) -> (Range<usize>, Range<usize>) {
         let first = (low - self.origin) / self.cell_m;
         let last = (high - self.origin) / self.cell_m;
@@ -397,7 +398,7 @@ impl Floor {
     }
 }
 
-/// Returns the neighbours of a cell, at most four, in a grid with rows of `width` cells and `count` cells in all.
+/// Returns the neighbours of a cell, four at most, in a grid of `count` cells with `width` cells in each row.
 pub(crate) fn neighbours(index: usize, width: usize, count: usize) -> impl Iterator<Item = usize> {
     let column = index % width;
     let west = (column > 0).then(|| index - 1);
@@ -440,7 +441,7 @@ impl From<Floor> for FloorRuns {
 impl TryFrom<FloorRuns> for Floor {
     type Error = String;
 
-    /// A damaged file must neither exhaust the memory nor make later look-ups run past the end.
+    /// A damaged file must neither exhaust the memory nor let later look-ups run past the end.
     fn try_from(written: FloorRuns) -> Result<Self, String> {
         let FloorRuns { origin, cell_m, width, height, runs } = written;
         let count = width.checked_mul(height).filter(|count| *count <= Self::MOST_CELLS);
@@ -449,7 +450,7 @@ impl TryFrom<FloorRuns> for Floor {
             count.ok_or_else(|| format!("the floor has {width} by {height} cells; the limit is {most}"))?;
         let in_runs: u64 = runs.iter().map(|(_, length)| u64::from(*length)).sum();
         if in_runs != count as u64 {
-            return Err(format!("the floor has {width} by {height} cells, but {in_runs} in its runs"));
+            return Err(format!("the floor has {width} by {height} cells, but its runs contain {in_runs}"));
         }
         let cells = runs.iter().flat_map(|(cell, length)| std::iter::repeat_n(*cell, *length as usize));
         Ok(Self { origin, cell_m, width, height, cells: Arc::new(cells.collect()) })

@@ -7,9 +7,9 @@ use super::Cell;
 pub enum FloorClass {
     /// Not floor.
     Outside,
-    /// Reachable and not scanned, while the mission lasts.
+    /// Reachable but not scanned yet, during the mission.
     ToDo,
-    /// Reachable and not scanned after the mission.
+    /// Reachable but not scanned, after the mission.
     Missed,
     /// Scanned.
     Scanned,
@@ -24,7 +24,7 @@ pub enum FloorClass {
 }
 
 impl FloorClass {
-    /// Returns the class of a cell of this kind, scanned this many times, while the mission lasts.
+    /// Returns the class, during the mission, of a cell of a given kind that has been scanned a given number of times.
     ///
     /// ```
     /// use world::{Cell, FloorClass};
@@ -42,13 +42,13 @@ impl FloorClass {
         }
     }
 
-    /// Returns the class after the mission that was to scan the floor.
+    /// Returns the class that this one becomes when the mission is over.
     #[must_use]
     pub fn when_over(self) -> Self {
         if self == Self::ToDo { Self::Missed } else { self }
     }
 
-    /// Whether any of it was scanned.
+    /// Whether any floor of this class has been scanned.
     pub fn is_scanned(self) -> bool {
         matches!(self, Self::Scanned | Self::Again | Self::Partial)
     }

@@ -11,10 +11,10 @@ use crate::{
 use geometry::{Boundary, Point, Shape, Vector};
 use std::sync::Arc;
 
-/// The number of cells along each side of the blocks whose clearance is queried first.
+/// The number of cells along each side of a block; the clearance of each block is queried before that of its cells.
 const BLOCK: usize = 8;
 
-/// A floor with all data that are needed to update it when an obstacle is found.
+/// A floor with all the data needed to update it when an obstacle is found.
 #[derive(Clone)]
 pub struct FloorMaker {
     floor: Floor,
@@ -39,14 +39,14 @@ impl Floor {
     /// everything solid. The tool has the given swath, and the robot drives from `start`. All values are in metres
     /// and in the tank frame.
     ///
-    /// Costs one distance query per block of 64 cells, one per cell of the blocks close to anything solid, a flood
+    /// Costs one distance query per block of 64 cells, one per cell in the blocks close to anything solid, a flood
     /// fill, and some queries per cell along the border of the reachable floor.
     ///
     /// ```
     /// use world::{Boundary, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
     /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
     /// assert_eq!((floor.width, floor.height, floor.origin), (100, 100, Point::new(-5.0, -5.0)));
     /// ```
@@ -73,7 +73,7 @@ impl FloorMaker {
         Self::of(&Floor { origin: low, cell_m, width, height, cells }, world, room_m, swath_m, start)
     }
 
-    /// Creates the floor of a tank with the grid of another floor.
+    /// Creates the floor of a tank on the same grid as another floor.
     ///
     /// ```
     /// use world::{Boundary, Floor, FloorMaker, Point, World};
@@ -101,8 +101,8 @@ impl FloorMaker {
         maker
     }
 
-    /// Whether the tool can reach a place on the floor from anywhere that the robot can drive. The result is exact
-    /// and does not depend on the grid.
+    /// Whether the tool can reach a place on the floor from some position that the robot can drive to. The result is
+    /// exact and does not depend on the grid.
     ///
     /// ```
     /// use world::{Boundary, FloorMaker, Point, World};
@@ -137,7 +137,7 @@ impl FloorMaker {
         self.floor
     }
 
-    /// Updates the floor after a no-go zone with this outline was drawn; returns the cells that changed.
+    /// Updates the floor after a no-go zone with this outline has been drawn; returns the cells that changed.
     ///
     /// Costs one flood fill.
     ///
@@ -155,7 +155,7 @@ impl FloorMaker {
         self.classified(world)
     }
 
-    /// Updates the floor after obstacles with these outlines appeared or moved slightly; returns the cells that
+    /// Updates the floor after obstacles with these outlines have appeared or moved slightly; returns the cells that
     /// changed. `world` and `map` describe the tank after the change.
     ///
     /// Costs one distance query per cell near the outlines, and one flood fill.
@@ -171,7 +171,7 @@ impl FloorMaker {
     /// assert!(!maker.update(&tank, &map, &[shape]).is_empty());
     /// ```
     pub fn update(&mut self, world: &World, map: &ObstacleMap, changed: &[Shape]) -> Vec<KindRun> {
-        // Obstacles move only slightly, so this margin also includes their former outlines.
+        // Obstacles move only slightly, so this margin is wide enough to include their former outlines.
         let reach_m = self.room_m + self.swath_m;
         for shape in changed {
             for index in around(&self.floor, shape, reach_m) {
@@ -212,8 +212,8 @@ impl FloorMaker {
     /// Marks as reachable the cells that the tool reaches from the centre of a connected cell.
     fn reach_from_cells(&mut self, free: &[bool]) {
         let home: Vec<bool> = (0..free.len()).map(|cell| self.connected.is_home(cell)).collect();
-        // The connected cell nearest to any other cell always has a neighbour that is not connected, so the edge
-        // cells suffice.
+        // The connected cell nearest to any other cell always has a neighbour that is not connected, so only the cells
+        // at the edge need to be tested.
         let is_at_edge = |index: usize| self.floor.neighbours(index).any(|next| !home[next]);
         let edge: Vec<usize> = (0..home.len()).filter(|cell| home[*cell] && is_at_edge(*cell)).collect();
         for cell in (0..home.len()).filter(|cell| home[*cell]) {
@@ -240,7 +240,7 @@ impl FloorMaker {
         }
     }
 
-    /// Classifies a floor cell that the tool reaches neither from a cell nor from a corner.
+    /// Classifies a floor cell that the tool reaches neither from a connected cell nor from a corner of the free floor.
     fn kind_beside(&self, index: usize, is_free: bool) -> Cell {
         let center = self.floor.center(index);
         if is_free {
@@ -287,9 +287,9 @@ fn room_beside<'a>(
     Room::new(boundary, solids, room_m, swath_m / 2.0)
 }
 
-/// Returns the distance from the centre of every cell to the nearest solid, metres. If the distance at the centre of
-/// a block shows that all its cells have at least `room_m`, or that all are solid, the cells get this bound instead
-/// of their exact distance.
+/// Returns the distance from the centre of every cell to the nearest solid, metres. If the distance at the centre of a
+/// block shows that all its cells have at least `room_m` of clearance, or that all are solid, a bound is stored for
+/// them instead of the exact distances.
 fn clearances_m(grid: &Floor, map: &ObstacleMap, room_m: f64) -> Vec<f32> {
     let mut clearances_m = vec![0.0; grid.len()];
     for (row, column) in (0..grid.height)
@@ -314,14 +314,14 @@ fn clearances_m(grid: &Floor, map: &ObstacleMap, room_m: f64) -> Vec<f32> {
     clearances_m
 }
 
-/// Marks the cells from which the robot's centre would be in a zone or too close to it.
+/// Marks the cells at which the robot's centre would be in a zone or too close to it.
 fn forbid(grid: &Floor, outline: &Shape, room_m: f64, forbidden: &mut [bool]) {
     for index in around(grid, outline, room_m) {
         forbidden[index] |= outline.distance_m(grid.center(index)) < room_m;
     }
 }
 
-/// Returns the cells of the box around an outline, with a margin.
+/// Returns the cells in the box around an outline, with a margin.
 fn around(floor: &Floor, shape: &Shape, margin_m: f64) -> impl Iterator<Item = usize> + use<> {
     let (low, high) = shape.bounds();
     let margin = Vector::new(margin_m, margin_m);

@@ -3,8 +3,8 @@
 /// Returns shares as percentages with one decimal; they sum to 100.0 if the shares sum to 1 (largest remainder
 /// method).
 ///
-/// The first share is rounded to nearest, so that it reads the same as when printed alone ([`percent`]), but never up
-/// to 100.0 while any other share is left. The others are rounded down, and the missing tenths go to those with the
+/// The first share is rounded to nearest, so that it is the same as when printed alone ([`percent`]), but never up to
+/// 100.0 while any other share is above zero. The others are rounded down, and the missing tenths go to those with the
 /// largest remainders.
 ///
 /// ```
@@ -27,7 +27,7 @@ pub fn percents<const N: usize>(shares: [f64; N]) -> [f64; N] {
     parts.map(|part| part / 10.0)
 }
 
-/// Returns a share as it is printed alone: in per cent with one decimal, and 100.0 only if nothing is left.
+/// Returns a share as printed alone: in per cent with one decimal, and 100.0 only if the share is complete.
 ///
 /// ```
 /// use world::coverage::percent;
@@ -37,7 +37,7 @@ pub fn percent(share: f64) -> f64 {
     percents([share, 1.0 - share])[0]
 }
 
-/// Formats a share in per cent with a number of decimals, never as 100 unless it is complete.
+/// Formats a share in per cent with the given number of decimals, as 100 only if the share is complete.
 ///
 /// ```
 /// use world::coverage::percent_text;

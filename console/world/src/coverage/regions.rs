@@ -6,7 +6,7 @@ use geometry::{
     shape::{bounds_of, rectangle, ring_contains},
 };
 
-/// Returns the corners of a square about a point, counter-clockwise from the south-west one.
+/// Returns the corners of a square around a point, counter-clockwise from the south-west corner.
 ///
 /// ```
 /// use world::{Point, coverage::regions::square};
@@ -16,14 +16,14 @@ pub fn square(center: Point, edge_m: f64) -> Vec<Point> {
     rectangle(center - Vector::new(edge_m, edge_m) / 2.0, center + Vector::new(edge_m, edge_m) / 2.0)
 }
 
-/// Returns for every cell whether its centre lies in one of the polygons; `None` without polygons, which means all
-/// cells.
+/// Returns, for every cell, whether its centre lies in one of the polygons; `None` if there are no polygons, which
+/// means that all cells count.
 ///
 /// ```
 /// use world::{Boundary, Floor, Point, World};
 /// # let boundary = Boundary::Circle { radius_m: 5.0 };
 /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-/// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+/// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
 /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
 /// use world::coverage::regions::{cells_within, square};
 /// let within = cells_within(&floor, &[square(Point::origin(), 1.0)]).unwrap();
@@ -43,17 +43,17 @@ pub fn cells_within(floor: &Floor, polygons: &[Vec<Point>]) -> Option<Vec<bool>>
     Some(within)
 }
 
-/// Returns the wanted cells as boxes that do not overlap, made of square blocks of `block` by `block` cells.
+/// Returns the selected cells as boxes that do not overlap, made of blocks of `block` by `block` cells.
 ///
-/// A block is included if at least half of its floor is wanted, so slivers are dropped and ragged edges are
-/// straightened. Adjacent blocks of a row are joined, and so are equal stretches of consecutive rows. Every cell is
+/// A block is included if at least half of its floor is selected, so slivers are dropped and ragged edges are
+/// straightened. Adjacent blocks in a row are joined, and so are equal stretches in consecutive rows. Every cell is
 /// tested once.
 ///
 /// ```
 /// use world::{Boundary, Floor, Point, World};
 /// # let boundary = Boundary::Circle { radius_m: 5.0 };
 /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-/// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+/// // A round tank of radius 5 m with cells of 0.1 m, 0.5 m of clearance for the hull, and a swath of 0.6 m.
 /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
 /// let boxes = world::coverage::regions::boxes(&floor, 1, |cell| floor.is_floor(cell));
 /// let area_m2: f64 = boxes.iter().map(|b| world::shape::ring_area_m2(b)).sum();
@@ -93,7 +93,7 @@ struct BlockBox {
     top: usize,
 }
 
-/// Runs of included columns: the first, and the end (exclusive).
+/// Runs of included columns: the first column, and the column after the last.
 fn spans(columns: usize, is_taken: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
     let mut spans: Vec<(usize, usize)> = Vec::new();
     for column in (0..columns).filter(|column| is_taken(*column)) {

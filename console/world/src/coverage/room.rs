@@ -3,7 +3,7 @@
 //!
 //! The rim of the free floor consists of arcs and straight pieces at that distance from each solid. The point on the
 //! rim nearest to a given point is either the foot of a perpendicular on one of these pieces, or a corner where two
-//! pieces cross. Both are tried. From every candidate that is free, the tool may reach the given point.
+//! pieces cross. Both are tried as candidates: from those that are free, the tool may reach the given point.
 
 mod passages;
 mod rim;
@@ -16,7 +16,7 @@ use geometry::{Boundary, Point, Shape, Vector, polyline::nearest_on_segment, pol
 use rim::{Core, Rim};
 use std::collections::BTreeMap;
 
-/// A distance that is too short by no more than this still counts as kept, metres, so that an exact fit is accepted.
+/// A distance that is too short by no more than this is still accepted, metres, so that an exact fit passes.
 pub(super) const TIE_M: f64 = 1e-6;
 
 /// The free floor, tank frame.
@@ -27,14 +27,14 @@ pub(super) struct Room {
     cores: Vec<Core>,
     boxes: Boxes,
     keep_m: f64,
-    /// The corners of the rim, by squares of `square_m`.
+    /// The corners of the rim, grouped in squares with an edge of `square_m`.
     corners: BTreeMap<(i64, i64), Vec<Point>>,
     square_m: f64,
 }
 
 impl Room {
-    /// Creates the free floor at `room_m` from a wall and some shapes, for a tool that reaches `reach_m` to each
-    /// side.
+    /// Creates the free floor at a distance of `room_m` from a wall and some shapes, for a tool that reaches `reach_m`
+    /// to each side.
     pub(super) fn new<'a>(
         boundary: &Boundary,
         shapes: impl Iterator<Item = &'a Shape>,
@@ -83,14 +83,14 @@ impl Room {
         self.corners.values().flatten().copied()
     }
 
-    /// Returns free places within `reach_m` of a place that is not free, among them the nearest one of every region.
+    /// Returns free places within `reach_m` of a place that is not free, including the nearest one in every region.
     pub(super) fn places_near(&self, at: Point, reach_m: f64) -> impl Iterator<Item = Point> + '_ {
         let within_m = reach_m + TIE_M;
         let feet = self.feet(at).into_iter().filter(move |foot| (foot - at).norm() <= within_m);
         self.corners_near(at, within_m).chain(feet.filter(|foot| self.has(*foot)))
     }
 
-    /// Returns the corners of the rim within a distance of a place.
+    /// Returns the corners of the rim within a given distance of a place.
     pub(super) fn corners_near(&self, at: Point, within_m: f64) -> impl Iterator<Item = Point> + '_ {
         let (column, row) = self.square(at);
         let squares = (-1..=1).flat_map(move |y| (-1..=1).map(move |x| (column + x, row + y)));
@@ -145,8 +145,8 @@ impl Core {
         (self.a.inf(&self.b) - margin, self.a.sup(&self.b) + margin)
     }
 
-    /// Returns the place at `room_m` from the core in the direction of a place that is closer; on both sides if that
-    /// place is on the core's line itself.
+    /// For a place too close to the core, returns the place at `room_m` from the core in the same direction; if the
+    /// first place is on the core's line itself, returns one such place on each side.
     fn feet(&self, at: Point, room_m: f64) -> Vec<Point> {
         let nearest = nearest_on_segment(self.a, self.b, at);
         let away = at - nearest;
@@ -161,7 +161,7 @@ impl Core {
         ways.map(|way| nearest + way * off_m).collect()
     }
 
-    /// Returns the distance of the core from a segment, metres.
+    /// Returns the distance from the core to a segment, metres.
     fn way_m(&self, (a, b): (Point, Point)) -> f64 {
         if segments_cross(self.a, self.b, a, b) {
             return -self.radius_m;

@@ -5,16 +5,16 @@ use super::tool::Tool;
 use geometry::{Boundary, Point, Pose, Shape, Vector, polyline::edges, unit_vector};
 use std::{collections::BTreeMap, f64::consts::TAU};
 
-/// The length of a stretch, metres; longer if the wall would have too many stretches.
+/// The length of a stretch, metres; it is longer if the wall would otherwise have too many stretches.
 const SPACING_M: f64 = 0.025;
-/// The most stretches of a wall.
+/// The largest number of stretches along a wall.
 const MOST_STRETCHES: f64 = 20_000.0;
 /// The number of layers into which the zone is divided, from the shell inwards.
 const LAYERS: usize = 15;
-/// The edge of the squares that index the stretches, metres.
+/// The edge length of the squares that index the stretches, metres.
 const BUCKET_M: f64 = 0.5;
 
-/// The critical zone along the shell, and which part of it a tool has passed.
+/// The critical zone along the shell, and which part of it a tool has passed over.
 ///
 /// A pass far from the wall costs two distance queries; any other pass costs one test for each nearby stretch.
 ///
@@ -30,7 +30,7 @@ pub struct ShellZone {
     width_m: f64,
     stretches: Vec<Stretch>,
     /// The stretches in each square, by row and column from the south-west corner. Empty squares are left out, so the
-    /// cost of a tank grows with its shell and not with its area.
+    /// cost grows with the length of the shell, not with the area of the tank.
     squares: BTreeMap<(usize, usize), Vec<u32>>,
     origin: Point,
 }
@@ -46,7 +46,7 @@ struct Stretch {
     length_m: f64,
     /// Layers that lie in the tank, one bit each.
     inside: u32,
-    /// Layers that were passed, one bit each.
+    /// Layers that the tool has passed over, one bit each.
     passed: u32,
 }
 
@@ -60,7 +60,7 @@ pub struct ShellFigures {
     /// Scanned share of the zone's area, 0 to 1.
     pub scanned: f64,
     /// Distance from the shell to the scanned floor, metres: the median along the part of the shell where the zone is
-    /// incomplete. It is the width of the zone where nothing was scanned, and 0 if the zone is complete.
+    /// incomplete. Where nothing was scanned, it is the width of the zone; if the zone is complete, it is 0.
     pub gap_m: f64,
 }
 
@@ -83,7 +83,7 @@ pub struct ShellStretch {
 }
 
 impl ShellFigures {
-    /// Returns the figures of some stretches.
+    /// Returns the figures for some stretches.
     ///
     /// ```
     /// use world::{Boundary, ShellFigures, ShellZone};
@@ -110,7 +110,7 @@ impl ShellFigures {
 }
 
 impl ShellZone {
-    /// Creates the zone of a given width along a wall, metres, of which nothing has been scanned.
+    /// Creates the zone of a given width, metres, along a wall; nothing in it has been scanned yet.
     ///
     /// ```
     /// use world::{Boundary, ShellZone};
@@ -142,7 +142,7 @@ impl ShellZone {
         self.boundary.wall_distance_m(nalgebra::center(&low, &high)) <= reach_m
     }
 
-    /// Marks the parts that a tool passes between two poses that are close together.
+    /// Marks the parts that a tool passes over between two poses that are close together.
     ///
     /// ```
     /// use world::{Boundary, Pose, ShellZone, Tool};
@@ -171,7 +171,7 @@ impl ShellZone {
         }
     }
 
-    /// Adds the passes in another record of the same zone.
+    /// Adds the passes from another record of the same zone.
     ///
     /// ```
     /// use world::{Boundary, Pose, ShellZone, Tool};
@@ -187,7 +187,7 @@ impl ShellZone {
         }
     }
 
-    /// Returns how much of the zone was scanned, without points for which `is_solid` is true.
+    /// Returns how much of the zone was scanned, ignoring points for which `is_solid` is true.
     ///
     /// ```
     /// use world::{Boundary, ShellZone};
@@ -199,7 +199,7 @@ impl ShellZone {
         ShellFigures::of(&self.profile(is_solid))
     }
 
-    /// Returns the stretches beside free floor, in their order along the wall, without points for which `is_solid` is
+    /// Returns the stretches beside free floor, in their order along the wall, ignoring points for which `is_solid` is
     /// true.
     ///
     /// ```
@@ -238,7 +238,7 @@ impl Stretch {
     }
 }
 
-/// Returns the column or row of a square by its distance from the edge of the first square.
+/// Returns the column or row of the square at a given distance from the edge of the first square.
 fn bucket(offset_m: f64) -> usize {
     (offset_m / BUCKET_M).max(0.0) as usize
 }

@@ -11,7 +11,7 @@ pub(super) fn polygon_span(corners: &[Point], y: f64) -> Option<Span> {
     somewhere(crossings(corners, y).fold(NOWHERE, widened))
 }
 
-/// All points within a distance of a segment.
+/// All points within a given distance of a segment.
 pub(super) struct Capsule {
     ends: [Point; 2],
     reach_m: f64,
@@ -26,7 +26,7 @@ impl Capsule {
         Self { ends: [a, b], reach_m, sides }
     }
 
-    /// Returns the extent of the capsule at a given `y`. Called about a hundred times a tick for a tool.
+    /// Returns the extent of the capsule at a given `y`. Called about a hundred times per tick for a tool.
     #[inline]
     pub(super) fn span(&self, y: f64) -> Option<Span> {
         let mut span = NOWHERE;

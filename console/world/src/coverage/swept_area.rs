@@ -1,4 +1,4 @@
-//! Computes the area that a tool swept, to check the coverage counted in cells.
+//! Computes the area that a tool has swept, as a check on the coverage counted in cells.
 
 use super::{
     floor_maker::FloorMaker,
@@ -13,16 +13,16 @@ use nalgebra::{Isometry2, Rotation2};
 
 /// Direction of the rows, radians from east; oblique, so that neither walls nor lanes are parallel to them.
 const ASKEW_RAD: f64 = 0.345;
-/// Distance between rows, metres; larger if a floor would have too many rows.
+/// Distance between rows, metres; it is larger if a floor would otherwise have too many rows.
 const ROW_M: f64 = 0.02;
-/// The most rows of a floor.
+/// The largest number of rows on a floor.
 const MOST_ROWS: f64 = 5_000.0;
-/// The accuracy of the border of the reachable floor along a row, metres.
+/// The accuracy to which the border of the reachable floor is found along a row, metres.
 const EDGE_M: f64 = 1e-5;
-/// Spans of a row with a gap below this are joined, metres.
+/// Spans in a row are joined if the gap between them is below this, metres.
 const SEAM_M: f64 = 1e-9;
 
-/// The area that a tool swept, as spans of rows across a floor; exact along each row.
+/// The area that a tool has swept, as spans of rows across a floor; it is exact along each row.
 ///
 /// ```
 /// use world::{Boundary, Pose, SweptArea, Tool};
@@ -62,7 +62,7 @@ impl SweptArea {
         Self { askew, first_m: low, row_m, rows: vec![Vec::new(); count] }
     }
 
-    /// Adds the area that a tool passes between two poses that are close together.
+    /// Adds the area that a tool passes over between two poses that are close together.
     ///
     /// ```
     /// use world::{Boundary, Pose, SweptArea, Tool};
@@ -87,7 +87,7 @@ impl SweptArea {
         }
     }
 
-    /// Adds the swept area of another record of the same floor.
+    /// Adds the swept area from another record of the same floor.
     ///
     /// ```
     /// use world::{Boundary, Pose, SweptArea, Tool};
@@ -115,8 +115,8 @@ impl SweptArea {
         self.rows.iter().flatten().map(|(from, to)| to - from).sum::<f64>() * self.row_m
     }
 
-    /// Returns the swept share of the floor that the tool can reach, 0 to 1, within a wall and without the given
-    /// solids; `None` if there is no such floor.
+    /// Returns the swept share, 0 to 1, of the floor that the tool can reach within a wall, excluding the given solids;
+    /// `None` if there is no such floor.
     ///
     /// ```
     /// use world::{Boundary, FloorMaker, Point, Pose, SweptArea, Tool, World};
@@ -154,7 +154,7 @@ impl SweptArea {
         self.first_m + (row as f64 + 0.5) * self.row_m
     }
 
-    /// Adds a convex shape, given by its corners, to the rows that it meets.
+    /// Adds a convex shape, given by its corners, to the rows that it crosses.
     fn add(&mut self, corners: &[Point], around_m: f64, span: impl Fn(f64) -> Option<Span>) {
         let (low, high) = corners
             .iter()
@@ -210,8 +210,8 @@ impl SweptArea {
     }
 }
 
-/// Finds where the reachable floor begins or ends between two places on a row, of which exactly one is reachable,
-/// metres.
+/// Finds where the reachable floor begins or ends, in metres along a row, between two places of which exactly one is
+/// reachable.
 fn border_m(mut low_m: f64, mut high_m: f64, is_reached: impl Fn(f64) -> bool) -> f64 {
     let at_low = is_reached(low_m);
     while high_m - low_m > EDGE_M {
@@ -251,7 +251,7 @@ fn insert(row: &mut Vec<Span>, (from, to): Span) {
     }
 }
 
-/// Returns some spans without the parts that another span covers.
+/// Returns the parts of some spans that another span does not cover.
 fn without(spans: &[Span], (from, to): Span) -> Vec<Span> {
     let both = |(a, b): &Span| [(*a, b.min(from)), (a.max(to), *b)];
     spans.iter().flat_map(both).filter(|(a, b)| b > a).collect()
@@ -261,7 +261,7 @@ fn length_m(spans: &[Span]) -> f64 {
     spans.iter().map(|(from, to)| to - from).sum()
 }
 
-/// Returns the length that two rows have in common, metres.
+/// Returns the length over which the spans of two rows overlap, metres.
 fn common_m(one: &[Span], other: &[Span]) -> f64 {
     let (mut common_m, mut rest) = (0.0, other);
     for (from, to) in one {

@@ -1,4 +1,4 @@
-//! The scanning tool, and the floor that it passes.
+//! The scanning tool, and the floor that it passes over.
 
 use super::span::Capsule;
 use geometry::{Point, Pose, Vector, polyline::nearest_on_segment, shape::bounds_of, wrap_angle_rad};
@@ -39,7 +39,7 @@ impl Tool {
         }
     }
 
-    /// Returns the tool narrowed by `by_m` on each side, metres; `None` if nothing is left of it.
+    /// Returns the tool narrowed by `by_m` metres on each side; `None` if nothing is left.
     ///
     /// ```
     /// use world::Tool;
@@ -55,8 +55,8 @@ impl Tool {
         })
     }
 
-    /// Passes the pairs of close poses along a path to `pass`. The robot drives forward, and turns on the spot at
-    /// corners.
+    /// Splits a path into pairs of poses that are close together, and calls `pass` with each pair. The robot drives
+    /// forward and turns on the spot at corners.
     ///
     /// ```
     /// use world::{Point, Tool};
@@ -104,8 +104,8 @@ pub(super) enum Passage {
         from: Point,
         to: Point,
         reach_m: f64,
-        /// The largest squared distance that counts as within reach; gives exactly the same result as comparing
-        /// distances.
+        /// The largest squared distance that counts as within reach. Comparing squares gives exactly the same result as
+        /// comparing distances.
         most_m2: f64,
         /// A capsule slightly larger than the area.
         around: Capsule,
@@ -169,9 +169,9 @@ fn most_squared(root: f64) -> f64 {
     square
 }
 
-/// A point this far outside a triangle still counts, metres, so that adjacent triangles leave no seam.
+/// A point this far outside a triangle still counts as inside, metres, so that adjacent triangles leave no gap.
 const SEAM_M: f64 = 1e-9;
-/// The margin of the band on each side of the area, and of a capsule around it, metres.
+/// The margin added to the band on each side of the area, and to the capsule around the area, metres.
 const BESIDE_M: f64 = 1e-3;
 
 /// The area that a bar sweeps between two poses that are close together: two triangles for each half.
@@ -232,7 +232,7 @@ fn is_convex(corners: [Point; 4]) -> bool {
     bends.iter().all(|bend| *bend > SEAM_M) || bends.iter().all(|bend| *bend < -SEAM_M)
 }
 
-/// A triangle as corners with the edges that start there, counter-clockwise; `None` without an area.
+/// A triangle as its corners, counter-clockwise, each with the edge that starts there; `None` if it has no area.
 struct Triangle(Option<[(Point, Vector); 3]>);
 
 impl Triangle {

@@ -7,10 +7,10 @@ use parry2d_f64::{
     partitioning::{Bvh, BvhBuildStrategy},
 };
 
-/// Allowance for rounding in every test, metres and square metres; a segment that only touches a box meets it.
+/// Allowance for rounding in every test, metres and square metres; a segment that merely touches a box meets the box.
 const SLACK: f64 = 1e-9;
 
-/// Boxes in a tree; a query costs the logarithm of their number plus the number found.
+/// Boxes in a tree; the cost of a query is the logarithm of the number of boxes, plus the number of boxes found.
 #[derive(Debug, Clone)]
 pub(crate) struct Boxes {
     tree: Bvh,
@@ -24,7 +24,7 @@ impl Boxes {
         Self { tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes) }
     }
 
-    /// Returns the indices of the boxes that come within `room_m` of a segment, in the order of the tree; some more
+    /// Returns the indices of the boxes that come within `room_m` of a segment, in the order of the tree; a few other
     /// boxes may be included.
     pub(crate) fn near(&self, a: Point, b: Point, room_m: f64) -> impl Iterator<Item = usize> + '_ {
         let (a, b): (DVec2, DVec2) = (a.into(), b.into());

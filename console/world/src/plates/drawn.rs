@@ -33,8 +33,8 @@ impl DrawnPlate {
         self.vertices_m.iter().chain(self.vertices_m.first()).copied().collect()
     }
 
-    /// Returns the kind: annular along the shell; otherwise rectangular with four corners, and sketch with any other
-    /// number.
+    /// Returns the kind: annular along the shell; elsewhere, rectangular if the plate has four corners, and sketch if
+    /// not.
     fn kind(&self, boundary: &Boundary) -> PlateKind {
         if self.vertices_m.iter().any(|at| boundary.wall_distance_m(*at) < AT_SHELL_M) {
             PlateKind::Annular
@@ -96,7 +96,7 @@ pub(super) fn map(plates: &[DrawnPlate], boundary: &Boundary, floor: &Floor) -> 
     with_floor(&known, of_cell)
 }
 
-/// Keeps the plates that have floor, in order of kind and name.
+/// Keeps the plates that cover any floor, in order of kind and name.
 fn with_floor(known: &[Plate], mut of_cell: Vec<u32>) -> PlateMap {
     let mut has_floor = vec![false; known.len()];
     for plate in of_cell.iter().filter(|plate| **plate != NONE) {
@@ -112,7 +112,8 @@ fn with_floor(known: &[Plate], mut of_cell: Vec<u32>) -> PlateMap {
     PlateMap { plates: order.into_iter().map(|plate| known[plate].clone()).collect(), of_cell }
 }
 
-/// Returns the plate of the nearest cell that has a plate; among equally near cells, the first plate in the drawing.
+/// Returns the plate of the nearest cell that has a plate; if several cells are equally near, the plate that comes
+/// first in the drawing.
 fn nearest(of_cell: &[u32], floor: &Floor, cell: usize) -> u32 {
     let (column, row) = ((cell % floor.width) as isize, (cell / floor.width) as isize);
     let around = -GAP_CELLS..=GAP_CELLS;

@@ -1,4 +1,4 @@
-//! The solids that block the robot: all points within a radius of a segment.
+//! The solids that block the robot: all points within a given distance of a segment.
 
 use crate::obstacles::Boxes;
 use geometry::{
@@ -6,7 +6,7 @@ use geometry::{
     polyline::{nearest_on_segment, segments_cross},
 };
 
-/// The overlap up to which two outlines only touch, metres.
+/// The overlap up to which two outlines count as only touching, metres.
 pub(super) const TOUCH_M: f64 = 1e-9;
 
 /// All points within `radius_m` of a segment; a disc if both ends coincide.
@@ -23,7 +23,7 @@ impl Bar {
         (at - nearest_on_segment(self.a, self.b, at)).norm() - self.radius_m
     }
 
-    /// Whether a segment enters the bar by more than a touch.
+    /// Whether a segment enters the bar, rather than merely touching it.
     fn blocks(&self, a: Point, b: Point) -> bool {
         let least_m = self.radius_m - TOUCH_M;
         let is_near = |p: Point, q: Point, at: Point| {
@@ -66,7 +66,7 @@ impl Bars {
         self.boxes.near(a, b, 0.0).any(|index| self.all[index].blocks(a, b))
     }
 
-    /// Returns the bars whose boxes come within a radius of a point; some more may be included.
+    /// Returns the bars whose boxes come within a radius of a point; a few other bars may be included.
     pub(super) fn near(&self, center: Point, radius_m: f64) -> impl Iterator<Item = &Bar> {
         self.boxes.near(center, center, radius_m).map(|index| &self.all[index])
     }

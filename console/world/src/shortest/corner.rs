@@ -4,7 +4,7 @@ use super::bar::{Bar, Bars, TOUCH_M};
 use geometry::{Point, Vector, unit_vector};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Difference of bearings that counts as rounding, radians.
+/// Difference between bearings that counts as a rounding error, radians.
 pub(super) const ROUNDING_RAD: f64 = 1e-7;
 
 /// An interval of bearings, counter-clockwise.
@@ -12,7 +12,7 @@ pub(super) const ROUNDING_RAD: f64 = 1e-7;
 pub(super) struct Span {
     /// The start, in [0, 2 pi), radians.
     pub from_rad: f64,
-    /// The end, not less than `from_rad` and at most a full turn more, radians.
+    /// The end, radians: not less than `from_rad`, and at most a full turn beyond it.
     pub to_rad: f64,
 }
 
@@ -100,7 +100,7 @@ impl Corner {
 }
 
 /// Returns the angle from one bearing to another, counter-clockwise (`turn` 1) or clockwise (-1), in [0, 2 pi). An
-/// angle within rounding of a full turn becomes zero.
+/// angle that is a full turn, apart from rounding errors, becomes zero.
 pub(super) fn turned_rad(from_rad: f64, to_rad: f64, turn: f64) -> f64 {
     ((to_rad - from_rad) * turn + ROUNDING_RAD).rem_euclid(TAU) - ROUNDING_RAD
 }
@@ -141,7 +141,7 @@ impl Circle {
         self.split(&cuts, covered, |at| bar.distance_m(at) < -TOUCH_M);
     }
 
-    /// Adds the intervals between cuts whose midpoint is covered.
+    /// Adds those intervals between cuts that are covered at their midpoints.
     fn split(&self, cuts: &[f64], covered: &mut Vec<Span>, is_covered: impl Fn(Point) -> bool) {
         let mut cuts: Vec<f64> = cuts.iter().map(|cut| cut.rem_euclid(TAU)).collect();
         cuts.sort_by(f64::total_cmp);

@@ -1,4 +1,4 @@
-//! The floor, with all solids grown so that the robot is a point.
+//! The floor, with all solids grown so that the robot can be treated as a point.
 
 use super::{
     bar::{Bar, Bars, TOUCH_M},
@@ -12,10 +12,10 @@ use geometry::{
 
 use std::collections::{HashMap, HashSet};
 
-/// Least radius of a disc or corner, metres: without an extent, a path could lead across it.
+/// Smallest radius of a disc or corner, metres: if it had no extent, a path could lead across it.
 const LEAST_RADIUS_M: f64 = 1e-6;
 
-/// A floor on which the robot is a point, tank frame.
+/// A floor on which the robot is treated as a point, tank frame.
 #[derive(Debug, Clone)]
 pub struct GrownFloor {
     wall: Wall,
@@ -33,8 +33,8 @@ enum Wall {
 }
 
 impl GrownFloor {
-    /// Creates a floor from a wall and outlines. The centre of the robot keeps `wall_keep_m` from the wall, and the
-    /// given distance from each outline, metres.
+    /// Creates a floor from a wall and outlines. The centre of the robot stays at least `wall_keep_m` away from the
+    /// wall, and the distance given for each outline, metres, away from that outline.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, shortest::GrownFloor};
@@ -134,8 +134,8 @@ impl Parts {
         }
     }
 
-    /// Adds the sides and corners of polygons, except those hidden between adjacent polygons: a path reaches neither
-    /// a shared side nor a corner that does not protrude.
+    /// Adds the sides and corners of polygons, except those hidden between adjacent polygons: no path reaches a shared
+    /// side, or a corner that does not protrude.
     fn join_pieces(&mut self) {
         let bits = |at: Point| (at.x.to_bits(), at.y.to_bits());
         let key = |a: Point, b: Point, bar: &Bar| (bits(a), bits(b), bar.radius_m.to_bits());

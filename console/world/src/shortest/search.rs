@@ -12,7 +12,7 @@ use std::{cmp::Reverse, collections::BinaryHeap};
 
 /// The number of tangents after which `keep_going` is called again.
 const ASK_EVERY: usize = 64;
-/// Difference of lengths that counts as rounding, metres.
+/// Difference between lengths that counts as a rounding error, metres.
 const ROUNDING_M: f64 = 1e-12;
 
 fn bearing_rad(direction: Vector) -> f64 {
@@ -59,7 +59,8 @@ struct Arrival {
 /// A path that would leave an arrival by an exit. The order of the fields defines the order of the queue.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct Candidate {
-    /// The length so far plus the straight distance to the goal, metres: a lower bound for every path by this exit.
+    /// The length so far plus the straight distance to the goal, metres: a lower bound for every path that takes this
+    /// exit.
     least_m: Total,
     arrival: usize,
     exit: usize,
@@ -71,7 +72,7 @@ pub(super) struct Search<'a> {
     goal: Point,
     /// The turns that the search may use.
     turns: Vec<TurnId>,
-    /// The exits of the start (last) and of every turn reached.
+    /// The exits from every turn that was reached and, last, from the start.
     exits: Vec<Option<Vec<Exit>>>,
     arrivals: Vec<Arrival>,
     /// The arrivals at every turn.
@@ -153,8 +154,7 @@ impl<'a> Search<'a> {
         exit.test == Test::Free
     }
 
-    /// Continues from an arrival, unless an earlier arrival reaches the same exits by a path of at most the same
-    /// length.
+    /// Continues from an arrival, unless an earlier arrival reaches the same exits by a path that is no longer.
     fn arrive(&mut self, arrival: Arrival) {
         let slot = self.slot(arrival.turn);
         if let Some(id) = arrival.turn {
@@ -196,7 +196,7 @@ impl<'a> Search<'a> {
         (arc_rad <= arrival.room_rad + ROUNDING_RAD).then_some(arc_rad.max(0.0) * turn.signed_m.abs())
     }
 
-    /// Returns how far a path that reaches a turn at a bearing can follow it, radians.
+    /// Returns how far a path that reaches a turn at a given bearing can follow the turn, radians.
     fn room_rad(&self, id: TurnId, bearing_rad: f64) -> f64 {
         let (ahead_rad, back_rad) = self.floor.corners[id / 2].room_rad(bearing_rad).unwrap_or_default();
         if id.is_multiple_of(2) { ahead_rad } else { back_rad }
@@ -208,8 +208,8 @@ impl<'a> Search<'a> {
         Turn { center: corner.center, signed_m: sign * corner.radius_m }
     }
 
-    /// Returns all tangents that leave a turn or the start at a free bearing, and reach another turn at a free
-    /// bearing or the goal.
+    /// Returns all tangents that leave a turn or the start at a free bearing, and reach either the goal or another turn
+    /// at a free bearing.
     fn exits_of(&self, turn: Option<TurnId>, at: Point) -> Vec<Exit> {
         let here = turn.map_or(Turn { center: at, signed_m: 0.0 }, |id| self.turn(id));
         let corner = turn.map(|id| &self.floor.corners[id / 2]);

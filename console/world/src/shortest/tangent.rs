@@ -22,7 +22,7 @@ pub(super) struct Tangent {
     pub meet: Vector,
 }
 
-/// Returns the tangent by which a path passes from one turn to another; `None` if the circles are too close together.
+/// Returns the tangent along which a path goes from one turn to another; `None` if the circles are too close together.
 ///
 /// With the vector `e` between the centres and the signed radii `s`, the tangent runs at an angle
 /// `asin((s_j - s_i) / |e|)` to `e`.
@@ -31,7 +31,8 @@ pub(super) fn tangent(i: Turn, j: Turn) -> Option<Tangent> {
     let squared = way.norm_squared();
     let grown_m = j.signed_m - i.signed_m;
     let length_squared = squared - grown_m * grown_m;
-    // An end of the path may lie on the circle, up to rounding: then the path leaves along the circle.
+    // An end of the path may lie on the circle, apart from rounding errors. In this case, the path leaves along the
+    // circle.
     if length_squared <= -4.0 * TOUCH_M * grown_m.abs() || squared == 0.0 {
         return None;
     }

@@ -1,10 +1,10 @@
-//! Shortest paths as tangents and arcs, and the reasons why there is none.
+//! Shortest paths as tangents and arcs, and the reasons why there may be none.
 
 use geometry::{Point, unit_vector};
 
-/// An arc is drawn at most this far outside the circle, metres, ...
+/// The chain of points for an arc lies at most this far outside the circle, metres.
 const ARC_EXCESS_M: f64 = 4e-5;
-/// ... and its corners turn by no more than this, radians.
+/// The chain of points for an arc turns by no more than this at each corner, radians.
 const ARC_STEP_RAD: f64 = 0.2;
 
 /// A piece of a shortest path.
@@ -69,7 +69,7 @@ impl Way {
     }
 }
 
-/// Returns the points where consecutive tangents of an arc cross, from the first tangent to the last.
+/// Returns the points where consecutive tangents to an arc cross, from the first tangent to the last.
 fn tangent_corners(
     center: Point,
     radius_m: f64,

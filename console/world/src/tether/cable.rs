@@ -70,7 +70,7 @@ struct Bend {
     post: usize,
     /// 1 if the cable turns counter-clockwise there, -1 otherwise.
     side: f64,
-    /// Bearing of the cable before and after, radians; accumulated, so a loop is a whole turn.
+    /// Bearing of the cable before and after the post, radians; accumulated, so a loop adds a full turn.
     into_rad: f64,
     out_rad: f64,
     /// The length of cable between the anchor and the first point of contact, metres.
@@ -87,8 +87,8 @@ impl Bend {
 ///
 /// The update is event-driven: while the robot moves in a straight line, the free span of the cable sweeps over the
 /// floor. Where it becomes tangent to a post, it bends there (push); where a wrap falls to zero, the bend ends (pop).
-/// Angles are accumulated and never derived from the last pose alone, so any number of loops is preserved. A move
-/// costs one query of the nearby posts per event.
+/// Angles are accumulated and never derived from the last pose alone, so any number of loops is preserved. A move costs
+/// one query for nearby posts per event.
 ///
 /// ```
 /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -194,9 +194,10 @@ impl Cable {
         }
     }
 
-    /// Returns the cable at the point of a path where it is longest.
+    /// Returns the cable as it is at the point of a path where it is longest.
     ///
-    /// Along a straight move, the length of the cable is convex, so it is longest at a point of the path.
+    /// Along a straight move, the length of the cable is convex, so the cable is longest at one of the points that
+    /// define the path.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -235,7 +236,7 @@ impl Cable {
         self.anchor
     }
 
-    /// The end of the cable, tank frame: the robot, or the nearest free point to it.
+    /// The end of the cable, tank frame: the robot or, if the robot is inside an obstacle, the nearest free point.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -299,7 +300,7 @@ impl Cable {
         contacts
     }
 
-    /// Returns the largest wrap on one obstacle, radians, without sign; loops count in full.
+    /// Returns the largest wrap on any one obstacle as an absolute value, radians; loops count in full.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -321,7 +322,7 @@ impl Cable {
         most
     }
 
-    /// Returns the total wrap: the sum of the wraps on all obstacles, radians, without signs.
+    /// Returns the total wrap: the sum of the absolute values of the wraps on all obstacles, radians.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -336,7 +337,7 @@ impl Cable {
         self.bends.iter().map(|bend| bend.wrap_rad().max(0.0)).sum()
     }
 
-    /// Whether the cable bears on nothing, and runs straight from the anchor to the robot.
+    /// Whether the cable bears on nothing and runs straight from the anchor to the robot.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -353,8 +354,8 @@ impl Cable {
         self.bends.iter().all(|bend| bend.wrap_rad() <= LEAST_WRAP_RAD)
     }
 
-    /// The homotopy signature of the path driven; at the anchor it is empty if, and only if, the cable can be reeled
-    /// in.
+    /// The homotopy signature of the path driven; when the robot is at the anchor, it is empty if, and only if, the
+    /// cable can be reeled in.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -385,8 +386,9 @@ impl Cable {
         self.line_beside_posts(0.0)
     }
 
-    /// Returns the cable as a line with a given distance from every post that it bears on, metres. Ends and order are
-    /// those of the cable; between two posts, the line may come closer to other obstacles.
+    /// Returns the cable as a line with a given distance from every post that it bears on, metres. The line has the
+    /// same ends as the cable and passes the posts in the same order; between two posts, it may come closer to other
+    /// obstacles.
     pub(super) fn line_beside_posts(&self, room_m: f64) -> Vec<Point> {
         let mut line = vec![self.anchor];
         for bend in &self.bends {
@@ -454,7 +456,7 @@ impl Cable {
         }
         self.signature.extend(from, to, &self.obstacles.rays);
         if self.bends.is_empty() && (from - self.anchor).norm() <= SLACK_M {
-            // A cable of length zero has no bearing, so it takes that of the move.
+            // A cable of length zero has no bearing, so it takes the bearing of the move.
             self.start_rad = self.base().bearing_to(to).unwrap_or(self.start_rad);
         } else {
             self.turn(from, to);
@@ -498,7 +500,7 @@ impl Cable {
 }
 
 /// Returns the factor by which the total wrap multiplies the pulling force of the cable. By the capstan equation
-/// (Euler-Eytelwein), it is e to the power of the friction coefficient times the total wrap in radians.
+/// (Euler-Eytelwein), the factor is e to the power of the friction coefficient times the total wrap in radians.
 ///
 /// ```
 /// let half_a_turn = std::f64::consts::PI;

@@ -1,18 +1,18 @@
 //! Defines what a cable can bear on: every obstacle and every inward corner of the wall, divided into round posts.
 //!
-//! A taut line touches a solid only along its convex hull. The convex hull of a disc, a polygon or a pipe is that of
-//! a few discs: the disc itself, the corners (discs of radius 0), or the ends and bends of the pipe. A line derived
-//! from a path outside the obstacles never passes between two posts of one solid, so posts alone give the exact taut
-//! line. Obstacles that touch or overlap need no special case: no path leads between them, so the cable bridges the
-//! notch from one to the other, and each contact names the obstacle that bears it. A post inside another one can bear
-//! nothing and is dropped.
+//! A taut line touches a solid only along its convex hull. The convex hull of a disc, a polygon or a pipe is that of a
+//! few discs: the disc itself, the corners (discs of radius 0), or the ends and bends of the pipe. A line derived from
+//! a path outside the obstacles never passes between two posts of one solid, so posts alone give the exact taut line.
+//! Obstacles that touch or overlap need no special case: no path leads between them, so the cable bridges the notch
+//! from one to the other, and each contact names the obstacle that the cable bears on there. A cable cannot bear on a
+//! post inside another post, so such posts are dropped.
 
 use super::{homotopy::Rays, rounded_polygon::RoundedPolygon, sidestep::Sidestep};
 use crate::obstacles::Boxes;
 use geometry::{Boundary, Point, Shape, Vector, polyline::edges, shape::reflex_corners};
 use serde::{Deserialize, Serialize};
 
-/// Sine of the angle to an edge up to which a line does not count as entering the solid.
+/// The largest angle to an edge, given as its sine, at which a line does not count as entering the solid.
 const ALONG_EDGE: f64 = 1e-6;
 /// Anything solid at this distance from a corner counts as directly adjacent, metres.
 const BESIDE_M: f64 = 1e-6;
@@ -38,8 +38,8 @@ pub(super) struct Post {
 }
 
 impl Post {
-    /// Whether a line in this direction may bear on the post, with the post's solid on its left (`side` 1) or right
-    /// (-1).
+    /// Whether a line in this direction may bear on the post, with the post's solid to the left (`side` 1) or right
+    /// (-1) of the line.
     ///
     /// A round post lies on the side on which the line touches it; at a corner, only the edges decide.
     pub(super) fn lies_on(&self, side: f64, line: Vector) -> bool {
@@ -60,14 +60,14 @@ impl Post {
     }
 }
 
-/// Returns the point where a line with a given bearing touches a disc; `side` 1 has the disc on its left, -1 on its
-/// right.
+/// Returns the point where a line with a given bearing touches a disc; the disc is to the left of the line if `side` is
+/// 1, to the right if it is -1.
 pub(super) fn tangent_point(center: Point, radius_m: f64, side: f64, bearing_rad: f64) -> Point {
     let left = Vector::new(-bearing_rad.sin(), bearing_rad.cos());
     center - left * (side * radius_m)
 }
 
-/// Obstacles and wall from the point of view of a cable; made once and shared by cables.
+/// Obstacles and wall as they affect a cable; made once and shared between cables.
 #[derive(Debug, Clone)]
 pub struct CableObstacles {
     pub(super) posts: Vec<Post>,
@@ -93,7 +93,8 @@ impl CableObstacles {
         Self::grown(boundary, shapes, 0.0)
     }
 
-    /// Creates obstacles and inward corners that are grown by a margin, metres, as they limit the centre of a hull.
+    /// Creates obstacles and inward corners that are grown by a margin, metres, to form the limits for the centre of a
+    /// hull.
     ///
     /// The rest of the wall is not grown: no taut line bears on it.
     ///
@@ -134,18 +135,19 @@ impl CableObstacles {
         }
     }
 
-    /// Returns the posts that come within `room_m` of a segment, in no particular order; some more may be included.
+    /// Returns the posts that come within `room_m` of a segment, in no particular order; a few other posts may be
+    /// included.
     pub(super) fn near(&self, a: Point, b: Point, room_m: f64) -> impl Iterator<Item = usize> + '_ {
         self.boxes.near(a, b, room_m)
     }
 
-    /// Returns the nearest point that lies in no obstacle, if a few steps find one.
+    /// Returns the nearest point that lies outside all obstacles, if a few steps can find one.
     pub(super) fn outside(&self, point: Point) -> Point {
         self.sidestep.outside(point)
     }
 
-    /// Splits a straight move by stops wherever it leads through an obstacle. Returns the stops and the end of the
-    /// move, but not its start.
+    /// Splits a straight move: wherever it leads through an obstacle, adds stops that are at most `apart_m` apart.
+    /// Returns the stops and the end of the move, but not its start.
     pub(super) fn with_stops_inside(&self, from: Point, to: Point, apart_m: f64) -> Vec<Point> {
         let length_m = (to - from).norm();
         let mut shares: Vec<f64> = vec![1.0];
@@ -158,13 +160,13 @@ impl CableObstacles {
         shares.into_iter().map(|share| from + (to - from) * share).collect()
     }
 
-    /// Adds the bends of a straight move that goes around every obstacle in its way.
+    /// Adds the bends that take a straight move around every obstacle in its way.
     #[cfg(test)]
     pub(super) fn go_round(&self, from: Point, to: Point, way: &mut Vec<Point>) {
         self.sidestep.along(from, to, |next| way.push(next));
     }
 
-    /// Whether a segment enters no obstacle and does not leave the floor.
+    /// Whether a segment stays on the floor and outside all obstacles.
     pub(super) fn is_open(&self, from: Point, to: Point) -> bool {
         self.sidestep.is_open(from, to) && !self.leads_through_wall(from, to)
     }
@@ -204,8 +206,8 @@ fn wall_posts(boundary: &Boundary, margin_m: f64) -> Vec<Post> {
 }
 
 /// Returns the same corners as solids, grown by a margin. Each solid includes a part of the wall behind the corner. A
-/// disc around the corner alone would not tell on which side the floor lies, so a cable that bears on the corner
-/// might be led into the wall.
+/// disc around the corner alone would not show on which side the floor lies, so a cable that bears on the corner might
+/// be led into the wall.
 fn wall_corners(boundary: &Boundary, margin_m: f64) -> Vec<RoundedPolygon> {
     let Boundary::Polygon { vertices } = boundary else { return Vec::new() };
     let n = vertices.len();
@@ -234,8 +236,8 @@ fn ray_origin(shape: &Shape) -> Point {
     }
 }
 
-/// Returns the posts that lie within no other post. A post that hides another contains its centre, so few posts have
-/// to be compared.
+/// Returns the posts that do not lie within another post. A post that hides another contains its centre, so few posts
+/// have to be compared.
 fn without_hidden(posts: &[Post]) -> Vec<Post> {
     let hides = |outer: &Post, inner: &Post, outer_first: bool| {
         let room_m = outer.radius_m - inner.radius_m - (outer.center - inner.center).norm();

@@ -11,8 +11,8 @@ pub struct Certificate {
     pub reasons: Vec<String>,
     /// Longest cable on the path, metres.
     pub tether_length_max_m: f64,
-    /// Largest distance from the anchor to a point of the path, by the shortest path, metres: the shortest reel that
-    /// would suffice.
+    /// Largest distance from the anchor to any point of the path, measured along the shortest path, metres: the length
+    /// of the shortest tether that would suffice.
     pub eccentricity_m: f64,
     /// Largest wrap on one obstacle at any time, radians.
     pub wrap_max_rad: f64,

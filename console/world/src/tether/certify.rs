@@ -14,7 +14,7 @@ use super::{
 
 /// Certifies a path: drags the cable along it and checks for collisions, crossings of cuts and sealed floor.
 ///
-/// The result does not depend on the planner. Without cuts, nothing is crossed or sealed.
+/// The result does not depend on the planner. If there are no cuts, nothing is crossed or sealed.
 ///
 /// ```
 /// use world::{Boundary, Point, tether::{Case, Limits, certify}};
@@ -35,8 +35,8 @@ pub fn certify(case: &Case<'_>) -> Result<Certificate, TetherError> {
     certify_on(&Ground::new(case.anchor, case.boundary, case.obstacles), case)
 }
 
-/// Certifies a path on ground that is shared by several paths; its anchor, wall and obstacles must be those of the
-/// case.
+/// Certifies a path on ground that several paths share; the anchor, wall and obstacles of the ground must be those of
+/// the case.
 ///
 /// # Errors
 /// As for [`certify`].
@@ -64,7 +64,7 @@ pub fn certify_on(ground: &Ground, case: &Case<'_>) -> Result<Certificate, Tethe
     Ok(certificate)
 }
 
-/// The effect of a path on the cable itself; the figures are those of the certificate with the same names.
+/// The effect of a path on the cable itself; its figures are the same as those with the same names in the certificate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Strain {
     /// Longest cable, metres.

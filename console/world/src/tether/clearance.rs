@@ -4,9 +4,9 @@ use super::{case::Case, rounded_polygon::RoundedPolygon};
 use crate::obstacles::{Boxes, wall_clearance_m};
 use geometry::Point;
 
-/// A missing clearance up to this is not a collision, metres, because arcs are drawn as chords.
+/// A shortfall in clearance up to this does not count as a collision, metres, because arcs are drawn as chords.
 const SPARE_M: f64 = 0.005;
-/// The number of steps in which the narrowest point of a segment is searched.
+/// The number of steps used to find the narrowest point of a segment.
 const NARROW_STEPS: u32 = 200;
 
 /// The clearance of a path from obstacles and wall.
@@ -51,7 +51,7 @@ impl Clearance {
 
 /// Returns the point of a segment that is nearest to an obstacle or to the wall.
 ///
-/// A segment may lead past a long wall or through a solid, so the minimum is searched in even steps.
+/// A segment may lead past a long wall or through a solid, so the minimum is searched for in even steps.
 fn narrowest(
     case: &Case<'_>,
     solids: &[(usize, RoundedPolygon)],

@@ -29,8 +29,8 @@ pub fn crossings(path: &[Point], cuts: &[Vec<Point>]) -> usize {
 
 /// Whether a segment of the path crosses a segment of a cut.
 ///
-/// The whole path counts as shifted by an infinitesimal displacement (simulation of simplicity, Edelsbrunner and
-/// Mücke 1990). Each change of sides therefore counts once, even through corners and along segments of a cut.
+/// The whole path is treated as shifted by an infinitesimal amount (simulation of simplicity, Edelsbrunner and Mücke
+/// 1990). Each change of sides therefore counts once, even through corners and along segments of a cut.
 fn cross(a: Point, b: Point, p: Point, q: Point) -> bool {
     let apart = |low: f64, high: f64, from: f64, to: f64| low.max(high) < from.min(to);
     if apart(a.x, b.x, p.x, q.x)
@@ -45,8 +45,8 @@ fn cross(a: Point, b: Point, p: Point, q: Point) -> bool {
     shift_of_path(p, q, a) != shift_of_path(p, q, b) && shift_of_cut(a, b, p) != shift_of_cut(a, b, q)
 }
 
-/// Whether a point is left of a line through the origin. A point on the line counts as shifted infinitesimally to the
-/// east or west, and by an infinitely smaller amount to the north or south.
+/// Whether a point is left of a line through the origin. A point on the line is treated as shifted infinitesimally to
+/// the east or west, and by an infinitely smaller amount to the north or south.
 fn is_left(along: Vector, at: Vector, shift: f64) -> bool {
     let sides = [along.perp(&at), -along.y * shift, along.x * shift];
     sides.into_iter().find(|side| *side != 0.0).is_some_and(|side| side > 0.0)

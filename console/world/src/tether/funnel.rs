@@ -1,4 +1,5 @@
-//! A cross-check of the taut cable: a triangulation, the stack of its edges crossed, and a funnel through them.
+//! A cross-check of the taut cable: a triangulation, a stack of the edges that the path has crossed, and a funnel
+//! through those edges.
 //!
 //! Columns become polygons with many corners; for polygons, the answer is exact. Test code only: it costs more than
 //! the cable and needs a triangulation.
@@ -9,7 +10,7 @@ use spade::{
     handles::FixedUndirectedEdgeHandle,
 };
 
-/// A triangulated floor, and the edges that a path has crossed and not crossed back.
+/// A triangulated floor, and the edges that a path has crossed without crossing back.
 pub(super) struct Funnel {
     floor: ConstrainedDelaunayTriangulation<Point2<f64>>,
     crossed: Vec<Portal>,
@@ -113,7 +114,7 @@ impl Funnel {
     }
 }
 
-/// Gates that end at the apex constrain nothing.
+/// Gates that end at the apex do not constrain the cable.
 fn skip(gates: &[(Point, Point)], from: usize, apex: Point) -> usize {
     (from..gates.len()).find(|k| gates[*k].0 != apex && gates[*k].1 != apex).unwrap_or(gates.len())
 }

@@ -33,7 +33,7 @@ pub struct Geodesic {
     arrivals: Vec<Arrival>,
     /// The arrivals by post and side: at twice the index of the post, plus one for the left-hand side.
     at_post: Vec<Vec<Arrival>>,
-    /// The longest path to each post that is searched for, metres.
+    /// The length up to which paths to each post are searched for, metres.
     most_m: Vec<f64>,
 }
 
@@ -56,11 +56,11 @@ impl Arrival {
     }
 }
 
-/// Paths to posts that wait for their turn, shortest first.
+/// Paths to posts that are waiting for their turn, shortest first.
 #[derive(Default)]
 struct Waiting {
     paths: Vec<Arrival>,
-    /// The lengths of the paths, two tie-breakers, and the indices of the paths.
+    /// For each path: its length, two tie-breakers, and its index.
     queue: BinaryHeap<Reverse<(Total, usize, bool, usize)>>,
 }
 
@@ -90,8 +90,8 @@ impl Geodesic {
         Self::searched(anchor, obstacles, most_m)
     }
 
-    /// Computes only the paths that can lead to the given places. Each place comes with an upper bound for the length
-    /// of its path, metres.
+    /// Computes only the paths that may be needed to reach the given places. Each place comes with an upper bound for
+    /// the length of the path to it, metres.
     fn toward(anchor: Point, obstacles: Arc<CableObstacles>, places: &[(Point, f64)]) -> Self {
         let squares = longest_by_square(places);
         let most_m = |post: &Post| {
@@ -129,9 +129,9 @@ impl Geodesic {
         }
     }
 
-    /// Whether nothing stands between the anchor and a round post or touches the post. Then the shortest path to any
-    /// point of its outline is straight, or straight to a tangent and along the outline, and never leads around
-    /// another post.
+    /// Whether nothing stands between the anchor and a round post, and nothing touches the post. If so, the shortest
+    /// path to any point on its outline is either straight, or a tangent and then a part of the outline; it never leads
+    /// around another post.
     fn is_in_plain_sight(&self, post: &Post) -> bool {
         let way = post.center - self.anchor;
         let far = way.norm();
@@ -304,9 +304,9 @@ impl Geodesic {
     }
 }
 
-/// Returns the same points with tighter bounds, for paths that wind their cable around many obstacles. The new bound
-/// is the length of a cable that is dragged straight from the anchor to the point. For a point close to one with such
-/// a bound, it is that bound plus the distance along the path.
+/// Returns the same points with tighter bounds, for paths that wind their cable around many obstacles. The new bound is
+/// the length of a cable that is dragged straight from the anchor to the point. For points close to that point, it is
+/// the same bound plus the distance from that point along the path.
 fn bounded(anchor: Point, obstacles: &Arc<CableObstacles>, points: &[(Point, f64)]) -> Vec<(Point, f64)> {
     let straight_m = |point: Point| {
         let mut cable = Cable::on(anchor, Arc::clone(obstacles)).ok()?;
@@ -328,11 +328,11 @@ fn bounded(anchor: Point, obstacles: &Arc<CableObstacles>, points: &[(Point, f64
     points.iter().map(bound).collect()
 }
 
-/// Places are grouped in squares with this edge, metres.
+/// Places are grouped in squares with this edge length, metres.
 const SQUARE_M: f64 = 1.0;
 
 /// Returns the largest bound of all places in each square, by the centre of the square. No place is farther from the
-/// centre than an edge.
+/// centre of its square than the length of an edge.
 fn longest_by_square(places: &[(Point, f64)]) -> Vec<(Point, f64)> {
     let mut longest: BTreeMap<(i64, i64), f64> = BTreeMap::new();
     for (place, enough_m) in places {
@@ -344,7 +344,7 @@ fn longest_by_square(places: &[(Point, f64)]) -> Vec<(Point, f64)> {
     longest.into_iter().map(|((x, y), most_m)| (Point::new(middle(x), middle(y)), most_m)).collect()
 }
 
-/// Returns the bearing of the common tangent from one disc to another, each on its side.
+/// Returns the bearing of the common tangent that touches one disc and then another, each on the given side.
 fn tangent(from: (Point, f64, f64), to: (Point, f64, f64)) -> Option<f64> {
     let way = to.0 - from.0;
     let (far, offset) = (way.norm(), to.2 * to.1 - from.2 * from.1);
@@ -352,8 +352,8 @@ fn tangent(from: (Point, f64, f64), to: (Point, f64, f64)) -> Option<f64> {
         .then(|| way.y.atan2(way.x) - (offset / far).clamp(-1.0, 1.0).asin())
 }
 
-/// Returns the angle by which a path bends around its post until it leaves at a bearing; shortest paths bend less
-/// than half a turn.
+/// Returns the angle by which a path bends around its post before it leaves at a given bearing; shortest paths bend
+/// less than half a turn.
 fn wrap_of(from: &Arrival, bearing_rad: f64) -> Option<f64> {
     let turn = wrap_angle_rad(from.side * (bearing_rad - from.bearing_rad)).rem_euclid(TAU);
     let turn = if TAU - turn < 1e-9 { 0.0 } else { turn };

@@ -13,7 +13,7 @@ pub struct Ground {
 }
 
 impl Ground {
-    /// Creates the ground of an anchor, tank frame.
+    /// Creates the ground for an anchor, tank frame.
     pub fn new(anchor: Point, boundary: &Boundary, obstacles: &[Obstacle]) -> Self {
         let shapes: Vec<_> = obstacles.iter().map(|o| o.shape.clone()).collect();
         Self { anchor, obstacles: Arc::new(CableObstacles::new(boundary, &shapes)) }

@@ -1,10 +1,10 @@
 //! The return path: back along the cable, with clearance for the hull.
 //!
-//! The taut cable itself is not a path for a hull, because it bears on columns. The hull's path is the taut line of
-//! the same homotopy class among obstacles grown by the hull, so it exists wherever the robot has driven. There are
-//! two ways to find it. The robot can drag this line along as it drags the cable, which costs little and is always
-//! correct where the robot fits. Or the line is laid along the taut cable, which needs no memory of the path driven.
-//! But the cable bears on obstacles that are now grown, and where they stand close together, the nearest point
+//! The taut cable itself is not a path for a hull, because it bears on columns. The hull's path is the taut line of the
+//! same homotopy class among obstacles grown by the hull, so it exists wherever the robot has driven. There are two
+//! ways to find it. The robot can drag this line along as it drags the cable, which costs little and is always correct
+//! where the robot fits. Alternatively, the line can be laid along the taut cable, which needs no memory of the path
+//! driven. But the cable bears on obstacles that are now grown, and where they stand close together, the nearest point
 //! outside them may be on the wrong side. Signature, clearance and walls are therefore checked at the end.
 
 use super::{cable::Cable, cable_obstacles::CableObstacles, homotopy::HomotopySignature};
@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// Distance between the points at which a cable within a grown obstacle is led out of it, metres.
 const STOP_M: f64 = 0.05;
-/// The length at each end of the path that may be too narrow, metres: the robot cannot choose where it starts.
+/// The length, metres, over which each end of the path may be too narrow: the robot cannot choose where it starts.
 const ENDS_M: f64 = 0.1;
 /// The clearance that may be missing on a return path, metres, because its arcs are drawn as chords.
 const SPARE_M: f64 = 0.005;
@@ -23,8 +23,8 @@ impl Cable {
     /// Returns the shortest path from the robot back to the anchor on which the cable is only reeled in, tank frame.
     ///
     /// `grown` are the same obstacles grown by `room_m`, the clearance of the hull's centre, and `map` holds the
-    /// obstacles without growth. If robot or anchor are closer to an obstacle than that, the path begins or ends with
-    /// a step away from it. `None` if the hull does not fit along the cable, so that no path home unwinds it.
+    /// obstacles without growth. If the robot or the anchor is closer to an obstacle than `room_m`, the path begins or
+    /// ends with a step away from it. `None` if the hull does not fit along the cable, so that no path home unwinds it.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -46,7 +46,7 @@ impl Cable {
     }
 
     /// Iterates over taut lines for the hull among obstacles grown by the hull's clearance: first along this cable,
-    /// then along a line that keeps its distance from all posts that the cable bears on. The second one is for walls
+    /// then along a line that keeps its distance from all posts that the cable bears on. The second line is for walls
     /// that consist of many pieces.
     pub fn hulls_along<'a>(
         &'a self,
@@ -91,8 +91,8 @@ impl Cable {
     }
 }
 
-/// Whether a taut path keeps clear of obstacles and wall. Each of its segments is nearest to the wall at one of its
-/// ends.
+/// Whether a taut path keeps clear of obstacles and wall. Each segment of the path comes nearest to the wall at one of
+/// the segment's ends.
 fn has_room(way: &[Point], map: &ObstacleMap, need_m: f64) -> bool {
     let bends = way.get(1..way.len().saturating_sub(1)).unwrap_or_default();
     way.windows(2).all(|pair| map.obstacle_clearance_m(pair[0], pair[1]) >= need_m)

@@ -1,4 +1,4 @@
-//! Homotopy signatures: the rays that a path crosses and in which direction; crossings that are undone cancel out.
+//! Homotopy signatures: which rays a path crosses, and in which direction; crossings that are undone cancel out.
 //!
 //! One ray leaves each obstacle, all in the same direction, so that no two rays cross. Two paths with the same ends
 //! can be deformed into each other without lifting the cable over an obstacle if, and only if, their signatures are
@@ -9,7 +9,7 @@
 
 use geometry::{Point, Vector, unit_vector};
 
-/// Bearing of the rays, radians; chosen so that no edge of a drawing is parallel to them.
+/// Bearing of the rays, radians; chosen so that no edge on a drawing is likely to be parallel to the rays.
 const BEARING_RAD: f64 = 1.134_567_891;
 
 /// A crossing of a ray.
@@ -95,8 +95,8 @@ impl HomotopySignature {
             let is_crossed = rays.direction.dot(&(from + (to - from) * share - origin)) > 0.0;
             is_crossed.then_some(RayCrossing { obstacle: *obstacle, ccw: end_m < start_m })
         };
-        // The move back meets the rays in exactly the reverse order, even rays that coincide, so all crossings
-        // cancel.
+        // The move back meets the rays in exactly the reverse order, even if rays coincide, so all crossings cancel
+        // out.
         if end_m < start_m {
             passed.iter().rev().filter_map(cross).for_each(|crossing| self.append(crossing));
         } else {

@@ -94,7 +94,7 @@ impl Reasons<'_> {
         let mut round: Vec<String> = self.left.contacts().iter().map(|c| self.name_of(Some(c.on))).collect();
         round.dedup();
         let round = if round.len() > 3 {
-            format!("{} obstacles, the first is {}", round.len(), round[0])
+            format!("{} obstacles (first: {})", round.len(), round[0])
         } else {
             round.join(", ")
         };

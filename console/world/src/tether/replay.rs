@@ -14,11 +14,11 @@ use std::sync::Arc;
 pub(super) struct Replay {
     cable: Cable,
     lengths: Vec<(Point, f64)>,
-    /// Longest cable, metres, and the position of the robot.
+    /// Longest cable, metres, and where the robot was.
     pub max_cable: (f64, Point),
     /// Largest wrap, radians, and the object that was wrapped.
     pub max_wrap: (f64, Option<Bearing>),
-    /// Largest total wrap, radians, and the position of the robot.
+    /// Largest total wrap, radians, and where the robot was.
     pub max_sum: (f64, Point),
 }
 
@@ -58,9 +58,9 @@ impl Replay {
         }
     }
 
-    /// Returns the largest distance from the anchor to a point of the path, by the shortest path, metres.
+    /// Returns the largest distance from the anchor to any point of the path, measured along the shortest path, metres.
     ///
-    /// It lies between the largest straight distance and the longest cable, so a search is needed only if these
+    /// The result lies between the largest straight distance and the longest cable, so a search is needed only if these
     /// differ.
     pub(super) fn eccentricity_m(&self, ground: &Ground) -> f64 {
         let from_anchor_m = |(point, _): &(Point, f64)| (point - ground.anchor).norm();

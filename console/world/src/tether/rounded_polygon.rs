@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 /// Number of tangents that form the outline of a round core.
 const TANGENTS: u32 = 24;
-/// Closer to an edge than this, the direction away from the edge is only rounding noise, metres.
+/// At a point closer to an edge than this, metres, the direction away from the edge is only rounding noise.
 const ON_EDGE_M: f64 = 1e-9;
 
 /// All points within a radius of the core: a convex polygon, a segment or a point.
@@ -72,7 +72,7 @@ impl RoundedPolygon {
         if inside { -from_edges - self.radius_m } else { from_edges - self.radius_m }
     }
 
-    /// Whether a segment enters the shape by more than a slack.
+    /// Whether a segment enters the shape by more than a tolerance.
     pub(super) fn is_entered_by(&self, a: Point, b: Point, slack_m: f64) -> bool {
         if self.is_far_from(a, b) {
             return false;
@@ -83,17 +83,18 @@ impl RoundedPolygon {
         self.core.len() > 2 && clip(&self.core, a, b, slack_m).is_some()
     }
 
-    /// Returns the part of a segment within the outline, as the shares of the segment where it begins and ends.
+    /// Returns the part of a segment within the outline, as the shares of the segment at which this part begins and
+    /// ends.
     pub(super) fn inside(&self, a: Point, b: Point) -> Option<(f64, f64)> {
         if self.is_far_from(a, b) { None } else { clip(&self.outline, a, b, 0.0) }
     }
 
-    /// Returns the share of the segment at which it enters the outline; for sorting.
+    /// Returns where a segment enters the outline, as a share of the segment; for sorting.
     pub(super) fn met_at(&self, a: Point, b: Point) -> f64 {
         clip(&self.outline, a, b, 0.0).map_or(0.0, |(first, _)| first)
     }
 
-    /// Returns the nearest point outside for a point inside; `None` for a point outside.
+    /// For a point inside, returns the nearest point outside; for a point outside, `None`.
     pub(super) fn pushed_out(&self, point: Point, slack_m: f64) -> Option<Point> {
         if self.is_far_from(point, point) || self.distance_m(point, point) >= -slack_m {
             return None;
@@ -114,9 +115,9 @@ impl RoundedPolygon {
         self.detour_and_feet(a, b).map_or_else(Vec::new, |(_, way, _)| way)
     }
 
-    /// Returns the shorter detour, with both ends first led out to the outline. From there the detour is clear.
-    /// Otherwise, an end between the rounded polygon and its outline might be visible from the last corner only
-    /// through the polygon.
+    /// Returns the shorter detour, with both ends first led out to the outline. From there the detour is clear. Without
+    /// this step, an end between the rounded polygon and its outline might be visible from the last corner only through
+    /// the polygon.
     pub(super) fn detour_outside(&self, a: Point, b: Point) -> Vec<Point> {
         let Some((enter, mut way, leave)) = self.detour_and_feet(a, b) else { return Vec::new() };
         way.insert(0, enter);
@@ -124,7 +125,8 @@ impl RoundedPolygon {
         way
     }
 
-    /// Returns where a segment enters the outline, the corners of the shorter detour, and where the segment leaves.
+    /// Returns where a segment enters the outline, the corners of the shorter detour, and where the segment leaves the
+    /// outline.
     fn detour_and_feet(&self, a: Point, b: Point) -> Option<(Point, Vec<Point>, Point)> {
         let (first, last) = clip(&self.outline, a, b, 0.0)?;
         let (from, enter) = self.on_outline(a + (b - a) * first);
@@ -175,8 +177,8 @@ fn outline_of(core: &[Point], radius_m: f64) -> Vec<Point> {
         .collect()
 }
 
-/// Returns the part of a segment within a convex polygon shrunk by a slack, as the shares of the segment where it
-/// begins and ends.
+/// Returns the part of a segment within a convex polygon shrunk by a tolerance, as the shares of the segment at which
+/// this part begins and ends.
 fn clip(ring: &[Point], a: Point, b: Point, slack_m: f64) -> Option<(f64, f64)> {
     let along = b - a;
     let (mut first, mut last) = (0.0_f64, 1.0_f64);
@@ -186,7 +188,7 @@ fn clip(ring: &[Point], a: Point, b: Point, slack_m: f64) -> Option<(f64, f64)> 
         if scale == 0.0 {
             continue;
         }
-        // The inside is left of every edge.
+        // The inside is to the left of every edge.
         let depth = edge.perp(&(a - p)) / scale - slack_m;
         let rate = edge.perp(&along) / scale;
         if rate == 0.0 {

@@ -5,9 +5,9 @@ use crate::coverage::neighbours;
 use geometry::{Boundary, Point, Vector};
 use std::ops::Range;
 
-/// The smallest edge of a cell, metres.
+/// The smallest edge length of a cell, metres.
 const CELL_M: f64 = 0.05;
-/// The most cells along one side.
+/// The largest number of cells along one side.
 const MOST_CELLS: f64 = 1000.0;
 /// Regions smaller than this are artefacts of the grid, square metres.
 const LEAST_M2: f64 = 0.05;
@@ -43,7 +43,7 @@ fn sealed_in(case: &Case<'_>, grid: &Grid) -> Option<SealedRegions> {
     let seeds = std::iter::once(&case.anchor).chain(case.path).filter_map(|point| grid.cell(*point));
     let mut seen = vec![false; grid.free.len()];
     grid.flood(&mut seen, seeds.collect(), &walls);
-    // Cells that remain beside reached cells lie behind a cut, and so do the cells beside those.
+    // Cells that were not reached but lie next to reached cells are behind a cut, and so are their own neighbours.
     let rim = |cell: &usize| grid.is_new(&seen, *cell) && grid.neighbours(*cell).any(|other| seen[other]);
     let mut behind: Vec<usize> = (0..seen.len()).filter(rim).collect();
     behind.reverse();
@@ -68,11 +68,11 @@ fn sealed_in(case: &Case<'_>, grid: &Grid) -> Option<SealedRegions> {
     (all.area_m2 > 0.0).then_some(all)
 }
 
-/// The steps between neighbours that cross a cut.
+/// The steps between neighbouring cells that cross a cut.
 struct Walls {
     /// For every cell, whether the step to the eastern neighbour crosses a cut.
     east: Vec<bool>,
-    /// The same for the northern neighbour.
+    /// For every cell, whether the step to the northern neighbour crosses a cut.
     north: Vec<bool>,
 }
 
@@ -105,7 +105,7 @@ impl Grid {
         grid
     }
 
-    /// Marks the cells of a row that keep their distance from the wall.
+    /// Marks the cells in a row that are far enough from the wall.
     fn clear_row(&mut self, row: usize, case: &Case<'_>) {
         let cells = row * self.width..(row + 1) * self.width;
         let Boundary::Circle { radius_m } = case.boundary else {
@@ -143,12 +143,12 @@ impl Grid {
         Some(row * self.width + column).filter(|cell| self.free[*cell])
     }
 
-    /// Finds the steps between neighbours that cross a cut.
+    /// Finds the steps between neighbouring cells that cross a cut.
     fn walls(&self, cuts: &[Vec<Point>]) -> Walls {
         let mut east = vec![false; self.free.len()];
         let mut north = east.clone();
         for pair in cuts.iter().flat_map(|cut| cut.windows(2)) {
-            // In units of cells, with the centres of cells at whole numbers.
+            // In units of cells, so that the centres of cells lie at whole numbers.
             let to_cells = |p: Point| (p - self.low) / self.cell_m - Vector::new(0.5, 0.5);
             let (a, b) = (to_cells(pair[0]), to_cells(pair[1]));
             for (row, column) in steps_crossed(a.y, b.y, a.x, b.x, self.height) {
@@ -195,7 +195,8 @@ impl Grid {
         runs
     }
 
-    /// Adds the northern or southern neighbours of a run from which to continue: the first of each stretch.
+    /// Adds the northern or southern neighbours of a run from which the filling continues: the first cell of each
+    /// stretch.
     fn step_over(
         &self,
         run: Range<usize>,

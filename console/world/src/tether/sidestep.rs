@@ -1,10 +1,10 @@
-//! Bends moves that lead through a solid around it.
+//! Bends moves that would lead through a solid, so that they lead around it.
 //!
-//! A robot cannot drive through a column, but the estimate of its position can, and so can a plan. The rule: a move
-//! through a solid takes the shorter detour. At a column, this is on the side on which the move passes the centre. A
-//! point inside a solid counts as the nearest point outside. Suppose an estimate strays from the truth by less than
-//! hull and column radius together. Then no column's centre lies between the two, both pass every column on the same
-//! side, and no false wrap arises.
+//! A robot cannot drive through a column, but the estimate of its position can, and so can a plan. The rule is that a
+//! move through a solid takes the shorter detour. At a column, this is on the side on which the move passes the centre.
+//! A point inside a solid counts as the nearest point outside. As long as an estimate strays from the truth by less
+//! than the sum of the radii of hull and column, no column's centre lies between the two: both pass every column on the
+//! same side, and no false wrap arises.
 
 use super::rounded_polygon::RoundedPolygon;
 use crate::obstacles::Boxes;
@@ -12,7 +12,7 @@ use geometry::Point;
 
 /// The depth up to which a touch does not count as entering, metres.
 const TOUCH_M: f64 = 1e-9;
-/// The most bends of one move; a cluster of overlapping solids can need many.
+/// The most bends in one move; a cluster of overlapping solids can need many.
 const MOST_BENDS: usize = 256;
 /// The deepest nesting of detours: the detour around a solid may itself enter other solids.
 const DEEPEST: usize = 6;
@@ -29,15 +29,15 @@ pub(super) struct Sidestep {
 impl Sidestep {
     /// Creates sidesteps around these solids.
     ///
-    /// With `leads_out`, a move between two points at a solid keeps clear of it; this suits grown solids, within
-    /// which robots can be. Without it, such a move is a chord of the solid, like the chords with which a taut cable
-    /// is drawn.
+    /// With `leads_out`, a move between two points on the outline of a solid keeps clear of the solid; this suits grown
+    /// solids, because a robot can be inside one. Without it, such a move is a chord of the solid, like the chords with
+    /// which a taut cable is drawn.
     pub(super) fn new(solids: Vec<RoundedPolygon>, leads_out: bool) -> Self {
         let boxes = Boxes::new(solids.iter().map(RoundedPolygon::bounds));
         Self { solids, boxes, leads_out }
     }
 
-    /// Returns the nearest point that lies in no solid, if a few steps find one.
+    /// Returns the nearest point that lies outside all solids, if a few steps can find one.
     pub(super) fn outside(&self, point: Point) -> Point {
         let mut at = point;
         for _ in 0..DEEPEST {
@@ -55,12 +55,12 @@ impl Sidestep {
         self.near(point, point).any(|(_, solid)| solid.pushed_out(point, TOUCH_M).is_some())
     }
 
-    /// Whether a segment enters no solid.
+    /// Whether a segment stays outside all solids.
     pub(super) fn is_open(&self, from: Point, to: Point) -> bool {
         !self.near(from, to).any(|(_, solid)| solid.is_entered_by(from, to, TOUCH_M))
     }
 
-    /// Whether at most one solid comes near to a disc.
+    /// Whether there is no more than one solid near a disc.
     pub(super) fn is_alone(&self, center: Point, radius_m: f64) -> bool {
         self.boxes.near(center, center, radius_m + TOUCH_M).nth(1).is_none()
     }

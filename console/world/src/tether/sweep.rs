@@ -1,13 +1,14 @@
-//! Finds the first event at the free span of a cable while its end moves in a straight line.
+//! Finds the first event on the free span of a cable while the end of the cable moves in a straight line.
 
 use super::cable_obstacles::{CableObstacles, Post, tangent_point};
 use geometry::{Point, Vector, unit_vector, wrap_angle_rad};
 
-/// Lateral slack of a contact, metres: a contact ends once the robot is this far on its free side, and begins half of
-/// this distance early. Rounding therefore never lets a cable slip through a corner that it has just touched.
+/// Lateral slack of a contact, metres: a contact ends once the robot is this far on the free side of the contact, and
+/// begins half this distance early. Rounding therefore never lets a cable slip through a corner that it has just
+/// touched.
 pub(super) const SLACK_M: f64 = 1e-8;
 
-/// The point from which the free span leaves: the anchor, or the last post.
+/// The point at which the free span begins: the anchor, or the last post.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Base {
     pub center: Point,
@@ -32,23 +33,23 @@ pub(super) enum Event {
 }
 
 impl Base {
-    /// Returns where the free span begins at a given bearing.
+    /// Returns the point at which the free span begins if it has a given bearing.
     pub(super) fn leaves_at(&self, bearing_rad: f64) -> Point {
         tangent_point(self.center, self.radius_m, self.side, bearing_rad)
     }
 
-    /// Returns the bearing of the free span to a point; `None` if the point is the base itself.
+    /// Returns the bearing of the free span when it ends at a given point; `None` if the point is the base itself.
     pub(super) fn bearing_to(&self, point: Point) -> Option<f64> {
         let way = point - self.center;
         let far = way.norm();
         (far > 1e-12).then(|| way.y.atan2(way.x) + (self.side * self.radius_m / far).clamp(-1.0, 1.0).asin())
     }
 
-    /// Returns the angle by which the free span turns on a move from `from` until its end is at `to`, radians.
+    /// Returns the angle by which the free span turns as its end moves from `from` to `to`, radians.
     pub(super) fn turn_to(&self, from: Point, to: Point) -> f64 {
         let Some(bearing_rad) = self.bearing_to(to) else { return self.turn_to_end_here() };
         let turn = wrap_angle_rad(bearing_rad - self.out_rad);
-        // A move close to the base can turn it by nearly half a turn; the direction is that of the motion.
+        // A move close to the base can turn the free span by nearly half a turn, in the direction of the motion.
         if turn.abs() > 3.0 && turn * self.sense_of(from, to) < 0.0 {
             turn - std::f64::consts::TAU.copysign(turn)
         } else {
@@ -56,17 +57,17 @@ impl Base {
         }
     }
 
-    /// Returns the turn after which the cable ends at the base: the whole bend there unwinds.
+    /// Returns the angle of the turn after which the cable ends at the base, because the whole bend there has unwound.
     fn turn_to_end_here(&self) -> f64 {
         if self.post.is_some() { -self.side * self.wrap_rad } else { 0.0 }
     }
 
     /// Positive if a move passes the base counter-clockwise, negative if clockwise.
     ///
-    /// A move that passes the base within rounding errors came back along the cable, and unwinds it.
+    /// A move that passes through the base, apart from rounding errors, comes back along the cable and unwinds it.
     fn sense_of(&self, from: Point, to: Point) -> f64 {
         let along = (to - from).normalize();
-        // A tip exactly on a corner is on neither side of it; the cable's bearing still defines a side.
+        // A tip exactly on a corner is on neither side of the corner, but the cable's bearing still defines a side.
         let passed = if self.radius_m > 0.0 {
             (from - self.center).perp(&along)
         } else {
@@ -78,7 +79,7 @@ impl Base {
 
 /// Returns the first event of a move that still has to turn the free span by `turn_rad`.
 ///
-/// `released` are the posts that this move has already unwound; a straight move cannot meet them again.
+/// `released` lists the posts that this move has already unwound; a straight move cannot meet them again.
 pub(super) fn next_event(
     obstacles: &CableObstacles,
     base: &Base,
@@ -182,7 +183,7 @@ impl<'a> Sweep<'a> {
     /// Whether the free span passes through a round post at the start, with the post's centre on the side to which
     /// the span turns.
     ///
-    /// This happens after a move along a chord of the post that led past its tangent point, where an arc would have
+    /// This happens after a move along a chord of the post that led past the tangent point, where an arc would have
     /// turned the span back and forth.
     fn starts_through(&self, post: &Post, far_m: f64) -> bool {
         let aside_m = |point: Point| self.sense * self.start.1.perp(&(point - self.start.0));

@@ -34,7 +34,7 @@ fn site<'a>(obstacles: &'a [Obstacle<'a>], radius_m: f64, clearance_m: f64) -> S
     }
 }
 
-/// The clearances kept with one set of requirements.
+/// The clearances maintained with one set of requirements.
 #[derive(Debug)]
 struct Kept {
     is_complete: bool,
@@ -95,7 +95,7 @@ fn whatever_the_hull_and_the_clearance_plan_and_flight_keep_them_past_a_column()
                 assert!(kept.flight_m >= clearance_m - EXACT_M, "{what}");
                 assert!(kept.plan_m >= clearance_m - EXACT_M || kept.is_warned, "{what}");
                 assert_eq!(kept.is_complete, !kept.is_warned, "{what}");
-                // By the corners of the shortest path the robot passes; the paper's square may lead nowhere.
+                // The robot passes by way of the corners of the shortest path; the paper's square may lead nowhere.
                 assert!(guide < 0.5 || (kept.arrived && kept.is_complete), "{what}");
             }
         }

@@ -74,7 +74,7 @@ impl Machine {
         ranks.min_by(|a, b| by_rank(&a.1, &b.1)).map(|(index, _)| index)
     }
 
-    /// Whether a solid is clear of the path to the goal, and its distance, metres.
+    /// Whether a solid is clear of the path to the goal, and its distance from the robot, metres.
     fn rank(&self, at: Point, goal: Point) -> impl Fn(&Solid) -> (bool, f64) + use<> {
         let ahead = at + (goal - at).cap_magnitude(AHEAD_RANGES * self.settings.law.rho_m);
         let hull_m = self.map.hull_m;
@@ -91,7 +91,8 @@ impl Machine {
     pub fn follow_outlines(&mut self, at: Point, goal: Point) {
         let MachineSettings { mode, keep_m, margin_m, taut_margin_m, .. } = self.settings;
         let hull_m = self.map.hull_m;
-        // A path that is pulled taut may use every gap in which it keeps its margin; a robot in flight needs more room.
+        // A path that is pulled taut may use every gap in which it keeps its margin; a robot in flight needs more
+        // space.
         let most_m = if mode == Mode::Pre { taut_margin_m + ROUNDING_M } else { margin_m };
         let follow = Follow::new(goal, self.outline(), Side::Left, hull_m + keep_m, hull_m + most_m);
         self.phase = Phase::Follow(follow);

@@ -1,23 +1,23 @@
-//! Obstacles that leave the robot no room between them and count as one.
+//! Groups of obstacles that the robot cannot pass between; each group is treated as one obstacle.
 
 use crate::inflation::SLACK_M;
 use crate::workspace::{Workspace, reach_m, wall_gap_m};
 use geometry::convex::Part;
 use world::Point;
 
-/// Parts that leave no room between them.
+/// Parts too close together for the robot to pass between them.
 pub(super) struct Cluster {
     /// Indices of the parts.
     pub parts: Vec<usize>,
-    /// The foot: centre of the part furthest from the anchor, where the cut begins.
+    /// The foot, where the cut begins: the centre of the part farthest from the anchor.
     pub foot: Point,
     /// Distance of the foot from the anchor, metres.
     pub rho_m: f64,
-    /// Whether there is no room to the wall either, so that the cluster needs no cut.
+    /// Whether the robot cannot pass between cluster and wall either, so that the cluster needs no cut.
     pub is_at_wall: bool,
-    /// Extent of the part at the foot, measured from the foot, metres.
+    /// Largest distance from the foot to the outline of its part, metres.
     pub reach_m: f64,
-    /// The points from the foot to the wall along the cuts, once these exist.
+    /// The points along the cuts from the foot to the wall, once these cuts exist.
     pub chain: Vec<Point>,
 }
 

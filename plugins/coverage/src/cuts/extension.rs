@@ -13,20 +13,20 @@ use world::{Point, Vector, polyline};
 /// A cut ends this far beyond the cut that it meets, so that no gap is left between them, metres.
 const BEYOND_M: f64 = 1e-4;
 
-/// The existing cuts, tether and path for new cuts.
+/// The existing cuts, the tether and the path that new cuts must take into account.
 pub(crate) struct Extension<'a> {
     pub workspace: &'a Workspace,
     /// The cuts of the current plan.
     pub cuts: &'a [Vec<Point>],
     /// The tether as it lies: no new cut may cross it.
     pub tether: &'a [Point],
-    /// The rest of the path: a new cut crosses it as rarely as possible.
+    /// The rest of the path: a new cut crosses it as seldom as possible.
     pub path: &'a [(Point, Point)],
 }
 
 impl Extension<'_> {
-    /// Makes new cuts, from the outermost cluster inward, each within an angle of the ray from the anchor. Returns
-    /// `None` if a cluster can have no cut.
+    /// Makes new cuts, starting with the outermost cluster, each within the given angle of the ray from the anchor.
+    /// Returns `None` if no cut is possible for one of the clusters.
     pub(crate) fn new_cuts(&self, angle_rad: f64) -> Option<Vec<Vec<Point>>> {
         let clusters = Cluster::all(self.workspace);
         let mut loose: Vec<&Cluster> = clusters.iter().filter(|cluster| !self.is_rooted(cluster)).collect();
@@ -40,7 +40,7 @@ impl Extension<'_> {
         Some(made)
     }
 
-    /// Whether the wall or existing cuts already connect a cluster.
+    /// Whether a cluster is already connected to the wall, directly or by existing cuts.
     fn is_rooted(&self, cluster: &Cluster) -> bool {
         let meets = |cut: &[Point], part: &Part| {
             cut.windows(2).any(|w| part.segment_distance_m(w[0], w[1]) < self.workspace.keep_m)
@@ -64,8 +64,8 @@ impl Extension<'_> {
         priced.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, line)| line)
     }
 
-    /// A cut in a given direction, up to the wall, a cut, or the room of a connected obstacle; `None` if an unconnected
-    /// obstacle is in the way.
+    /// A cut in a given direction, up to the wall or another cut, or into a connected obstacle; `None` if an
+    /// unconnected obstacle is in the way.
     fn along(
         &self,
         from: &Cluster,
@@ -88,13 +88,14 @@ impl Extension<'_> {
         (!is_loose).then(|| vec![foot, foot + ahead * entered_m, workspace.parts[k].middle()])
     }
 
-    /// The distance along a ray at which it enters the room of a part.
+    /// The distance along a ray to the point where it comes too close to a part for the hull; `None` if the ray stays
+    /// clear.
     fn entered_m(&self, part: usize, foot: Point, ahead: Vector, far_m: f64) -> Option<f64> {
         let (part, room_m) = (&self.workspace.parts[part], self.workspace.keep_m + 2.0 * SLACK_M);
         if part.segment_distance_m(foot, foot + ahead * far_m) > room_m {
             return None;
         }
-        // A convex part has no point closer than its distance, so the ray can advance by that much.
+        // The ray can always advance by the spare distance: no point of the part is any closer.
         let mut along_m = 0.0;
         while along_m < far_m {
             let spare_m = part.distance(foot + ahead * along_m).0 - room_m;
@@ -114,8 +115,8 @@ impl Extension<'_> {
     }
 }
 
-/// Variants of the cuts of the current plan. In each, one cut is shortened to end at an obstacle found in it. When they
-/// were laid, cuts avoided all known obstacles except those at their ends.
+/// Variants of the current plan's cuts. In each variant, one cut is shortened to end at an obstacle found in its way.
+/// When the cuts were made, they avoided all known obstacles except those at their ends.
 pub(crate) fn cuts_up_to_found(workspace: &Workspace, cuts: &[Vec<Point>]) -> Vec<Vec<Vec<Point>>> {
     let shortened = |k: usize| {
         let ends = workspace.parts.iter().filter_map(move |part| up_to(part, &cuts[k], workspace.keep_m));
@@ -124,8 +125,8 @@ pub(crate) fn cuts_up_to_found(workspace: &Workspace, cuts: &[Vec<Point>]) -> Ve
     (0..cuts.len()).flat_map(shortened).collect()
 }
 
-/// The cut up to the centre of a part that stands in it; `None` if the part's room contains an end of the cut, or does
-/// not touch the cut.
+/// The cut, shortened to end at the centre of a part in its way; `None` if the part is too close to an end of the cut,
+/// or not close to the cut at all.
 fn up_to(part: &Part, cut: &[Point], keep_m: f64) -> Option<Vec<Point>> {
     let is_in = |at: &Point| part.distance(*at).0 < keep_m;
     if cut.first().is_some_and(is_in) || cut.last().is_some_and(is_in) {

@@ -61,12 +61,13 @@ struct Forest<'a> {
 struct Target {
     end: Point,
     cluster: Option<usize>,
-    /// Cost of the lanes that the cut breaks and the excess cable that it causes, in broken lanes.
+    /// Cost in broken lanes: of the lanes that the cut breaks, the length of the cuts to the wall, and the excess cable
+    /// that they cause.
     cost: f64,
 }
 
 impl Forest<'_> {
-    /// Makes the cut of a cluster.
+    /// Makes the cut for a cluster.
     fn grow(&mut self, from: usize) {
         let (line, to) = self.best_cut(from);
         let beyond = to.map_or(&[][..], |to| &self.clusters[to].chain[1..]);
@@ -74,11 +75,11 @@ impl Forest<'_> {
         self.made.push((from, line));
     }
 
-    /// The cut that breaks the fewest lanes, and the cluster at its end unless it ends at the wall.
+    /// The cut of lowest cost, and the cluster at its end; `None` if it ends at the wall.
     fn best_cut(&self, from: usize) -> (Vec<Point>, Option<usize>) {
         let foot = self.clusters[from].foot;
         let outward = (foot - self.workspace.anchor).try_normalize(1e-9).unwrap_or_else(Vector::x);
-        // Try wider and wider angles, and finally go through the room of other obstacles: a cut is required.
+        // Try wider and wider angles and, finally, lines too close to other obstacles: every cluster must get a cut.
         let keep_m = self.workspace.keep_m;
         for (widen_rad, berth_m) in [(0.0, BERTH_M), (0.0, 0.0), (0.5, 0.0), (1.2, -keep_m), (4.0, -keep_m)] {
             let alpha_rad = (self.rule.alpha_rad + widen_rad).min(PI);
@@ -161,7 +162,7 @@ impl Forest<'_> {
     }
 }
 
-/// The distance from a point straight ahead to the wall, metres.
+/// The distance from a point to the wall straight ahead, metres.
 pub(super) fn to_wall_m(wall: &Boundary, from: Point, ahead: Vector) -> f64 {
     match wall {
         Boundary::Circle { radius_m } => {
@@ -181,12 +182,12 @@ pub(super) fn to_wall_m(wall: &Boundary, from: Point, ahead: Vector) -> f64 {
 
 /// The length of a taut cable to the far end of a chain of cuts, along the longer side of the chain, metres.
 ///
-/// The sum of the links would be too long: at bends the cable takes the short way on the open side.
+/// The sum of the links would be too long: at bends, the cable takes the short cut on the open side.
 pub(super) fn taut_m(anchor: Point, chain: &[Point]) -> f64 {
     let along = |side: f64| {
         let mut path = vec![anchor];
         for next in chain {
-            // The cable bears only on obstacles on its other side.
+            // The cable bears on an obstacle only where the chain bends toward this side.
             while let [.., before, last] = path[..] {
                 if (last - before).perp(&(next - last)) * side > 0.0 {
                     break;

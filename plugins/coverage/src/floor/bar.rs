@@ -8,7 +8,7 @@ use world::{Point, Vector};
 
 /// Turns smaller than this leave no gap worth filling, radians.
 const SMALL_TURN_RAD: f64 = 2e-3;
-/// A turn is drawn in wedges of this angle, radians.
+/// A turn is filled in wedges of this angle, radians.
 const WEDGE_RAD: f64 = 0.35;
 
 /// Neighbouring cells of one row.
@@ -31,12 +31,13 @@ impl From<Range<usize>> for Run {
 }
 
 impl Raster {
-    /// Calls back with every cell under the bar along a path, in runs of one row each. A cell may appear several times.
+    /// Calls `visit` for all cells under the bar along a path, in runs of one row each. A cell may appear several
+    /// times.
     pub(super) fn along(&self, path: &[Point], visit: impl FnMut(Range<usize>)) {
         self.along_some(path, 0..path.len(), visit);
     }
 
-    /// The same for only some sides of the path. Turns are those of the whole path.
+    /// The same, but for only some sides of the path. Turns are included for the whole path.
     pub(crate) fn along_some(
         &self,
         path: &[Point],
@@ -56,7 +57,8 @@ impl Raster {
         }
     }
 
-    /// The cells under the bar along one side and during the turn into it; the preceding side comes from `before`.
+    /// The cells under the bar during the turn into a side, and those along the side. The preceding side starts at
+    /// `before`.
     pub(crate) fn turn_and_side(
         &self,
         before: Option<Point>,

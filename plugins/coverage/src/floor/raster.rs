@@ -1,7 +1,7 @@
 //! Rows of square cells over the floor.
 //!
-//! The rows are rotated against the tank's axes. Otherwise a planner that shortens paths without losing cells would
-//! stay away from every straight wall by the half cell that no row of centres represents.
+//! The rows are rotated relative to the tank's axes. Otherwise, a planner that shortens paths without losing cells
+//! would keep half a cell farther from every straight wall, because no row of centres represents that strip.
 
 use crate::plane::{direction, extent, left_of};
 use std::ops::Range;
@@ -12,11 +12,11 @@ const ROWS_RAD: f64 = 0.3;
 /// A second such direction. A path fitted to cells appears to sweep more of them than it does; other cells show what it
 /// really sweeps.
 const OTHER_ROWS_RAD: f64 = 0.9;
-/// Corners of the largest polygon that can be filled: a fan of wedges over half a turn, and its centre.
+/// Number of corners of the largest polygon that can be filled: a fan of wedges over half a turn, and its centre.
 pub(super) const MOST_CORNERS: usize = 11;
-/// Rows of a polygon that are filled together.
+/// Number of rows of a polygon that are filled together.
 const BAND: usize = 32;
-/// Converts the end of a closed range to the start of what follows it.
+/// Added to the last position of a closed range to find the index after it.
 const NEXT: f64 = 1e-9;
 
 /// Size of the cells and direction of their rows.
@@ -176,7 +176,8 @@ impl Raster {
         for (row, corner) in corner_rows.iter_mut().zip(polygon) {
             *row = self.row_from(corner.y, index_from(row_of(corner.y)), &rows);
         }
-        // Processing side by side through a band of rows takes fewer branches than going through the sides row by row.
+        // Filling a band of rows one side of the polygon at a time takes fewer branches than going through all sides
+        // for each row.
         for start in rows.clone().step_by(BAND) {
             let band = start..rows.end.min(start + BAND);
             let spans = self.spans(polygon, &corner_rows, &band);
@@ -186,7 +187,7 @@ impl Raster {
         }
     }
 
-    /// The cells of a row with their centres between two positions along it.
+    /// Visits the cells in a row whose centres lie between two positions along it.
     fn fill_row(&self, row: usize, from: f64, to: f64, visit: &mut impl FnMut(Range<usize>)) {
         let column_of = |x: f64| (x - self.low.x) / self.cell_m - 0.5;
         let (left, past) = (index_from(column_of(from)), index_from(column_of(to) + NEXT).min(self.columns));
@@ -213,8 +214,8 @@ impl Raster {
         }
     }
 
-    /// The positions where a convex polygon begins and ends on the rows of a band. `corner_rows` are the first rows not
-    /// below its corners.
+    /// The positions where a convex polygon begins and ends in each row of a band. `corner_rows` contains, for each
+    /// corner, the first row that is not below it.
     fn spans(
         &self,
         polygon: &[Point],
@@ -236,7 +237,7 @@ impl Raster {
         spans
     }
 
-    /// The position of a row's centres across the rows.
+    /// The position of a row's centres, measured across the rows.
     fn row_y(&self, row: usize) -> f64 {
         self.low.y + (f64::from(row as u32) + 0.5) * self.cell_m
     }

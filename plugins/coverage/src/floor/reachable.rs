@@ -9,7 +9,7 @@ use world::{Point, shape::mean_of};
 #[derive(Clone)]
 pub(crate) struct ReachableFloor {
     pub raster: Raster,
-    /// Whether the tool can reach each cell; shared by all candidates.
+    /// For each cell, whether the tool can reach it; shared by all candidates.
     pub cells: Arc<[bool]>,
     /// Number of reachable cells.
     pub n: usize,
@@ -26,7 +26,7 @@ impl ReachableFloor {
         if domain.sealed.area_m2 > 0.0 {
             return Self::of(domain, grain);
         }
-        // Cuts remove no floor, so it is the same for all domains of the workspace.
+        // Cuts remove no floor, so the floor is the same for all domains of the workspace.
         let mut kept =
             domain.workspace.floors.iter().map(|kept| kept.get_or_init(|| (grain, Self::of(domain, grain))));
         kept.find(|(other, _)| *other == grain)
@@ -41,15 +41,14 @@ impl ReachableFloor {
             raster.fill(&triangle, |cells| free[cells].fill(true));
         }
         let (mut cells, mut is_known) = (free.clone(), free.clone());
-        // The tool reaches beyond the hull centre by half a swath from the last free cells, just as the mission counts
-        // it.
+        // The tool reaches half a swath beyond the last free cells, just as the mission counts it.
         for cell in raster.rim(&free) {
             let near = raster.near(raster.center(cell), raster.bar_m / 2.0, |other| !is_known[other]);
             for (other, at) in near.collect::<Vec<_>>() {
                 (cells[other], is_known[other]) = (workspace.is_floor(at), true);
             }
         }
-        // The hull centre may move beyond the last free cell, up to a cell further, to the edge of its room.
+        // The hull centre may move up to one cell beyond the last free cell, to the edge of the space open to it.
         for cell in raster.rim(&free) {
             let reach_m = raster.bar_m / 2.0 + raster.cell_m;
             let near = raster.near(raster.center(cell), reach_m, |other| !is_known[other]);

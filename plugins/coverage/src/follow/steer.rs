@@ -1,7 +1,8 @@
 //! Steers a tracked robot along a path: on circular arcs that end on the path, slower at bends.
 //!
-//! Proper pure pursuit: the one arc that leaves along the heading and meets the aim. On a path of constant curvature it
-//! follows without an offset. A robot that merely turns toward its aim has an offset, and cuts inside around a column.
+//! This is proper pure pursuit: the robot drives on the one arc that begins along its heading and meets the aim. On a
+//! path of constant curvature, it follows without an offset. A robot that merely turned toward its aim would have an
+//! offset, and would cut inside the path around a column.
 
 use planner_api::{Drive, Limits};
 use std::collections::VecDeque;
@@ -12,27 +13,27 @@ use world::{
 
 /// Angle to the aim beyond which the robot turns on the spot, radians.
 const TURN_FIRST_RAD: f64 = 0.5;
-/// Turn rate per angle when turning on the spot, 1/s.
+/// Turn rate per angle to the aim when turning on the spot, 1/s.
 const TURN_GAIN_PER_S: f64 = 2.5;
-/// Closer aims do not tighten the arc, metres.
+/// Aims closer than this do not tighten the arc any further, metres.
 const LEAST_REACH_M: f64 = 0.15;
 /// Share of the turn rate that an arc may use; the rest is for corrections.
 const TURN_SHARE: f64 = 0.9;
-/// A robot that is slowed down turns as fast as if it drove at this speed, metres per second. When it heads for a
-/// column, it is slow until it has turned away; on the arc alone it would turn as slowly as it creeps.
+/// A slowed robot turns at least as fast as if it drove along its arc at this speed, metres per second. While it heads
+/// for a column, it stays slow until it has turned away; without this minimum, it would turn as slowly as it creeps.
 const TURNING_M_PER_S: f64 = 0.15;
-/// Turn of a path that counts as a corner, radians.
+/// Turns of a path above this angle are corners, radians.
 const CORNER_RAD: f64 = 0.5;
 /// The turns within this distance form one bend, metres: as far as the robot looks ahead.
 const BEND_M: f64 = 0.25;
 /// Within this distance the robot is at a corner, metres.
 const AT_CORNER_M: f64 = 0.05;
-/// The robot approaches a corner no faster than it could reach it in this time, seconds.
+/// The robot approaches a corner so slowly that it would take at least this long to reach it, seconds.
 const CORNER_S: f64 = 0.6;
 /// The robot does not slow down below this speed before corners, metres per second.
 const LEAST_M_PER_S: f64 = 0.08;
 
-/// The twist along the arc that leaves along the heading and ends at the aim, at the speed of a wanted velocity.
+/// The twist along the arc that begins along the heading and ends at the aim, at the speed of the desired velocity.
 pub(super) fn twist(wanted: Vector, heading_rad: f64, reach_m: f64, limits: &Limits) -> Drive {
     let speed = wanted.norm();
     if speed < 1e-9 {
@@ -49,8 +50,8 @@ pub(super) fn twist(wanted: Vector, heading_rad: f64, reach_m: f64, limits: &Lim
     Drive::Twist { v_m_per_s, w_rad_per_s: v_m_per_s.max(TURNING_M_PER_S.min(fastest)) * curvature }
 }
 
-/// The speed from which the robot can slow down in time for every corner and bend ahead and for the end of the path,
-/// metres per second.
+/// The highest speed from which the robot can still slow down in time for every corner and bend ahead, and for the end
+/// of the path, metres per second.
 pub(super) fn speed_ahead(at: Point, ahead: &[Point], limits: &Limits) -> f64 {
     let braking = Braking::of(limits);
     let mut along_m = 0.0;
@@ -83,7 +84,7 @@ struct Bends {
 }
 
 impl Bends {
-    /// The curvature at a point of a path, including one more turn there, radians per metre.
+    /// Adds a turn at a point of the path and returns the curvature there, radians per metre.
     fn sharpest_with(&mut self, along_m: f64, turn_rad: f64) -> f64 {
         self.within.push_back((along_m, turn_rad));
         while self.within.front().is_some_and(|(at_m, _)| along_m - at_m > BEND_M) {

@@ -1,7 +1,7 @@
 //! Convex cells between the hull rings of the columns (Pan 2025).
 //!
-//! The cells of a ring lie between a hull edge and the preceding ring, bounded by two rays away from the middle. Every
-//! column is on an edge or corner of a cell, and none is inside.
+//! Each cell of a ring lies between an edge of its hull and the preceding ring, bounded by two rays from the middle
+//! outward. Columns are on edges or corners of cells, never inside.
 
 use crate::plane::direction;
 use crate::tuning::hull_partition::WALL_SIDES;
@@ -89,7 +89,7 @@ pub(super) fn cells(workspace: &Workspace, columns: &[Column]) -> Vec<Cell> {
     }
 }
 
-/// The area inside the last ring: whole, or cut along the line of the remaining columns.
+/// The area inside the last ring: undivided, or divided along the line through the remaining columns.
 fn innermost(outer: &[Point], left: &[Point], anchor: Point) -> Vec<Vec<Point>> {
     let Some(first) = left.first() else { return vec![outer.to_vec()] };
     let far = left.iter().max_by(|a, b| (*a - first).norm().total_cmp(&(*b - first).norm())).expect(

@@ -10,14 +10,15 @@ use world::{Point, polyline};
 /// The cells, and the domain between them.
 pub(super) struct Division<'a> {
     pub cells: Vec<Cell>,
-    /// The cell of home.
+    /// The cell that contains home.
     pub first: usize,
     pub domain: SlitDomain<'a>,
 }
 
 impl<'a> Division<'a> {
-    /// Divides the floor into merged cells, unless merging leaves a way around a column, which the paper's rule does
-    /// not rule out. Either all borders except the gates of the tree become cuts, or none do.
+    /// Divides the floor into merged cells, or into unmerged ones if merging leaves a path around a column, which the
+    /// paper's rule does not prevent. With `is_tree`, all borders except the gates of the tree become cuts; otherwise,
+    /// none do.
     pub(super) fn new(workspace: &'a Workspace, is_tree: bool) -> Option<Self> {
         let columns = Column::all(workspace);
         let cells = cells(workspace, &columns);
@@ -66,8 +67,8 @@ fn tree(cells: &[Cell], borders: &[Border], first: usize) -> Vec<usize> {
 
 /// Adds one gate where discs divide a cell so that the tree leaves a part of it without a gate.
 ///
-/// The widest border on the edge of the sealed floor that lets the robot in. It joins parts that were separate, so it
-/// creates no way around a column.
+/// The gate is the widest border along the sealed floor through which the robot can enter. It joins parts that were
+/// separate, so it opens no path around a column.
 fn one_more_gate<'a>(
     borders: &[Border],
     gates: &[usize],
@@ -104,7 +105,7 @@ fn cuts(borders: &[Border], gates: &[usize]) -> Vec<Vec<Point>> {
         lines.push(line);
     }
     let cut = |(a, b): (Point, Point)| {
-        // Slightly longer, so that cuts that meet leave no slit between them.
+        // Each cut is slightly longer than its border, so that cuts that meet leave no slit between them.
         let more = (b - a).normalize() * SEAM_M;
         vec![a - more, b + more]
     };
@@ -122,7 +123,7 @@ fn united(a: (Point, Point), b: (Point, Point)) -> Option<(Point, Point)> {
     (is_on_line(b.0) && is_on_line(b.1) && touches).then_some((a.0 + ahead * ends.0, a.0 + ahead * ends.1))
 }
 
-/// Removes the seams at the ends of a cut, so that paths bending around an end do not count as crossing it.
+/// Shortens a cut at both ends, so that paths bending around an end do not count as crossing it.
 pub(super) fn trim(cut: &mut [Point]) {
     if let [a, b] = cut {
         let less = (*b - *a) * (1.5 * SEAM_M / (*b - *a).norm().max(1e-9)).min(0.3);
@@ -163,8 +164,8 @@ fn neighbours(borders: &[Border], cell: usize) -> impl Iterator<Item = usize> {
     borders.iter().filter(|border| border.is_gate).filter_map(move |border| border.beyond(cell))
 }
 
-/// Whether two cells may be merged: no column is inside the result, and no third cell has gates to both parts, because
-/// a column would stand between them.
+/// Whether two cells may be merged: no column may be inside the result, and no third cell may have gates to both,
+/// because a column would then stand between them.
 fn is_sound(borders: &[Border], whole: &Cell, (a, b): (usize, usize), columns: &[Column]) -> bool {
     let ring = whole.hull();
     let depth_m = |(p, q): (Point, Point), at: Point| (q - p).perp(&(at - p)) / (q - p).norm();

@@ -1,4 +1,5 @@
-//! Bends: the path shifts slightly sideways to floor that it would miss, where that is cheaper than a separate lane.
+//! Bends: the path is shifted slightly sideways to floor that it would miss, where this is cheaper than a separate
+//! lane.
 
 use crate::buckets::Buckets;
 use crate::floor::Run;
@@ -12,7 +13,7 @@ use planner_api::Result;
 use std::collections::BTreeSet;
 use world::{Point, Vector};
 
-/// A bend that may pay.
+/// A bend that may be worthwhile.
 struct Offer {
     /// Metres of path and turning per square metre of floor.
     rate: f64,
@@ -29,14 +30,14 @@ struct Stretch {
     /// The ends of the stretch.
     a: Spot,
     b: Spot,
-    /// The cells it sweeps, including one side before and one after it.
+    /// The cells that it sweeps, together with one side before it and one after it.
     swept: Vec<Run>,
 }
 
 impl Track<'_> {
-    /// Bends the path to missed floor where a square metre costs little enough, until the required coverage is reached.
-    /// Returns the number of bends. Groups of missed cells that no bend is worth are remembered, by their first cell
-    /// and size.
+    /// Bends the path to missed floor where a square metre is cheap enough, until the required coverage is reached.
+    /// Returns the number of bends. Groups of missed cells that are not worth a bend are remembered in `vain`, by first
+    /// cell and size.
     pub(super) fn bend(&mut self, terms: &Terms<'_>, vain: &mut BTreeSet<(usize, usize)>) -> Result<usize> {
         if self.coverage() >= terms.enough {
             return Ok(0);
@@ -110,7 +111,7 @@ impl Track<'_> {
         best
     }
 
-    /// The stretch that consists of this many sides of the path on either side of a point.
+    /// The stretch that extends this many sides of the path both ways from a point.
     fn stretch(&self, k: usize, base: usize) -> Option<Stretch> {
         let (from, past) = (k.checked_sub(base)?, k + base);
         if past > self.sides.len() {
@@ -122,8 +123,8 @@ impl Track<'_> {
         Some(Stretch { from, past, course, a, b, swept })
     }
 
-    /// The cost of a square metre of floor, metres. `None` if the path is blocked, nothing is gained, or the cost is
-    /// too high for the largest gain that counts.
+    /// The cost of a bend, in metres of path per square metre of floor gained. `None` if the bend is blocked, gains
+    /// nothing, or would be too expensive even with the largest gain considered.
     fn rate(
         &mut self,
         old: &Stretch,

@@ -1,6 +1,7 @@
-//! The pass along the shell. A straight side leaves some of the critical zone between itself and a round wall, less
-//! than a cell of the floor. A shortcut that loses no cell may therefore lose the zone. So the zone is treated last:
-//! the path is moved back to the minimum distance from the shell, and lanes close what is still open.
+//! The pass along the shell. Between a straight side and a round wall, some of the critical zone stays unscanned: less
+//! than a cell of the floor. A shortcut that loses no cell may therefore still lose part of the zone. So the zone is
+//! treated last: the path is moved back to the minimum distance from the shell, and lanes are added where the zone is
+//! still open.
 
 use crate::inflation::SLACK_M;
 use crate::lanes::{Lane, thinned};
@@ -30,7 +31,7 @@ impl Track<'_> {
         Ok(())
     }
 
-    /// Moves stretches that run almost as close to the shell as the hull may come to the closest position.
+    /// Moves stretches that are almost at the minimum distance from the shell to exactly that distance.
     fn press_to_shell(&mut self, terms: &Terms<'_>) -> Result<()> {
         let mut at = 0;
         while at < self.sides.len() {
@@ -65,7 +66,7 @@ impl Track<'_> {
     }
 }
 
-/// The distance of a position from the wall beyond the minimum for the hull, metres.
+/// The distance of a position from the wall in excess of the minimum for the hull, metres.
 fn over_m(workspace: &Workspace, at: Point) -> f64 {
     workspace.wall.wall_distance_m(at) - workspace.keep_m - SLACK_M
 }
@@ -76,17 +77,18 @@ pub(super) fn shell_m(workspace: &Workspace, a: Point, b: Point) -> f64 {
     if is_close(a) && is_close(b) && is_close(a + (b - a) / 2.0) { (b - a).norm() } else { 0.0 }
 }
 
-/// The hull centre's closest position to a point on the wall.
+/// The position of the hull centre that is closest to a point on the wall.
 pub(crate) fn before_shell(workspace: &Workspace, on_wall: Point) -> Point {
     on_wall + inward(&workspace.wall, on_wall) * (workspace.keep_m + SLACK_M)
 }
 
-/// The position at which the hull is as close as possible to the wall at a given point.
+/// A position, moved to the minimum distance from the wall.
 fn at_shell(workspace: &Workspace, at: Point) -> Point {
     at - inward(&workspace.wall, at) * over_m(workspace, at)
 }
 
-/// A line near the shell, moved as close to it as possible, if that is open; its ends stay in place.
+/// A line near the shell, moved as close to it as possible; its ends stay in place. `None` if the moved line is
+/// blocked.
 fn pressed(domain: &SlitDomain<'_>, line: &[Point]) -> Option<Vec<Point>> {
     let (first, last) = (line[0], line[line.len() - 1]);
     let beside = polyline::resampled(line, tuning::STEP_M);
@@ -98,7 +100,7 @@ fn pressed(domain: &SlitDomain<'_>, line: &[Point]) -> Option<Vec<Point>> {
     (way.len() > 1 && way.windows(2).all(is_open)).then(|| thinned(&way))
 }
 
-/// Lanes along the shell where a path leaves the zone open although there is room for one.
+/// Lanes along the shell where a path leaves the zone open even though a lane would fit.
 pub(crate) fn open_lanes(domain: &SlitDomain<'_>, path: &[Point]) -> Vec<Lane> {
     let workspace = domain.workspace;
     let mut lanes: Vec<Lane> = Vec::new();
@@ -120,7 +122,7 @@ pub(crate) fn open_lanes(domain: &SlitDomain<'_>, path: &[Point]) -> Vec<Lane> {
     lanes.iter().map(|lane| thinned(lane)).collect()
 }
 
-/// The stretches of the shell that a path along it would scan closer than this path does.
+/// The stretches of the shell that this path leaves open but a path right along the shell would scan.
 pub(crate) fn open_stretches(workspace: &Workspace, path: &[Point]) -> Vec<ShellStretch> {
     let mut zone = ShellZone::new(&workspace.wall, tuning::ZONE_M);
     // A bar just long enough to reach the wall when the hull is as close to it as possible.

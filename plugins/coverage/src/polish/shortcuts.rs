@@ -19,8 +19,8 @@ struct Stretch {
 }
 
 impl Track<'_> {
-    /// Shortens and straightens wherever it pays. Only parts added since the last call, and what leads up to them, are
-    /// examined.
+    /// Shortens and straightens the path wherever it pays. Only parts added since the last call, and the stretches
+    /// leading up to them, are examined.
     pub(super) fn shorten(&mut self, terms: &Terms<'_>) -> Result<()> {
         let mut since_m = f64::INFINITY;
         for side in self.sides.iter_mut().rev() {
@@ -40,7 +40,7 @@ impl Track<'_> {
                 terms.job.check()?;
                 terms.job.reached(from as f64 / (self.sides.len() + 1) as f64);
             }
-            // The longest shortcut that pays.
+            // Take the longest shortcut that pays.
             let stretches = self.stretches(from, terms);
             if stretches.iter().rev().any(|stretch| self.takes_shortcut(stretch, terms)) {
                 let first = from.saturating_sub(3);
@@ -55,7 +55,7 @@ impl Track<'_> {
         Ok(())
     }
 
-    /// Stretches from a point that a shortcut may replace, shortest first.
+    /// The stretches that begin at a point and may be replaced by a shortcut, shortest first.
     fn stretches(&self, from: usize, terms: &Terms<'_>) -> Vec<Stretch> {
         let (mut length_m, mut turn_rad, mut alone) = (0.0, 0.0, 0_u32);
         let mut stretches = Vec::new();
@@ -73,7 +73,7 @@ impl Track<'_> {
             let leaving_rad = self.sides.get(to).map_or(0.0, |next| next.turn_rad);
             let course = Course { length_m, turn_rad: turn_rad + leaving_rad };
             let straight = self.straight(from, to);
-            // The bar cannot sweep more floor than its length times the distance, plus its turns.
+            // The bar cannot sweep more floor than its length times the distance, plus what it sweeps while turning.
             let least_lost_m2 = f64::from(alone) * self.swept.raster().cell_m2()
                 - self.swept.raster().bar_m * (straight.length_m + self.swept.raster().bar_m);
             let most_m = course.excess_m(straight, terms.turn_m_per_rad)
@@ -90,7 +90,8 @@ impl Track<'_> {
         Course { length_m: (self.point(to) - self.point(from)).norm(), turn_rad: 0.0 }
     }
 
-    /// Replaces a stretch by the shortest path if that pays. Returns whether it did. Cheap checks come first.
+    /// Replaces a stretch with the shortest path if that pays. Returns whether the stretch was replaced. Cheap checks
+    /// come first.
     fn takes_shortcut(&mut self, stretch: &Stretch, terms: &Terms<'_>) -> bool {
         let Stretch { from, to, course } = *stretch;
         let (a, b) = (self.point(from), self.point(to));
@@ -127,7 +128,7 @@ impl Track<'_> {
         true
     }
 
-    /// The length along the shell that a path loses compared with some sides, metres.
+    /// The length of path along the shell that is lost if a path replaces some sides, metres.
     fn shell_lost_m(&self, sides: Range<usize>, way: &[Point]) -> f64 {
         let old_m: f64 = self.sides[sides].iter().map(|side| side.shell_m).sum();
         if old_m <= 0.0 {
@@ -138,7 +139,7 @@ impl Track<'_> {
         (old_m - fine.windows(2).map(new_m).sum::<f64>()).max(0.0)
     }
 
-    /// Whether replacing some sides by another path would lose more floor than this, judged by a few samples across
+    /// Whether replacing some sides with another path would lose more floor than this, judged by a few samples across
     /// every side.
     fn seems_to_lose_more(&mut self, sides: Range<usize>, way: &[Point], most_m2: f64) -> bool {
         let half_m = self.swept.raster().bar_m / 2.0;
@@ -159,7 +160,7 @@ impl Track<'_> {
     }
 }
 
-/// The positions of a range from its middle outward: in the middle, two paths between the same ends differ most.
+/// The indices in a range, from its middle outward: in the middle, two paths between the same ends differ most.
 fn from_the_middle(range: Range<usize>) -> impl Iterator<Item = usize> {
     let n = range.len();
     let at =

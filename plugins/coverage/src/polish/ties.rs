@@ -1,4 +1,4 @@
-//! Ties: short separate lanes over missed floor, where no bend is worth it.
+//! Ties: short separate lanes over missed floor that is not worth a bend.
 
 use crate::buckets::Buckets;
 use crate::lanes::Lane;
@@ -38,7 +38,7 @@ impl Tied {
 
 impl Track<'_> {
     /// Ties lanes over missed floor into the path, the most worthwhile first, until the required coverage is reached.
-    /// Groups smaller than the minimum number of cells are left. Returns the number of lanes.
+    /// Groups smaller than the minimum number of cells are skipped. Returns the number of lanes added.
     pub(super) fn tie_in_lanes(&mut self, terms: &Terms<'_>, least: usize) -> Result<usize> {
         if self.coverage() >= terms.enough {
             return Ok(0);
@@ -59,7 +59,7 @@ impl Track<'_> {
                 }
             }
         }
-        // Rounding must not lose one of four cells of 0.05 m.
+        // Rounding must not turn four cells of 0.05 m into three.
         let least_gain = ((LEAST_GAIN_M2 / self.swept.raster().cell_m2() + 1e-6) as usize).max(1);
         offers.sort_by(|a, b| a.rate.total_cmp(&b.rate));
         let mut n_made = 0;
@@ -77,7 +77,7 @@ impl Track<'_> {
         Ok(n_made)
     }
 
-    /// Sides with an end near an end of a lane, and some others.
+    /// Sides that begin or end near an end of a lane, and some others.
     fn sides_near(&self, places: &Buckets, lane: &Lane) -> Vec<usize> {
         let ends = [lane[0], lane[lane.len() - 1]];
         let points = ends.iter().flat_map(|end| places.near(*end, TIE_M));

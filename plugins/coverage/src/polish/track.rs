@@ -1,4 +1,4 @@
-//! A path during polishing, side by side, with the cells that every side sweeps.
+//! A path during polishing, divided into sides, with the cells that each side sweeps.
 
 use crate::buckets::Buckets;
 use crate::floor::{ReachableFloor, Run, SweptFloor};
@@ -27,7 +27,7 @@ pub(crate) struct Terms<'a> {
     /// Metres of path and turning that a bend may cost per square metre of floor.
     pub bend_m_per_m2: f64,
     pub enough: f64,
-    /// Coverage that shortcuts must leave.
+    /// Coverage that must remain after shortcuts.
     pub keep: f64,
     /// The positions where the robot may go.
     pub is_wanted: &'a dyn Fn(Point) -> bool,
@@ -54,8 +54,8 @@ pub(super) struct Side {
     pub turn_rad: f64,
     /// Length along the shell, metres.
     pub shell_m: f64,
-    /// The cells that the bar sweeps while it turns into the side, and those along it. They are needed repeatedly while
-    /// the path around them changes.
+    /// The cells that the bar sweeps while it turns into the side, and those that it sweeps along the side. They are
+    /// needed repeatedly while the path around them changes.
     turn: Vec<Run>,
     pub along: Vec<Run>,
     /// Approximate number of cells that only this side sweeps; for a new side never more than the true number.
@@ -67,8 +67,8 @@ pub(super) struct Side {
     pub is_open: bool,
 }
 
-/// The samples across a side that no other part sweeps, and the number of exchanges on the floor when that was
-/// determined.
+/// The samples across a side that no other part of the path sweeps, and the number of exchanges on the floor when they
+/// were determined.
 #[derive(Clone, Copy, Default)]
 struct Samples {
     alone: [bool; SAMPLES.len()],
@@ -97,8 +97,8 @@ impl<'a> Terms<'a> {
 }
 
 impl<'a> Track<'a> {
-    /// Creates a track along some pieces, each a lane or a connector. Only new pieces, and what leads up to them, will
-    /// be shortened.
+    /// Creates a track along some pieces, each a lane or a connector. Only new pieces, and the stretches leading up to
+    /// them, will be shortened.
     pub(crate) fn new(
         domain: &'a SlitDomain<'a>,
         pieces: &[Piece],
@@ -145,7 +145,7 @@ impl<'a> Track<'a> {
         }
     }
 
-    /// Allows shortcuts to be searched for everywhere again.
+    /// Allows a new search for shortcuts along the whole path.
     pub(super) fn reopen(&mut self) {
         self.sides.iter_mut().for_each(|side| side.is_new = true);
     }
@@ -242,7 +242,7 @@ impl<'a> Track<'a> {
         Course::of(entered, way, self.sides.get(to).map(|side| side.ahead))
     }
 
-    /// Replaces the sides between two points by other lines.
+    /// Replaces the sides between two points with other lines.
     pub(super) fn splice(&mut self, from: usize, to: usize, lines: &[Piece]) {
         let mut sides = Vec::new();
         for Piece { points, is_lane } in lines {
@@ -255,7 +255,8 @@ impl<'a> Track<'a> {
         self.update(from..past);
     }
 
-    /// The path in pieces of one kind, without intermediate points on straight lines, and the floor that it swept.
+    /// The path in pieces, each either lane or connector, without intermediate points on straight lines; and the floor
+    /// that the path swept.
     pub(crate) fn into_pieces(self) -> (Vec<Piece>, SweptFloor) {
         let mut pieces: Vec<Piece> = Vec::new();
         for (k, side) in self.sides.iter().enumerate() {
@@ -292,7 +293,7 @@ fn divide(from: Point, to: Point, on_lane: bool, sides: &mut Vec<Side>) {
     }));
 }
 
-/// The same line without points on the straight line between their neighbours.
+/// A line without the points that lie on the straight line between their neighbours.
 fn straightened(points: &[Point]) -> Vec<Point> {
     let mut kept = vec![points[0]];
     for k in 1..points.len() - 1 {

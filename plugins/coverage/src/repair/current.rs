@@ -24,7 +24,7 @@ impl Side {
 /// The current plan, from the point where the robot continues.
 pub(crate) struct CurrentPlan {
     pub cuts: Vec<Vec<Point>>,
-    /// Whether its tether met the preferences for length and wrap.
+    /// Whether the plan met the preferences for the tether's length and wrap.
     pub is_preferred: bool,
     sides: Vec<Side>,
 }

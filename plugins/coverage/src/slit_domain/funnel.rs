@@ -24,7 +24,7 @@ impl Bend {
 /// The shortest path from start to goal through a sleeve, given by the left and right ends of the sides that it
 /// crosses, in order.
 ///
-/// From its apex the funnel sees every side up to the present one between two rims. A side that narrows the funnel
+/// From its apex, the funnel sees every side up to the current one between two rims. A side that narrows the funnel
 /// moves a rim inward. If one rim would pass the other, the path bends at the corner of the other rim. That corner is
 /// the next apex, and the walk continues from the side that contains it.
 pub(super) fn funnel(start: Point, goal: Point, sleeve: &[(Point, Point)]) -> Vec<Bend> {

@@ -21,7 +21,7 @@ use world::{Boundary, coverage::percent_text, polyline, shape::ring_area_m2};
 /// One way to make a plan.
 pub(super) struct Candidate {
     pub pattern: Pattern,
-    /// Largest angle between a cut and the ray, radians.
+    /// Largest angle between a cut and the ray from the anchor, radians.
     alpha_rad: f64,
 }
 
@@ -50,8 +50,8 @@ impl Candidate {
         format!("{lanes}, cuts within {:.0} deg", self.alpha_rad.to_degrees())
     }
 
-    /// The domain between the candidate's cuts, if there is room. Several domains are computed to find the loosest rule
-    /// for cuts that keeps the cable within its limits.
+    /// The domain between the candidate's cuts, if the hull fits at home. Several domains are computed to find the
+    /// loosest rule for cuts that keeps the cable within its limits.
     pub(super) fn domain<'a>(
         &self,
         workspace: &'a Workspace,
@@ -115,7 +115,7 @@ fn angles_rad(workspace: &Workspace, alpha_rad: f64, n_patterns: usize) -> Vec<f
     angles_rad
 }
 
-/// The number of directions of straight lanes worth the time.
+/// The number of directions of straight lanes that are worth trying.
 fn most_directions(workspace: &Workspace, is_round: bool) -> usize {
     if workspace.is_crowded() {
         return 1;
@@ -123,7 +123,7 @@ fn most_directions(workspace: &Workspace, is_round: bool) -> usize {
     if is_round { most_toured(workspace) } else { BETWEEN_WALLS }
 }
 
-/// The number of first tours worth the time.
+/// The number of first tours that are worth computing.
 fn most_toured(workspace: &Workspace) -> usize {
     let area_m2 = match &workspace.wall {
         Boundary::Circle { radius_m } => PI * radius_m * radius_m,
@@ -132,7 +132,7 @@ fn most_toured(workspace: &Workspace) -> usize {
     ((TOURED_M * workspace.swath_m / area_m2) as usize).max(LEAST_TOURED)
 }
 
-/// The cost to rows of obstacles and slivers along the wall, in lanes broken by a cut.
+/// The cost of rows due to obstacles and to slivers along the wall, in lanes broken by a cut.
 fn broken_by_obstacles(workspace: &Workspace, rows: &Rows) -> f64 {
     BY_OBSTACLE * rows.broken(workspace) + SLIVER_PER_M * rows.slivers_m(workspace)
 }
@@ -205,7 +205,7 @@ impl Worth {
         self.certificate.certified && preferences.allow(&Strain::from(&self.certificate))
     }
 
-    /// Whether the plan can be run, with or without a tether, as far as can be certified.
+    /// Whether the plan can be run safely, with or without a tether, as far as this can be certified.
     pub(super) fn is_safe(&self, has_tether: bool) -> bool {
         self.certificate.certified || (!has_tether && self.certificate.collisions == 0)
     }

@@ -13,9 +13,9 @@ const UNLIMITED: Limits =
 
 const CHOOSE: ParamSpec = choice("choose", "Candidate", &["shortest", "fewest-turns", "shortest-cable"], 0)
     .help(
-        "Which candidate within the limits to run; shortest counts length and turns. The log lists the \
-           candidates that no other beats in length, turns and cable. Candidates with a worse first tour \
-           are not finished; the log gives their number.",
+        "Which of the candidates within the limits to run; shortest takes length and turns into account. \
+         The log lists the candidates that no other beats in length, turns and cable. Candidates with a \
+         worse first tour are not finished; the log gives their number.",
     )
     .group("Plan");
 const PATTERN: ParamSpec = choice("pattern", "Lanes", &["all", "contours", "straight"], 0)
@@ -72,8 +72,8 @@ const ENOUGH: ParamSpec = float("coverage_pct", "Coverage target", "%", 50.0, 10
     .group("Plan");
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.025)
     .help(
-        "Edge length of the cells used to count floor; enlarged in large tanks to stay below four \
-           million cells.",
+        "Edge length of the cells in which floor is counted; larger in large tanks, to stay below four \
+         million cells.",
     )
     .group("Plan");
 const KICKS: ParamSpec = float("kicks", "Search", "", 0.0, 200.0, 4.0)
@@ -84,7 +84,10 @@ const KICKS: ParamSpec = float("kicks", "Search", "", 0.0, 200.0, 4.0)
     .group("Plan");
 /// How close the robot may come to obstacles when it leaves its path.
 const GUARD: ParamSpec = float("guard_m", "Guard distance", "m", 0.0, 1.0, 0.1)
-    .help("Hull distance below which no motion toward an obstacle is allowed; never more than three quarters of the mission's clearance.")
+    .help(
+        "No motion toward an obstacle is allowed if the hull is closer to it than this; never more than \
+         three quarters of the mission's clearance.",
+    )
     .group("Flight")
     .live();
 
@@ -128,7 +131,7 @@ pub(super) struct Preferences {
     /// Reel length and wraps that the mission requires.
     pub demanded: Limits,
     pub choice: Choice,
-    /// Price of a whole turn in the choice, metres.
+    /// Price of a whole turn when choosing among candidates, metres.
     pub choice_turn_m: f64,
     pub enough: f64,
     pub cell_m: f64,
@@ -184,7 +187,8 @@ impl Preferences {
         Self { limits, demanded: Limits { reel_length_m, wrap_max_rad, wrap_total_max_rad }, ..self }
     }
 
-    /// The same between inner walls, which bend the cable whatever the cuts are. Only the mission's limits count there.
+    /// The same preferences for a floor between inner walls, which bend the cable wherever the cuts are. Only the
+    /// mission's limits apply there.
     pub(super) fn between_walls(self) -> Self {
         let Limits { wrap_max_rad, wrap_total_max_rad, .. } = self.demanded;
         let limits = Limits { wrap_max_rad, wrap_total_max_rad, ..self.limits };

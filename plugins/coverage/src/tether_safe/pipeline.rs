@@ -1,4 +1,4 @@
-//! The pipeline of a plan: candidates, their first tours, finished candidates, the chosen candidate.
+//! The pipeline of a plan: candidates, their first tours, the finished candidates, and the chosen one.
 
 use crate::draft::Draft;
 use crate::jobs::{Job, run_all};
@@ -122,8 +122,8 @@ impl<'a> Pipeline<'a> {
         let least_m = drafts.first().map_or(0.0, |draft| draft.estimate_m);
         let mut hopeless = self.hopeless(&mut drafts, HOPELESS, MOST_ROUGHED);
         let (ctx, n) = (stages.ctx, drafts.len() as f64);
-        ctx.scalar("candidates worked out", n, "");
-        // The chance that some of the worse-looking drafts are finished as well is taken as one half.
+        ctx.scalar("candidates finished", n, "");
+        // The probability that some of the worse-looking drafts are finished as well is assumed to be one half.
         let n_expected = n + hopeless.len().min(MOST_ROUGHED) as f64 / 2.0;
         self.finish(drafts, stages, (n / n_expected.max(1.0), what), tried)?;
         if !tried.is_enough(self.preferences) && !hopeless.is_empty() {
@@ -139,8 +139,8 @@ impl<'a> Pipeline<'a> {
         Ok(())
     }
 
-    /// If only the cheapest candidate is wanted, removes and returns the drafts beyond a number, and those that exceed
-    /// the lowest cost by more than a share.
+    /// If only the cheapest candidate is wanted, removes and returns all drafts beyond the first `most`, and those that
+    /// exceed the lowest cost by more than `share`.
     fn hopeless(&self, drafts: &mut Vec<Drafted<'a>>, share: f64, most: usize) -> Vec<Drafted<'a>> {
         if self.preferences.choice != Choice::Shortest {
             return Vec::new();

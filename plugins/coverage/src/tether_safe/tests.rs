@@ -162,7 +162,7 @@ fn the_ring_along_the_shell_that_the_tool_does_not_reach_is_margin_and_no_gap() 
     let said: Vec<&String> = logs.iter().map(|(_, said)| said).collect();
     assert!(said.iter().any(|said| said.contains("along the shell is out of reach of lanes")), "{said:?}");
     assert!(!said.iter().any(|said| said.contains("gaps")), "{said:?}");
-    let shell = "shell: 0.09 m along it not reachable: hull radius 0.25 m + clearance 0.05 m - half the lane width of 0.42 m";
+    let shell = "shell: a rim of 0.09 m along it cannot be reached: hull radius 0.25 m + clearance 0.05 m - half the lane width of 0.42 m";
     assert!(said.iter().any(|said| said.starts_with(shell)), "{said:?}");
 }
 

@@ -112,7 +112,7 @@ struct RepairLimits<'a> {
 }
 
 impl RepairLimits<'_> {
-    /// The outcome of a repair that keeps to the limits.
+    /// The outcome of a repair that stays within the limits.
     fn outcome<'a>(&self, repair: RepairedPlan<'a>, log: &dyn Fn(&str)) -> Outcome<'a> {
         let longest_m = self.current.length_m() * (1.0 + LONGER) + LONGER_M;
         if repair.0.length_m > longest_m {
@@ -120,7 +120,7 @@ impl RepairLimits<'_> {
             log(&format!("a new plan may be shorter than the repair: {what}; limit {longest_m:.0} m"));
             return Outcome::Long(repair);
         }
-        log(&repair.0.summary("plan under way, repaired"));
+        log(&repair.0.summary("current plan, repaired"));
         Outcome::Repaired(repair)
     }
 
@@ -136,14 +136,14 @@ impl RepairLimits<'_> {
             Some(format!("coverage is below {:.2} %", 100.0 * least))
         } else if *is_blocked && goes_on(current, &repaired.scan.path()) {
             // A robot that cannot continue must not be sent on along the same path.
-            Some("it continues where the robot was blocked".to_owned())
+            Some("it follows the same path on which the robot was blocked".to_owned())
         } else {
             None
         }
     }
 }
 
-/// Whether a path begins as the current plan continues.
+/// Whether a path begins the way the current plan continues.
 fn goes_on(current: &CurrentPlan, path: &[Point]) -> bool {
     let first = |path: &[Point], far_m: f64| {
         let fine = polyline::resampled(path, 0.1);

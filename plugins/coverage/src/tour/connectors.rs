@@ -1,4 +1,4 @@
-//! Connectors between lanes: shortest paths of the slit domain, computed when first needed.
+//! Connectors between lanes: shortest paths in the slit domain, computed when first needed.
 
 use crate::lanes::Lane;
 use crate::plane::Course;
@@ -23,8 +23,8 @@ struct LaneEnd {
 }
 
 impl<'a> Connectors<'a> {
-    /// Creates the connectors of some lanes. Known costs may come from connectors of the first of these lanes with the
-    /// same home and start.
+    /// Creates the connectors between some lanes. Known costs may come from earlier connectors between the first of
+    /// these lanes, with the same home and start.
     pub(crate) fn new(
         domain: &'a SlitDomain<'a>,
         lanes: &[Lane],

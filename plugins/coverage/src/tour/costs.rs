@@ -1,4 +1,4 @@
-//! Costs of connectors, as far as computed.
+//! The costs of the connectors computed so far.
 
 use rustc_hash::FxHashMap;
 
@@ -11,7 +11,7 @@ pub(crate) type Tour = Vec<End>;
 
 /// Relative error of a cost in single precision.
 pub(super) const ROUNDING: f64 = 1e-6;
-/// Maximum number of ends for which all costs fit into a table.
+/// Maximum number of ends for which the costs are kept in a table.
 const TABLE: usize = 1600;
 
 /// Costs by pairs of ends, the smaller end first. The last two ends are home and start.

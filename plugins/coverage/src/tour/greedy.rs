@@ -1,5 +1,5 @@
-//! The first tour: for each end, neighbours are the few ends cheapest to reach, and the cheapest pairs are joined
-//! first.
+//! The first tour: the cheapest pairs of neighbours are joined first. The neighbours of an end are the few ends that
+//! are cheapest to reach from it.
 
 use crate::jobs::Job;
 use crate::tour::connectors::Connectors;
@@ -9,7 +9,7 @@ use planner_api::Result;
 use std::collections::HashMap;
 use world::Point;
 
-/// Approximate progress of a tour when neighbours are listed, as a share of its time.
+/// Approximate progress of a tour once the neighbours are listed, as a share of its time.
 pub(super) const LISTED: f64 = 0.3;
 
 /// An end and the cost of going there, metres.
@@ -50,7 +50,7 @@ fn bucket(at: Point) -> (i64, i64) {
     (at.x.floor() as i64, at.y.floor() as i64)
 }
 
-/// The nearest ends of other lanes, by straight lines.
+/// The nearest ends of other lanes, by straight-line distance.
 fn nearest(connectors: &Connectors<'_>, buckets: &HashMap<(i64, i64), Vec<End>>, u: End) -> Vec<End> {
     let (x, y) = bucket(connectors.at(u));
     let mut found: Vec<End> = Vec::new();
@@ -93,7 +93,7 @@ fn cheapest(connectors: &Connectors<'_>, u: End, nearest: Vec<End>) -> Vec<Neigh
 struct Chains {
     /// The end that each end is joined to.
     joined: Vec<Option<End>>,
-    /// For every lane another lane of its chain, or itself: a forest with one root per chain.
+    /// For every lane, another lane in its chain, or itself: a forest with one root per chain.
     above: Vec<usize>,
 }
 

@@ -10,7 +10,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::collections::VecDeque;
 
-/// A smaller change does not count as a gain, metres.
+/// Changes smaller than this are not gains, metres.
 const LEAST_GAIN_M: f64 = 1e-6;
 
 /// The effort of the search, and the price of turns.
@@ -46,7 +46,7 @@ struct Join {
 /// A change of the tour.
 struct Change {
     gain_m: f64,
-    /// The ends that are joined differently now.
+    /// The ends that are now joined differently.
     touched: Vec<End>,
 }
 
@@ -161,7 +161,7 @@ impl Search<'_> {
             return None;
         }
         let most_m = join.left_m + join.opened_m - join.joined_m;
-        // A lower bound of a connector's cost is known before the cost is computed.
+        // A lower bound for a connector's cost is known before the cost is computed.
         if most_m - ways.least(pu, pv) <= LEAST_GAIN_M {
             return None;
         }
@@ -254,7 +254,7 @@ impl Search<'_> {
         self.number(0, n);
     }
 
-    /// Swaps two neighbouring runs somewhere: a double bridge that changes little.
+    /// Swaps two neighbouring runs at a random position: a double bridge that changes little.
     fn kick(&mut self, random: &mut Pcg64Mcg) -> Change {
         let n = self.entries.len();
         let reach = KICK_REACH.min(n - 3);

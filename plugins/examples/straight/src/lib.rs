@@ -13,7 +13,7 @@ struct Mine {
 impl Planner for Mine {
     const ID: &'static str = env!("CARGO_PKG_NAME");
     const NAME: &'static str = "Straight to the target";
-    const ABOUT: &'static str = "Drives straight to the target and ignores obstacles.";
+    const ABOUT: &'static str = "Drives directly to the target and ignores obstacles.";
     const CAPS: Caps = Caps::LOCAL;
     const PARAMS: &'static [ParamSpec] =
         &[float("speed", "Speed", "m/s", 0.01, 2.0, 0.2).help("Speed on the way to the target.").live()];

@@ -45,7 +45,7 @@ pub struct Obstacle {
     pub velocity: Vec2,
 }
 
-/// A special part of the floor, see [`crate::ZoneKind`]. Arrays of zones carry a stride, so that the struct can grow.
+/// A special part of the floor; see [`crate::ZoneKind`]. Arrays of zones carry a stride, so that the struct can grow.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct Zone {

@@ -1,6 +1,7 @@
 //! The console's side of the inputs: lends safe values to a planner as structs of the C ABI.
 //!
-//! Every struct made here points into the values that it was made from and is valid as long as they stay in place.
+//! Every struct made here points into the values that it was made from, and is valid only while those values stay in
+//! place.
 
 use super::{Leg, Obstacle, Outline, PlanIn, Pose, Site, StepIn, Str, Vec2, Zone, input};
 use crate::{PoseEstimate, Reason, Task, TetherLimits, site};
@@ -54,7 +55,7 @@ pub fn zones(from: &[site::Zone<'_>]) -> Vec<Zone> {
     from.iter().map(|z| Zone { kind: z.kind as u32, reserved: 0, outline: outline(&z.outline) }).collect()
 }
 
-/// Converts a site to the C ABI; `obstacles` and `zones` are the converted ones of `from`.
+/// Converts a site to the C ABI; `obstacles` and `zones` are those of `from`, already converted.
 pub fn site(from: &site::Site<'_>, obstacles: &[Obstacle], zones: &[Zone]) -> Site {
     let pace =
         Pace { v_max_m_per_s: from.limits.v_max_m_per_s, w_max_rad_per_s: from.limits.w_max_rad_per_s };
@@ -104,7 +105,7 @@ fn regions(task: &Task<'_>) -> Vec<Outline> {
     regions.iter().map(|vertices| outline(&site::Outline::Polygon { vertices })).collect()
 }
 
-/// What a request borrows in addition to its site, as structs of the C ABI.
+/// Everything that a request borrows besides its site, as structs of the C ABI.
 pub struct PlanParts {
     regions: Vec<Outline>,
     way_legs: Vec<Leg>,
@@ -125,7 +126,7 @@ impl PlanParts {
     }
 }
 
-/// Converts a request to the C ABI; `site` and `parts` are the converted ones of `from`.
+/// Converts a request to the C ABI; `site` and `parts` are those of `from`, already converted.
 pub fn plan(from: &crate::PlanRequest<'_>, site: &Site, parts: &PlanParts) -> PlanIn {
     let (reason, swap_from) = match from.reason {
         Reason::Start => (input::REASON_START, ""),
@@ -187,7 +188,7 @@ pub fn plan(from: &crate::PlanRequest<'_>, site: &Site, parts: &PlanParts) -> Pl
     }
 }
 
-/// Converts a planner's view of one tick to the C ABI; `obstacles` are the converted ones of `from`.
+/// Converts a planner's view of one tick to the C ABI; `obstacles` are those of `from`, already converted.
 pub fn step(from: &crate::Sensed<'_>, obstacles: &[Obstacle]) -> StepIn {
     let (targets_ahead, n_targets_ahead) = points(from.targets_ahead);
     let (path_ahead, n_path_ahead) = points(from.path_ahead);

@@ -127,7 +127,8 @@ impl StepOut {
     /// Reads the command from the numbers.
     ///
     /// # Errors
-    /// Which number is invalid: a sentence for the operator that continues after the planner's name.
+    /// States which number is invalid, for the operator; the text completes a sentence that begins with the planner's
+    /// name.
     pub fn get(&self) -> Result<Command, String> {
         let status = match self.status {
             0 => Status::Moving,
@@ -157,7 +158,8 @@ impl Leg {
     /// Reads the leg.
     ///
     /// # Errors
-    /// The tag is unknown: a sentence for the operator that continues after the planner's name.
+    /// States that the tag is unknown, for the operator; the text completes a sentence that begins with the planner's
+    /// name.
     pub fn get(&self) -> Result<crate::Leg, String> {
         let tag = LegTag::from_number(self.tag)
             .ok_or_else(|| format!("gave a leg of unknown kind {}", self.tag))?;

@@ -54,7 +54,8 @@ pub type Restore = unsafe extern "C" fn(*mut c_void, *const Host, u32, *const u8
 /// Returns the function table of an optional extension by name, or null.
 pub type GetExtension = unsafe extern "C" fn(Str) -> *const c_void;
 
-/// One planner. The functions are optional so that a null pointer causes an error message and not undefined behaviour.
+/// One planner. The functions are optional so that a null pointer causes an error message rather than undefined
+/// behaviour.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct Planner {
@@ -78,7 +79,7 @@ pub struct Planner {
     pub get_extension: Option<GetExtension>,
 }
 
-/// The one exported symbol. It is data, so that the console can read it before it calls anything.
+/// The one exported symbol. It is data rather than a function, so the console can read it before it calls anything.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct Entry {
@@ -100,9 +101,9 @@ pub struct Stamp {
     pub abi_minor: u32,
 }
 
-/// The content of the stamp's section in a Rust library: the stamp and the planner ids, each ended by a zero byte. It
-/// tells the console the ids before it loads anything. A library without ids there, such as one in C, is searched for
-/// them.
+/// The content of the stamp's section in a Rust library: the stamp, followed by the planner ids, each terminated by a
+/// zero byte. The console reads the ids from it before it loads anything. Libraries that list no ids there, such as
+/// those written in C, are searched for them.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Label<const N: usize> {
@@ -110,12 +111,12 @@ pub struct Label<const N: usize> {
     pub ids: [u8; N],
 }
 
-/// The list of planners at which [`Entry::planners`] points.
+/// The list of planners that [`Entry::planners`] points to.
 #[repr(transparent)]
 #[derive(Debug)]
 pub struct PlannerList<const N: usize>(pub [*const Planner; N]);
 
-// SAFETY: immutable; the pointers lead to immutable statics.
+// SAFETY: immutable; the pointers point to immutable statics.
 unsafe impl Sync for Entry {}
 // SAFETY: as above.
 unsafe impl Sync for Planner {}
@@ -150,7 +151,7 @@ impl<const N: usize> Label<N> {
     }
 }
 
-/// The number of bytes that ids take in a [`Label`].
+/// The number of bytes that these ids take up in a [`Label`].
 pub const fn label_len(ids: &[&str]) -> usize {
     let (mut n, mut i) = (0, 0);
     while i < ids.len() {

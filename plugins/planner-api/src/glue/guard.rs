@@ -18,9 +18,9 @@ thread_local! {
 /// The plugin links its own copy of the standard library, so its panic hook affects nobody else.
 static HOOK: Once = Once::new();
 
-/// Runs the author's code. Refusals and panics become a code; their sentence is reported to the console.
+/// Runs the author's code. A refusal or panic becomes a code, and its sentence is reported to the console.
 ///
-/// The sentence of a panic is `file:line: payload`.
+/// The sentence for a panic is `file:line: payload`.
 pub(super) fn run(services: &HostServices, call: impl FnOnce() -> Result<()>) -> i32 {
     match caught(call) {
         Ok(Ok(())) => 0,
@@ -41,9 +41,9 @@ pub(super) fn quietly(call: impl FnOnce()) {
     let _ = caught(call);
 }
 
-/// Runs work on a thread that a planner started. A panic there is returned as an error, which the waiting call can pass
-/// on, so that the console receives its source location and text as for any other panic. A panic that only ended its
-/// thread would lose both.
+/// Runs work on a thread that a planner started. A panic there is returned as an error that the waiting call can pass
+/// on. The console then receives the source location and text, as for any other panic; if the panic only ended its
+/// thread, both would be lost.
 ///
 /// ```
 /// use planner_api::{Code, on_own_thread};
@@ -56,7 +56,7 @@ pub(super) fn quietly(call: impl FnOnce()) {
 /// ```
 ///
 /// # Errors
-/// What the work returns, or [`Code::Panic`] with `file:line: payload`.
+/// The error that the work returns, or [`Code::Panic`] with `file:line: payload`.
 pub fn on_own_thread<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
     without_unwinding(work).unwrap_or_else(|sentence| Err(PlannerError::new(Code::Panic, sentence)))
 }
@@ -66,7 +66,7 @@ fn caught<T>(call: impl FnOnce() -> T) -> std::result::Result<T, String> {
     without_unwinding(call)
 }
 
-/// The source location is known once a call of the console has set the hook; tests that call planners directly keep
+/// The source location is known once a call from the console has set the hook; tests that call planners directly keep
 /// their own hook.
 fn without_unwinding<T>(call: impl FnOnce() -> T) -> std::result::Result<T, String> {
     catch_unwind(AssertUnwindSafe(call)).map_err(|payload| {
@@ -85,15 +85,15 @@ fn note(info: &PanicHookInfo<'_>) {
     if trace.status() == BacktraceStatus::Captured {
         let _ = writeln!(std::io::stderr(), "backtrace:\n{trace}panicked at {place}: {what}");
     } else if cfg!(panic = "abort") {
-        // Nothing will catch this panic; the console shows the last line that a dead worker printed.
+        // Nothing will catch this panic. The console shows the last line that a dead worker printed.
         let _ = writeln!(std::io::stderr(), "panicked at {place}: {what}");
     }
-    // A thread that is being torn down has lost its thread-local storage; then the source location stays unknown.
+    // A thread that is being torn down has lost its thread-local storage, so the source location stays unknown.
     let _ = WHERE.try_with(|last| last.replace(place));
 }
 
-/// Shortens an absolute path of a source file so that it begins at its package, so that the same panic reads the same
-/// on every machine. Paths within the author's workspace are relative and stay as they are.
+/// Shortens the absolute path of a source file so that it begins at its package. The same panic then reads the same on
+/// every machine. Paths within the author's workspace are relative and stay as they are.
 fn short(file: &str) -> String {
     if !Path::new(file).is_absolute() {
         return file.to_owned();

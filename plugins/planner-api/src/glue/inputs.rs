@@ -30,14 +30,14 @@ unsafe fn outline<'a>(raw: &abi::Outline) -> Result<Outline<'a>> {
     }
 }
 
-/// The size of an obstacle in the first version of the ABI, which had no velocity, bytes.
+/// The size of an obstacle in the first version of the ABI, in which obstacles had no velocity, bytes.
 const FIRST_OBSTACLE: usize = 32;
 
-/// Reads an array whose elements may have grown: fields that an older console's elements lack are zero. Refuses
+/// Reads an array whose elements may have grown: fields that an older console's elements lack are read as zero. Refuses
 /// elements shorter than `least` bytes.
 ///
 /// # Safety
-/// `first` points at `n` elements, `stride` bytes apart, and all-zero bytes are a valid `T`.
+/// `first` points to `n` elements, `stride` bytes apart, and all-zero bytes are a valid `T`.
 unsafe fn strided<T: Copy, U>(
     first: *const T,
     n: u32,
@@ -96,7 +96,7 @@ unsafe fn zones<'a>(first: *const abi::Zone, n: u32, stride: u32) -> Result<Vec<
     unsafe { strided(first, n, stride, size_of::<abi::Zone>(), make) }
 }
 
-/// A site and the arrays that its safe form borrows.
+/// A site, and the arrays that its safe form borrows.
 pub(super) struct SiteParts<'a> {
     raw: abi::Site,
     boundary: Boundary<'a>,
@@ -108,7 +108,7 @@ impl SiteParts<'_> {
     /// Reads a site.
     ///
     /// # Safety
-    /// `site` is null or points at a site that does not change while `self` is used.
+    /// `site` is null or points to a site that does not change while `self` is used.
     pub(super) unsafe fn read(site: *const abi::Site) -> Result<Self> {
         if site.is_null() {
             return Err(invalid("the console sent no site"));
@@ -157,8 +157,8 @@ impl SiteParts<'_> {
     }
 }
 
-/// Acceleration when the console does not state it, metres per second squared. The robots of older consoles stopped
-/// instantly.
+/// The acceleration assumed if the console does not state one, metres per second squared. In older consoles robots
+/// stopped instantly.
 const AT_ONCE_M_PER_S2: f64 = 1e3;
 
 fn acceleration(site: &abi::Site) -> f64 {
@@ -177,7 +177,7 @@ fn amphibious(site: &abi::Site) -> Option<Amphibious> {
 /// Reads parameter values and checks that their keys are UTF-8.
 ///
 /// # Safety
-/// `first` points at `n` values that do not change while the result is used.
+/// `first` points to `n` values that do not change while the result is used.
 pub(super) unsafe fn config_values<'a>(first: *const abi::Value, n: u32) -> Result<Vec<Value<'a>>> {
     // SAFETY: promised by the caller.
     let raw: &[abi::Value] = unsafe { abi::slice(first, n as usize) };
@@ -204,10 +204,10 @@ fn estimate(pose: abi::Pose, covariance: &[f64; 6]) -> PoseEstimate {
     }
 }
 
-/// Reads why a plan is requested; a reason that only newer consoles have counts as the operator's request.
+/// Reads why a plan is requested; a reason that only newer consoles know is treated as a request by the operator.
 ///
 /// # Safety
-/// `raw.from` points at a text.
+/// `raw.from` points to a text.
 pub(super) unsafe fn reason_of(raw: &abi::PlanIn) -> Reason {
     match raw.reason {
         input::REASON_START => Reason::Start,
@@ -220,10 +220,10 @@ pub(super) unsafe fn reason_of(raw: &abi::PlanIn) -> Reason {
     }
 }
 
-/// Reads the regions of a request, which are still to be covered.
+/// Reads the regions that a request states as still to be covered.
 ///
 /// # Safety
-/// `raw.regions` points at outlines that do not change while the result is used.
+/// `raw.regions` points to outlines that do not change while the result is used.
 pub(super) unsafe fn regions_of<'a>(raw: &abi::PlanIn) -> Result<Vec<&'a [Point2<f64>]>> {
     // SAFETY: promised by the caller.
     let outlines: &[abi::Outline] = unsafe { abi::slice(raw.regions, raw.n_regions as usize) };
@@ -242,7 +242,7 @@ pub(super) unsafe fn regions_of<'a>(raw: &abi::PlanIn) -> Result<Vec<&'a [Point2
 /// Reads the task of a request; `regions` are those of the same request.
 ///
 /// # Safety
-/// `raw.targets` points at points that do not change while the result is used.
+/// `raw.targets` points to points that do not change while the result is used.
 pub(super) unsafe fn task_of<'a>(raw: &abi::PlanIn, regions: &'a [&'a [Point2<f64>]]) -> Result<Task<'a>> {
     // SAFETY: promised by the caller.
     let targets = unsafe { points(raw.targets, raw.n_targets) };
@@ -265,10 +265,10 @@ pub(super) unsafe fn task_of<'a>(raw: &abi::PlanIn, regions: &'a [&'a [Point2<f6
     }
 }
 
-/// Reads the plan to keep to, if there is one.
+/// Reads the plan that is to be kept as far as possible, if there is one.
 ///
 /// # Safety
-/// The path, legs and cuts of `raw` point at as many elements as `raw` states.
+/// The path, legs and cuts of `raw` point to as many elements as `raw` states.
 pub(super) unsafe fn under_way_of(raw: &abi::PlanIn) -> Result<Option<Plan>> {
     // SAFETY: promised by the caller, as everywhere below.
     let path = unsafe { points(raw.way, raw.n_way) }.to_vec();
@@ -296,7 +296,7 @@ pub(super) unsafe fn under_way_of(raw: &abi::PlanIn) -> Result<Option<Plan>> {
 /// Assembles a request from its parts.
 ///
 /// # Safety
-/// `raw.previous` points at points that do not change while the result is used.
+/// `raw.previous` points to points that do not change while the result is used.
 pub(super) unsafe fn plan_request<'a>(
     raw: &abi::PlanIn,
     reason: &'a Reason,
@@ -315,7 +315,7 @@ pub(super) unsafe fn plan_request<'a>(
     }
 }
 
-/// A planner's view of one tick, with the array that its safe form borrows.
+/// A planner's view of one tick, and the array that its safe form borrows.
 pub(super) struct SensedParts<'a> {
     raw: abi::StepIn,
     targets_ahead: &'a [Point2<f64>],
@@ -327,7 +327,7 @@ impl SensedParts<'_> {
     /// Reads a planner's view of one tick.
     ///
     /// # Safety
-    /// `input` points at a struct that does not change while `self` is used.
+    /// `input` points to a struct that does not change while `self` is used.
     pub(super) unsafe fn read(input: *const abi::StepIn) -> Result<Self> {
         // SAFETY: promised by the caller.
         unsafe {

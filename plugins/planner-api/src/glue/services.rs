@@ -8,14 +8,14 @@ use std::time::Duration;
 /// A copy of the console's table of services; functions that an older console lacks are not called.
 pub(super) struct HostServices(Host);
 
-/// The number of drawings passed in one call.
+/// The maximum number of drawings passed in one call.
 const BATCH: usize = 32;
 
 impl HostServices {
     /// Copies the console's table.
     ///
     /// # Safety
-    /// `host` points at a table that is valid as long as `self` is used.
+    /// `host` points to a table that remains valid while `self` is used.
     pub(super) unsafe fn read(host: *const Host) -> Self {
         // SAFETY: promised by the caller.
         Self(unsafe { abi::copy_sized(host) })

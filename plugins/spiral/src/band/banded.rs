@@ -5,17 +5,17 @@ use world::Vector;
 /// A symmetric positive definite matrix with few diagonals; its Cholesky factor replaces it in place.
 pub(super) struct Banded {
     width: usize,
-    /// The elements, row by row, from the diagonal backwards.
+    /// The elements of each row in turn, from the diagonal backwards.
     cells: Vec<f64>,
 }
 
 impl Banded {
-    /// Creates a zero matrix with this many rows, and this many diagonals from the main one on.
+    /// Creates a zero matrix with this many rows and this many diagonals, including the main one.
     pub(super) fn new(size: usize, width: usize) -> Self {
         Self { width, cells: vec![0.0; size * width] }
     }
 
-    /// Adds the square of a linear combination of neighbours.
+    /// Adds the square of a linear combination of neighbouring unknowns.
     pub(super) fn add(&mut self, first: usize, factors: &[f64], weight: f64) {
         for (i, a) in factors.iter().enumerate() {
             for (j, b) in factors[..=i].iter().enumerate() {

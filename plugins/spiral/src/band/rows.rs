@@ -1,4 +1,4 @@
-//! The limits of a band: linear combinations of its points, and where these may be.
+//! The limits of a band: linear combinations of its points, and the values permitted for them.
 
 use geometry::convex::Part;
 use world::{Point, Vector, polyline};
@@ -6,7 +6,7 @@ use world::{Point, Vector, polyline};
 /// Penalties for solids and for turns.
 const SOLID_PENALTY: f64 = 1.0;
 const TURN_PENALTY: f64 = 15.0;
-/// Solids get a row if a segment comes closer to them than their clearance plus this, metres.
+/// A solid gets a row if a segment comes closer to it than its clearance plus this, metres.
 const REACH_M: f64 = 0.25;
 
 /// The permitted values of a combination of points.
@@ -29,7 +29,7 @@ pub(super) struct Row<'a> {
     pub key: (u32, u32),
     /// Index of the first point in the combination.
     pub first: usize,
-    /// Factors of that point and of those after it.
+    /// Factors of that point and of the points after it.
     pub factors: Vec<f64>,
     /// The permitted values of the combination.
     pub limit: Limit<'a>,
@@ -84,12 +84,12 @@ impl Limit<'_> {
 pub(super) enum Solid<'a> {
     /// A circle that no segment of the path may enter.
     Circle(Point, f64),
-    /// Straight sides, from which the ends of segments keep this distance.
+    /// Straight sides; the ends of segments keep this distance from them.
     Sides(&'a Part, f64),
 }
 
-/// Returns the conditions that keep a path this far from a part. Corners keep all of the path away, sides only the ends
-/// of its segments.
+/// Returns the conditions that keep a path this far from a part. Corners keep the entire path away; sides keep only the
+/// ends of its segments away.
 pub(super) fn solids_of(part: &Part, keep_m: f64) -> Vec<Solid<'_>> {
     match part {
         Part::Capsule { a, b, half_width_m } if a == b => vec![Solid::Circle(*a, keep_m + half_width_m)],
@@ -105,10 +105,10 @@ pub(super) fn solids_of(part: &Part, keep_m: f64) -> Vec<Solid<'_>> {
 }
 
 impl<'a> Solid<'a> {
-    /// Adds the rows for the parts of a path that are near.
+    /// Adds the rows for the parts of a path that are near this solid.
     ///
-    /// A segment stays out of a circle if it is beyond a tangent. The middle of the segment determines the tangent. If
-    /// its nearest point did, two segments that meet on the circle would keep each other straight.
+    /// A segment stays out of a circle if it is beyond a tangent, which the middle of the segment determines. If its
+    /// nearest point determined the tangent, two segments that meet on the circle would keep each other straight.
     pub(super) fn rows(&self, kind: u32, way: &[Point], rows: &mut Vec<Row<'a>>) {
         match *self {
             Self::Circle(center, radius_m) => {

@@ -1,24 +1,25 @@
-//! How much a plan for all that is left has to save, and where it begins.
+//! How much time a plan for all that is left must save, and where it begins.
 
 use super::super::{known::Known, requests::AskedPlan};
 use crate::{ask::PlanAsk, event::Effort, task::Joint};
 use planner_api::{Plan, PoseEstimate, Reason};
 use world::{CoverageGrid, Point, Tool};
 
-/// Minimum lead of its beginning, seconds of driving: time to plan, and for an operator to decide.
+/// Minimum time until the robot reaches the start of the better plan, seconds of driving: time to plan, and for an
+/// operator to decide.
 const LEAD_S: f64 = 60.0;
-/// Minimum lead as a share of the time left of the current plan: in a large tank planning and deciding take longer.
+/// The same minimum, as a share of the time left in the current plan: in a large tank, planning and deciding take longer.
 const LEAD_SHARE: f64 = 0.05;
-/// No better plan is sought if less than this is left, seconds of driving: by the two limits below, it would have to save
-/// more than 12 % of the rest.
+/// No better plan is sought if less than this is left, seconds of driving: given the two thresholds below, such a plan
+/// would have to save more than 12 % of the rest.
 const WORTH_S: f64 = 300.0;
-/// A change must save more than this, seconds: the time an operator needs to look at the plan ...
+/// A change must save more than this, seconds: the time that an operator needs to check the plan ...
 const CHANGE_S: f64 = 30.0;
-/// ... plus this share of the rest: the typical excess of the path driven over the path planned, caused by unforeseen
-/// obstacles.
+/// ... plus this share of the rest: by about this much, the path driven is typically longer than the path planned,
+/// because of unforeseen obstacles.
 const CHANGE_SHARE: f64 = 0.02;
-/// Two plans count as scanning the same floor if they differ by at most this share of what is left to scan. Cells count
-/// by their centres, so plans with different lanes differ by single cells.
+/// Two plans count as scanning the same floor if the amounts that they leave unscanned differ by at most this share of
+/// what is left to scan. Cells count by their centres, so plans with different lanes differ by single cells.
 const SAME_FLOOR_SHARE: f64 = 0.0005;
 
 impl Known {
@@ -31,8 +32,8 @@ impl Known {
         (lanes.length_m() - joint.station_m >= WORTH_S * v_m_per_s).then_some(joint)
     }
 
-    /// The inputs of a plan for all that will be left at the place where it begins, and that place; `None` if too little
-    /// is left.
+    /// The inputs of a plan for what will be left when the robot reaches the place where the plan begins, together with
+    /// that place; `None` if too little is left.
     pub(in crate::engine) fn better_plan_ask(&self) -> Option<(Joint, (AskedPlan, PlanAsk))> {
         let joint = self.joint()?;
         let way = self.task.cover()?.way_to(&joint);
@@ -46,7 +47,7 @@ impl Known {
         Some((joint, (AskedPlan::from_here(Reason::MapChanged, here.position), ask)))
     }
 
-    /// The floor that will have been scanned after driving a path.
+    /// The floor that will have been scanned once a path has been driven.
     fn coverage_after(&self, way: &[Point]) -> CoverageGrid {
         let mut coverage = self.floor.coverage.clone();
         Tool::along(way, |from, to| coverage.mark(self.config.tool(), from, to));
@@ -66,7 +67,8 @@ impl Known {
         if saves_s <= worth_s {
             let [flown_min, better_min, worth_min] = [flown.time_s, better.time_s, worth_s].map(|s| s / 60.0);
             return Some(format!(
-                "{better_min:.1} min instead of {flown_min:.1}; a change is worth {worth_min:.1} min"
+                "its plan would take {better_min:.1} min instead of {flown_min:.1}; a change must save \
+                 more than {worth_min:.1} min"
             ));
         }
         let coverage = self.coverage_after(way);
@@ -80,13 +82,16 @@ impl Known {
         let less = left as f64 - as_now as f64;
         if less > same {
             let missed_m2 = less * cell_m2;
-            return Some(format!("it saves {} but scans {missed_m2:.2} m² less", better.saving(&flown)));
+            return Some(format!(
+                "its plan saves {} but scans {missed_m2:.2} m² less",
+                better.saving(&flown)
+            ));
         }
         let certificate = self
             .tether
             .as_ref()
             .map(|tether| tether.certify_after(way, plan, self.chart.world(), self.task_ends_at_anchor()))?;
-        let why = || format!("it is not safe for the tether: {}", certificate.reasons.join("; "));
+        let why = || format!("its plan is not safe for the tether: {}", certificate.reasons.join("; "));
         (!certificate.certified).then(why)
     }
 }

@@ -14,7 +14,7 @@ use planner_api::Reason;
 const SAVE_EVERY_S: f64 = 1.0;
 
 impl Driving {
-    /// The next ask to this planner. No command is requested while the robot stands still for the planner that takes
+    /// The next ask to this planner. No command is requested while the robot stands still for a planner that is to take
     /// over.
     pub(in crate::engine) fn next_ask(
         &mut self,
@@ -81,7 +81,7 @@ impl Driving {
         self.worker.ask(known.tick, PendingKind::Step { usable: true }, What::Step(Box::new(step)))
     }
 
-    /// The answer that the mission would like from this planner before the tick ends.
+    /// The answer from this planner that the mission would like to have before the tick ends.
     pub(in crate::engine) fn awaits(&self, known: &Known) -> Option<Awaits> {
         self.worker.pending.as_ref()?;
         Some(if !known.is_running() {

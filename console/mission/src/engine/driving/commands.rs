@@ -1,4 +1,4 @@
-//! Commands of the active planner: which one is sent, and in what form the robot receives it.
+//! Commands from the active planner: which one is sent, and in what form the robot receives it.
 
 use super::{
     super::{
@@ -25,13 +25,13 @@ pub(super) struct Arrived {
     ask: AskId,
     command: Command,
     said: Said,
-    /// The number of ticks that the robot stood still for it, if it is the first of several late commands.
+    /// The number of ticks that the robot stood still for this command, if it is the first of several late commands.
     late_ticks: Option<u64>,
 }
 
 impl Driving {
-    /// Takes a command that was requested in this tick or in an earlier one. Of the commands that arrive before the tick
-    /// ends, the latest is sent.
+    /// Takes a command that was requested in this tick or in an earlier one. If several commands arrive before the tick
+    /// ends, only the latest is sent.
     pub(in crate::engine) fn take_command(
         &mut self,
         (asked, usable): (&Pending, bool),
@@ -52,7 +52,7 @@ impl Driving {
         }
     }
 
-    /// Sends the command of this tick, if any.
+    /// Sends the command for this tick, if there is one.
     pub(in crate::engine) fn send(&mut self, known: &mut Known, happened: &mut Happened) -> Option<Drive> {
         let arrived = self.command.take()?;
         let (ask, command) = (arrived.ask, arrived.command);
@@ -84,7 +84,7 @@ impl Driving {
         }
     }
 
-    /// Records that a command is not sent; what the planner drew and logged with it is still passed on.
+    /// Records that a command is not sent; what the planner drew and logged with the command is still passed on.
     fn discard(&self, arrived: Arrived, happened: &mut Happened) {
         let ask = arrived.ask;
         self.pass_on(arrived, happened);
@@ -100,7 +100,7 @@ impl Driving {
     }
 }
 
-/// The conversion of a command on its way to the robot, at one moment.
+/// How a command is converted on its way to the robot, at one moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sending {
     heading_rad: f64,
@@ -109,9 +109,9 @@ pub struct Sending {
 }
 
 impl Sending {
-    /// Converts a command to the form in which the robot receives it: within its limits, in its own way of moving, and
-    /// rounded like all reported numbers. Converting a sent command again changes nothing, so recorded commands can be
-    /// replayed.
+    /// Converts a command to the form in which the robot receives it: within the robot's limits, for its way of moving,
+    /// and rounded like all reported numbers. Converting a converted command again changes nothing, so recorded commands
+    /// can be replayed.
     pub fn as_sent(&self, command: Command) -> Command {
         let drive = drive_for(command.drive, self.heading_rad, &self.limits, self.turn_first_rad);
         rounded_command(Command { drive, status: command.status })

@@ -26,7 +26,7 @@ impl Driving {
         self.reconfigure.as_ref().or(asked)
     }
 
-    /// Whether a choice is this planner with other values of live parameters only. Such a change needs no new plan.
+    /// Whether a choice is this planner with only the values of live parameters changed. Such a change needs no new plan.
     /// Resetting a value to its default does not qualify, because planners receive only explicit values.
     pub(in crate::engine) fn takes_live(&self, choice: &PlannerChoice) -> bool {
         let before = &self.worker.choice;
@@ -42,9 +42,9 @@ impl Driving {
             && changed.all(|(key, _)| is_live(key))
     }
 
-    /// Whether the planner can take a new value of a parameter directly. A planner that is being opened while the mission
-    /// runs receives the value once it is open, and refuses it if it is unknown. During a hold it is opened with the
-    /// value.
+    /// Whether the planner can take a new value of a parameter directly. A planner that is still being opened while the
+    /// mission runs receives the value once it is open, and refuses the value if the parameter is unknown. During a hold,
+    /// the planner is opened with the value.
     pub(in crate::engine) fn takes_value(&self, key: &str, known: &Known) -> bool {
         match &self.worker.info {
             Some(info) => info.has_live(key) && (self.worker.is_ready() || known.is_running()),
@@ -58,7 +58,7 @@ impl Driving {
         is_blamed && !self.course.has_plan()
     }
 
-    /// Whether a successor can take over this planner's current state.
+    /// Whether a successor can take over the current state of this planner.
     pub(in crate::engine) fn can_hand_over_state(&self, successor: &str) -> bool {
         let snapshots = self.worker.info.as_ref().is_some_and(|info| info.snapshots);
         snapshots && self.worker.is_ready() && successor == self.id()
@@ -76,17 +76,17 @@ impl Driving {
             None => Readiness::NoPlan,
             Some(Err(why)) => Readiness::Failed(why),
             Some(Ok(plan)) if self.course.has_plan() => Readiness::Plan(*plan),
-            // It is being made again, because something was found in its way.
+            // The plan is being made again, because something was found in its way.
             Some(Ok(_)) => Readiness::Preparing,
         }
     }
 
-    /// Whether the plan shown to the operator before the start is no longer the one to be run.
+    /// Whether the plan that the operator saw before the start is no longer the one that will be run.
     pub(super) fn is_seen_plan_outdated(&self, known: &Known) -> bool {
         known.is_waiting() && matches!(self.first_plan, Some(Ok(_))) && !self.course.has_plan()
     }
 
-    /// Records the plan shown to the operator before the start, or why there is none.
+    /// Records the plan that the operator sees before the start, or why there is none.
     pub(in crate::engine) fn show_first_plan(
         &mut self,
         plan: &Plan,

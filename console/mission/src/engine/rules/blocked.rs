@@ -1,27 +1,27 @@
-//! A planner that cannot continue along its lanes is asked for new ones from the robot's position, after a delay: the robot
-//! may first have to turn, or to see the obstacle better.
+//! A planner that cannot continue along its lanes is asked for new ones from the robot's position. This happens after a
+//! delay, because the robot may first have to turn, or to see the obstacle better.
 
 use super::seen::Verdict;
 use planner_api::{Reason, Status};
 use world::Point;
 
-/// A planner that has been stuck in its lanes for this long is asked for new ones, seconds.
+/// A planner that cannot continue along its lanes for this long is asked for new ones, seconds.
 const BLOCKED_S: f64 = 1.0;
 /// Maximum number of new plans at one place.
 const MOST_PLANS: usize = 4;
-/// Farther away than this the robot counts as blocked at a new place, metres.
+/// A robot that is farther away than this counts as blocked at a new place, metres.
 const MOVED_ON_M: f64 = 0.3;
 
-/// How long a planner has reported that it cannot continue, and where.
+/// How long a planner has been reporting that it cannot continue, and where.
 #[derive(Clone, Debug, Default)]
 pub(in crate::engine) struct BlockedRule {
     blocked_s: f64,
-    /// The place where the planner last reported this, and the number of plans requested there.
+    /// The place where the planner last reported that it cannot continue, and the number of plans requested there.
     at: Option<(Point, usize)>,
 }
 
 impl BlockedRule {
-    /// Processes one command per tick; `in_lanes` is true if the planner follows lanes.
+    /// Processes one command per tick; `in_lanes` tells whether the planner follows lanes.
     pub(crate) fn update(
         &mut self,
         status: Status,

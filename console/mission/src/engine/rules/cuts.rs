@@ -1,4 +1,5 @@
-//! A robot that has left its plan across a cut would wind the cable when it returns to the plan.
+//! Detects that the robot has left its plan across a cut: if the robot then returned to the plan, the cable would be
+//! wound round something.
 
 use world::{
     Boundary, ObstacleMap, Point, Vector,
@@ -7,13 +8,13 @@ use world::{
     tether::crossings,
 };
 
-/// Distance from the end of a return path within which the plan after it counts as begun, metres.
+/// Distance from the end of a return path within which the plan that follows counts as begun, metres.
 pub(in crate::engine) const HOME_M: f64 = 0.3;
 
-/// A cut is extended into something solid if that is no farther from its end than this multiple of the room that the hull
-/// needs: planners draw their outlines slightly larger than the exact ones.
+/// A cut is extended into a solid object if the object is no farther from the end of the cut than this multiple of the
+/// clearance that the hull needs: the outlines that planners draw are slightly larger than the exact ones.
 const ROOT_SHARE: f64 = 1.1;
-/// Length of that extension inside the solid, metres.
+/// Length of that extension inside the solid object, metres.
 const ROOT_M: f64 = 0.01;
 /// A move within this distance of a cut may touch it, metres.
 const BESIDE_M: f64 = 1e-6;
@@ -28,13 +29,13 @@ pub(in crate::engine) struct CutsRule {
 }
 
 impl CutsRule {
-    /// The cuts of a plan that begins here; they apply from the point `from` on.
+    /// Creates the cuts of a plan that begins here; they apply from the point `from` on.
     pub(crate) fn new(lines: &[Vec<Point>], from: Option<Point>, here: Point, solids: &Solids<'_>) -> Self {
         Self { cuts: lines.iter().map(|line| Cut::new(solids.rooted(line))).collect(), from, seen_at: here }
     }
 
-    /// Processes one tick with a reliable position. Returns whether the robot has strayed across a cut by more than its
-    /// hull radius; on the line itself the estimate may scatter from side to side.
+    /// Processes one tick with a reliable position. Returns whether the robot has crossed a cut and is now farther from
+    /// it than its hull radius; close to the cut, scatter of the estimate can cross it back and forth.
     pub(crate) fn update(&mut self, here: Point, radius_m: f64) -> bool {
         let before = std::mem::replace(&mut self.seen_at, here);
         if self.from.is_some_and(|from| (here - from).norm() > HOME_M) {
@@ -47,7 +48,7 @@ impl CutsRule {
         self.cuts.iter().any(|cut| cut.is_beyond && polyline::distance_m(&cut.line, here) > radius_m)
     }
 
-    /// Drops the cuts, because the plan is abandoned.
+    /// Drops the cuts because the plan is abandoned.
     pub(crate) fn clear(&mut self) {
         self.cuts.clear();
     }
@@ -70,8 +71,8 @@ impl Cut {
         Self { line, bounds: (low - beside, high + beside), is_beyond: false }
     }
 
-    /// Whether a move may cross the cut. This test saves time: a plan of a large tank has a hundred cuts, and the robot
-    /// is near one of them.
+    /// Whether a move may cross the cut. This test saves time: a plan for a large tank has a hundred cuts, but the robot
+    /// is near only one of them.
     fn is_near(&self, from: Point, to: Point) -> bool {
         let ((low, high), (west, east)) = (self.bounds, (from.inf(&to), from.sup(&to)));
         west.x <= high.x && west.y <= high.y && east.x >= low.x && east.y >= low.y
@@ -83,20 +84,21 @@ impl Cut {
 pub(in crate::engine) struct Solids<'a> {
     pub boundary: &'a Boundary,
     pub map: &'a ObstacleMap,
-    /// Distance that the hull's centre must keep from solids, metres.
+    /// Distance that the hull's centre must keep from solid objects, metres.
     pub room_m: f64,
 }
 
 impl Solids<'_> {
-    /// Extends a cut so that it runs from solid to solid. Many cuts begin at the edge of the room round a column or a
-    /// wall: a robot that scatters across one and comes back round that end would otherwise count as beyond it for good.
+    /// Extends a cut so that it runs from one solid object to another. Many cuts begin at the edge of the clearance round
+    /// a column or a wall. Scatter could move the robot across such a cut and back round its end, and the robot would
+    /// then count as beyond the cut for good.
     fn rooted(&self, cut: &[Point]) -> Vec<Point> {
         let before = cut.first().and_then(|end| self.root(*end));
         let behind = cut.last().and_then(|end| self.root(*end));
         before.into_iter().chain(cut.iter().copied()).chain(behind).collect()
     }
 
-    /// The point slightly inside the solid that is next to the end of a cut.
+    /// The point slightly inside the solid object that is next to the end of a cut.
     fn root(&self, end: Point) -> Option<Point> {
         let reach_m = ROOT_SHARE * self.room_m;
         let of_obstacles =

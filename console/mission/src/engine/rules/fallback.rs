@@ -1,4 +1,4 @@
-//! After a fault of the active planner the fallback planner takes over, once.
+//! After a fault of the active planner, the fallback planner takes over, but only once.
 
 use crate::{config::MissionConfig, phase::Resumes, planner::PlannerChoice};
 
@@ -21,7 +21,7 @@ impl FallbackRule {
         }
     }
 
-    /// The planner that takes over from this one, at most once.
+    /// The planner that takes over from this one; returned at most once.
     pub(crate) fn update(&mut self, config: &MissionConfig, active: &str) -> Option<PlannerChoice> {
         let choice = self.available(config, active)?.clone();
         self.used = true;

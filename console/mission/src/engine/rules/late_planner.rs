@@ -1,11 +1,11 @@
-//! A planner that answers late: the robot stands still meanwhile, and is held if it takes too long.
+//! A planner that answers late: the robot stands still meanwhile, and is held if the answer takes too long.
 
 use super::seen::{PlannerSeen, Verdict};
 use crate::phase::{Hold, HoldReason, Resumes};
 
-/// An older command is not sent, seconds.
+/// A command older than this is not sent, seconds.
 const STALE_S: f64 = 0.2;
-/// A planner that has not answered for this long puts the robot on hold until it does, seconds.
+/// If a planner has not answered for this long, the robot is held until the planner answers, seconds.
 const SILENT_S: f64 = 2.0;
 
 /// Whether the planner's last command came late.
@@ -15,21 +15,21 @@ pub(in crate::engine) struct LatePlannerRule {
 }
 
 impl LatePlannerRule {
-    /// Records a command that arrived some ticks after it was requested; returns whether it is the first of several late
-    /// ones.
+    /// Records a command that arrived some ticks after it was requested; returns whether it is the first in a row of late
+    /// commands.
     pub(crate) fn arrived(&mut self, ticks: u64) -> bool {
         let begins = ticks > 0 && !self.was_late;
         self.was_late = ticks > 0;
         begins
     }
 
-    /// Whether a command of this age, in seconds, can still be sent.
+    /// Whether a command of this age, in seconds, may still be sent.
     pub(crate) fn is_fresh(age_s: f64) -> bool {
         // Ages are multiples of the tick and carry floating-point errors.
         age_s <= STALE_S + 1e-9
     }
 
-    /// Processes one tick of a running robot: holds the robot when its planner has owed an answer for too long.
+    /// Processes one tick of a running robot: holds the robot if its planner has owed an answer for too long.
     pub(crate) fn update(planner: &PlannerSeen<'_>) -> Option<Verdict> {
         let is_silent = planner.owed_s.is_some_and(|owed_s| owed_s >= SILENT_S - 1e-9);
         is_silent.then(|| {

@@ -13,7 +13,7 @@ pub(in crate::engine) struct LostPositionRule {
 }
 
 impl LostPositionRule {
-    /// Processes one tick of a running robot: holds the robot when the position has been unreliable for too long.
+    /// Processes one tick of a running robot: holds the robot if the position has been unreliable for too long.
     pub(crate) fn update(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
         self.position_lost_s =
             if seen.is_position_good() { 0.0 } else { self.position_lost_s + seen.config.tick_s };
@@ -26,7 +26,7 @@ impl LostPositionRule {
             .then_some(Verdict::Hold(Hold { by, resumes: Resumes::WhenCleared }))
     }
 
-    /// Processes one tick of a robot that this rule holds.
+    /// Processes one tick of a robot that is held by this rule.
     pub(crate) fn update_held(seen: &Seen<'_>) -> Option<Verdict> {
         seen.is_position_good().then_some(Verdict::Resume)
     }

@@ -10,7 +10,7 @@ use crate::{
 use planner_api::Reason;
 use world::Point;
 
-/// Within this distance the robot counts as stopped at the same place again, metres.
+/// Within this distance of the previous stop, the robot counts as stopped at the same place again, metres.
 pub(super) const SAME_PLACE_M: f64 = 1.0;
 
 /// The inputs of the rules in one tick.
@@ -22,17 +22,17 @@ pub(in crate::engine) struct Seen<'a> {
     pub here: Point,
     pub position: PositionTrust,
     pub task: &'a Task,
-    /// Length of the rest of the planner's path, metres, if it has a path.
+    /// Length left of the planner's path, metres, if the planner has a path.
     pub plan_left_m: Option<f64>,
     /// Scanned share of the reachable floor, 0 to 1.
     pub scanned: f64,
     /// Whether the bumper was touched.
     pub touched: bool,
-    /// The tether limit reached in this tick, if any.
+    /// The tether limit that was reached in this tick, if any.
     pub reached: Option<&'a TetherAlarm>,
     /// Whether the mission puts return paths along the tether before plans.
     pub can_replan: bool,
-    /// Whether the hull fits along the tether on the way back.
+    /// Whether the hull fits through the return path along the tether.
     pub can_go_home: bool,
     pub planner: PlannerSeen<'a>,
 }
@@ -54,12 +54,12 @@ impl Seen<'_> {
     }
 }
 
-/// The verdict of a rule.
+/// The decision of a rule.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::engine) enum Verdict {
     /// Hold the robot.
     Hold(Hold),
-    /// Hold the robot and plan again from its place.
+    /// Hold the robot and plan again from its position.
     HoldAndReplan(Hold),
     /// Let the robot move again.
     Resume,

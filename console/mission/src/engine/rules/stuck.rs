@@ -1,4 +1,5 @@
-//! A robot that makes no progress gets a new plan in its lanes, once at each place; after that an operator must help.
+//! A robot that makes no progress gets a new plan while it follows lanes, once at each place; after that, an operator
+//! must help.
 
 use super::seen::{SAME_PLACE_M, Seen, Verdict};
 use crate::{
@@ -17,7 +18,7 @@ pub(in crate::engine) struct StuckRule {
 }
 
 impl StuckRule {
-    /// Creates the rule; after `patience_s` seconds without progress the robot counts as stuck.
+    /// Creates the rule; `patience_s` is the time without progress after which the robot may count as stuck, seconds.
     pub(crate) fn new(patience_s: f64) -> Self {
         Self { watch: StuckWatch::new(patience_s), replanned_at: None }
     }
@@ -42,7 +43,7 @@ impl StuckRule {
     }
 }
 
-/// An operator may find a way on; without one the mission ends.
+/// An operator may find a way out; in an unattended mission, the mission ends.
 fn give_up(seen: &Seen<'_>) -> Verdict {
     let (here, done) = (seen.here, percent_text(seen.task.done(), 0));
     let message = format!("no progress at {:.2}, {:.2} m, {done} % done", here.x, here.y);

@@ -1,4 +1,4 @@
-//! A cable that has reached a limit, or is caught, holds the robot.
+//! Holds the robot when its cable has reached a limit or is caught.
 
 use super::seen::{SAME_PLACE_M, Seen, Verdict};
 use crate::{
@@ -7,12 +7,12 @@ use crate::{
 };
 use world::Point;
 
-/// Maximum number of attempts to free the cable at one place without an operator while little floor is scanned in
-/// between.
+/// Maximum number of attempts to free the cable at one place without an operator, if little floor is scanned between the
+/// attempts.
 const MOST_TIMES_CAUGHT: usize = 2;
-/// Share of the reachable floor that must be scanned in between to justify another attempt.
+/// Share of the reachable floor that must be scanned between two holds to justify more attempts.
 const WORTH_IT: f64 = 0.01;
-/// In an unattended mission, time to wait for a return path, seconds.
+/// In an unattended mission, how long to wait for a return path, seconds.
 const WAIT_FOR_HOME_S: f64 = 30.0;
 
 /// State of the tether rule.
@@ -28,7 +28,7 @@ pub(in crate::engine) struct TetherRule {
 #[derive(Debug, Clone, Copy)]
 struct Caught {
     at: Point,
-    /// Share of the reachable floor that was scanned at the first hold there.
+    /// Share of the reachable floor that had been scanned at the first hold there.
     scanned: f64,
     times: usize,
 }
@@ -43,16 +43,16 @@ impl TetherRule {
             TetherAlarm::Wrap { .. } | TetherAlarm::WrapTotal { .. } | TetherAlarm::Snag { .. } => {
                 self.stop(seen, message, Outcome::Entangled)
             }
-            // The obstacle that closed the return path may move on.
+            // The obstacle that blocks the return path may move away.
             TetherAlarm::NoReturnPath | TetherAlarm::Strayed => {
                 Verdict::Hold(held(message, Resumes::WhenCleared))
             }
         }
     }
 
-    /// Holds a robot whose cable is at a limit or caught, and plans lanes again after a path that frees the cable. In an
-    /// unattended mission this is tried a few times at one place, and again whenever floor has been scanned in between;
-    /// then the mission ends.
+    /// Holds a robot whose cable is at a limit or caught, and requests a new plan that begins with a path that frees the
+    /// cable. An unattended mission tries this a few times at one place, and starts counting again whenever floor has
+    /// been scanned in between; after that, it ends.
     fn stop(&mut self, seen: &Seen<'_>, message: String, outcome: Outcome) -> Verdict {
         let (at, scanned) = (seen.here, seen.scanned);
         let again = self
@@ -71,8 +71,8 @@ impl TetherRule {
         }
     }
 
-    /// Processes one tick of a robot that this rule holds until it has a return path. An unattended mission ends after a
-    /// while.
+    /// Processes one tick of a robot that this rule holds until there is a return path. An unattended mission ends if it
+    /// takes too long.
     pub(crate) fn update_held(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
         if seen.can_go_home {
             return Some(Verdict::Resume);

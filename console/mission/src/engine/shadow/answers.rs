@@ -1,4 +1,4 @@
-//! Processes the answers of a planner in shadow.
+//! Processes the answers from a planner in shadow.
 
 use super::{
     super::{
@@ -17,15 +17,16 @@ use crate::{
 };
 use planner_api::{Command, Plan};
 
-/// An answer counts in the tick of the ask and in the next one: nobody waits for it, so it may just miss the first.
+/// An answer is used if it comes in the tick of the ask or in the next one: nobody waits for it, so it may just miss the
+/// first.
 const IN_TIME_TICKS: u64 = 1;
 
 impl Shadow {
     /// Processes an answer.
     ///
     /// # Errors
-    /// Why the planner can no longer fly in shadow, as a sentence. This counts against no plugin: the active planner may
-    /// belong to the same one.
+    /// Why the planner can no longer run in shadow, as a sentence. The failure counts against no plugin: the active
+    /// planner may come from the same plugin.
     pub(in crate::engine) fn answer(
         &mut self,
         pending: Pending,
@@ -76,14 +77,15 @@ impl Shadow {
         self.note(EventKind::Commanded { ask: Some(ask), command, asked: None }, happened);
     }
 
-    /// Takes a plan for what is left of the task; whether it can be run from the robot's position is checked at promotion.
+    /// Takes a plan for what is left of the task. Whether the plan can be run from the robot's position is checked at
+    /// promotion.
     fn take_plan(&mut self, plan: Plan, asked: &AskedPlan, known: &Known) {
         self.task = known.task.clone();
         self.task.take_plan(&plan);
         self.course.take(&plan);
         self.from_anchor = asked.from_anchor;
         self.plan = plan;
-        // The robot moved on meanwhile, perhaps along this plan.
+        // The robot has moved on in the meantime, perhaps along this plan.
         for flown in &known.trail[self.n_flown..self.now.n_flown] {
             self.advance(*flown, known);
         }

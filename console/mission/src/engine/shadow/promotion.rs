@@ -1,4 +1,4 @@
-//! Promotion of the planner in shadow: it takes over within one tick, with its plan from the robot's current position, and
+//! Promotes the planner in shadow: it takes over within one tick, with its plan from the robot's current position, and
 //! without a hold.
 
 use super::{
@@ -22,25 +22,25 @@ use crate::{
 use planner_api::{Plan, Reason};
 use world::{Point, polyline};
 
-/// Maximum number of plans requested from the robot's position; after that the order is dropped.
+/// Maximum number of plans that are requested from the robot's position; after that, the promotion is dropped.
 const MOST_PLANS: u32 = 3;
-/// Maximum distance that the robot drives back to the start of the plan that takes over, metres.
+/// Maximum distance that the robot may drive back to the start of the plan that takes over, metres.
 const MOST_BACK_M: f64 = 3.0;
 
 /// Whether the planner in shadow has been ordered to take over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Promotion {
     No,
-    /// Take over as soon as possible; the number is that of the plans requested from the robot's position so far.
+    /// Take over as soon as possible; `n_plans` is the number of plans requested from the robot's position so far.
     Ordered {
         n_plans: u32,
     },
 }
 
 impl Mission {
-    /// Orders the planner in shadow to take over as soon as its plan can be run from the robot's position: in this tick, if
-    /// the robot is close to that plan. As for any change of planner, a hold that would have ended automatically now ends
-    /// only by order.
+    /// Orders the planner in shadow to take over as soon as its plan can be run from the robot's position; if the robot
+    /// is close to that plan, in this tick. As with any change of planner, a hold that would have ended automatically now
+    /// ends only by order.
     pub(in crate::engine) fn order_promotion(&mut self) {
         self.stay_held();
         if let Some(shadow) = &mut self.shadow {
@@ -55,7 +55,7 @@ impl Mission {
         }
     }
 
-    /// Promotes the planner in shadow if that was ordered and it is able to.
+    /// Promotes the planner in shadow if that has been ordered and the planner is able to take over.
     pub(in crate::engine) fn promote_if_due(&mut self) {
         let is_ordered = |shadow: &&Shadow| shadow.promotion != Promotion::No;
         let Some(shadow) = self.shadow.as_ref().filter(is_ordered) else { return };
@@ -83,7 +83,7 @@ impl Mission {
         }
     }
 
-    /// The robot is not on the shadow's plan: requests one more plan, unless too many were requested already.
+    /// The robot is not on the shadow's plan. Requests one more plan, unless too many have been requested already.
     fn promote_later(&mut self) {
         match &mut self.shadow {
             Some(Shadow { promotion: Promotion::Ordered { n_plans }, course, .. })
@@ -93,7 +93,7 @@ impl Mission {
                 course.want_plan(Reason::Swap { from: self.driving.id().to_owned() });
             }
             _ => self.refuse_promotion(
-                "the robot moves on before a plan from its position is ready; HOLD first".into(),
+                "the robot keeps moving on before a plan from its position is ready; HOLD first".into(),
             ),
         }
     }
@@ -114,7 +114,7 @@ impl Mission {
         if let Some(pending) = &mut worker.pending {
             pending.kind = PendingKind::StepInShadow;
         }
-        // A hold caused by the previous planner has lost its reason.
+        // A hold caused by the previous planner no longer has a reason.
         let is_held = matches!(self.known.phase, Phase::Held(_));
         let prepare = if is_held { Prepare::Plan } else { Prepare::No };
         self.happened.push(EventKind::Promoted { planner, tally });
@@ -123,14 +123,14 @@ impl Mission {
 }
 
 impl Shadow {
-    /// Whether it has a plan and owes no overdue answer.
+    /// Whether the planner has a plan and owes no overdue answer.
     fn may_take_over(&self, tick: u64) -> bool {
         let owes = self.worker.pending.as_ref().is_some_and(|pending| pending.tick + 1 < tick);
         self.course.has_plan() && !owes
     }
 
-    /// The rest of its plan from the robot's position, with the points of the path driven so far; `None` if the plan is too
-    /// far away.
+    /// The rest of the planner's plan from the robot's position, with the points of the path driven so far; `None` if the
+    /// plan is too far away.
     pub(super) fn rest_from(&self, here: Point, trail: &[Point]) -> Option<Plan> {
         let Some(route) = self.route() else { return Some(self.plan.clone()) };
         let since_asked = trail.get(self.n_flown.saturating_sub(1)..).unwrap_or_default();
@@ -138,8 +138,8 @@ impl Shadow {
         Some(rest_of(&self.plan, route.along_m(), &approach))
     }
 
-    /// The path back to a plan that the robot moved away from while it was made. Where lanes are followed exactly, it
-    /// leads back to the plan. In other tasks planners find their own way back to their path.
+    /// The path back to a plan that the robot moved away from while the plan was being made. In tasks in which lanes are
+    /// followed exactly, the path leads back to the plan. In other tasks, planners find their own way back to their path.
     fn approach(&self, here: Point, since_asked: &[Point]) -> Option<Vec<Point>> {
         let back = || since_asked.iter().rev().copied();
         let n_back = back().position(|flown| self.is_near(flown))?;

@@ -97,8 +97,8 @@ fn a_better_plan_is_taken_where_it_begins_in_one_tick_and_without_a_hold() {
     let (taken, off) =
         (flown(&MissionConfig { attended: false, ..config.clone() }), flown(&wasteful(BetterPlan::Off)));
     let [planned, took] = &better_events(&taken)[..] else { panic!("{:?}", better_events(&taken)) };
-    assert!(planned.1.starts_with("straight has a better plan, which saves "), "{planned:?}");
-    assert!(took.1.starts_with("better plan of straight taken, which saves "), "{took:?}");
+    assert!(planned.1.starts_with("straight has a better plan; it saves "), "{planned:?}");
+    assert!(took.1.starts_with("better plan of straight taken; it saves "), "{took:?}");
     assert!(driven_s(&taken) < 0.8 * driven_s(&off), "{} s, {} s", driven_s(&taken), driven_s(&off));
     assert_eq!(taken.planner.kept.iter().map(Option::is_some).collect::<Vec<_>>(), [false, true, false]);
     assert_eq!(taken.closed, [WorkerId(1), WorkerId(2)], "the worker of before, and at the end");
@@ -135,7 +135,7 @@ fn an_offer_that_nobody_takes_ends_where_the_plan_begins() {
     assert!(folded(&flight).standing().has_offer);
     fly_past(&mut flight, &[COLUMN], 4000);
     let [.., last] = &texts(&flight)[..] else { panic!() };
-    assert_eq!(last, "no better plan of straight: the robot has passed the place where it begins");
+    assert_eq!(last, "better plan of straight dropped: the robot has passed the place where it begins");
     assert_eq!((flight.closed.as_slice(), flight.planner.plans), (&[WorkerId(2)][..], 3));
     assert!(refusal(&flight.tick(&[Order::TakePlan])).is_some_and(|why| why == "no better plan is offered"));
 }
@@ -214,7 +214,7 @@ fn a_plan_that_is_not_there_in_time_is_given_up_and_the_robot_never_waits_for_it
     }
     let [said] = &texts(&flight)[..] else { panic!("{:?}", texts(&flight)) };
     let late = "it arrived after the robot had passed the place where it begins";
-    assert_eq!(*said, format!("no better plan of straight: {late}"));
+    assert_eq!(*said, format!("better plan of straight dropped: {late}"));
     assert_eq!((stood, flight.closed.as_slice()), (0, &[WorkerId(2)][..]));
 }
 
@@ -225,7 +225,7 @@ fn another_find_drops_what_is_being_made_and_after_its_repair_one_is_made_anew()
     // On a lane to come, with room for the hull on all sides.
     let ahead = Point::new(-1.5, -3.3);
     fly_past(&mut flight, &[COLUMN, ahead], 1000);
-    assert_eq!(texts(&flight)[0], "no better plan of straight: the map has changed");
+    assert_eq!(texts(&flight)[0], "better plan of straight dropped: the map has changed");
     let kept: Vec<bool> = flight.planner.kept.iter().map(Option::is_some).collect();
     assert_eq!(kept[..4], [false, true, true, false], "{:?}", texts(&flight));
     assert_eq!(flight.closed[0], WorkerId(2));
@@ -245,7 +245,7 @@ fn orders_that_change_the_plan_drop_it() {
         assert!(flight.mission.standing().has_offer, "a hold changes no plan");
         flight.tick(&[order]);
         assert!(!flight.mission.standing().has_offer && !folded(&flight).standing().has_offer);
-        assert_eq!(texts(&flight)[1], format!("no better plan of straight: {why}"));
+        assert_eq!(texts(&flight)[1], format!("better plan of straight dropped: {why}"));
         assert_eq!(flight.closed[0], WorkerId(2));
         assert!(flight.mission.preparing.is_none());
     }
@@ -257,7 +257,7 @@ fn a_planner_that_fails_at_it_is_named_and_harms_nobody() {
     flight.planner.refuse = vec!["straight"];
     fly_past(&mut flight, &[COLUMN], 40_000);
     assert_eq!(flight.ended(), Some(Outcome::Complete));
-    assert_eq!(texts(&flight), ["no better plan of straight: there is no planner straight"]);
+    assert_eq!(texts(&flight), ["better plan of straight dropped: there is no planner straight"]);
     assert_eq!(count(&flight, |kind| matches!(kind, EventKind::PlannerFailed { .. })), 1);
     assert_eq!(count(&flight, |kind| matches!(kind, EventKind::Held { .. })), 0);
 }
@@ -267,7 +267,7 @@ fn a_fault_of_the_planner_that_drives_drops_it() {
     let mut flight = with_offer();
     flight.planner.fail_at_tick = Some(flight.mission.known.tick);
     flight.tick(&[]);
-    assert_eq!(texts(&flight)[1], "no better plan of straight: the active planner failed");
+    assert_eq!(texts(&flight)[1], "better plan of straight dropped: the active planner failed");
     flight.tick(&[Order::Resume]);
     fly_past(&mut flight, &[COLUMN], 40_000);
     assert_eq!(flight.ended(), Some(Outcome::Complete));

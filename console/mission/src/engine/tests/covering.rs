@@ -195,7 +195,7 @@ fn an_area_without_floor_in_reach_is_named_when_the_rest_is_done() {
         EventKind::Ended { reason, .. } => Some(reason.clone()),
         _ => None,
     });
-    let named = "; the tool cannot reach any floor in the area about (3.6, 3.6)";
+    let named = "; the tool cannot reach any floor in the area around (3.6, 3.6)";
     assert!(reason.as_ref().is_some_and(|reason| reason.ends_with(named)), "{reason:?}");
 }
 

@@ -198,8 +198,7 @@ fn a_shadow_that_is_dropped_or_replaced_is_closed() {
     flight.tick(&[Order::DropShadow]);
     assert_eq!(flight.closed, [WorkerId(2), WorkerId(3)]);
     assert!(
-        refusal(&flight.tick(&[Order::Promote]))
-            .is_some_and(|why| why.contains("no planner flies in shadow"))
+        refusal(&flight.tick(&[Order::Promote])).is_some_and(|why| why.contains("no planner runs in shadow"))
     );
 }
 

@@ -3,8 +3,8 @@
 
 use super::{covering::covering, tethered::tethered, *};
 use crate::{
-    order::{Injection, RangeFault, StepTo},
-    phase::Resumes,
+    order::{Injection, RangeFault},
+    phase::{Resumes, StepTo},
 };
 
 /// A flight in some state, with whatever would let the robot move again if nobody held it.

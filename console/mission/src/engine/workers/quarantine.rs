@@ -1,10 +1,10 @@
-//! Plugins that failed too often.
+//! Plugins that have failed too often.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Number of faults ...
 pub(in crate::engine) const MOST_FAULTS: usize = 3;
-/// ... within this mission time, seconds, that bars a plugin from driving again.
+/// ... within this mission time, seconds, after which a plugin is not used again.
 pub(in crate::engine) const WINDOW_S: f64 = 60.0;
 
 /// Counts faults per plugin file, by its hash, over mission time.
@@ -25,7 +25,7 @@ impl Quarantine {
         }
     }
 
-    /// Whether a plugin is barred from driving again.
+    /// Whether a plugin is excluded from being used again.
     pub(crate) fn holds(&self, sha256: &str) -> bool {
         self.closed.contains(sha256)
     }

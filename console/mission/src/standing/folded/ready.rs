@@ -1,4 +1,4 @@
-//! The plan that a start would begin with, computed from the events so far.
+//! The plan with which a start would begin the mission, computed from the events so far.
 
 use crate::{
     event::{EventKind, RunOpened},
@@ -9,11 +9,11 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
-/// The plan that a start would begin with, and its planner.
+/// The plan with which a start would begin the mission, and its planner.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct Ready {
     state: State,
-    /// The planner that will drive first, with its parameters.
+    /// The planner that will be active first, with its parameters.
     choice: PlannerChoice,
 }
 
@@ -44,7 +44,7 @@ impl Ready {
         }
     }
 
-    /// Processes an event of a mission that waits; `planner` is the one that was opened last.
+    /// Processes an event of a mission that is waiting for its start; `planner` is the planner that was opened last.
     pub(super) fn apply(&mut self, event: &EventKind, planner: Option<&PlannerInfo>) {
         match event {
             EventKind::PlannerChosen { choice, .. } | EventKind::ParametersChanged { choice, .. } => {

@@ -17,8 +17,8 @@ use mission::{AskId, Fault, Given};
 use std::time::Instant;
 
 impl Host {
-    /// Begins to open a planner and closes any planner that has the same worker id. A planner that cannot be opened is
-    /// answered immediately.
+    /// Begins to open a planner and closes any planner that has the same worker id. If the planner cannot be opened,
+    /// the ask is answered immediately.
     pub(crate) fn open(&mut self, id: AskId, opening: Opening) {
         self.close(id.worker);
         self.planners.push(Planner::new(id.worker));
@@ -31,7 +31,7 @@ impl Host {
         self.close_unless(begun, id);
     }
 
-    /// Closes the planner and answers with the fault, if opening it failed.
+    /// If opening the planner failed, closes it and answers with the fault.
     fn close_unless(&mut self, begun: Result<(), Fault>, id: AskId) {
         if let Err(fault) = begun {
             self.close(id.worker);
@@ -154,7 +154,7 @@ impl Host {
                 return self.load_next(id, opening);
             }
         };
-        // If an earlier file failed, it may work next time, so this file is not remembered as the first.
+        // If an earlier file failed, it may work next time, so this file is not remembered as the first one.
         let first = opening.first_fault.is_none().then_some(candidate);
         self.catalog.learn(&loaded.info.id, first);
         self.create(id, worker, opening, loaded)
@@ -188,9 +188,9 @@ impl Host {
         }
     }
 
-    /// Handles a planner that could not be created. If the process has served an earlier mission, the cause may be that
-    /// mission's instance, which did not end well. This mission is not to blame for that, so the planner is loaded
-    /// again in a new process.
+    /// Handles a planner that could not be created. If the process has served an earlier mission, the cause may be an
+    /// instance from that mission that did not end cleanly. The new mission must not suffer from that, so the planner
+    /// is loaded again in a new process.
     fn part_or_load_again(
         &mut self,
         id: AskId,
@@ -207,7 +207,7 @@ impl Host {
         self.load_next(id, opening)
     }
 
-    /// Restores an earlier planner's state in a new planner, if there is one that fits.
+    /// Restores an earlier planner's state in a new planner, if there is a state that fits.
     fn restore(
         &mut self,
         id: AskId,

@@ -1,4 +1,5 @@
-//! How a worker ends: on its own, on request, or killed. It is polled and never waited for, except when it is dropped.
+//! How a worker ends: on its own, on request, or by being killed. It is polled and never waited for, except when it is
+//! dropped.
 
 use super::Worker;
 use super::state::{DIE_WITHIN, Dying, State};
@@ -22,7 +23,7 @@ impl Worker {
         failure
     }
 
-    /// Handles a lost channel: the way in which the process ends is the outcome.
+    /// Handles a lost channel: how the process ends becomes the outcome.
     pub(super) fn lose(&mut self, now: Instant) {
         self.state = State::Dying(Dying::new(now));
     }
@@ -39,7 +40,7 @@ impl Worker {
             return None;
         }
         if !self.process.is_reaped() && !dying.is_killed {
-            // A process that ends slowly keeps its own reason; our signal kills only one that is still alive.
+            // A process that ends slowly keeps its own reason; the signal kills only a process that is still alive.
             self.process.kill();
             dying.wait_for_kill(now);
             return None;
@@ -63,8 +64,8 @@ impl Worker {
             State::Idle => self.leaves_idle = true,
         }
         match self.socket.shutdown(Shutdown::Write) {
-            // The socket stays open until the worker has ended: a full hang-up would mean to the worker that the
-            // console died.
+            // The socket stays open until the worker has ended, because the worker would take a full hang-up to mean
+            // that the console has died.
             Ok(()) => self.state = State::Leaving(Some(now + SHUT_DOWN_WITHIN)),
             Err(_) => self.kill(),
         }
@@ -105,7 +106,7 @@ impl Worker {
 }
 
 impl Drop for Worker {
-    /// Nothing polls the worker any more, so it is killed, and reaped unless the system is stuck.
+    /// Nothing polls the worker any more, so it is killed and, unless the system is stuck, reaped.
     fn drop(&mut self) {
         self.kill();
         let until = Instant::now() + DIE_WITHIN;

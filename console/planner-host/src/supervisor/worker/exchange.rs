@@ -13,7 +13,8 @@ use crate::wire::frame::Filled;
 use crate::wire::kind;
 use std::time::{Duration, Instant};
 
-/// A worker that does not answer within its budget is asked to stop, and has this long before it is killed.
+/// A worker that does not answer within its budget is asked to stop, and is killed if it has not answered after this
+/// time.
 const GRACE: Duration = Duration::from_millis(100);
 
 /// What has arrived from a worker.
@@ -51,7 +52,7 @@ impl Worker {
             Arrived::Answer => return Some(Err(self.end(Failure::Late))),
             Arrived::Broken => return Some(Err(self.end(Failure::Protocol))),
             Arrived::Closed => self.lose(now),
-            // The end of the process ends the request only after everything it sent has been read.
+            // The end of the process ends the request only after everything that the process sent has been read.
             Arrived::Nothing if ready.exited && !ready.readable() => self.lose(now),
             Arrived::Nothing => {}
         }
@@ -83,7 +84,7 @@ impl Worker {
         }
     }
 
-    /// Accepts the worker's report about its sandbox and the file; it may send only one.
+    /// Accepts the worker's report on its sandbox and the file; a worker may send only one.
     fn take_sealed(&mut self) -> Read<()> {
         let sealed = whole(self.incoming.body())?;
         if self.guard.begin(sealed) { Ok(()) } else { Err(Malformed) }
@@ -137,8 +138,8 @@ impl Worker {
         }
     }
 
-    /// Reads the answer that has just arrived. If it is malformed, or states that the planner cannot continue, the
-    /// process is killed.
+    /// Reads the answer that has just arrived. If the answer is malformed, or states that the planner cannot continue,
+    /// the process is killed.
     pub(crate) fn take_answer<T>(&mut self, read: impl FnOnce(Body<'_>) -> Read<T>) -> Result<T, Failure> {
         match interpret(self.incoming.kind(), self.incoming.body(), read) {
             Ok(Err(failure)) if failure.ends_the_process() => Err(self.end(failure)),

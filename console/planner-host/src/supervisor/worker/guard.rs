@@ -1,4 +1,4 @@
-//! The console's side of a worker's sandbox: its extent, and decisions about system calls.
+//! The console's side of a worker's sandbox: its extent, and the decisions on system calls.
 
 use crate::sandbox::{Listener, Stage, Uncounted, Verdict, ends_loading, verdict};
 use crate::wire::answer::Sealed;
@@ -12,13 +12,13 @@ use std::os::unix::net::UnixStream;
 /// The guard of one worker.
 #[derive(Default)]
 pub(super) struct Guard {
-    /// `None` until the worker has reported it.
+    /// `None` until the worker has reported the extent.
     sealed: Option<Sealed>,
     /// The last descriptor received over the socket.
     received: Option<OwnedFd>,
     listener: Option<Listener>,
     has_loaded: bool,
-    /// The folder in which a library was last looked for.
+    /// The folder that was last searched for a library.
     sought: String,
     uncounted: Uncounted,
 }
@@ -29,12 +29,13 @@ impl Guard {
         Self { uncounted: Uncounted::of(memory_limit_bytes), ..Self::default() }
     }
 
-    /// Returns the worker's report about its sandbox and the file.
+    /// Returns the worker's report on its sandbox and the file.
     pub(super) fn sealed(&self) -> Option<&Sealed> {
         self.sealed.as_ref()
     }
 
-    /// Accepts the worker's report; false if there was one before. It arrives before any code of the plugin has run.
+    /// Accepts the worker's report, which arrives before any code of the plugin has run. Returns false if there was an
+    /// earlier report.
     pub(super) fn begin(&mut self, sealed: Sealed) -> bool {
         if self.sealed.is_some() {
             return false;
@@ -62,7 +63,7 @@ impl Guard {
         self.listener.as_ref().map(AsFd::as_fd)
     }
 
-    /// Decides about the waiting call. Returns what was tried, if it is forbidden.
+    /// Decides on the waiting call. If the call is forbidden, returns what was tried.
     pub(super) fn decide(&mut self) -> Option<String> {
         let stage = self.stage();
         let listener = self.listener.as_ref()?;

@@ -1,15 +1,15 @@
-//! Checks the memory of a busy worker frequently: the system only limits the memory that it counts, and that can be
-//! circumvented.
+//! Checks the memory of a busy worker frequently: the system limits only the memory that it counts, and this limit can
+//! be circumvented.
 
 use crate::sandbox::MAY_HIDE;
 use crate::supervisor::load::weight_of;
 use rustix::process::Pid;
 use std::time::{Duration, Instant};
 
-/// How often a busy worker is weighed. Meanwhile a thread can write to about 30 MB of new memory.
+/// How often the memory of a busy worker is measured. In between, a thread can write to about 30 MB of new memory.
 const WEIGH_EVERY: Duration = Duration::from_millis(10);
 
-/// Weighs a worker.
+/// Measures the memory of a worker.
 pub(super) struct Scale {
     /// The planner's memory limit, bytes.
     limit: u64,
@@ -22,18 +22,18 @@ impl Scale {
         Self { limit, look_at: Instant::now() }
     }
 
-    /// Starts weighing when a request is sent.
+    /// Starts measuring when a request is sent.
     pub(super) fn begin(&mut self, now: Instant) {
         self.look_at = now + WEIGH_EVERY;
     }
 
-    /// Returns the time of the next weighing.
+    /// Returns the time of the next measurement.
     pub(super) fn look_at(&self) -> Instant {
         self.look_at
     }
 
-    /// Weighs the worker when it is due. Returns the limit, bytes, if the worker exceeds it by more than a worker needs
-    /// for itself.
+    /// Measures the memory of the worker when this is due. Returns the limit, bytes, if the worker exceeds it by more
+    /// than a worker itself needs.
     pub(super) fn weigh(&mut self, process: Pid, now: Instant) -> Option<u64> {
         if now < self.look_at {
             return None;

@@ -3,19 +3,19 @@
 use crate::supervisor::clock::{FairClock, Load, Verdict};
 use std::time::{Duration, Instant};
 
-/// How long after a request a busy worker is first checked ...
+/// The time after a request at which a busy worker is first checked, ...
 const FIRST_LOOK: Duration = Duration::from_millis(100);
-/// ... how often after that ...
+/// ... the interval between checks after that, ...
 const LOOK_EVERY: Duration = Duration::from_millis(50);
-/// ... and the shortest interval near the end of its budget, which is the resolution of processor time.
+/// ... and the shortest interval, near the end of the worker's budget, which is the resolution of processor time.
 const LEAST_LOOK: Duration = Duration::from_millis(10);
 /// How long a process may take to end after its socket is closed.
 const EXIT_WITHIN: Duration = Duration::from_millis(80);
-/// How long a killed process may take to end; longer means that the system is stuck.
+/// How long a killed process may take to end; if it takes longer, the system is stuck.
 pub(super) const DIE_WITHIN: Duration = Duration::from_millis(30);
 /// How long to wait for the output of a dead process, which is already in the pipe.
 const OUTPUT_WITHIN: Duration = Duration::from_millis(30);
-/// Progress messages are forwarded at this rate, after an initial burst; the rest is dropped. A well-behaved worker
+/// Progress messages are forwarded at this rate, after an initial burst; all others are dropped. A well-behaved worker
 /// sends 20 a second.
 const MOST_PER_S: f64 = 40.0;
 const MOST_AT_FIRST: f64 = 20.0;
@@ -26,11 +26,12 @@ pub(super) enum State {
     Idle,
     /// Executing a request.
     Busy(Request),
-    /// Out of budget; it may still answer until this time.
+    /// Out of budget; the worker may still answer until this time.
     Cancelling(Request, Instant),
     /// Ending, while its exit status and output are being collected.
     Dying(Dying),
-    /// Asked to shut down, with time until then to exit. Without a time, it was killed and is not reaped yet.
+    /// Asked to shut down, with this deadline for exiting. If there is no deadline, the worker was killed but has not
+    /// been reaped yet.
     Leaving(Option<Instant>),
     /// Ended and reaped.
     Gone,
@@ -60,7 +61,7 @@ impl Request {
         Self { kind, look_at, budget, began: now, clock: FairClock::default(), n_forwarded: 0 }
     }
 
-    /// Checks the load of the process and what is left of the budget.
+    /// Checks the load of the process, and how much of the budget is left.
     pub(super) fn look(&mut self, now: Instant, load: Option<Load>) -> Budgeted {
         self.clock.advance(now.saturating_duration_since(self.began), load);
         match self.clock.evaluate(self.budget) {
@@ -84,24 +85,24 @@ impl Request {
 
 /// A process that closed its channel and is ending.
 pub(super) struct Dying {
-    /// Whether we killed the process.
+    /// Whether the console killed the process.
     pub(super) is_killed: bool,
-    /// When the next step of its end must be complete.
+    /// The deadline for the next step of its end.
     pub(super) until: Instant,
 }
 
 impl Dying {
-    /// Waits for a process that is ending on its own or has ended.
+    /// Creates the state of a process that is ending on its own or has ended.
     pub(super) fn new(now: Instant) -> Self {
         Self { is_killed: false, until: now + EXIT_WITHIN }
     }
 
-    /// Waits for a process that was killed.
+    /// Sets the deadline for the end of a process that was killed.
     pub(super) fn wait_for_kill(&mut self, now: Instant) {
         (self.is_killed, self.until) = (true, now + DIE_WITHIN);
     }
 
-    /// Waits for the output of a process that was reaped.
+    /// Sets the deadline for the output of a process that was reaped.
     pub(super) fn wait_for_output(&mut self, now: Instant) {
         self.until = now + OUTPUT_WITHIN;
     }

@@ -33,7 +33,7 @@ pub(super) fn event(line: &str) -> Option<Event> {
     Some(Event { tick, t_s, kind })
 }
 
-/// A plan as an event whose name comes first.
+/// A plan as an event that begins with its name.
 struct Plan(EventKind);
 
 #[derive(Deserialize)]

@@ -2,7 +2,7 @@
 
 use jiff::{Timestamp, civil};
 
-/// Seconds of a day.
+/// Seconds in a day.
 const DAY_S: f64 = 86_400.0;
 
 /// A time of day.

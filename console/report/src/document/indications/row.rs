@@ -12,7 +12,7 @@ use world::Point;
 pub(super) const COLUMNS: [&str; 13] = [
     "run", "t_s", "time", "left_m", "ahead_m", "x_m", "y_m", "x", "y", "kind", "size_mm", "depth_mm", "note",
 ];
-/// The columns with numbers.
+/// The columns that contain numbers.
 pub(super) const NUMBERS: [&str; 7] = ["t_s", "left_m", "ahead_m", "x_m", "y_m", "size_mm", "depth_mm"];
 /// Numbers above this cannot be a position or a size.
 const MOST: f64 = 1e9;
@@ -38,7 +38,7 @@ impl<'a> Row<'a> {
     /// Reads a row.
     ///
     /// # Errors
-    /// All faults of its cells.
+    /// All faults in its cells.
     pub(super) fn of(
         table: &'a Table,
         cells: &'a Cells,
@@ -81,7 +81,7 @@ impl<'a> Row<'a> {
                 Some(("left_m", "x_m and y_m already give the position: leave left_m and ahead_m empty"))
             }
             (Some(_), Some(_), true) => {
-                Some(("x_m", "the row gives both a time and a position: leave one of them empty"))
+                Some(("x_m", "the row gives both a time and a position: leave one of the two empty"))
             }
             (Some(_), None, _) if !is_bad("y_m") => {
                 Some(("y_m", "missing; x_m and y_m must be given together"))
@@ -120,7 +120,7 @@ impl<'a> Row<'a> {
         fault(self.cells, column, what)
     }
 
-    /// The text of the row in a column.
+    /// The row's text in a column.
     pub(super) fn text_of(&self, column: &str) -> &str {
         self.table.cell(self.cells, column)
     }

@@ -7,7 +7,7 @@ use std::fmt;
 pub(super) struct Fault {
     /// The line, from 1.
     pub(super) line: u64,
-    /// Name of the column, if the fault is in one cell.
+    /// Name of the column, if the fault is in a single cell.
     pub(super) column: Option<String>,
     /// What is wrong, and how to correct it.
     pub(super) what: String,
@@ -37,7 +37,7 @@ pub(super) struct Table {
 }
 
 impl Table {
-    /// Reads a text whose cells are separated by commas, semicolons or tabs; the first line decides which.
+    /// Reads text whose cells are separated by commas, semicolons or tabs; the first line determines which.
     pub(super) fn read(text: &str) -> Result<Self, Fault> {
         // The reader increments the line count at the end of a line.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text).trim_end().to_owned() + "\n";
@@ -105,7 +105,7 @@ impl Table {
         self.has(name).and_then(|index| cells.cells.get(index)).unwrap_or_default()
     }
 
-    /// The fault of a file that mixes decimal commas and decimal points, which makes its numbers ambiguous.
+    /// The fault of mixing decimal commas and decimal points in one file, which makes its numbers ambiguous.
     pub(super) fn mixed_marks(&self) -> Option<Fault> {
         let marked = |mark: char| {
             let has =
@@ -114,8 +114,8 @@ impl Table {
         };
         let (comma, point) = (marked(',')?, marked('.')?);
         let what = format!(
-            "numbers with a decimal comma (line {comma}) and with a decimal point (line {point}); use only \
-             one of them"
+            "numbers with a decimal comma (line {comma}) and with a decimal point (line {point}); use the \
+             same mark throughout"
         );
         Some(Fault { line: comma.min(point), column: None, what })
     }

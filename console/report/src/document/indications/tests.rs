@@ -80,10 +80,10 @@ fn times_of_day_and_coordinates_place_as_well() {
 fn what_lies_beyond_the_tool_outside_the_tank_or_in_a_column_is_refused_all_of_it_at_once() {
     let all = refused("t_s,ahead_m,left_m\n1,40,0\n2,0,0.9\n3,0,0.25\n5,0,0.25\n99,0,0\nsoon,0,0\n");
     let expected = [
-        "found.csv: line 2, ahead_m: 40 is beyond the tool: at most 0.3 m from its centre, half the swath",
-        "found.csv: line 3, left_m: 0.9 is beyond the tool: at most 0.3 m from its centre, half the swath",
+        "found.csv: line 2, ahead_m: 40 is beyond the tool, which extends 0.3 m from its centre, half the swath",
+        "found.csv: line 3, left_m: 0.9 is beyond the tool, which extends 0.3 m from its centre, half the swath",
         "found.csv: line 5, t_s: 5.000, 0.250 m is 0.300 m inside column C1, where no floor can be scanned",
-        "found.csv: line 6, t_s: 99: the run lasts from 0 to 9.0 s",
+        "found.csv: line 6, t_s: 99: the run covers 0 to 9.0 s",
         "found.csv: line 7, t_s: `soon` is not a number; write 12.5 or 12,5, without thousands separators or units",
     ];
     assert_eq!(all.lines().collect::<Vec<_>>(), expected);
@@ -116,7 +116,7 @@ fn every_fault_has_its_line_and_column() {
 #[test]
 fn with_several_runs_each_indication_names_its_own() {
     let two = |text: &str| read(text, &["a", "b"]);
-    assert!(two("t_s\n1\n").unwrap_err().contains("line 1: with several runs, add a column `run`"));
+    assert!(two("t_s\n1\n").unwrap_err().contains("line 1: there are several runs: add a column `run`"));
     assert_eq!(two("run,t_s\nc,1\n").unwrap_err(), "found.csv: line 2, run: c: must be one of a, b");
     assert_eq!(two("run,t_s\nb,1\n").unwrap()[0].run.as_deref(), Some("b"));
     assert_eq!(two("x,y\n1,1\n").unwrap()[0].run, None);
@@ -130,5 +130,5 @@ fn with_several_runs_each_indication_names_its_own() {
 #[test]
 fn of_many_faults_the_first_are_listed_and_the_rest_counted() {
     let all = refused(&("t_s\n".to_owned() + &"never\n".repeat(50)));
-    assert_eq!((all.lines().count(), all.ends_with("30 more like these")), (21, true), "{all}");
+    assert_eq!((all.lines().count(), all.ends_with("faults not listed: 30")), (21, true), "{all}");
 }

@@ -31,7 +31,7 @@ pub(in crate::document) fn as_located(document: &Document, located: &Located, mu
         heading: "Tank floor: positions located from readings",
         mark: "LOCATED FROM READINGS",
         banner: format!(
-            "Positions were computed from the readings of {}; this program did not run a mission. Nothing \
+            "Positions were computed from the readings in {}; this program did not run a mission. Nothing \
              was planned, and no floor counts as missed.",
             located.files()
         ),
@@ -50,19 +50,25 @@ fn p95_cm(document: &Document) -> Option<f64> {
 fn verdict(document: &Document, located: &Located) -> Verdict {
     let error = p95_cm(document).map_or_else(
         || "The position error is not known.".to_owned(),
-        |p95_cm| format!("The 95 % error of the position was at most {p95_cm:.1} cm for 95 % of the time."),
+        |p95_cm| {
+            format!("The 95 % error of the position was at most {p95_cm:.1} cm during 95 % of the time.")
+        },
     );
     let floor = match located.tool_on_s {
         Some(on_s) => format!(
-            "While the tool was on, for {}, it passed {:.1} % of the whole floor with a known position; \
-             {:.1} % is guaranteed against the position error.",
+            "While the tool was on, for {}, it passed over {:.1} % of the whole floor with a known \
+             position; {:.1} % is guaranteed, allowing for the position error.",
             clock(on_s),
             document.floor.whole.percent.scanned,
             document.floor.whole.percent.guaranteed.unwrap_or(0.0)
         ),
-        None => "No coverage is stated: the readings do not state when the tool was on.".to_owned(),
+        None => "No coverage is stated because the readings do not show when the tool was on.".to_owned(),
     };
-    Verdict { class: "part", lead: format!("Located from readings, not a mission. {error}"), cause: floor }
+    Verdict {
+        class: "part",
+        lead: format!("Positions located from readings; not a mission. {error}"),
+        cause: floor,
+    }
 }
 
 fn shares(document: &Document, located: &Located) -> Vec<Share> {
@@ -71,13 +77,17 @@ fn shares(document: &Document, located: &Located) -> Vec<Share> {
         value: p95_cm(document).map_or_else(|| "\u{2013}".into(), |cm| format!("{cm:.1}")),
         unit: "cm",
         of: "95 % position error",
-        about: "not exceeded for 95 % of the time, by the covariance".into(),
+        about: "not exceeded during 95 % of the time, according to the covariance".into(),
     };
     let count = Share {
         value: fixes.to_string(),
         unit: "",
         of: "positions from ranges",
-        about: format!("in {}; {} estimates of the track", clock(located.time_s), located.positions),
+        about: format!(
+            "in {}; the track has {} estimated positions",
+            clock(located.time_s),
+            located.positions
+        ),
     };
     let whole = &document.floor.whole;
     let scanned = match located.tool_on_s {
@@ -95,7 +105,7 @@ fn shares(document: &Document, located: &Located) -> Vec<Share> {
             value: "\u{2013}".into(),
             unit: "",
             of: "coverage not stated",
-            about: "the readings do not state when the tool was on".into(),
+            about: "the readings do not show when the tool was on".into(),
         },
     };
     vec![error, count, scanned]

@@ -1,4 +1,4 @@
-//! The map of a report on located readings: the track and, if known, the floor that the tool passed.
+//! The map of a report on located readings: the track and, if known, the floor that the tool passed over.
 
 use super::super::{
     Figure, Indication,
@@ -11,7 +11,7 @@ use crate::{
     joined::PastRun,
 };
 
-/// Draws the map; `tool_is_known`: whether the readings state when the tool was on.
+/// Draws the map; `tool_is_known`: whether the readings show when the tool was on.
 pub(in crate::document) fn map(
     layers: &Layers<'_>,
     past: &[PastRun],
@@ -37,12 +37,12 @@ pub(in crate::document) fn map(
     let names = sheet.plate_names(layers.plates.as_ref(), 2.1);
     marks::draw(&mut sheet, indications, &names);
     let line = swatch(&format!(r#"<path d="M.5 2H6.5" stroke="{}" stroke-width=".5"/>"#, colour::TRACK));
-    let mut entries = vec![legend(line, "track by the estimated position", String::new())];
+    let mut entries = vec![legend(line, "estimated track", String::new())];
     if tool_is_known {
         let cells = (0..floor.len()).filter(|cell| is_scanned(*cell)).count();
         let m2 = format!("{:.2} m²", cells as f64 * floor.cell_m2());
-        entries.push(legend(filled(colour::TWICE), "passed by the tool while it was on", m2));
-        entries.push(legend(filled("#fff"), "not passed, or with an unknown position", String::new()));
+        entries.push(legend(filled(colour::TWICE), "under the tool while it was on", m2));
+        entries.push(legend(filled("#fff"), "not under the tool, or position not known", String::new()));
     }
     if !indications.is_empty() {
         let mark = swatch(&format!(
@@ -50,12 +50,12 @@ pub(in crate::document) fn map(
             marks::STYLE,
             colour::TETHER
         ));
-        entries.push(legend(mark, "indication, I and its number", indications.len().to_string()));
+        entries.push(legend(mark, "indication (I and its number)", indications.len().to_string()));
     }
     let caption = if tool_is_known {
-        "Track of the instrument from the readings, and the floor that the tool passed while it was on"
+        "Track of the instrument according to the readings, and the floor under the tool while it was on"
     } else {
-        "Track of the instrument from the readings; it is not known when the tool was on"
+        "Track of the instrument according to the readings; it is not known when the tool was on"
     };
     Figure { caption: caption.into(), svg: sheet.svg("Map of the located track", "full"), legend: entries }
 }

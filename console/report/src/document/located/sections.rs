@@ -11,8 +11,8 @@ use super::{
 };
 use account::clock;
 
-const NOT_KNOWN: &str = "The readings do not state when the tool was on (column tool_on, or --tool-on FILE \
-    of tankops locate), so nothing is stated about scanned floor.";
+const NOT_KNOWN: &str = "The readings do not show when the tool was on (column tool_on, or --tool-on FILE \
+    of tankops locate), so this report makes no statement about scanned floor.";
 
 /// Returns all sections.
 pub(in crate::document) fn sections(document: &Document, located: &Located) -> [Section; 12] {
@@ -36,7 +36,7 @@ fn scope(document: &Document, located: &Located) -> Vec<Block> {
     let floor = &document.floor;
     vec![
         Block::Text(format!(
-            "Scenario {}: {}, over {}. Tool: swath {} m. Cells of {} cm.",
+            "Scenario {}: {}. Duration: {}. Tool: swath {} m. Cell size: {} cm.",
             document.scenario,
             super::scope(located),
             clock(located.time_s),
@@ -47,11 +47,11 @@ fn scope(document: &Document, located: &Located) -> Vec<Block> {
         Block::Words(vec![
             (
                 "Located",
-                "the position was computed from ranges to the stations and, if it was measured, \
-                from the motion"
+                "the position was computed from ranges to the stations and from the motion, where that was \
+                measured"
                     .into(),
             ),
-            ("95 % error", "the longer half axis of the 95 % ellipse of the estimated position".into()),
+            ("95 % error", "the longer semi-axis of the 95 % ellipse of the estimated position".into()),
             (
                 "Whole floor",
                 "all floor within the shell, excluding the footprint of obstacles on the drawing".into(),
@@ -59,9 +59,9 @@ fn scope(document: &Document, located: &Located) -> Vec<Block> {
             (
                 "Scanned",
                 format!(
-                    "the tool was on and passed over the centre of the cell, and the 95 % position error \
-                     was at most {} m; between two readings, only where the robot cannot have strayed from \
-                     the straight line by more than that",
+                    "the tool was on and passed over the centre of the cell while the 95 % position error \
+                     was at most {} m. Between two readings, this counts only where the robot cannot have \
+                     strayed from the straight line by more than that error",
                     floor.position_limit_m
                 ),
             ),
@@ -78,9 +78,9 @@ fn under_tool(document: &Document, located: &Located) -> Vec<Block> {
     let Some(on_s) = located.tool_on_s else { return vec![Block::Text(NOT_KNOWN.into())] };
     let whole = &document.floor.whole;
     vec![Block::Text(format!(
-        "The tool was on for {} of {}. During that time it passed {:.2} of {:.2} m² of floor with a known \
-         position, {:.1} %. No scan of the rest was planned, so no floor counts as missed and no reasons \
-         are given.",
+        "The tool was on for {} of {}. During that time it passed over {:.2} of {:.2} m² of floor with a \
+         known position, or {:.1} %. No scan of the rest was planned, so no floor counts as missed and no \
+         reasons are given.",
         clock(on_s),
         clock(located.time_s),
         whole.scanned * whole.area_m2,
@@ -149,17 +149,18 @@ fn limitations(document: &Document) -> Vec<Block> {
     let runs = counted(document.runs.len() as u64, "run");
     let mut items = vec![
         format!(
-            "The positions of {runs} were computed from readings that were measured by other equipment. \
-            This program neither controlled nor observed the robot."
+            "The positions in {runs} were computed from readings that other equipment recorded. This \
+            program neither controlled nor observed the robot."
         ),
-        "The readings are used as exported: their clock, their stations and the tool state are not checked."
+        "The readings are used as they were exported: the clock, the stations and the state of the tool \
+         were not checked."
             .to_owned(),
         "Only obstacles on the drawing are shown.".to_owned(),
         "\u{201c}Scanned\u{201d} does not mean that a defect would have been detected; that depends on the \
          instrument, its calibration and the surface."
             .to_owned(),
-        "The 95 % error is computed from the covariance; it does not include errors of the station survey, \
-         of the speed of sound, or of the tool's offset on the robot."
+        "The 95 % error is computed from the covariance; it does not include errors in the station survey, \
+         in the speed of sound, or in the tool's offset on the robot."
             .to_owned(),
         "Nothing here replaces the inspector's own assessment of completeness under the applicable code."
             .to_owned(),

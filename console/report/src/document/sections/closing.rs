@@ -21,7 +21,7 @@ pub(in crate::document) fn equipment(document: &Document) -> Vec<Block> {
         ),
         ("Calibration before", Value::fact(facts.calibration_before.as_ref(), "calibration_before")),
         ("Calibration after", Value::fact(facts.calibration_after.as_ref(), "calibration_after")),
-        ("Stations, survey and pulse test", Value::fact(facts.station_check.as_ref(), "station_check")),
+        ("Stations: survey and pulse test", Value::fact(facts.station_check.as_ref(), "station_check")),
         ("Speed of sound", Value::fact(facts.sound_speed.as_ref(), "sound_speed")),
         ("Nominal thickness of the floor", Value::fact(thickness.as_ref(), "nominal_thickness_mm")),
         ("Procedure", Value::fact(facts.procedure.as_ref(), "procedure")),
@@ -69,26 +69,26 @@ pub(in crate::document) fn limitations(document: &Document) -> Vec<Block> {
         );
     }
     let of_scans = [
-        "\u{201c}Scanned\u{201d} means that the tool passed over the place with a known position. It does \
-         not mean that a defect would have been detected; that depends on the instrument, its calibration \
-         and the surface."
+        "\u{201c}Scanned\u{201d} means that the tool passed over the place while the position was known. It \
+         does not mean that a defect would have been detected; that depends on the instrument, its \
+         calibration and the surface."
             .to_owned(),
         format!(
             "All figures depend on the cell size of {} cm and the swath of {} m. Areas are sums of cells.",
             number(100.0 * floor.cell_m, 1),
             floor.swath_m
         ),
-        "\u{201c}Guaranteed\u{201d} refers to the position error by the covariance; this does not include \
-         errors of the heading, of the station survey, of the speed of sound, or of the tool's offset on \
-         the robot."
+        "\u{201c}Guaranteed\u{201d} takes account of the position error according to the covariance. That \
+         error does not include errors in the heading, in the station survey, in the speed of sound, or in \
+         the tool's offset on the robot."
             .to_owned(),
-        "The critical zone is evaluated in 15 layers of 5 mm every 25 mm along the shell as drawn."
+        "The critical zone is evaluated every 25 mm along the shell as drawn, in 15 layers of 5 mm."
             .to_owned(),
     ];
     items.extend(of_scans.into_iter().filter(|_| document.is_to_scan));
     items.extend([
-        "Obstacles are where the robot estimated them; obstacles that it did not sense are not in this \
-         report."
+        "Found obstacles are shown where the robot estimated them to be; obstacles that it did not sense \
+         are missing from this report."
             .to_owned(),
         "Nothing here replaces the inspector's own assessment of completeness under the applicable code."
             .to_owned(),
@@ -171,8 +171,10 @@ pub(in crate::document) fn signatures(document: &Document) -> Vec<Block> {
         ],
     );
     for revision in &document.revisions {
-        let what =
-            format!("document {}, signed by {}, {}", revision.number, revision.signature.by, revision.file);
+        let what = format!(
+            "document {}, signed by {}, file {}",
+            revision.number, revision.signature.by, revision.file
+        );
         table.row(vec![
             revision.revision.clone().into(),
             revision.signature.at.clone().into(),
@@ -200,11 +202,11 @@ pub(in crate::document) fn provenance(document: &Document) -> Vec<Block> {
             |bytes: Option<u64>| bytes.map(|n| format!("{:.1} MB", n as f64 / 1e6)).unwrap_or_default();
         let state = match files.are_as_reported {
             Some(true) if files.recovered.is_some() => {
-                "matches the digest fixed when the run was recovered".to_owned()
+                "both match the digests recorded when the run was recovered".to_owned()
             }
-            Some(true) => "matches the digest written at the end of the run".to_owned(),
+            Some(true) => "both match the digests written at the end of the run".to_owned(),
             Some(false) => format!("DIFFERENT: {}", files.doubts.join("; ")),
-            None => "no digest was written at the end of the run".to_owned(),
+            None => "no digests were written at the end of the run".to_owned(),
         };
         if let Some(readings) = located_as(document, &run.run) {
             blocks.extend(of_readings(
@@ -251,7 +253,7 @@ pub(in crate::document) fn provenance(document: &Document) -> Vec<Block> {
     blocks
 }
 
-/// The readings of a run that was located.
+/// The readings from which a run was located.
 fn located_as<'a>(document: &'a Document, run: &str) -> Option<&'a Readings> {
     document.located.as_ref()?.readings.iter().find(|readings| readings.run == run)
 }

@@ -10,16 +10,16 @@ use super::{
 };
 use world::coverage::percent_text;
 
-/// Maximum number of arcs of the critical zone listed.
+/// Maximum number of listed arcs of the critical zone.
 const MOST_ARCS: usize = 8;
-/// Most numbers of missed areas that are listed beside a plate.
+/// Maximum number of missed areas listed for a plate.
 const MOST_NUMBERS: usize = 3;
 
 /// The coverage map.
 pub(super) fn map(document: &Document) -> Vec<Block> {
     let exact = document.floor.exact.map(|share| {
         Block::Text(format!(
-            "Counted in cells, {} % of the reachable floor was scanned; by exact area, without cells, {} %.",
+            "Counted in cells, {} % of the reachable floor was scanned; by exact area instead of cells, {} %.",
             per_cent(document.floor.reachable.scanned),
             percent_text(share, 2)
         ))
@@ -117,7 +117,7 @@ pub(in crate::document) fn accuracy_statement(document: &Document) -> Table {
         let of = if document.runs.len() > 1 { format!(", {}", run.run) } else { String::new() };
         if let Some(a) = &run.accuracy {
             let stations = a.stations_mean.zip(a.stations_min).map(|(mean, least)| {
-                format!("; {} fixes from {mean:.1} stations on average, {least} at least", a.fixes)
+                format!("; {} fixes from {mean:.1} stations on average, at least {least}", a.fixes)
             });
             let how = format!(
                 "covariance of every tick; limit {} cm, exceeded on {} % of the path{}",
@@ -140,7 +140,7 @@ pub(in crate::document) fn accuracy_statement(document: &Document) -> Table {
             } else {
                 format!(
                     "simulation only; true position within the 95 % ellipse in {inside} % of the ticks; \
-                     lost for {:.1} s",
+                     position lost for {:.1} s",
                     p.position_lost_s
                 )
             };
@@ -163,22 +163,23 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
     let truth = truth.map(|(scanned, sure)| {
         Block::Text(format!(
             "Of the floor reported as scanned, {} % was truly scanned; of the floor reported as guaranteed, \
-             {} % (simulation only).",
+             {} % was (simulation only).",
             per_cent(scanned),
             per_cent(sure)
         ))
     });
     if !document.is_to_scan {
-        let what = "The 95 % error is the longer half axis of the 95 % ellipse of the estimated position (2.45 standard deviations).";
+        let what = "The 95 % error is the longer semi-axis of the 95 % ellipse of the estimated position \
+            (2.45 standard deviations).";
         return vec![Block::Text(what.into()), Block::Table(accuracy_statement(document))];
     }
     let mut blocks = vec![
         Block::Text(
-            "The 95 % error is the longer half axis of the 95 % ellipse of the estimated position (2.45 \
-             standard deviations). A cell is guaranteed if a single pass of a narrower tool would have \
-             scanned it: the tool less 2.45 standard deviations across the heading on each side. Such a \
-             cell was under the tool for every position of the robot within the ellipse. Adjacent passes \
-             are not combined."
+            "The 95 % error is the longer semi-axis of the 95 % ellipse of the estimated position (2.45 \
+             standard deviations). A cell is guaranteed if a single pass would have scanned it even with a \
+             tool that is narrower on each side by 2.45 standard deviations of the position across the \
+             heading. Such a cell was under the tool for every position of the robot within the ellipse. \
+             Adjacent passes are not combined."
                 .into(),
         ),
         Block::Pair(vec![picture(&pictures.accuracy), picture(&pictures.guaranteed)]),
@@ -207,8 +208,8 @@ pub(in crate::document) fn plates(document: &Document) -> Vec<Block> {
     let top = [0.02, 0.05, 0.1, 0.2, 0.5].into_iter().find(|top| worst <= *top).unwrap_or(1.0);
     let mut table = Table::new(
         format!(
-            "Every plate ({}); scanned, missed, unreachable and margin add up to 100.0 % of the plate; the \
-             bar shows the share not guaranteed, 0 to {} %",
+            "Every plate ({}). Scanned, missed, unreachable and margin add up to 100.0 % of the plate. The \
+             bar shows the share that is not guaranteed, from 0 to {} %",
             floor.plates.len(),
             number(100.0 * top, 0)
         ),

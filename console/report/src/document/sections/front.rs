@@ -121,8 +121,8 @@ fn verdict(document: &Document) -> Verdict {
         return Verdict {
             class: if is_all { "" } else { "part" },
             lead: format!(
-                "{scanned:.1} % of the reachable floor was scanned; {sure:.1} % is guaranteed against the \
-                 position error. The critical zone along the shell is {zone}."
+                "{scanned:.1} % of the reachable floor was scanned; {sure:.1} % is guaranteed, allowing for \
+                 the position error. The critical zone along the shell is {zone}."
             ),
             cause: String::new(),
         };
@@ -133,7 +133,7 @@ fn verdict(document: &Document) -> Verdict {
         Some(other) => format!("the mission ended early ({})", other.word().replace('_', " ")),
     };
     let recovered = last.and_then(|run| run.files.recovered.as_ref());
-    let recovered = recovered.map(|how| format!("the run was killed, and later closed {how}"));
+    let recovered = recovered.map(|how| format!("the run was killed and later closed {how}"));
     let reason = last.and_then(|run| run.reason.clone()).or(recovered);
     Verdict {
         class: "bad",
@@ -165,7 +165,7 @@ fn shares(document: &Document) -> Vec<Share> {
             unit: "%",
             of: "of the reachable floor",
             about: format!(
-                "{} of {:.1} m² that the tool can reach while hull and clearance are kept",
+                "{} of {:.1} m² that the tool can reach from where the hull fits with its clearance",
                 m2(reachable.scanned, reachable),
                 reachable.area_m2
             ),
@@ -244,9 +244,9 @@ pub(super) fn scope(document: &Document) -> Vec<Block> {
     let asked = &document.gate[1].answer;
     vec![
         Block::Text(format!(
-            "Scenario {}: {asked}. From {}: {}. Tool: swath {} m. Cells of {} cm; a cell counts as scanned \
-             if the tool passed over its centre while the 95 % position error was at most {} m. Every \
-             percentage states what it refers to.",
+            "Scenario {}: {asked}. Based on {}: {}. Tool: swath {} m. Cell size: {} cm; a cell counts as \
+             scanned if the tool passed over its centre while the 95 % position error was at most {} m. \
+             Every percentage states what it refers to.",
             document.scenario,
             counted(runs.len() as u64, "run"),
             runs.join(", "),
@@ -259,9 +259,7 @@ pub(super) fn scope(document: &Document) -> Vec<Block> {
             ("Whole floor", "all floor within the shell, excluding the footprint of obstacles".into()),
             (
                 "Reachable floor",
-                "floor that the tool can reach from positions with room for hull and \
-                clearance"
-                    .into(),
+                "floor that the tool can reach from where the hull fits with its clearance".into(),
             ),
             (
                 "Scanned",
@@ -275,10 +273,7 @@ pub(super) fn scope(document: &Document) -> Vec<Block> {
             ("Shell margin", "unreachable because the robot keeps its distance from the shell".into()),
             (
                 "Critical zone",
-                format!(
-                    "{zone_mm:.0} mm along the shell, evaluated separately in layers of 5 \
-                mm"
-                ),
+                format!("a strip of {zone_mm:.0} mm along the shell, evaluated separately in layers of 5 mm"),
             ),
         ]),
     ]

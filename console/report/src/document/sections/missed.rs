@@ -16,8 +16,8 @@ const SMALL_M2: f64 = 0.05;
 pub(super) fn missed(document: &Document) -> Vec<Block> {
     let floor = &document.floor;
     let mut blocks = vec![Block::Text(
-        "Cells that touch form one area, even across plates. Every reason states its value; an area with \
-         several causes lists each cause with its share of the area."
+        "Cells that touch form one area, even across plates. Each reason is given with its value. If an \
+         area has several causes, each cause is given with its part of the area."
             .into(),
     )];
     let mut table = Table::new(
@@ -55,7 +55,7 @@ pub(super) fn missed(document: &Document) -> Vec<Block> {
     let missed_m2 = floor.reachable.missed * floor.reachable.area_m2;
     let areas_m2: f64 = floor.missed.iter().map(|area| area.area_m2).sum();
     let total = format!(
-        "All missed floor: {missed_m2:.3} m²; {}: {areas_m2:.3} m²; {} under 0.01 m² each: {:.3} m²{}.",
+        "All missed floor: {missed_m2:.3} m²; {}: {areas_m2:.3} m²; {} smaller than 0.01 m² each: {:.3} m²{}.",
         counted(floor.missed.len() as u64, "area"),
         floor.slivers.count,
         floor.slivers.area_m2,
@@ -80,7 +80,7 @@ fn listed_one_by_one(missed: &[Area<MissReason>]) -> usize {
     }
 }
 
-/// Small areas in short form: a letter for each reason, with its value. `first`: the number of the first of them.
+/// Small areas in short form: a letter for each reason, with its value. `first`: the number of the first small area.
 fn shortly(areas: &[Area<MissReason>], first: usize) -> Vec<Block> {
     let reasons: BTreeSet<MissReason> =
         areas.iter().flat_map(|area| &area.causes).map(|cause| cause.reason).collect();
@@ -102,8 +102,8 @@ fn shortly(areas: &[Area<MissReason>], first: usize) -> Vec<Block> {
     vec![
         Block::Heading(format!("Missed areas under {SMALL_M2} m²")),
         Block::Text(format!(
-            "Number, position, area, and the value for each reason. {}. The CSV and JSON files contain the \
-             reasons in full.",
+            "Number, position and area, then the letter and the value of each reason. {}. The CSV and JSON \
+             files contain the reasons in full.",
             key.collect::<Vec<_>>().join("; ")
         )),
         Block::Columns((first..).zip(areas).map(entry).collect()),
@@ -121,9 +121,9 @@ fn balance(document: &Document) -> String {
     let [all, unreachable, margin, scanned] =
         [all, unreachable, margin, all - unreachable - margin].map(|m2| m2 / 1000.0);
     let beyond = format!(
-        " + {scanned:.3} m² scanned although not counted as reachable: the robot came closer to the shell \
-         or to an obstacle than hull and clearance allow, or the floor was reachable before an obstacle was \
-         found"
+        " + {scanned:.3} m² scanned although not counted as reachable: there the robot came closer to the \
+         shell or to an obstacle than hull and clearance allow, or the floor was reachable until an \
+         obstacle was found"
     );
     format!(
         "Whole floor minus reachable floor: {all:.3} m² = {unreachable:.3} m² unreachable + {margin:.3} m² shell margin{}.",
@@ -151,7 +151,7 @@ fn unreachable(document: &Document) -> Table {
             ("Reason", "", ""),
             ("Areas", "", "r"),
             ("Area", "m²", "r"),
-            ("Largest: position in m, reason", "", ""),
+            ("Largest area: position in m, reason", "", ""),
         ],
     );
     let mut by_reason: BTreeMap<_, Vec<_>> = BTreeMap::new();

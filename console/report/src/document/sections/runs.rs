@@ -26,7 +26,7 @@ pub(in crate::document) fn runs(document: &Document) -> Vec<Block> {
         let way = run.path_length_m.map(|m| format!(", path {m:.1} m")).unwrap_or_default();
         let collisions = run.collisions.map(|n| format!(", {}", counted(n, "collision"))).unwrap_or_default();
         blocks.push(Block::Text(format!(
-            "{}{way}{}{collisions}.",
+            "Duration {}{way}{}{collisions}.",
             clock(run.mission_time_s),
             clearance(run)
         )));
@@ -55,7 +55,7 @@ fn tether_table(tether: &TetherPart) -> Table {
         "Tether record",
         &[
             ("Tether", "", ""),
-            ("Record", "by the estimate", "r"),
+            ("Record", "estimated", "r"),
             ("When", "h:m:s", "r"),
             ("Limit", "", "r"),
             ("Share", "of the limit", "r"),
@@ -81,7 +81,7 @@ fn tether_table(tether: &TetherPart) -> Table {
         };
     let degrees = f64::to_degrees;
     row(
-        "Greatest length out",
+        "Greatest length paid out",
         tether.length_max_m,
         Some(tether.length_max_at_s),
         Some(tether.reel_length_m),
@@ -105,7 +105,7 @@ fn tether_table(tether: &TetherPart) -> Table {
         truth.map(|truth| degrees(truth.wrap_total_max_rad)),
     );
     row(
-        "Length out at the end",
+        "Length paid out at the end",
         tether.end_length_m,
         None,
         None,
@@ -164,7 +164,7 @@ fn incidents(document: &Document, run: &RunPart) -> Option<Block> {
         ]);
     }
     if left_out > 0 {
-        let caption = format!("{}; {left_out} of no consequence omitted", table.caption);
+        let caption = format!("{}; minor entries omitted: {left_out}", table.caption);
         table.caption = caption;
     }
     (!table.rows.is_empty()).then_some(Block::Table(table))
@@ -176,7 +176,7 @@ fn indications(document: &Document) -> Vec<Block> {
         return vec![Block::Heading("Indications".into()), Block::Facts(vec![("Statement", stated)])];
     }
     let mut table = Table::new(
-        "Indications of the instrument, placed on the track by time, or at the position given by the \
+        "Indications from the instrument, placed on the track by time, or at the position given by the \
          instrument",
         &[
             ("No.", "", "r"),

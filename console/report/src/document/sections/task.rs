@@ -1,4 +1,4 @@
-//! The report on a run whose task was not to scan: the task and how well it was done.
+//! The report on a run whose task was not to scan: the task and how well it was carried out.
 
 use super::{
     super::{
@@ -77,18 +77,23 @@ pub(super) fn shares(document: &Document, task: &TaskPart) -> Vec<Share> {
         TaskPart::Follow { .. } => Vec::new(),
         TaskPart::Goto { left_m, left_true_m, tolerance_m, .. } => {
             let run = document.runs.last();
-            let by = if left_true_m.is_some() { "by the true position" } else { "by the estimated position" };
+            let by = if left_true_m.is_some() {
+                "according to the true position"
+            } else {
+                "according to the estimated \
+                position"
+            };
             let left = left_true_m.or(*left_m).map(|m| {
                 figure(
                     number(m, 2),
                     "m",
                     "to the goal at the end",
-                    format!("{by}; reached within {tolerance_m} m"),
+                    format!("{by}; counts as reached within {tolerance_m} m"),
                 )
             });
             let path = run
                 .and_then(|run| run.path_length_m)
-                .map(|m| figure(number(m, 1), "m", "path", "driven, by the true position".into()));
+                .map(|m| figure(number(m, 1), "m", "path", "driven, according to the true position".into()));
             let time = run.map(|run| {
                 figure(number(run.mission_time_s, 1), "s", "mission time", clock(run.mission_time_s))
             });
@@ -101,8 +106,8 @@ pub(super) fn shares(document: &Document, task: &TaskPart) -> Vec<Share> {
 fn scope(document: &Document, task: &TaskPart) -> Vec<Block> {
     let run = document.runs.first().map_or("", |run| run.run.as_str());
     vec![Block::Text(format!(
-        "Scenario {}: {}. From 1 run: {run}. Scanning the floor was not part of the mission, so no floor counts as \
-         missed, and no coverage is claimed.",
+        "Scenario {}: {}. Based on 1 run: {run}. Scanning the floor was not part of the mission, so no \
+         floor counts as missed, and no coverage is claimed.",
         document.scenario,
         task.words()
     ))]
@@ -126,18 +131,18 @@ fn rows(document: &Document, task: &TaskPart) -> Vec<(&'static str, String, Stri
             (
                 "Goal",
                 format!("{}, {} m", number(goal.x, 2), number(goal.y, 2)),
-                format!("reached within {tolerance_m} m"),
+                format!("counts as reached within {tolerance_m} m"),
             ),
             ("Straight line from start to goal", metres(*straight_m, 2), none()),
             (
                 "Distance to the goal at the end",
                 left_m.map_or_else(none, |m| metres(m, 3)),
-                "by the estimated position".into(),
+                "according to the estimated position".into(),
             ),
             (
                 "Distance to the goal at the end",
                 left_true_m.map_or_else(none, |m| metres(m, 3)),
-                "by the true position; simulation only".into(),
+                "according to the true position; simulation only".into(),
             ),
         ],
         TaskPart::Follow { preset_m, points, tracking } => {
@@ -168,8 +173,9 @@ fn rows(document: &Document, task: &TaskPart) -> Vec<(&'static str, String, Stri
     };
     if let Some(run) = document.runs.last() {
         rows.extend(
-            run.path_length_m
-                .map(|m| ("Path", metres(m, 2), "by the true position; simulation only".to_owned())),
+            run.path_length_m.map(|m| {
+                ("Path", metres(m, 2), "according to the true position; simulation only".to_owned())
+            }),
         );
         rows.push((
             "Mission time",

@@ -2,7 +2,7 @@
 
 use crate::keys::Key;
 
-/// Keys that differ from those of the table, by action.
+/// Keys that differ from those in the table, by action.
 pub(super) type Changes = &'static [(&'static str, &'static [Key])];
 
 /// Arrows and named keys only: no letter moves the robot.

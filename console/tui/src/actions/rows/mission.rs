@@ -34,7 +34,7 @@ pub(super) const ROWS: &[Action] = &[
         .when(offer::abort).does(|m| [hold_now(m), ask(m, Ask::Abort)].concat()),
     action(ActionId::ChoosePlanner, "planner", "Change the planner (while held)", &[Key::Char('P')], &[On(Screen::Plan), On(Screen::Mission)]).label("planner").risk(Risk::Moves).args(&[may("planner", Kind::Planner)])
         .when(offer::swap).does(|m| act::choose(m, Purpose::Drive)),
-    action(ActionId::Shadow, "shadow", "Fly a planner in shadow", &[], &[Context::Screen]).args(&[may("planner", Kind::Planner)]).reaches(Reach::Mission)
+    action(ActionId::Shadow, "shadow", "Run a planner in shadow", &[], &[Context::Screen]).args(&[may("planner", Kind::Planner)]).reaches(Reach::Mission)
         .when(shadow::can_begin).does(|m| act::choose(m, Purpose::Shadow)),
     action(ActionId::Promote, "promote", "Promote the planner in shadow", &[], &[Context::Screen]).risk(Risk::Moves).when(|m| accepted(m, &Order::Promote)).does(|m| ask(m, Ask::Promote)),
     action(ActionId::DropShadow, "shadow-off", "Stop the planner in shadow", &[], &[Context::Screen]).reaches(Reach::Mission).when(|m| accepted(m, &Order::DropShadow)).does(|m| send(m, Order::DropShadow)),

@@ -32,13 +32,13 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::Difference, "difference", "Show floor that only one run scanned", &[Key::Char('D')], &[Context::Replay]).label("difference")
         .when(replay::has_second).looks(replay::toggle_difference),
     action(ActionId::Align, "align", "Align two runs by time, path or place", &[Key::Char('T')], &[Context::Replay]).label("align").when(replay::has_second).does(replay::align),
-    action(ActionId::Replay, "replay", "Play a past run back", &[], &[Context::Screen]).args(&[may("run", Kind::Run)]).reaches(Reach::Runs).when(replay::can_open).does(|m| go::begin(m, ActionId::Replay)),
-    action(ActionId::CompareRun, "compare-run", "Compare a run with the one played back", &[Key::Char('c')], &[On(Screen::Review)]).label("compare").args(&[may("run", Kind::Run)]).reaches(Reach::Runs)
+    action(ActionId::Replay, "replay", "Replay a past run", &[], &[Context::Screen]).args(&[may("run", Kind::Run)]).reaches(Reach::Runs).when(replay::can_open).does(|m| go::begin(m, ActionId::Replay)),
+    action(ActionId::CompareRun, "compare-run", "Compare a run with the replayed one", &[Key::Char('c')], &[On(Screen::Review)]).label("compare").args(&[may("run", Kind::Run)]).reaches(Reach::Runs)
         .when(replay::can_compare).does(|m| go::begin(m, ActionId::CompareRun)),
     action(ActionId::Sort, "sort", "Cycle the sort order", &[Key::Char('s')], &[On(Screen::Review)]).label("sort").when(|m| offer::on_screen(m, Screen::Review)).does(review::sort),
     action(ActionId::Rescan, "rescan", "Re-scan what a run missed", &[Key::Char('r')], &[On(Screen::Home), On(Screen::Review), On(Screen::Result)]).label("re-scan").args(&[may("run", Kind::Run)]).reaches(Reach::Runs)
         .when(offer::rescan).does(|m| go::begin(m, ActionId::Rescan)),
-    action(ActionId::Verify, "verify", "Recompute a run, compare its journal", &[Key::Char('v')], &[On(Screen::Home), On(Screen::Review), On(Screen::Result)]).label("verify").args(&[may("run", Kind::Run)])
+    action(ActionId::Verify, "verify", "Recompute a run and compare its journal", &[Key::Char('v')], &[On(Screen::Home), On(Screen::Review), On(Screen::Result)]).label("verify").args(&[may("run", Kind::Run)])
         .when(offer::run).does(|m| go::begin(m, ActionId::Verify)),
     action(ActionId::Report, "report", "Write the report of a run", &[Key::Char('w')], &[On(Screen::Home), On(Screen::Review), On(Screen::Result)]).label("report").args(&[may("run", Kind::Run)]).reaches(Reach::Runs)
         .when(offer::run).does(|m| go::begin(m, ActionId::Report)),

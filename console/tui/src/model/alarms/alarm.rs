@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::{cmp::Ordering, collections::VecDeque};
 use world::Point;
 
-/// The number of most recent events kept for an alarm.
+/// How many of its most recent events are kept for an alarm.
 const MAX_EVENTS: usize = 8;
 
 /// The state of an alarm in its life cycle.
@@ -27,7 +27,7 @@ pub enum State {
 /// How long an alarm is shelved, and why.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Shelf {
-    /// Mission time at which the alarm comes back, seconds.
+    /// Mission time at which the alarm is unshelved, seconds.
     pub until_s: f64,
     /// The reason, in the operator's words.
     pub reason: String,
@@ -55,15 +55,15 @@ pub struct Alarm {
     pub text: String,
     /// Mission time at which the alarm was raised, seconds.
     pub since_s: f64,
-    /// The state in the life cycle.
+    /// The alarm's state in its life cycle.
     pub state: State,
-    /// The lower severity and text that the alarm has dropped to since; shown once the operator has acknowledged the
-    /// higher one.
+    /// The lower severity to which the alarm has dropped since, and its text; shown once the operator has
+    /// acknowledged the higher severity.
     #[serde(default)]
     pub fallen: Option<(Severity, String)>,
     /// How many times the cause has occurred.
     pub count: u32,
-    /// Mission time at which the cause was last gone, seconds.
+    /// Mission time at which the cause last disappeared, seconds.
     pub cleared_s: Option<f64>,
     /// The figure that the alarm is about, if there is one.
     pub reading: Option<Reading>,
@@ -71,7 +71,7 @@ pub struct Alarm {
     pub place: Option<Point>,
     /// Numbers of the alarm's latest log lines, oldest first.
     pub events: VecDeque<u64>,
-    /// The burst of alarms in which this one occurred.
+    /// The burst of alarms to which this one belongs.
     pub burst: u32,
     /// Whether the alarm was the first of its burst.
     pub is_first: bool,
@@ -158,8 +158,9 @@ impl Alarm {
         }
     }
 
-    /// Records the operator's acknowledgement. If the alarm has since dropped to a lower severity, its text was not
-    /// on the screen and may be about something else with the same cause, so the operator must acknowledge it next.
+    /// Records the operator's acknowledgement. If the alarm has since dropped to a lower severity, the text for that
+    /// severity was not on the screen and may be about something else with the same cause; the operator must
+    /// acknowledge it next.
     pub(super) fn acknowledge(&mut self) {
         if let Some((severity, text)) = self.fallen.take() {
             (self.severity, self.text) = (severity, text);
@@ -191,7 +192,7 @@ impl Alarm {
         }
     }
 
-    /// Unshelves the alarm; it counts as unacknowledged again.
+    /// Unshelves the alarm, which becomes unacknowledged again.
     pub(super) fn unshelve(&mut self) {
         if let State::Shelved(shelf) = &self.state {
             self.state = if shelf.active { State::Unacknowledged } else { State::Cleared };

@@ -10,7 +10,7 @@ pub enum Cause {
     PositionLost,
     /// The ranges contradict each other.
     Contradiction,
-    /// The ranges give no position.
+    /// No position can be computed from the ranges.
     NoFix,
     /// A station is not used in the fix.
     Station(world::StationId),
@@ -24,7 +24,7 @@ pub enum Cause {
     Planner,
     /// The robot makes no progress.
     Stuck,
-    /// The run ended with any outcome other than complete.
+    /// The run ended with an outcome other than complete.
     Ended,
     /// The run is not being recorded.
     Recording,
@@ -38,12 +38,13 @@ pub enum Cause {
     Frames,
     /// The recorder is behind the mission.
     RecorderLag,
-    /// The disk that holds the runs is nearly full.
+    /// The disk that holds the runs is almost full.
     Disk,
 }
 
 impl Cause {
-    /// The cause that an event is about, whether the event raises the alarm, clears it or follows from it.
+    /// The cause that an event is about, whether the event raises the alarm, clears the alarm or follows from the
+    /// cause.
     pub fn of(kind: &EventKind) -> Option<Self> {
         Some(match kind {
             EventKind::StationRejected { station, .. } | EventKind::StationRestored { station } => {
@@ -64,7 +65,7 @@ impl Cause {
         })
     }
 
-    /// The cause's name in journals: the same in every run, whatever the text of the alarm.
+    /// The cause's name in journals: the same in every run, whatever the alarm's text.
     pub fn key(&self) -> String {
         match self {
             Self::PositionLost => "position_lost".into(),
@@ -101,7 +102,7 @@ impl Cause {
         }
     }
 
-    /// Every cause once, for tests that go through all of them.
+    /// Each cause once, for tests that go through all of them.
     #[doc(hidden)]
     pub fn every() -> Vec<Self> {
         let tether = ["reel", "wrap", "total wrap", "snag", "return path", "stray"];

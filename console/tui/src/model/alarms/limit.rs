@@ -1,4 +1,4 @@
-//! Limits for figures that the console itself watches. A deadband and delays keep a figure near its limit from
+//! Limits for figures that the console itself monitors. A deadband and delays keep a figure near its limit from
 //! raising and clearing an alarm repeatedly.
 
 use serde::{Deserialize, Serialize};
@@ -8,16 +8,17 @@ use serde::{Deserialize, Serialize};
 pub struct Limit {
     /// The value at which the alarm is raised.
     pub alarm: f64,
-    /// The value at which the alarm clears. If it is greater than `alarm`, the alarm is raised when the figure falls.
+    /// The value at which the alarm clears. If it is greater than `alarm`, the alarm is raised when the figure falls
+    /// to `alarm`.
     pub clear: f64,
     /// How long the value must be beyond the limit before the alarm is raised, seconds.
     pub on_delay_s: f64,
-    /// How long the value must be back before the alarm clears, seconds.
+    /// How long the value must be back at the clearing value before the alarm clears, seconds.
     pub off_delay_s: f64,
 }
 
 impl Limit {
-    /// Whether a value is beyond the alarm value, and whether it is back at the clearing value.
+    /// Whether a value has reached the alarm value, and whether it is back at the clearing value.
     fn sides(&self, value: f64) -> (bool, bool) {
         if self.clear > self.alarm {
             (value <= self.alarm, value >= self.clear)
@@ -31,7 +32,7 @@ impl Limit {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Watch {
     is_on: bool,
-    /// The time since which the figure has called for a change, seconds.
+    /// When the figure first called for the pending change, seconds.
     since_s: Option<f64>,
 }
 
@@ -45,7 +46,7 @@ pub enum Edge {
 }
 
 impl Watch {
-    /// Compares a value with the limit at the given time, seconds. Both delays count from the first value that calls
+    /// Compares a value with the limit at the given time, seconds. Both delays start at the first value that calls
     /// for the change.
     pub fn take(&mut self, limit: &Limit, value: f64, now_s: f64) -> Option<Edge> {
         let (beyond, back) = limit.sides(value);
@@ -67,7 +68,8 @@ impl Watch {
         self.is_on
     }
 
-    /// Whether the alarm is raised or about to be: the figure must be checked again even if nothing happens.
+    /// Whether the alarm is raised or about to be raised; the figure must then be checked again even if nothing
+    /// happens.
     pub fn is_pending(&self) -> bool {
         self.is_on || self.since_s.is_some()
     }

@@ -62,7 +62,8 @@ impl Alarms {
         }
     }
 
-    /// Applies what the operator did about an alarm. A text that the operator has not seen is not acknowledged.
+    /// Applies what the operator did about an alarm. An acknowledgement applies only to the text that the operator
+    /// saw.
     pub fn take(&mut self, noted: &Noted, t_s: f64) {
         let (Noted::Acknowledged { alarm: key, .. }
         | Noted::Shelved { alarm: key, .. }
@@ -98,7 +99,7 @@ impl Alarms {
         }
     }
 
-    /// Records the number of a log line that is about an alarm, and the position that the line is about.
+    /// Records the number of a log line about an alarm, and the position to which the line refers.
     pub fn note(&mut self, cause: &Cause, number: u64, place: Option<Point>) {
         if let Some(alarm) = self.get_mut(cause) {
             alarm.note(number);
@@ -127,8 +128,8 @@ impl Alarms {
         self.list.iter().filter(|alarm| alarm.is_open())
     }
 
-    /// All alarms in the order of the table: open ones with the unacknowledged and most severe first, then shelved
-    /// ones, then cleared ones with the newest first.
+    /// All alarms in table order: open ones first, with the unacknowledged and most severe at the top; then shelved
+    /// ones; then cleared ones, newest first.
     pub fn table(&self) -> Vec<&Alarm> {
         let mut open: Vec<&Alarm> = self.open().collect();
         open.sort_by_key(|alarm| Reverse(alarm.rank()));

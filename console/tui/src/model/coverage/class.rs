@@ -1,14 +1,14 @@
-//! The class of some floor, at any zoom.
+//! The class of a piece of floor, at any zoom.
 
 use super::Raster;
 use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
 use world::{FloorClass, Point};
 
-/// The shares from which floor counts as scanned and as partially scanned.
+/// The minimum scanned share at which a piece of floor counts as scanned, and as partially scanned.
 const WHOLLY_SCANNED: f64 = 0.95;
 const PARTLY_SCANNED: f64 = 0.05;
-/// The re-scanned share of the scanned floor from which it counts as scanned again.
+/// The minimum share of its scanned part that must be scanned again for a piece of floor to count as scanned again.
 const MOSTLY_AGAIN: f64 = 0.5;
 
 /// The numbers of cells in a block: floor, scanned, and scanned again.
@@ -48,8 +48,8 @@ impl Tally {
 }
 
 impl Raster {
-    /// The class of the floor in a square around a point, in a mission that has ended or not; `None` where there is
-    /// no floor.
+    /// The class of the floor in a square around a point, depending on whether the mission has ended; `None` where
+    /// there is no floor.
     pub fn class_in(&self, center: Point, edge_m: f64, has_ended: bool) -> Option<FloorClass> {
         let tally = self.tally(center, edge_m);
         if tally.floor == 0 {
@@ -67,8 +67,8 @@ impl Raster {
         Some((seen(FloorClass::of(self.floor().kind(index), times), has_ended), times))
     }
 
-    /// The class of a cell of which next to nothing is scanned. A block that contains floor may have none in its
-    /// middle.
+    /// The class of a cell with next to nothing scanned; to do if the cell itself is not floor, because a block that
+    /// contains floor may have none in its middle.
     fn unscanned(&self, index: usize) -> FloorClass {
         match FloorClass::of(self.floor().kind(index), 0) {
             FloorClass::Outside => FloorClass::ToDo,
@@ -98,7 +98,7 @@ impl Raster {
         sum
     }
 
-    /// The block under a point, from the level with the largest blocks no wider than `edge_m`.
+    /// The block under a point, from the level with the largest blocks that are no wider than `edge_m`.
     fn block_at(&self, point: Point, edge_m: f64) -> Tally {
         let floor = self.floor();
         let Some(index) = floor.cell_at(point) else { return Tally::default() };
@@ -113,7 +113,7 @@ impl Raster {
     }
 }
 
-/// Adjusts a class to whether the mission has ended.
+/// Adjusts a class according to whether the mission has ended.
 fn seen(class: FloorClass, has_ended: bool) -> FloorClass {
     if has_ended { class.when_over() } else { class }
 }

@@ -6,9 +6,9 @@ use mission::{
 };
 use planner_api::{Command, Drawing};
 
-/// The maximum number of drawings kept of one tick.
+/// The maximum number of drawings kept for one tick.
 const MAX_DRAWINGS: usize = 512;
-/// The maximum number of figures kept of one tick.
+/// The maximum number of figures kept for one tick.
 const MAX_SCALARS: usize = 32;
 
 impl Run {
@@ -22,7 +22,7 @@ impl Run {
             }
             EventKind::ParametersChanged { choice, .. } => self.planning.choice = Some(choice.clone()),
             EventKind::Planned { ask, path, length_m, complete, .. } => {
-                // The planner is a candidate: its plan is flown once it takes over.
+                // The planner is a candidate: its plan runs once it takes over.
                 self.planning.proposed = ask.is_some_and(|ask| self.planning.candidate == Some(ask.worker));
                 if self.planning.proposed {
                     return;
@@ -63,7 +63,7 @@ impl Run {
                         .is_some_and(|about| about.mission.better_plan == BetterPlan::Take);
                     self.planning.offer = Some(Offer { flown, better, begins, is_taken });
                     let next = if is_taken {
-                        "taken automatically at its first point"
+                        "will be taken automatically at its first point"
                     } else {
                         "<take-plan>: take it"
                     };
@@ -92,7 +92,7 @@ impl Run {
     /// Makes a different planner active.
     fn seat(&mut self, choice: &PlannerChoice, info: &PlannerInfo) {
         if *self.phase() == Phase::Waiting {
-            // Nothing was flown yet, so the previous planner's plan no longer matters.
+            // Nothing has run yet, so the previous planner's plan no longer matters.
             self.planning.plan = None;
         }
         (self.planning.choice, self.planning.info) = (Some(choice.clone()), Some(info.clone()));

@@ -1,10 +1,10 @@
-//! Folds events of the planner in shadow into a run.
+//! Folds events about the planner in shadow into a run.
 
 use crate::model::{Change, Run, Shadow};
 use mission::{Event, EventKind, Order, Severity};
 
 impl Run {
-    /// Folds in an event of the planner in shadow, or an order about it.
+    /// Folds in an event from the planner in shadow, or an order about it.
     pub(super) fn shadowed(&mut self, event: &Event, change: &mut Change) {
         match &event.kind {
             EventKind::Ordered { order: Order::Shadow(choice) } => {
@@ -16,7 +16,7 @@ impl Run {
             }
             EventKind::ShadowEnded { planner, why } => {
                 self.shadow = None;
-                change.say(Severity::Watch, format!("planner {planner} no longer flies in shadow: {why}"));
+                change.say(Severity::Watch, format!("planner {planner} no longer runs in shadow: {why}"));
             }
             EventKind::PromotionRefused { planner, why } => {
                 change.say(Severity::Warn, format!("planner {planner} stays in shadow: {why}"));

@@ -4,7 +4,7 @@ use crate::model::{Cause, Run};
 use mission::{Event, EventKind, Severity, event::TetherAlarm};
 
 impl Run {
-    /// Forgets the last certificate, because its plan is no longer flown.
+    /// Forgets the last certificate, because its plan no longer runs.
     pub(super) fn forget_certificate(&mut self) {
         self.tether.iter_mut().for_each(|tether| tether.certified = None);
     }
@@ -24,7 +24,8 @@ impl Run {
                 }
                 self.clear(&Cause::Tether(alarm.word().to_owned()));
             }
-            // The planner is a candidate; the reason why it does not take over is reported when it is rejected.
+            // The planner is a candidate; the reason why it does not take over is reported when the planner is
+            // rejected.
             EventKind::Certified { .. } if self.planning.proposed => {}
             EventKind::Certified { planner, refused, certificate } => {
                 self.tether.get_or_insert_default().certified = Some(certificate.certified);

@@ -1,4 +1,4 @@
-//! A chunk of the log: its lines, and beside them the data that a filter reads, packed for fast searching.
+//! A chunk of the log: its lines and, separately, the data that a filter reads, packed for fast searching.
 
 use super::entry::Entry;
 use mission::Severity;
@@ -14,7 +14,7 @@ const BETWEEN: char = '\u{1f}';
 pub(super) struct Chunk {
     entries: Vec<Entry>,
     keys: Vec<Key>,
-    /// The source and text of all lines in lower case, one after another.
+    /// The source and text of every line in lower case, one line after another.
     words: String,
 }
 
@@ -27,7 +27,7 @@ struct Key {
     end: usize,
 }
 
-/// A line as a filter sees it.
+/// A line as seen by a filter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Line<'a> {
     pub severity: Severity,
@@ -70,7 +70,7 @@ impl Chunk {
         self.entries.len() >= LINES
     }
 
-    /// The lines from an index on, as a filter sees them, with their indices.
+    /// The lines from an index on, as seen by a filter, with their indices.
     pub(super) fn lines(&self, from: usize) -> impl Iterator<Item = (usize, Line<'_>)> {
         let mut start = from.checked_sub(1).and_then(|before| self.keys.get(before)).map_or(0, |key| key.end);
         self.keys.iter().enumerate().skip(from).map(move |(index, key)| {

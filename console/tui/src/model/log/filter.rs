@@ -19,7 +19,7 @@ use word::{Word, words};
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Filter {
     terms: Vec<Term>,
-    /// The parts that could not be parsed, in order; they are ignored when filtering.
+    /// The parts that could not be parsed, in order; filtering ignores them.
     pub problems: Vec<Problem>,
 }
 

@@ -10,10 +10,11 @@ use std::{borrow::Cow, collections::VecDeque, sync::Arc};
 
 /// The minimum number of lines kept; older lines are dropped in chunks of 1024.
 pub const MAX_LINES: usize = 100_000;
-/// The maximum memory for full chunks, bytes. A rejected station takes about 0.7 kB with everything its detail shows,
-/// so the number of lines is normally the limit that applies; only planner messages can be longer.
+/// The maximum memory for full chunks, bytes. Even a rejected station takes only about 0.7 kB with all the data for
+/// its detail view, and only planner messages can take more, so the limit that normally applies is the number of
+/// lines.
 const MAX_BYTES: usize = 96 << 20;
-/// The longest text of a line, characters; planner messages can be of any length.
+/// The maximum length of a line's text, characters; planner messages can be of any length.
 const MAX_TEXT: usize = 1000;
 
 /// The log, newest line last. Each line keeps its own number; the first line of a run is 0.

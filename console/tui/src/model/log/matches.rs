@@ -16,12 +16,12 @@ pub struct Matches {
     filter: Filter,
     /// The numbers of the lines that pass, ascending.
     found: VecDeque<u64>,
-    /// All lines before this number have been tested.
+    /// All lines before this number have already been tested.
     seen: u64,
 }
 
 impl Matches {
-    /// Updates the matches for a filter and a log.
+    /// Updates the matches to a filter and a log.
     pub fn refresh(&mut self, text: &str, log: &Log) {
         if self.text != text {
             (self.text, self.filter) = (text.to_owned(), Filter::parse(text));
@@ -31,7 +31,7 @@ impl Matches {
         if self.seen > log.end() {
             self.seen = 0;
         }
-        // The newest line may have been repeated since.
+        // The newest line may have been repeated since then.
         let from = self.seen.saturating_sub(1).max(log.oldest());
         while self.found.back().is_some_and(|number| *number >= from) {
             self.found.pop_back();
@@ -63,7 +63,7 @@ impl Matches {
         self.found.len() - self.found.partition_point(|found| *found <= number)
     }
 
-    /// The number of the passing line that has `newer` newer ones; the oldest line if there are fewer.
+    /// The number of the passing line that is followed by `newer` newer ones; the oldest line if there are fewer.
     pub fn number(&self, newer: usize) -> Option<u64> {
         let index = self.found.len().checked_sub(1)?.saturating_sub(newer);
         self.found.get(index).copied()
@@ -74,7 +74,7 @@ impl Matches {
         self.found.iter().rev().skip(skip).filter_map(|number| Some((*number, log.get(*number)?)))
     }
 
-    /// The next line of the same kind among the `among` following lines, or among the preceding ones if `back`.
+    /// The next line of the same kind within the next `among` lines, or within the preceding ones if `back` is set.
     pub fn next_like(&self, log: &Log, number: u64, back: bool, among: usize) -> Option<u64> {
         let what = &log.get(number)?.what;
         let at = self.found.partition_point(|found| *found < number);

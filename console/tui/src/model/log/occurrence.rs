@@ -1,4 +1,4 @@
-//! The part of an event that a log line keeps.
+//! The part of an event that is kept by a log line.
 
 use mission::EventKind;
 use positioning::Ranging;
@@ -11,20 +11,20 @@ use world::Point;
 pub enum What {
     /// A message about the console itself.
     Console,
-    /// The opening of the run; the run itself holds the details.
+    /// The opening of the run; the details are in the run itself.
     Opened,
     /// An event of the mission.
     Event(Box<Occurrence>),
 }
 
-/// An event of the mission without its paths and lists, and the circumstances at the time.
+/// An event of the mission without its paths and lists, and the circumstances at that time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Occurrence {
     /// The event.
     pub kind: EventKind,
     /// The robot's estimated state at the time.
     pub robot: Option<Robot>,
-    /// For an event about a station: its last range.
+    /// For an event about a station: the station's last range.
     pub range: Option<Ranging>,
 }
 
@@ -58,7 +58,7 @@ impl What {
         }
     }
 
-    /// The position of the event: that of the station or the obstacle, otherwise that of the robot.
+    /// The position of the event: where the station or the obstacle is; otherwise where the robot is.
     pub fn place(&self, station: impl Fn(world::StationId) -> Option<Point>) -> Option<Point> {
         let event = self.event()?;
         match &event.kind {
@@ -79,7 +79,8 @@ impl What {
     }
 }
 
-/// The event without the parts that would make a long log large: a path keeps only its ends, a planner only its name.
+/// The event without the parts that would make a long log large: only the ends of a path and only the name of a
+/// planner are kept.
 pub(in crate::model) fn slim(kind: &EventKind) -> EventKind {
     match kind {
         EventKind::Planned { ask, return_path, planner, reason, path, length_m, complete, .. } => {

@@ -1,4 +1,4 @@
-//! Matches moments of two runs.
+//! Matches moments in two runs.
 
 use crate::model::Run;
 use serde::{Deserialize, Serialize};
@@ -6,10 +6,10 @@ use world::Point;
 
 /// The minimum time between two samples of a track, seconds.
 const SAMPLE_S: f64 = 1.0;
-/// Positions further from the nearest one than this belong to a different pass, metres.
+/// Positions that are further away than the nearest one by more than this belong to a different pass, metres.
 const SAME_PASS_M: f64 = 0.5;
 
-/// How moments of two runs are matched.
+/// How moments in two runs are matched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Align {
     /// By the time since the start.
@@ -17,7 +17,7 @@ pub enum Align {
     Time,
     /// By the share of the path driven.
     Path,
-    /// By the robot's position; of several passes, the one nearest in share of the path.
+    /// By the robot's position; if there were several passes, by the one with the nearest share of the path.
     Place,
 }
 
@@ -53,7 +53,7 @@ pub struct Track {
 struct Sample {
     t_s: f64,
     at: Point,
-    /// The distance driven so far, metres, by the estimated position.
+    /// The distance driven so far according to the estimated position, metres.
     way_m: f64,
 }
 
@@ -81,7 +81,7 @@ impl Track {
         if whole_m > 0.0 { sample.way_m / whole_m } else { 0.0 }
     }
 
-    /// The moment of the other run that corresponds to a moment of this one, seconds of mission time.
+    /// The moment in the other run that corresponds to a moment in this one, seconds of mission time.
     pub fn moment_of(&self, other: &Self, align: Align, t_s: f64) -> f64 {
         let by_time = || t_s - self.started_s + other.started_s;
         let Some(sample) = self.at(t_s).filter(|sample| sample.t_s <= t_s) else { return by_time() };

@@ -10,7 +10,7 @@ pub enum Scans {
     None,
     /// Only the run being replayed.
     OnlyA,
-    /// Only the run that it is compared with.
+    /// Only the run with which it is compared.
     OnlyB,
     /// Both runs.
     Both,
@@ -37,9 +37,9 @@ impl Scans {
 /// The shares of the first run's reachable floor, 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Shares {
-    /// Scanned by the first run alone.
+    /// Scanned by the first run only.
     pub only_a: f64,
-    /// Scanned by the second run alone.
+    /// Scanned by the second run only.
     pub only_b: f64,
     /// Scanned by both.
     pub both: f64,

@@ -1,4 +1,4 @@
-//! The marks that the operator can jump to in a run: events, alarms, holds.
+//! The marks to which the operator can jump in a run: events, alarms, holds.
 
 use crate::model::Run;
 use mission::{Event, EventKind, Severity};
@@ -15,7 +15,7 @@ pub enum MarkKind {
     Alarm,
 }
 
-/// A moment that the operator can jump to.
+/// A moment to which the operator can jump.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Mark {
     /// Mission time, seconds.
@@ -36,7 +36,7 @@ pub struct Marker {
 }
 
 impl Marker {
-    /// Folds an event into a run; returns the mark for it, if any.
+    /// Folds an event into a run; returns the mark for the event if it has one.
     pub fn fold(&mut self, run: &mut Run, event: &Event) -> Option<Mark> {
         run.fold(event);
         let lines = run.log.end();

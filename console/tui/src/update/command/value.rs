@@ -1,4 +1,4 @@
-//! The values of commands: the choices, and the meaning of a typed word.
+//! The values of commands: the choices, and the meaning of what is typed.
 
 use crate::actions::{Kind, duration_s, moment_s};
 use crate::guide;
@@ -146,7 +146,7 @@ const SEVERITIES: [(&str, Severity); 4] = [
     ("crit", Severity::Crit),
 ];
 
-/// The message that nothing has this name, with the nearest name or the list of all names.
+/// The message that nothing has this name, with either the nearest name or the list of all names.
 fn wrong(what: &str, text: &str, known: &[String]) -> String {
     let none = format!("no {what} `{text}`");
     match nearest(text, known.iter().map(String::as_str)) {
@@ -168,7 +168,7 @@ fn speeds() -> Vec<String> {
     all.iter().map(text).collect()
 }
 
-/// Parameter names or, after a name and `=`, its values if they are words.
+/// Parameter names or, after a name and `=`, the parameter's values if they are words.
 fn parameters(model: &Model, typed: &str) -> Vec<String> {
     let all = model.planner().map(|info| info.parameters.as_slice()).unwrap_or_default();
     let Some((key, _)) = typed.split_once('=') else {
@@ -199,14 +199,14 @@ fn alarms(model: &Model) -> impl Iterator<Item = (String, Cause)> {
     run.alarms.open().map(|alarm| (guide::name(&alarm.cause, run), alarm.cause.clone()))
 }
 
-/// The largest range error of a fault, metres, as in a scenario.
+/// The largest range error that a fault may have, metres, as in a scenario.
 const LONGEST_M: f64 = 1000.0;
 
 fn read_fault(text: &str) -> Result<RangeFault, String> {
     let wrong = || {
         format!(
-            "unknown fault `{text}`; write dead (silent) or offset=2.5 (reads that many metres long, \
-            at most {LONGEST_M})"
+            "unknown fault `{text}`; write dead (silent) or offset=2.5 (ranges 2.5 m too long; at most \
+            {LONGEST_M})"
         )
     };
     if text == "dead" {
@@ -237,7 +237,7 @@ fn problem_of<'a>(model: &'a Model, name: &str) -> Option<&'a str> {
     all.filter(|entry| entry.name == name).find_map(|entry| entry.problem.as_deref())
 }
 
-/// Past runs, the newest first.
+/// Past runs, newest first.
 fn runs(model: &Model) -> impl Iterator<Item = &str> {
     model.home.found.iter().flat_map(|found| &found.runs).map(|run| run.name.as_str())
 }

@@ -9,12 +9,12 @@ use crate::view::look::{Look, Parts};
 use crate::view::{table, text};
 use ratatui::text::Line;
 
-/// The keys that run the actions while the list is open.
+/// The keys that run the actions while the action list is open.
 const NUMBERS: [&str; 4] = ["<first-action>", "<second-action>", "<third-action>", "<fourth-action>"];
-/// Rows that a list cannot use: its frame, and the three lines that stay visible.
+/// Rows that a list cannot use: its frame, and the three lines that always stay visible.
 const FRAME: usize = 5;
 
-/// The numbered actions; while the list is open, the selected one is marked.
+/// The actions, numbered; while the list is open, the selected action is marked.
 pub(super) fn lines(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'static>> {
     let selected = match &look.model.ui.overlay {
         Overlay::Remedies { cause, selected } if *cause == alarm.cause => Some(*selected),
@@ -72,7 +72,7 @@ fn number(look: &Look, index: usize) -> String {
     look.keys(NUMBERS.get(index).copied().unwrap_or_default())
 }
 
-/// Actions that cannot be run now are dimmed.
+/// Actions that cannot run now are dimmed.
 fn role(look: &Look, remedy: &Remedy) -> Role {
     match remedy.action {
         Some(action) if offered(look.model, action).is_err() => Role::Dim,

@@ -1,4 +1,4 @@
-//! The rows of the table of alarms.
+//! The rows of the alarm table.
 
 use crate::guide;
 use crate::model::Alarm;
@@ -9,9 +9,9 @@ use crate::view::look::{Look, Parts};
 use crate::view::{events, text};
 use mission::Severity;
 
-/// The columns before and after the name of an alarm.
+/// The widths before and after the name of an alarm, columns.
 struct Columns {
-    /// The marks, and the word for the severity if it fits.
+    /// The marks, and the word for the severity if the word fits.
     front: usize,
     state: usize,
     since: usize,
@@ -50,7 +50,7 @@ pub(super) fn heads(columns: usize, wide: bool) -> String {
     .concat()
 }
 
-/// The heading above the first alarm of a state; `None` for open alarms.
+/// The heading above the first alarm in a state; `None` for open alarms.
 pub(super) fn heading(state: &State) -> Option<&'static str> {
     match state {
         State::Unacknowledged | State::Acknowledged | State::Returned => None,
@@ -83,12 +83,12 @@ pub(super) fn row(look: &Look, alarm: &Alarm, columns: usize, wide: bool) -> Par
     ]
 }
 
-/// A word, right-aligned in its columns.
+/// A word, right-aligned in its column.
 fn right(word: &str, columns: usize) -> String {
     format!("{:>columns$}", text::fit(word, columns.saturating_sub(1)))
 }
 
-/// The figure of an alarm; once the cause is gone, the last value before that, marked as past.
+/// The figure that an alarm is about; once the cause is gone, the last value before that, marked as past.
 fn right_now(alarm: &Alarm, last: &str, columns: usize) -> (Role, String) {
     if alarm.is_active() || last.is_empty() {
         return (Role::Text, right(last, columns));
@@ -98,7 +98,7 @@ fn right_now(alarm: &Alarm, last: &str, columns: usize) -> (Role, String) {
     (Role::Dim, right(if fits { &was } else { "over" }, columns))
 }
 
-/// The letter for a severity, as in the top line.
+/// The letter for a severity, as used in the top line.
 fn letter(severity: Severity) -> char {
     match severity {
         Severity::Crit => 'C',

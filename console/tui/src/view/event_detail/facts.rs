@@ -57,7 +57,7 @@ pub(super) fn title(what: &What) -> &'static str {
     }
 }
 
-/// The contents of an event beyond its log line, and the robot's position at the time.
+/// What an event contains in addition to its log line, and the robot's position at that time.
 pub(super) fn facts(run: &Run, entry: &Entry) -> Vec<Field> {
     match &entry.what {
         What::Console => vec![("source", "the console, not the mission".into())],
@@ -141,7 +141,7 @@ fn of_planner(kind: &EventKind) -> Vec<Field> {
         }
         EventKind::BetterPlanned { planner, flown, better, .. }
         | EventKind::BetterPlanTaken { planner, flown, better } => {
-            vec![("planner", planner.clone()), ("flown", effort(flown)), ("better", effort(better))]
+            vec![("planner", planner.clone()), ("current", effort(flown)), ("better", effort(better))]
         }
         EventKind::PlannerRejected { planner, why }
         | EventKind::BetterPlanDropped { planner, why }
@@ -220,7 +220,7 @@ fn rejected(run: &Run, id: StationId, reason: &Exclusion, range: Option<&Ranging
     match (reason, range) {
         (Exclusion::ByOrder, _) => facts.push(("reason", "excluded by the operator".into())),
         (Exclusion::Impossible { range_m, most_m }, _) => {
-            let reason = format!("{range_m:.2} m is impossible in this tank, at most {most_m:.2} m");
+            let reason = format!("{range_m:.2} m is impossible in this tank; at most {most_m:.2} m");
             facts.push(("reason", reason));
         }
         (Exclusion::Silent, _) => facts.push(("reason", "not heard in this cycle".into())),
@@ -265,7 +265,7 @@ fn obstacle_facts(obstacle: &Obstacle) -> Vec<Field> {
 
 fn resumed(resumes: Resumes) -> String {
     match resumes {
-        Resumes::Never => "by an order of the operator only",
+        Resumes::Never => "only by the operator's order",
         Resumes::WhenCleared => "automatically when the cause is gone",
         Resumes::ByFallback => "automatically with the fallback planner",
     }
@@ -313,7 +313,7 @@ fn tether(alarm: &TetherAlarm, reached: Option<bool>) -> Vec<Field> {
 fn certified(planner: &str, refused: bool, certificate: &Certificate) -> Vec<Field> {
     let judgement = match (refused, certificate.certified) {
         (true, _) => "refused: the plan is not run",
-        (false, false) => "not certified; run on the operator's order",
+        (false, false) => "not certified; runs on the operator's order",
         (false, true) => "certified",
     };
     let wraps = (certificate.wrap_max_rad.to_degrees(), certificate.wrap_total_max_rad.to_degrees());

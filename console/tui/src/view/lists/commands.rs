@@ -1,4 +1,4 @@
-//! The command line and its list; opened as help, it shows every key.
+//! The command line and its list; if opened as help, the list shows every key.
 
 use super::list::{List, hint, paragraph};
 use crate::actions::{Action, ActionId, find, keymap::Keymap};
@@ -10,7 +10,7 @@ use crate::view::look::{Look, Parts as Row};
 use crate::view::next::joined;
 use crate::view::text;
 
-/// Columns of a command's keys.
+/// Width of a command's keys, columns.
 const KEYS: usize = 10;
 /// The prompt of the command line.
 const PROMPT: &str = " > ";
@@ -37,7 +37,7 @@ pub(super) fn list(look: &Look, palette: &Palette, columns: u16) -> List {
     }
 }
 
-/// The input line with any error below it, and the column of the cursor.
+/// The input line with its error below it, if there is one, and the column of the cursor.
 fn line(palette: &Palette, found: usize, room: usize) -> (Vec<Row>, usize) {
     let count = match found {
         0 => "   no match".to_owned(),
@@ -107,7 +107,7 @@ fn below(look: &Look, selected: Option<&Choice>, room: usize) -> Vec<Row> {
     vec![hint(&format!(" {}", joined(&clauses, room)))]
 }
 
-/// General rules; the keys in them come from the table.
+/// General rules; the keys that they mention come from the table.
 fn rules(keys: &Keymap, columns: usize) -> Vec<Row> {
     let of = |id: ActionId| {
         let action = crate::actions::ACTIONS.iter().rfind(|action| action.id == id);
@@ -118,7 +118,7 @@ fn rules(keys: &Keymap, columns: usize) -> Vec<Row> {
     [
         lists.as_str(),
         "HOLD never asks first; commands marked MOVES or ENDS do.",
-        "In a text field space types and <interrupt> holds.",
+        "In text fields, space types a space; <interrupt>: HOLD.",
         "Alarms: C crit, W warn, w watch, * not acknowledged.",
     ]
     .into_iter()

@@ -8,7 +8,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use ratatui::widgets::{Clear, Paragraph};
 
-/// A list with lines above and below it.
+/// A list, with lines above and below it.
 #[derive(Default)]
 pub(in crate::view) struct List {
     pub title: String,
@@ -17,9 +17,10 @@ pub(in crate::view) struct List {
     pub rows: Vec<Row>,
     pub selected: usize,
     pub below: Vec<Row>,
-    /// How many of the lines below take precedence over the list's last lines.
+    /// How many of the lines below the list take precedence over the list's last lines.
     pub needed_below: usize,
-    /// The position of the cursor: the line, counting those above the list and then those below, and the column.
+    /// The position of the cursor: its line, counted from the lines above the list on to those below it, and its
+    /// column.
     pub cursor: Option<(usize, usize)>,
 }
 
@@ -49,7 +50,7 @@ impl List {
     }
 }
 
-/// Shows the terminal's cursor at a column and row of an area, if the position is within the area.
+/// Shows the terminal's cursor at a column and row in an area, if the position is within the area.
 pub(in crate::view) fn place_cursor(frame: &mut Frame, area: Rect, (column, row): (usize, usize)) {
     if column < usize::from(area.width) && row < usize::from(area.height) {
         frame.set_cursor_position((area.x + column as u16, area.y + row as u16));

@@ -47,7 +47,7 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
             cursor = Some((1, column));
         }
         needed_below = below.len();
-        // The error already names the range.
+        // The error already states the range.
         if edit.is_none_or(|edit| edit.refusal.is_none()) {
             let allowed = format!(" {}: {}", info.key, parameter::range(info));
             below.push(vec![(Role::Dim, text::fit(&allowed, room))]);
@@ -69,7 +69,7 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
     }
 }
 
-/// The input line for the value, any error, and the column of the cursor.
+/// The input line for the value with its error, if there is one, and the column of the cursor.
 fn edit_rows(info: &mission::ParamInfo, edit: &Edit, room: usize) -> (Vec<Row>, usize) {
     let name = format!(" {} = ", info.key);
     let shown = field(&edit.line, room.saturating_sub(text::width(&name) + 1));

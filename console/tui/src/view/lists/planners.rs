@@ -9,8 +9,8 @@ use crate::view::text::{self, wrap};
 pub(super) fn list(look: &Look, purpose: Purpose, selected: usize, columns: u16) -> List {
     let (title, enter) = match purpose {
         Purpose::Drive => ("Planners", " <accept>: change planner (asks first); coverage is kept."),
-        Purpose::Compare => ("Compare with", " <accept>: have it plan beside the active planner."),
-        Purpose::Shadow => ("Fly in shadow", " <accept>: fly it in shadow; it does not move the robot."),
+        Purpose::Compare => ("Compare with", " <accept>: have it plan alongside the active planner."),
+        Purpose::Shadow => ("Run in shadow", " <accept>: run it in shadow; it does not move the robot."),
         Purpose::WhatIf => ("Forecast with", " <accept>: add it to the forecasts."),
     };
     let driving = look.run.planner_id();

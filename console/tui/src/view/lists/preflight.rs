@@ -6,7 +6,7 @@ use crate::view::look::{Look, Parts as Row};
 use crate::view::text;
 use mission::{Check, CheckOutcome};
 
-/// Columns for the names of the automatic checks.
+/// Width of the names of the automatic checks, columns.
 const WHAT: usize = 12;
 
 pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
@@ -28,12 +28,12 @@ pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
     let verdict = match (model.live.preflight.is_checking, blocks.sentence()) {
         (true, _) => (Role::Watch, " Checking...".to_owned()),
         (false, None) => {
-            (Role::Good, " Nothing blocks the start. Checked again at the moment of start.".to_owned())
+            (Role::Good, " Nothing blocks the start. The checks are repeated at the start.".to_owned())
         }
         (false, Some(why)) => (Role::Crit, format!(" Start is blocked: {why}.")),
     };
     below.push(vec![verdict]);
-    // The key that holds the robot ticks an item here, where nothing moves yet.
+    // Here, where nothing moves yet, the key that holds the robot ticks an item.
     let tick = if model.n_by_hand() > 0 { " <hold>: tick " } else { "" };
     below.push(hint(&look.keys(&format!("{tick} <check-again>: check again  <cancel>: close"))));
     List {
@@ -47,7 +47,7 @@ pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
     }
 }
 
-/// The checks that block the start: failed ones, and items not ticked.
+/// The checks that block the start: failed ones, and items that are not ticked.
 struct Blocks {
     failed: usize,
     not_ticked: usize,

@@ -1,4 +1,4 @@
-//! The changes that a preset makes.
+//! The changes made by a preset.
 
 use super::list::{List, hint};
 use crate::model::{parameter, preset};
@@ -31,7 +31,10 @@ pub(super) fn list(look: &Look, name: &str, choice: &PlannerChoice, selected: us
         above: vec![hint(&format!(" {}", head.concat()))],
         rows: rows.collect(),
         selected,
-        below: vec![hint(&look.keys(&enter)), hint(" Nothing moves: the planner replans with them.")],
+        below: vec![
+            hint(&look.keys(&enter)),
+            hint(" Nothing moves: the planner replans with the new values."),
+        ],
         needed_below: 2,
         ..List::default()
     }

@@ -5,14 +5,14 @@ use crate::theme::Role;
 use crate::view::look::Look;
 use planner_api::{Drawing, Layer};
 
-/// Ticks after which the last drawings disappear.
+/// The number of ticks after which the last drawings disappear.
 const SHOWN_TICKS: u64 = 10;
 
-/// The kinds of drawings, with role and legend text.
+/// The kinds of drawings, each with its role and legend text.
 pub(super) const KINDS: [(Role, &str); 3] =
     [(Role::Pull, "pull"), (Role::Push, "push"), (Role::Drawn, "planner")];
 
-/// The visible drawings.
+/// The drawings that are visible now.
 pub(super) fn shown<'a>(look: &Look<'a>) -> &'a [Drawing] {
     let planning = &look.run.planning;
     let old = look.run.clock.tick.saturating_sub(planning.drawings_tick) > SHOWN_TICKS;

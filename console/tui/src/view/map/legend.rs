@@ -13,7 +13,7 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::Clear;
 use world::FloorClass;
 
-/// Width of the right side, columns, and the maximum number of rows.
+/// Width of the right side in columns, and its maximum number of rows.
 const SIZE: (u16, u16) = (12, 10);
 
 /// A legend entry: role, mark and text.
@@ -37,7 +37,7 @@ fn draw_side(look: &Look, frame: &mut Frame, area: Rect, entries: &[Entry]) {
     }
 }
 
-/// The floor classes that occur.
+/// The classes of floor that occur.
 fn floor(look: &Look) -> Vec<Entry> {
     let (run, layers) = (look.run, look.model.ui.layers);
     let scanned = layers.shows(MapLayer::Scanned);

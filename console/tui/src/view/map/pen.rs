@@ -1,4 +1,4 @@
-//! Draws the model on the canvas of the map.
+//! Draws the model on the map's canvas.
 
 use super::drawn;
 use super::plates::{self, Outlines};
@@ -13,13 +13,13 @@ use ratatui::text::Line;
 use ratatui::widgets::canvas::Context;
 use world::{Boundary, Point, ZoneKind};
 
-/// The maximum number of numbered missed areas on the map: with the whole tank shown, and with a part of it.
+/// The maximum number of missed areas that are numbered on the map: with the whole tank shown, and with part of it.
 const MISSED: (usize, usize) = (9, 99);
-/// The number of segments of a round wall.
+/// The number of segments in a round wall.
 const WALL_PIECES: u32 = 256;
-/// Passes are all drawn if a pass of the tool is at least this many columns wide.
+/// All passes are drawn if a pass of the tool is at least this many columns wide.
 const PASS_COLUMNS: f64 = 2.0;
-/// Length of the trail and plan when they are not drawn completely, columns.
+/// How much of the trail and plan is drawn when not all of it is, columns.
 const REACH_COLUMNS: f64 = 40.0;
 /// Dots per character.
 pub(super) const DOTS: (u16, u16) = (2, 4);
@@ -84,7 +84,7 @@ impl Pen<'_> {
         }
     }
 
-    /// The plan or forecast of a different planner, during a comparison.
+    /// The plan or forecast of a different planner, for comparison.
     fn ghost(&self, ctx: &mut Context<'_>) {
         self.other(ctx);
         let (live, ui) = (&self.look.model.live, &self.look.model.ui);
@@ -105,7 +105,7 @@ impl Pen<'_> {
         }
     }
 
-    /// The run that the replay is compared with.
+    /// The run with which the replay is compared.
     fn other(&self, ctx: &mut Context<'_>) {
         let other = self.look.model.live.replay.as_ref().and_then(|replay| replay.other.as_ref());
         let Some(other) = other.filter(|_| self.look.model.ui.screen == Screen::Mission) else { return };
@@ -115,8 +115,8 @@ impl Pen<'_> {
         self.stroke(ctx, behind, Role::Ghost, false);
     }
 
-    /// How much of the plan and trail is drawn, metres. Where neighbouring passes would merge on the map, only the
-    /// stretch close to the robot is drawn; the scanned cells show the rest.
+    /// How much of the plan and of the trail is drawn, metres; `None` for all of it. Where neighbouring passes would
+    /// merge on the map, only the stretch close to the robot is drawn; the scanned cells show the rest.
     fn reach_m(&self) -> Option<f64> {
         let swath_m = self.look.run.about.as_ref()?.mission.swath_m;
         (swath_m < PASS_COLUMNS * self.window.column_m).then_some(REACH_COLUMNS * self.window.column_m)
@@ -159,7 +159,7 @@ impl Pen<'_> {
         }
     }
 
-    /// The hull and the 95 % error, if large enough to be visible.
+    /// The hull and the 95 % error, if they are large enough to be visible.
     pub(super) fn robot(&self, ctx: &mut Context<'_>) {
         let Some(pose) = &self.look.run.position.pose else { return };
         self.take_up(ctx, '+');
@@ -212,7 +212,7 @@ impl Pen<'_> {
     }
 }
 
-/// The points of a path up to a given length.
+/// The points of a path, up to a given length.
 pub(super) fn within(path: &[Point], length_m: f64) -> &[Point] {
     let mut walked_m = 0.0;
     let steps = path.windows(2).take_while(|pair| {
@@ -223,14 +223,14 @@ pub(super) fn within(path: &[Point], length_m: f64) -> &[Point] {
     path.get(..=last).unwrap_or(path)
 }
 
-/// The index of the path point nearest to a place; 0 for an empty path.
+/// The index of the path point nearest to a place; 0 if the path is empty.
 pub(super) fn nearest(path: &[Point], place: Point) -> usize {
     let distance = |point: &Point| (point - place).norm_squared();
     let best = path.iter().enumerate().min_by(|one, other| distance(one.1).total_cmp(&distance(other.1)));
     best.map_or(0, |(index, _)| index)
 }
 
-/// The robot's arrow, pointing in its heading.
+/// The robot's arrow, pointing along its heading.
 fn arrow(glyphs: Glyphs, heading_rad: f64) -> &'static str {
     const ARROWS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
     if glyphs == Glyphs::Ascii || !heading_rad.is_finite() {

@@ -12,7 +12,7 @@ use world::{Floor, PlateMap, Point, Vector};
 /// The zoom from which plates are drawn: twice the scale of the whole tank.
 const FROM_ZOOM: u8 = 1;
 
-/// The inputs of the drawing.
+/// The inputs from which the plates are drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Key(world::PlateLayout, usize, Window, bool);
 
@@ -78,7 +78,7 @@ fn drawing(map: &PlateMap, floor: &Floor, window: Window, has_dots: bool) -> Pla
     PlateDrawing { dots, names: names.collect() }
 }
 
-/// Minimum visible size of a plate for its name to be drawn, characters.
+/// Minimum visible size at which a plate's name is drawn, characters.
 const LEAST_CHARACTERS: u32 = 24;
 
 /// The outlines as a canvas shape.

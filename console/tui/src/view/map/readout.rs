@@ -1,4 +1,4 @@
-//! The lines at the bottom of the map: the robot's position, and details of the place under the cursor.
+//! The lines at the bottom of the map: the robot's position, and details about the place under the cursor.
 
 use super::plates;
 use crate::model::ui::Ui;
@@ -31,7 +31,7 @@ pub(super) fn cursor(look: &Look, ui: &Ui, width: u16) -> Option<(Role, String)>
     Some((Role::Title, format!(" {name}{}  r {radius} m, {bearing}°", text::place(at))))
 }
 
-/// The floor there: plate, class, expected error of a fix.
+/// The floor there: its plate, its class, and the expected error of a fix.
 pub(super) fn floor(look: &Look, at: Point) -> String {
     let raster = look.run.coverage.as_ref();
     let class = raster.and_then(|raster| raster.class_at(at, look.run.has_missed()));

@@ -9,28 +9,28 @@ use ratatui::layout::Rect;
 use std::rc::Rc;
 use world::{FloorClass, Point};
 
-/// The shade of some floor.
+/// The shade of a piece of floor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Shade {
     /// The shade of a floor class; never [`FloorClass::ToDo`].
     Floor(FloorClass),
-    /// Forecast: fixes exceed the error limit here, or are impossible.
+    /// Forecast: the error of a fix exceeds the limit here, or no fix is possible.
     PoorFix,
-    /// Forecast: fixes exceed half of the error limit here.
+    /// Forecast: the error of a fix exceeds half the limit here.
     WeakFix,
     /// Scanned only by the run being replayed.
     OnlyA,
-    /// Scanned only by the run that it is compared with.
+    /// Scanned only by the run with which it is compared.
     OnlyB,
 }
 
 impl Shade {
-    /// The shade of a class; `None` for floor still to be scanned and for places that are not floor.
+    /// The shade of a class; `None` for floor still to be scanned, and where there is no floor.
     fn of(class: FloorClass) -> Option<Self> {
         (!matches!(class, FloorClass::Outside | FloorClass::ToDo)).then_some(Self::Floor(class))
     }
 
-    /// The character and role.
+    /// The character and the role.
     fn look(self) -> (char, Role) {
         match self {
             Self::Floor(FloorClass::Outside | FloorClass::ToDo) => (' ', Role::Dim),
@@ -57,7 +57,7 @@ impl Shade {
         self.look().1
     }
 
-    /// The background role, on which lines are drawn.
+    /// The role for the background on which lines are drawn.
     fn ground(self) -> Option<Role> {
         matches!(self, Self::Floor(FloorClass::Scanned | FloorClass::Again)).then_some(Role::Scanned)
     }
@@ -66,12 +66,12 @@ impl Shade {
 /// The shades in a window, row by row from the north-west.
 pub(crate) type Shades = Rc<[Option<Shade>]>;
 
-/// The inputs of the floor's shades: the stamp of the raster, the window, shade rows per character row, whether the
-/// mission has ended, and the stamp of the raster that it is compared with.
+/// The inputs from which the floor's shades are computed: the stamp of the raster, the window, shade rows per
+/// character row, whether the mission has ended, and the stamp of the raster with which it is compared.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Key(u64, Window, u16, bool, Option<u64>);
 
-/// Paints the floor where nothing else is drawn, and its background under lines.
+/// Paints the floor where nothing else is drawn, and the background under lines.
 pub(super) fn paint(look: &Look, window: Window, area: Rect, buffer: &mut Buffer) {
     let halves = !look.is_plain();
     let shades = shades(look, window, if halves { 2 } else { 1 });
@@ -87,7 +87,7 @@ pub(super) fn paint(look: &Look, window: Window, area: Rect, buffer: &mut Buffer
     }
 }
 
-/// Paints one character; if its halves differ, each half has its own colour.
+/// Paints one character; if its two halves differ, each gets its own colour.
 fn paint_cell(look: &Look, upper: Option<Shade>, lower: Option<Shade>, cell: &mut ratatui::buffer::Cell) {
     let color = |shade: Shade| look.theme.color(shade.role());
     if cell.symbol() == " " {
@@ -115,8 +115,8 @@ fn paint_cell(look: &Look, upper: Option<Shade>, lower: Option<Shade>, cell: &mu
     }
 }
 
-/// The shades of the forecast if it is shown, otherwise of the floor, which rarely changes and is cached between
-/// frames.
+/// The shades of the forecast if it is shown; otherwise the shades of the floor, which rarely change and are cached
+/// between frames.
 fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
     let (run, layers) = (look.run, look.model.ui.layers);
     let raster = run.coverage.as_ref().filter(|_| layers.shows(MapLayer::Scanned));
@@ -138,7 +138,7 @@ fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
     })
 }
 
-/// The floor of the run that the replay is compared with, if the difference is shown.
+/// The floor of the run with which the replay is compared, if the difference is shown.
 pub(super) fn compared<'a>(look: &Look<'a>) -> Option<&'a Raster> {
     let replay = look.model.live.replay.as_ref().filter(|replay| replay.shows_difference)?;
     replay.other.as_ref()?.run.coverage.as_ref()

@@ -7,7 +7,7 @@ use crate::theme::Role;
 use ratatui::widgets::canvas::Context;
 use world::Point;
 
-/// Length of its plan to draw, metres.
+/// How much of its plan is drawn, metres.
 const AHEAD_M: f64 = 4.0;
 
 impl Pen<'_> {

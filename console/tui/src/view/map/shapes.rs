@@ -18,7 +18,7 @@ pub(crate) struct Window {
 }
 
 impl Window {
-    /// Makes a window around a point.
+    /// Creates a window around a point.
     pub(super) fn new(center: Point, column_m: f64, size: (u16, u16)) -> Self {
         let half_x = f64::from(size.0) * column_m / 2.0;
         let half_y = f64::from(size.1) * column_m;
@@ -30,14 +30,14 @@ impl Window {
         }
     }
 
-    /// The centre of a character cell, counted from the north-west.
+    /// The centre of a character cell; cells are counted from the north-west.
     pub(crate) fn middle_of(&self, column: u16, row: u16) -> Point {
         let x = self.x[0] + (f64::from(column) + 0.5) * self.column_m;
         Point::new(x, self.y[1] - (2.0 * f64::from(row) + 1.0) * self.column_m)
     }
 
-    /// The centres of the dots, one per character or half character, row by row from the north-west, and the width of
-    /// a dot, metres.
+    /// The centres of the dots, one per character or half-block, row by row from the north-west, and the width of a
+    /// dot, metres.
     pub(super) fn dots(self, rows_per_row: u16) -> impl Iterator<Item = (Point, f64)> {
         let (columns, rows) = (self.size.0, self.size.1 * rows_per_row);
         let row_m = 2.0 * self.column_m / f64::from(rows_per_row);

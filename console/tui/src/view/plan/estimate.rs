@@ -1,4 +1,4 @@
-//! The estimate for a plan in figures, beside that of a second plan.
+//! The figures in the estimate for a plan, alongside those for a second plan.
 
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
@@ -10,7 +10,7 @@ use ratatui::layout::Rect;
 
 /// Rows of the table, including its heading.
 pub(super) const ROWS: u16 = 9;
-/// Columns of a label.
+/// Width of a label, columns.
 const LABEL: usize = 12;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
@@ -46,7 +46,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     fill(frame, area, block, rows.into_iter().map(|parts| look.line(parts)).collect());
 }
 
-/// A cell of the table: role and text.
+/// A cell in the table: role and text.
 type Figured = (Role, String);
 
 fn row(label: &str, (mine, other): (Figured, Option<Figured>), width: usize) -> Parts {
@@ -85,7 +85,7 @@ fn beyond(label: &str, estimate: &Estimate, mission: &MissionConfig, width: usiz
 
 type Figure = fn(&Estimate, usize) -> String;
 
-/// The figures in the order of the table; if space allows, also where a figure is worst.
+/// The figures in table order; if space allows, also the place where a figure is worst.
 const FIGURES: [(&str, Figure); 8] = [
     ("time", |e, _| text::clock(e.time_s)),
     ("length", |e, _| format!("{} m", text::number(e.length_m, 1))),

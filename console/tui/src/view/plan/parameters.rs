@@ -28,7 +28,7 @@ fn row(key: &str, change: &str, columns: usize) -> Parts {
     ]
 }
 
-/// The parameters that differ from their defaults: key, then default and value.
+/// The parameters that differ from their defaults: the key, then the default and the value.
 fn changed(look: &Look) -> Vec<(String, String)> {
     let infos = look.model.planner().map_or(&[][..], |info| info.parameters.as_slice());
     infos

@@ -1,4 +1,4 @@
-//! The achieved figures beside the plan's estimate.
+//! The achieved figures alongside the plan's estimate.
 
 use super::role;
 use crate::model::RunResult;
@@ -40,7 +40,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, title: &str, resu
         (role, row.cells)
     }));
     lines.extend(table.map(|(role, [what, predicted, actual, limit])| {
-        // Without colours, the mark shows that a limit was exceeded.
+        // Without colours, the mark shows that a limit has been exceeded.
         let mark = if role == Role::Warn { "!" } else { " " };
         look.line([
             (Role::Dim, format!(" {}", text::column(&what, label))),
@@ -60,7 +60,7 @@ fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {
     let metres = |decimals| move |m: f64| format!("{} m", text::number(m, decimals));
     let degrees = |rad: f64| format!("{}°", text::number(rad.to_degrees(), 0));
     let clearance = promised.and_then(|p| p.clearance_min).map(|worst| worst.value);
-    // The estimate and the limit refer to the time in which the mission does not wait.
+    // The estimate and the limit do not include the time during which the mission waits.
     let moving_s = Some(run.clock.moving_s);
     let mut figures = vec![
         at_most(
@@ -128,7 +128,7 @@ fn figure(
 ) -> Figure {
     let [_, actual, limit] = values;
     let [predicted, came, most] = values.map(|value| value.map_or_else(dash, &written));
-    // Values that print the same count as equal.
+    // Values that print the same are treated as equal.
     let is_beyond = came != most && actual.zip(limit).is_some_and(|(actual, limit)| is_beyond(actual, limit));
     Figure { cells: [what.to_owned(), predicted, came, most], is_beyond }
 }
@@ -137,7 +137,7 @@ fn dash() -> String {
     "-".to_owned()
 }
 
-/// Holds, collisions, faults and alarms, in lines.
+/// The holds, collisions, faults and alarms, in lines.
 fn trouble(look: &Look, result: &RunResult, columns: usize) -> Vec<Parts> {
     let summary = &result.summary;
     let alarms = look.run.alarms.open().count();

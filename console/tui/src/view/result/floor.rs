@@ -1,4 +1,4 @@
-//! The shares of the floor on every base, and the critical zone along the shell.
+//! The floor shares, relative to the whole and to the reachable floor, and the critical zone along the shell.
 
 use crate::model::{RunResult, Source};
 use crate::theme::Role;
@@ -9,11 +9,11 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-/// Missed share of a plate up to which the plate counts as scanned except for slivers, per cent.
+/// The maximum missed share at which a plate counts as scanned except for slivers, per cent.
 const MISSED_PERCENT: f64 = 1.0;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
-    let block = look.block(Role::Border, "Coverage", "% by the estimate");
+    let block = look.block(Role::Border, "Coverage", "% by estimated position");
     let columns = usize::from(block.inner(area).width).saturating_sub(1);
     let mut rows: Vec<Parts> = Vec::new();
     match &result.summary.floor {
@@ -28,7 +28,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResul
             }
         }
     }
-    // A note that does not fit would end in mid-sentence; the report has all notes.
+    // A note that does not fit would end in mid-sentence; all notes are in the report.
     for note in notes(look, result, columns) {
         if rows.len() + note.len() <= usize::from(block.inner(area).height) {
             rows.extend(note.into_iter().map(|line| vec![(Role::Text, format!(" {line}"))]));
@@ -68,7 +68,7 @@ fn shares(label: &str, shares: &Shares, columns: usize) -> String {
     }
 }
 
-/// The runs that are combined, or why they are not.
+/// Which runs are combined, or why they are not.
 fn of_all_runs(look: &Look) -> Option<String> {
     let live = &look.model.live;
     let earlier = match &live.source {
@@ -79,7 +79,8 @@ fn of_all_runs(look: &Look) -> Option<String> {
         Some(Ok(_)) => {
             let runs = if earlier.len() == 1 { "run" } else { "runs" };
             Some(format!(
-                "All runs: this one and the {} {runs} before it; zone, plates and missed areas are of all runs.",
+                "All runs: this one and the {} {runs} before it; zone, plates and missed areas are for all \
+                runs.",
                 earlier.len()
             ))
         }
@@ -94,16 +95,17 @@ fn of_all_runs(look: &Look) -> Option<String> {
     }
 }
 
-/// Notes below the table, in lines.
+/// The notes below the table, in lines.
 fn notes(look: &Look, result: &RunResult, columns: usize) -> Vec<Vec<String>> {
     let summary = &result.summary;
     let overlap = summary.coverage.as_ref().and_then(|coverage| coverage.overlap);
     let again = overlap.map(|share| {
-        format!("Overlap: {} % of the scanned floor, scanned more than once.", text::percent(share))
+        format!("Overlap: {} % of the scanned floor was scanned more than once.", text::percent(share))
     });
-    let truth = summary.coverage.as_ref().and_then(|coverage| coverage.by_truth).map(|truth| {
-        format!("By the true position: {} % of reachable floor.", text::percent(truth.reachable))
-    });
+    let truth =
+        summary.coverage.as_ref().and_then(|coverage| coverage.by_truth).map(|truth| {
+            format!("By true position: {} % of reachable floor.", text::percent(truth.reachable))
+        });
     let zone = look.model.live.floor().map(|floor| {
         let zone = &floor.critical_zone;
         let width_mm = text::number(1000.0 * zone.width_m, 0);

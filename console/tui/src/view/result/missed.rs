@@ -1,4 +1,4 @@
-//! The missed areas: the position and a short reason for each, and all reasons for the selected one.
+//! The missed areas: the position and a short reason for each one, and all reasons for the selected one.
 
 use crate::model::RunResult;
 use crate::theme::Role;
@@ -58,12 +58,12 @@ fn row(index: usize, area: &Area<MissReason>, columns: usize) -> Parts {
         text::place(area.at),
         text::number(area.area_m2, 3)
     );
-    // One column is taken by the mark of the selected row.
+    // The mark of the selected row takes one column.
     let room = columns.saturating_sub(text::width(&place) + 1);
     vec![(Role::Text, place + &text::wording([area.why(), brief(area)], room))]
 }
 
-/// All causes of an area in a limited number of rows; the causes that do not fit are counted.
+/// All causes of an area, in a limited number of rows; the number of causes that do not fit is shown instead.
 fn whole_reason(area: &Area<MissReason>, columns: usize, rows: usize) -> Vec<String> {
     let whole = text::wrap(&area.why(), columns);
     if whole.len() <= rows {

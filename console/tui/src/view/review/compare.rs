@@ -1,4 +1,4 @@
-//! The figures of two reports side by side, and their difference.
+//! The figures of two reports side by side, and their differences.
 
 use crate::model::Replay;
 use crate::model::replay::Other;
@@ -48,7 +48,8 @@ const FIGURES: [Figure; 15] = [
 ];
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, (replay, other): (&Replay, &Other)) {
-    let block = look.block(Role::Border, "Compare", &look.keys("<compare-run>: other run, same run: none"));
+    let note = look.keys("<compare-run>: another run (same run: end comparison)");
+    let block = look.block(Role::Border, "Compare", &note);
     let columns = usize::from(block.inner(area).width);
     let rows = usize::from(block.inner(area).height).saturating_sub(2);
     let a = look.model.live.result.as_ref().map(|result| &*result.summary);
@@ -62,7 +63,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, (replay, other): 
     fill(frame, area, block, lines);
 }
 
-/// Columns of a figure's name with its unit.
+/// Width of a figure's name with its unit, columns.
 const LABEL: usize = 17;
 
 fn line(
@@ -73,7 +74,7 @@ fn line(
 ) -> Line<'static> {
     let [a, b] = [a, b].map(|summary| summary.and_then(figure.of));
     let number = |value: Option<f64>| value.map_or_else(|| "-".into(), |v| text::number(v, figure.decimals));
-    // The difference of the numbers as shown.
+    // The difference between the numbers as shown.
     let scale = 10_f64.powi(figure.decimals as i32);
     let shown = |value: f64| (value * scale).round() / scale;
     let difference = a.zip(b).map(|(a, b)| shown(a) - shown(b));
@@ -88,13 +89,13 @@ fn row(look: &Look, role: Role, label: &str, values: [String; 3], width: usize) 
     look.line([(Role::Dim, format!(" {}", text::column(label, LABEL))), (role, values)])
 }
 
-/// The line that states what the two runs have in common, so that the reader can judge the comparison.
+/// The line that says what the two runs have in common, so that the reader can judge the comparison.
 fn same(replay: &Replay, other: &Other, summaries: (Option<&Summary>, Option<&Summary>)) -> String {
     let (Some(a), Some(b)) = summaries else {
         let missing = if summaries.0.is_none() { &replay.name } else { &other.name };
         return format!("The report of {missing} is being read.");
     };
-    let word = |is_same: bool| if is_same { "same" } else { "other" };
+    let word = |is_same: bool| if is_same { "same" } else { "different" };
     let seed = word(a.seed == b.seed);
     format!(
         "{} scenario, {seed} seed, {} planner",

@@ -1,8 +1,8 @@
-//! Determines which free places are connected to each other, and to the start.
+//! Determines which free places are connected to each other and to the start.
 //!
 //! Adjacent free cells are connected. The cells are too coarse where two solids leave a passage about as wide as the
-//! robot. There, the line from cell to cell is tested; if no cell lies in the passage, it is followed from its
-//! narrowest place in both directions.
+//! robot. There, the line from cell to cell is tested. If no cell lies in the passage, the passage is followed in both
+//! directions from its narrowest point.
 
 use super::{Core, Room, TIE_M};
 use crate::coverage::floor::Floor;
@@ -12,7 +12,7 @@ use std::{
     f64::consts::TAU,
 };
 
-/// If a passage exceeds the required width by this much, in cells, the cells are fine enough to show it.
+/// If a passage is wider than required by this much, in cells, the cells are fine enough to show it.
 const WIDE_CELLS: f64 = 3.0;
 /// The length of a step along a passage, in cells.
 const STEP_CELLS: f64 = 0.5;
@@ -21,9 +21,9 @@ const DIRECTIONS: u32 = 9;
 const NARROWINGS: u32 = 4;
 /// The largest turn in one step, to either side, radians.
 const TURN_RAD: f64 = 1.2;
-/// The most steps along a passage.
+/// The largest number of steps along a passage.
 const MOST_STEPS: usize = 2_000;
-/// Free cells are searched this far around a place, in cells.
+/// Free cells are searched for within this distance of a place, in cells.
 const ABOUT_CELLS: i64 = 2;
 
 /// The group of a cell that is not free.
@@ -40,13 +40,13 @@ pub(in crate::coverage) struct Connected {
 #[derive(Clone)]
 struct Groups {
     of_cell: Vec<u32>,
-    /// For every group, a group that it is part of, or itself.
+    /// For every group, a group that contains it, or the group itself.
     parents: Vec<u32>,
-    /// Free places on a followed passage, with their group, by cell.
+    /// Free places on the passages that were followed, each with its group, by cell.
     trails: BTreeMap<(i64, i64), Vec<(Point, u32)>>,
 }
 
-/// The narrowest place of a passage, and its direction.
+/// The narrowest point of a passage, and the direction of the passage there.
 struct Neck {
     at: Point,
     through: Vector,
@@ -137,7 +137,8 @@ impl Groups {
         self.parents[one.max(other) as usize] = one.min(other);
     }
 
-    /// Returns the group to which the robot can drive straight from a free place, in the direction `ahead` if given.
+    /// Returns the group of the nearest place to which the robot can drive straight from a free place. If `ahead` is
+    /// given, only places in that direction count.
     fn seen_from(
         &self,
         room: &Room,
@@ -164,7 +165,8 @@ impl Groups {
         found.map(|(_, group)| self.root(group))
     }
 
-    /// Returns the group to which a passage leads from a place in a direction; a new group if the passage ends.
+    /// Returns the group to which a passage leads from a place in a given direction, or a new group if the passage ends
+    /// before it reaches one.
     fn follow(&mut self, room: &Room, floor: &Floor, from: Point, way: Vector) -> u32 {
         let (mut here, mut ahead) = (from, way);
         let mut trail = vec![from];
@@ -184,7 +186,7 @@ impl Groups {
         group
     }
 
-    /// Returns the group of the start; if it has none, the group of the nearest free cell.
+    /// Returns the group of the start or, if the start has none, the group of the nearest free cell.
     fn home(&self, room: &Room, floor: &Floor, has_room: &[bool], start: Point) -> u32 {
         let at_start = room.has(start).then(|| self.seen_from(room, floor, start, None)).flatten();
         let off_m = |cell: &usize| (floor.center(*cell) - start).norm();
@@ -201,7 +203,7 @@ fn cell_under(floor: &Floor, place: Point) -> (i64, i64) {
     (offset.x.floor() as i64, offset.y.floor() as i64)
 }
 
-/// Marks the cells around the necks of passages; all cells, if the required clearance is smaller than a cell.
+/// Marks the cells around the necks of passages, or all cells if the required clearance is smaller than a cell.
 fn doubtful(floor: &Floor, room: &Room, necks: &[Neck]) -> Vec<bool> {
     let mut doubtful = vec![room.keep_m < floor.cell_m; floor.len()];
     for neck in necks {
@@ -212,7 +214,7 @@ fn doubtful(floor: &Floor, room: &Room, necks: &[Neck]) -> Vec<bool> {
     doubtful
 }
 
-/// Returns the next place along a passage, with the most clearance ahead; `None` where the passage ends.
+/// Returns the next place along a passage: the one ahead with the most clearance; `None` where the passage ends.
 fn step(room: &Room, here: Point, ahead: Vector, length_m: f64) -> Option<Point> {
     let lengths = [1.0, 0.5, 0.25, 0.1].map(|share| share * length_m);
     let next = |length_m: f64| {
@@ -248,7 +250,7 @@ fn place(from: Point, length_m: f64, angle_rad: f64) -> Point {
 }
 
 impl Room {
-    /// Returns the necks of the passages that are up to `more_m` narrower or wider than the robot needs.
+    /// Returns the necks of the passages that are narrower or wider than the robot needs by up to `more_m`.
     fn necks(&self, more_m: f64) -> Vec<Neck> {
         let needs_m = 2.0 * self.keep_m;
         let mut necks = Vec::new();
@@ -279,7 +281,7 @@ impl Room {
 }
 
 impl Core {
-    /// Returns the points where two cores are nearest to each other, one on each outline.
+    /// Returns the two points, one on each outline, where two cores are nearest to each other.
     fn nearest_to(&self, other: &Self) -> (Point, Point) {
         let pairs = [
             (self.a, nearest_on_segment(other.a, other.b, self.a)),

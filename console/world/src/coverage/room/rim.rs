@@ -3,7 +3,8 @@
 use geometry::{Boundary, Point, Shape, Vector, polyline::edges};
 use std::collections::BTreeSet;
 
-/// The largest gap at which two curves still touch, metres: tangents meet only up to rounding.
+/// Two curves with a gap of no more than this still count as touching, metres: rounding can leave a gap between
+/// tangents.
 const TOUCH_M: f64 = 1e-9;
 
 /// Something solid, as a line with a thickness; for a disc, both ends are at its centre.
@@ -77,7 +78,7 @@ impl Rim {
         }
     }
 
-    /// Returns the points where the piece crosses or touches another.
+    /// Returns the points where the piece crosses or touches another piece.
     pub(super) fn crossings(&self, other: &Self) -> Vec<Point> {
         match (*self, *other) {
             (Self::Arc { center, radius_m }, Self::Arc { center: to, radius_m: to_m }) => {

@@ -52,7 +52,7 @@ impl UnderWay {
     }
 
     fn is_repaired(&self) -> bool {
-        self.bench.logs().iter().any(|(_, said)| said.starts_with("plan under way, repaired"))
+        self.bench.logs().iter().any(|(_, said)| said.starts_with("current plan, repaired"))
     }
 
     /// All that is driven.

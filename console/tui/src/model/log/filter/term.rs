@@ -31,7 +31,7 @@ enum Test {
     Station(Vec<String>),
     /// Mission time, seconds.
     Time(Compare, f64),
-    /// Text anywhere in the source or text of a line.
+    /// Text anywhere in a line's source or text.
     Text(String),
 }
 
@@ -145,7 +145,7 @@ fn list(value: &str, example: &str) -> Result<Vec<String>, String> {
     if names.is_empty() { Err(format!("value missing, for example {example}")) } else { Ok(names) }
 }
 
-/// Parses mission time: as the screen writes it, with hours and minutes first, or as seconds.
+/// Parses mission time, either as the screen writes it, with hours and minutes first, or as seconds.
 fn time_s(value: &str) -> Result<f64, String> {
     let wrong = || "t must be hh:mm, hh:mm:ss or seconds".to_owned();
     let parts: Vec<&str> = value.trim_start_matches("T+").trim_end_matches('s').split(':').collect();
@@ -159,7 +159,7 @@ fn time_s(value: &str) -> Result<f64, String> {
     }
 }
 
-/// Whether the words name this station, rather than one whose name merely begins the same way.
+/// Whether the words name this station, and not one whose name merely begins in the same way.
 fn names_station(words: &str, station: &str) -> bool {
     let ends = |at: usize| !words[at..].starts_with(char::is_alphanumeric);
     words.match_indices(station).any(|(at, _)| ends(at + station.len()))
