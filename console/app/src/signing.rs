@@ -1,4 +1,4 @@
-//! Signing of reports: the earlier signed reports on the same runs, the conditions for a signature, and sealing.
+//! Signing reports: the earlier signed reports on the same runs, the conditions for a signature, and sealing.
 
 use ::locate::Again;
 use flight::failure::bad_input;

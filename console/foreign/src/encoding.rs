@@ -68,7 +68,7 @@ impl NotUtf8 {
 impl std::fmt::Display for NotUtf8 {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match (self.encoding, self.line) {
-            write!(f, "{encoding} instead of UTF-8, judging by the first line"), => (Some(encoding), 1) => write!(f, "{encoding} instead of UTF-8, judging by its first line"), => write!(f, "{encoding} instead of UTF-8, judging by its first line"),
+            (Some(encoding), 1) => write!(f, "{encoding} instead of UTF-8, judging by the first line"),
             (Some(encoding), line) => write!(f, "{encoding} instead of UTF-8, judging by line {line}"),
             (None, line) => write!(f, "not text: line {line} is not UTF-8"),
         }

@@ -147,7 +147,7 @@ fn disc(
     Ok(Shape::Disc { center, radius_m })
 }
 
-/// Notes each pair of columns in which one contains the centre of the other; real columns cannot do so.
+/// Notes each pair of columns in which one contains the centre of the other; real columns cannot overlap like this.
 fn note_coincident(rows: &[Row], notes: &mut Vec<String>) {
     let mut discs: Vec<(f64, Point, &Row)> = rows
         .iter()

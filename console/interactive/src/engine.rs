@@ -116,7 +116,7 @@ struct EngineThread {
     reported: Receiver<(AskId, Progress)>,
     /// The planner's work that the screen currently shows.
     shown_work: Option<Work>,
-    /// Whether an estimate of a plan was sent to the screen.
+    /// Whether an estimate for a plan was sent to the screen.
     has_estimated: bool,
     asked: Receiver<Request>,
     screen: RunOutbox,

@@ -155,7 +155,7 @@ fn send_and_hold(outbox: &Outbox, engine: &Current, msg: Msg, stops: bool) -> bo
     is_delivered
 }
 
-/// Whether a key stops a moving robot. While text is typed, the space key is a letter.
+/// Whether a key stops a moving robot. While text is being typed, the space key enters a space.
 ///
 /// The screen's report may be one key late. A space typed right after the key that opens a text line may hold the
 /// robot; a space typed right after the key that closes the line is left to the screen.

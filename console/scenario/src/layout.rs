@@ -27,7 +27,7 @@ pub(crate) struct RandomObstacles {
     pub radius_m: [f64; 2],
     /// The area in which the centres are drawn.
     pub sampling: Sampling,
-    /// The smallest distance in metres between two outlines, including those of other obstacles.
+    /// The smallest distance in metres between the outlines of two obstacles, including obstacles that are not random.
     pub min_gap_m: f64,
     /// The smallest distance in metres from an outline to the start and to the end of the mission.
     pub keep_clear_m: f64,

@@ -55,7 +55,7 @@ pub fn rescan(
     Ok(document.to_string())
 }
 
-/// Marks as known the obstacles of the scenario that were found.
+/// Marks as known those obstacles in the scenario that were found.
 fn put_on_drawing(document: &mut DocumentMut, found: &BTreeSet<ObstacleId>) {
     let know = |index: usize, table: &mut dyn TableLike| {
         // Obstacles are numbered from 1 in the order of the file.

@@ -45,7 +45,7 @@ pub(crate) struct LocateArgs {
     pub logs: LogsArg,
 }
 
-/// A quantity that can be estimated from the readings besides positions.
+/// A quantity that can be estimated from the readings in addition to positions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum FindArg {
     /// The speed of sound; needs four stations per emission.

@@ -68,8 +68,8 @@ fn errors_name_line_and_field() {
     );
     assert_eq!(
         message("x_m,y_m,Nr\n1,2,3\n"),
-        "c.csv, line 1, radius_m: missing from the first line; write, for example, x_m,y_m,radius_m (also diameter; mm, cm, in, ft); \
-         the fields are: x_m, y_m, Nr"
+        "c.csv, line 1, radius_m: missing from the first line; write, for example, x_m,y_m,radius_m \
+         (also diameter; mm, cm, in, ft); the fields are: x_m, y_m, Nr"
     );
     assert_eq!(
         message("x_m,y_m,radius_m,diameter_mm\n"),

@@ -67,7 +67,7 @@ fn path(groups: &mut Groups<'_>) -> Option<Vec<Vec<Point>>> {
     }
     let n = groups.count(93)?;
     let edges: Option<Vec<Vec<Point>>> = (0..n).map(|_| edge(groups)).collect();
-    // An edge ends where the next begins; a whole circle is closed in itself.
+    // An edge ends where the next begins; a whole circle closes on itself.
     Some(rings::closed(edges?.into_iter().map(|points| (points, false)).collect()).0)
 }
 

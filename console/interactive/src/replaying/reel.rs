@@ -24,7 +24,7 @@ pub(super) const MOST_FRAMES: usize = 128;
 const LEAST_SPACING: u64 = 1 << 18;
 /// The largest number of marks of a run.
 const MOST_MARKS: usize = 100_000;
-/// The interval at which the screen receives the progress of the reading.
+/// The interval at which the screen receives the progress of reading.
 const NEWS: Duration = Duration::from_millis(100);
 /// The largest number of events read in one batch. A batch also ends after [`BATCH_BYTES`] of lines.
 const BATCH: usize = 512;

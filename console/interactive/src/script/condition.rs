@@ -20,7 +20,7 @@ enum What {
     Screen(String),
     /// At least this percentage of the reachable floor is scanned.
     Coverage(f64),
-    /// The text of an alarm contains this text; if empty, any alarm.
+    /// The text of some alarm contains this text; if this text is empty, any alarm will do.
     Alarm(String),
     /// The screen contains this text.
     Text(String),

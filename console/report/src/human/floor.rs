@@ -169,6 +169,6 @@ mod tests {
         let lines = plates(&many);
         assert!(lines.len() == 32 && lines[0].starts_with("45 of 90 with nothing missed"), "{lines:?}");
         assert!(lines[1].starts_with("R-31") && lines[30].starts_with("R-89"), "{lines:?}");
-        assert!(lines[31].starts_with("15 more, each with less missed, 2.25 m²"), "{lines:?}");
+        assert!(lines[31].starts_with("15 more, each with less missed floor, 2.25 m²"), "{lines:?}");
     }
 }
