@@ -13,8 +13,8 @@ pub(crate) struct Claimed {
     way_m: f64,
     way_over_m: f64,
     last: Option<Point>,
-    /// Largest error since the last ranging cycle, and in the cycle before it. The error grows between two fixes and
-    /// drops at each fix, and only its peaks matter.
+    /// Largest error since the last ranging cycle, and during the cycle before that. The error grows between two
+    /// fixes and drops at each fix, and only its peaks matter.
     tips_m: [f64; 2],
     fixes: u64,
     stations: u64,
@@ -37,7 +37,7 @@ impl Claimed {
         self.tips_m = [0.0, self.tips_m[0]];
     }
 
-    /// Adds a position from the ranges of this many stations.
+    /// Adds a position computed from the ranges of this many stations.
     pub(crate) fn fix(&mut self, stations: usize) {
         let stations = stations as u64;
         self.fixes += 1;
@@ -45,7 +45,7 @@ impl Claimed {
         self.stations_min = Some(self.stations_min.map_or(stations, |least| least.min(stations)));
     }
 
-    /// Largest 95 % error in this ranging cycle and the one before, metres.
+    /// Largest 95 % error in this ranging cycle and the previous one, metres.
     pub(crate) fn tip_m(&self) -> f64 {
         self.tips_m[0].max(self.tips_m[1])
     }
@@ -67,7 +67,7 @@ impl Claimed {
     }
 }
 
-/// Returns the value that is not exceeded by the given share of sorted values.
+/// Returns the value that the given share of the sorted values does not exceed.
 pub(crate) fn nearest_rank<T: Copy>(sorted: &[T], share: f64) -> Option<T> {
     sorted.get(((share * sorted.len() as f64).ceil() as usize).max(1) - 1).copied()
 }

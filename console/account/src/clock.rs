@@ -1,4 +1,4 @@
-//! Mission time in the format for people.
+//! Mission time in a human-readable format.
 
 /// Formats a time span as hours, minutes and whole seconds; fractions of a second are cut off.
 ///

@@ -11,15 +11,15 @@ const OPERATOR: &str = "operator";
 /// A no-go zone that was drawn after the scenario was opened.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DrawnZone {
-    /// Its name.
+    /// Name of the zone.
     pub name: String,
-    /// The source of the zone.
+    /// The source of the zone: who drew it.
     pub by: String,
-    /// Mission time at which it was drawn, seconds; absent if that was before the start.
+    /// Mission time at which the zone was drawn, seconds; absent if that was before the start.
     pub t_s: Option<f64>,
-    /// Its area, square metres.
+    /// Area of the zone, square metres.
     pub area_m2: f64,
-    /// Its corners, metres, tank frame.
+    /// Corners of the zone, metres, tank frame.
     pub corners: Vec<Point>,
 }
 

@@ -1,5 +1,5 @@
-//! The estimated results of a plan before the robot moves: time, coverage, clearance, tether, accuracy, and the
-//! position of each extreme.
+//! The estimated results of a plan, before the robot moves: time, coverage, clearance, tether, accuracy, and where on
+//! the path each extreme occurs.
 
 mod time;
 
@@ -15,7 +15,7 @@ use world::{
 
 /// Distance between the points at which a path is evaluated, metres.
 const SAMPLE_M: f64 = 0.1;
-/// Number of cells of a forecast along the longer side of the floor.
+/// Number of forecast cells along the longer side of the floor.
 const CELLS: f64 = 80.0;
 
 /// A figure and its position on the path.
@@ -30,7 +30,7 @@ pub struct Worst {
 /// The tether along a plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TetherEstimate {
-    /// Greatest length out, metres.
+    /// Greatest length paid out, metres.
     pub length_max: Worst,
     /// Largest wrap on one obstacle, radians.
     pub wrap_max: Worst,
@@ -38,7 +38,7 @@ pub struct TetherEstimate {
     pub wrapped: String,
     /// Largest total wrap, radians.
     pub wrap_total_max_rad: f64,
-    /// Length out at the end of the path, metres.
+    /// Length paid out at the end of the path, metres.
     pub end_length_m: f64,
 }
 
@@ -58,7 +58,7 @@ pub struct Estimate {
     pub clearance_min: Option<Worst>,
     /// The tether along the path; absent without a tether.
     pub tether: Option<TetherEstimate>,
-    /// Largest 95 % error that is forecast for the stations, metres; absent without stations.
+    /// Largest 95 % error forecast along the path, metres; absent without stations.
     pub accuracy_worst: Option<Worst>,
     /// Length of the path for which no fix is forecast, metres.
     pub without_fix_m: f64,
@@ -67,7 +67,7 @@ pub struct Estimate {
 impl Estimate {
     /// Estimates the results of a path.
     ///
-    /// Evaluates the path every tenth of a metre; with a tether, the cable is dragged along it once.
+    /// Evaluates the path every tenth of a metre; with a tether, the cable is dragged along the path once.
     pub fn new(mission: &MissionConfig, drawing: &World, path: &[Point], complete: bool) -> Self {
         let sampled = polyline::resampled(path, SAMPLE_M);
         let map = ObstacleMap::new(&drawing.boundary, &drawing.obstacles);
@@ -141,7 +141,7 @@ fn most_wrapped(cable: &Cable, drawing: &World) -> String {
     }
 }
 
-/// The largest forecast error on a path, and the length of path without any fix, metres.
+/// The largest forecast error on a path, and the length of path without a fix, metres.
 fn accuracy(mission: &MissionConfig, drawing: &World, path: &[Point]) -> (Option<Worst>, f64) {
     if drawing.stations.is_empty() {
         return (None, 0.0);

@@ -32,7 +32,7 @@ pub struct Expect {
     pub precision_min: Option<f64>,
     /// Minimum tracking recall.
     pub recall_min: Option<f64>,
-    /// Largest root mean square distance of the preset points from the path, metres.
+    /// Largest root mean square distance from the preset points to the path, metres.
     pub rmse_max_m: Option<f64>,
     /// Largest root mean square cross-track distance, metres.
     pub cross_track_rmse_max_m: Option<f64>,
@@ -44,11 +44,11 @@ pub struct Expect {
     pub in_95_ellipse_min: Option<f64>,
     /// Longest time without a position, seconds.
     pub position_lost_max_s: Option<f64>,
-    /// Greatest length of cable out at any time, metres.
+    /// Greatest length of cable paid out at any time, metres.
     pub tether_length_max_m: Option<f64>,
     /// Largest wrap of the cable on one obstacle, radians.
     pub wrap_max_rad: Option<f64>,
-    /// Greatest length of cable out at the end, metres.
+    /// Greatest length of cable paid out at the end, metres.
     pub tether_end_length_max_m: Option<f64>,
 }
 
@@ -70,7 +70,7 @@ impl fmt::Display for Miss {
     }
 }
 
-/// The side of a bound on which a figure must be.
+/// The side of a bound on which a figure must lie.
 #[derive(Clone, Copy)]
 enum Side {
     AtLeast,
@@ -88,7 +88,7 @@ impl Expect {
         Summary { violations: Some(self.check(&run).iter().map(ToString::to_string).collect()), ..run }
     }
 
-    /// The expected end of the run, in a few words for people; empty if no bound concerns the end.
+    /// The expected end of the run, in a few words for the reader; empty if no bound concerns the end.
     pub fn words(&self) -> String {
         let outcome = self.outcome.map(|outcome| outcome.word().to_owned());
         let coverage = self

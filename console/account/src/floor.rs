@@ -39,7 +39,7 @@ pub struct Account {
     pub whole: Shares,
     /// The floor that the tool can reach, which is either scanned or missed.
     pub reachable: Shares,
-    /// Scanned share of the reachable floor by the exact area that the tool swept instead of by cells, 0 to 1.
+    /// Scanned share of the reachable floor, from the exact area that the tool swept instead of from cells, 0 to 1.
     #[serde(default)]
     pub exact: Option<f64>,
     /// The critical zone along the shell.
@@ -98,7 +98,7 @@ pub struct Shares {
     /// mission.
     #[serde(default)]
     pub guaranteed: Option<f64>,
-    /// The same shares as printed.
+    /// The shares above, as printed.
     #[serde(default)]
     pub percent: Percent,
 }
@@ -122,21 +122,21 @@ pub struct Percent {
 /// The account of one plate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlateAccount {
-    /// Its name.
+    /// Name of the plate.
     pub name: String,
-    /// Its kind.
+    /// Kind of the plate.
     pub kind: PlateKind,
     /// The 95 % position error that 95 % of the scanned cells do not exceed, taking the best pass over each cell,
     /// metres; absent if none of the plate was scanned.
     #[serde(default)]
     pub error_p95_m: Option<f64>,
-    /// The division of its floor.
+    /// The division of the plate's floor.
     #[serde(flatten)]
     pub shares: Shares,
 }
 
 impl Shares {
-    /// The division of a floor from its counted cells, each of the given area in square metres.
+    /// The division of a floor, from counts of its cells; each cell has the given area in square metres.
     pub fn of(counts: Counts, cell_m2: f64) -> Self {
         let Counts { floor, reachable, covered, covered_reachable, margin } = counts;
         let missed = reachable - covered_reachable;

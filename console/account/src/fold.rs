@@ -26,7 +26,7 @@ const MOST_FAULTS: usize = 20;
 /// Maximum number of listed planners.
 const MOST_PLANNERS: usize = 1000;
 
-/// The state of a run from the events so far.
+/// The state of a run, from its events so far.
 #[derive(Debug, Default)]
 pub struct Fold {
     known: Summary,
@@ -149,7 +149,7 @@ impl Fold {
     }
 
     /// Adds the estimated position. The mission determines whether floor passed on the way counts; for located
-    /// readings, it counts between two poses that are known well enough.
+    /// readings, floor counts between two poses that are known well enough.
     fn estimate(&mut self, event: &Event, estimate: &PoseEstimate) {
         let here = Pose { position: estimate.position, heading_rad: estimate.heading_rad };
         let covariance = position_covariance(&estimate.covariance);
@@ -169,7 +169,7 @@ impl Fold {
         self.visit(here, &covariance, error_m, counts);
     }
 
-    /// Moves the tool to a pose, and adds whether the floor that it passed counts.
+    /// Moves the tool to a pose, and records whether the floor that the tool passed over counts.
     fn visit(&mut self, here: Pose, covariance: &Matrix2<f64>, error_m: f64, counts: bool) {
         let error_lately_m = counts.then(|| self.claimed.tip_m());
         self.scanned.iter_mut().for_each(|scanned| scanned.visit(here, covariance, error_lately_m));
@@ -232,7 +232,7 @@ impl Fold {
         self.evidence.as_ref()
     }
 
-    /// Whether the scanned floor is known: for located readings, only if they state when the tool was on.
+    /// Whether the scanned floor is known: for located readings, only if they show when the tool was on.
     pub fn says_what_was_scanned(&self) -> bool {
         self.tool.as_ref().is_none_or(ToolTrack::is_known)
     }
@@ -262,7 +262,7 @@ impl Fold {
         self.tethered.as_ref()?.tether(self.truth.map(|pose| pose.position), self.known.outcome)
     }
 
-    /// Whether the path is preset: then a planner only plans how to follow it.
+    /// Whether the path is preset. If so, a planner only plans how to follow the path.
     fn is_preset(&self) -> bool {
         self.tracker.is_some()
     }

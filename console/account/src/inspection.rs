@@ -56,9 +56,9 @@ pub struct Inspection {
     /// The person who reviewed alarms, holds and faults.
     pub events_reviewed_by: Option<String>,
     /// Day of the inspection, as `2026-11-24`, for located readings: the names of their runs contain only the time at
-    /// which they were located.
+    /// which the readings were located.
     pub inspected_on: Option<String>,
-    /// The reason why no coverage is stated, for readings that do not state when the tool was on.
+    /// The reason why no coverage is stated, for readings that do not show when the tool was on.
     pub coverage_waiver: Option<String>,
     /// The reason why the facts contradict what the scenario of the run states about the floor.
     pub identity_corrected: Option<String>,
@@ -76,7 +76,7 @@ pub struct Inspection {
     pub datum_crs: Option<String>,
     /// Origin of the tank frame in that system, east and north, metres.
     pub datum_m: Option<[f64; 2]>,
-    /// Clockwise angle from north of the system to north of the tank frame, degrees.
+    /// Clockwise angle from north in the system to north in the tank frame, degrees.
     pub datum_north_deg: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! Notes of people on a run: a remark, and bookmarks at moments.
+//! Notes that people make on a run: a remark, and bookmarks with times.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ pub const MOST_LETTERS: usize = 500;
 /// Maximum number of bookmarks of a run.
 pub const MOST_BOOKMARKS: usize = 1000;
 
-/// A moment of a run that a person wants to find again.
+/// A moment in a run that a person wants to find again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Bookmark {
@@ -71,7 +71,7 @@ impl Notes {
         Ok(())
     }
 
-    /// Normalizes the notes of a file: sorted by time, and without terminal control characters.
+    /// Normalizes the notes in a file: sorts them by time, and removes terminal control characters.
     ///
     /// # Errors
     /// The notes exceed a limit; the error is a sentence.

@@ -13,7 +13,7 @@ const AGAIN_STEPS: u16 = 4;
 pub struct Overlap {
     /// Distance driven so far, metres.
     way_m: f64,
-    /// Distance driven when each cell was last under the tool, in steps, from 1; 0 before the first pass.
+    /// Distance driven when each cell was last under the tool, in steps counted from 1; 0 before the first pass.
     last: Tiles<u16>,
     again: Tiles<u8>,
 }
@@ -29,8 +29,8 @@ impl Overlap {
         self.again.at(index)
     }
 
-    /// Adds a movement of the tool over some cells; returns the cells that it came back to and, for each, whether
-    /// this was the first return.
+    /// Adds a movement of the tool over some cells; returns the cells to which the tool came back and, for each,
+    /// whether this was the first return.
     pub fn pass(
         &mut self,
         way_m: f64,

@@ -33,7 +33,7 @@ impl Passes {
     ///
     /// Floor that is under the tool for every position within the 95 % ellipse is guaranteed. To find it, the tool is
     /// narrowed on each side by the half-width of the ellipse across the heading; the ellipse is that of the
-    /// covariance, square metres. `error_m`: the largest 95 % error since the fix before the last.
+    /// covariance, square metres. `error_m` is the largest 95 % error since the last fix but one.
     pub(crate) fn pass(
         &mut self,
         believed: &CoverageGrid,

@@ -2,11 +2,11 @@
 
 use world::{Point, polyline};
 
-/// No mission accepts a longer path, metres: a longer one comes from a journal that was changed.
+/// Length of the longest path that a mission accepts, metres: a longer path comes from a journal that was changed.
 const MOST_LENGTH_M: f64 = 1e6;
 
-/// A path with a point at least every `spacing_m`; empty for a path too long for any mission, which would exhaust
-/// the memory.
+/// A path with a point at least every `spacing_m`; empty for a path that is too long for any mission and would
+/// exhaust the memory.
 pub(crate) fn sampled(path: &[Point], spacing_m: f64) -> Vec<Point> {
     let length_m = polyline::length_m(path);
     if length_m <= MOST_LENGTH_M { polyline::resampled(path, spacing_m) } else { Vec::new() }

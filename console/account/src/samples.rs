@@ -1,4 +1,4 @@
-//! Small runs whose figures can be computed by hand, and one with every kind of event; for the tests of this crate
+//! Small runs whose figures can be computed by hand, and a run with every kind of event; for the tests of this crate
 //! and of `report`.
 
 #![allow(clippy::unwrap_used, reason = "tests")]
@@ -8,7 +8,7 @@ use mission::{Event, EventKind, RunOpened};
 use serde_json::{Value, json};
 use world::{Obstacle, Point, Zone};
 
-/// Builds an event from its JSON, half a second after that of the tick before.
+/// Builds an event from its JSON; each tick is half a second after the previous one.
 pub(crate) fn event(tick: u64, kind: &Value) -> Event {
     let mut event = json!({ "tick": tick, "t_s": tick as f64 * 0.5 });
     event.as_object_mut().unwrap().extend(kind.as_object().unwrap().clone());

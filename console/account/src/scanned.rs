@@ -82,7 +82,7 @@ impl Scanned {
         FloorClass::of(self.believed.floor().kind(cell), times)
     }
 
-    /// The figures so far; missed floor only if the floor was `to_scan`.
+    /// The figures so far; they include missed floor only if the floor had to be scanned (`to_scan`).
     pub fn coverage(&self, to_scan: bool) -> Coverage {
         let counts = self.believed.counts();
         let again =

@@ -4,30 +4,30 @@ use crate::{Account, drawn::DrawnZone};
 use mission::{Check, Outcome, Parameters, Sandbox};
 use serde::{Deserialize, Serialize};
 
-/// Version of the format of JSON reports, on one run or several; increased when an old reader could not read the new
+/// Version of the format of JSON reports on one run or several; increased when old readers could not read the new
 /// format.
 pub const REPORT_VERSION: u32 = 1;
 
 /// All figures that are reported about a run at its end. An unknown figure is `None`, in JSON `null`, never zero.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Summary {
-    /// Version of the format, `REPORT_VERSION`; absent in reports older than the first version.
+    /// Version of the format, `REPORT_VERSION`; absent from reports that predate it.
     #[serde(default)]
     pub report_version: Option<u32>,
     /// Name of the scenario.
     pub scenario: Option<String>,
-    /// File of the readings that were located; absent for a mission.
+    /// Name of the file with the located readings; absent for a mission.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub located: Option<String>,
     /// Id of the first active planner.
     pub planner: Option<String>,
-    /// Version of its plugin.
+    /// Version of that planner's plugin.
     pub planner_version: Option<String>,
-    /// Its final parameters, including defaults.
+    /// Final parameters of that planner, including defaults.
     pub parameters: Option<Parameters>,
     /// Every planner that was active, in order, without duplicates.
     pub planners: Vec<String>,
-    /// The weakest sandbox of its planners. Absent if no planner was loaded, and in older reports.
+    /// The weakest sandbox of the run's planners. Absent if no planner was loaded, and from older reports.
     #[serde(default)]
     pub sandbox: Option<Sandbox>,
     /// Seed for all random numbers.
@@ -89,7 +89,8 @@ pub struct Summary {
     pub tether: Option<Tether>,
     /// Response times of the planners; set by the app.
     pub planner_calls: Option<PlannerCalls>,
-    /// Times from a stop order to its command; absent for runs that no operator stopped. Set by the app.
+    /// Times from a stop order to the command that stops the robot; absent for runs that no operator stopped. Set by
+    /// the app.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stops: Option<Stops>,
     /// SHA-256 of the journal, hexadecimal; set by the app.
@@ -140,7 +141,7 @@ pub struct Coverage {
     /// Reachable floor that was not scanned, according to the estimated position, square metres; absent for missions
     /// without a scan.
     pub missed_area_m2: Option<f64>,
-    /// The same shares according to the true position; absent where that is not known.
+    /// Coverage according to the true position; absent where the true position is not known.
     pub by_truth: Option<CoverageByTruth>,
 }
 
@@ -191,7 +192,7 @@ pub struct Accuracy {
 pub struct Tracking {
     /// Share of the samples that are near their paired point, 0 to 1.
     pub precision: f64,
-    /// Share of the preset points that the true path passes near at any time, 0 to 1.
+    /// Share of the preset points that the true path ever passes near, 0 to 1.
     pub recall: f64,
     /// Root mean square distance of the preset points from the stretch of the true path that was paired with them,
     /// metres: an arc cut short counts in full. Points that were never reached count only in `recall`. Absent if no
@@ -202,7 +203,7 @@ pub struct Tracking {
 }
 
 impl Tracking {
-    /// A robot within this distance counts as on the path, metres (T0 of Wang et al. 2023).
+    /// A robot within this distance counts as being on the path, metres (T0 in Wang et al. 2023).
     pub const NEAR_M: f64 = 0.2;
 }
 
@@ -217,7 +218,7 @@ pub struct Positioning {
     pub p95_m: f64,
     /// Largest, metres.
     pub max_m: f64,
-    /// Share of the ticks in which the true position was in the 95 % ellipse, 0 to 1.
+    /// Share of the ticks in which the true position was inside the 95 % ellipse, 0 to 1.
     pub in_95_ellipse: f64,
     /// Time for which the position was lost, seconds.
     pub position_lost_s: f64,
@@ -226,7 +227,7 @@ pub struct Positioning {
 /// The tether record.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Tether {
-    /// Greatest length out, metres.
+    /// Greatest length paid out, metres.
     pub tether_length_max_m: f64,
     /// Largest wrap on one obstacle, radians.
     pub wrap_max_rad: f64,
@@ -234,7 +235,7 @@ pub struct Tether {
     pub wrap_total_max_rad: f64,
     /// Number of loops at the end.
     pub loops: u64,
-    /// Length out at the end, metres.
+    /// Length paid out at the end, metres.
     pub end_length_m: f64,
     /// Whether the tether could not be reeled in.
     pub entangled: bool,

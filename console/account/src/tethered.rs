@@ -5,7 +5,7 @@ use mission::{Outcome, TetherConfig};
 use std::f64::consts::TAU;
 use world::Point;
 
-/// Within this distance from the anchor the robot counts as back, metres.
+/// Distance from the anchor within which the robot counts as back, metres.
 const BACK_M: f64 = 0.5;
 /// Length of cable, beyond the straight line to the robot, that counts as left out, metres.
 const LEFT_M: f64 = 0.3;

@@ -10,7 +10,7 @@ use world::{
 /// Distance between two samples of the true path, metres.
 const SAMPLE_M: f64 = 0.05;
 
-/// Search distance ahead along the preset path for a pair, metres.
+/// Distance ahead along the preset path within which a pair is searched for, metres.
 const AHEAD_M: f64 = 1.0;
 
 /// Distance between preset points above which more points are inserted between them, metres.
@@ -117,8 +117,8 @@ impl Tracker {
         }
     }
 
-    /// The nearest point of the preset path from `from_m` on within the search distance: position along the path, and
-    /// distance from it.
+    /// The nearest point of the preset path within the search distance from `from_m` on: its position along the path,
+    /// and the distance from it.
     fn pair(&self, at: Point, from_m: f64) -> Option<(f64, f64)> {
         let until_m = from_m.max(self.claimed_m) + AHEAD_M;
         let first = self.stations_m.partition_point(|station_m| *station_m <= from_m).saturating_sub(1);
@@ -135,7 +135,7 @@ impl Tracker {
         best
     }
 
-    /// The point of the preset path at `along_m`, on the piece that starts at point `first`.
+    /// The point at distance `along_m` along the preset path, on the piece that starts at point `first`.
     fn point_at(&self, first: usize, along_m: f64) -> Option<Point> {
         let (start, start_m) = (*self.path.get(first)?, *self.stations_m.get(first)?);
         let Some(end) = self.path.get(first + 1) else { return Some(start) };

@@ -46,8 +46,8 @@ impl Turning {
         }
     }
 
-    /// Number of changes of heading above 30 degrees within half a metre of path; several in a row without a straight
-    /// piece between them count as one.
+    /// Number of changes of heading above 30 degrees within half a metre of path; consecutive changes without a
+    /// straight stretch between them count as one.
     pub(crate) fn turns(&self) -> u64 {
         self.turns
     }

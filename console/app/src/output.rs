@@ -113,7 +113,7 @@ mod tests {
         fs::write(&journal, "").unwrap();
         let refused = check_free(&journal, Some(true), &[]).unwrap_err().to_string();
         assert!(refused.ends_with("is part of a run; choose another name"), "{refused}");
-        // A page is none of them.
+        // The page is neither an input nor part of a run.
         fs::write(&page, "").unwrap();
         assert!(check_free(&page, Some(true), &[]).is_ok());
     }

@@ -181,7 +181,7 @@ mod tests {
     #[test]
     fn only_the_inspector_whose_certificate_is_stated_signs() {
         assert!(refuse_other_signer("L. Kern", Some(" L. Kern ")).is_ok());
-        // That no inspector is named is an open item of the gate.
+        // A missing inspector is an open item of the gate.
         assert!(refuse_other_signer("L. Kern", None).is_ok());
         let refused = refuse_other_signer("A. Other", Some("L. Kern")).unwrap_err().to_string();
         assert!(

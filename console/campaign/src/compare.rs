@@ -154,8 +154,8 @@ impl fmt::Display for Comparison {
             &std::iter::once(head).chain(self.groups.iter().map(row)).collect::<Vec<_>>(),
         ))?;
         if self.unpaired > 0 {
-            let what = if self.metric == "success" { "flown" } else { "complete" };
-            writeln!(f, "  {} missions are {what} in only one of the tables", self.unpaired)?;
+            let what = if self.metric == "success" { "ran" } else { "are complete" };
+            writeln!(f, "  {} missions {what} in only one of the tables", self.unpaired)?;
         }
         Ok(())
     }

@@ -24,7 +24,7 @@ pub struct Design {
     pub keys: Vec<String>,
     /// Values of these keys at each point of the grid; there is at least one point.
     pub points: Vec<Vec<Value>>,
-    /// Bounds that every run must meet, in addition to those of its scenario: key of `[expect]` and value.
+    /// Bounds that every run must meet in addition to the bounds of its scenario: key of `[expect]` and value.
     pub expect: Vec<(String, Value)>,
     /// The seeds.
     pub seeds: Seeds,

@@ -32,7 +32,7 @@ pub struct Findings {
     pub faults: Vec<Faults>,
     /// Columns that the findings cover.
     pub metrics: Vec<String>,
-    /// The arms of the comparison, in the order of the plan.
+    /// The arms of the comparison, in the order in which the plan lists them.
     pub arms: Vec<Arm>,
     /// The missions to inspect first.
     pub worst: Vec<Worst>,
@@ -84,9 +84,9 @@ pub struct Faults {
 /// A mission to inspect.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Worst {
-    /// What happened in it.
+    /// What happened in the mission.
     pub what: String,
-    /// The command that repeats it.
+    /// The command that repeats the mission.
     pub command: String,
 }
 

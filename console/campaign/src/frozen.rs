@@ -1,4 +1,4 @@
-//! A campaign frozen before its first mission: every block is run from this frozen form and nothing else.
+//! A campaign frozen before its first mission: every block is run from this frozen form alone.
 
 use crate::{
     design::Design,
@@ -12,9 +12,9 @@ use std::{collections::BTreeMap, ops::Range};
 
 /// Version of the frozen format; files with any other version are refused.
 const FORMAT: u32 = 2;
-/// Number of missions per block if the plan sets none ...
+/// Number of missions per block if the plan does not set this number; more if there would be too many blocks.
 const BLOCK: u64 = 64;
-/// ... unless that would give more blocks than this.
+/// Maximum number of blocks if the plan does not set the number of missions per block.
 const MOST_BLOCKS: u64 = 1000;
 
 /// The program and the plugins that run the missions.
@@ -31,11 +31,11 @@ pub struct Program {
 /// A scenario as it was when the campaign was frozen.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ScenarioText {
-    /// Its unique name in the table.
+    /// Unique name of the scenario in the table.
     pub name: String,
-    /// Path of its file, used in the command that repeats a mission.
+    /// Path of the scenario file, used in the command that repeats a mission.
     pub path: String,
-    /// Its text, with the maps included.
+    /// Text of the scenario, with the maps included.
     pub text: String,
     /// SHA-256 of the text, hexadecimal.
     pub sha256: String,
@@ -59,15 +59,15 @@ pub struct Campaign {
 /// One mission of a campaign.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case<'a> {
-    /// Its number, from 0.
+    /// Number of the mission, from 0.
     pub n: u64,
-    /// Its scenario.
+    /// Scenario of the mission.
     pub scenario: &'a ScenarioText,
-    /// Its planner; `None` for the planner named by the scenario.
+    /// Planner of the mission; `None` for the planner named by the scenario.
     pub planner: Option<&'a str>,
     /// The values of the campaign's keys.
     pub point: &'a [Value],
-    /// Its seed.
+    /// Seed of the mission.
     pub seed: u64,
 }
 
@@ -182,12 +182,12 @@ impl Campaign {
         }
     }
 
-    /// Number of arms in the comparison: every planner at every point.
+    /// Number of arms in the comparison: one for every planner at every point.
     pub(crate) fn arms(&self) -> usize {
         self.design.planners.len().max(1) * self.design.points.len()
     }
 
-    /// Number of the arm to which a mission belongs, from 0.
+    /// Number of the arm to which a mission belongs, counted from 0.
     pub(crate) fn arm(&self, n: u64) -> usize {
         (n % self.arms() as u64) as usize
     }

@@ -17,7 +17,7 @@ struct Page<'a> {
     scenarios: Vec<(&'a str, Vec<String>)>,
 }
 
-/// The page of a campaign; it contains no time and no machine name.
+/// The page of a campaign; it contains neither a time nor the name of a machine.
 ///
 /// # Errors
 /// The template cannot be rendered, which should not happen.

@@ -145,7 +145,7 @@ pub(crate) fn distribution(findings: &Findings) -> Option<String> {
         Axis::over(curves().flat_map(|(_, arm)| arm.quantiles.iter().copied()), (60.0, WIDTH - 20.0));
     let up = Axis { values: (0.0, 1.0), places: (HEIGHT - 40.0, 30.0) };
     let mut plot = Plot::new(HEIGHT + LINE * curves().count() as f64);
-    axes(&mut plot, (&across, metric), (&up, "share of missions flown, complete"));
+    axes(&mut plot, (&across, metric), (&up, "complete, as a share of the missions run"));
     for (line, (at, arm)) in curves().enumerate() {
         let (last, most) = ((arm.quantiles.len() - 1) as f64, arm.complete.share().unwrap_or(0.0));
         let point = |(k, value): (usize, &f64)| {

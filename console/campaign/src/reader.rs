@@ -69,7 +69,7 @@ impl<'a> Reader<'a> {
         self.table.get(name)
     }
 
-    /// All keys with their values, in the order of the text.
+    /// All keys with their values, in the order in which they appear in the text.
     pub(crate) fn entries(&self) -> Vec<(String, &'a Placed<'a>)> {
         let mut entries: Vec<_> =
             self.table.iter().map(|(name, value)| (name.get_ref().to_string(), value)).collect();

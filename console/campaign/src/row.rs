@@ -7,7 +7,7 @@ use serde_json::Value;
 /// Whether a mission ran, and if not, why.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// It ran to its end.
+    /// The mission ran to its end.
     Flown,
     /// The scenario or the planner refuses a value in the plan; running the mission again would change nothing.
     Refused,

@@ -44,7 +44,7 @@ enum Kind {
 
 use Kind::{Count, Flag, Number, Text};
 
-/// Columns that contain figures from the report, with their paths in it.
+/// Columns that contain figures from the report, with the paths of these figures in the report.
 const FIGURES: [(&str, Kind); 48] = [
     ("outcome", Text),
     ("reason", Text),

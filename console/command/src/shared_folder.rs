@@ -166,7 +166,7 @@ fn host() -> String {
 mod tests {
     use super::*;
 
-    /// Makes a file look as if nobody had touched it for long.
+    /// Makes a file look as if nobody had touched it for a long time.
     fn age(file: &Path) {
         let file = File::options().write(true).open(file).expect("a file");
         file.set_modified(SystemTime::now() - SILENT_FOR - Duration::from_secs(1)).expect("set");

@@ -114,7 +114,7 @@ fn completes_none(flown: &[Flown]) -> Option<String> {
 }
 
 fn in_time(flown: &[Flown]) -> Option<String> {
-    // The median, because a busy machine is not the planner's fault.
+    // The median is used because a busy machine is not the planner's fault.
     let slowest = flown.iter().filter_map(|flown| flown.p50_ms).fold(0.0, f64::max);
     (slowest > STEP_WITHIN_MS)
         .then(|| format!("the median step took {slowest:.0} ms; the console waits {STEP_WITHIN_MS} ms"))

@@ -23,7 +23,7 @@ use rayon::prelude::*;
 use scenario::Scenario;
 use serde::Serialize;
 
-/// The test of one planner with one task.
+/// The results of testing one planner with one task.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Trial {
     /// Id of the planner.
@@ -32,7 +32,7 @@ pub struct Trial {
     pub task: Task,
     /// Seed of the first tank; each further tank has the next number.
     pub first_seed: u64,
-    /// The checks with their results.
+    /// The checks and their results.
     pub checks: Vec<Check>,
     /// The results of the missions: first those of this planner, then those of the others in the same tanks.
     pub rows: Vec<Row>,

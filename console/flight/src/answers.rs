@@ -83,9 +83,9 @@ pub struct Windowed<'a> {
     host: &'a mut Host,
     /// How long a tick waits for the robot's command; `None` means no limit.
     step: Option<Duration>,
-    /// How long a tick waits for an answer while the robot stands still for it.
+    /// How long a tick waits for an answer for which the robot stands still.
     work: Duration,
-    /// How long a tick waits if the only open ask is that of the planner in shadow.
+    /// How long a tick waits if the only open ask is to the planner in shadow.
     shadow: Duration,
     began: Instant,
 }
@@ -122,8 +122,8 @@ pub struct Window {
     pub step: Option<Duration>,
     /// For a planner to be opened, or for a plan, while the robot stands still.
     pub work: Duration,
-    /// For the planner in shadow, if its ask is the only open one. In real time there is no wait: the planner has until
-    /// the next tick.
+    /// For the planner in shadow, if no other planner has an open ask. In real time there is no wait: the planner has
+    /// until the next tick.
     pub shadow: Duration,
 }
 

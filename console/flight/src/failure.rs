@@ -1,4 +1,4 @@
-//! Classifies failures by who must act: the user or the developers.
+//! Classifies failures according to who must act: the user or the developers.
 
 use account::Summary;
 use mission::Outcome;

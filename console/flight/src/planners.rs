@@ -1,4 +1,4 @@
-//! The installed planners, and whether a scenario can be flown with them.
+//! The installed planners, and whether a scenario can be run with them.
 
 use crate::failure::bad_input;
 use anyhow::anyhow;
@@ -56,7 +56,7 @@ pub fn shadowed(scenario: &Scenario, plugins: &PluginDirs) -> Vec<String> {
     let twice = Surveyor::new(plugins, &worker).shadowed(&ids);
     let sentence = |(id, taken, other): (String, PathBuf, PathBuf)| {
         let (taken, other) = (taken.display(), other.display());
-        format!("planner {id} is taken from {taken}; it shadows the one in {other}")
+        format!("planner {id} is taken from {taken}; the one in {other} is ignored")
     };
     twice.into_iter().map(sentence).collect()
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// The built-in demo, so that `tankops` has something to show whatever folder it is started in.
 const DEMO: &str = include_str!("../../../scenarios/demo.toml");
 
-/// The demo, with the settings of the command line applied.
+/// The demo, with the settings from the command line applied.
 ///
 /// # Errors
 /// Every objection to these settings.

@@ -158,7 +158,7 @@ mod tests {
         assert_eq!(text_of(open_waiting(&pipe).unwrap(), 100).unwrap(), "late");
         late.join().unwrap();
 
-        // Kept open by somebody, as whoever waits for it does.
+        // Another process keeps the pipe open, as a process that waits for the pipe does.
         let kept =
             OpenOptions::new().read(true).custom_flags(OFlags::NONBLOCK.bits() as i32).open(&pipe).unwrap();
         fs::write(&pipe, "early").unwrap();

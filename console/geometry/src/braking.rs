@@ -79,8 +79,7 @@ impl Braking {
         self.speed_before(distance_m, 0.0)
     }
 
-    /// The maximum speed from which a robot can slow down to `then_m_per_s` within a distance in metres; metres per
-    /// second.
+    /// The maximum speed from which a robot can slow down to `then_m_per_s` within `distance_m`, metres per second.
     ///
     /// ```
     /// use geometry::Braking;

@@ -34,11 +34,11 @@ pub enum Part {
 /// The shortest segment between two parts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gap {
-    /// Its length, metres; zero or negative if the parts touch.
+    /// Length of the segment, metres; zero or negative if the parts touch.
     pub width_m: f64,
-    /// Its end on the centre line of the first part (capsule) or on its edge (polygon).
+    /// End of the segment on the first part: on the centre line (capsule) or on the edge (polygon).
     pub from: Point,
-    /// Its end on the second part: on the centre line (capsule) or on the edge (polygon).
+    /// End of the segment on the second part: on the centre line (capsule) or on the edge (polygon).
     pub to: Point,
 }
 

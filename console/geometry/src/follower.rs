@@ -18,7 +18,8 @@ const CORNER_M: f64 = 0.05;
 const BESIDE_CORNER_M: f64 = 0.4;
 /// Length of path in which the nearest point is searched for, metres; shorter than one turn of any useful spiral.
 const WINDOW_M: f64 = 1.5;
-/// The same length on a path that is followed exactly, metres: shorter than a lap of the smallest ring worth scanning.
+/// Length of path in which the nearest point is searched for if the path is followed exactly, metres; shorter than a
+/// lap of the smallest ring worth scanning.
 const EXACT_WINDOW_M: f64 = 0.6;
 
 /// Progress along a path. It never decreases, because the search for the nearest point starts from the previous one and
@@ -63,7 +64,7 @@ impl PathFollower {
     }
 
     /// Creates a follower that reaches every corner of a path before it turns, so that no lane is cut short or mistaken
-    /// for the one next to it. The path must have at least one point.
+    /// for the next lane. The path must have at least one point.
     ///
     /// ```
     /// use geometry::{PathFollower, Point};

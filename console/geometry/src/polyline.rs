@@ -81,7 +81,7 @@ pub fn segments_cross(a: Point, b: Point, c: Point, d: Point) -> bool {
     side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
 }
 
-/// The edges of a closed polygon, including the one from the last corner to the first; none if it has no corners.
+/// The edges of a closed polygon, including the edge from the last corner to the first; none if it has no corners.
 ///
 /// ```
 /// use geometry::{Point, polyline::edges};

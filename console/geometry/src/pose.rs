@@ -77,7 +77,7 @@ impl Pose {
     }
 }
 
-/// Unit vector with a bearing in radians, counter-clockwise from east.
+/// Unit vector with the given bearing, radians, counter-clockwise from east.
 ///
 /// ```
 /// use geometry::{Vector, unit_vector};

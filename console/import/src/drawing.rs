@@ -174,7 +174,7 @@ fn keep_inside(boundary: &Boundary, all: &mut Vec<Named>, notes: &mut Vec<String
     });
 }
 
-/// The size of the drawing's unit in metres: as given, else as in the header.
+/// The size of the drawing's unit in metres: the given size or, if none is given, the size in the header.
 fn unit(header: Option<i32>, stated_m: Option<f64>, notes: &mut Vec<String>) -> Result<f64, String> {
     let header_m = header.and_then(metres);
     let unit_m = stated_m.or(header_m).ok_or(

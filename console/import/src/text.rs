@@ -2,7 +2,8 @@
 
 use encoding_rs::{Encoding, UTF_8, WINDOWS_1252};
 
-/// Decodes a text as UTF-8 or UTF-16, else in the encoding that the file states, by default Western European Windows.
+/// Decodes a text: as UTF-8 or UTF-16 if possible; otherwise in the encoding that the file states or, if it states
+/// none, in Western European Windows.
 pub(crate) fn decoded(bytes: &[u8], said: Option<&'static Encoding>) -> String {
     let marked = Encoding::for_bom(bytes).map(|(encoding, _)| encoding);
     let wide = || Encoding::for_label(foreign::wide(bytes)?.as_bytes());

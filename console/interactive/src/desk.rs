@@ -63,7 +63,7 @@ pub(super) enum Request {
     SavePreset { name: String, choice: PlannerChoice },
     /// Save a command line in the history.
     Remember(String),
-    /// Combine the coverage of the open run with that of these earlier runs.
+    /// Combine the coverage of the open run with the coverage of these earlier runs.
     Combine(Vec<String>),
     /// Survey the plugins again.
     Survey,

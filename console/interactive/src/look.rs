@@ -22,7 +22,7 @@ use world::Boundary;
 
 /// The largest number of past runs shown: the newest ones.
 const MOST_RUNS: usize = 1000;
-/// The number of newest past runs that are searched for bad ends, of which the operator is warned.
+/// The operator is warned if any of this many newest past runs ended badly.
 const RECENT: usize = 20;
 
 /// A scan of the disk. An unchanged file is not read again.

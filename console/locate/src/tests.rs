@@ -63,7 +63,7 @@ impl Readable {
         }
     }
 
-    /// What is wrong with the file, without its folder.
+    /// The problem with the file; the folder of the file is left out of the text.
     fn refused(&self) -> String {
         let scenario = scenario();
         let error = self.task(&scenario).survey().unwrap_err().to_string();
@@ -81,13 +81,13 @@ fn located(task: &Task, survey: &Survey) -> (Tally, Vec<Event>) {
     (tally, all)
 }
 
-/// The k-th place of a walk round the middle.
+/// The k-th place on a walk around the middle.
 fn place(k: u32) -> Point {
     let angle = f64::from(k) * 0.05;
     Point::new(3.0 * angle.cos(), 3.0 * angle.sin())
 }
 
-/// Ranges of a walk with errors that look like chance, as a row for each station: time, name, range, place.
+/// Ranges along a walk with errors that look random, in one row for each station: time, name, range, place.
 fn walk(moments: u32) -> Vec<(f64, String, f64, Point)> {
     let stations = scenario().sim.world.stations;
     let error = |k: u32, i: usize| 0.005 * ((f64::from(k) * 12.9 + i as f64 * 78.2).sin() * 43_758.5).sin();
@@ -197,7 +197,8 @@ fn arrivals_with_a_late_clock_and_slow_sound_are_located_once_both_are_found() {
 fn arrivals_without_the_time_of_emission_are_located_by_their_differences() {
     let mut text = String::from("emission,station,arrival_s,true_x_m,true_y_m\n");
     for (t_s, station, range_m, at) in walk(100) {
-        // By the clock of the stations, which counts from 1970, and some time after the tick of the robot.
+        // The arrival time is by the clock of the stations, which counts from 1970, and lies a short time after the
+        // robot's tick.
         let arrival_s = 1.7e9 + t_s + 0.013 + range_m / 1200.0;
         let _ = writeln!(text, "hit {t_s},{station},{arrival_s:.7},{},{}", at.x, at.y);
     }
@@ -344,7 +345,7 @@ fn lines_are_counted_behind_comments_and_empty_lines_and_however_they_end() {
     }
 }
 
-/// Ranges and motion of a walk with a column that says whether the tool is on.
+/// Ranges and motion along a walk, with a column that says whether the tool is on.
 fn walk_with_tool(tool_on: impl Fn(u32) -> &'static str) -> String {
     let mut text = String::from("t_s,station,range_m,forward_m,turn_rad,tool_on\n");
     for k in 0..200_u32 {

@@ -111,7 +111,7 @@ mod tests {
         };
         assert_eq!(of("# tool\nfrom_s, to_s\n1, 2.5\n2.5, 4\n").unwrap(), [[1.0, 2.5], [2.5, 4.0]]);
         assert_eq!(of("to_s,from_s\n").unwrap(), Vec::<[f64; 2]>::new());
-        // In the forms in which readings have their times.
+        // Times in all forms that readings may use.
         assert_eq!(of("from;to\n1,5;2,5\n").unwrap(), [[1.5, 2.5]]);
         assert_eq!(of("from,to\n07:40:00,07:40:01.5\n").unwrap(), [[27_600.0, 27_601.5]]);
         let dated = of("from_s,to_s\n1970-01-01T00:00:10Z,1970-01-01T00:00:12Z\n").unwrap();

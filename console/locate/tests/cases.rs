@@ -56,7 +56,7 @@ fn located(scenario: &Scenario, readings: &str) -> Located {
     run(scenario, readings.as_bytes(), |_| {}).unwrap()
 }
 
-/// A row for each station and second, of a robot that drives from a place by this much a second.
+/// One row for each station and second, for a robot that starts at a place and drives this far every second.
 fn ranges(scenario: &Scenario, from: Point, by: [f64; 2], seconds: u32) -> String {
     let mut text = String::from("t_s,station,range_m,true_x_m,true_y_m\n");
     for k in 0..seconds {
@@ -110,7 +110,7 @@ fn on_stations_on_a_line_nothing_decides_if_the_start_is_wrong() {
     let Located { tally, doubts, .. } = located(&wrong, &text);
     assert_eq!((tally.fixes.get("ok"), doubts.sides_open), (None, 28), "{:?}", tally.fixes);
     assert!(doubts.contradicts_start);
-    // The track holds both sides.
+    // The 95 % error of the track covers both sides.
     assert!(tally.error_95_m.unwrap()[0] > 3.0);
 }
 
@@ -216,7 +216,7 @@ fn motion_that_was_not_measured_is_not_none() {
     let Located { tally, .. } = located(&scenario, &text);
     let [_, most_m] = tally.error_95_m.unwrap();
     assert!((1.9..2.4).contains(&most_m), "5 s at 0.4 m/s: {most_m}");
-    // Rows that are missing altogether.
+    // Rows that are missing completely.
     let gap: Vec<&str> =
         text.lines().enumerate().filter(|(k, _)| !(20..=45).contains(k)).map(|(_, line)| line).collect();
     let gap = gap.join("\n");
@@ -236,12 +236,12 @@ fn the_forecast_says_which_floor_has_a_mirror_image_and_what_decides() {
     assert!(decided.contains("the side follows from robot.start_m, 3.00 m from that line"), "{decided}");
     let open = warning(ON_A_LINE, [0.0, 0.02]).unwrap();
     assert!(open.contains("the side is ambiguous: robot.start_m is 0.02 m from that line"), "{open}");
-    // Two of three stations all but in one place are a line, too, and so are two.
+    // Three stations are also nearly on a line if two of them are almost in the same place; so are two stations.
     let twins = "stations = [{ name = \"A\", at_m = [-5.9, 0.0] }, { name = \"B\", at_m = [-5.9, 0.05] }, { name = \"C\", at_m = [5.9, 0.0] }]";
     assert!(warning(twins, [0.0, 3.0]).is_some());
     let pair = "stations = [{ name = \"A\", at_m = [-5.9, 0.0] }, { name = \"C\", at_m = [5.9, 0.0] }]";
     assert!(warning(pair, [0.0, 3.0]).unwrap().contains("the line of stations A and C"));
-    // On a chord near the wall every image lies behind it.
+    // If the stations are on a chord near the wall, every mirror image lies behind the wall.
     let wall = "stations = [{ name = \"A\", at_m = [-1.5, -5.8] }, { name = \"B\", at_m = [0.0, -5.8] }, { name = \"C\", at_m = [1.5, -5.8] }]";
     let by_wall = warning(wall, [0.0, 3.0]).unwrap();
     assert!(by_wall.contains("the wall decides"), "{by_wall}");

@@ -17,14 +17,14 @@ use scenario::Scenario;
 use sets::{Kind, Set};
 use world::Point;
 
-/// Squared distance in standard deviations that 95 % of a plane normal distribution keep.
+/// Squared distance, in standard deviations, within which 95 % of a two-dimensional normal distribution lies.
 const ELLIPSE_95: f64 = 5.991_464_547;
 
-/// As many sets as this leave nothing to chance.
+/// With this many sets, chance no longer matters.
 const ENOUGH: u64 = 200;
-/// Fewer fixes than this are few.
+/// Fewer fixes than this count as few.
 const FEW: u64 = 200;
-/// Covariances in events have four significant digits: half axes are right to this share.
+/// Covariances in events have four significant digits: half axes are accurate to this share.
 const ROUNDING: f64 = 5e-4;
 
 /// Counts over sets of one kind.
@@ -67,7 +67,7 @@ fn is_inside(truth: Point, at: Point, covariance: &Matrix2<f64>) -> bool {
     covariance.try_inverse().is_some_and(|inverse| away.dot(&(inverse * away)) <= ELLIPSE_95)
 }
 
-/// Locates a set and compares with its truth.
+/// Locates a set and compares the result with the truth.
 fn counted(set: &Set) -> Count {
     let scenario = Scenario::parse(&set.scenario, "set.toml").map_err(|errors| errors.render()).unwrap();
     let dir = tempfile::tempdir().unwrap();
@@ -137,10 +137,10 @@ fn over(kind: Kind, seeds: std::ops::Range<u64>) -> Count {
     count
 }
 
-/// What a kind misses, with room for chance where there are few sets.
+/// The requirements that a kind misses, with an allowance for chance if there are few sets.
 fn missed(kind: Kind, count: &Count, room: f64) -> Vec<String> {
     let (inside, ok, track) = (count.inside(), count.ok_share(), count.track_inside());
-    // Of a few dozen fixes chance alone leaves out more than in the long run.
+    // Among a few dozen fixes, chance alone can put a larger share outside the ellipse than in the long run.
     let few = if count.ok < FEW { 2.6 * (0.05 * 0.95 / count.ok.max(1) as f64).sqrt() } else { 0.0 };
     let room = room.max(few);
     let has_track = matches!(kind, Kind::NoOdometry | Kind::OdometryGap | Kind::WrongMotion);
@@ -159,7 +159,7 @@ fn lacks_motion(kind: Kind) -> bool {
     matches!(kind, Kind::NoOdometry | Kind::OdometryGap)
 }
 
-/// A number from the environment.
+/// A number from an environment variable.
 fn number(key: &str, default: u64) -> u64 {
     std::env::var(key).map_or(default, |text| text.parse().unwrap())
 }

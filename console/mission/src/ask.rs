@@ -53,7 +53,7 @@ impl fmt::Display for AskId {
     }
 }
 
-/// A request of the mission to a planner. A worker has at most one open ask, not counting [`What::Close`].
+/// A request from the mission to a planner. A worker has at most one open ask, not counting [`What::Close`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ask {
     /// Id of the ask; the answer carries the same id.

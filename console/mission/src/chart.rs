@@ -26,7 +26,7 @@ pub(crate) struct Chart {
     /// Ids of the obstacles on the drawing, in ascending order.
     drawn: Arc<[ObstacleId]>,
     found: Vec<Found>,
-    /// The obstacles in sight now, placed by the current estimated pose.
+    /// The obstacles in sight now, placed using the current estimated pose.
     in_sight: Vec<(ObstacleId, Shape)>,
     map: ObstacleMap,
     revision: u32,
@@ -47,7 +47,7 @@ struct Found {
     drift: Drift,
 }
 
-/// The changes that sightings made to the chart.
+/// The changes that sightings have made to the chart.
 pub(crate) struct Seen {
     /// Events for new or moved obstacles.
     pub events: Vec<EventKind>,

@@ -89,7 +89,7 @@ pub struct Locating {
     pub calibrate_sound_speed: bool,
     /// Number of ranges per station and cycle; used only for accuracy forecasts.
     pub repetitions: u32,
-    /// Whether an obstacle that hides a station makes the station unusable.
+    /// Whether a station is unusable while an obstacle is between the robot and the station.
     pub needs_line_of_sight: bool,
 }
 
@@ -163,7 +163,7 @@ pub struct MissionConfig {
     pub task: TaskConfig,
     /// The robot's pose at the start, as surveyed at the manway.
     pub start: Pose,
-    /// Standard deviation of the surveyed start, metres.
+    /// Standard deviation of the surveyed start position, metres.
     pub start_sigma_m: f64,
     /// Length of a tick, seconds.
     pub tick_s: f64,
@@ -171,7 +171,7 @@ pub struct MissionConfig {
     pub time_limit_s: f64,
     /// The robot's limits.
     pub limits: Limits,
-    /// Width of floor scanned in one pass, metres.
+    /// Width of the floor that is scanned in one pass, metres.
     pub swath_m: f64,
     /// Minimum distance between the hull and anything solid, metres.
     pub clearance_m: f64,
@@ -208,9 +208,9 @@ pub struct MissionConfig {
     pub tether: Option<TetherConfig>,
     /// The planner that is active first.
     pub planner: PlannerChoice,
-    /// The planner that takes over automatically after a fault, if any.
+    /// The planner that takes over automatically after a fault; `None` if there is none.
     pub fallback: Option<PlannerChoice>,
-    /// Whether an operator is present. If not, a hold that only an operator could end ends the mission.
+    /// Whether an operator is present. If not, a hold ends the mission if only an operator could end that hold.
     #[serde(default)]
     pub attended: bool,
     /// Whether a start order must name the plan that the operator saw, so that the mission cannot begin with a different

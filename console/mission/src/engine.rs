@@ -59,14 +59,14 @@ use world::{Floor, Readings, World};
 pub struct Input<'a> {
     /// Sensor readings since the last tick.
     pub readings: &'a Readings,
-    /// Orders of the operator since the last tick, oldest first.
+    /// Orders from the operator since the last tick, oldest first.
     pub orders: &'a [Order],
 }
 
 /// The outputs at the end of a tick.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
-    /// The robot's motion until the next tick, within its limits and in a form that it can execute.
+    /// The robot's motion until the next tick, within the robot's limits and in a form that it can execute.
     pub drive: Drive,
     /// All events of the tick, in order.
     pub events: Vec<Event>,
@@ -119,7 +119,7 @@ impl Mission {
         &self.known.phase
     }
 
-    /// The active planner, or the one that will drive first.
+    /// The active planner or, before there is one, the planner that will be active first.
     pub fn planner_id(&self) -> &str {
         self.driving.id()
     }
@@ -212,7 +212,7 @@ impl Mission {
         }
     }
 
-    /// Does what remains in a tick in which no rule stops a running robot or lets a held one resume.
+    /// Does the remaining work of a tick in which no rule stops a running robot or lets a held robot resume.
     fn go_on_or_help(&mut self) {
         match &self.known.phase {
             // While the robot waits for its planner, the time limit for reaching a corner must not run.

@@ -55,12 +55,12 @@ pub struct Event {
 pub enum EventKind {
     /// First event of every run: everything that is needed to repeat the run.
     RunOpened(Box<RunOpened>),
-    /// An order of the operator was accepted.
+    /// An order from the operator was accepted.
     Ordered {
         /// The order.
         order: Order,
     },
-    /// An order of the operator was refused.
+    /// An order from the operator was refused.
     OrderRefused {
         /// The order.
         order: Order,
@@ -78,7 +78,7 @@ pub enum EventKind {
         /// Length of cable beyond the straight line from the anchor to the robot, metres.
         detour_m: f64,
     },
-    /// The geometry of the cable, from the estimated pose.
+    /// The geometry of the cable, computed from the estimated pose.
     Tethered {
         /// Length of cable between anchor and robot, as expected from the map, metres.
         length_m: f64,
@@ -87,7 +87,7 @@ pub enum EventKind {
         paid_out_m: Option<f64>,
         /// Length left on the reel, metres, computed from the larger of `length_m` and `paid_out_m`.
         free_m: f64,
-        /// Contacts with obstacles, from the anchor on.
+        /// Contacts with obstacles, in order from the anchor.
         contacts: Vec<TetherContact>,
         /// Largest wrap on one obstacle, radians.
         wrap_max_rad: f64,
@@ -178,7 +178,7 @@ pub enum EventKind {
     },
     /// The ranges contradict each other, and leaving out one station does not resolve the contradiction.
     RangesInconsistent {
-        /// Sum of the squared residuals over their variances.
+        /// Sum of the squared residuals, each divided by its variance.
         chi2: f64,
         /// Number of stations used, minus two.
         degrees_of_freedom: u32,
@@ -187,19 +187,19 @@ pub enum EventKind {
     RangesConsistent,
     /// An obstacle that is not on the drawing was seen for the first time.
     ObstacleFound {
-        /// Its estimated outline, tank frame.
+        /// Estimated outline of the obstacle, tank frame.
         obstacle: Obstacle,
     },
     /// The operator drew a zone that the robot must not enter.
     ZoneDrawn {
-        /// Its name and outline.
+        /// Name and outline of the zone.
         zone: Zone,
     },
     /// The estimated position of a found obstacle changed.
     ObstacleMoved {
         /// Id of the obstacle.
         id: ObstacleId,
-        /// Its new estimated outline.
+        /// New estimated outline of the obstacle.
         obstacle: Obstacle,
     },
     /// A planner that will take over once it has a plan was opened.
@@ -244,7 +244,7 @@ pub enum EventKind {
         /// Id of the ask that this answers; absent in journals up to version 2.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         ask: Option<AskId>,
-        /// Number of points of the return path along the tether that the mission put before the planner's path.
+        /// Number of points in the return path along the tether that the mission put before the planner's path.
         #[serde(default, skip_serializing_if = "is_zero")]
         return_path: usize,
         /// Id of the planner.
@@ -253,9 +253,9 @@ pub enum EventKind {
         reason: Reason,
         /// The path.
         path: Vec<Point>,
-        /// Its length, metres.
+        /// Length of the path, metres.
         length_m: f64,
-        /// Whether it achieves the whole task.
+        /// Whether the plan achieves the whole task.
         complete: bool,
         /// The stretches of the path and their purposes, if the planner states them.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -324,9 +324,9 @@ pub enum EventKind {
     },
     /// A planner's answer came too late to be used.
     Discarded {
-        /// Id of the ask that it answers.
+        /// Id of the ask that was answered.
         ask: AskId,
-        /// The plan, if the planner is to be asked to keep to it in the next one.
+        /// The late plan; present only if the planner will be asked to keep to it in the next plan.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         plan: Option<Box<EventKind>>,
     },
@@ -363,7 +363,7 @@ pub enum EventKind {
     },
     /// The planner in shadow answered a step later than in the tick after the ask, so the answer is not used.
     ShadowMissed {
-        /// Id of the ask that it answers.
+        /// Id of the ask that was answered.
         ask: AskId,
         /// Number of ticks by which the answer was late.
         ticks: u64,
@@ -380,7 +380,7 @@ pub enum EventKind {
     Promoted {
         /// Id of the planner.
         planner: String,
-        /// Its record in shadow.
+        /// The planner's record in shadow.
         tally: ShadowTally,
     },
     /// No planner runs in shadow any more.
@@ -399,7 +399,7 @@ pub enum EventKind {
         planner: String,
         /// The path.
         path: Vec<Point>,
-        /// Whether it achieves the whole task.
+        /// Whether the plan achieves the whole task.
         complete: bool,
         /// The stretches of the path and their purposes, if the planner states them.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -427,7 +427,7 @@ pub enum EventKind {
     },
     /// The better plan was dropped, either while it was being made or after it had been offered.
     BetterPlanDropped {
-        /// Id of its planner.
+        /// Id of the planner that made the plan.
         planner: String,
         /// The reason, as a sentence.
         why: String,
@@ -461,7 +461,7 @@ pub enum EventKind {
         covered_reachable: f64,
         /// Scanned share of the whole floor, 0 to 1.
         covered_whole: f64,
-        /// Purpose of the stretch of the plan under the robot; absent if the planner does not state it.
+        /// Purpose of the stretch of the plan that the robot is on; absent if the planner does not state it.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         leg: Option<LegTag>,
     },

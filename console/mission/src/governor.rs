@@ -1,9 +1,9 @@
 //! The one rule that limits every command, whatever its source. After this tick, the robot must still be able to brake to
 //! a standstill, straight ahead, without touching anything on the chart and without leaving the range of its sensors.
 //!
-//! If this condition is met in one tick, the next tick has a command that meets it again. A command that would violate it
-//! is executed more slowly or, as a last resort, not at all: the robot brakes. The path is computed for one tick with the
-//! robot's own acceleration and turn rate, from its current speed.
+//! If this condition is met in one tick, there is always a command for the next tick that meets the condition again. A
+//! command that would violate the condition is executed more slowly or, as a last resort, not at all: the robot brakes.
+//! The path is computed for one tick with the robot's own acceleration and turn rate, from its current speed.
 
 use geometry::{Braking, Drive, Limits, Motion, motion::at_most};
 use world::{Point, Pose, Vector};
@@ -13,8 +13,8 @@ const SEEN_ROOM_M: f64 = 0.01;
 /// Maximum clearance to keep, because of the position error, from obstacles that are only on the chart, metres; limited,
 /// because a robot that is lost must still be able to move.
 const CHART_ROOM_MOST_M: f64 = 0.15;
-/// Where room is short, the share of it that must remain: along a curved wall, braking straight ahead brings the robot
-/// closer.
+/// Where room is short, the share of the room that must remain, because a robot that brakes straight ahead along a
+/// curved wall gets closer to the wall.
 const ROOM_SHARE: f64 = 0.5;
 /// A hull in contact with an obstacle may move into it by this much, metres, to allow for rounding.
 const TOUCH_M: f64 = 1e-4;
@@ -28,9 +28,9 @@ const HALVINGS: u32 = 6;
 /// Something that the hull must not touch.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Solid<'a> {
-    /// Its outline.
+    /// Outline of the object.
     pub outline: Outline<'a>,
-    /// Whether it is in sight now; if not, its position relative to the estimated pose is taken from the chart.
+    /// Whether the object is in sight now; if not, its position relative to the estimated pose is taken from the chart.
     pub is_seen: bool,
 }
 
@@ -93,7 +93,7 @@ impl Momentum {
         self.ahead_m_per_s
     }
 
-    /// The robot's speed after one tick of a drive.
+    /// The robot's speed after following a drive for one tick.
     pub(crate) fn after(&self, drive: Drive, here: &Here) -> Self {
         self.motions(drive, here).after
     }
@@ -125,7 +125,8 @@ impl Momentum {
         Motions { end, turn_rad, after, onward: end.direction() * ahead_m_per_s.signum() }
     }
 
-    /// The command at `share` of its speed, on the same curve: 1 is the full command, 0 is the hardest braking.
+    /// The command at the given `share` of its speed, on the same curve: 1 is the full command, 0 is the hardest
+    /// braking.
     fn slower(&self, drive: Drive, share: f64, here: &Here) -> Drive {
         match drive {
             Drive::Velocity(velocity) => Drive::Velocity(velocity * share),
@@ -214,7 +215,7 @@ pub(crate) fn reach_m(momentum: &Momentum, drive: Drive, here: &Here) -> f64 {
     here.limits.radius_m + chart_room_m(here.error_m) + Braking::of(&here.limits).distance_m(fastest)
 }
 
-/// Whether a robot can stop within its sensing range after a tick of a command.
+/// Whether a robot can still stop within its sensing range after following a command for one tick.
 pub(crate) fn is_within_sight(momentum: &Momentum, drive: Drive, here: &Here) -> bool {
     let after = momentum.after(drive, here).ahead_m_per_s;
     Braking::of(&here.limits).distance_m(after) <= here.limits.sensing_range_m

@@ -29,7 +29,7 @@ pub enum Order {
     Resume,
     /// While held: move for one tick.
     Step,
-    /// While held: move until something happens, then stand still again.
+    /// While held: move to the end of the lane or until the next event, then stand still again.
     StepTo(StepTo),
     /// While held because a plan was refused for the tether: run that plan and later ones, until one of them fails.
     FlyUncertified,
@@ -47,26 +47,26 @@ pub enum Order {
     DropShadow,
     /// Take the better plan that is offered, once the robot is at the place where the plan begins.
     TakePlan,
-    /// Change one parameter of the planner; while the mission runs, only a live one can be changed.
+    /// Change one parameter of the planner; while the mission runs, only live parameters can be changed.
     SetParameter {
         /// Key of the parameter.
         key: String,
-        /// Its new value.
+        /// New value of the parameter.
         value: ParamValue,
     },
-    /// Close the floor between these corners (metres, tank frame) from now on: plans stay out of the zone, and it is not
-    /// scanned. The mission gives the zone its name.
+    /// Close the floor between these corners (metres, tank frame) from now on: plans stay out of the zone, and the zone
+    /// is not scanned. The mission gives the zone its name.
     DrawZone(Vec<Point>),
-    /// For training: make a station of the simulation faulty for a while. The mission records the order, but does not use
-    /// it for locating.
+    /// For training: make a station of the simulation faulty for a while. The mission records the order, but ignores
+    /// the order when it locates the robot.
     Inject(Injection),
     /// Set whether the ranges from a station are used; the other stations still locate the robot.
     UseStation {
         /// Id of the station.
         station: StationId,
-        /// Whether its ranges are used.
+        /// Whether the ranges from the station are used.
         used: bool,
-        /// The person who ordered it, if the console knows.
+        /// The person who gave the order, if the console knows.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         by: Option<String>,
     },
@@ -79,7 +79,7 @@ pub enum Order {
 pub struct Note {
     /// The action.
     pub what: Noted,
-    /// The person who did it, if the console knows.
+    /// The person who carried out the action, if the console knows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
 }
@@ -91,16 +91,16 @@ pub struct Note {
 pub enum Noted {
     /// The operator acknowledged an alarm.
     Acknowledged {
-        /// Its name.
+        /// Name of the alarm.
         alarm: String,
-        /// Its text.
+        /// Text of the alarm.
         text: String,
     },
     /// The operator shelved an alarm.
     Shelved {
-        /// Its name.
+        /// Name of the alarm.
         alarm: String,
-        /// Its text.
+        /// Text of the alarm.
         text: String,
         /// For how long, seconds of mission time.
         for_s: f64,
@@ -109,9 +109,9 @@ pub enum Noted {
     },
     /// The operator unshelved an alarm.
     Unshelved {
-        /// Its name.
+        /// Name of the alarm.
         alarm: String,
-        /// Its text.
+        /// Text of the alarm.
         text: String,
     },
     /// The operator took over the parameters of a preset; the order that sets them follows.
@@ -139,7 +139,7 @@ pub struct Injection {
     pub fault: RangeFault,
     /// Duration, counted from the next tick, seconds of mission time.
     pub for_s: f64,
-    /// The person who injected it, if the console knows.
+    /// The person who injected the fault, if the console knows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
 }

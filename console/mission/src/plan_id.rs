@@ -23,7 +23,7 @@ pub struct PlanSeen<'a> {
     pub legs: &'a [Leg],
     /// Lines that the tethered robot never crosses, metres, tank frame.
     pub cuts: &'a [Vec<Point>],
-    /// Whether it achieves the whole task.
+    /// Whether the plan achieves the whole task.
     pub complete: bool,
 }
 

@@ -93,42 +93,43 @@ pub struct ParamInfo {
     pub unit: String,
     /// Description.
     pub help: String,
-    /// Heading under which the screen lists it.
+    /// Heading under which the screen lists the parameter.
     pub group: String,
-    /// The values that it accepts.
+    /// The values that the parameter accepts.
     #[serde(flatten)]
     pub kind: ParamKind,
-    /// Whether it can be changed while the mission runs.
+    /// Whether the parameter can be changed while the mission runs.
     pub live: bool,
 }
 
 /// Description of a planner that is installed or active.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlannerInfo {
-    /// Its id.
+    /// Id of the planner.
     pub id: String,
     /// Name on screen.
     pub name: String,
-    /// Version of its plugin.
+    /// Version of the planner's plugin.
     pub version: String,
-    /// One sentence about it.
+    /// Description of the planner, one sentence.
     pub about: String,
-    /// File name of its plugin, without the folder.
+    /// File name of the planner's plugin, without the folder.
     pub plugin: String,
     /// SHA-256 of the plugin file, hexadecimal.
     pub sha256: String,
-    /// Planner ABI for which it was built, as `major.minor`.
+    /// Planner ABI for which the plugin was built, as `major.minor`.
     pub abi: String,
-    /// Whether it can cover floor.
+    /// Whether the planner can cover floor.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub covers: bool,
-    /// Whether it can save its private state and continue from that state in a new process.
+    /// Whether the planner can save its private state and continue from that state in a new process.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub snapshots: bool,
-    /// Sandbox of its process on the machine where it was found or is active; absent in older journals.
+    /// Sandbox of the planner's process on the machine where the planner was found or is active; absent in older
+    /// journals.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sandbox: Option<Sandbox>,
-    /// Its parameters.
+    /// Parameters of the planner.
     pub parameters: Vec<ParamInfo>,
 }
 
@@ -150,13 +151,13 @@ impl RefusedPlugin {
 }
 
 impl PlannerInfo {
-    /// Why it cannot run a mission over a whole floor; `None` if it can. The text continues a sentence that begins with
-    /// the planner's name.
+    /// Why the planner cannot run a mission over a whole floor; `None` if it can. The text continues a sentence that
+    /// begins with the planner's name.
     pub fn why_no_coverage(&self) -> Option<&'static str> {
         (!self.covers).then_some("does not support coverage missions")
     }
 
-    /// Whether it has this parameter and allows it to change while the robot moves.
+    /// Whether the planner has this parameter and allows changes to it while the robot moves.
     pub fn has_live(&self, key: &str) -> bool {
         self.parameters.iter().any(|param| param.key == key && param.live)
     }
@@ -196,7 +197,7 @@ pub enum Cause {
     Planner(planner_api::Code),
     /// The planner panicked.
     Panic,
-    /// The process ended: a signal, an abort, an exit.
+    /// The process ended: through a signal, an abort or an exit.
     Died,
     /// The planner did not answer although it had the processor to itself for the whole time allowed, or its process was
     /// stopped. The process was killed.
@@ -211,7 +212,7 @@ pub enum Cause {
     Forbidden,
     /// The planner sent something that is not a valid answer.
     Protocol,
-    /// The host refused to load or configure it.
+    /// The host refused to load or configure the planner.
     Refused,
     /// The planner failed too often and cannot be used again in this mission.
     Quarantined,

@@ -91,11 +91,11 @@ pub enum Refusal {
     },
     /// The mission is running.
     AlreadyMoving,
-    /// A single step needs a robot that is held.
+    /// A single step is possible only while the robot is held.
     StepNeedsHold,
-    /// A change of planner needs a robot that is held.
+    /// The planner can be changed only while the robot is held.
     SwapNeedsHold,
-    /// The parameter cannot change while the mission runs.
+    /// The parameter cannot be changed while the mission runs.
     NotLive {
         /// Key of the parameter.
         key: String,

@@ -107,7 +107,7 @@ impl Task {
         }
     }
 
-    /// The rest of the plan from its current target on; `None` unless the task is to cover floor.
+    /// The rest of the plan, from its current target on; `None` unless the task is to cover floor.
     pub(crate) fn under_way(&self) -> Option<api::Plan> {
         self.cover()?.under_way()
     }
@@ -132,7 +132,7 @@ impl Task {
         self.cover().is_some_and(Cover::is_in_part)
     }
 
-    /// The rest of the lanes from the point nearest to the robot on; `None` without lanes.
+    /// The rest of the lanes, from the point nearest to the robot on; `None` without lanes.
     pub(crate) fn lanes_left(&self) -> Option<&[Point]> {
         self.cover()?.lanes_left()
     }

@@ -189,7 +189,7 @@ impl Tether {
         events
     }
 
-    /// Whether the hull has a return path that reels the cable in.
+    /// Whether the hull fits along a return path on which the cable is reeled in.
     pub fn can_go_home(&self) -> bool {
         self.without_home_s == 0.0
     }

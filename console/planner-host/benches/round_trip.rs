@@ -1,4 +1,4 @@
-//! What a call to a planner costs: from the console through the worker process and back.
+//! Measures the cost of a call to a planner: from the console through the worker process and back.
 #![expect(clippy::print_stdout, reason = "a bench prints its figures")]
 
 use criterion::{Criterion, criterion_group, criterion_main};

@@ -97,7 +97,7 @@ pub struct PluginFile {
 /// How to find out which planners a plugin contains.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Words {
-    /// The complete list of their ids.
+    /// The complete list of the planners' ids.
     Ids(Vec<String>),
     /// The bytes of a file without a list of ids; the ids can be anywhere in them.
     Bytes(Vec<u8>),
@@ -163,8 +163,8 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     if bytes.len() as u64 > MOST_BYTES { Err(too_large(bytes.len() as u64)) } else { Ok(bytes) }
 }
 
-/// Returns why no process on this machine can make a private copy of a plugin; `None` if one can, or if the file is too
-/// large to be a plugin.
+/// Returns why no process on this machine can make a private copy of a plugin; `None` if a process can make the copy,
+/// or if the file is too large to be a plugin.
 pub(crate) fn too_large_for_machine(path: &Path) -> Option<String> {
     let length = path.metadata().ok().filter(std::fs::Metadata::is_file)?.len();
     let limit = getrlimit(Resource::Fsize).current.filter(|limit| *limit < length && length <= MOST_BYTES)?;

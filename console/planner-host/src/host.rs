@@ -260,8 +260,8 @@ impl Host {
         woken
     }
 
-    /// Whether a planner on the processor of this thread has answered. By the time this thread runs again, it usually
-    /// has; the system is then asked for other events only once a millisecond.
+    /// Whether a planner on the processor of this thread has answered. The planner has usually answered by the time
+    /// this thread runs again; the system is then asked for other events only once a millisecond.
     fn is_answered_at_once(&mut self) -> bool {
         #[cfg(target_os = "linux")]
         if let (Some(together), [_], true) = (&mut self.together, &self.planners[..], self.leaving.is_empty())
@@ -351,7 +351,7 @@ impl Host {
 }
 
 impl Drop for Host {
-    /// Kills all workers together, then reaps them.
+    /// Kills all workers at once, then reaps them.
     fn drop(&mut self) {
         let asked = self.planners.iter_mut().filter_map(|planner| planner.worker.as_mut());
         let leaving = self.leaving.iter_mut().map(|leaving| &mut leaving.worker);

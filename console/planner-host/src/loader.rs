@@ -91,7 +91,7 @@ impl File {
             symbol.as_ref().ok_or_else(|| format!("exports a null `{}`", abi::SYMBOL))?
         };
         let entry = *entry;
-        // Code with thread-local destructors must not be unloaded; it is unloaded when the process ends.
+        // Code with thread-local destructors must not be unloaded, so the library stays loaded until the process ends.
         std::mem::forget(library);
         self.staged.keep();
         Ok(Loaded(entry))
@@ -172,7 +172,7 @@ fn read_table(entry: &abi::Entry, index: usize) -> Result<Table, String> {
 }
 
 impl Table {
-    /// Asks the planner for its parameters.
+    /// Asks the planner to describe its parameters.
     pub(crate) fn describe(&self, sink: &mut Sink<'_>) -> Result<Described, String> {
         let describe = self.raw.describe.expect("checked when the table was read");
         // SAFETY: the services outlive the call.

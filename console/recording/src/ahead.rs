@@ -6,7 +6,7 @@ use std::{
     sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
 };
 
-/// Creates a queue that holds items up to this total weight, or a single item that is heavier.
+/// Creates a queue for items up to this total weight, or for a single heavier item.
 pub fn queue<T>(most: u64) -> (Giver<T>, Taker<T>) {
     let shared = Arc::new(Shared { state: Mutex::default(), changed: Condvar::new(), most });
     (Giver(Arc::clone(&shared)), Taker(shared))

@@ -2,7 +2,7 @@
 
 use std::io::{self, ErrorKind, Write};
 
-/// Memory that stays allocated for waiting bytes after a long stall, bytes.
+/// Memory that remains allocated for waiting bytes after a long stall, bytes.
 const KEPT_CAPACITY: usize = 1 << 20;
 
 /// State of the writing.
@@ -15,7 +15,7 @@ enum State {
     Ended(String),
 }
 
-/// A writer that keeps bytes that could not be written, up to a limit, until they can be.
+/// A writer that keeps bytes that cannot be written yet, up to a limit.
 ///
 /// The writer always receives a gapless prefix of the bytes that were added.
 pub(crate) struct Backlog {

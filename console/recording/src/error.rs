@@ -37,7 +37,7 @@ pub enum RecordingError {
         /// The error of the system.
         why: String,
     },
-    /// Writing failed for good; the file contains everything up to then.
+    /// Writing failed for good; the file contains everything up to the failure.
     #[error("the recording stopped: {why}")]
     Write {
         /// The error of the system.
@@ -51,7 +51,7 @@ pub enum RecordingError {
         /// The file.
         path: PathBuf,
     },
-    /// The file on disk is not the one that was written.
+    /// The file on disk is not the file that was written.
     #[error("the recording on disk is not as it was written: {0}")]
     Changed(#[from] FileChange),
     /// The recording SDK refused data.

@@ -4,7 +4,7 @@ use crate::{error::RecordingError, identity::Identity, journal::JournalReader, r
 use account::Fold;
 use std::{path::Path, time::Instant};
 
-/// Regenerates the recording of a run from its journal, with the same content as the one made during the run.
+/// Regenerates the recording of a run from its journal, with the same content as the recording made during the run.
 ///
 /// The recording belongs to the run of the journal (the name of its folder), wherever the recording is stored. A
 /// journal that is cut off yields a recording up to that point, and a text that states what is missing.

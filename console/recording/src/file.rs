@@ -48,7 +48,7 @@ pub fn sha256_of(bytes: &[u8]) -> String {
     hex::encode(Sha256::digest(bytes))
 }
 
-/// The difference between a file on disk and the one that was opened and written.
+/// The difference between a file on disk and the file that was opened and written.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FileChange {
     /// There is no file at the path any more.
@@ -106,7 +106,7 @@ impl FileWatch {
     pub(crate) fn create(path: &Path) -> io::Result<(File, Self)> {
         let file = OpenOptions::new().append(true).create_new(true).open(path)?;
         let opened = file.metadata()?;
-        // The working directory may change, but the file stays in its place.
+        // The working directory may change, but the file stays where it is.
         let path = std::path::absolute(path)?;
         Ok((file, Self { path, device: opened.dev(), inode: opened.ino() }))
     }

@@ -14,8 +14,8 @@ pub struct Identity {
     pub recording_id: String,
     /// The name for people: the name of the run's folder.
     pub name: String,
-    /// Start of the run from its name (`20261122T040132Z-...`), UTC, nanoseconds since 1970; absent if the name does
-    /// not contain it.
+    /// Start of the run, read from its name (`20261122T040132Z-...`), UTC, nanoseconds since 1970; absent if the name
+    /// does not contain it.
     pub began_ns: Option<i64>,
 }
 

@@ -1,7 +1,7 @@
 //! The journal of a run: every event in order, one JSON object per line, compressed.
 //!
-//! It contains no wall-clock time, so equal runs have equal lines, byte for byte. Recording, report and replay can be
-//! regenerated from the journal, and its format does not depend on the recording SDK.
+//! The journal contains no wall-clock time, so equal runs have equal lines, byte for byte. Recording, report and replay
+//! can be regenerated from the journal, and its format does not depend on the recording SDK.
 
 mod ending;
 mod fast;
@@ -57,7 +57,7 @@ pub enum JournalError {
         /// The error of the system.
         why: String,
     },
-    /// Writing failed for good; the part written before stays.
+    /// Writing failed for good; the part that was already written is kept.
     #[error("the journal stopped after {bytes} bytes: {why}")]
     Write {
         /// Number of bytes written.
@@ -65,7 +65,7 @@ pub enum JournalError {
         /// The error of the system.
         why: String,
     },
-    /// The file on disk is not the one that was written.
+    /// The file on disk is not the file that was written.
     #[error("the journal on disk is not as it was written: {0}")]
     Changed(#[from] FileChange),
     /// The file could not be read.
@@ -90,7 +90,7 @@ pub enum JournalError {
         /// The file.
         path: PathBuf,
     },
-    /// It was written by a tankops with a different journal version.
+    /// The journal was written by a tankops with a different journal version.
     #[error(
         "the journal has version {theirs}, and this tankops reads version {ours}; use the tankops that wrote it: {}",
         path.display()

@@ -1,10 +1,10 @@
 //! Writes events to a rerun recording and to the journal, and reads them back.
 //!
-//! The journal (`events.jsonl.zst`) has our own format: every event, one line each, versioned, with the same lines
-//! for the same run. The recording (`recording.rrd`) is a view of the journal for the rerun viewer and can be
+//! The journal (`events.jsonl.zst`) has our own format: every event on a line of its own, versioned, with the same
+//! lines for the same run. The recording (`recording.rrd`) is a view of the journal for the rerun viewer and can be
 //! regenerated from it at any time. One thread behind a bounded queue writes both ([`RunRecorder`]). Data that cannot
-//! be written is kept in memory up to a limit. A disk error, or a file that others delete or change, appears in
-//! [`Health`] within a second, and the mission continues.
+//! be written is kept in memory up to a limit. A disk error, or the deletion or change of a file by another program,
+//! appears in [`Health`] within a second, and the mission continues.
 //!
 //! This crate prints nothing: messages of the recording SDK go to `tracing`.
 

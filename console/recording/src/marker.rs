@@ -11,7 +11,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Name of the file in the folder of a run whose journal or recording failed; its text states the reason.
+/// Name of the file that marks the folder of a run whose journal or recording failed; its text states the reason.
 pub const FAILURE_FILE: &str = "recording-failed.txt";
 const RESERVE_FILE: &str = ".recording-failed.reserve";
 /// Size of the file, bytes: one block on common file systems.
@@ -28,7 +28,7 @@ pub(crate) struct FailureMarker {
 impl FailureMarker {
     /// Reserves the space for the file in the folder of a run.
     pub(crate) fn reserve(folder: &Path) -> io::Result<Self> {
-        // The folder can be found again after a change of the working directory.
+        // The folder can still be found after a change of the working directory.
         let folder = std::path::absolute(folder)?;
         let (reserve, marker) = (folder.join(RESERVE_FILE), folder.join(FAILURE_FILE));
         let file = File::create_new(&reserve)?;
@@ -56,7 +56,7 @@ impl FailureMarker {
 
 impl Drop for FailureMarker {
     fn drop(&mut self) {
-        // Removes only the reserve: a visible report stays for later readers of the run.
+        // Removes only the reserve; a visible report remains for later readers of the run.
         let _ = fs::remove_file(&self.reserve);
     }
 }
@@ -69,7 +69,7 @@ pub fn remove_reserve(folder: &Path) {
 /// The reason why the journal or recording of the run in a folder failed, if it did.
 pub fn recorded_failure(folder: &Path) -> Option<String> {
     let mut text = Vec::new();
-    // A longer file is not ours, and its first part is enough.
+    // A longer file is not one of ours; reading its first part is enough.
     foreign::open_regular(&folder.join(FAILURE_FILE))
         .ok()?
         .take(LENGTH as u64)

@@ -15,7 +15,7 @@ use std::{
 /// The largest size of a merged chunk.
 const MOST_ROWS: usize = 1 << 15;
 const MOST_CHUNK_BYTES: usize = 4 << 20;
-/// Extension of the file that replaces the recording when it is complete.
+/// Extension of the file that, once complete, replaces the recording.
 const ENDING: &str = "merging";
 
 /// Merges the chunks of a recording, about 60 MB per second; gives up at the time `until`, if one is given.
@@ -86,7 +86,7 @@ impl Kind {
     }
 }
 
-/// Chunks that wait for others of the same group.
+/// Chunks that are waiting for others in the same group.
 #[derive(Default)]
 struct Merger {
     store: Option<rr::StoreId>,
@@ -148,7 +148,7 @@ fn is_full(waiting: &[rr::Chunk], next: &rr::Chunk) -> bool {
         || chunks().map(bytes).sum::<usize>() > MOST_CHUNK_BYTES
 }
 
-/// Joins the last two chunks while they are of about the same size, so that each row is copied only a few times.
+/// Joins the last two chunks as long as they are of about the same size, so that each row is copied only a few times.
 fn shrink(
     chunks: &mut Vec<rr::Chunk>,
     are_to_join: impl Fn(&rr::Chunk, &rr::Chunk) -> bool,

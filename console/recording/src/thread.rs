@@ -30,7 +30,7 @@ use writer::{Ended, Writer};
 
 /// Maximum number of batches of events in the queue; if it is full, the sender waits.
 const QUEUE: usize = 8192;
-/// Longest wait for a recorder that is dropped without being finished.
+/// Maximum time to wait for a recorder that is dropped before it has finished.
 const DROP_TIMEOUT: Duration = Duration::from_secs(2);
 /// The files to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,7 +57,7 @@ pub struct Health {
     /// Number of batches of events waiting to be written.
     pub lag: u64,
     /// The problem with the journal or recording on disk, as a sentence. It is cleared once all data has been
-    /// written, or when a file that was moved is back in its place.
+    /// written, or when a file that was moved has been put back.
     pub error: Option<String>,
 }
 
@@ -67,7 +67,7 @@ pub struct Finished {
     /// Summary of the run from its events; absent if the recorder did not finish in time.
     pub summary: Option<Box<Summary>>,
     /// SHA-256 of the data written to the journal, hexadecimal; absent if the journal is not complete, or if the file
-    /// at its path is not the one that was written or has a different length. The file is not read again: `verify`
+    /// at its path is not the file that was written or has a different length. The file is not read again: `verify`
     /// does that.
     pub events_sha256: Option<String>,
     /// Path of the journal, if one was started.
@@ -76,8 +76,8 @@ pub struct Finished {
     pub recording: Option<PathBuf>,
     /// SHA-256 of the recording, hexadecimal; absent if it is not complete.
     pub recording_sha256: Option<String>,
-    /// The reason why journal or recording is incomplete or missing, as a sentence. If absent, each file is the one
-    /// that was opened, in its place, with every byte that was written to it.
+    /// The reason why journal or recording is incomplete or missing, as a sentence. If there is no reason, each file at
+    /// its path is the file that was opened, and contains every byte that was written.
     pub error: Option<String>,
 }
 
@@ -85,11 +85,13 @@ pub struct Finished {
 ///
 /// [`RunRecorder::send`] hands over events and returns immediately, unless 8192 batches are waiting. In that case the
 /// simulation waits for the disk, and no data is lost. An error affects only its own file and appears in
-/// [`RunRecorder::health`] within a second, as does a file that others delete, replace or truncate; the other file
-/// and the mission continue. [`crate::FAILURE_FILE`] in the folder of the run states the reason for later readers.
+/// [`RunRecorder::health`] within a second. The same applies to a file that others delete, replace or truncate. The
+/// other file and the mission continue. [`crate::FAILURE_FILE`] in the folder of the run states the reason for later
+/// readers.
 pub struct RunRecorder {
     sender: Option<SyncSender<Arc<[Event]>>>,
-    /// Behind a lock so that screens can read the health from other threads; only `close` takes the value out.
+    /// A lock protects the value so that screens can read the health from other threads; only `close` takes the value
+    /// out.
     ended: Mutex<Receiver<Ended>>,
     shared: Arc<Shared>,
     sink: Option<Arc<SinkHealth>>,
@@ -195,7 +197,7 @@ impl RunRecorder {
 
     /// Writes all waiting data, closes both files, and returns the result.
     ///
-    /// After `timeout` the thread keeps the files, and the error reports this.
+    /// If `timeout` passes, the thread keeps the files, and the error says so.
     pub fn finish(mut self, timeout: Duration) -> Finished {
         let ended = self.close(timeout);
         let journal_end = ended.as_ref().and_then(|ended| ended.journal.clone());
@@ -226,8 +228,8 @@ impl RunRecorder {
             }
             Err(RecvTimeoutError::Disconnected) => {
                 self.shared.lose(
-                    &"the recorder's thread stopped unexpectedly; the ends of journal and recording \
-                        are missing",
+                    &"the recorder's thread stopped unexpectedly; the end of the journal and of the recording \
+                        is missing",
                 );
                 None
             }

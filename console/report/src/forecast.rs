@@ -33,7 +33,7 @@ pub struct ForecastReport<'a> {
     blind_share: f64,
     beyond_limit_share: f64,
     beyond_limit_area_m2: f64,
-    /// Floor with a mirror image that the ranges cannot distinguish from it; absent if there is none.
+    /// Floor that the ranges cannot distinguish from its mirror image; absent if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     mirror: Option<Mirrored>,
     /// Places beyond the limit, the worst first.

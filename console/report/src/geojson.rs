@@ -5,7 +5,7 @@ use account::Inspection;
 use serde_json::{Value, json};
 use world::{Boundary, Point, Shape};
 
-/// The tank frame in a coordinate system; without a datum it is a system of its own.
+/// The tank frame in a coordinate system; without a datum, the tank frame is a system of its own.
 pub(crate) struct Datum<'a> {
     east_m: f64,
     north_m: f64,

@@ -1,6 +1,6 @@
 //! The identity of the floor of a run, so that no report mixes two floors.
 
-use crate::{difference::first_difference, joined::PastRun};
+use crate::{difference::first_difference, past_run::PastRun};
 use account::Inspection;
 use mission::RunOpened;
 use planner_api::Motion;
@@ -54,7 +54,7 @@ impl FloorFacts {
         }
     }
 
-    /// The same, with missing facts filled in from other facts.
+    /// The facts, with missing facts filled in from others.
     fn or(self, others: &Self) -> Self {
         let others = others.clone();
         Self {
@@ -70,7 +70,7 @@ impl FloorFacts {
 }
 
 /// Compares an inspector's facts with the scenario of the run; returns a sentence for the first contradiction about
-/// the floor. A fact that only one of them states is not a contradiction.
+/// the floor. A fact that only one of the two states is not a contradiction.
 pub(crate) fn contradiction(facts: &Inspection, flown: &Inspection) -> Option<String> {
     let (facts, flown) = (FloorFacts::of(facts), FloorFacts::of(flown));
     let flown = flown.or(&facts);

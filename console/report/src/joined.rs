@@ -1,40 +1,14 @@
 //! Several runs on one floor, combined into one.
 
-use crate::{document::Files, identity::require_one_floor, record::Record};
-use account::{Account, Evidence, Fold, Logs, Scanned, Summary, account, updated_floor};
+use crate::{identity::require_one_floor, past_run::PastRun};
+use account::{Account, Evidence, Scanned, account, updated_floor};
 use mission::{TaskConfig, event::RunOpened};
 use std::{borrow::Cow, collections::BTreeSet};
 use world::ObstacleId;
 
-/// A past run: its name, its files and their contents.
-#[derive(Debug)]
-pub struct PastRun {
-    /// Name of its folder.
-    pub name: String,
-    /// Its files.
-    pub logs: Logs,
-    /// Start time, UTC, as `2026-11-22 04:01`, if the folder name contains it.
-    pub began: Option<String>,
-    /// Digests and lengths of its files.
-    pub files: Files,
-    /// Its events, folded.
-    pub fold: Fold,
-    /// The figures of its events, with the account of the floor.
-    pub summary: Summary,
-    /// Its record over time and place.
-    pub record: Record,
-}
-
-impl PastRun {
-    /// Whether the run is one of located readings, not a mission.
-    pub(crate) fn is_located(&self) -> bool {
-        self.fold.run().is_some_and(|run| run.measured.is_some())
-    }
-}
-
 /// The combined scan of several runs on one floor.
 pub(crate) struct Joined<'a> {
-    /// The last of the runs, as it was opened.
+    /// The last run, as it was opened.
     pub(crate) run: &'a RunOpened,
     pub(crate) scanned: Cow<'a, Scanned>,
     pub(crate) evidence: Cow<'a, Evidence>,

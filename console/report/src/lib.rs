@@ -14,6 +14,7 @@ mod identity;
 mod joined;
 pub mod leg;
 pub mod merged;
+mod past_run;
 pub mod plan;
 mod plan_files;
 pub mod print;
@@ -23,8 +24,8 @@ pub mod rescan;
 pub use difference::{Difference, first_difference};
 pub use document::Document;
 pub use human::human;
-pub use joined::PastRun;
 pub use merged::{Merged, MergedRun, merged};
+pub use past_run::PastRun;
 pub use record::Record;
 pub use rescan::{Rescan, rescan};
 

@@ -1,6 +1,6 @@
 //! The combined result of several runs on one floor: a scan and its re-scans.
 
-pub use crate::joined::PastRun;
+pub use crate::past_run::PastRun;
 use crate::{
     human::{
         floor,
@@ -18,24 +18,24 @@ pub struct Merged {
     pub runs: Vec<MergedRun>,
     /// The coverage of all runs together.
     pub coverage: Coverage,
-    /// The account of the floor over all of them.
+    /// The account of the floor over all runs together.
     pub floor: Account,
 }
 
 /// One of several runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MergedRun {
-    /// Name of its folder.
+    /// Name of the run's folder.
     pub run: String,
-    /// SHA-256 of its journal, hexadecimal; absent if there is none.
+    /// SHA-256 of the run's journal, hexadecimal; absent if there is no journal.
     pub journal_sha256: Option<String>,
-    /// SHA-256 of its recording, hexadecimal; absent if there is none.
+    /// SHA-256 of the run's recording, hexadecimal; absent if there is no recording.
     pub recording_sha256: Option<String>,
     /// Width of floor scanned in one pass, metres.
     pub swath_m: f64,
     /// Limit of the 95 % position error above which nothing counted as scanned, metres.
     pub position_limit_m: f64,
-    /// Its own figures, without the account of the floor.
+    /// The figures of this run alone, without the account of the floor.
     pub summary: Summary,
 }
 

@@ -36,7 +36,8 @@ pub struct Planned {
     pub(crate) complete: bool,
     /// The reason why the plan is not complete.
     reason: Option<String>,
-    /// Warnings from the planner: floor that it omits and why, and its own solutions where the method defines none.
+    /// Warnings from the planner: which floor it omits and why, and what it does where the published method defines
+    /// nothing.
     warnings: Vec<String>,
     /// The reachable floor as the reports define it; absent for missions without a scan.
     floor: Option<PlannedFloor>,
@@ -55,7 +56,8 @@ struct PlannedFloor {
     shell_margin_m2: f64,
     /// Share of the reachable floor that the path scans, counted in cells, 0 to 1.
     scanned: f64,
-    /// The same share by the exact area that the tool sweeps; absent if no floor is reachable.
+    /// Share of the reachable floor that the path scans, from the exact area that the tool sweeps; absent if no floor
+    /// is reachable.
     scanned_exact: Option<f64>,
 }
 
@@ -68,7 +70,8 @@ pub struct Made {
     pub plan_time_ms: f64,
     /// The reason why the plan is not complete.
     pub reason: Option<String>,
-    /// Warnings from the planner: floor that it omits and why, and its own solutions where the method defines none.
+    /// Warnings from the planner: which floor it omits and why, and what it does where the published method defines
+    /// nothing.
     pub warnings: Vec<String>,
 }
 
@@ -94,7 +97,8 @@ impl Planned {
         }
     }
 
-    /// Length of its path, metres, and time to drive it at full speed, with stops to turn at corners, seconds.
+    /// Length of the plan's path, metres, and time to drive the path at full speed, with stops to turn at corners,
+    /// seconds.
     pub fn effort(&self) -> (f64, f64) {
         (self.length_m, self.mission_time_s)
     }
@@ -199,7 +203,7 @@ fn lengths(planned: &Planned) -> String {
     if parts.is_empty() { String::new() } else { format!("legs      {}\n", parts.join(", ")) }
 }
 
-/// The warnings as text, except the one already printed as the reason.
+/// The warnings as text, except the warning that is already printed as the reason.
 fn warnings(planned: &Planned) -> String {
     let fresh = planned.warnings.iter().filter(|warning| Some(*warning) != planned.reason.as_ref());
     fresh.map(|warning| format!("warning   {warning}\n")).collect::<Vec<_>>().concat()

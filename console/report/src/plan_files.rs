@@ -75,8 +75,8 @@ impl Planned {
         dxf.finish()
     }
 
-    /// The legs, numbered from 1, with their lines. A leg without length is omitted: other programs refuse such a
-    /// line.
+    /// The legs, numbered from 1, with their lines. A leg of zero length is omitted, because other programs refuse
+    /// such a line.
     fn lines(&self) -> impl Iterator<Item = (usize, &Leg, &[Point])> {
         let numbered = (1..).zip(&self.legs);
         let lines = numbered.map(|(number, leg)| (number, leg, &self.path[leg.first..=leg.last]));

@@ -142,14 +142,14 @@ impl Record {
         self.stations.records()
     }
 
-    /// The estimated position at a time: that of the last tick up to then; `None` before the first tick.
+    /// The position estimated in the last tick up to a time; `None` before the first tick.
     pub fn at(&self, t_s: f64) -> Option<&TrackPoint> {
         let after = self.track.partition_point(|point| f64::from(point.t_s) <= t_s + 1e-3);
         self.track.get(after.checked_sub(1)?)
     }
 }
 
-/// Extends the last span if a moment follows it closely; starts a new span otherwise.
+/// Extends the last span if a moment follows it closely; if not, starts a new span.
 fn extend(spans: &mut Vec<Span>, t_s: f64) {
     match spans.last_mut() {
         Some((_, to_s)) if t_s - *to_s < 2.0 => *to_s = t_s,

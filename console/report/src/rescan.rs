@@ -2,17 +2,20 @@
 
 mod text;
 
-use crate::joined::{Joined, PastRun, joined, require_scans};
+use crate::{
+    joined::{Joined, joined, require_scans},
+    past_run::PastRun,
+};
 use account::{Area, MissReason, area_of, areas as areas_of, plate_map, updated_floor};
 use std::collections::{BTreeSet, VecDeque};
 use world::{Floor, ObstacleId, Point, Zone, coverage::regions};
 
-/// Missed areas closer together than this are merged, as a share of the swath.
+/// Distance, as a share of the swath, below which missed areas are merged.
 const TOGETHER_SWATHS: f64 = 0.5;
 /// Width of the floor around a missed area that is re-scanned with it, as a share of the swath: a robot cannot steer
 /// more precisely.
 const AROUND_SWATHS: f64 = 0.25;
-/// Boxes are made of blocks of this width, as a share of the swath.
+/// Width of the blocks that make up the boxes, as a share of the swath.
 const BLOCK_SWATHS: f64 = 0.2;
 
 /// The floor to re-scan, and the floor that is not worth it.

@@ -29,7 +29,7 @@ pub fn combined(runs: &[String], logs: &Path) -> anyhow::Result<Account> {
     Ok(merged(&past).map_err(bad_input)?.floor)
 }
 
-/// The report of the run in a folder, for people.
+/// The human-readable report of the run in a folder.
 ///
 /// # Errors
 /// Its journal cannot be read.
@@ -37,7 +37,7 @@ pub fn report_text(folder: &Path) -> anyhow::Result<String> {
     text_of(&Past::read(folder)?)
 }
 
-/// The report of a run that has been read, for people.
+/// The human-readable report of a run that has already been read.
 ///
 /// # Errors
 /// The scenario in its journal is refused.

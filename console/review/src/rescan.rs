@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// Maximum number of boxes in a scenario for a re-scan; more are merged into coarser ones.
 const MOST_BOXES: usize = 4000;
-/// A missed area smaller than this is not worth a mission, square metres.
+/// Area below which missed floor is not worth a mission, square metres.
 pub const MIN_AREA_M2: f64 = 0.05;
 
 /// A re-scan of floor missed by past runs.
@@ -18,7 +18,7 @@ pub const MIN_AREA_M2: f64 = 0.05;
 pub enum NextScan {
     /// There is floor to re-scan.
     Worth(Box<MissedScan>),
-    /// No missed floor is worth a re-scan: the reason as a sentence, and the areas that stay missed.
+    /// No missed floor is worth a re-scan. Contains the reason as a sentence, and the areas that remain missed.
     Nothing(String),
 }
 
@@ -56,7 +56,7 @@ pub fn missed_scan(past: Vec<Past>, min_area_m2: f64, shown_name: &str) -> anyho
     Ok(NextScan::Worth(Box::new(MissedScan { missed, text, scenario })))
 }
 
-/// A run as named by the scenario of its re-scan.
+/// The run in the form in which the scenario of its re-scan names it.
 fn continued(run: &PastRun) -> anyhow::Result<Continued<'_>> {
     let journal_sha256 = run.files.journal_sha256.as_deref();
     let journal_sha256 =

@@ -49,7 +49,7 @@ struct Findings {
     is_reported: bool,
     /// The recovery of the run, if its recording process was killed.
     recovered: Option<Recovered>,
-    /// The reason why the journal has no end; its content up to that point is compared.
+    /// The reason why the journal has no end; the journal is compared up to that point.
     no_end: Option<String>,
     /// The result of asking the planners again; `None` if they were not asked.
     planners: Option<Asked>,
@@ -76,7 +76,7 @@ pub struct Verified {
 
 /// Verifies the run in a folder. With plugins, the planners are asked again, too.
 ///
-/// Takes about as long as the mission took to compute, without waiting for the clock.
+/// Takes about as long as computing the mission took, without waiting for the clock.
 ///
 /// # Errors
 /// Its journal cannot be read, or has a different version.
@@ -156,7 +156,7 @@ impl Findings {
         self.planners.as_ref().and_then(|asked| asked.difference.as_ref())
     }
 
-    /// The place and the fault, if a planner that did not fail in the run had an external or timing fault.
+    /// The place and the fault, if a planner had an external or timing fault although it did not fail in the run.
     fn unproven(&self) -> Option<&String> {
         self.planners.as_ref().and_then(|asked| asked.unproven.as_ref())
     }
@@ -225,7 +225,7 @@ fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
     lines
 }
 
-/// The proof about the planners of a run that is equal.
+/// What is proven about the planners of a run that was reproduced.
 fn proven(planners: Option<&Asked>) -> String {
     let Some(Asked { same, not_comparable, too_early, .. }) = planners else {
         return "the planners were not asked (--from-journal): their answers, drawings and log lines are not \
@@ -243,7 +243,7 @@ fn proven(planners: Option<&Asked>) -> String {
     format!("{same} planner answers are the same{refused}{failed}")
 }
 
-/// The run of a journal, ready to be recomputed.
+/// The run in a journal, ready to be recomputed.
 pub(crate) fn prepared(path: &Path, ticks: &mut Ticks) -> anyhow::Result<(Scenario, Flight)> {
     let opened = ticks.opened()?.clone();
     if let Some(Measured { file, .. }) = &opened.measured {

@@ -69,7 +69,7 @@ impl Budget {
         digest.map_err(|error| match error.kind() {
             io::ErrorKind::Interrupted => io::Error::new(
                 io::ErrorKind::QuotaExceeded,
-                "not compared with the report, because it is too long for a list; `tankops verify` compares it",
+                "not compared with the report, because it is too long to be read for a list; `tankops verify` compares it",
             ),
             _ => error,
         })
@@ -101,7 +101,8 @@ mod tests {
         assert_eq!(budget.sha256(&file).unwrap(), recording::sha256(&file).unwrap());
         let error = budget.sha256(&file).unwrap_err();
         assert!(
-            error.kind() == io::ErrorKind::QuotaExceeded && error.to_string().contains("too long for a list")
+            error.kind() == io::ErrorKind::QuotaExceeded
+                && error.to_string().contains("too long to be read for a list")
         );
     }
 }

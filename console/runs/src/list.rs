@@ -24,11 +24,11 @@ use std::path::{Path, PathBuf};
 /// A past run in a list.
 #[derive(Debug, Serialize)]
 pub struct Listed {
-    /// Name of its folder.
+    /// Name of the run's folder.
     pub name: String,
     /// `complete`, `stuck`, …, `RUNNING`, `CRASHED`, `RECOVERED`, `RECORDING FAILED` or `UNREADABLE`.
     pub end: String,
-    /// Name of its scenario.
+    /// Name of the run's scenario.
     pub scenario: Option<String>,
     /// Id of the planner that was active first.
     pub planner: Option<String>,
@@ -38,14 +38,14 @@ pub struct Listed {
     pub mission_time_s: Option<f64>,
     /// Scanned share of the reachable floor.
     pub coverage_reachable: Option<f64>,
-    /// Its folder.
+    /// Folder of the run.
     pub folder: PathBuf,
-    /// What is wrong with the run; absent if nothing is.
+    /// What is wrong with the run; absent if nothing is wrong.
     pub note: Option<String>,
-    /// The remark that people wrote about it.
+    /// The remark that people wrote about the run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub remark: Option<String>,
-    /// Number of bookmarks that people set in it.
+    /// Number of bookmarks that people set in the run.
     pub bookmarks: usize,
 }
 
@@ -61,7 +61,7 @@ pub fn list(logs: &Path, register: &Register) -> Result<Vec<Listed>, RunError> {
         let notes = listed.note.into_iter().chain(signatures(folder, register).doubts);
         Listed { note: notes.reduce(|one, other| format!("{one}; {other}")), ..listed }
     };
-    // The budget is spent on the newest runs first, because those are the ones that people look for.
+    // The budget is spent on the newest runs first, because people usually look for those.
     let mut listed: Vec<Listed> = past_runs(logs)?.iter().rev().map(look).collect();
     listed.reverse();
     Ok(listed)

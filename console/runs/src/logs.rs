@@ -29,13 +29,13 @@ pub(crate) enum LogsError {
     NotWritable { logs: PathBuf, why: String },
     /// There is not enough free space.
     #[error(
-        "cannot keep runs in {}: {} MB are free, at least {} MB are needed; free some space or choose another folder with \
+        "cannot keep runs in {}: {} MB are free, but at least {} MB are needed; free some space or choose another folder with \
          --logs", logs.display(), megabytes(*free_bytes), megabytes(*needed_bytes)
     )]
     NoSpace { logs: PathBuf, free_bytes: u64, needed_bytes: u64 },
     /// The system's limit on the size of files is too low for a run.
     #[error(
-        "cannot keep runs in {}: the system limits files to {} kB, at least {} MB are needed; raise the limit: `ulimit -f {}`",
+        "cannot keep runs in {}: the system limits files to {} kB, but at least {} MB are needed; raise the limit: `ulimit -f {}`",
         logs.display(), limit_bytes / 1000, megabytes(MIN_FREE_BYTES), MIN_FREE_BYTES >> 10
     )]
     FilesTooSmall { logs: PathBuf, limit_bytes: u64 },
@@ -195,6 +195,6 @@ mod tests {
     fn too_little_space_is_reported_in_numbers() {
         let (logs, free_bytes) = (PathBuf::from("logs"), 943_718);
         let error = LogsError::NoSpace { logs, free_bytes, needed_bytes: MIN_FREE_BYTES };
-        assert!(error.to_string().contains("0.9 MB are free, at least 16.0 MB are needed"), "{error}");
+        assert!(error.to_string().contains("0.9 MB are free, but at least 16.0 MB are needed"), "{error}");
     }
 }

@@ -12,7 +12,7 @@ use std::{path::Path, time::SystemTime};
 /// What the killed process would have added at the end.
 const BY_THE_CLOCK: &str = "wall-clock figures: computing time, planner calls, stops";
 /// What is missing from a recording that was not closed.
-const OF_RECORDING: &str = "the index of the recording, and up to 5 s that had not been written yet";
+const OF_RECORDING: &str = "the index of the recording, and up to 5 s of data that had not been written yet";
 
 /// Closes the run in a folder if its writer was killed.
 ///

@@ -1,4 +1,4 @@
-//! The register of signatures: the signed reports of a user, kept apart from the runs. It reveals it if a list in the
+//! The register of signatures: the signed reports of a user, kept apart from the runs. It shows whether a list in the
 //! folder of a run was changed or lacks a report.
 
 use crate::error::RunError;
@@ -76,7 +76,7 @@ impl Register {
         all.into_iter().find(|revision| Path::new(&revision.file) == file)
     }
 
-    /// Path of its file, for display.
+    /// Path of the register's file, for display.
     pub(crate) fn shown(&self) -> String {
         self.0.as_ref().map(|file| file.display().to_string()).unwrap_or_default()
     }

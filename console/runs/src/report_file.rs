@@ -1,4 +1,4 @@
-//! The report of a run on disk, and whether it agrees with the journal.
+//! The report on a run, as found on disk, and whether it agrees with the journal.
 
 mod figures;
 
@@ -82,10 +82,10 @@ struct Source {
     report_sha256: Option<String>,
 }
 
-/// Maximum size of a report, bytes: a hundred times the missed areas of the largest floor.
+/// Maximum size of a report, bytes: room for a hundred times the missed areas of the largest floor.
 const MOST_BYTES: u64 = 8 << 20;
 
-/// Message about a journal that is not the one from which the report was made.
+/// Message about a journal other than the journal from which the report was made.
 const NOT_THE_ONE: &str = "the report was made from a different journal: the SHA-256 digests differ";
 
 /// Message about a recording that does not belong to the report.
@@ -160,7 +160,7 @@ impl Reported {
         self.source.recovered.as_ref()
     }
 
-    /// Whether it contains the digests of both journal and recording.
+    /// Whether the report contains the digests of both journal and recording.
     pub(crate) fn names_digests(&self) -> bool {
         self.source.events_sha256.is_some() && self.source.recording_sha256.is_some()
     }

@@ -1,4 +1,4 @@
-//! The signed reports of a run, and whether all of them are unchanged.
+//! The signed reports on a run, and whether all of them are unchanged.
 
 use crate::{error::RunError, register::Register, report_file::Reported, whole::write_whole};
 use foreign::read_json;

@@ -78,7 +78,7 @@ pub struct Disturbances {
     pub late_ping_probability: f64,
     /// Probability that all ranges of a station in a cycle are late, as if it were out of sight, 0 to 1.
     pub nlos_probability: f64,
-    /// Mean of the exponential delay of late ranges, metres.
+    /// Mean of the exponentially distributed delay of late ranges, metres.
     pub excess_range_mean_m: f64,
     /// The sound received from a robot that is behind a column.
     pub behind_columns: BehindColumns,
@@ -150,7 +150,8 @@ pub struct RobotConfig {
     pub odometry_sigma_ratio: f64,
     /// Constant bias of the gyro, radians per second.
     pub gyro_bias_rad_per_s: f64,
-    /// For a robot that walks and swims: limits that replace the ones above, depending on the zone that the robot is in.
+    /// For a robot that walks and swims: limits that replace the limits above, depending on the zone that the robot is
+    /// in.
     #[serde(default)]
     pub amphibious: Option<Amphibious>,
     /// The pressure sensor that detects whether the floor under the robot is flooded.
@@ -163,7 +164,7 @@ pub struct RobotConfig {
 pub struct Mover {
     /// Id of the obstacle.
     pub id: ObstacleId,
-    /// Its motion.
+    /// Motion of the obstacle.
     pub track: Track,
 }
 

@@ -39,9 +39,9 @@ impl Glyphs {
 /// The terminal's capabilities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Caps {
-    /// Its colours.
+    /// Colours of the terminal.
     pub colours: Colours,
-    /// Its characters.
+    /// Characters of the terminal.
     pub glyphs: Glyphs,
     /// Whether the console runs over a slow connection and should therefore draw fewer frames.
     pub ssh: bool,

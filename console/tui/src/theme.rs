@@ -95,7 +95,7 @@ roles! {
     Pull '+',
     /// A planner drawing: repulsion.
     Push '=',
-    /// A planner drawing: anything else.
+    /// A planner drawing: neither attraction nor repulsion.
     Drawn 'D',
     /// The robot.
     Robot '@',

@@ -164,7 +164,7 @@ impl Mode {
         Self { weight: if medium == Medium::Underwater { 1.0 } else { 0.0 } }
     }
 
-    /// Returns the mode one tick later: one step of the transition toward the mode for a medium.
+    /// Returns the mode one tick later: one step of the transition towards the mode for a medium.
     ///
     /// ```
     /// use world::{Amphibious, Medium, Mode};

@@ -22,7 +22,8 @@ use steering::{
 };
 use world::{Pace, Pose, Zone};
 
-/// Maximum steps of a plan, as a multiple of those of the straight path at the slower pace, plus a constant.
+/// Maximum number of steps in a plan: a multiple of the number needed for the straight path at the slower pace, plus a
+/// constant.
 const DETOUR: f64 = 6.0;
 const SPARE_STEPS: usize = 2500;
 /// When obstacles move, an arc is represented by its mean velocity over this time, seconds.

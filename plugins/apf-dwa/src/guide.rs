@@ -11,7 +11,7 @@ use world::{Point, Vector};
 
 /// Number of steps over which the robot must make progress (the paper's loop uses 60).
 const STALL_STEPS: usize = 60;
-/// A smaller movement over these steps counts as no progress, metres.
+/// A movement smaller than this over these steps is no progress, metres.
 const STALL_M: f64 = 0.12;
 /// A corner closer than this is considered passed, metres.
 const PASSED_M: f64 = 0.35;
@@ -150,7 +150,7 @@ impl Guide {
         law.attraction(at, goal, self.goals.current())
     }
 
-    /// The pull toward the first corner of the shortest path not yet passed, as strong as that of a goal.
+    /// The pull towards the first corner of the shortest path not yet passed, as strong as the pull of a goal.
     fn toward_corner(&mut self, field: &Field, around: &Surroundings, trip: &Trip) -> Vector {
         let (map, at) = (around.map(), trip.at);
         if self.age == usize::MAX || self.leads_elsewhere(trip) {

@@ -11,10 +11,10 @@ use world::{Amphibious, Medium, Mode, Pace, Point, Pose, Zone, polyline};
 
 /// Within this distance of the goal, or of a point to pass, the robot drives no faster than it can turn there, metres.
 const TURNING_M: f64 = 1.2;
-/// A robot whose heading is off its target by more than this turns first, radians.
+/// Angle between the robot's heading and its target above which the robot turns first, radians.
 const ASIDE_RAD: f64 = 0.35;
-/// The speed limit near the goal never falls below this while the robot faces the goal, so that the window is never
-/// empty, metres per second.
+/// Lowest speed limit near the goal while the robot faces the goal, metres per second; it keeps the window from being
+/// empty.
 const SLOWEST_M_PER_S: f64 = 0.02;
 
 /// Spacing of the points of a path over a large map, metres.
@@ -29,7 +29,7 @@ pub struct HybridSettings {
     pub window: Window,
     /// The field.
     pub field: Field,
-    /// Maximum steps of a plan; 0: derived from the length of the trip.
+    /// Maximum number of steps in a plan; 0 means a maximum that depends on the length of the trip.
     pub steps_max: usize,
 }
 

@@ -15,8 +15,8 @@ const WINDOW: &str = "Window";
 
 const GUIDE: ParamSpec = choice("guide", "Virtual goals", &["square", "corners"], 1)
     .help(
-        "square: in a local minimum, one of four on a square around the goal, as published. corners: those \
-         of the shortest path over the known map, whenever the straight path is blocked.",
+        "square: in a local minimum, one of four on a square around the goal, as published. corners: the \
+         corners of the shortest path over the known map, whenever the straight path is blocked.",
     )
     .group(FIELD);
 const K_ATT: ParamSpec = float("k_att", "Attraction gain", "N/m", 0.001, 1000.0, 15.0)
@@ -156,7 +156,7 @@ pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>) -> HybridSettings {
     }
 }
 
-/// The robot's limits on land and under water, never above its own.
+/// The configured limits on land and under water, none of them above the robot's own.
 fn robot(config: &Config<'_>, site: &Site<'_>) -> Amphibious {
     let own = Pace { v_max_m_per_s: site.limits.v_max_m_per_s, w_max_rad_per_s: site.limits.w_max_rad_per_s };
     let own =

@@ -14,7 +14,7 @@ const HORIZON_S: f64 = 3.0;
 const STEP_S: f64 = 0.2;
 /// Number of points checked on an arc.
 const N_PLACES: usize = 15;
-/// Distances beyond the one to keep are capped at this value, metres.
+/// Clearances in excess of the distance to keep are capped at this value, metres.
 const CAP_M: f64 = 1.0;
 /// Turn rate when no arc is allowed, as a share of the maximum.
 const TURN_SHARE: f64 = 0.3;
@@ -67,7 +67,7 @@ impl Window {
     }
 
     /// Returns the best twist for the next tick: within the limits and the reach of the drives, and such that the robot
-    /// can stop before it touches anything. If no arc is allowed, the robot brakes and turns slowly toward the
+    /// can stop before it touches anything. If no arc is allowed, the robot brakes and turns slowly towards the
     /// reference.
     pub fn choose(&self, pose: &Pose, now: Twist, pace: Pace, reference: Vector, near: &NearThings) -> Twist {
         let (speeds, turns) = (self.speeds(now, pace), self.turns(now, pace));
@@ -90,7 +90,7 @@ impl Window {
         self.best(&candidates).unwrap_or_else(|| turned_on_the_spot(pose, speeds, turns, pace, reference))
     }
 
-    /// The clearance at some points beyond the distance to keep, metres, capped.
+    /// The clearance of some points in excess of the distance to keep, metres, capped at `CAP_M`.
     fn spare_m(&self, near: &NearThings, points: &[Point]) -> f64 {
         near.distance_m(points, CAP_M + self.keep_m) - self.keep_m
     }
@@ -135,7 +135,7 @@ impl Window {
     }
 }
 
-/// Brakes, and turns slowly toward the reference.
+/// Brakes, and turns slowly towards the reference.
 fn turned_on_the_spot(
     pose: &Pose,
     speeds: (f64, f64),

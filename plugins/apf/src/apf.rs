@@ -3,7 +3,7 @@
 use field::{FieldSettings, ForcePilot, offline, params as p};
 use planner_api::{Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site};
 
-/// Attraction and repulsion after Khatib 1986, both toward a goal and along a preset path.
+/// Attraction and repulsion after Khatib 1986, both towards a goal and along a preset path.
 ///
 /// It cannot escape from a local minimum, and reports when it is in one.
 pub struct Apf {

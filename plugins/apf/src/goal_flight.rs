@@ -5,7 +5,8 @@ use planner_api::{Command, Config, Ctx, Plan, PlanRequest, Result, Sensed, Site,
 use steering::{Decision, Flight, Forces, KnownMap, Nearby, Pilot, Tick, drawing, evade};
 use world::{Point, Vector};
 
-/// Maximum steps of a plan, as a multiple of those of the straight path, plus a constant for short paths.
+/// Maximum number of steps in a plan: a multiple of the number needed for the straight path, plus a constant for short
+/// paths.
 const DETOUR: f64 = 10.0;
 const SPARE_STEPS: usize = 2000;
 

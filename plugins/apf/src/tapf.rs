@@ -6,8 +6,8 @@ use planner_api::{
     Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site, choice, float,
 };
 
-/// Attraction, repulsion and a force along the tangent of obstacles: the method that Xu et al. 2022 compare theirs
-/// with.
+/// Attraction, repulsion and a force along the tangent of obstacles: the method with which Xu et al. 2022 compare their
+/// own.
 ///
 /// It passes single obstacles in the way; in a trap it stops and reports that it is stuck.
 pub(crate) struct Tapf {
@@ -27,17 +27,17 @@ const RHO_0: ParamSpec = float("rho_0_m", "Obstacle range", "m", 0.05, 50.0, 2.0
     .group(FIELD);
 const TANGENT: ParamSpec = choice("tangent", "Tangent force", &["off", "always", "blocking"], 2)
     .help(
-        "always: toward the left tangent of every obstacle in range. Gives the stop printed in the paper \
-         at a weight of 0.02 around an obstacle of 1 m radius, or at a weight of 1 around one of 3.2 to \
-         3.55 m (both fitted). blocking: around whatever blocks the path to the goal. off: the classical \
+        "always: towards the left tangent of every obstacle in range. The robot stops where the paper \
+         says it does if the weight is 0.02 and the obstacle has a radius of 1 m, or if the weight is 1 \
+         and the radius is 3.2 to 3.55 m (both fitted). blocking: around whatever blocks the path to the goal. off: the classical \
          field.",
     )
     .group(FIELD);
 const WEIGHT: ParamSpec = float("tangent_weight", "Tangent force weight", "", 0.0, 100.0, 1.0)
     .help("Tangent force as a multiple of the repulsion gain.")
     .group(FIELD);
-/// The wall's share of the repulsion gain is 1/500 of that of the other planners, because this planner's gain is much
-/// larger. With their share, the wall would push the robot away from goals a metre from the wall.
+/// The wall's share of the repulsion gain: 1/500 of the share used by the other planners, because this planner's gain
+/// is much larger. With their share, the wall would push the robot away from goals a metre from the wall.
 const WALL: ParamSpec = float("wall_gain", "Wall repulsion", "", 0.0, 10.0, 0.001)
     .help(
         "Push from the wall within half the obstacle range, as a share of the repulsion gain. 0: none, as \

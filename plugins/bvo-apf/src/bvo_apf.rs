@@ -222,7 +222,7 @@ fn report(news: &[News], ctx: &Ctx<'_>) {
     }
 }
 
-/// Logs how a path was found, unless by the configured method.
+/// Logs how a path was found, unless it was found by the configured method.
 fn report_attempts(ahead: &Ahead, ctx: &Ctx<'_>) {
     let follows = ahead.news.iter().filter(|item| matches!(item, News::Follows { .. }));
     let said: Vec<String> = follows.map(ToString::to_string).collect();

@@ -31,7 +31,7 @@ impl Clusters {
                 }
             }
         }
-        // The index of a root is never larger than those of its members.
+        // The index of a root is never larger than the indices of its members.
         for index in 0..self.of.len() {
             self.of[index] = self.of[self.of[index]];
         }

@@ -7,7 +7,7 @@ use world::{Point, Vector};
 
 /// The hull of the group is recomputed after this distance, metres.
 const LOOK_M: f64 = 0.25;
-/// Solids further ahead on the way to the tangent point are ignored for now, metres.
+/// Solids farther ahead than this on the way to the tangent point are ignored for now, metres.
 const AHEAD_M: f64 = 4.0;
 /// Rate at which the distance to the group is corrected as the robot goes around it, per metre.
 const HUG_PER_M: f64 = 2.0;
@@ -168,7 +168,7 @@ impl Escape {
 
     fn look_once(&self, at: Point, map: &KnownMap, margin_m: f64) -> Look {
         let reach_m = map.hull_m + margin_m;
-        // Slightly less than the margin that is kept, so that a robot beside the hull counts as outside.
+        // Slightly less than the margin that is kept, so that a robot beside the hull is considered to be outside.
         match View::of(at, map, &self.members, 0.9 * reach_m) {
             Some(view) if view.gap_rad >= PI => Look::Toward(view.edge(self.side).corner),
             _ => Look::Within,

@@ -18,7 +18,8 @@ use geometry::Braking;
 use steering::{Body, Contact, Forces, KnownMap, Nearby, Side, guard, wall_contacts};
 use world::{Point, Vector};
 
-/// Maximum length of a detour, as a multiple of the circle around the group; a longer detour counts as leading nowhere.
+/// Maximum length of a detour, as a multiple of the circle around the group; a longer detour is considered to lead
+/// nowhere.
 const ROUNDS: f64 = 2.5;
 /// Maximum number of rollout steps on one map: about a second where many parts are near.
 const THOUGHT_MOST: usize = 30_000;
@@ -30,7 +31,7 @@ const IN_THOUGHT: Braking = Braking { acceleration_m_per_s2: 1e3, tick_s: 0.0 };
 /// The current phase of the machine.
 #[derive(Debug, Clone)]
 pub enum Phase {
-    /// Moving by the field.
+    /// Moving according to the field.
     Approach,
     /// Going back along its own track, out of a trap.
     Retreat(Retreat),

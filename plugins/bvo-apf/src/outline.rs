@@ -1,5 +1,5 @@
-//! Finds the way out of a trap formed by the tank's outline: straight toward the goal, and along whatever stands in the
-//! way.
+//! Finds the way out of a trap formed by the tank's outline: straight towards the goal, and along whatever stands in
+//! the way.
 //!
 //! Xu et al. 2022 consider only free-standing obstacles. The tank's outline encloses the robot and its goal: it has no
 //! mouth to seal and no circle to go around. So the robot follows the outline of whatever stops it. It leaves the
@@ -35,8 +35,8 @@ const ROUNDING_M: f64 = 1e-9;
 /// If the robot comes no closer to the goal over this many times the length of all outlines, it gives up, whatever else
 /// it remembers.
 const ROUNDS: f64 = 2.0;
-/// After this distance without progress, a return to the point closest to the goal means that the robot has gone all
-/// the way around, metres.
+/// Distance without progress, metres, after which a return to the point closest to the goal means that the robot has
+/// gone all the way around.
 const ROUND_LEAST_M: f64 = 1.0;
 
 /// The outlines of all real solids on the floor and of the wall.
@@ -94,8 +94,8 @@ impl Outline {
         near.filter(move |(distance_m, _)| *distance_m < reach_m).map(|(_, away)| away)
     }
 
-    /// Returns a test for steps of a length from a position. A step passes if it keeps a distance from every outline,
-    /// or leads away from those that are closer; both are in metres.
+    /// Returns a test for steps of a given length from a position. A step passes if it keeps a given distance from
+    /// every outline, or leads away from the outlines that are closer. Length and distance are in metres.
     fn steps(&mut self, at: Point, step_m: f64, keep_m: f64) -> impl Fn(&Vector) -> bool + use<'_> {
         let (map, nearby) = (&self.map, &mut self.nearby);
         let near = nearby.update(map, at).iter().map(|index| &map.solids[*index]);
@@ -155,7 +155,7 @@ pub struct Follow {
 }
 
 impl Follow {
-    /// Starts toward a goal. The robot's centre keeps as much distance from every outline as the goal has, within the
+    /// Starts towards a goal. The robot's centre keeps as much distance from every outline as the goal has, within the
     /// two given limits, metres.
     pub fn new(goal: Point, outline: &Outline, side: Side, least_m: f64, most_m: f64) -> Self {
         let keep_m = outline.distance_m(goal).clamp(least_m, most_m);
@@ -212,8 +212,8 @@ impl Follow {
         self.along.is_some() && before.along.is_none() && is_far
     }
 
-    /// The direction toward the outline that the robot follows: of the outlines within reach, the one that best matches
-    /// the last move.
+    /// The direction towards the outline that the robot follows: of the outlines within reach, the one that best
+    /// matches the last move.
     fn hand(&self, at: Point, way: Vector, outline: &mut Outline) -> Vector {
         let share = |away: &Vector| self.side.along(*away).dot(&way);
         let out = outline.ways_out(at, self.keep_m + HAND_M).max_by(|a, b| share(a).total_cmp(&share(b)));

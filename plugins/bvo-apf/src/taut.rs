@@ -11,7 +11,7 @@ const ROUNDS: usize = 6;
 /// Number of bisections when a corner is cut.
 const HALVINGS: usize = 10;
 
-/// Returns a shorter path from the first to the last point that keeps a margin between the hull and all real solids.
+/// Returns a shorter path from the first point to the last, which keeps a margin between the hull and all real solids.
 ///
 /// Parts of the path that do not keep the margin themselves are left as they are.
 pub fn pulled(path: &[Point], map: &KnownMap, margin_m: f64) -> Vec<Point> {

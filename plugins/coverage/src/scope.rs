@@ -60,7 +60,7 @@ impl<'a> Scope<'a> {
         })
     }
 
-    /// The same for a robot that has already driven a path: the floor that the path scanned counts toward the whole.
+    /// The same for a robot that has already driven a path: the floor that the path scanned counts towards the whole.
     pub(crate) fn after(self, flown: &[Point], workspace: &Workspace) -> Self {
         if self.regions.is_empty() || flown.is_empty() {
             return self;

@@ -87,7 +87,7 @@ impl<'a> SlitDomain<'a> {
         self.is_simple = true;
     }
 
-    /// Rebuilds the tree of triangles by the lengths of the shortest paths from home (Dijkstra 1959).
+    /// Rebuilds the tree of triangles according to the lengths of the shortest paths from home (Dijkstra 1959).
     fn reach_nearest_first(&mut self) {
         let Some(home) = self.spot(self.workspace.home) else { return };
         let mut is_reached = vec![false; self.triangles.len()];

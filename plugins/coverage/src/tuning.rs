@@ -8,7 +8,7 @@
 
 /// Placement of cuts.
 pub(crate) mod cuts {
-    /// Distance of a cut from other obstacles in addition to that of the hull, metres (method).
+    /// Distance of a cut from other obstacles, in addition to the distance that the hull keeps, metres (method).
     pub(crate) const BERTH_M: f64 = 0.05;
     /// Number of rays tried on either side of the ray from the anchor.
     pub(crate) const RAYS: usize = 18;
@@ -19,9 +19,10 @@ pub(crate) mod cuts {
     /// of a sliver, square metres.
     pub(crate) const TRIES: usize = 12;
     pub(crate) const SLIVER_M2: f64 = 0.02;
-    /// Shares of the cable's slack by which a cut may lengthen the path to its far end, where cuts run across the lanes
-    /// and where they may run along them. The shares are tried in this order until the cable stays within its limits.
-    /// They may exceed 1 because the cable is rarely as long as a single cut suggests.
+    /// Shares of the cable's slack by which a cut may lengthen the path to its far end: for patterns in which cuts run
+    /// across the lanes, and for patterns in which cuts may run along the lanes. The shares are tried in this order
+    /// until the cable stays within its limits. They may exceed 1 because the cable is rarely as long as a single cut
+    /// suggests.
     pub(crate) const SLACKS_ACROSS: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
     pub(crate) const SLACKS_ALONG: [f64; 7] = [3.0, 2.2, 1.7, 1.3, 1.0, 0.8, 0.5];
     /// Allowance for the hull, which passes columns farther out than the cable does, metres; the same for every size of
@@ -79,8 +80,8 @@ pub(crate) mod polish {
     pub(crate) const LEFT: f64 = 0.0008;
     /// Value of floor once the path has been bent to it, metres of path per square metre: none of it may be lost again.
     pub(crate) const CAREFUL_M_PER_M2: f64 = 1e6;
-    /// Cell size of the first round as a multiple of that of the second: finer cells do not help to choose between
-    /// candidates.
+    /// Cell size in the first round, as a multiple of the cell size in the second: finer cells do not help to choose
+    /// between candidates.
     pub(crate) const ROUGH: f64 = 1.6;
     /// Prices at which floor beyond the required coverage is given up, as multiples of the usual price; expensive floor
     /// first.
@@ -211,8 +212,8 @@ pub(crate) mod choice {
     pub(crate) const CLOSE: f64 = 0.01;
     /// Within this many swaths of home, no cable lies across a cut.
     pub(crate) const FAR: f64 = 4.0;
-    /// A plan is complete with this share of the reachable floor even if more is requested. With a short reel it may
-    /// miss the second share of the requested coverage.
+    /// Without a limit on the reel, a plan is complete with the share `COMPLETE` of the reachable floor, even if more
+    /// is requested. With such a limit, the coverage may fall short of the request by `BY_REEL`.
     pub(crate) const COMPLETE: f64 = 0.99;
     pub(crate) const BY_REEL: f64 = 0.001;
     /// Maximum number of cells of a floor. More cells cost memory and time, and in a large tank the edges, where cell
@@ -254,8 +255,8 @@ pub(crate) mod repair {
     pub(crate) const KICKS: f64 = 30.0;
     /// Lanes that can no longer be driven are divided into pieces of this length, metres.
     pub(crate) const BIT_M: f64 = 0.1;
-    /// For a blocked robot, a new path must deviate from the old one by the second distance within the first, metres; a
-    /// bend deviates by less.
+    /// If the robot is blocked, a new path must be at least `AS_BEFORE_M` away from the old one somewhere in the first
+    /// `AHEAD_M` of the old one (both in metres); a mere bend deviates by less.
     pub(crate) const AHEAD_M: f64 = 1.0;
     pub(crate) const AS_BEFORE_M: f64 = 0.35;
     /// Share of all floor that a repaired path may miss in addition to what the previous plan could miss.
@@ -272,8 +273,8 @@ pub(crate) mod hull_partition {
     pub(crate) const WALL_SIDES: usize = 96;
     /// Minimum width of a gate, metres.
     pub(crate) const LEAST_GATE_M: f64 = 0.1;
-    /// Cells smaller than the square of this many swaths are merged if the result is at least this convex and no column
-    /// is deeper inside it than this, metres.
+    /// Cells smaller than a square of `SMALL_SWATHS` swaths are merged if the result fills at least the share
+    /// `CONVEX_ENOUGH` of its convex hull, and no column's centre lies more than `DEEP_M` metres inside that hull.
     pub(crate) const SMALL_SWATHS: f64 = 4.0;
     pub(crate) const CONVEX_ENOUGH: f64 = 0.95;
     pub(crate) const DEEP_M: f64 = 0.05;

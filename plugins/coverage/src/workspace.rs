@@ -148,7 +148,7 @@ impl Workspace {
         Some((off.norm(), off.try_normalize(1e-9)?))
     }
 
-    /// The error returned when the robot has no room.
+    /// The error returned when the hull does not fit near the anchor.
     pub(crate) fn no_room(&self) -> PlannerError {
         let Self { keep_m, anchor, .. } = self;
         PlannerError::new(

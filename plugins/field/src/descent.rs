@@ -1,4 +1,4 @@
-//! Follows a law toward one goal, in steps of constant length.
+//! Follows a law towards one goal, in steps of constant length.
 
 use crate::{
     outcome::{Shortfall, Walk},
@@ -12,7 +12,7 @@ use planner_api::{Ctx, Result};
 
 /// With a rotating force, the goal is given up after this many moves without coming closer to it.
 const PATIENCE_MOVES: usize = 2000;
-/// Maximum number of moves, as a multiple of those of the straight path.
+/// Maximum number of moves, as a multiple of the number needed for the straight path.
 const DETOUR: f64 = 20.0;
 
 /// A goal, and how to walk to it.

@@ -17,7 +17,7 @@ const TARGET_PULL: f64 = 3.0;
 const PUSH_MOVES: usize = 5;
 /// Strength of a held push, as a multiple of the target's pull.
 const PUSH: f64 = 2.0;
-/// The component of a held push toward the target, as a multiple of the target's pull.
+/// The component of a held push towards the target, as a multiple of the target's pull.
 const PUSH_AHEAD: f64 = 0.5;
 /// Strength of a half-pull push, as a multiple of the target's pull.
 const HALF: f64 = 0.5;
@@ -53,7 +53,7 @@ pub enum PushStrength {
     UnitPull,
 }
 
-/// The side of the push, as seen toward the target; Wang et al. 2023 do not specify it.
+/// The side of the push, as seen towards the target; Wang et al. 2023 do not specify it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PushSide {
     /// The side to which obstacles push.

@@ -17,9 +17,9 @@ const SHORTEST_M: f64 = 0.3;
 pub enum TangentUse {
     /// Never.
     Off,
-    /// Always, toward the left tangent of every obstacle in range. Of the variants tried, every parameter set that
-    /// reproduces the printed stop of the tangent field uses this one: at a weight of 0.02 around an obstacle of 1 m
-    /// radius, or at full weight around one of 3.2 to 3.55 m.
+    /// Always, towards the left tangent of every obstacle in range. Of the variants tried, only this variant lets the
+    /// tangent field stop where the paper says it does: with a weight of 0.02 and an obstacle of 1 m radius, or with
+    /// full weight and an obstacle of 3.2 to 3.55 m radius.
     Always,
     /// Around whatever blocks the path to the goal, on the side opposite its centre.
     Blocking,

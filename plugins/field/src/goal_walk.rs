@@ -1,4 +1,4 @@
-//! Walks toward one goal, step by step; a callback chooses each step.
+//! Walks towards one goal, step by step; a callback chooses each step.
 
 use crate::{
     oscillation::Oscillation,

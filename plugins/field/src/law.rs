@@ -9,7 +9,7 @@ use steering::{Contact, Forces, Side, Source};
 pub enum Repulsion {
     /// Khatib's.
     Classic,
-    /// Weighted with the distance to the goal, with a component toward the goal (Ge and Cui 2000).
+    /// Weighted with the distance to the goal, with a component towards the goal (Ge and Cui 2000).
     Improved {
         /// Power of the distance to the goal.
         exponent: f64,

@@ -8,7 +8,7 @@ use steering::{Contact, Side};
 /// singular there.
 pub const FLOOR_M: f64 = 1e-6;
 
-/// Pull of a quadratic well, `k_att * rho(q, g)` toward the goal (Khatib 1986; Wang et al. 2023, section 2.1).
+/// Pull of a quadratic well, `k_att * rho(q, g)` towards the goal (Khatib 1986; Wang et al. 2023, section 2.1).
 pub fn attraction(k_att: f64, at: Point, goal: Point) -> Vector {
     (goal - at) * k_att
 }
@@ -26,7 +26,7 @@ pub enum PushForm {
     /// `1/rho - 1/rho_0`: one interpretation of Wang et al. 2023, whose text does not print the force.
     Inverse,
     /// `1/rho`, which ends at `rho_0` with a jump: eq. 8 of Xu et al. 2022. The paper gives no range and, according to
-    /// its eq. 9, the force points toward the obstacle; here it points away.
+    /// its eq. 9, the force points towards the obstacle; here it points away.
     Hyperbola,
 }
 
@@ -49,7 +49,7 @@ impl PushForm {
 
 /// Repulsion weighted with the distance to the goal, so that a goal beside an obstacle can be reached (GNRON, Ge and
 /// Cui 2000): `k_rep (1/rho - 1/rho_0) rho_g^n / rho^2` away from the outline plus `n/2 k_rep (1/rho - 1/rho_0)^2
-/// rho_g^(n-1)` toward the goal. Wang et al. 2023 give no `n`; two is the textbook value. `form` states how the first
+/// rho_g^(n-1)` towards the goal. Wang et al. 2023 give no `n`; two is the textbook value. `form` states how the first
 /// part decreases with `rho`.
 pub fn improved_repulsion(
     form: PushForm,

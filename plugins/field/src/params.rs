@@ -99,12 +99,12 @@ pub const PLANNING: ParamSpec = choice("planning", "Planning", &["by-hull", "loc
     )
     .group(PLAN)
     .live();
-/// Longest move toward a preset point.
+/// Longest move towards a preset point.
 pub const STEP: ParamSpec = float("step_m", "Step on a preset path", "m", 0.01, 1.0, 0.2)
     .help("Longest move per preset point; the step in the paper.")
     .group(PLAN)
     .live();
-/// Length of a move toward a goal.
+/// Length of a move towards a goal.
 pub const GOTO_STEP: ParamSpec = float("goto_step_m", "Step toward a goal", "m", 0.005, 1.0, 0.05)
     .help("Length of a move when planning toward a goal.")
     .group(PLAN)
@@ -114,12 +114,12 @@ pub const FLEXIBLE: ParamSpec = flag("flexible_step", "Flexible step", false)
     .help("Moves may be twice as long while the robot lags behind its preset point.")
     .group(PLAN)
     .live();
-/// Limit of the change of heading.
+/// Limit on the change of heading.
 pub const TURN_LIMIT: ParamSpec = float("turn_limit_deg", "Turn limit per step", "deg", 0.0, 180.0, 0.0)
     .help("Largest change of heading from one move to the next; 0: no limit.")
     .group(PLAN)
     .live();
-/// Lag from which a plan skips floor.
+/// Lag above which a plan skips floor.
 pub const MAX_LAG: ParamSpec = float("max_lag_m", "Lag allowed", "m", 0.05, 20.0, 1.25)
     .help("A plan that falls further behind its preset point skips floor and is not complete.")
     .group(PLAN)

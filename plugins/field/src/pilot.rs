@@ -15,8 +15,8 @@ use steering::{
     wall_contacts,
 };
 
-/// If the force reverses, the speed is multiplied by the first factor, otherwise by the second. It never falls below
-/// the third, a share of the speed that the pilot allows.
+/// If the force reverses, the speed is multiplied by the first factor; otherwise, by the second. The speed never falls
+/// below the third value, a share of the speed that the pilot allows.
 const TURNED_BACK: f64 = 0.5;
 const GOES_ON: f64 = 1.2;
 const LEAST_SHARE: f64 = 0.02;

@@ -9,7 +9,7 @@ const FLOOR_M: f64 = 1e-9;
 /// The interpretation of the logarithmic pull near the goal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NearLaw {
-    /// `n log2(1/rho + 1)`: grows without bound toward the goal, as the text of Xu et al. claims.
+    /// `n log2(1/rho + 1)`: grows without bound towards the goal, as the text of Xu et al. claims.
     Corrected,
     /// `n |log2(1 / (rho + 1))|`, as printed: vanishes at the goal, so an obstacle beside the goal pushes the robot
     /// away.

@@ -16,7 +16,7 @@ const MOVE_M: f64 = 0.05;
 const LOOKAHEAD_M: f64 = 0.5;
 /// Obstacles further from the robot than this do not affect the pilot, metres.
 const RANGE_M: f64 = 4.5;
-/// Maximum number of ticks, as a multiple of those of the straight path, plus a constant for short paths.
+/// Maximum number of ticks: a multiple of the number needed for the straight path, plus a constant for short paths.
 const DETOUR: f64 = 4.0;
 const SPARE_TICKS: usize = 4000;
 

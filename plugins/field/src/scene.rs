@@ -40,8 +40,8 @@ impl Scene {
         near.iter().filter_map(|n| self.bodies[n.index].clone()).collect()
     }
 
-    /// The contacts that act by this law on a robot at a position. The cost depends on the number of nearby obstacles
-    /// and hardly on the total.
+    /// The contacts that act on a robot at a position according to this law. The cost depends on the number of nearby
+    /// obstacles and hardly on the total number.
     pub fn contacts(&self, at: Point, law: &Law) -> Vec<Contact> {
         let near = self.map.within(at, law.rho_0_m + self.hull_m);
         let mut contacts: Vec<Contact> = near

@@ -11,7 +11,7 @@ use steering::Flight;
 /// How a plan is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Planning {
-    /// As in the paper: moves according to the law, toward targets in lock step.
+    /// As in the paper: moves according to the law, towards targets in lock step.
     Walked,
     /// By simulated flight over the known map at the exact position, which predicts what the robot will do.
     Flown,
@@ -40,13 +40,13 @@ pub enum MoveLength {
 /// How a law is walked over the known map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Walking {
-    /// Longest move toward a preset point, metres; the paper's `s`.
+    /// Longest move towards a preset point, metres; the paper's `s`.
     pub step_m: f64,
     /// The preset point that follows a move.
     pub targets: Targets,
-    /// The length of a move toward a preset point.
+    /// The length of a move towards a preset point.
     pub length: MoveLength,
-    /// Length of a move toward a goal, metres.
+    /// Length of a move towards a goal, metres.
     pub goto_step_m: f64,
     /// Whether moves may be twice as long while the robot lags behind its preset point.
     pub flexible: bool,

@@ -24,7 +24,7 @@ pub enum Reading {
 pub enum SenseRule {
     /// Always counter-clockwise, as printed. Helps at obstacles on the left and pushes back at those on the right.
     CounterClockwise,
-    /// The direction that points more toward the target when the force begins to act; kept while the obstacle is in
+    /// The direction that points more towards the target when the force begins to act; kept while the obstacle is in
     /// range.
     SideAware,
 }
@@ -75,7 +75,7 @@ impl Turning {
     }
 }
 
-/// The side whose tangent points more toward the goal.
+/// The side whose tangent points more towards the goal.
 fn toward(to_goal: Vector, away: Vector) -> Side {
     if Side::Right.along(away).dot(&to_goal) >= 0.0 { Side::Right } else { Side::Left }
 }

@@ -1,6 +1,6 @@
 //! The improved field of Yang et al. 2021: virtual goals on a square around the goal, and a pull that does not fade.
 //!
-//! The printed formulas have lost signs and roots. Implemented here: attraction toward the goal, repulsion away from
+//! The printed formulas have lost signs and roots. Implemented here: attraction towards the goal, repulsion away from
 //! obstacles, a constant pull `k d_0` at the goal, and a score for virtual goals that avoids the blocked direction.
 
 use crate::{
@@ -50,8 +50,8 @@ pub struct VirtualGoals {
 }
 
 impl SquareLaw {
-    /// The pull on a robot (eq. 17): toward the virtual goal if there is one, otherwise toward the goal; constant near
-    /// the goal.
+    /// The pull on a robot (eq. 17): towards the virtual goal if there is one, otherwise towards the goal; constant
+    /// near the goal.
     pub fn attraction(&self, at: Point, goal: Point, virtual_goal: Option<Point>) -> Vector {
         let way = goal - at;
         let near = self.improved && way.norm() < self.d_0_m;

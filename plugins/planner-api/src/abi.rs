@@ -1,9 +1,9 @@
 //! The C ABI beneath the trait, as declared in `include/tankops_planner.h`, which documents every field.
 //!
-//! Rules of the boundary: neither side frees memory of the other. Inputs belong to the console and are valid only
-//! during the call. Results are passed to the console's functions, which copy them before they return. Structs grow
-//! only at the end and carry their writer's `size`. Enums cross as numbers and are checked. No panic and no exception
-//! may leave a planner's function.
+//! Rules of the boundary: neither side frees the other's memory. Inputs belong to the console and are valid only during
+//! the call. Results are passed to the console's functions, which copy them before they return. Structs grow only at
+//! the end and carry their writer's `size`. Enums cross the boundary as numbers, which are checked. No panic and no
+//! exception may leave a planner's function.
 
 pub mod input;
 pub mod lend;
@@ -135,7 +135,8 @@ pub unsafe fn copy_sized<T: Sized32>(from: *const T) -> T {
     }
 }
 
-// The layout is the contract: a mismatch with the header must not compile. The header asserts the same numbers.
+// The layout is the contract: code whose layout differs from the header must not compile. The header asserts the same
+// numbers.
 const _: () = {
     use std::mem::offset_of;
     assert!(size_of::<Str>() == 16 && size_of::<Vec2>() == 16 && size_of::<Pose>() == 24);

@@ -76,7 +76,7 @@ impl<'a> Ctx<'a> {
         Self { services }
     }
 
-    /// Returns an error when the planner must stop. Call this in every loop: it costs one clock read.
+    /// Returns an error if the planner must stop. Call this in every loop: it costs only one clock read.
     ///
     /// ```
     /// use planner_api::{Code, StopReason, testing::Bench};
@@ -88,7 +88,7 @@ impl<'a> Ctx<'a> {
     /// ```
     ///
     /// # Errors
-    /// [`Code::Cancelled`] or [`Code::Timeout`]; pass it on with `?`.
+    /// [`Code::Cancelled`] or [`Code::Timeout`]; pass the error on with `?`.
     pub fn check(&self) -> Result<()> {
         match self.services.stop() {
             None => Ok(()),

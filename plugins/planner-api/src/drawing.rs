@@ -26,7 +26,7 @@ pub enum Layer {
 }
 
 impl Layer {
-    /// Every layer, in the order of its number.
+    /// All layers, in the order of their numbers.
     pub const ALL: [Self; 8] = [
         Self::Attraction,
         Self::Repulsion,

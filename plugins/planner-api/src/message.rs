@@ -23,8 +23,8 @@ pub struct Obstacle<P = Vec<Point>> {
     pub id: u32,
     /// Outline in the tank frame.
     pub outline: Shape<P>,
-    /// Whether the obstacle was found during the mission, which means that its position includes the position error of
-    /// the robot. If not, the obstacle is on the drawing.
+    /// Whether the obstacle was found during the mission rather than being on the drawing. The position of a found
+    /// obstacle includes the position error of the robot.
     pub discovered: bool,
     /// Estimated velocity in the tank frame, metres per second. It is zero for obstacles that stand still or are not
     /// currently sensed.
@@ -49,7 +49,7 @@ pub struct Site<P = Vec<Point>, O = Vec<Obstacle>, Z = Vec<Zone>> {
     pub revision: u32,
     /// The wall of the tank.
     pub boundary: Boundary<P>,
-    /// The known obstacles: those on the drawing and those found since.
+    /// The known obstacles: those on the drawing, and those found during the mission.
     pub obstacles: O,
     /// The zones; where zones overlap, the later one applies.
     pub zones: Z,
@@ -232,7 +232,7 @@ impl Sensed {
     }
 }
 
-/// Serialises the limits with their last field even when it is `None`. Journals omit it in that case, but a format
+/// Serialises the limits including their last field, even if it is `None`. Journals omit it in that case, but a format
 /// without field names could not be read back if it were missing.
 #[cfg(feature = "serde")]
 fn whole<S: serde::Serializer>(limits: &Limits, to: S) -> Result<S::Ok, S::Error> {

@@ -150,7 +150,7 @@ pub const fn flag(key: &'static str, label: &'static str, default: bool) -> Para
     ParamSpec::new(key, label, "", Kind::Flag { default })
 }
 
-/// Declares a parameter that is one of several words; the default is given by its index.
+/// Declares a parameter that is one of a number of words; `default` is the index of the default word.
 ///
 /// ```
 /// use planner_api::{Kind, choice};
@@ -207,7 +207,7 @@ impl<'a> Config<'a> {
     /// Returns the value of a real parameter.
     ///
     /// # Panics
-    /// If the planner does not declare this parameter, a mistake that the author's first test reveals.
+    /// If the planner does not declare this parameter. The author's first test reveals such a mistake.
     pub fn float(&self, key: &str) -> f64 {
         self.number(key)
     }

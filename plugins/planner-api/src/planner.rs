@@ -48,9 +48,9 @@ impl Caps {
 
 /// A planner. It is asked for a plan when the mission needs one, and for a command on every tick.
 ///
-/// An instance is called from one thread, one call at a time. The console keeps everything that a different planner
-/// would need to take over (the path driven, the targets left, the coverage), so a planner need only keep its own
-/// private state.
+/// An instance is called from one thread, one call at a time. The console keeps everything that another planner would
+/// need in order to take over (the path driven, the remaining targets, the coverage), so a planner only has to keep its
+/// own private state.
 ///
 /// ```
 /// use planner_api::*;

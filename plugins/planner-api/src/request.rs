@@ -96,7 +96,7 @@ pub struct Plan {
     /// The purposes of the stretches of the path, in order; empty if the planner does not state them. Two consecutive
     /// legs may share a point. A stretch that belongs to no leg is treated as a transfer from one place to another.
     pub legs: Vec<Leg>,
-    /// Lines that the tethered robot must never cross, neither on the path nor off it.
+    /// Lines that the tethered robot must never cross, whether it is on the path or off it.
     pub cuts: Vec<Vec<Point2<f64>>>,
 }
 

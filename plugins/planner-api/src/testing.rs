@@ -112,7 +112,7 @@ impl Bench {
         self.stop.set(reason.into());
     }
 
-    /// Reports from now on that drawings are not shown; they are still collected.
+    /// From now on, reports that drawings are not shown; drawings are still collected.
     ///
     /// ```
     /// let bench = planner_api::testing::Bench::new();

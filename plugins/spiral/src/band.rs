@@ -26,7 +26,7 @@ const ORDER_WEIGHT: f64 = 0.02;
 const BEND_WEIGHT: f64 = 0.1;
 /// Weight of a fixed point.
 const FIXED_WEIGHT: f64 = 1e6;
-/// Points closer to the wall than this have a row for it, metres.
+/// Points that are closer to the wall than this have a row for the wall, metres.
 const WALL_REACH_M: f64 = 0.25;
 /// Over-relaxation of the multiplier updates.
 const OVER: f64 = 1.6;
@@ -36,7 +36,7 @@ const ROUNDS: usize = 10;
 const MOST_GROWN: f64 = 100.0;
 /// The search ends when a new set of rows reduces the cost by less than this share.
 const GAIN: f64 = 0.002;
-/// At the end, points may slide along the path this many times, initially by this share of their deviation.
+/// At the end, points may slide along the path `SLIDES` times, initially by the share `SLIDE_SHARE` of their deviation.
 const SLIDES: usize = 12;
 const SLIDE_SHARE: f64 = 0.5;
 
@@ -180,7 +180,7 @@ impl<'a> Band<'a> {
         rows
     }
 
-    /// Builds the rows for the turn limit, which restrict the second difference over the span at every point.
+    /// Builds the rows for the turn limit; they restrict the second difference over the span at every point.
     fn turn_rows(&self, way: &[Point], share: f64, rows: &mut Vec<Row<'a>>) {
         let stations_m = polyline::stations_m(way);
         let last = way.len() - 1;
@@ -279,7 +279,7 @@ impl<'a> Band<'a> {
     }
 }
 
-/// Returns the segment at a station, and the fraction of it that is before the station.
+/// Returns the segment that contains a station, and the fraction of the segment that precedes the station.
 fn piece(stations_m: &[f64], station_m: f64) -> (usize, f64) {
     let next = stations_m.partition_point(|s| *s <= station_m).clamp(1, stations_m.len() - 1);
     let (from_m, to_m) = (stations_m[next - 1], stations_m[next]);

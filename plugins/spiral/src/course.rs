@@ -90,8 +90,8 @@ impl Course {
     }
 }
 
-/// Returns the space for the robot. It keeps away from obstacles by the larger of this clearance and the mission's. It
-/// keeps away from the wall by the mission's clearance, unless the course itself passes closer; the hull never touches
+/// Returns the space for the robot. Its clearance from obstacles is this clearance or the mission's, whichever is
+/// larger. Its clearance from the wall is the mission's, unless the course itself passes closer; the hull never touches
 /// the wall.
 ///
 /// # Errors

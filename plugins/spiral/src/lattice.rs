@@ -108,7 +108,8 @@ struct Search<'a> {
     limits: Limits,
 }
 
-/// Finds the path along a course that has the smallest sum of squared offsets and keeps its distance from everything.
+/// Among the paths along a course that keep their distance from everything, finds the one with the smallest sum of
+/// squared offsets.
 ///
 /// # Errors
 /// The console asked to stop.
@@ -253,7 +254,7 @@ impl Search<'_> {
         best.map(|(_, points)| points).ok_or(*window.start())
     }
 
-    /// Finds paths that pass one obstacle on the other side.
+    /// Finds alternatives to a path that pass one obstacle on the other side.
     fn others(&self, strip: &Strip<'_>, way: &Way, most: Others) -> Vec<Way> {
         let mut others: Vec<Way> = Vec::new();
         for bar in self.bars(strip.stations, way) {
@@ -267,7 +268,7 @@ impl Search<'_> {
         others
     }
 
-    /// Returns a bar for each obstacle that a path touches; it closes the side on which the path passes.
+    /// Returns a bar for each obstacle that a path touches; the bar closes the side on which the path passes.
     fn bars(&self, stations: &[Station], way: &Way) -> Vec<Bar> {
         let mut seen: Vec<Point> = Vec::new();
         let mut bars = Vec::new();
@@ -363,7 +364,7 @@ impl Search<'_> {
     }
 }
 
-/// Interpolates a point for every point of the course between those that were moved.
+/// For every point of the course, interpolates a point between those that were moved.
 fn filled(knots: &[usize], places: &[Point]) -> Vec<Point> {
     let mut points = vec![places[0]];
     for (pair, ends) in knots.windows(2).zip(places.windows(2)) {

@@ -41,8 +41,8 @@ fn proof_by(ring: &Ring) -> String {
     format!("proved: a ring of obstacles {}{wall} closes off that point", ids.join(", "))
 }
 
-/// If the end of the course cannot be reached, returns the first free point, at or after the blocked point, that cannot
-/// be reached either, and the ring around it.
+/// If the end of the course cannot be reached, returns the first free point at or after the blocked one that cannot be
+/// reached either, and the ring around that point.
 fn cut_off(
     course: &Course,
     (site, room): (&Site<'_>, &Room),

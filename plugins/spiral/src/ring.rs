@@ -37,7 +37,7 @@ enum Node {
     Wall {
         part: Part,
     },
-    /// The whole of a round wall.
+    /// An entire round wall.
     RoundWall,
 }
 

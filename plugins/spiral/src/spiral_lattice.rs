@@ -14,7 +14,7 @@ use world::polyline;
 
 const TURN: ParamSpec = float("turn_deg", "Turn limit per 0.2 m", "deg", 0.0, 180.0, 30.0)
     .help(
-        "Largest change of heading along 0.2 m of path where the preset path itself turns more slowly; 0 \
+        "Largest change of heading along 0.2 m of path where the preset path itself turns less sharply; 0 \
          means no limit.",
     )
     .group("Plan")

@@ -64,7 +64,7 @@ struct Front {
 }
 
 impl Strip<'_> {
-    /// Finds the path with the smallest cost that keeps its distance from everything.
+    /// Finds the cheapest of the paths that keep their distance from everything.
     ///
     /// # Errors
     /// The index of the first station that no path reaches.

@@ -8,7 +8,7 @@ use world::{Boundary, Point, Vector, geometry::wrap_angle_rad};
 
 /// How far ahead the nearest point of the course is searched for, metres.
 const WINDOW_M: f64 = 1.5;
-/// A place that is closer than this to the course is on it, metres.
+/// A place is on the course if it is closer to the course than this, metres.
 const ON_COURSE_M: f64 = 0.01;
 /// The margin between a heading and blocked headings, radians.
 const MARGIN_RAD: f64 = 1e-6;
@@ -59,7 +59,7 @@ pub(crate) struct Follower {
     idle: usize,
 }
 
-/// Neither side leads past the obstacles in range back to the course.
+/// The follower is stuck: on neither side is there a way past the obstacles in range and back to the course.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Stuck;
 
@@ -139,7 +139,7 @@ fn interval(spare_m: f64, away: Vector, reach_m: f64) -> Option<Interval> {
     (cosine < 1.0).then(|| Interval { middle_rad: (-away.y).atan2(-away.x), half_rad: cosine.acos() })
 }
 
-/// Returns the headings that a round wall blocks. The wall curves toward the robot, so a tangent would leave the tank.
+/// Returns the headings that a round wall blocks. The wall curves towards the robot, so a tangent would leave the tank.
 fn round_wall(radius_m: f64, at: Point, reach_m: f64) -> Option<Interval> {
     let r = at.coords.norm();
     if r + reach_m <= radius_m || r < 1e-9 {

@@ -93,7 +93,7 @@ impl<'a> Walk<'a> {
         Ok((self.path, Err(self.follower.nearest)))
     }
 
-    /// Senses the surroundings if the follower has moved far enough since it last did. Returns whether something new
+    /// Senses the surroundings if the follower has moved far enough since the last time. Returns whether something new
     /// came into range.
     fn look(&mut self) -> bool {
         let at = self.follower.at;

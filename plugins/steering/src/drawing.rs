@@ -33,7 +33,7 @@ impl Forces {
         self.attraction + self.repulsion + self.rotation
     }
 
-    /// Reports the size of every force, and draws the forces if drawings are wanted.
+    /// Reports the size of every force, and draws the forces if drawings are requested.
     ///
     /// An arrow of one metre represents a force as large as the pull of a target one metre away.
     pub fn show(&self, ctx: &Ctx<'_>, at: Point, k_att: f64) {

@@ -150,7 +150,7 @@ fn outlook(velocity: Vector, pose: &PoseEstimate, around: &Around<'_>) -> Outloo
     Outlook { until_s: HORIZON_S, room_m }
 }
 
-/// Position and heading one step later, according to the console's rule for turning a robot toward a velocity.
+/// Position and heading one step later, according to the console's rule for turning a robot towards a velocity.
 fn moved(at: Point, heading_rad: f64, velocity: Vector, limits: &Limits) -> (Point, f64) {
     match drive_for(Drive::Velocity(velocity), heading_rad, limits, TURN_FIRST_RAD) {
         Drive::Velocity(velocity) => (at + velocity * STEP_S, heading_rad),

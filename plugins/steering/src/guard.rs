@@ -1,4 +1,4 @@
-//! The final check of every velocity: the hull never moves toward anything that is already as close as allowed.
+//! The final check of every velocity: the hull never moves towards anything that is already as close as allowed.
 
 use crate::contact::Contact;
 use geometry::{Braking, Vector};
@@ -17,7 +17,7 @@ struct HalfPlane {
     least: f64,
 }
 
-/// The maximum speed toward a solid with this much distance left, metres per second; negative if the distance is
+/// The maximum speed towards a solid with this much distance left, metres per second; negative if the distance is
 /// already too small.
 fn fastest_toward(room_m: f64, braking: &Braking) -> f64 {
     let used_up = room_m / BRAKING_S;
@@ -26,7 +26,7 @@ fn fastest_toward(room_m: f64, braking: &Braking) -> f64 {
 
 /// Returns the velocity closest to `wanted` that keeps a distance `keep_m` from every contact.
 ///
-/// Toward a contact at distance `d`, the speed is limited to `(d - keep_m) / 0.5 s` and to the speed from which the
+/// Towards a contact at distance `d`, the speed is limited to `(d - keep_m) / 0.5 s` and to the speed from which the
 /// robot can stop within `d - keep_m`. The robot therefore slides along an obstacle instead of running into it. If it
 /// is closer than `keep_m`, it is driven away. Where that is impossible, as in a gap too narrow for the distance on
 /// both sides, it may move along the gap but not across.

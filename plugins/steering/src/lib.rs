@@ -1,5 +1,5 @@
 //! Shared functions for all planners that drive a robot: finding what is in the way and how far away it is, finding
-//! space for the hull, and a pilot that drives toward a target, slows down near obstacles and keeps its distance.
+//! space for the hull, and a pilot that drives towards a target, slows down near obstacles and keeps its distance.
 //!
 //! Frame: the tank frame, metres, radians. Distances to obstacles are measured from the robot's hull to the outline.
 #![forbid(unsafe_code)]

@@ -8,8 +8,8 @@ const FLIGHT: &str = "Flight";
 /// Guard distance.
 pub const GUARD: ParamSpec = float("guard_m", "Guard distance", "m", 0.0, 1.0, 0.1)
     .help(
-        "No motion toward an obstacle is allowed if the hull is closer to it than this. Always slightly \
-         larger than the mission's clearance.",
+        "No motion toward an obstacle is allowed if the hull is closer to it than this distance, which \
+         always slightly exceeds the mission's clearance.",
     )
     .group(FLIGHT)
     .live();
@@ -53,8 +53,8 @@ pub const CLEARANCE: ParamSpec = float("clearance_m", "Minimum clearance", "m", 
 /// Settings for flying a robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flight {
-    /// Distance between the hull and any solid below which no motion toward the solid is allowed, metres; a little more
-    /// than the mission's clearance if that is larger.
+    /// Distance between the hull and any solid below which no motion towards the solid is allowed, metres; a little
+    /// more than the mission's clearance if that is larger.
     pub guard_m: f64,
     /// Number of standard deviations of the estimated position by which the guard distance is widened.
     pub guard_sigmas: f64,

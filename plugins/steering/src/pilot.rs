@@ -81,7 +81,7 @@ impl Pilot {
         }
     }
 
-    /// Drives straight toward a target.
+    /// Drives straight towards a target.
     pub fn pursue(&mut self, flight: &Flight, tick: &Tick<'_>, aim: Point) -> Decision {
         let status = self.watch(flight, tick);
         let at = tick.pose.position;
@@ -122,8 +122,8 @@ impl Pilot {
         if is_wedged { self.guarded(velocity, tick, keep_m - spare_m) } else { safe }
     }
 
-    /// Returns the command for a decision, or the closest velocity that stays clear of moving obstacles. The bodies of
-    /// the tick are treated as stationary.
+    /// Returns the command for a decision, or the closest velocity that stays clear of moving obstacles. The bodies in
+    /// `tick` are treated as stationary.
     pub fn past(&self, movers: &[Mover], decision: Decision, tick: &Tick<'_>, ctx: &Ctx<'_>) -> Command {
         if movers.is_empty() {
             return decision.into();

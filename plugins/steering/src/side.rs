@@ -23,7 +23,7 @@ impl Side {
         if self == Self::Left { 1.0 } else { -1.0 }
     }
 
-    /// Unit tangent at a solid whose outward direction at the robot is `away`: toward this side of the solid, as seen
+    /// Unit tangent at a solid whose outward direction at the robot is `away`: towards this side of the solid, as seen
     /// by a robot facing it.
     pub fn along(self, away: Vector) -> Vector {
         Vector::new(away.y, -away.x) * self.sign()

@@ -12,7 +12,7 @@ pub(super) const CORNER_RAD: f64 = 0.5;
 /// `ROOM_MOST_M` metres.
 const ROOM_SHARE: f64 = 0.5;
 const ROOM_MOST_M: f64 = 0.1;
-/// Minimum step in which the path straight ahead is checked, metres.
+/// Minimum step for checking the path straight ahead, metres.
 const LOOK_M: f64 = 0.02;
 
 /// Time to drive a path in a tank as drawn, from standstill to standstill, seconds.

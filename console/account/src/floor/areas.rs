@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, fmt};
 use world::{Floor, PlateMap, Point, Vector};
 
-/// Areas smaller than this are not listed but only summed, square metres.
+/// Areas smaller than this are not listed, only added up, square metres.
 const LEAST_M2: f64 = 0.01;
 
 /// A group of adjacent cells.
@@ -21,12 +21,12 @@ pub struct Area<R> {
     pub area_m2: f64,
     /// The plate with most of the area; absent if the plate layout is not known.
     pub plate: Option<String>,
-    /// All plates that the area touches, the one with most of it first.
+    /// All plates that the area touches, beginning with the plate that contains most of the area.
     #[serde(default)]
     pub plates: Vec<String>,
     /// The reason for most of the area.
     pub reason: R,
-    /// The causes, the one for most of the area first.
+    /// The causes, beginning with the cause for most of the area.
     #[serde(default = "Vec::new")]
     pub causes: Vec<Cause<R>>,
 }
@@ -36,7 +36,7 @@ pub struct Area<R> {
 pub struct Cause<R> {
     /// The reason.
     pub reason: R,
-    /// The part of the area that it applies to, square metres.
+    /// The part of the area to which the reason applies, square metres.
     pub area_m2: f64,
     /// The value behind the reason; absent if the reason has none.
     pub measure: Option<Measure>,
@@ -51,7 +51,7 @@ pub struct Slivers<R> {
     pub count: usize,
     /// Total area, square metres.
     pub area_m2: f64,
-    /// The causes, the one for most of the area first.
+    /// The causes, beginning with the cause for most of the area.
     #[serde(default = "Vec::new")]
     pub causes: Vec<Cause<R>>,
 }
@@ -98,7 +98,7 @@ impl<R> fmt::Display for Area<R> {
         let plate = plate.as_ref().map(|name| format!(", plate {name}")).unwrap_or_default();
         // Rounding comes before formatting, so that a coordinate near zero has no sign.
         let [x, y] = [at.x, at.y].map(|m| (10.0 * m).round() / 10.0 + 0.0);
-        // Enough decimals that a listed area does not round up to the limit that it is below.
+        // Enough decimals to keep a listed area from being rounded up to the limit that it is below.
         let decimals = if *area_m2 < 0.1 { 3 } else { 2 };
         write!(f, "{area_m2:.decimals$} m² at {x:.1}, {y:.1} m{plate}: {}", self.why())
     }
@@ -210,7 +210,7 @@ fn causes<R: Explained>(
     by_size(cells, reason_of).into_iter().map(cause).collect()
 }
 
-/// Groups cells by a key, the key with most cells first; keys with equal counts are in ascending order.
+/// Groups cells by a key, the key with the most cells first; keys with equal counts are in ascending order.
 fn by_size<K: Copy + Ord>(cells: &[usize], key_of: impl Fn(usize) -> K) -> Vec<(K, Vec<usize>)> {
     let mut groups: BTreeMap<K, Vec<usize>> = BTreeMap::new();
     for cell in cells {

@@ -8,11 +8,11 @@ use world::{
     ShellStretch, ShellZone, SweptArea, Tool, ZoneKind, tether::Reach,
 };
 
-/// Plans are drawn on the floor in pieces no longer than this, metres.
+/// A plan is drawn on the floor in pieces that are no longer than this, metres.
 const PIECE_M: f64 = 0.5;
-/// The error of a cell without an uncounted pass.
+/// The error stored for a cell over which there was no uncounted pass.
 const NEVER: u16 = u16::MAX;
-/// The zone index of a cell that was not made unreachable by any zone.
+/// The zone index of a cell that no zone made unreachable.
 const OF_NONE: u16 = u16::MAX;
 /// Distances along a plan that differ by less count as equal, metres.
 const NEARLY_M: f64 = 0.01;
@@ -26,7 +26,8 @@ pub struct Evidence {
     beside_m: f64,
     /// The current plan.
     plan: Planned,
-    /// The plan before the latest one, kept until the latest one is started, because that may still be refused.
+    /// The plan before the latest plan. It is kept until the latest plan is started, because that plan may still be
+    /// refused.
     before: Option<Box<Planned>>,
     /// Cells that a plan led to and that the robot passed while following the plan.
     passed: Vec<bool>,
@@ -110,21 +111,21 @@ impl Evidence {
         self.plan.along_m = self.plan.along_m.max(along_m);
     }
 
-    /// Sets the progress as a share of the distance driven before this plan plus the length of this plan.
+    /// Sets the progress, given as a share of the distance driven before this plan plus the length of this plan.
     pub fn fly_share(&mut self, done: f64) {
         let Planned { length_m, flown_m, .. } = self.plan;
         self.fly(done * (flown_m + length_m) - flown_m);
     }
 
-    /// Cells that the robot passed along the plan stay marked when a new plan is made.
+    /// Cells that the robot passed while following a plan stay marked when a new plan is made.
     fn leave_behind(&mut self) {
         for (passed, due_m) in self.passed.iter_mut().zip(&self.plan.due_m) {
             *passed |= self.plan.is_past(*due_m);
         }
     }
 
-    /// Adds the estimated position with its 95 % error, metres, and whether the floor that the tool passed since the
-    /// last position counts as scanned.
+    /// Adds the estimated position with its 95 % error, metres, and whether the floor that the tool has passed over
+    /// since the last position counts as scanned.
     pub fn visit(&mut self, here: Pose, error_m: f64, counts: bool) {
         let before = std::mem::replace(&mut self.last, here);
         self.error_m = error_m;
@@ -140,8 +141,8 @@ impl Evidence {
         self.shell.profile(|point| solid.iter().any(|solid| solid.shape.distance_m(point) < 0.0))
     }
 
-    /// The scanned share of the reachable floor by the exact area that the tool passed, 0 to 1; `None` if there is no
-    /// reachable floor.
+    /// The scanned share of the reachable floor, from the exact area that the tool swept, 0 to 1; `None` if there is
+    /// no reachable floor.
     pub fn exact_share(&self, floor: &FloorMaker) -> Option<f64> {
         let shapes: Vec<Shape> = self.solids().map(|solid| solid.shape.clone()).collect();
         self.area.share_of(floor, &self.boundary, &shapes)
@@ -190,7 +191,7 @@ impl Evidence {
         }
     }
 
-    /// The zone that made a cell unreachable when it was drawn, if any.
+    /// The zone that made a cell unreachable when it was drawn; `None` if there is none.
     pub(super) fn shut_by(&self, index: usize) -> Option<&Solid> {
         self.no_go.get(usize::from(self.shut_by[index]))
     }
@@ -309,7 +310,7 @@ impl Evidence {
         all.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Whether a found obstacle is a cause for missed floor at a position.
+    /// Whether a found obstacle is a cause of missed floor at a position.
     pub(super) fn is_beside_found(&self, place: Point) -> bool {
         self.found.iter().any(|(_, solid)| solid.shape.distance_m(place) <= self.beside_m)
     }
@@ -343,9 +344,9 @@ impl Evidence {
 /// A solid object on the floor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solid {
-    /// Its name, for people.
+    /// Human-readable name of the object.
     pub name: String,
-    /// Its outline, tank frame.
+    /// Outline of the object, tank frame.
     pub shape: Shape,
 }
 
@@ -358,16 +359,16 @@ impl Solid {
 /// A plan and the progress along it.
 #[derive(Debug, Clone)]
 struct Planned {
-    /// Distance along the plan at which it last passes over each cell, metres; NaN for cells that it does not pass
-    /// near.
+    /// For each cell, the distance along the plan at which the plan last passes over the cell, metres; NaN for cells
+    /// that the plan does not pass near.
     due_m: Vec<f32>,
-    /// Its length, metres.
+    /// Length of the plan, metres.
     length_m: f64,
-    /// The robot's progress along it, metres.
+    /// The robot's progress along the plan, metres.
     along_m: f64,
     /// Distance driven along earlier plans, metres.
     flown_m: f64,
-    /// Whether it was for all remaining floor.
+    /// Whether the plan was for all remaining floor.
     is_whole: bool,
     /// The cuts: lines that the tethered robot does not cross.
     cuts: Vec<Vec<Point>>,

@@ -52,11 +52,11 @@ impl Measure {
     }
 }
 
-/// The largest distance of some cells from the edge of the reference cells around them, metres. It is at least one
-/// cell; `None` if there are no reference cells.
+/// The largest distance of some cells from the edge of the reference cells around them, metres. The distance is at
+/// least one cell; `None` if there are no reference cells.
 pub(crate) fn depth_m(floor: &Floor, cells: &[usize], is_other: impl Fn(usize) -> bool) -> Option<f64> {
-    // Each cell takes over the nearest reference cell of a neighbour that is closer to one: almost exact, in linear
-    // time.
+    // Each cell takes over the nearest reference cell of a neighbour that is closer to a reference cell: almost
+    // exact, in linear time.
     let mut nearest: BTreeMap<usize, Option<usize>> = cells.iter().map(|cell| (*cell, None)).collect();
     let distance_m = |a: usize, b: usize| (floor.center(a) - floor.center(b)).norm();
     let closest = |cell: usize, candidates: &mut dyn Iterator<Item = usize>| {

@@ -18,7 +18,7 @@ pub enum MissReason {
     Narrow,
     /// No plan led to the floor, because a plan keeps hull and clearance from solid objects.
     Clearance,
-    /// No plan led to the floor: it is along a line that keeps the tether unwound.
+    /// No plan led to the floor, because it is along a line that keeps the tether unwound.
     Wrap,
     /// No plan led to the floor.
     NotPlanned,

@@ -95,7 +95,7 @@ impl Reasons<'_> {
                 Measure::off(cells.iter().filter_map(|cell| evidence.nearest_found(floor.center(*cell))))
             }
             MissReason::NotAsked => depth_m(floor, cells, |cell| evidence.is_asked(cell)).map(Measure::of),
-            // In a corner, a cell may be near enough to one wall, and still no lane can reach it.
+            // In a corner, a cell may be near enough to the nearest wall, and yet no lane can reach it.
             MissReason::Narrow => most(&|cell| Some(self.beyond_lanes_m(floor.center(cell))))
                 .filter(|beyond_m| *beyond_m > 0.0)
                 .map(|m| Measure::of(m).against(self.lane_m)),

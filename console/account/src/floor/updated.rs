@@ -5,7 +5,7 @@ use mission::event::RunOpened;
 use std::collections::BTreeSet;
 use world::{Floor, FloorMaker, Obstacle, ObstacleId, Zone, ZoneKind};
 
-/// The floor with all obstacles found in any of the runs, less all no-go zones drawn in any of them.
+/// The floor after the runs: with all obstacles that were found, and with all no-go zones closed off.
 pub fn updated_floor(run: &RunOpened, grid: &Floor, evidence: &Evidence, swath_m: f64) -> FloorMaker {
     let mut world = run.world.as_drawn();
     let drawn: BTreeSet<ObstacleId> = world.obstacles.iter().map(|obstacle| obstacle.id).collect();

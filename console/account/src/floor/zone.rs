@@ -17,7 +17,7 @@ const ARC_M: f64 = 0.1;
 /// The critical zone along the shell, where the floor meets it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct CriticalZone {
-    /// Its width, metres.
+    /// Width of the zone, metres.
     pub width_m: f64,
     /// Length of the shell beside free floor, metres.
     #[serde(default)]
@@ -25,10 +25,10 @@ pub struct CriticalZone {
     /// Length of shell along which the full width of the zone was scanned, metres.
     #[serde(default)]
     pub done_m: f64,
-    /// Scanned share of its area, 0 to 1; absent if there is no free floor at the shell.
+    /// Scanned share of the zone's area, 0 to 1; absent if there is no free floor at the shell.
     pub scanned: Option<f64>,
-    /// Distance from the shell to the edge of the scanned floor: the median along the shell where the zone is not
-    /// done, metres; the width of the zone if nothing of it was scanned.
+    /// Median distance from the shell to the edge of the scanned floor, taken over the stretches where the zone is not
+    /// done, metres; the width of the zone if none of it was scanned.
     #[serde(default)]
     pub gap_m: f64,
     /// Whether the zone is done: its full width is scanned along 99.5 % of the shell.
@@ -53,28 +53,29 @@ pub struct ZoneOfPlate {
     pub length_m: f64,
     /// Length of shell along which the full width of the zone was scanned, metres.
     pub done_m: f64,
-    /// Distance from the shell to the scanned floor: the median where the zone is not done, metres.
+    /// Median distance from the shell to the scanned floor, taken over the stretches where the zone is not done,
+    /// metres.
     pub gap_m: f64,
 }
 
-/// An arc of the shell along which the zone was not scanned over its full width.
+/// An arc of the shell along which the full width of the zone was not scanned.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ZoneArc {
-    /// Distance along the shell to its start, metres: counter-clockwise from due east, or from the first corner of
-    /// the drawing.
+    /// Distance along the shell to the start of the arc, metres: counter-clockwise from due east, or from the first
+    /// corner of the drawing.
     pub from_m: f64,
-    /// Distance along the shell to its end, metres; greater than the length of the shell if the arc runs past the
-    /// origin.
+    /// Distance along the shell to the end of the arc, metres; greater than the length of the shell if the arc runs
+    /// past the origin.
     pub to_m: f64,
-    /// Its start point, metres.
+    /// Start point of the arc, metres.
     pub from: Point,
-    /// Its end point, metres.
+    /// End point of the arc, metres.
     pub to: Point,
     /// Length of shell that is not done, metres.
     pub not_done_m: f64,
-    /// Distance from the shell to the scanned floor: the median where the arc is not done, metres.
+    /// Median distance from the shell to the scanned floor, taken over the stretches where the arc is not done, metres.
     pub gap_m: f64,
-    /// The largest such distance, metres.
+    /// Largest distance from the shell to the scanned floor, metres.
     pub gap_max_m: f64,
 }
 

@@ -11,7 +11,7 @@ pub struct Date {
 }
 
 impl Date {
-    /// Reads `2027-03-31`, or the last day of `2027-03`; `None` for anything else.
+    /// Reads `2027-03-31`, or `2027-03` as the last day of that month; `None` for anything else.
     ///
     /// ```
     /// use account::Date;

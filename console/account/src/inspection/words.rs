@@ -84,7 +84,7 @@ const EMPTY: [&str; 58] = [
     "yet",
 ];
 
-/// Whether a text is a placeholder for one that is still to be written: `TBD`, `todo: ask`, `xxx`, `...`, `?`.
+/// Whether a text is a placeholder for a text that is still to be written: `TBD`, `todo: ask`, `xxx`, `...`, `?`.
 ///
 /// ```
 /// use account::is_placeholder;

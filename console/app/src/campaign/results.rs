@@ -15,8 +15,8 @@ pub(crate) struct Results {
     pub sha256: String,
 }
 
-/// The blocks that still have to run; none if the stopping rule is met by the blocks completed without a gap. Warns
-/// about damaged parts.
+/// The blocks that still have to run. There are none if the blocks before the first missing block already meet the
+/// stopping rule. Warns about damaged parts.
 pub(crate) fn missing(folder: &Folder, campaign: &Campaign) -> anyhow::Result<Vec<u64>> {
     let (missing, damaged) = folder.missing(campaign);
     let whole = missing.first().copied().unwrap_or(campaign.blocks());

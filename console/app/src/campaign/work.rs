@@ -139,7 +139,7 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Checks whether the blocks completed without a gap meet the stopping rule.
+    /// Checks whether the blocks before the first missing block already meet the stopping rule.
     fn look(&self, queue: &Mutex<Queue<'_>>, is_enough: &AtomicBool) -> anyhow::Result<()> {
         let mut queue = lock(queue);
         let Some((watch, next)) = &mut queue.until else { return Ok(()) };

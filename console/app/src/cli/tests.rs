@@ -14,7 +14,7 @@ fn the_help_of_every_command_is_as_reviewed() {
     insta::assert_snapshot!(help.join("\n"));
 }
 
-/// The help of every command below another one, in their order.
+/// The help texts of a command and of all its subcommands, in order.
 fn gather(command: &mut clap::Command, above: &str, help: &mut Vec<String>) {
     for sub in command.get_subcommands_mut().filter(|sub| !sub.is_hide_set()) {
         let name = format!("{above}{}", sub.get_name());

@@ -114,8 +114,8 @@ fn collect(
     Some(())
 }
 
-/// Adds the attributes of an insertion. One attribute serves as the name of the insertion: the first with a name tag,
-/// else the first of all.
+/// Adds the attributes of an insertion. One attribute serves as the name of the insertion: the first attribute with a
+/// name tag or, if there is none, the first attribute.
 fn attributes(insert: &Entity, layer: &str, map: &Affine2<f64>, unfolded: &mut Unfolded) -> Option<()> {
     let naming = insert.parts.iter().position(labels::is_name_tag).unwrap_or(0);
     for (index, attribute) in insert.parts.iter().enumerate() {

@@ -104,7 +104,7 @@ struct Nodes {
 }
 
 impl Nodes {
-    /// The node at a point: the nearest known node, or else a new one.
+    /// The node at a point: the nearest known node or, if none is close enough, a new one.
     fn at(&mut self, place: Point) -> usize {
         let cell = |v: f64| (v / SAME_M).floor() as i64;
         let (x, y) = (cell(place.x), cell(place.y));

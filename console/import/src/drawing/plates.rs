@@ -95,8 +95,8 @@ fn around(center: Point, radius_m: f64, n: usize) -> Vec<Point> {
     (0..n).map(|k| center + world::Vector::new(at(k).cos(), at(k).sin()) * radius_m).collect()
 }
 
-/// Counter-clockwise outlines: the closed outlines if all are closed, else the faces that all outlines and the shell
-/// enclose.
+/// Counter-clockwise outlines: the outlines themselves if all are closed; otherwise the faces that all outlines and the
+/// shell enclose.
 fn rings(
     lines: Vec<(Vec<Point>, bool)>,
     boundary: &Boundary,
@@ -245,8 +245,8 @@ fn named(rings: Vec<Vec<Point>>, labels: &mut Vec<Label>, notes: &mut Vec<String
     order.into_iter().map(plate).collect()
 }
 
-/// The label of each plate: the first label inside the plate that is on a layer of plates, else the only label inside
-/// it. A text that would name several plates names none of them.
+/// The label of each plate: the first label inside the plate that is on a layer of plates or, if there is none, the
+/// only label inside the plate. A text that would name several plates names none of them.
 fn given(plates: &[(Point, Vec<Point>)], order: &[usize], labels: &[Label]) -> BTreeMap<usize, usize> {
     let mut within: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (index, label) in labels.iter().enumerate() {

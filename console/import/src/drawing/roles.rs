@@ -57,7 +57,7 @@ impl Role {
     }
 }
 
-/// The roles of layers: as assigned, else according to a word in the layer's name.
+/// The roles of layers: the assigned roles or, for other layers, those named by a word in the layer's name.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Layers(Vec<(Role, String)>);
 

@@ -92,7 +92,7 @@ impl Task<'_> {
         Ok(calibration)
     }
 
-    /// Estimates the share by which all ranges are too long from arrival differences alone.
+    /// Estimates, from arrival differences alone, the share by which all ranges are too long.
     fn scale_of_differences(&self, readings: (&Columns, &Repeats)) -> anyhow::Result<Found> {
         let (mut scale, mut sigma) = (0.0, f64::INFINITY);
         for _ in 0..ROUNDS {

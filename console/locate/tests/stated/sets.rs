@@ -9,11 +9,11 @@ use std::{
 };
 use world::{Point, Pose, Vector};
 
-/// Metres per second at which sound runs.
+/// The speed of sound, metres per second.
 const SOUND_M_S: f64 = 1287.0;
-/// Metres per second that the robot drives at most.
+/// The top speed of the robot, metres per second.
 const TOP_M_S: f64 = 0.4;
-/// What instruments write where they heard nothing.
+/// The values that instruments write when they have heard nothing.
 const SENTINELS: [&str; 8] = ["7132.146", "0", "-1", "9999", "65535", "nan", "0.0", "99999.9"];
 
 /// What is special about a set.
@@ -39,7 +39,7 @@ pub(crate) enum Kind {
     Copied,
     /// All ranges are too long or too short by one length.
     Offset,
-    /// Measured motion with another sign or in another unit.
+    /// Measured motion with the wrong sign or in the wrong unit.
     WrongMotion,
 }
 
@@ -66,13 +66,13 @@ impl Kind {
         Self::WrongMotion,
     ];
 
-    /// Whether nothing is wrong with the readings that the scenario does not say.
+    /// Whether the readings have no errors that the scenario does not state.
     pub(crate) fn is_sound(self) -> bool {
         use Kind::{Jitter, NoOdometry, Quantised, QuantisedDifferences, Sound, SoundDifferences};
         matches!(self, Sound | SoundDifferences | NoOdometry | Jitter | Quantised | QuantisedDifferences)
     }
 
-    /// By what ways and turns are multiplied where they are written.
+    /// The factors by which distances and turns are multiplied before they are written.
     fn units_of_motion(self, seed: u64) -> (f64, f64) {
         match (self, seed % 4) {
             (Self::WrongMotion, 0) => (1.0, -1.0),
@@ -98,7 +98,7 @@ pub(crate) struct Set {
     pub has_no_motion: bool,
 }
 
-/// What a set is drawn from.
+/// The random choices from which a set is made.
 struct Draw {
     rng: Pcg64,
     radius_m: f64,
@@ -174,7 +174,7 @@ impl Draw {
         )
     }
 
-    /// A drive, a pose for each tenth of a second, that keeps inside.
+    /// A drive that stays inside the tank, as one pose for each tenth of a second.
     fn drive(&mut self, ticks: u32, speed_m_s: f64) -> Vec<(Pose, f64)> {
         let at = self.rng.random_range(0.0..TAU);
         let from_m = 0.5 * self.radius_m;
@@ -281,7 +281,7 @@ impl Set {
                         (false, true) => format!("{:.9}", 1000.0 + t_s + range_m / SOUND_M_S),
                         (false, false) => format!("{:.6}", range_m.max(0.001) * (1.0 + scale)),
                     };
-                    // A second emission under the time of the first.
+                    // A second emission recorded under the time of the first.
                     let t_s = if twice { f64::from(k - 10) / 10.0 } else { t_s };
                     let copies = if kind == Kind::Copied { 10 } else { 1 };
                     (0..copies).for_each(|_| {
@@ -343,7 +343,7 @@ impl Set {
     }
 }
 
-/// The lines in the order of their times, the first one first.
+/// The lines, earliest first.
 fn sorted(text: &str) -> String {
     let mut lines: Vec<&str> = text.lines().collect();
     let t_s = |line: &str| line.split(',').next().and_then(|cell| cell.parse::<f64>().ok()).unwrap_or(-1.0);

@@ -1,9 +1,9 @@
 //! Better plans. After a repair, a second worker of the same planner makes a plan for all that is left while the robot
 //! continues.
 //!
-//! The second worker receives no plan to keep to. Its plan begins at a place ahead on the current plan: floor on the way
-//! there counts as scanned, and the cable counts as laid up to there. If the new plan saves more time than a change of
-//! plan is worth, it is offered, or taken when the robot reaches that place. If the current plan changes before then, the
+//! The second worker receives no plan to keep to. Its plan begins at a place ahead on the current plan: floor on the
+//! way there counts as scanned, and the cable counts as laid up to there. If the new plan saves enough time to justify
+//! a change, it is offered, or taken when the robot reaches that place. If the current plan changes before then, the
 //! new plan is dropped.
 
 mod worth;

@@ -10,7 +10,7 @@ use crate::{
 };
 
 impl Known {
-    /// Refuses a planner that cannot do this mission.
+    /// Refuses a planner that cannot run this mission.
     pub(super) fn fitting(&self, worker: &Worker, given: Given) -> Result<Given, Fault> {
         let id = worker.id();
         if let Given::Plan(plan) = &given
@@ -31,7 +31,7 @@ impl Known {
 }
 
 impl Mission {
-    /// Refuses a planner that was opened but is quarantined or cannot do this mission.
+    /// Refuses a planner that was opened but is quarantined or cannot run this mission.
     pub(super) fn checked(&self, worker: &Worker, given: Given) -> Result<Given, Fault> {
         if let Given::Opened(info) = &given
             && let Some(message) = self.barred(info)
@@ -54,7 +54,8 @@ impl Mission {
         self.workers.quarantine.holds(&info.sha256).then(message)
     }
 
-    /// Reports a fault of a planner. The fault counts against the plugin if its cause is of a kind that counts.
+    /// Reports a fault of a planner. The fault counts against the plugin unless its cause is one of those excluded
+    /// below.
     pub(super) fn note_fault(&mut self, ask: AskId, fault: Fault, of: Option<&PlannerInfo>) {
         let counts =
             !matches!(fault.cause, Cause::Planner(_) | Cause::Refused | Cause::Quarantined | Cause::Starved);
@@ -66,7 +67,7 @@ impl Mission {
     }
 }
 
-/// The fault of a planner that was opened but cannot be used.
+/// The fault for a planner that was opened but cannot be used.
 fn refused(info: &PlannerInfo, during: During, cause: Cause, message: String) -> Fault {
     Fault { plugin_sha256: Some(info.sha256.clone()), ..fault(&info.id, during, cause, message) }
 }

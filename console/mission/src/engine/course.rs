@@ -43,7 +43,7 @@ impl Due {
         Self { reason, from_anchor: false }
     }
 
-    /// A plan from the anchor, after the one from the robot's position was refused.
+    /// A plan from the anchor, after the plan from the robot's position was refused.
     pub(super) fn from_anchor(reason: Reason) -> Self {
         Self { reason, from_anchor: true }
     }
@@ -93,7 +93,7 @@ impl Course {
         self.cuts = CutsRule::new(lines, plan.path.get(from).copied(), known.position(), &solids);
     }
 
-    /// Obstacles found while the plan was being made may block the task; if they do, requests a new plan immediately.
+    /// Requests a new plan immediately if obstacles that were found while the plan was being made block the task.
     pub(super) fn doubt_fresh_plan(&mut self, task: &Task, room_m: f64) {
         let found = std::mem::take(&mut self.found_since);
         if found.iter().any(|shape| task.is_in_the_way(shape, room_m)) {
@@ -113,7 +113,8 @@ impl Course {
         has_strayed
     }
 
-    /// Obstacles that do not block the rest of the plan may still obstruct its tether; if they do, requests a new plan.
+    /// Requests a new plan if found obstacles obstruct the tether on the rest of the plan, even if they do not block
+    /// the path.
     pub(super) fn doubt_for_tether(&mut self, known: &Known) {
         let Some(tether) = known.tether.as_ref().filter(|tether| !tether.flies_uncertified()) else { return };
         let Some(rest) = known.task.lanes_left().filter(|_| self.has_plan()) else { return };

@@ -18,24 +18,24 @@ pub use commands::Sending;
 use planner_api::{Plan, Reason};
 use world::{Point, Shape};
 
-/// The active planner, or the one that will drive first.
+/// The active planner or, before there is one, the planner that will be active first.
 #[derive(Clone, Default)]
 pub(super) struct Driving {
     pub worker: Worker,
     pub course: Course,
-    /// The plan that the planner is to keep to; it is the planner's own, different from the one in use.
+    /// The plan that the planner is asked to keep to. This is the planner's own plan, not the plan in use.
     pub keep: Option<Plan>,
     /// How far to prepare the planner while the robot stands still.
     pub prepare: Prepare,
     /// The plan made before the start, or why it cannot be run; `None` if no plan is shown to anyone.
     pub first_plan: Option<Result<PlanId, String>>,
-    /// New values for its live parameters, not yet sent.
+    /// New values for the planner's live parameters, not sent yet.
     pub reconfigure: Option<PlannerChoice>,
     /// Whether a snapshot of the planner's state is due, for the instance that will replace it.
     pub snapshot_due: bool,
     /// Mission time of the last snapshot or, until there is one, of the first command, seconds.
     saved_at_s: Option<f64>,
-    /// Command of the planner for this tick.
+    /// Command from the planner for this tick.
     command: Option<Arrived>,
     /// The last tick for which a command was requested.
     stepped_at: Option<u64>,
@@ -69,7 +69,8 @@ pub(super) struct LeftPlan {
 
 impl LeftPlan {
     /// The plan, provided that `choice` is the planner that made it, with the same values, and that the robot is still
-    /// within `near_m` of the point where it left the plan. A planner that is switched back to continues its old plan.
+    /// within `near_m` of the point where it left the plan. If the mission switches back to a planner, the planner
+    /// continues its old plan.
     pub(super) fn to_go_on_with(&self, choice: &PlannerChoice, here: Point, near_m: f64) -> Option<Plan> {
         (self.choice == *choice && (self.at - here).norm() < near_m).then(|| self.plan.clone())
     }

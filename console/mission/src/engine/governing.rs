@@ -11,7 +11,7 @@ use geometry::{Braking, Drive};
 use planner_api::{Command, Limits};
 use world::{Medium, Mode};
 
-/// A speed counts as limited if the speed sent is less than this share of it.
+/// A command counts as limited if the speed sent is less than this share of the speed requested.
 const LIMITED_SHARE: f64 = 0.9;
 
 impl Known {
@@ -50,7 +50,7 @@ impl Known {
         self.governor.momentum = self.governor.momentum.after(drive, &here);
     }
 
-    /// Processes a reading of the pressure sensor.
+    /// Processes a reading from the pressure sensor.
     pub(super) fn take_pressure(&mut self, pressure_pa: Option<f64>) -> Option<EventKind> {
         let (sensor, pressure_pa) = (self.config.pressure?, pressure_pa?);
         let is_first = !self.knows_medium();

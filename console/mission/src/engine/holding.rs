@@ -78,7 +78,7 @@ impl Mission {
         self.known.phase = Phase::Running(gait);
     }
 
-    /// Sends the command of this tick to the robot; without a command the robot stands still.
+    /// Sends the command for this tick to the robot; without a command, the robot stands still.
     pub(super) fn drive(&mut self) -> Drive {
         let Phase::Running(gait) = self.known.phase else { return Drive::STILL };
         let Some(drive) = self.driving.send(&mut self.known, &mut self.happened) else { return Drive::STILL };

@@ -97,7 +97,7 @@ impl Known {
         self.config.tether.as_ref().is_some_and(|tether| ends_at_anchor(tether, &self.config))
     }
 
-    /// Whether the mission puts return paths along the cable before plans.
+    /// Whether the mission may begin a plan with a return path along the cable.
     pub(super) fn plans_ways_home(&self) -> bool {
         self.is_coverage() && self.task_ends_at_anchor()
     }

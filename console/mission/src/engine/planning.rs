@@ -1,4 +1,4 @@
-//! Evaluates plans: whether one may be run.
+//! Evaluates plans: decides whether a plan may be run.
 
 use super::{known::Known, requests::AskedPlan};
 use crate::{ask::AskId, event::EventKind};
@@ -42,7 +42,7 @@ impl Known {
         Evaluated { plan, events, objection }
     }
 
-    /// Why a plan is not run, or `None`; its certificate is added to the events.
+    /// Why a plan is not run, or `None`; the plan's certificate is added to the events.
     pub(super) fn objection(
         &self,
         planner: &str,
@@ -53,7 +53,7 @@ impl Known {
         by_tether.or_else(|| self.objection_to_way(planner, plan))
     }
 
-    /// Why a plan is not safe for the tether, or `None`; its certificate is added to the events.
+    /// Why a plan is not safe for the tether, or `None`; the plan's certificate is added to the events.
     fn certified(&self, planner: &str, plan: &Plan, events: &mut Vec<EventKind>) -> Option<Objection> {
         let tether = self.tether.as_ref()?;
         let certificate = tether.certify(plan, self.chart.world(), self.task_ends_at_anchor());
@@ -82,7 +82,7 @@ impl Known {
     }
 }
 
-/// The event that a plan was made, including its return path.
+/// The event for a plan that was made, including its return path.
 pub(super) fn planned(ask: Option<AskId>, planner: &str, asked: &AskedPlan, plan: &Plan) -> EventKind {
     EventKind::Planned {
         ask,

@@ -44,7 +44,7 @@ impl Mission {
         self.preparing.as_mut()?.worker.ask_for_plan(self.known.tick, plan?)
     }
 
-    /// Processes an answer of the planner being prepared.
+    /// Processes an answer from the planner being prepared.
     pub(super) fn answer_preparing(&mut self, pending: Pending, Answer { ask, result, said }: Answer) {
         let Some(mut preparing) = self.preparing.take() else { return };
         let given = result.and_then(|given| self.checked(&preparing.worker, given));

@@ -31,9 +31,9 @@ impl Preparing {
 /// A planner that takes over as soon as it has an acceptable plan.
 #[derive(Clone)]
 pub(super) struct Candidate {
-    /// The plan that is due.
+    /// The plan that the candidate still has to make.
     pub due: Due,
-    /// The plan that the candidate is to keep to; it is the candidate's own, different from the one in use.
+    /// The plan that the candidate is asked to keep to. This is the candidate's own plan, not the plan in use.
     pub keep: Option<Plan>,
     /// Obstacles found since its plan was requested.
     pub found_since: Vec<Shape>,
@@ -56,7 +56,7 @@ impl Candidate {
     }
 }
 
-/// State of the better plan, which begins at a place on the current one.
+/// State of the better plan, which begins at a place on the current plan.
 #[derive(Clone)]
 pub(super) enum Better {
     /// The planner is being opened.

@@ -1,4 +1,4 @@
-//! Steps: the robot is ordered to move until it reaches the end of a lane, or until an event.
+//! Steps: the robot is ordered to move until it reaches the end of a lane, or until an event occurs.
 
 use super::{Mission, known::Known};
 use crate::{

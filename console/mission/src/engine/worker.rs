@@ -11,9 +11,9 @@ use std::sync::Arc;
 #[derive(Clone, Default)]
 pub(super) struct Worker {
     pub choice: PlannerChoice,
-    /// Its description, known once the planner has been opened for the first time.
+    /// Description of the planner, known once the planner has been opened for the first time.
     pub info: Option<PlannerInfo>,
-    /// Description of the planner that drove before it.
+    /// Description of the planner that was active before this one.
     pub before: Option<PlannerInfo>,
     /// The last state that the planner saved.
     pub saved: Option<AskId>,
@@ -67,7 +67,7 @@ impl Worker {
         &self.choice.id
     }
 
-    /// Its description or, until the planner is opened, that of the planner before it.
+    /// Description of the planner or, until the planner is opened, of the planner before it.
     pub(super) fn seen(&self) -> Option<&PlannerInfo> {
         self.info.as_ref().or(self.before.as_ref())
     }

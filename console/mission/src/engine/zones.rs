@@ -10,8 +10,8 @@ use crate::{config::TaskConfig, event::EventKind, order::Order};
 use planner_api::Reason;
 use world::{Boundary, Point, Shape, Zone, ZoneKind, shape::ring_area_m2, shortest::GrownFloor};
 
-/// Zones smaller than this are refused as a slip of the hand, square metres. Zones with a corner farther away than the
-/// next limit, metres, are refused, too. The same limits apply to scenarios.
+/// Minimum area of a zone, square metres; a smaller zone was probably drawn by mistake and is refused. A zone with a
+/// coordinate beyond [`FARTHEST_M`] is refused, too. The same limits apply to scenarios.
 const LEAST_M2: f64 = 0.01;
 const FARTHEST_M: f64 = 1e4;
 

@@ -59,7 +59,7 @@ impl Event {
 }
 
 impl Said {
-    /// Rounds the numbers in drawings and figures in the same way as in events.
+    /// Rounds the numbers in drawings and figures in the same way as those in events.
     #[must_use]
     pub(crate) fn rounded(mut self) -> Self {
         self.drawings.iter_mut().for_each(round_drawing);

@@ -1,4 +1,4 @@
-//! The severity of events for the operator.
+//! How severe events are for the operator.
 
 use crate::{
     phase::HoldReason,

@@ -10,9 +10,9 @@ use std::fmt;
 pub enum Sandbox {
     /// No access to files, the network, the terminal, other processes or their memory.
     Full,
-    /// Only some of these restrictions; the text tells why the others are missing.
+    /// Only some of the restrictions of [`Self::Full`]; the text states why the others are missing.
     Partial(String),
-    /// Only limits on memory and files; the text tells why.
+    /// Only limits on memory and files; the text states why there is no more.
     None(String),
 }
 

@@ -29,7 +29,7 @@ pub(crate) struct Cover {
     lanes: Option<Lanes>,
     /// Distance driven along earlier plans, metres.
     before_m: f64,
-    /// The minimum distance so far from the corner ahead, metres, and the time since it was reached, seconds.
+    /// The minimum distance so far from the corner ahead, metres, and the time since the robot was that close, seconds.
     at_corner: (f64, f64),
 }
 

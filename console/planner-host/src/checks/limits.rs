@@ -1,6 +1,6 @@
 //! The limits on what the console accepts from a worker. The plugin can write to the socket, too, so the console trusts
-//! only what it has checked itself: numbers, and counts and lengths, which it checks while reading, before it reserves
-//! memory for them.
+//! nothing that it has not checked itself. It checks counts and lengths while reading, before it reserves memory, and
+//! it checks numbers.
 
 use crate::Progress;
 use foreign::plain;
@@ -20,7 +20,8 @@ pub(crate) const MOST_SCALARS: usize = 256;
 pub(crate) const MOST_LOGS: usize = 64;
 pub(crate) const MOST_POINTS: usize = 1_000_000;
 pub(crate) const MOST_CUTS: usize = 10_000;
-/// The maximum number of words of a choice parameter: as many as fit into a text with separators between them.
+/// The maximum number of words that a choice parameter may have: as many as fit into a text with separators between
+/// them.
 pub(crate) const MOST_OPTIONS: usize = LONGEST_TEXT;
 /// The maximum length of a text, bytes; the texts that workers send are shorter.
 const LONGEST_TEXT: usize = 16 << 10;

@@ -106,11 +106,11 @@ mod tests {
         let mut stamps = Stamps::of(&PluginDirs::of(vec![folder.path().to_owned()]));
         let before = stamps.look();
         assert_eq!(stamps.folders[0].listed, Some(long_ago));
-        // Written in its place: the folder itself does not change.
+        // The file is overwritten in place, so the folder itself does not change.
         fs::write(&path, "ab").unwrap();
         assert_eq!(fs::metadata(folder.path()).unwrap().modified().unwrap(), long_ago);
         assert_ne!(stamps.look(), before);
-        // And a file that comes later is found.
+        // A file that is added later is found, too.
         fs::write(folder.path().join("libplanner_b.so"), "b").unwrap();
         assert_eq!(stamps.look().len(), 2);
     }

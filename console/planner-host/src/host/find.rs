@@ -49,8 +49,8 @@ impl Catalog {
         self.dirs.requires_sandbox
     }
 
-    /// Continues the search for a planner. Returns the files to try next, in order, or `None` when all were tried.
-    /// Since a plugin may have been built meanwhile, the files can be read again before the search gives up.
+    /// Continues the search for a planner. Returns the files to try next, in order, or `None` when all were tried. The
+    /// files can be read again before the search gives up, because a plugin may have been built meanwhile.
     pub(super) fn search_on(
         &mut self,
         id: &str,
@@ -110,7 +110,7 @@ impl Catalog {
         self.known.insert(id.to_owned(), file);
     }
 
-    /// Explains why no planner has this id, from what is known without loading anything.
+    /// Explains why no planner has this id, as far as the reason is known without loading anything.
     pub(super) fn not_found(&self, id: &str) -> String {
         let named_so = |plugin: &&PluginFile| plugin.name().contains(&id.replace('-', "_"));
         if let Some((plugin, Err(why))) =
@@ -145,7 +145,7 @@ mod tests {
     use std::fs::{copy, read, write};
     use tempfile::TempDir;
 
-    /// A catalog of two files that have the planner `faulty`.
+    /// A catalog of two files that contain the planner `faulty`.
     fn catalog() -> (TempDir, Catalog) {
         let folder = tempfile::tempdir().expect("a folder");
         let built = std::env::current_exe().expect("a path").with_file_name("libplanner_faulty.so");

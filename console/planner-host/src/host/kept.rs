@@ -1,4 +1,4 @@
-//! What planners leave behind besides their answers, until it is collected.
+//! Keeps what planners leave behind besides their answers until it is collected.
 
 use crate::remains::{BadEnd, Crash, Printed};
 
@@ -6,7 +6,7 @@ use crate::remains::{BadEnd, Crash, Printed};
 const MOST_PRINTED: usize = 256;
 /// The maximum number of crashes kept.
 const MOST_CRASHES: usize = 4;
-/// The maximum number kept of planners that ended badly.
+/// The maximum number of entries kept about planners that ended badly.
 const MOST_BAD_ENDS: usize = 16;
 
 /// What has been left behind since the last collection.

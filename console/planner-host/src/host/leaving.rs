@@ -82,7 +82,7 @@ impl Host {
         }
     }
 
-    /// Processes the workers that are being ended, given the events of each from the last poll.
+    /// Processes the workers that are being ended; `ready` contains each worker's events from the last poll.
     pub(super) fn advance_leaving(&mut self, ready: &[Ready], now: Instant) {
         let mut ready = ready.iter().copied();
         for mut leaving in std::mem::take(&mut self.leaving) {

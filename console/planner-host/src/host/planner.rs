@@ -130,7 +130,7 @@ impl Planner {
         budget: Duration,
         write: impl FnOnce(&mut Writer),
     ) -> Result<(), Fault> {
-        // The time is taken first, because a worker on this processor may answer before this thread runs again.
+        // The clock is read first, because a worker on this processor may answer before this thread runs again.
         let at = Instant::now();
         let asked = match &mut self.worker {
             Some(worker) => worker.ask(kind, budget, write),

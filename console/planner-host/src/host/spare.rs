@@ -1,4 +1,4 @@
-//! Processes of planners whose mission has ended, kept for the next one.
+//! Processes of planners whose mission has ended, kept for the next mission.
 
 use super::opening::Loaded;
 use crate::supervisor::Worker;

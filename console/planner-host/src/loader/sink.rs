@@ -34,7 +34,7 @@ pub(crate) struct Sink<'a> {
     error: String,
     said: Said,
     n_dropped: usize,
-    /// The limit that was exceeded, for things that are useless unless complete.
+    /// The limit that was exceeded, for data that is useless unless it is complete.
     pub(super) exceeds: Option<&'static str>,
     pub(super) params: Vec<ParamInfo>,
     pub(super) points: Vec<Point2<f64>>,
@@ -118,7 +118,7 @@ fn take<'v, T>(values: &'v [T], have: usize, most: usize, n_dropped: &mut usize)
     taken
 }
 
-/// Takes all values, or none if there is no space for all, because part of a path is a different path.
+/// Takes all values, or none if there is no space for all, because a part of a path would be a different path.
 fn whole<'v, T>(
     values: &'v [T],
     have: usize,

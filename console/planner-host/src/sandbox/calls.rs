@@ -121,7 +121,8 @@ fn rules() -> Result<Rules, String> {
     };
     rules.insert(libc::SYS_mmap, vec![rule(vec![private, writable()?])?]);
     rules.insert(libc::SYS_mprotect, vec![rule(vec![writable()?])?]);
-    // Everything except taking the machine's memory pages out of use, which a privileged process could do.
+    // All kinds of `madvise` except those that take the machine's memory pages out of use, which a privileged process
+    // could do.
     let harmless = argument(2, SeccompCmpOp::Lt, libc::MADV_HWPOISON as u64)?;
     rules.insert(libc::SYS_madvise, vec![rule(vec![harmless])?]);
     // `nice` reads its own priority before it tries to change it.

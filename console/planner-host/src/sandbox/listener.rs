@@ -37,7 +37,7 @@ pub(super) fn install(filter: &BpfProgram) -> io::Result<OwnedFd> {
     Ok(unsafe { OwnedFd::from_raw_fd(descriptor as i32) })
 }
 
-/// Closes every descriptor of this process except the standard ones and this one.
+/// Closes every descriptor of this process except the standard descriptors and this one.
 pub(crate) fn close_all_but(kept: BorrowedFd<'_>) {
     let kept = kept.as_raw_fd().cast_unsigned();
     for (first, last) in [(3, kept - 1), (kept + 1, u32::MAX)] {
@@ -51,7 +51,7 @@ pub(crate) fn close_all_but(kept: BorrowedFd<'_>) {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Call {
     id: u64,
-    /// The thread that made it.
+    /// The thread that made the call.
     pub(super) thread: u32,
     pub(super) number: i64,
     pub(super) arguments: [u64; 6],

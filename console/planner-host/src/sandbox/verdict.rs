@@ -74,7 +74,7 @@ const LOADER_FLAGS: i32 = libc::O_RDONLY | libc::O_CLOEXEC;
 /// The flags allowed for files that are only read.
 const READING: i32 = LOADER_FLAGS | libc::O_DIRECTORY | libc::O_NONBLOCK | libc::O_NOCTTY | libc::O_LARGEFILE;
 
-/// Whether this is the call that a worker makes when its plugin is loaded.
+/// Whether this is the call that a worker makes once its plugin is loaded.
 pub(crate) fn ends_loading(call: &Call) -> bool {
     call.number == libc::SYS_landlock_restrict_self
 }

@@ -74,7 +74,7 @@ mod tests {
 
     const MS: Duration = Duration::from_millis(1);
 
-    /// The clock after looks every 50 ms, from 100 ms to the end, at a process that got a share of the processor.
+    /// The clock after checks every 50 ms, from 100 ms to the end, of a process that got this share of the processor.
     fn after(end_ms: u32, share: f64, is_running: bool) -> FairClock {
         let mut clock = FairClock::default();
         for wall in (100..=end_ms).step_by(50).map(|ms| MS * ms) {

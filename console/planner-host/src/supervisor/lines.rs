@@ -14,7 +14,7 @@ const CUT: &[u8] = b" (rest of the line dropped)";
 #[derive(Debug, Default)]
 pub(super) struct Lines {
     partial: Vec<u8>,
-    /// Whether the current line was cut, which means that the rest of it is ignored.
+    /// Whether the current line was cut; if so, the rest of the line is ignored.
     is_cut: bool,
     whole: Vec<String>,
     n_dropped: usize,

@@ -108,7 +108,7 @@ impl Process {
         }
     }
 
-    /// Reads new output and keeps the end of it.
+    /// Reads new output, and keeps the end of the output.
     pub(super) fn read_output(&mut self) {
         let mut piece = [0; TAIL];
         for _ in 0..MOST_READS {

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 /// The maximum number of requests kept, counted from the last plan request.
 const MOST: usize = 200;
-/// The maximum number kept of requests that configured the planner: loading, parameters, state.
+/// The maximum number of configuration requests kept: loading, parameters, state.
 const MOST_LASTING: usize = 64;
 
 /// Frames as they were sent to the worker.

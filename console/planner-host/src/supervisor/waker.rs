@@ -118,7 +118,7 @@ mod tests {
     fn a_wake_up_that_comes_while_an_earlier_one_is_taken_is_not_lost() {
         let wake_ups = WakeReceiver::new();
         wake_ups.waker().wake();
-        // What `take` does, with a wake-up in the middle.
+        // The steps of `take`, with a wake-up between them.
         assert!(wake_ups.waker.0.is_pending.swap(false, Ordering::AcqRel));
         wake_ups.waker().wake();
         wake_ups.empty_socket();
@@ -130,7 +130,7 @@ mod tests {
     fn a_wake_up_that_is_taken_before_it_has_written_wakes_nobody_afterwards() {
         let wake_ups = WakeReceiver::new();
         let Sender { is_pending, socket } = &*wake_ups.waker.0;
-        // What `wake` does, with a receiver in the middle.
+        // The steps of `wake`, with the receiver's `take` between them.
         is_pending.store(true, Ordering::Release);
         assert!(wake_ups.take());
         assert_eq!(socket.as_ref().expect("a socket").write(&[1]).expect("written"), 1);
@@ -139,8 +139,8 @@ mod tests {
         assert!(is_woken(&wake_ups));
     }
 
-    /// Threads that ask for something, wake the receiver and go on when they have it. When a wake-up is lost, all of them
-    /// wait for each other in the end.
+    /// Threads ask for something, wake the receiver, and continue when their request has been granted. If a wake-up is
+    /// lost, all of them end up waiting for each other.
     #[test]
     fn no_wake_up_is_lost() {
         const N_THREADS: usize = 4;
@@ -161,7 +161,8 @@ mod tests {
         }
         let mut n_given = 0;
         while n_given < N_THREADS as u32 * N_EACH {
-            // As the console does before it looks for orders: who is not woken any more has asked before.
+            // The console does the same before it looks for orders: a thread whose wake-up is dropped here has already
+            // made its request.
             if n_given % 3 > 0 || !wake_ups.take() {
                 assert!(is_woken(&wake_ups), "nobody woke the receiver, which has given {n_given}");
             }

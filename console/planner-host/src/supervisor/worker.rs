@@ -37,7 +37,7 @@ pub(crate) struct Worker {
     guard: Guard,
     /// The frame that is being sent, or the last frame that was sent.
     writer: Writer,
-    /// The number of bytes of that frame already sent.
+    /// The number of bytes of that frame that have already been sent.
     n_sent: usize,
     sequence: u32,
     state: State,
@@ -45,7 +45,8 @@ pub(crate) struct Worker {
     tape: Tape,
     /// Whether the worker was idle when it was asked to exit.
     leaves_idle: bool,
-    /// How it exited in that case, if not cleanly; completes a sentence that begins with the planner's name.
+    /// How a worker that was asked to exit did so, if not cleanly; completes a sentence that begins with the planner's
+    /// name.
     bad_end: Option<String>,
 }
 
@@ -91,8 +92,8 @@ impl Worker {
         sealed.map(|sealed| (sealed, planners)).ok_or_else(|| self.end(Failure::Protocol))
     }
 
-    /// Restricts the worker's first thread, which answers requests, and the threads that it starts from now on to these
-    /// processors. If the system refuses, nothing changes.
+    /// Binds the worker's first thread, which answers requests, to these processors, and with it every thread that it
+    /// starts from now on. If the system refuses, nothing changes.
     #[cfg(target_os = "linux")]
     pub(crate) fn stay_on(&self, processors: &rustix::thread::CpuSet) {
         if !self.process.is_reaped() {

@@ -178,7 +178,7 @@ mod tests {
         PluginFile::read(file)
     }
 
-    /// What a probe says of the plugin `1`.
+    /// The report of a probe on the plugin `1`.
     fn planners() -> Vec<PlannerInfo> {
         let (plugin_name, sha256) = ("libplanner_it.so".into(), plugin("1").sha256);
         vec![PlannerInfo { plugin: plugin_name, sha256, sandbox: Some(Sandbox::Full), ..info() }]

@@ -1,5 +1,5 @@
-//! Tests damaged answers and requests: they are read or refused, but never cause a panic, and never reserve memory only
-//! because a length claims it.
+//! Tests damaged answers and requests: they are read or refused, but never cause a panic, and never reserve memory
+//! merely because a length claims that it is needed.
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
@@ -41,7 +41,7 @@ fn refusal() -> Refusal {
     Refusal { code: -7, message: "no".into(), partial: plan().path }
 }
 
-/// All kinds of answers, one after the other.
+/// One answer of every kind, in a sequence.
 fn answers() -> Vec<u8> {
     let mut writer = Writer::default();
     writer.put(&Planners(planners())).put(&Answered { given: GivenPlan(plan()), said: said() });
@@ -61,7 +61,7 @@ proptest! {
         let bytes = &bytes[skipped.index(bytes.len() + 1)..];
         let most = bytes.len();
         let body = || Body(bytes);
-        // Every element takes at least one byte, so nothing that was read has more elements than there were bytes.
+        // Every element takes up at least one byte, so nothing that was read has more elements than there were bytes.
         if let Ok(Answered { given: GivenPlan(plan), said }) = body().take::<Answered<GivenPlan>>() {
             prop_assert!(plan.path.len() + plan.legs.len() + plan.cuts.len() <= most);
             prop_assert!(said.drawings.len() + said.scalars.len() + said.logs.len() <= most);

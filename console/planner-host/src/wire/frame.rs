@@ -7,7 +7,7 @@ use std::time::Duration;
 
 /// The number of bytes before the body.
 pub(crate) const HEADER: usize = 13;
-/// The position of the byte for the kind in a frame.
+/// The position, in a frame, of the byte that states the kind.
 pub(crate) const KIND_AT: usize = 4;
 
 /// The outcome of waiting for a frame.
@@ -118,7 +118,7 @@ impl Incoming {
         }
     }
 
-    /// Whether data after the current frame has already arrived.
+    /// Whether any data after the current frame has already arrived.
     pub(crate) fn has_more(&self) -> bool {
         self.filled > self.current
     }

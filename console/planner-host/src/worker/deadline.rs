@@ -22,7 +22,7 @@ const CHECK_PERIOD: Duration = Duration::from_millis(1);
 pub(super) struct Deadline {
     socket: Socket,
     budget: Cell<Option<Budget>>,
-    /// When the processor time was last read before a request, and its value.
+    /// The time at which the processor time was last read before a request, and the value that was read.
     computed: Cell<(Instant, Duration)>,
     looked: Cell<Instant>,
     cancelled: Cell<bool>,

@@ -12,18 +12,18 @@ use tempfile::TempDir;
 
 const HOSTILE: &str = include_str!("../../../../plugins/faulty/hostile.c");
 
-/// A plugin that does this at this moment.
+/// A plugin that carries out this attack at this moment.
 fn hostile(moment: &str, attack: &str) -> (TempDir, PluginDirs) {
     folder_with("hostile", &format!("#define {moment}\n#define ATTACK {attack}\n{HOSTILE}"))
 }
 
-/// A host for it, and for the planners that were built with this test.
+/// A host for that plugin and for the planners that were built with this test.
 fn host(dirs: &PluginDirs) -> BlockingHost {
     let dirs = dirs.folders.iter().chain(&built().folders).cloned().collect();
     BlockingHost::new(&PluginDirs::of(dirs), config())
 }
 
-/// The fault of a planner that does this in its fourth step, or until 50 steps have been made.
+/// The fault of a planner that attacks at this moment; the fault must occur within 50 steps.
 fn fault_of(moment: &str, attack: &str) -> Fault {
     let (_folder, dirs) = hostile(moment, attack);
     let mut host = host(&dirs);
@@ -52,14 +52,14 @@ fn assert_sealed() {
     );
 }
 
-/// What is said of a plugin that does this in its constructor, while plugins are only listed.
+/// What the survey states about a plugin that attacks in its constructor.
 fn refusal_of(attack: &str) -> String {
     assert_sealed();
     let (_folder, dirs) = hostile("IN_CONSTRUCTOR", attack);
     survey(&dirs, &worker()).plugins[0].refused.clone().expect("refused")
 }
 
-/// An attack, and the call of the system that is named.
+/// An attack, and the system call that the fault names.
 const ATTACKS: &[(&str, &str)] = &[
     (r#"open("/etc/passwd", O_RDONLY)"#, "openat of /etc/passwd"),
     (r#"open("/etc/passwd", O_RDONLY | O_CLOEXEC)"#, "openat of /etc/passwd"),
@@ -83,7 +83,7 @@ const ATTACKS: &[(&str, &str)] = &[
     ("process_vm_readv(getppid(), NULL, 0, NULL, 0, 0)", "process_vm_readv"),
     ("kill(getppid(), SIGKILL)", "kill"),
     ("kill(getppid(), SIGSTOP)", "kill"),
-    // Signal 0: where a seal is broken, the machine that runs this test survives it.
+    // Signal 0, so that the machine that runs this test survives if the sandbox fails.
     ("kill(-1, 0)", "kill"),
     ("syscall(SYS_tgkill, getppid(), getppid(), SIGSTOP)", "tgkill"),
     ("struct rlimit one = {1, 1}; prlimit(getppid(), RLIMIT_NOFILE, &one, NULL)", "prlimit64"),
@@ -101,7 +101,7 @@ const ATTACKS: &[(&str, &str)] = &[
     ("unshare(CLONE_NEWUSER)", "unshare"),
     ("mmap(NULL, 4096, PROT_READ, MAP_SHARED | MAP_ANONYMOUS, -1, 0)", "mmap of shared memory"),
     ("mmap(NULL, 4096, PROT_READ, MAP_SHARED, 201, 0)", "mmap of shared memory"),
-    // Of no bytes: where a seal is broken, the machine that runs this test survives it.
+    // Zero bytes, so that the machine that runs this test survives if the sandbox fails.
     ("madvise(NULL, 0, 100)", "madvise"),
     ("madvise(NULL, 0, 101)", "madvise"),
     ("nice(5)", "setpriority"),
@@ -112,13 +112,13 @@ const ATTACKS: &[(&str, &str)] = &[
         "setitimer",
     ),
     ("syscall(SYS_getpriority, 0, getppid())", "getpriority"),
-    // Ways that begin where libraries are, and lead elsewhere.
+    // Paths that begin in a folder of libraries but lead elsewhere.
     (r#"open("/usr/lib/../../etc/shadow", O_RDONLY | O_CLOEXEC)"#, "openat of /usr/lib/../../etc/shadow"),
     (r#"open("/proc/self/../1/environ", O_RDONLY)"#, "openat of /proc/self/../1/environ"),
     (r#"open("/proc/self/fd/../../../etc/shadow", O_RDONLY)"#, "openat of /proc/self/fd/../../../etc/shadow"),
     (r#"open("/proc/self/mem", O_RDWR)"#, "openat of /proc/self/mem"),
     (r#"struct stat about; stat("/etc/shadow", &about)"#, "newfstatat of /etc/shadow"),
-    // The channel, and other descriptors.
+    // Attacks on the channel and on other descriptors.
     ("shutdown(200, SHUT_RDWR)", "shutdown"),
     ("dup2(1, 200)", "dup2"),
     ("fcntl(200, F_DUPFD, 3)", "fcntl"),
@@ -126,7 +126,7 @@ const ATTACKS: &[(&str, &str)] = &[
     ("ioctl(200, FIONREAD, NULL)", "ioctl"),
     ("setsockopt(200, SOL_SOCKET, SO_RCVBUF, NULL, 0)", "setsockopt"),
     ("syscall(SYS_splice, 200, NULL, 1, NULL, 1, 0)", "splice"),
-    // Other ways to watch, to change and to last.
+    // Other ways to watch or change other processes, or to outlive the worker.
     ("syscall(SYS_userfaultfd, 0)", "userfaultfd"),
     ("syscall(SYS_perf_event_open, NULL, 0, -1, -1, 0)", "perf_event_open"),
     ("syscall(SYS_keyctl, 0, -3, 0)", "keyctl"),
@@ -148,7 +148,8 @@ const ATTACKS: &[(&str, &str)] = &[
     ("syscall(SYS_vfork)", "vfork"),
     ("kill(0, 0)", "kill"),
     ("syscall(SYS_tkill, getppid(), SIGSTOP)", "tkill"),
-    // What a filter of its own process could be caught with does not help: the kernel reports elsewhere.
+    // Tricks against a filter that reports inside the process do not help, because the kernel reports the call to the
+    // console.
     (
         "sigset_t all; sigfillset(&all); sigprocmask(SIG_BLOCK, &all, NULL); signal(SIGSYS, SIG_IGN); \
          for (int fd = 0; fd < 199; fd++) close(fd); socket(AF_UNIX, SOCK_STREAM, 0)",
@@ -201,7 +202,7 @@ fn a_destructor_that_attacks_reaches_nothing_and_ends_with_its_process() {
 
 #[test]
 fn an_instance_that_does_not_end_well_is_no_fault_of_the_next_mission() {
-    // The last one leaves a thread behind, which ends the process between two missions.
+    // The last attack leaves a thread behind, which ends the process between two missions.
     for (moment, attack) in [
         ("IN_DESTROY", "abort()"),
         ("IN_DESTROY", "socket(AF_UNIX, SOCK_STREAM, 0)"),
@@ -251,7 +252,7 @@ fn descriptors_that_a_planner_sends_reach_nobody() {
     let before = open();
     let fault = fault_of("IN_STEP", send);
     assert_eq!(fault.cause, Cause::Protocol, "{fault}");
-    // Other tests of this process open files, too, but no thousand of them.
+    // Other tests in this process open files, too, but not a thousand of them.
     assert!(open() < before + 200);
 }
 

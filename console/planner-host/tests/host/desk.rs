@@ -1,4 +1,4 @@
-//! What the mission does: asks of workers under its own numbers.
+//! Does what a mission does: sends asks to workers and numbers the asks itself.
 
 use crate::stand::{GOAL, pose, sensed, with_site, words};
 use crate::state::counted;
@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 
 pub(crate) const ONE: WorkerId = WorkerId(1);
 pub(crate) const TWO: WorkerId = WorkerId(2);
-/// Far longer than anything here takes, also on a busy machine.
+/// Far longer than anything here takes, even on a busy machine.
 pub(crate) const LONG: Duration = Duration::from_mins(1);
 
 /// A host, and the mission's count of asks.
@@ -51,7 +51,7 @@ impl Desk {
         assert!(matches!(opened, Ok(Given::Opened(info)) if info.id == "faulty"));
     }
 
-    /// Saves the private state of a worker's planner, and returns the ask that it can be restored by.
+    /// Saves the private state of a worker's planner, and returns the ask that identifies the saved state.
     pub(crate) fn save(&mut self, worker: WorkerId) -> AskId {
         let id = self.submit(worker, What::Snapshot);
         let answer = self.next();

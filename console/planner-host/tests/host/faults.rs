@@ -1,4 +1,4 @@
-//! Every way to misbehave ends as a fault with one sentence, and another planner can drive.
+//! Every kind of misbehaviour ends as a fault with one sentence, and another planner can take over.
 
 use crate::desk::LONG;
 use crate::stand::{assert_another_drives, choose, config, fly, host, impatient, plan, step, words};

@@ -1,4 +1,4 @@
-//! Files that are not good plugins: refused with the reason, and nobody else is hurt.
+//! Files that are not valid plugins are refused with the reason, and no other plugin is affected.
 
 use crate::stand::{assert_refused, built, choose, compile, config, direct_c, folder_with, worker};
 use mission::planner::Parameters;
@@ -133,7 +133,7 @@ fn a_library_that_never_finishes_loading_is_a_line_in_the_list() {
 fn the_first_planner_of_an_id_wins_and_later_ones_are_shadowed() {
     let (first, second) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     compile(&direct_c(), first.path(), "one", &[]);
-    // Another macro makes another file of the same planner.
+    // A different macro gives a different file with the same planner.
     compile(&direct_c(), second.path(), "two", &["PI2=1", "NDEBUG"]);
     let other = std::fs::read(second.path().join("libplanner_two.so")).unwrap();
     std::fs::write(second.path().join("libplanner_two.so"), [other, vec![0]].concat()).unwrap();
@@ -149,7 +149,7 @@ fn the_first_planner_of_an_id_wins_and_later_ones_are_shadowed() {
 fn a_bad_file_does_not_hide_a_good_one() {
     let folder = tempfile::tempdir().unwrap();
     compile(&direct_c(), folder.path(), "good", &[]);
-    // It names the same planner, comes first and cannot be loaded.
+    // This file names the same planner, comes first and cannot be loaded.
     let bad =
         format!("{HEAD}const char *direct_c(void);\nconst char *direct_c(void) {{ return \"direct-c\"; }}\n");
     let source = folder.path().join("bad.c");

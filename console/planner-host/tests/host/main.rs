@@ -1,4 +1,4 @@
-//! The host against plugins that behave and plugins that do not, through real worker processes.
+//! Tests the host with well-behaved and misbehaving plugins in real worker processes.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "tests")]
 

@@ -1,4 +1,4 @@
-//! Planners that want more memory than they may have, by every way that is known: none has much more.
+//! Planners that try to get more memory than they may have, in every known way: none gets much more.
 #![cfg(target_os = "linux")]
 
 use crate::desk::{Desk, ONE, opening, step};
@@ -12,10 +12,10 @@ const HOSTILE: &str = include_str!("../../../../plugins/faulty/hostile.c");
 const MB: u64 = 1 << 20;
 /// What planners may have here ...
 const LIMIT: u64 = 64 * MB;
-/// ... and what a worker may have beside it: libraries, its own, tables of pages, what was made read-only.
+/// ... and what a worker may have in addition: libraries, its own memory, page tables, memory made read-only.
 const BESIDE: u64 = 64 * MB;
 
-/// What attacks are made of.
+/// Helper functions for the attacks.
 const HELPERS: &str = r"
 #define PRIVATE (MAP_PRIVATE | MAP_ANONYMOUS)
 #define ONE_MB (1ul << 20)
@@ -111,12 +111,12 @@ static void of_file(void) {
 }
 static void attack";
 
-/// The most memory that a worker had whose planner did this, bytes, or the fault.
+/// The peak memory of a worker whose planner carried out this attack, bytes, or the fault.
 fn memory_of(moment: &str, attack: &str) -> Result<u64, Fault> {
     let source = HOSTILE.replacen("static void attack", HELPERS, 1);
     let (_folder, dirs) =
         folder_with("hostile", &format!("#define {moment}\n#define ATTACK {attack}\n{source}"));
-    // On a busy machine the attack may take long, and it is its memory that is to end it.
+    // On a busy machine the attack may take long, but the memory limit must end the attack, not the deadline.
     let patient = Duration::from_mins(1);
     let config = HostConfig {
         memory_limit_bytes: LIMIT,

@@ -24,12 +24,12 @@ fn own_worker() -> (TempDir, WorkerCommand, String) {
     (folder, WorkerCommand::new(program), name)
 }
 
-/// States of the processes of this name that this very process has started and not reaped.
+/// States of the processes with this name that this process has started but not reaped.
 fn states(name: &str) -> Vec<char> {
     children(name).into_iter().map(|(_, state)| state).collect()
 }
 
-/// Their numbers.
+/// The ids of these processes.
 fn pids(name: &str) -> Vec<String> {
     children(name).into_iter().map(|(pid, _)| pid).collect()
 }
@@ -146,7 +146,7 @@ fn who_has_not_answered_when_a_mission_ends_serves_no_other_one() {
 #[test]
 fn who_waits_for_every_command_shares_a_processor_with_the_planner_while_nothing_else_is_done() {
     let here = || rustix::thread::sched_getaffinity(None).unwrap();
-    // In a thread of its own: where that of the test may run is the business of other tests.
+    // Runs in a thread of its own, so that the processors on which the test's own thread may run stay as they are.
     let shared = || {
         let (_folder, worker_command, name) = own_worker();
         let mut desk = Desk::new(&built(), HostConfig { worker_command, ..config() });

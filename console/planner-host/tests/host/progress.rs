@@ -24,7 +24,7 @@ fn recorded(host: &mut BlockingHost) -> Received {
     received
 }
 
-/// The counter in C with other lines at the top of its functions.
+/// The counter in C with parts of its source replaced.
 fn counters(replaced: &[(&str, &str)]) -> (TempDir, PluginDirs) {
     let mut source = COUNTER.to_owned();
     for (old, new) in replaced {

@@ -1,4 +1,4 @@
-//! A tank, a robot, a host and what a C compiler makes of a few lines.
+//! A tank, a robot, a host, and plugins compiled from a few lines of C.
 
 use mission::planner::{ParamValue, Parameters, PlannerInfo};
 use mission::{Cause, Fault};
@@ -25,7 +25,7 @@ pub(crate) fn config() -> HostConfig {
     HostConfig { worker_command: worker(), ..HostConfig::new(Duration::from_secs(3)) }
 }
 
-/// For planners that shall be late.
+/// For planners that are meant to be late.
 pub(crate) fn impatient() -> HostConfig {
     HostConfig {
         configure_deadline: Duration::from_millis(150),
@@ -40,7 +40,7 @@ pub(crate) fn host(config: HostConfig) -> BlockingHost {
     BlockingHost::new(&built(), config)
 }
 
-/// The folder where plugins land that were built with this test.
+/// The folder that contains the plugins built with this test.
 pub(crate) fn built() -> PluginDirs {
     let deps = std::env::current_exe().unwrap().parent().unwrap().to_owned();
     PluginDirs::of(vec![deps])
@@ -126,7 +126,7 @@ pub(crate) fn step_at(
     sensed(tick, |sensed| host.step(&Sensed { pose, ..*sensed }))
 }
 
-/// What is sensed at the origin.
+/// The view of the tick at the origin.
 pub(crate) fn sensed<R>(tick: u64, call: impl FnOnce(&Sensed<'_>) -> R) -> R {
     let far = Outline::Disc { center: Point2::new(5.0, 0.0), radius_m: 0.3 };
     let obstacles = [Obstacle {
@@ -194,7 +194,7 @@ pub(crate) fn direct_c() -> PathBuf {
     workspace().join("plugins/examples/direct-c/direct.c")
 }
 
-/// A folder with one plugin made from these lines.
+/// A folder with one plugin compiled from these lines.
 pub(crate) fn folder_with(name: &str, source: &str) -> (TempDir, PluginDirs) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join(format!("{name}.c"));

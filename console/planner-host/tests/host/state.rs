@@ -52,7 +52,7 @@ TP_EXPORT const tp_entry tank_planner_entry = TP_ENTRY(list, 1, "C");
 TP_STAMP(TP_ABI_MAJOR, TP_ABI_MINOR);
 "#;
 
-/// The count that a counter gives with its command.
+/// The count that the speed of a counter's command encodes.
 pub(crate) fn counted(command: &Command) -> u32 {
     match command.drive {
         Drive::Twist { v_m_per_s, .. } => (v_m_per_s * 1000.0).round() as u32,
@@ -133,7 +133,7 @@ fn the_state_of_another_file_is_not_restored() {
     desk.ask(ONE, open(None)).unwrap();
     assert_eq!((0..15).map(|tick| desk.count(ONE, tick)).last(), Some(15));
     let saved = desk.save(ONE);
-    // It was built again meanwhile, from other lines.
+    // Meanwhile, the plugin was built again from different lines.
     let (newer, _) = folder_with("counter", &COUNTER.replace("TP_STR(\"1\")", "TP_STR(\"2\")"));
     let file = "libplanner_counter.so";
     std::fs::rename(newer.path().join(file), folder.path().join(file)).unwrap();

@@ -8,7 +8,7 @@ use world::{Boundary, ObstacleMap, Point, Vector, World};
 
 /// The number of candidate places along the wall.
 const CANDIDATES: usize = 72;
-/// The error is computed in cells, of which this many lie along the longer side of the floor.
+/// The error is computed in a grid of cells with this many along the longer side of the floor.
 const CELLS: f64 = 28.0;
 /// The largest number of rounds; each round moves every station once.
 const ROUNDS: usize = 12;

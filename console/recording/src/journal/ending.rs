@@ -14,7 +14,7 @@ use std::{
     path::Path,
 };
 
-/// Number of bytes read from the end of an uncompressed journal; the event `ended` is the last of its run.
+/// Number of bytes read from the end of an uncompressed journal; the event `ended` is the last event of a run.
 const TAIL_BYTES: u64 = 64 * 1024;
 
 /// The final event of a journal; `None` if the journal stops before it.

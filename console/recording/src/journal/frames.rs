@@ -1,7 +1,7 @@
 //! Finds the frames of a compressed journal without decompressing it.
 //!
-//! A zstd frame (RFC 8878) states the length of each of its blocks. A file of hours is therefore scanned in
-//! milliseconds, even if its writer was killed, and needs no separate index.
+//! A zstd frame (RFC 8878) states the length of each of its blocks. A journal of several hours is therefore scanned
+//! in milliseconds, even if its writer was killed, and needs no separate index.
 
 use std::{
     fs::File,
@@ -20,7 +20,7 @@ const BLOCK_HEADER_BYTES: u64 = 3;
 const BETWEEN: u64 = 4096;
 
 /// The offsets of frames in the file, bytes, in ascending order: the first frame, and each frame that is far enough
-/// from the one before. If the file contains other data, only the frames before that data are listed.
+/// from the previous listed frame. If the file contains other data, only the frames before that data are listed.
 pub(super) fn starts(file: &File) -> io::Result<Vec<u64>> {
     let mut walk = Walk { file: BufReader::new(file), at: 0 };
     walk.file.rewind()?;

@@ -16,13 +16,13 @@ const MOST_TICK_LINES: u32 = 50_000;
 /// Maximum number of obstacles found and zones drawn in a run: they all persist, and every figure has to take them
 /// into account.
 const MOST_LASTING: u32 = 20_000;
-/// Largest ratio of the lines to the file. The lines of a mission on hold, which repeat most, are 11 times as long as
-/// the file (decisions.md).
+/// Largest ratio of the length of the lines to the length of the file. The lines of a mission on hold, which repeat
+/// most, are 11 times as long as the file (decisions.md).
 const MOST_EXPANSION: u64 = 200;
-/// This many bytes of lines are allowed whatever the ratio.
+/// Number of bytes of lines that are allowed whatever the ratio.
 const FREE_BYTES: u64 = 16 << 20;
 
-/// Checks that the lines can have this length, given the size of the file.
+/// Checks that lines of this total length are plausible, given the size of the file.
 pub(super) fn check_expansion(packed: u64, lines: u64) -> io::Result<()> {
     if lines <= FREE_BYTES + MOST_EXPANSION * packed {
         return Ok(());
@@ -47,8 +47,8 @@ pub(super) fn is_light(line: &[u8]) -> bool {
     line.len() <= MOST_WEIGHT / 200 || foreign::json_weight(line) <= MOST_WEIGHT
 }
 
-/// Maximum number of values and lists in a line that is read straight into its fields: those of a plan of a million
-/// points.
+/// Maximum number of values and lists in a line that is read straight into its fields: the number in a plan of a
+/// million points.
 const MOST_VALUES: usize = 4_000_000;
 const MOST_LISTS: usize = 1_500_000;
 

@@ -14,8 +14,8 @@ use zstd::{
 const FRAME_BYTES: usize = 1 << 20;
 /// Parameters of the match search. A journal mostly repeats the previous tick, so a small table with the four latest
 /// occurrences of each six bytes finds better matches than level 9 of zstd with its table of megabytes, in less than
-/// half the time. Journals of four scenarios become 3 to 5 % smaller. Larger tables make them larger again, because
-/// matches are further back.
+/// half the time. Journals of four scenarios become 3 to 5 % smaller. Larger tables make the journals larger again,
+/// because matches are then further back.
 const SEARCH: [CParameter; 6] = [
     CParameter::Strategy(Strategy::ZSTD_greedy),
     CParameter::WindowLog(17),
@@ -24,7 +24,7 @@ const SEARCH: [CParameter; 6] = [
     CParameter::SearchLog(2),
     CParameter::MinMatch(6),
 ];
-/// Size of the output buffer that the compressor gets at a time.
+/// Size of the output buffer that the compressor is given each time.
 const STEP_BYTES: usize = 16 << 10;
 
 /// Compresses lines.
@@ -32,7 +32,7 @@ pub(super) struct Packer {
     encoder: Encoder<'static>,
     /// Number of bytes of lines in the open frame.
     in_frame: usize,
-    /// Whether some of them are not in the output yet.
+    /// Whether some of these bytes are not in the output yet.
     holds_back: bool,
 }
 

@@ -1,5 +1,5 @@
-//! Cleans the texts in journal lines. Every reader except the one that compares lines receives plain text, so that
-//! hidden or control characters reach neither a screen nor a file.
+//! Cleans the texts in journal lines. Every reader except the line comparison receives plain text, so that neither
+//! hidden nor control characters reach a screen or a file.
 
 use foreign::is_plain;
 
@@ -7,7 +7,7 @@ use foreign::is_plain;
 const INSTEAD: &str = "\\ufffd";
 
 /// The line with `\ufffd` in place of each character that is not plain, literal or escaped; `None` if the line is
-/// plain already. Line breaks and tabs within texts stay.
+/// already plain. Line breaks and tabs within texts are kept.
 pub(super) fn line(line: &[u8]) -> Option<Vec<u8>> {
     if line.iter().all(|byte| matches!(byte, b' '..=b'[' | b']'..=b'~' | b'\n')) {
         return None;

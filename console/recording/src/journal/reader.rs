@@ -66,7 +66,7 @@ pub struct JournalReader {
 /// Number of bytes read from the end of an uncompressed journal.
 const END_BYTES: u64 = 1 << 20;
 
-/// The content of the first line that is common to journals of all versions.
+/// The part of the first line that is common to journals of all versions.
 #[derive(Deserialize)]
 struct Head {
     event: String,
@@ -91,7 +91,7 @@ impl JournalReader {
         Ok(Self { is_verbatim: true, ..Self::open(path)? })
     }
 
-    /// Opens a journal that may still be written. At the end of the file the reader calls `goes_on`, which waits
+    /// Opens a journal that may still be growing. At the end of the file the reader calls `goes_on`, which waits
     /// briefly and returns whether more data may come. The reader waits for the rest of a partial line.
     ///
     /// # Errors
@@ -115,8 +115,8 @@ impl JournalReader {
         Ok(Self { bytes, line: lines, ..reader })
     }
 
-    /// Opens a journal near its end, to find out how far it goes. The first line of the journal is not read, unless
-    /// the journal is short. Lines are counted from the place where reading starts.
+    /// Opens a journal near its end, to find out how far it extends. The first line of the journal is not read,
+    /// unless the journal is short. Lines are counted from the place where reading starts.
     ///
     /// # Errors
     /// See [`JournalReader::open`] and [`JournalReader::next_line`].
@@ -221,7 +221,7 @@ impl JournalReader {
 
     /// After the end: number of bytes after the last newline; 0 in a complete journal.
     ///
-    /// These bytes may be a whole event that lacks only its newline; it is then read like any other.
+    /// These bytes may be a complete event that lacks only its newline; such an event is read like any other.
     pub fn unended_bytes(&self) -> u64 {
         self.unended_bytes
     }

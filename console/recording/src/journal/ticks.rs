@@ -10,10 +10,10 @@ type Line = (Vec<u8>, Event);
 /// The lines of one tick.
 #[derive(Debug, Default)]
 pub struct RecordedTick {
-    /// Its number.
+    /// Number of the tick.
     pub tick: u64,
     lines: Vec<Line>,
-    /// Whether the journal stops in this tick: then only the lines before any planner answer are compared.
+    /// Whether the journal stops in this tick; if so, only the lines before any planner answer are compared.
     is_cut: bool,
 }
 
@@ -53,12 +53,12 @@ impl RecordedTick {
         })
     }
 
-    /// Number of bytes of its lines.
+    /// Number of bytes of the tick's lines.
     pub fn bytes(&self) -> u64 {
         self.lines.iter().map(|(raw, _)| raw.len() as u64).sum()
     }
 
-    /// Number of its lines that can be compared.
+    /// Number of the tick's lines that can be compared.
     pub fn n_compared(&self) -> usize {
         self.to_compare().len()
     }

@@ -13,9 +13,9 @@ const MOST_WINDOW: u32 = 23;
 /// The start of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct FrameStart {
-    /// Its offset in the file, bytes.
+    /// Offset of the frame in the file, bytes.
     pub file: u64,
-    /// Its offset in the lines, bytes.
+    /// Offset of the frame in the lines, bytes.
     pub content: u64,
 }
 
@@ -46,14 +46,14 @@ impl<R: Read> Unpacker<R> {
         after.checked_sub(1).map_or(FrameStart::default(), |last| self.frames[last])
     }
 
-    /// Stores that a frame starts here, unless a stored frame starts shortly before.
+    /// Stores the start of a frame, unless a stored frame starts shortly before it.
     fn remember(&mut self) {
         if self.frames.last().is_none_or(|last| self.at.content >= last.content + BETWEEN_FRAMES) {
             self.frames.push(self.at);
         }
     }
 
-    /// Decompresses the next bytes of the file, or returns remaining output if there are none.
+    /// Decompresses the next bytes of the file, or returns remaining output if there are no more bytes.
     fn decode(&mut self, takes_more: bool, into: &mut [u8]) -> io::Result<usize> {
         let packed = if takes_more { self.packed.fill_buf()? } else { &[] };
         let (mut input, mut output) = (InBuffer::around(packed), OutBuffer::around(into));

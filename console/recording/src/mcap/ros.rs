@@ -41,12 +41,12 @@ pub(super) struct Schema {
     /// Package and name.
     pub name: &'static str,
     own: &'static str,
-    /// The types that it uses.
+    /// The types that this type uses.
     parts: &'static [&'static (&'static str, &'static str)],
 }
 
 impl Schema {
-    /// The definition with those of the types that it uses.
+    /// The definition, followed by the definitions of the types that this type uses.
     pub(super) fn text(self) -> String {
         let part = |(name, text): &(&str, &str)| format!("{}\nMSG: {name}\n{text}", "=".repeat(80));
         self.own.to_owned() + &self.parts.iter().map(|named| part(named)).collect::<String>()

@@ -12,11 +12,11 @@ use crate::{error::RecordingError, rr};
 use planner_api::{Drawing, Layer};
 use world::Vector;
 
-/// Smaller forces are hardly visible, newton.
+/// Force below which an arrow is hardly visible, newton.
 const WEAK_N: f64 = 0.01;
-/// Forces of this size are drawn at full length, newton.
+/// Force whose arrow is drawn at full length, newton.
 const STRONG_N: f64 = 100.0;
-/// Full length as a share of the tank's smaller side.
+/// Full length of an arrow as a share of the tank's shorter side.
 const LONGEST_SHARE: f64 = 0.1;
 /// Layers whose arrows are forces; their magnitudes are recorded in this order.
 const FORCES: [Layer; 4] = [Layer::Attraction, Layer::Repulsion, Layer::Rotation, Layer::Resultant];
@@ -24,7 +24,7 @@ const FORCES: [Layer; 4] = [Layer::Attraction, Layer::Repulsion, Layer::Rotation
 /// The drawn length of the arrow of a force, metres.
 ///
 /// Forces of planners span many powers of ten near an obstacle. The length grows with their logarithm, so that weak
-/// forces stay visible and strong ones stay in the tank; direction and order of magnitude are kept. The true
+/// forces stay visible and strong ones stay in the tank; direction and order of magnitude are preserved. The true
 /// magnitudes are recorded as figures.
 fn drawn_length_m(force_n: f64, longest_m: f64) -> f64 {
     longest_m * ((force_n / WEAK_N).ln_1p() / (STRONG_N / WEAK_N).ln_1p()).min(1.0)
@@ -33,7 +33,7 @@ fn drawn_length_m(force_n: f64, longest_m: f64) -> f64 {
 /// Rows of one kind of drawing on one layer.
 struct Shown<T> {
     lane: Lane<T>,
-    /// Its style, until it is first drawn.
+    /// Style of the drawings, until the first of them is drawn.
     style: Option<Box<dyn rr::AsComponents + Send>>,
     visible: bool,
 }
@@ -76,7 +76,7 @@ pub(crate) struct Drawings {
 }
 
 impl Drawings {
-    /// Creates the layers for a tank with this smaller side; nothing is drawn yet.
+    /// Creates the layers for a tank whose shorter side has this length; nothing is drawn yet.
     pub(crate) fn new(smaller_side_m: f64) -> Self {
         Self {
             sheets: Layer::ALL.into_iter().map(Sheet::new).collect(),

@@ -16,8 +16,8 @@ type Done = Result<(), RecordingError>;
 
 /// Name of the property with the figures of the run.
 pub(crate) const FIGURES: &str = "figures";
-/// During the mission an account is computed at most once a minute, and less often on a large floor: each tick pays
-/// for this many cells.
+/// During the mission an account is computed at most once a minute, and less often on a large floor: at least one tick
+/// passes between two accounts for every so many cells of the floor.
 const CELLS_PER_TICK: usize = 50;
 const LEAST_PERIOD_S: f64 = 60.0;
 /// Maximum number of missed areas with a label.
@@ -51,7 +51,7 @@ impl Accounting {
     }
 }
 
-/// Missed areas; during the mission, those that no plan leads to any more.
+/// Missed areas; during the mission, those to which no plan leads any more.
 pub(crate) fn missed(areas: &[Area<MissReason>], is_over: bool) -> Vec<&Area<MissReason>> {
     areas.iter().filter(|area| is_over || area.reason != MissReason::NotReached).collect()
 }

@@ -1,6 +1,7 @@
 //! Rows of one entity that are collected and sent together.
 //!
-//! One chunk for 500 rows takes a fifteenth of the bytes of chunks of two rows, so rows of every tick are collected.
+//! 500 rows in one chunk take a fifteenth of the bytes that they take in chunks of two rows, so rows that are added in
+//! every tick are collected.
 
 use super::{
     stream::{At, Stream},

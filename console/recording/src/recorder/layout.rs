@@ -59,7 +59,8 @@ fn build(
         patch.log_serialized_batches(extra.path, false, extra.what)?;
     }
     messages.extend(store.take().into_iter().filter(|message| matches!(message, rr::LogMsg::ArrowMsg(..))));
-    // A memory stream and its store keep each other alive: without this, the threads of both would outlive the run.
+    // A memory stream and its store keep each other alive; unless they are disconnected here, the threads of both
+    // would outlive the run.
     scratch.disconnect();
     patch.disconnect();
     Ok((messages, rr::BlueprintActivationCommand { blueprint_id: id, make_active: true, make_default: true }))

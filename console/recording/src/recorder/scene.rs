@@ -13,7 +13,7 @@ use world::{Boundary, Obstacle, Point, Shape, Tool, Vector, Zone, ZoneKind};
 
 type Done = Result<(), RecordingError>;
 
-/// More labels than this would hide the map; the names still appear on hovering.
+/// More labels than this would hide the map; the names still appear when the pointer is over an item.
 const MOST_LABELS: usize = 12;
 /// Half the size of the cross that marks an obstacle without extent, metres.
 const CROSS_M: f64 = 0.08;
@@ -36,7 +36,7 @@ pub(crate) fn draw(stream: &Stream, run: &RunOpened) -> Done {
     draw_stations(stream, run)?;
     draw_task(stream, run)?;
     let at = run.mission.start.position;
-    // A coverage mission ends where it starts: two labels at one place would be unreadable.
+    // A coverage mission ends where it starts, and two labels in the same place would be unreadable.
     let ends_here =
         matches!(&run.mission.task, TaskConfig::Cover { anchor, .. } if (anchor - at).norm() < LABEL_M);
     let start = rr::Points2D::new([flat(at)]).with_colors([style::color(style::WALL)]);

@@ -46,7 +46,7 @@ impl<T: Row + Send> Series for Rows<T> {
     }
 }
 
-/// Of equal consecutive rows only the first and the last are kept: the curve is the same.
+/// Only the first and the last of equal consecutive rows are kept; this does not change the curve.
 struct Changes<T> {
     lane: Lane<T>,
     of: fn(&Tick) -> Option<T>,

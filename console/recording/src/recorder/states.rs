@@ -1,7 +1,7 @@
 //! The lanes of the state timeline: the active planner, the motion of the robot, and the state of its position.
 //!
-//! The viewer fits a state timeline only once, to the data that it has read when the first lane appears. Linked to
-//! the time axis of all views ([`super::layout`]), the timeline always shows the whole run.
+//! The viewer fits a state timeline only once, to the data that it has read when the first lane appears. Because the
+//! timeline is linked to the time axis of all views ([`super::layout`]), it always shows the whole run.
 
 use super::{
     paths,

@@ -1,4 +1,4 @@
-//! The output stream of a recording: static data, single events, and columns of data of every tick.
+//! The output stream of a recording: static data, single events, and columns of per-tick data.
 
 use crate::{error::RecordingError, identity::Identity, rr, sink::SafeSink};
 use std::time::Duration;
@@ -95,7 +95,7 @@ impl Stream {
         self.inner.send_blueprint(messages, activation);
     }
 
-    /// Starts to send everything logged so far to the file, without waiting for it.
+    /// Starts sending everything logged so far to the file, and does not wait until it is written.
     pub(crate) fn flush(&self) {
         // The sink does not return its error here; it must be read from the sink.
         let _ = self.inner.flush_async();

@@ -51,7 +51,7 @@ pub(crate) const PLATE: [u8; 4] = [150, 165, 180, 90];
 /// The tether.
 pub(crate) const TETHER: [u8; 4] = rgb(250, 250, 235);
 
-/// Colours for items that appear during the run, such as planners.
+/// Colours for items that first appear during the run, such as planners.
 pub(crate) const SERIES: [[u8; 4]; 6] = [
     rgb(70, 130, 200),
     rgb(150, 110, 200),

@@ -1,4 +1,4 @@
-//! The table of everything that is recorded per tick: each series with its entity path and its value in a tick.
+//! The table of everything that is recorded in every tick: each series with its entity path and its value in a tick.
 
 use super::{
     lane::{Ellipse, Lane, Placed, Spots, Strip, flat},
@@ -63,7 +63,7 @@ fn tether() -> Vec<Box<dyn Series>> {
     ]
 }
 
-/// The rows of a run that wait to be sent.
+/// The rows of a run that are waiting to be sent.
 pub(crate) struct Table {
     series: Vec<Box<dyn Series>>,
     /// Figures reported by planners, by name.

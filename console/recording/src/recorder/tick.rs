@@ -19,7 +19,7 @@ pub(crate) struct Tick {
     pub drawings: Vec<Drawing>,
     pub truth: Option<Truth>,
     pub estimate: Option<Estimate>,
-    /// The planner's command; a held robot is commanded to stand still, which no event states.
+    /// The planner's command; no event states that a held robot is commanded to stand still.
     commanded_m_per_s: Option<f64>,
     is_held: bool,
     /// Scanned share of the reachable floor.
@@ -52,7 +52,7 @@ pub(crate) struct Truth {
 #[derive(Clone, Copy)]
 pub(crate) struct Estimate {
     pub position: Point,
-    /// Half axes, metres, and direction of the longer one, radians.
+    /// Semi-axes, metres, and direction of the longer one, radians.
     pub ellipse_95: (f64, f64, f64),
 }
 

@@ -11,7 +11,7 @@ pub(super) struct Shared {
     pub sent: AtomicU64,
     pub done: AtomicU64,
     pub journal_bytes: AtomicU64,
-    /// Errors that lose data, each once.
+    /// Errors that cause loss of data; each is listed once.
     losses: Mutex<Vec<String>>,
     /// The current problem, which may pass.
     trouble: Mutex<Option<String>>,
@@ -48,7 +48,7 @@ impl Shared {
     }
 }
 
-/// The shared data has no invariant that a panic could break.
+/// No panic can leave the shared data inconsistent.
 fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -9,7 +9,7 @@ use std::{
     time::Duration,
 };
 
-/// Longest time for which written data may be missing on the disk.
+/// Longest time for which written data may be missing from the disk.
 const PERIOD: Duration = Duration::from_secs(1);
 
 /// Starts a thread that syncs the written journal to disk every [`PERIOD`], as long as `shared` has another owner.

@@ -151,7 +151,7 @@ impl Writer {
         if let Some(end) = &journal {
             self.shared.journal_bytes.store(end.bytes, Ordering::Relaxed);
         }
-        // How each file ended is known now; problems that have passed no longer matter.
+        // The outcome for each file is now known; problems that have passed no longer matter.
         self.shared.set_trouble(None);
         self.mark();
         Ended { journal, summary, recording_sha256 }

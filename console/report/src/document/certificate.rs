@@ -1,6 +1,6 @@
 //! Checks whether the inspector's certificate was valid on the day of the inspection.
 
-use super::Document;
+use super::model::Document;
 use account::Date;
 
 /// Words that mark a certificate as no longer valid.

@@ -156,13 +156,14 @@ fn gathered(points: &[(f64, f64)], end_s: f64) -> Vec<(f64, f64)> {
     columns.into_iter().enumerate().filter_map(|(k, value)| Some((middle(k), value?))).collect()
 }
 
-/// The time spans of incidents of a kind; an incident that did not end lasts to the end of the run.
+/// The time spans of incidents of a kind; an incident without an end lasts to the end of the run.
 fn spans(incidents: &[Incident], kind: &str, end_s: f64) -> Vec<Span> {
     let of_kind = incidents.iter().filter(|incident| incident.kind == kind);
     of_kind.map(|incident| (incident.t_s, incident.until_s.unwrap_or(end_s))).collect()
 }
 
-/// Draws the record over mission time; `marks` are the numbered incidents. `None` for a run without a tick.
+/// Draws the values recorded over the mission time; `marks` are the numbered incidents. `None` for a run without a
+/// tick.
 pub(super) fn over_time(run: &RunOpened, record: &Record, marks: &[(usize, f64)]) -> Option<Figure> {
     let end_s = record.track.last().map(|point| f64::from(point.t_s)).filter(|end_s| *end_s > 0.0)?;
     let steps = [10.0, 30.0, 60.0, 120.0, 300.0, 600.0, 900.0, 1200.0, 1800.0, 3600.0, 7200.0];
@@ -222,7 +223,7 @@ pub(super) fn over_time(run: &RunOpened, record: &Record, marks: &[(usize, f64)]
     let (y, soft) = (chart.y, colour::SOFT);
     chart.draw(format_args!(r#"<text x="{:.2}" y="{y:.2}" fill="{soft}">h:m:s</text>"#, AXIS_MM.1 + 10.0));
     Some(Figure {
-        caption: "Record over mission time. Numbers refer to the incidents in the table below. Position: \
+        caption: "Values recorded during the mission. Numbers refer to the incidents in the table below. Position: \
                   dark line, 95 % error; light line, true error (simulation only). Wraps: dark line, \
                   largest wrap on one obstacle; light line, total wrap."
             .into(),
@@ -362,4 +363,9 @@ fn marks_along(boundary: &Boundary, total_m: f64) -> Vec<(f64, String, bool)> {
             corners.collect()
         }
     }
+}
+
+/// Whether an incident has a number on the chart.
+pub(super) fn is_marked(incident: &Incident) -> bool {
+    incident.needs_review() || matches!(incident.kind, "obstacle" | "zone" | "end")
 }

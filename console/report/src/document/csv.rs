@@ -1,7 +1,7 @@
 //! The report as tables for spreadsheets.
 
-use super::Document;
-use crate::{geojson::rounded, joined::PastRun};
+use super::model::Document;
+use crate::{geojson::rounded, past_run::PastRun};
 use account::{Shares, ZoneArc};
 use csv::Writer;
 
@@ -37,7 +37,7 @@ pub fn cell(text: &str) -> String {
 fn plates(document: &Document) -> String {
     if let Some(task) = &document.task {
         let row = |(name, value): (&str, f64)| vec![name.to_owned(), rounded(value).to_string()];
-        return table(&["figure", "value"], task.figures(document).into_iter().map(row));
+        return table(&["figure", "value"], task.figures(document.runs.last()).into_iter().map(row));
     }
     let floor = &document.floor;
     let is_located = document.located.is_some();

@@ -1,30 +1,13 @@
 //! The decisions that the inspector must make before signing. Each is a key under `[inspection]`, with the reason as
 //! its value.
 
-use super::{Document, located};
+use super::{
+    decision::{Decision, MISSED, SCOPE, TANK},
+    located,
+    model::Document,
+};
 use crate::human::text::counted;
 use mission::Outcome;
-
-/// The gate item about the tank.
-pub(super) const TANK: usize = 1;
-/// The gate item about the scope.
-pub(super) const SCOPE: usize = 2;
-/// The gate item about missed areas.
-pub(super) const MISSED: usize = 6;
-
-/// A decision that the inspector must make.
-pub(super) struct Decision {
-    /// The question, for the reader.
-    pub(super) what: String,
-    /// The section with the facts.
-    pub(super) section: usize,
-    /// Its key under `[inspection]`.
-    pub(super) key: &'static str,
-    /// The gate item that stays open without the decision.
-    pub(super) item: usize,
-    /// The reason that the inspector gave.
-    pub(super) answer: Option<String>,
-}
 
 /// Returns the decisions that a document requires.
 pub(super) fn decisions(document: &Document) -> Vec<Decision> {

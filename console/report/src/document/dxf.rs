@@ -1,14 +1,15 @@
-//! The report as a drawing: DXF R12 in ASCII, metres, with the layers SHELL, PLATES, OBSTACLES, PIPES, MISSED, TRACK and INDICATIONS,
-//! and `NO_GO_ZONES`, ZONES and STATIONS.
+//! The report as a drawing: DXF R12 in ASCII, metres, with the layers SHELL, PLATES, OBSTACLES, PIPES, MISSED, TRACK,
+//! INDICATIONS, `NO_GO_ZONES`, ZONES and STATIONS.
 //!
-//! `tankops import` can read the floor back: seams end at each other or at the shell, the name of each plate is on
-//! the layer of the seams, and pipes keep their width.
+//! `tankops import` can read the floor from this drawing: seams end at each other or at the shell, the name of each
+//! plate is on the layer of the seams, and pipes keep their width.
 
-use super::{Document, shapes::zones};
+use super::{model::Document, shapes::zones};
 use crate::{
     drawing::{plates::PlateLines, polygons::Polygon, trace::thinned},
     dxf::Drawing,
-    joined::{PastRun, found_name},
+    joined::found_name,
+    past_run::PastRun,
 };
 use account::plate_map;
 use mission::RunOpened;

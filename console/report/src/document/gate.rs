@@ -1,31 +1,18 @@
 //! The items that must be answered before a report can be signed.
 
 use super::{
-    Document, RunPart, certificate,
-    decisions::{MISSED, SCOPE, TANK, decisions, is_complete},
+    certificate,
+    decision::{MISSED, SCOPE, TANK},
+    decisions::{decisions, is_complete},
     located,
-    sections::number_of,
+    model::{Document, GateItem},
+    run_part::RunPart,
+    words::number_of,
 };
 use crate::{human::text::counted, record::Incident};
 use account::{clock, says_nothing};
 use mission::RunOpened;
-use serde::Serialize;
 use world::Boundary;
-
-/// One of the thirteen items.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct GateItem {
-    /// Its number, from 1.
-    pub number: usize,
-    /// What the item requires.
-    pub what: &'static str,
-    /// Whether the item is answered.
-    pub is_answered: bool,
-    /// The answer, or the part of it that is known.
-    pub answer: String,
-    /// What is missing: keys of `[inspection]`, or an action that is still needed.
-    pub missing: Vec<String>,
-}
 
 /// The answer to an item, and what is still missing from it.
 type Answered = (String, Vec<String>);
@@ -83,7 +70,8 @@ fn empty(key: &str, text: &str) -> Option<String> {
     says_nothing(text).then(|| format!("inspection.{key} has no content: `{}`", text.trim()))
 }
 
-/// Adds the decisions that belong to an item: a decision that was made to its answer, any other to what is missing.
+/// Adds the decisions that belong to an item. A decision that was made is added to the answer, any other decision to
+/// what is missing.
 fn decided(document: &Document, item: usize, (answer, mut lacks): Answered) -> Answered {
     let mut answers = vec![answer];
     for decision in decisions(document).into_iter().filter(|decision| decision.item == item) {
@@ -197,8 +185,8 @@ fn plates(document: &Document) -> Answered {
     if document.located.as_ref().is_some_and(|located| located.tool_on_s.is_none()) {
         return located::plates(document);
     }
-    // Where nothing of a plate could be scanned, no accuracy is required. Readings have no scan task, so unscanned
-    // floor is accepted as missed.
+    // No accuracy is required for a plate of which no part could be scanned. Located readings have no scan task, so no
+    // accuracy is required for any plate without scanned floor.
     let has_figure = |plate: &&account::PlateAccount| {
         let could_be_scanned = plate.shares.missed > 0.0 && document.located.is_none();
         plate.error_p95_m.is_some() || plate.shares.scanned <= 0.0 && !could_be_scanned

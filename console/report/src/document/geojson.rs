@@ -1,10 +1,11 @@
 //! The report as `GeoJSON`: track, missed areas, plates, obstacles, zones, stations, shell, indications.
 
-use super::{Document, located, shapes::zones};
+use super::{indications::Indication, located, model::Document, shapes::zones};
 use crate::{
     drawing::trace::thinned,
     geojson::{Datum, feature, outline, rounded},
-    joined::{PastRun, found_name},
+    joined::found_name,
+    past_run::PastRun,
 };
 use account::Solid;
 use mission::RunOpened;
@@ -48,7 +49,7 @@ pub fn geojson(document: &Document, past: &[PastRun]) -> String {
     }
     if let Some(task) = &document.task {
         properties["task"] = task
-            .figures(document)
+            .figures(document.runs.last())
             .into_iter()
             .map(|(name, m)| (name.to_owned(), json!(rounded(m))))
             .collect();
@@ -121,7 +122,7 @@ fn missed(datum: &Datum<'_>, document: &Document) -> Vec<Value> {
 }
 
 fn indications(datum: &Datum<'_>, document: &Document) -> Vec<Value> {
-    let indication = |found: &super::Indication| {
+    let indication = |found: &Indication| {
         let properties = json!({
             "layer": "indications", "number": found.number, "run": found.run, "t_s": found.t_s.map(rounded),
             "error_95_m": found.error_m.map(rounded), "kind": found.kind, "size_mm": found.size_mm, "depth_mm": found.depth_mm,

@@ -23,19 +23,20 @@ const ROUNDING_M: f64 = 1e-3;
 /// An indication with its position.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Indication {
-    /// Its number, from 1.
+    /// Number of the indication, from 1.
     pub number: usize,
-    /// Name of the run in which it was found; absent if the file gives only coordinates and there are several runs.
+    /// Name of the run in which the indication was found; absent if the file gives only coordinates and there are
+    /// several runs.
     pub run: Option<String>,
     /// Mission time, seconds; absent if the file gives only coordinates.
     pub t_s: Option<f64>,
-    /// Its position, tank frame, metres.
+    /// Position of the indication, tank frame, metres.
     pub at: Point,
     /// 95 % error of the position, metres; absent if the file gives coordinates.
     pub error_m: Option<f64>,
-    /// The plate at its position; absent if the plate layout is not known.
+    /// The plate at this position; absent if the plate layout is not known.
     pub plate: Option<String>,
-    /// Its kind, as given by the instrument.
+    /// Kind of the indication, as given by the instrument.
     pub kind: String,
     /// Size, millimetres.
     pub size_mm: Option<f64>,
@@ -47,7 +48,7 @@ pub struct Indication {
 
 /// A run on whose track indications can be placed.
 pub(super) struct Flown<'a> {
-    /// Name of its folder.
+    /// Name of the run's folder.
     pub(super) name: &'a str,
     pub(super) record: &'a Record,
     /// The date and time at which mission time was 0, to the second; absent if the folder name does not contain it.
@@ -144,7 +145,7 @@ impl Row<'_> {
         })
     }
 
-    /// The position of the tool at the time of a row.
+    /// The position of the tool at the time given in a row.
     fn on_track<'r>(&self, runs: &'r [Flown<'r>]) -> Result<Placed<'r>, Fault> {
         let run =
             self.run_of(runs)?.ok_or_else(|| self.fault("run", format!("must be one of {}", names(runs))))?;

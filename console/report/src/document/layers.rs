@@ -49,7 +49,8 @@ impl<'a> Layers<'a> {
         layers
     }
 
-    /// These layers; unless scanning was the task, no floor counts as missed or unreachable.
+    /// Sets whether scanning was the task, and returns the layers. If scanning was not the task, no floor counts as
+    /// missed or unreachable.
     pub(super) fn of_scan(mut self, is_to_scan: bool) -> Self {
         self.is_to_scan = is_to_scan;
         if !is_to_scan {
@@ -140,7 +141,7 @@ impl<'a> Layers<'a> {
         self.classes[cell] == class
     }
 
-    /// Whether a cell was scanned for every position of the robot within its 95 % error.
+    /// Whether a cell was scanned wherever the robot was within its 95 % error.
     pub(crate) fn is_guaranteed(&self, cell: usize) -> bool {
         self.is_scanned(cell) && self.scanned.passes().is_guaranteed(cell)
     }

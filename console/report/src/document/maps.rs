@@ -1,6 +1,6 @@
 //! The maps of a report.
 
-use super::{Indication, layers::Layers, marks, sections::number_of};
+use super::{indications::Indication, layers::Layers, marks, words::number_of};
 use crate::{
     drawing::{
         badges::{self, Numbered},

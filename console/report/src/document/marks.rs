@@ -1,6 +1,6 @@
 //! Marks of indications on the coverage map.
 
-use super::Indication;
+use super::indications::Indication;
 use crate::drawing::sheet::{Sheet, colour};
 use world::{Point, Vector};
 
@@ -22,7 +22,7 @@ pub(super) struct Marks {
     pub(super) unnumbered: u64,
 }
 
-/// Marks indications, each with its number where space allows. `names`: the boxes around names, which numbers must
+/// Marks indications, each with its number where space allows. `names` are the boxes around names, which numbers must
 /// not cover.
 pub(super) fn draw(sheet: &mut Sheet, indications: &[Indication], names: &[[Point; 2]]) -> Marks {
     let radius_mm = if indications.len() > MANY { SMALL_MM } else { RADIUS_MM };

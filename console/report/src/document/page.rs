@@ -1,18 +1,7 @@
 //! The content of the report page as text; the template only defines the layout.
 
-use super::{Document, maps::Legend, sections::sections};
-use askama::Template;
+use super::maps::{Figure, Legend};
 use world::coverage::percent;
-
-/// Style sheet of the page.
-const CSS: &str = include_str!("../../templates/report.css");
-
-/// The page.
-#[derive(Template)]
-#[template(path = "report.html", whitespace = "preserve")]
-struct Html<'a> {
-    page: &'a Page,
-}
 
 /// A text, the name of a missing key, or both.
 #[derive(Debug, Clone, Default)]
@@ -81,7 +70,7 @@ pub(super) struct Table {
     pub(super) caption: String,
     pub(super) heads: Vec<Head>,
     pub(super) rows: Vec<Row>,
-    /// Whether its rows become cards on a phone.
+    /// Whether the rows of the table become cards on a phone.
     pub(super) is_cards: bool,
 }
 
@@ -174,6 +163,16 @@ pub(super) struct Section {
     pub(super) blocks: Vec<Block>,
 }
 
+pub(super) fn section(title: &'static str, blocks: Vec<Block>) -> Section {
+    Section { number: 0, title, is_new_sheet: false, blocks }
+}
+
+/// A numbered figure.
+pub(super) fn picture(figure: &Figure) -> Picture {
+    let Figure { caption, svg, legend } = figure;
+    Picture { number: 0, caption: caption.clone(), svg: svg.clone(), legend: legend.clone() }
+}
+
 /// The whole page.
 pub(super) struct Page {
     pub(super) title: String,
@@ -196,37 +195,6 @@ pub(super) struct Page {
     pub(super) bases: Option<Table>,
     pub(super) todo: Vec<Todo>,
     pub(super) sections: Vec<Section>,
-}
-
-/// Renders the report as one self-contained HTML file without network access or scripts; it prints on A4.
-pub fn html(document: &Document) -> String {
-    let mut page = sections(document);
-    page.css = CSS;
-    number(&mut page);
-    // The template cannot fail.
-    let html = Html { page: &page }.render().unwrap_or_default();
-    foreign::plain_lines(&html).into_owned()
-}
-
-/// Numbers figures and tables in order.
-fn number(page: &mut Page) {
-    let (mut figures, mut tables) = (0, 0);
-    let next = |count: &mut usize| {
-        *count += 1;
-        *count
-    };
-    for block in page.sections.iter_mut().flat_map(|section| &mut section.blocks) {
-        match block {
-            Block::Table(table) if !table.caption.is_empty() => table.number = next(&mut tables),
-            Block::Wide(picture) => picture.number = next(&mut figures),
-            Block::Pair(pictures) => {
-                for picture in pictures {
-                    picture.number = next(&mut figures);
-                }
-            }
-            _ => {}
-        }
-    }
 }
 
 /// A percentage in the format used everywhere.

@@ -2,7 +2,7 @@
 
 use crate::{
     human::pre_flight,
-    joined::PastRun,
+    past_run::PastRun,
     record::{Incident, StationRecord},
 };
 use account::{Accuracy, Positioning, Summary, Tether};
@@ -55,9 +55,9 @@ pub struct Files {
 /// A planner that was active.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Driver {
-    /// Its name, version and interface.
+    /// Name, version and interface of the planner.
     pub name: String,
-    /// SHA-256 of its plugin, hexadecimal.
+    /// SHA-256 of the planner's plugin, hexadecimal.
     pub sha256: String,
 }
 
@@ -66,7 +66,7 @@ pub struct Driver {
 pub struct TetherPart {
     /// Greatest length paid out, metres.
     pub length_max_m: f64,
-    /// Time of the greatest length paid out, seconds.
+    /// Mission time at which the greatest length was paid out, seconds.
     pub length_max_at_s: f64,
     /// Length of the reel, metres.
     pub reel_length_m: f64,
@@ -76,7 +76,7 @@ pub struct TetherPart {
     pub wrap_limit_rad: f64,
     /// Largest total wrap, radians.
     pub wrap_total_max_rad: f64,
-    /// Time of the largest total wrap, seconds.
+    /// Mission time at which the total wrap was largest, seconds.
     pub wrap_total_max_at_s: f64,
     /// Largest total wrap allowed, radians.
     pub wrap_total_limit_rad: f64,
@@ -84,33 +84,33 @@ pub struct TetherPart {
     pub end_length_m: f64,
     /// Largest factor by which the wraps multiplied the pull.
     pub pull_factor_max: f64,
-    /// Assumed friction between tether and steel.
+    /// Assumed coefficient of friction between tether and steel.
     pub friction: f64,
     /// Largest difference between the length at the reel and the length according to the map, metres; absent without
     /// an encoder.
     pub reel_off_max_m: Option<f64>,
-    /// The same record according to the true position; absent outside simulation.
+    /// The tether record according to the true position; absent outside simulation.
     pub truth: Option<Tether>,
 }
 
 /// One of the runs of a report.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RunPart {
-    /// Name of its folder.
+    /// Name of the run's folder.
     pub run: String,
     /// Start time, UTC, as `2026-11-22 04:01`; absent if the folder name does not contain it.
     pub began: Option<String>,
-    /// Version of the program that ran it.
+    /// Version of the program that carried out the run.
     pub tankops_version: String,
-    /// Version of its journal.
+    /// Version of the run's journal.
     pub journal_version: u32,
-    /// Name of its scenario.
+    /// Name of the run's scenario.
     pub scenario: String,
     /// Seed for all random numbers.
     pub seed: u64,
-    /// How it ended; absent if it was cut off.
+    /// How the run ended; absent if the journal was cut off.
     pub outcome: Option<Outcome>,
-    /// The reason for that end, as a sentence.
+    /// The reason why the run ended, as a sentence.
     pub reason: Option<String>,
     /// The checks before the start: the number passed, and every warning; absent for a run without an operator.
     pub pre_flight: Option<String>,
@@ -138,7 +138,7 @@ pub struct RunPart {
     pub stations: Vec<StationRecord>,
     /// The incidents of the run.
     pub incidents: Vec<Incident>,
-    /// Its files.
+    /// The files of the run.
     pub files: Files,
 }
 

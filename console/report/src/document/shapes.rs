@@ -3,7 +3,7 @@
 use super::layers::Layers;
 use crate::{
     drawing::polygons::{Polygon, polygons},
-    joined::PastRun,
+    past_run::PastRun,
 };
 use account::{Area, MissReason};
 use world::{PlateKind, Zone};
@@ -20,11 +20,11 @@ pub(crate) struct Shapes {
 /// A plate on a map.
 #[derive(Debug)]
 pub(crate) struct PlateShape {
-    /// Its name.
+    /// Name of the plate.
     pub(crate) name: String,
-    /// Its kind.
+    /// Kind of the plate.
     pub(crate) kind: PlateKind,
-    /// Its outline.
+    /// Outline of the plate.
     pub(crate) polygons: Vec<Polygon>,
 }
 

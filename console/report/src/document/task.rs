@@ -1,13 +1,13 @@
-//! The task of a run that was not to scan the floor.
+//! A task other than scanning the floor.
 
-use super::Document;
-use crate::joined::PastRun;
+use super::run_part::RunPart;
+use crate::past_run::PastRun;
 use account::Tracking;
 use mission::TaskConfig;
 use serde::Serialize;
 use world::{Point, coverage::percent, polyline};
 
-/// The task of a run that was not to scan the floor, with its figures.
+/// A task other than scanning the floor, with its figures.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum TaskPart {
@@ -61,7 +61,7 @@ impl TaskPart {
     }
 
     /// The figures of the task and of the run by name; unknown figures are omitted.
-    pub(super) fn figures(&self, document: &Document) -> Vec<(&'static str, f64)> {
+    pub(super) fn figures(&self, run: Option<&RunPart>) -> Vec<(&'static str, f64)> {
         let own = match self {
             Self::Goto { goal, straight_m, left_m, left_true_m, .. } => vec![
                 ("goal_x_m", Some(goal.x)),
@@ -81,7 +81,6 @@ impl TaskPart {
                 ]
             }
         };
-        let run = document.runs.last();
         let of_run = [
             ("path_m", run.and_then(|run| run.path_length_m)),
             ("mission_time_s", run.map(|run| run.mission_time_s)),

@@ -3,12 +3,15 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use super::*;
-use crate::record::TrackPoint;
 use crate::samples::round_tank;
-use account::{Fold, Logs};
+use crate::{
+    past_run::PastRun,
+    record::{Record, TrackPoint},
+};
+use account::{Fold, Inspection, Logs};
 use mission::{Event, EventKind, RunOpened, TaskConfig};
 use planner_api::Reason;
-use world::{Floor, Obstacle, ObstacleId, Shape};
+use world::{Floor, Obstacle, ObstacleId, Point, Shape};
 
 /// Places of two cells in the middle.
 const MISSED: [Point; 2] = [Point::new(1.0, -1.0), Point::new(1.1, -1.0)];
@@ -117,7 +120,7 @@ fn every_format_has_the_gap_and_the_letters_of_revisions_go_on_after_z() {
     assert!(missed.lines().count() == 2 && missed.contains("not planned"), "{missed}");
     assert!(geojson::geojson(&document, &runs).contains(r#""layer":"missed""#));
     assert!(dxf::dxf(&document, &runs).contains("MISSED"));
-    assert_eq!([0, 1, 25, 26, 51, 52].map(letter), ["A", "B", "Z", "AA", "AZ", "BA"]);
+    assert_eq!([0, 1, 25, 26, 51, 52].map(build::letter), ["A", "B", "Z", "AA", "AZ", "BA"]);
 }
 
 #[test]

@@ -25,11 +25,11 @@ const MOST_COST: f64 = 400.0;
 
 /// An area that gets a number.
 pub(crate) struct Numbered<'a> {
-    /// Its number.
+    /// Number of the area.
     pub(crate) number: usize,
     /// A position in the area, metres.
     pub(crate) at: Point,
-    /// Its cells.
+    /// Cells of the area.
     pub(crate) cells: &'a [usize],
 }
 
@@ -47,7 +47,7 @@ struct Crowd {
     names: Vec<[Point; 2]>,
 }
 
-/// Draws badges for areas and returns the numbers of those that fit. `names`: the boxes around names, which badges
+/// Draws badges for areas and returns the numbers of those that fit. `names` are the boxes around names, which badges
 /// must not cover.
 pub(crate) fn draw(
     sheet: &mut Sheet,

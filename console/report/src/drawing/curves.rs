@@ -11,7 +11,7 @@ const PLOT_MM: [f64; 4] = [16.0, 174.0, 14.0, 78.0];
 const LEGEND: (usize, f64) = (6, 26.5);
 /// Maximum number of points in a drawn curve; each shows the largest value of its stretch.
 const MOST_POINTS: usize = 600;
-/// Share of the values that are not peaks. Peaks are cut off if the largest is more than `PEAK` times the largest
+/// Share of the values that are not peaks. Peaks are cut off if the largest peak is more than `PEAK` times the largest
 /// value that is not a peak.
 const SHOWN: f64 = 0.98;
 const PEAK: f64 = 2.0;

@@ -40,7 +40,7 @@ pub(crate) struct Sheet {
     rim_mm: f64,
     low: Point,
     high: Point,
-    /// Prefix that keeps its pattern ids apart from those of other pictures on the page.
+    /// Prefix that keeps this picture's pattern ids apart from the ids of other pictures on the page.
     id: &'static str,
     body: String,
 }

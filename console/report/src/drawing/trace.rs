@@ -18,7 +18,8 @@ pub(crate) fn outlines(floor: &Floor, is_in: impl Fn(usize) -> bool, tolerance: 
     path
 }
 
-/// The directions from a corner. Of two directions in use, the first in this order belongs to the cell further south.
+/// The directions from a corner. Of two directions in use, the first in this order belongs to the more southerly
+/// cell.
 const WAYS: [Corner; 4] = [(0, -1), (-1, 0), (1, 0), (0, 1)];
 
 /// The directions of the outline from each corner, column by column: one bit for each of [`WAYS`], two where cells
@@ -63,8 +64,8 @@ impl Edges {
         &mut self.ways[x as usize * self.rows + y as usize]
     }
 
-    /// Removes and returns the next direction from a corner. Where cells touch only at the corner, it turns left so
-    /// that their outlines stay separate.
+    /// Removes and returns the next direction from a corner. Where cells touch only at the corner, the outline turns
+    /// left so that the outlines of the cells stay separate.
     fn take(&mut self, here: Corner, came: Option<Corner>) -> Option<Corner> {
         let open = self.at(here);
         let left = |way: Corner| came.map_or(0, |came| came.0 * way.1 - came.1 * way.0);
@@ -130,7 +131,7 @@ pub(super) fn simplified(ring: &[Corner], tolerance: f64) -> Vec<Corner> {
     if kept.len() < 3 { simplified(ring, 0.0) } else { kept }
 }
 
-/// Simplifies a line: drops the points that are closer to the rest of it than a tolerance (Douglas-Peucker).
+/// Simplifies a line: drops points that are within a tolerance of the simplified line (Douglas-Peucker).
 pub(crate) fn thinned(points: &[Point], tolerance: f64) -> Vec<Point> {
     if points.len() < 3 {
         return points.to_vec();

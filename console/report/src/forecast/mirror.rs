@@ -14,7 +14,7 @@ const WORTH_A_WORD: f64 = 0.005;
 /// Maximum number of station names in a message.
 const MOST_NAMES: usize = 6;
 
-/// The floor with a mirror image that the ranges cannot distinguish from it.
+/// The floor that the ranges cannot distinguish from its mirror image.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Mirrored {
     /// Share of the floor.

@@ -11,7 +11,8 @@ const MOST_ARCS: usize = 3;
 /// Maximum number of listed plates.
 const MOST_PLATES: usize = 30;
 
-/// Labelled lines; every percentage states its floor, and the percentages of one floor add up to 100.0 %.
+/// Labelled lines; every percentage states the floor to which it refers, and the percentages of one floor add up to
+/// 100.0 %.
 pub(crate) fn lines(account: &Account) -> Vec<(&'static str, String)> {
     let mut lines = vec![
         ("floor", format!("whole floor {}", shares(&account.whole))),

@@ -1,4 +1,4 @@
-//! The incidents of a run for people; alarms and holds with their start and end.
+//! The incidents of a run, for people; alarms and holds have a start and an end.
 
 use mission::{Event, EventKind, LogLine, Order, Severity};
 use serde::Serialize;
@@ -13,7 +13,7 @@ const MOST: usize = 50_000;
 pub struct Incident {
     /// Mission time, seconds.
     pub t_s: f64,
-    /// End, seconds; absent for an incident without duration, and for one that lasted to the end.
+    /// End, seconds; absent for an incident without a duration, and for an incident that lasted to the end.
     pub until_s: Option<f64>,
     /// Kind: `alarm`, `hold`, `fault`, `shadow` (a fault of a planner in shadow), `obstacle`, `zone` (a no-go zone
     /// that was drawn), `plan`, `order`, `station` or `end`.

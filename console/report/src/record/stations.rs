@@ -8,17 +8,17 @@ use world::{Point, Station, StationId};
 /// A station and its part in the fixes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StationRecord {
-    /// Its name.
+    /// Name of the station.
     pub name: String,
     /// Surveyed position, metres.
     pub at: Point,
-    /// Number of fixes that used it.
+    /// Number of fixes that used the station.
     pub used: u64,
-    /// Number of fixes that left it out.
+    /// Number of fixes that left the station out.
     pub rejected: u64,
-    /// Mean of its residuals, metres; absent if it was never used.
+    /// Mean of the station's residuals, metres; absent if the station was never used.
     pub residual_mean_m: Option<f64>,
-    /// Root mean square of its residuals, metres; absent if it was never used.
+    /// Root mean square of the station's residuals, metres; absent if the station was never used.
     pub residual_rms_m: Option<f64>,
 }
 

@@ -31,17 +31,17 @@ pub struct Lay {
 /// The tether over a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TetherRecord {
-    /// Its limits.
+    /// Limits of the tether.
     pub limits: Limits,
-    /// Friction of tether on steel.
+    /// Coefficient of friction between tether and steel.
     pub friction: f64,
     /// Every tick.
     pub points: Vec<TetherPoint>,
-    /// Some of its lines, evenly spaced in time.
+    /// Some lines of the tether, evenly spaced in time.
     pub lines: Vec<Vec<Point>>,
-    /// The moment with the greatest length out.
+    /// The moment of the greatest length paid out.
     pub longest: Lay,
-    /// The moment with the largest total wrap.
+    /// The moment of the largest total wrap.
     pub most_wrapped: Lay,
     /// Largest wrap on one obstacle, radians.
     pub wrap_max_rad: f64,

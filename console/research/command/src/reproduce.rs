@@ -13,7 +13,7 @@ use planner_host::PluginDirs;
 use report::print::say;
 use std::process::ExitCode;
 
-/// The maximum number of parts of a list of cases: few files, but work for many machines.
+/// Maximum number of parts of a list of cases: few enough files, but enough parts for many machines.
 const MOST_PARTS: usize = 256;
 
 /// `tankops reproduce`.

@@ -115,7 +115,7 @@ impl Parts for StudyFolder {
             let (place, claim) = (self.place(name), self.folder.claim_file(name));
             let until = "until that process has finished or ended, or has been silent for 10 min";
             warn_line(&format!(
-                "waiting for {place}: {} names the process that computes it, {until}",
+                "waiting for {place}, which another process is computing (see {}), {until}",
                 claim.display()
             ));
         }

@@ -13,13 +13,15 @@ use crate::study::Study;
 pub(crate) const STUDIES: &[Study] = &[
     Study {
         name: "pan-maps",
-        about: "after Pan 2025: round tanks with 14 and 28 columns and a square with 18, every coverage planner",
+        about: "after Pan 2025: round tanks with 14 and 28 columns and a square tank with 18; every \
+                coverage planner",
         layouts: 10,
         run: suite::pan_maps,
     },
     Study {
         name: "coverage-suite",
-        about: "random tanks of radius 5 to 50 m with 0 to 120 columns, every coverage planner and its tether",
+        about: "random tanks of radius 5 to 50 m with 0 to 120 columns; every coverage planner, with its \
+                tether",
         layouts: 20,
         run: suite::random,
     },

@@ -1,9 +1,9 @@
-//! Potential fields toward a goal: Xu et al. 2022 (virtual obstacles) and Yang et al. 2021 (virtual goals, dynamic
+//! Potential fields towards a goal: Xu et al. 2022 (virtual obstacles) and Yang et al. 2021 (virtual goals, dynamic
 //! window).
 //!
-//! The papers print only one obstacle of all layouts. The others are reconstructed so that they give the printed
-//! stopping points and lengths, so agreement there shows only consistency. The notes state where a paper's formula is
-//! wrong.
+//! Of all layouts, the papers print only one obstacle. The other layouts are reconstructed to give the printed
+//! stopping points and lengths, so agreement with those values shows only consistency. The notes state where a paper's
+//! formula is wrong.
 
 mod amphibious;
 mod curves;
@@ -36,7 +36,8 @@ pub(crate) const STUDIES: &[Study] = &[
     },
     Study {
         name: "xu-forces",
-        about: "Xu et al. 2022, Figs 14 to 16: pull and push of three methods over the floor of Table 2, as flown",
+        about: "Xu et al. 2022, Figs 14 to 16: pull and push of three methods on the floor of Table 2, as \
+                driven",
         layouts: 1,
         run: curves::forces,
     },
@@ -54,13 +55,15 @@ pub(crate) const STUDIES: &[Study] = &[
     },
     Study {
         name: "yang-hybrid",
-        about: "Yang et al. 2021, Figs 12 to 15: from water to land among ten obstacles, with 0, 20 and 60 steps of transition",
+        about: "Yang et al. 2021, Figs 12 to 15: from water to land among ten obstacles, with 0, 20 and 60 \
+                steps of transition",
         layouts: 200,
         run: amphibious::hybrid,
     },
     Study {
         name: "yang-distances",
-        about: "Yang et al. 2021, Figs 12 to 15 (b): distances to the ten obstacles along the path, as flown",
+        about: "Yang et al. 2021, Figs 12 to 15 (b): distances to the ten obstacles along the path, as \
+                driven",
         layouts: 10,
         run: curves::distances,
     },

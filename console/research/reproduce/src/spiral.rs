@@ -28,7 +28,8 @@ pub(crate) const STUDIES: &[Study] = &[
     },
     Study {
         name: "wang-search",
-        about: "readings of details that Wang et al. 2023 leave open, drawn at random and compared with Table 1, including VT",
+        about: "interpretations of details that Wang et al. 2023 leave open, drawn at random and compared \
+                with Table 1, including VT",
         layouts: 8,
         run: tables::search,
     },
@@ -40,7 +41,8 @@ pub(crate) const STUDIES: &[Study] = &[
     },
     Study {
         name: "wang-table2",
-        about: "Wang et al. 2023, Table 2: gains and obstacle range of the rotating field with improved repulsion",
+        about: "Wang et al. 2023, Table 2: gains and obstacle range of the rotating field with improved \
+                repulsion",
         layouts: 30,
         run: tables::table2,
     },

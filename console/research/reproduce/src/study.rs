@@ -84,7 +84,7 @@ pub(crate) struct Job<'a> {
     pub runner: &'a Runner<'a>,
     study: &'a Study,
     options: &'a Options,
-    /// Whether seeds were requested; otherwise nothing in the study is drawn at random.
+    /// Whether the study has asked for seeds. If it has not, nothing in it is drawn at random.
     has_drawn: AtomicBool,
 }
 

@@ -56,7 +56,7 @@ fn account(rows: &[Row]) -> String {
     if !printed.is_empty() {
         let fitted = match count("fitted") {
             0 => String::new(),
-            n => format!(", {n} equally near, but with a number or a layout fitted to the printed values"),
+            n => format!(", {n} equally close, but with a number or a layout fitted to the printed values"),
         };
         let _ = writeln!(
             text,

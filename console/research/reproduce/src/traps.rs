@@ -1,8 +1,8 @@
 //! Goal planners on random traps: U, triangle, spiral and double traps among free discs.
 //!
-//! The reference is the exact shortest path on the whole map. Known map: one plan, whose path is measured. Unknown map:
-//! a flight in which discs within the sensing range are discovered, replanned on every discovery and flown by the
-//! planner's own commands.
+//! The reference is the exact shortest path on the whole map. Known map: one plan, whose path is measured. Unknown
+//! map: a drive on which discs within the sensing range are discovered; the planner replans on every discovery, and
+//! its own commands drive the robot.
 
 mod flight;
 mod measured;

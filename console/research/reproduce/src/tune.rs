@@ -15,7 +15,7 @@ use std::cell::RefCell;
 
 /// Initial step of the search, as a share of each parameter's range.
 const FIRST_STEP: f64 = 0.15;
-/// Penalty for each unit of range outside the bounds, so that the search returns.
+/// Penalty for each unit of range outside the bounds; it leads the search back inside.
 const OUTSIDE_COST: f64 = 10.0;
 /// The group of parameters that are tuned if none is named.
 const DEFAULT_GROUP: &str = "Field";

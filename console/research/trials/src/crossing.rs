@@ -43,8 +43,8 @@ const SITE: Site<'static> = Site {
     seed: 0,
 };
 
-/// Flies a planner without a plan on an open floor to a goal 12 m to the east, while a cart with a
-/// constant speed crosses the way from `from_y_m`.
+/// Has a planner drive, without a plan, on an open floor to a goal 12 m to the east, while a cart with a constant
+/// speed crosses the way from `from_y_m`.
 ///
 /// # Panics
 /// The planner refuses its parameters, or a step fails.

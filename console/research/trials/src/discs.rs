@@ -1,4 +1,4 @@
-//! Discs on a floor (centre and radius, metres) in the forms of planners and world, and paths among them.
+//! Discs on a floor (centre and radius, metres) in the forms that planners and `world` use, and paths among the discs.
 
 use planner_api::{Obstacle, Outline};
 use world::{

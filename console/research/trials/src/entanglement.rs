@@ -13,7 +13,7 @@ use world::{
 
 /// Distance between the places at which the cable is evaluated, metres.
 const STEP_M: f64 = 0.2;
-/// Cable beyond the least possible that counts as a detour, metres.
+/// Length of cable beyond the minimum that counts as a detour, metres.
 const DETOUR_M: f64 = 0.05;
 /// A robot whose direction is within this angle of its own cable may drive over the cable, radians.
 const AHEAD_RAD: f64 = PI / 6.0;
@@ -98,7 +98,7 @@ fn excess_m(cable: &Cable, length_m: f64, least: &Geodesic) -> f64 {
 fn is_ahead(cable: &Cable, contacts: &[Contact], move_m: Vector) -> bool {
     let from = contacts.last().map_or(cable.anchor(), |contact| contact.last);
     let back = from - cable.tip();
-    // On the last centimetres there is no cable to drive over.
+    // Within the last centimetres there is no cable to drive over.
     back.norm() > DETOUR_M && back.perp(&move_m).atan2(back.dot(&move_m)).abs() <= AHEAD_RAD
 }
 

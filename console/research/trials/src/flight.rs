@@ -1,4 +1,5 @@
-//! One flight of a planner in a closed loop: a robot with a noisy pose on a layout, and the mission's rule for the target.
+//! One drive of a planner in a closed loop: a robot with a noisy pose on a layout, and the mission's rule for the
+//! target.
 
 use crate::Layout;
 use geometry::{
@@ -16,13 +17,13 @@ use rand_pcg::Pcg64Mcg;
 const TICK_S: f64 = 0.1;
 /// Distance within which a preset point counts as passed, metres.
 const PASSED_M: f64 = 0.5;
-/// Length of the preset path after the target that the planner receives, metres.
+/// Length of the part of the preset path, beyond the target, that the planner receives, metres.
 const AHEAD_M: f64 = 4.0;
 /// Distance at which the last point counts as reached, metres.
 const TOLERANCE_M: f64 = 0.3;
-/// A flight ends after the planner has reported being stuck for this long, seconds.
+/// A drive ends after the planner has reported being stuck for this long, seconds.
 const BORNE_S: f64 = 30.0;
-/// Time limit of a flight, as a multiple of the time for the preset path at full speed.
+/// Time limit of a drive, as a multiple of the time for the preset path at full speed.
 const PATIENCE: f64 = 3.0;
 
 /// The robot and the error of its pose.
@@ -34,7 +35,7 @@ pub struct Robot {
     pub sigma_m: f64,
 }
 
-/// The result of a flight.
+/// The result of a drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outcome {
     /// Whether the last free preset point was reached.
@@ -45,17 +46,17 @@ pub struct Outcome {
     pub clearance_m: f64,
     /// Share of the free preset points that came within half a metre of the robot.
     pub passed: f64,
-    /// Root of the mean squared distance of the free preset points to the flown path, metres.
+    /// Root of the mean squared distance from the free preset points to the driven path, metres.
     pub cross_track_m: f64,
     /// The last place of the robot.
     pub end: Point,
     /// The preset point that was the target at the end.
     pub due: Point,
-    /// Time flown, seconds.
+    /// Time driven, seconds.
     pub time_s: f64,
 }
 
-/// Flies a planner along the preset path of a layout.
+/// Has a planner drive along the preset path of a layout.
 ///
 /// # Errors
 /// The planner refuses its parameters, or a call fails.

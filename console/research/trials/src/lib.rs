@@ -1,8 +1,8 @@
 //! Trials of planners: layouts generated from a seed as in the papers, and the figures of a path on them.
 //!
 //! The crate is pure: the same seed gives the same layout on every machine. `reproduce` uses it to measure planners
-//! across the plugin boundary; the planners' own tests use the same layouts and the same figures, and fly them
-//! ([`fly`], [`cross`]).
+//! across the plugin boundary; the planners' own tests use the same layouts and the same figures, and drive on the
+//! layouts ([`fly`], [`cross`]).
 //!
 //! Frame: the tank frame, metres, radians.
 #![forbid(unsafe_code)]

@@ -41,7 +41,8 @@ pub struct Scan {
     pub turns: usize,
     /// Sum of the changes of heading, in whole turns.
     pub rotation_turns: f64,
-    /// Time of driving and turning in sequence at the robot's speeds, divided by the time of driving the lower bound.
+    /// Time for driving and turning in sequence at the robot's speeds, divided by the time for driving the lower bound
+    /// of the length.
     pub time_over_lower_bound: f64,
     /// The figures of the tether, without limits.
     pub certificate: Certificate,

@@ -6,11 +6,11 @@ use world::{Point, Vector, polyline};
 
 /// Distance from its preset point within which a planned point is correct, metres; the paper's `T0`.
 const CORRECT_M: f64 = 0.2;
-/// Distance from the last preset point within which a path along the spiral arrives, metres.
+/// A path along the spiral arrives if it ends within this distance of the last preset point, metres.
 pub(crate) const ARRIVED_M: f64 = 0.4;
 /// Length of path over which a change of heading is measured, metres.
 const HEADING_SPAN_M: f64 = 0.2;
-/// Distance ahead within which the nearest preset point is searched, metres.
+/// Distance ahead within which the nearest preset point is searched for, metres.
 const WINDOW_M: f64 = 1.5;
 
 /// The agreement of a planned path with its preset points.
@@ -22,7 +22,7 @@ pub struct Score {
     pub recall: f64,
     /// Root of the mean squared distance to the preset point of the same index, metres.
     pub rmse_m: f64,
-    /// Furthest distance to the preset point of the same index, metres.
+    /// Largest distance to the preset point of the same index, metres.
     pub worst_m: f64,
     /// Share of preset points within 0.2 m of the path.
     pub covered: f64,
@@ -30,7 +30,7 @@ pub struct Score {
     pub cross_track_precision: f64,
     /// Root of the mean squared distance of planned points to the preset path, followed forward, metres.
     pub cross_track_rmse_m: f64,
-    /// Furthest distance of a planned point to the preset path, metres.
+    /// Largest distance from a planned point to the preset path, metres.
     pub cross_track_worst_m: f64,
 }
 
@@ -91,7 +91,7 @@ pub fn targets_ahead(path: &[Point], preset: &[Point]) -> Vec<Point> {
     targets
 }
 
-/// Share and number of planned points within `correct_m` of their target, the start aside.
+/// Share and number of planned points within `correct_m` of their target, without the start.
 fn correct(path: &[Point], targets: &[Point], correct_m: f64) -> (f64, f64) {
     let is_correct = |(p, q): &(&Point, &Point)| (*p - *q).norm() <= correct_m;
     let n_correct = path.iter().zip(targets).skip(1).filter(is_correct).count() as f64;
@@ -119,8 +119,8 @@ impl Safety {
 /// The least root mean square error that any path with this clearance from columns can have, metres: it follows from
 /// the distance of every preset point to the nearest place that is clear of all columns.
 ///
-/// Exact for a point in the circle of one column; for a point in several circles, the nearest of their points and
-/// crossings.
+/// The nearest place is exact for a point inside the circle of one column. For a point inside several circles, it is
+/// chosen among the nearest point of each circle and the crossings of the circles.
 pub fn floor_rmse_m(preset: &[Point], columns: &[(Point, f64)], clearance_m: f64) -> f64 {
     let circles: Vec<(Point, f64)> = columns.iter().map(|(c, r)| (*c, r + clearance_m)).collect();
     let off: Vec<f64> = preset.iter().map(|p| distance_to_clear_m(*p, &circles)).collect();

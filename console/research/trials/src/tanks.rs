@@ -14,9 +14,9 @@ use world::{Boundary, Point, Vector, World, shape::rectangle};
 pub const SWATH_M: f64 = 0.6;
 /// Radius of the hull, metres.
 pub const HULL_M: f64 = 0.25;
-/// Distance between hull and anything solid, metres; with the hull the 0.3 m of the study.
+/// Distance between hull and anything solid, metres; together with the hull's radius, it gives the 0.3 m of the study.
 pub const CLEARANCE_M: f64 = 0.05;
-/// Edge of a cell for counting coverage, metres.
+/// Edge length of a cell for counting coverage, metres.
 pub const CELL_M: f64 = 0.05;
 /// Minimum gap between columns, and between a column and the wall, metres.
 const LEAST_GAP_M: f64 = 0.8;
@@ -88,7 +88,7 @@ impl Tank {
     fn drawn(boundary: Boundary, anchor: Point, n: usize, rng: &mut Pcg64Mcg) -> Self {
         let (low, high) = boundary.bounds();
         let mut columns: Vec<(Point, f64)> = Vec::new();
-        // A crowded tank gets as many as fit.
+        // A crowded tank gets as many columns as fit.
         for _ in 0..400 * (n + 1) {
             if columns.len() == n {
                 break;

@@ -147,7 +147,7 @@ impl Trap {
     }
 }
 
-/// A free disc with gaps on all sides; `None` if the drawn place has no room.
+/// A free disc with gaps on all sides; `None` if there is no room at the place that was drawn.
 fn free_disc(rng: &mut Pcg64Mcg, discs: &[(Point, f64)], ends: [Point; 2]) -> Option<(Point, f64)> {
     let radius_m = rng.random_range(0.5..2.0);
     let reach_m = SIDE_M / 2.0 - radius_m - LEAST_GAP_M;
@@ -210,7 +210,7 @@ fn nested_walls(rng: &mut Pcg64Mcg) -> Vec<Vec<Point>> {
     vec![u_wall(depth_m, width_m, 0.0), inner]
 }
 
-/// Two traps behind each other, with a passage between them.
+/// Two traps, one behind the other, with a passage between them.
 fn walls_in_a_row(rng: &mut Pcg64Mcg) -> Vec<Vec<Point>> {
     let mut wall = |x: f64| {
         let (depth_m, width_m) = (rng.random_range(3.5..6.0), rng.random_range(6.0..11.0));

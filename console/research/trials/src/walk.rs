@@ -21,7 +21,7 @@ pub struct WalkOutcome {
     pub arrives: bool,
     /// Whether the walk stood still for 25 moves while its preset point moved on.
     pub is_trapped: bool,
-    /// Furthest distance of a planned point from its preset point, metres.
+    /// Largest distance of a planned point from its preset point, metres.
     pub lag_m: f64,
 }
 

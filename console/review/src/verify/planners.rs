@@ -1,6 +1,6 @@
 //! Replays recorded answers, and repeats the asks to the planners.
 //!
-//! The mission uses the recorded answers alone, so planners are asked in a separate thread and may be some ticks
+//! The mission uses the recorded answers alone, so the planners are asked in a separate thread and may lag some ticks
 //! behind.
 
 use flight::answers::Answers;
@@ -63,7 +63,7 @@ impl Replayed {
 
     fn send(&self, update: impl FnOnce() -> Update) {
         if let Some(again) = &self.again {
-            // A receiver that is gone has panicked; the caller that waits for its findings sees that.
+            // If the receiver is gone, it has panicked, which the caller that waits for its findings notices.
             let _ = again.send(update());
         }
     }
@@ -103,8 +103,8 @@ pub(crate) struct Asked {
 }
 
 impl Asked {
-    /// Asks the planners of a host everything that arrives, until the sender is gone or a planner answers
-    /// differently: from then on its state would differ from that in the run.
+    /// Puts every ask that arrives to the planners of a host, until the sender is gone or a planner answers
+    /// differently: from then on, the state of that planner would differ from its state in the run.
     pub(super) fn of(mut host: Host, updates: &Receiver<Update>) -> Self {
         host.share_processor();
         let mut asking = Asking { host, early: Vec::new(), failed: BTreeMap::new(), asked: Self::default() };

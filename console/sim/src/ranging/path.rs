@@ -15,9 +15,9 @@ const OWN_WALL_M: f64 = 0.1;
 /// A path of sound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SoundPath {
-    /// Its length, metres.
+    /// Length of the path, metres.
     pub length_m: f64,
-    /// Whether an extra delay is added.
+    /// Whether an extra delay is added to the path.
     pub is_late: bool,
 }
 

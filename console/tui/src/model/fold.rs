@@ -131,8 +131,7 @@ impl Run {
         change
     }
 
-    /// Forgets the plan made before the start when a new one is being made: the old plan is no longer the one that
-    /// will run.
+    /// Forgets the plan made before the start when a new one is being made: the old plan will not run.
     fn forget_plan(&mut self) {
         self.planning.plan = None;
         self.forget_certificate();

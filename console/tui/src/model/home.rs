@@ -4,7 +4,7 @@ use super::live::Source;
 use mission::Severity;
 use serde::{Deserialize, Serialize};
 
-/// A scenario, and the reason why it cannot be opened if that is the case.
+/// A scenario and, if it cannot be opened, the reason.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ScenarioEntry {
     /// The source of the scenario.

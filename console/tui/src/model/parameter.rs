@@ -2,7 +2,7 @@
 
 use mission::{ParamInfo, ParamKind, ParamValue, PlannerChoice};
 
-/// The value of a planner parameter: the one set by hand, otherwise the default.
+/// The value of a planner parameter: the value set by hand or, if none is set, the default.
 pub fn value(choice: Option<&PlannerChoice>, info: &ParamInfo) -> ParamValue {
     let by_hand = choice.and_then(|choice| choice.parameters.get(&info.key));
     by_hand.cloned().unwrap_or_else(|| default(&info.kind))

@@ -30,8 +30,8 @@ pub struct Offer {
     pub better: Effort,
     /// The point at which the better plan begins.
     pub begins: Option<Point>,
-    /// Whether the mission will switch to the better plan where it begins, on the operator's order or the scenario's
-    /// setting.
+    /// Whether the mission will switch to the better plan at the point where that plan begins, because the operator or
+    /// the scenario says so.
     pub is_taken: bool,
 }
 

@@ -11,7 +11,7 @@ pub enum PluginState {
     Ready,
     /// One of the plugin's planners is driving.
     Active,
-    /// One of the plugin's planners is driving, but from a different build than the one on disk.
+    /// One of the plugin's planners is driving, but its build differs from the build on disk.
     Changed,
     /// The plugin cannot be used.
     Refused,

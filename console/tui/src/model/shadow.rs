@@ -23,11 +23,11 @@ pub struct Shadow {
     pub choice: PlannerChoice,
     /// The description of the planner; `None` until it is open.
     pub info: Option<PlannerInfo>,
-    /// How many steps it has answered and missed.
+    /// How many steps the planner has answered and missed.
     pub tally: ShadowTally,
-    /// The points of its plan's path, thinned for drawing.
+    /// The points of the path of the planner's plan, thinned for drawing.
     pub path: Vec<Point>,
-    /// Its last command, with the mission time, seconds.
+    /// The planner's last command, with the mission time, seconds.
     pub command: Option<(f64, Command)>,
     /// Whether the planner was ordered to take over.
     pub is_promoted: bool,
@@ -47,9 +47,9 @@ impl Shadow {
 /// The differences between the command of the planner in shadow and the command that drives the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Differences {
-    /// How much faster it would drive, metres per second.
+    /// How much faster the planner in shadow would drive, metres per second.
     pub speed_m_per_s: f64,
-    /// How much further to the left it would turn, radians per second.
+    /// How much faster the planner in shadow would turn to the left, radians per second.
     pub turn_rad_per_s: f64,
     /// The minimum distance along the ghost from the hull to any known obstacle, metres.
     pub clearance_m: f64,

@@ -28,7 +28,7 @@ pub struct Tether {
     pub is_snagged: bool,
     /// The cable from the anchor to the robot.
     pub line: Vec<Point>,
-    /// Whether the current plan, or the one last refused, is certified; `None` without such a plan.
+    /// Whether the current plan, or the plan last refused, is certified; `None` without such a plan.
     pub certified: Option<bool>,
     /// Mission time at which the geometry of the cable was last known, seconds; `None` if it has never been known.
     pub t_s: Option<f64>,

@@ -197,7 +197,7 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
             let order = stations::order(model, action.id, station, values);
             return order.map_or_else(Vec::new, |order| give(model, order));
         }
-        // These are second arguments.
+        // Alarms and faults occur only as second arguments.
         Value::Alarm(_) | Value::Fault(_) => {}
         Value::Preset(name) => return preset::load(model, &name),
         Value::Text(name) if action.id == ActionId::PresetSave => return preset::save(model, name),

@@ -186,7 +186,7 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         | Refusal::SwapNeedsHold => Some("<hold>: HOLD"),
         Refusal::Ended(_) => Some("<home> opens another scenario"),
         Refusal::NoShadow => Some(":shadow NAME runs one"),
-        // These messages already say what to do, if anything can be done.
+        // If anything can be done, these messages already say what to do.
         Refusal::Planning
         | Refusal::OtherPlan { .. }
         | Refusal::NotLive { .. }

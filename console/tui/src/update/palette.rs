@@ -106,7 +106,7 @@ fn unknown(text: &str) -> String {
     format!("no such command{}", near.unwrap_or_default())
 }
 
-/// Runs a command from the list; if it needs a value, the line stays open for it.
+/// Runs a command from the list; if the command needs a value, the line stays open for the value.
 fn chosen(model: &mut Model, action: &'static Action, typed: &str) -> Vec<Effect> {
     model.ui.overlay = Overlay::None;
     if action.runs_alone() {

@@ -67,7 +67,7 @@ fn laid_out(cells: [String; 6], columns: usize) -> String {
     cells.join(" ")
 }
 
-/// The result of the last fix for a station: its residual and its gate, metres, and a word for it.
+/// The result of the last fix for a station: its residual and its gate, metres, and a word for the result.
 fn state(look: &Look, station: StationId) -> (Role, Option<f64>, Option<f64>, &'static str) {
     let Some(fix) = &look.run.position.fix else { return (Role::Text, None, None, "-") };
     let left_out = fix.excluded.iter().find(|(excluded, _)| *excluded == station);

@@ -68,7 +68,7 @@ pub(crate) fn wording<const N: usize>(wordings: [String; N], columns: usize) -> 
     wordings.into_iter().nth(fits).unwrap_or_default()
 }
 
-/// The leading clauses of a sentence that fit, for a row whose full sentence is shown elsewhere. The text ends in an
+/// As many leading clauses of a sentence as fit, for a row whose full sentence is shown elsewhere. The text ends in an
 /// ellipsis only if not even the first clause fits.
 pub(crate) fn clauses(sentence: &str, columns: usize) -> String {
     if width(sentence) <= columns {

@@ -106,7 +106,7 @@ pub(super) fn time(model: &Model) -> Parts {
         }
         None => (Role::Text, format!("T+{} ", text::clock(model.live.run.clock.t_s))),
     };
-    // The speed is that of the replay; no robot is connected.
+    // The speed is the replay speed; no robot is connected.
     if model.live.is_replay() {
         return vec![clock, (Role::Text, format!("{} ", text::speed(model.live.speed)))];
     }

@@ -27,7 +27,7 @@ pub fn percents<const N: usize>(shares: [f64; N]) -> [f64; N] {
     parts.map(|part| part / 10.0)
 }
 
-/// Returns a share as printed alone: in per cent with one decimal, and 100.0 only if the share is complete.
+/// Returns a share as it is printed on its own: in per cent with one decimal, and 100.0 only if the share is complete.
 ///
 /// ```
 /// use world::coverage::percent;

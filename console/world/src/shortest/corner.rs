@@ -100,7 +100,7 @@ impl Corner {
 }
 
 /// Returns the angle from one bearing to another, counter-clockwise (`turn` 1) or clockwise (-1), in [0, 2 pi). An
-/// angle that is a full turn, apart from rounding errors, becomes zero.
+/// angle that is a full turn to within rounding errors becomes zero.
 pub(super) fn turned_rad(from_rad: f64, to_rad: f64, turn: f64) -> f64 {
     ((to_rad - from_rad) * turn + ROUNDING_RAD).rem_euclid(TAU) - ROUNDING_RAD
 }

@@ -34,7 +34,7 @@ enum Wall {
 
 impl GrownFloor {
     /// Creates a floor from a wall and outlines. The centre of the robot stays at least `wall_keep_m` away from the
-    /// wall, and the distance given for each outline, metres, away from that outline.
+    /// wall; each outline comes with its own minimum distance, metres.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, shortest::GrownFloor};

@@ -31,8 +31,7 @@ pub(super) fn tangent(i: Turn, j: Turn) -> Option<Tangent> {
     let squared = way.norm_squared();
     let grown_m = j.signed_m - i.signed_m;
     let length_squared = squared - grown_m * grown_m;
-    // An end of the path may lie on the circle, apart from rounding errors. In this case, the path leaves along the
-    // circle.
+    // An end of the path may lie on the circle, to within rounding errors; the path then leaves along the circle.
     if length_squared <= -4.0 * TOUCH_M * grown_m.abs() || squared == 0.0 {
         return None;
     }

@@ -64,7 +64,7 @@ impl Base {
 
     /// Positive if a move passes the base counter-clockwise, negative if clockwise.
     ///
-    /// A move that passes through the base, apart from rounding errors, comes back along the cable and unwinds it.
+    /// A move that passes through the base, to within rounding errors, runs back along the cable and unwinds it.
     fn sense_of(&self, from: Point, to: Point) -> f64 {
         let along = (to - from).normalize();
         // A tip exactly on a corner is on neither side of the corner, but the cable's bearing still defines a side.

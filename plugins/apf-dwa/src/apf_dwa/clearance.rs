@@ -34,7 +34,7 @@ fn site<'a>(obstacles: &'a [Obstacle<'a>], radius_m: f64, clearance_m: f64) -> S
     }
 }
 
-/// The clearances maintained with one set of requirements.
+/// The outcome of a plan and a flight for one set of requirements, and the clearances that they keep.
 #[derive(Debug)]
 struct Kept {
     is_complete: bool,

@@ -13,11 +13,12 @@ use std::{cmp::Ordering, f64::consts::PI};
 use steering::{Forces, Side, Solid};
 use world::{Point, Vector};
 
-/// The nearest solid on the way to the goal is searched for this far ahead, as a multiple of the law's range.
+/// Distance ahead within which the nearest solid on the way to the goal is sought, as a multiple of the law's range.
 const AHEAD_RANGES: f64 = 2.0;
 /// An escape that begins within this distance of an earlier one is another attempt at the same trap, metres.
 const SAME_PLACE_M: f64 = 1.5;
-/// Another attempt continues until the robot is closer to the goal than at its start by this much, metres.
+/// A further attempt continues until the robot is closer to the goal than where the attempt began: by this much for
+/// each earlier attempt, metres.
 const GAIN_M: f64 = 1.0;
 /// Tolerance for rounding when a path is compared with its margin, metres.
 const ROUNDING_M: f64 = 1e-6;
@@ -48,7 +49,7 @@ impl Machine {
     }
 
     /// All solids that push the robot back here, with their clusters. The field may have a minimum between two groups
-    /// although the robot would fit between them.
+    /// even though the robot would fit between them.
     fn all_near(&self, at: Point, culprit: usize) -> Vec<usize> {
         let reach_m = self.settings.law.rho_m + self.map.hull_m;
         let near = self.map.solids.iter().filter(|s| s.distance(at).0 < reach_m);

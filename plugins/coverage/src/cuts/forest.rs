@@ -61,8 +61,8 @@ struct Forest<'a> {
 struct Target {
     end: Point,
     cluster: Option<usize>,
-    /// Cost in broken lanes: of the lanes that the cut breaks, the length of the cuts to the wall, and the excess cable
-    /// that they cause.
+    /// Cost, expressed as a number of broken lanes: the lanes that the cut breaks, plus a price for the length of the
+    /// cuts to the wall and for the excess cable that they cause.
     cost: f64,
 }
 
@@ -187,7 +187,7 @@ pub(super) fn taut_m(anchor: Point, chain: &[Point]) -> f64 {
     let along = |side: f64| {
         let mut path = vec![anchor];
         for next in chain {
-            // The cable bears on an obstacle only where the chain bends toward this side.
+            // The cable bears on an obstacle only where the chain bends towards this side.
             while let [.., before, last] = path[..] {
                 if (last - before).perp(&(next - last)) * side > 0.0 {
                     break;

@@ -1,7 +1,7 @@
 //! Steers a tracked robot along a path: on circular arcs that end on the path, slower at bends.
 //!
 //! This is proper pure pursuit: the robot drives on the one arc that begins along its heading and meets the aim. On a
-//! path of constant curvature, it follows without an offset. A robot that merely turned toward its aim would have an
+//! path of constant curvature, it follows without an offset. A robot that merely turned towards its aim would have an
 //! offset, and would cut inside the path around a column.
 
 use planner_api::{Drive, Limits};

@@ -43,7 +43,8 @@ impl<'a> Division<'a> {
     }
 }
 
-/// The gates of the tree of shortest paths from the first cell, from centre through gate to centre (Dijkstra 1959).
+/// The gates used by the tree of shortest paths from the first cell. Paths run from centre through gate to centre
+/// (Dijkstra 1959).
 fn tree(cells: &[Cell], borders: &[Border], first: usize) -> Vec<usize> {
     let mut far_m = vec![f64::INFINITY; cells.len()];
     let mut gate: Vec<Option<usize>> = vec![None; cells.len()];

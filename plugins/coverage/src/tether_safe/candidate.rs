@@ -157,7 +157,7 @@ pub(super) struct Worth {
 }
 
 impl Worth {
-    /// Computes the value of a scan for a robot whose cable lies as given.
+    /// Computes the value of a scan for a robot with the cable in the given position.
     pub(super) fn of(
         site: &Site<'_>,
         preferences: &Preferences,

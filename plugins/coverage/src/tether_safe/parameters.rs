@@ -85,8 +85,8 @@ const KICKS: ParamSpec = float("kicks", "Search", "", 0.0, 200.0, 4.0)
 /// How close the robot may come to obstacles when it leaves its path.
 const GUARD: ParamSpec = float("guard_m", "Guard distance", "m", 0.0, 1.0, 0.1)
     .help(
-        "No motion toward an obstacle is allowed if the hull is closer to it than this; never more than \
-         three quarters of the mission's clearance.",
+        "No motion toward an obstacle is allowed if the hull is closer to it than this distance, which \
+         never exceeds three quarters of the mission's clearance.",
     )
     .group("Flight")
     .live();

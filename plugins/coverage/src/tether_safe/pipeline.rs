@@ -78,7 +78,7 @@ impl<'a> Pipeline<'a> {
         Ok(tried)
     }
 
-    /// The first tours of all candidates with cuts up to an angle, the cheapest first.
+    /// The first tours of all candidates with cuts up to the given angle, cheapest first.
     fn drafts(&self, alpha_rad: f64, stage: &Stage<'_>) -> Result<Vec<Drafted<'a>>> {
         let Self { workspace, preferences, scope, .. } = *self;
         let drafted = |candidate: Candidate, job: &Job| {

@@ -94,12 +94,12 @@ pub struct StepOut {
 unsafe impl Sized32 for Param {}
 
 impl PlanOut {
-    /// The value before the planner has answered.
+    /// The value until the planner answers.
     pub const UNSET: Self = Self { size: size_of::<Self>() as u32, complete: u32::MAX, cost: f64::NAN };
 }
 
 impl StepOut {
-    /// The value before the planner has answered.
+    /// The value until the planner answers.
     pub const UNSET: Self = Self {
         size: size_of::<Self>() as u32,
         status: u32::MAX,

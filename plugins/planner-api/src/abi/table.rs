@@ -47,7 +47,7 @@ pub type Destroy = unsafe extern "C" fn(*mut c_void);
 pub type Reconfigure = unsafe extern "C" fn(*mut c_void, *const Host, *const Value, u32) -> i32;
 pub type Plan = unsafe extern "C" fn(*mut c_void, *const Host, *const PlanIn, *mut PlanOut) -> i32;
 pub type Step = unsafe extern "C" fn(*mut c_void, *const Host, *const StepIn, *mut StepOut) -> i32;
-/// Returns 0 to be stopped immediately, 1 to be given a few more steps.
+/// Returns 0 if the planner can be stopped immediately, 1 if it needs a few more steps.
 pub type Stopping = unsafe extern "C" fn(*mut c_void, *const Host) -> u32;
 pub type Snapshot = unsafe extern "C" fn(*mut c_void, *const Host) -> i32;
 pub type Restore = unsafe extern "C" fn(*mut c_void, *const Host, u32, *const u8, usize) -> i32;
@@ -92,7 +92,7 @@ pub struct Entry {
     pub built_with: Str,
 }
 
-/// The stamp in a section of its own. The console reads it from the file before it loads the library.
+/// The stamp, in a separate section. The console reads it from the file before it loads the library.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stamp {

@@ -37,7 +37,7 @@ pub(super) fn run(services: &HostServices, call: impl FnOnce() -> Result<()>) ->
 
 /// Runs the author's code and ignores a panic.
 pub(super) fn quietly(call: impl FnOnce()) {
-    // A report would have no reader: the instance is gone either way.
+    // Nobody would read a report: the instance is gone either way.
     let _ = caught(call);
 }
 
@@ -72,7 +72,7 @@ fn without_unwinding<T>(call: impl FnOnce() -> T) -> std::result::Result<T, Stri
     catch_unwind(AssertUnwindSafe(call)).map_err(|payload| {
         let place = WHERE.with_borrow(Clone::clone);
         let sentence = format!("{place}: {}", text_of(&*payload));
-        // Dropping the payload may panic in turn.
+        // Dropping the payload may itself panic.
         std::mem::forget(payload);
         sentence
     })

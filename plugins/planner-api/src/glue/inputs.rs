@@ -265,7 +265,7 @@ pub(super) unsafe fn task_of<'a>(raw: &abi::PlanIn, regions: &'a [&'a [Point2<f6
     }
 }
 
-/// Reads the plan that is to be kept as far as possible, if there is one.
+/// Reads the plan to keep to as far as possible, if there is one.
 ///
 /// # Safety
 /// The path, legs and cuts of `raw` point to as many elements as `raw` states.

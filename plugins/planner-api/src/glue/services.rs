@@ -54,7 +54,7 @@ impl HostServices {
         }
     }
 
-    /// Passes one cut, a line that the robot never crosses.
+    /// Passes one cut, a line that the robot must never cross.
     pub(super) fn cut(&self, line: &[Point2<f64>]) {
         if let Some(take) = self.0.cut {
             // SAFETY: copied before it returns; a point is two doubles, as `abi` asserts.

@@ -107,8 +107,9 @@ pub(super) fn solids_of(part: &Part, keep_m: f64) -> Vec<Solid<'_>> {
 impl<'a> Solid<'a> {
     /// Adds the rows for the parts of a path that are near this solid.
     ///
-    /// A segment stays out of a circle if it is beyond a tangent, which the middle of the segment determines. If its
-    /// nearest point determined the tangent, two segments that meet on the circle would keep each other straight.
+    /// A segment stays out of a circle if it is beyond a tangent, which the middle of the segment determines. If the
+    /// segment's nearest point determined the tangent, two segments that meet on the circle would keep each other
+    /// straight.
     pub(super) fn rows(&self, kind: u32, way: &[Point], rows: &mut Vec<Row<'a>>) {
         match *self {
             Self::Circle(center, radius_m) => {

@@ -5,25 +5,27 @@ use crate::{ask::PlanAsk, event::Effort, task::Joint};
 use planner_api::{Plan, PoseEstimate, Reason};
 use world::{CoverageGrid, Point, Tool};
 
-/// Minimum time until the robot reaches the start of the better plan, seconds of driving: time to plan, and for an
-/// operator to decide.
+/// Minimum time until the robot reaches the start of the better plan, seconds of driving. The planner needs this time
+/// to plan, and an operator to decide.
 const LEAD_S: f64 = 60.0;
-/// The same minimum, as a share of the time left in the current plan: in a large tank, planning and deciding take longer.
+/// The minimum time until the robot reaches the start of the better plan, as a share of the time left in the current
+/// plan, because planning and deciding take longer in a large tank.
 const LEAD_SHARE: f64 = 0.05;
-/// No better plan is sought if less than this is left, seconds of driving: given the two thresholds below, such a plan
-/// would have to save more than 12 % of the rest.
+/// No better plan is sought if less driving time than this is left, seconds: given the two thresholds below, such a
+/// plan would have to save more than 12 % of the rest.
 const WORTH_S: f64 = 300.0;
-/// A change must save more than this, seconds: the time that an operator needs to check the plan ...
+/// A change must save more than this time, seconds, plus [`CHANGE_SHARE`] of the rest. An operator needs this time to
+/// check the plan.
 const CHANGE_S: f64 = 30.0;
-/// ... plus this share of the rest: by about this much, the path driven is typically longer than the path planned,
-/// because of unforeseen obstacles.
+/// Share of the rest that a change must save in addition to [`CHANGE_S`]. Because of unforeseen obstacles, the path
+/// driven is typically longer than the path planned by about this share.
 const CHANGE_SHARE: f64 = 0.02;
 /// Two plans count as scanning the same floor if the amounts that they leave unscanned differ by at most this share of
 /// what is left to scan. Cells count by their centres, so plans with different lanes differ by single cells.
 const SAME_FLOOR_SHARE: f64 = 0.0005;
 
 impl Known {
-    /// The place where a better plan would begin; `None` if too little is left after it.
+    /// The place where a better plan would begin; `None` if too little of the current plan is left after that place.
     pub(super) fn joint(&self) -> Option<Joint> {
         let (cover, lanes) = (self.task.cover()?, self.task.lanes()?);
         let v_m_per_s = self.config.limits.v_max_m_per_s;

@@ -100,7 +100,7 @@ impl Driving {
     }
 }
 
-/// How a command is converted on its way to the robot, at one moment.
+/// The data that determine, at one moment, how a command is converted on its way to the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sending {
     heading_rad: f64,

@@ -26,7 +26,7 @@ impl Driving {
         self.reconfigure.as_ref().or(asked)
     }
 
-    /// Whether a choice is this planner with only the values of live parameters changed. Such a change needs no new plan.
+    /// Whether a choice names this planner and changes only values of live parameters. Such a change needs no new plan.
     /// Resetting a value to its default does not qualify, because planners receive only explicit values.
     pub(in crate::engine) fn takes_live(&self, choice: &PlannerChoice) -> bool {
         let before = &self.worker.choice;
@@ -64,7 +64,7 @@ impl Driving {
         snapshots && self.worker.is_ready() && successor == self.id()
     }
 
-    /// What a start would begin with.
+    /// The plan with which a start would begin the mission.
     pub(in crate::engine) fn readiness(&self, known: &Known) -> Readiness<'_> {
         if !known.config.start_names_plan {
             return Readiness::Unseen;

@@ -1,5 +1,5 @@
-//! Detects that the robot has left its plan across a cut: if the robot then returned to the plan, the cable would be
-//! wound round something.
+//! Detects when the robot has left its plan by crossing a cut. If the robot then went on with the plan, the cable would
+//! be wound round something.
 
 use world::{
     Boundary, ObstacleMap, Point, Vector,
@@ -12,7 +12,8 @@ use world::{
 pub(in crate::engine) const HOME_M: f64 = 0.3;
 
 /// A cut is extended into a solid object if the object is no farther from the end of the cut than this multiple of the
-/// clearance that the hull needs: the outlines that planners draw are slightly larger than the exact ones.
+/// clearance that the hull needs. The multiple allows for the outlines of planners, which are slightly larger than the
+/// exact outlines.
 const ROOT_SHARE: f64 = 1.1;
 /// Length of that extension inside the solid object, metres.
 const ROOT_M: f64 = 0.01;
@@ -35,7 +36,7 @@ impl CutsRule {
     }
 
     /// Processes one tick with a reliable position. Returns whether the robot has crossed a cut and is now farther from
-    /// it than its hull radius; close to the cut, scatter of the estimate can cross it back and forth.
+    /// it than its hull radius; close to the cut, the estimate may scatter back and forth across the cut.
     pub(crate) fn update(&mut self, here: Point, radius_m: f64) -> bool {
         let before = std::mem::replace(&mut self.seen_at, here);
         if self.from.is_some_and(|from| (here - from).norm() > HOME_M) {

@@ -25,7 +25,7 @@ impl LatePlannerRule {
 
     /// Whether a command of this age, in seconds, may still be sent.
     pub(crate) fn is_fresh(age_s: f64) -> bool {
-        // Ages are multiples of the tick and carry floating-point errors.
+        // Ages are multiples of the tick and contain floating-point errors.
         age_s <= STALE_S + 1e-9
     }
 

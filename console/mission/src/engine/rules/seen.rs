@@ -30,7 +30,7 @@ pub(in crate::engine) struct Seen<'a> {
     pub touched: bool,
     /// The tether limit that was reached in this tick, if any.
     pub reached: Option<&'a TetherAlarm>,
-    /// Whether the mission puts return paths along the tether before plans.
+    /// Whether the mission may begin a plan with a return path along the tether.
     pub can_replan: bool,
     /// Whether the hull fits through the return path along the tether.
     pub can_go_home: bool,

@@ -38,9 +38,9 @@ pub(super) enum Promotion {
 }
 
 impl Mission {
-    /// Orders the planner in shadow to take over as soon as its plan can be run from the robot's position; if the robot
-    /// is close to that plan, in this tick. As with any change of planner, a hold that would have ended automatically now
-    /// ends only by order.
+    /// Orders the planner in shadow to take over as soon as its plan can be run from the robot's position. If the robot
+    /// is already close to that plan, the planner takes over in this tick. As with any change of planner, a hold that
+    /// would have ended automatically now ends only by order.
     pub(in crate::engine) fn order_promotion(&mut self) {
         self.stay_held();
         if let Some(shadow) = &mut self.shadow {

@@ -2,12 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Number of faults ...
+/// A plugin that has this many faults within [`WINDOW_S`] is not used again.
 pub(in crate::engine) const MOST_FAULTS: usize = 3;
-/// ... within this mission time, seconds, after which a plugin is not used again.
+/// The period for which a fault counts, seconds of mission time.
 pub(in crate::engine) const WINDOW_S: f64 = 60.0;
 
-/// Counts faults per plugin file, by its hash, over mission time.
+/// Counts the faults of each plugin file, identified by its hash, over mission time.
 #[derive(Clone, Debug, Default)]
 pub(in crate::engine) struct Quarantine {
     faults_s: BTreeMap<String, Vec<f64>>,

@@ -40,7 +40,8 @@ impl Worker {
             return None;
         }
         if !self.process.is_reaped() && !dying.is_killed {
-            // A process that ends slowly keeps its own reason; the signal kills only a process that is still alive.
+            // A process that ends slowly keeps its own reason for ending; the signal kills only a process that is still
+            // alive.
             self.process.kill();
             dying.wait_for_kill(now);
             return None;

@@ -59,7 +59,7 @@ impl Worker {
         None
     }
 
-    /// Reads once, and forwards progress messages.
+    /// Reads from the socket once, and forwards progress messages.
     fn receive(&mut self, now: Instant, on_progress: &mut dyn FnMut(&Progress)) -> Arrived {
         let mut has_read = false;
         loop {
@@ -105,7 +105,7 @@ impl Worker {
         Ok(())
     }
 
-    /// Checks the worker when it is time, and cancels a request that has used up its budget.
+    /// Checks the worker when a check is due, and cancels a request that has used up its budget.
     pub(super) fn keep_deadline(&mut self, now: Instant) -> Option<Failure> {
         match &mut self.state {
             State::Busy(request) if now >= request.look_at => {

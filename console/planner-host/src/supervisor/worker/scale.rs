@@ -32,8 +32,8 @@ impl Scale {
         self.look_at
     }
 
-    /// Measures the memory of the worker when this is due. Returns the limit, bytes, if the worker exceeds it by more
-    /// than a worker itself needs.
+    /// Measures the memory of the worker when a measurement is due. Returns the limit, bytes, if the worker exceeds it
+    /// by more than a worker itself needs.
     pub(super) fn weigh(&mut self, process: Pid, now: Instant) -> Option<u64> {
         if now < self.look_at {
             return None;

@@ -13,7 +13,7 @@ const LEAST_LOOK: Duration = Duration::from_millis(10);
 const EXIT_WITHIN: Duration = Duration::from_millis(80);
 /// How long a killed process may take to end; if it takes longer, the system is stuck.
 pub(super) const DIE_WITHIN: Duration = Duration::from_millis(30);
-/// How long to wait for the output of a dead process, which is already in the pipe.
+/// How long to wait for the output of a dead process; the output is already in the pipe.
 const OUTPUT_WITHIN: Duration = Duration::from_millis(30);
 /// Progress messages are forwarded at this rate, after an initial burst; all others are dropped. A well-behaved worker
 /// sends 20 a second.

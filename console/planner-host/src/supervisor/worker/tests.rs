@@ -1,4 +1,4 @@
-//! The supervisor against workers that say what they like: a shell that writes bytes into its socket.
+//! Tests the supervisor against workers that send whatever they like: shells that write bytes to their sockets.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use super::*;
@@ -15,7 +15,7 @@ fn worker(script: &str) -> Worker {
     Worker::spawn(&command, 256 << 20).unwrap()
 }
 
-/// A worker that answers every request without a body by one of these, and then only listens.
+/// A worker that answers each request without a body with the next of these answers, and then only listens.
 fn answering(answers: &[&[Vec<u8>]]) -> Worker {
     let answer =
         |frames: &&[Vec<u8>]| format!("head -c 13 > /dev/null; printf '{}' >&0;", octal(&frames.concat()));
@@ -67,7 +67,7 @@ fn answer(worker: &mut Worker, on_progress: &mut dyn FnMut(&Progress)) -> Result
     }
 }
 
-/// Looks at a worker until it has ended.
+/// Polls a worker until it has ended.
 fn see_to_its_end(worker: &mut Worker) {
     while !worker.is_gone() {
         let ready = wait_for_one(worker, None);

@@ -28,7 +28,7 @@ impl Clock {
         if is_date { moment().map(Self::Moment) } else { text.parse().ok().map(Self::Time) }
     }
 
-    /// Seconds after the start of a run; a time without a date means the first such time after the start.
+    /// Seconds after the start of a run; a time without a date means its first occurrence after the start.
     pub(super) fn after_s(self, began: Timestamp) -> f64 {
         match self {
             Self::Moment(moment) => moment.duration_since(began).as_secs_f64(),

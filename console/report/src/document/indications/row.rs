@@ -3,17 +3,11 @@
 use super::{
     Flown,
     moment::Clock,
-    table::{Cells, Fault, Table},
+    table::{Cells, Fault, NUMBERS, Table},
 };
 use foreign::unplain;
 use world::Point;
 
-/// The known columns.
-pub(super) const COLUMNS: [&str; 13] = [
-    "run", "t_s", "time", "left_m", "ahead_m", "x_m", "y_m", "x", "y", "kind", "size_mm", "depth_mm", "note",
-];
-/// The columns that contain numbers.
-pub(super) const NUMBERS: [&str; 7] = ["t_s", "left_m", "ahead_m", "x_m", "y_m", "size_mm", "depth_mm"];
 /// Numbers above this cannot be a position or a size.
 const MOST: f64 = 1e9;
 

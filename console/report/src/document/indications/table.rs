@@ -2,6 +2,13 @@
 
 use std::fmt;
 
+/// The known columns.
+const COLUMNS: [&str; 13] = [
+    "run", "t_s", "time", "left_m", "ahead_m", "x_m", "y_m", "x", "y", "kind", "size_mm", "depth_mm", "note",
+];
+/// The columns that contain numbers.
+pub(super) const NUMBERS: [&str; 7] = ["t_s", "left_m", "ahead_m", "x_m", "y_m", "size_mm", "depth_mm"];
+
 /// A fault in a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Fault {
@@ -54,8 +61,8 @@ impl Table {
         let header = reader.headers().map_err(|error| at_line(1, error.to_string()))?;
         let names: Vec<String> = header.iter().map(str::to_lowercase).collect();
         for (index, name) in names.iter().enumerate() {
-            if !super::row::COLUMNS.contains(&name.as_str()) {
-                let known = super::row::COLUMNS.join(", ");
+            if !COLUMNS.contains(&name.as_str()) {
+                let known = COLUMNS.join(", ");
                 return Err(at_line(1, format!("unknown column `{name}`; known columns: {known}")));
             }
             if names[..index].contains(name) {
@@ -108,8 +115,7 @@ impl Table {
     /// The fault of mixing decimal commas and decimal points in one file, which makes its numbers ambiguous.
     pub(super) fn mixed_marks(&self) -> Option<Fault> {
         let marked = |mark: char| {
-            let has =
-                |cells: &&Cells| super::row::NUMBERS.iter().any(|name| self.cell(cells, name).contains(mark));
+            let has = |cells: &&Cells| NUMBERS.iter().any(|name| self.cell(cells, name).contains(mark));
             self.rows.iter().find(has).map(|cells| cells.line)
         };
         let (comma, point) = (marked(',')?, marked('.')?);

@@ -1,12 +1,10 @@
 //! The first sheet of a report on located readings.
 
-use super::{
-    super::{
-        Document,
-        page::{Page, Share, Table, Value, Verdict},
-        sections::number,
-    },
-    Located,
+use super::super::{
+    model::Document,
+    page::{Page, Share, Table, Value, Verdict},
+    readings::Located,
+    words::number,
 };
 use account::clock;
 

@@ -1,11 +1,9 @@
 //! The gate items of a report on located readings.
 
-use super::{
-    super::{
-        Document,
-        decisions::{Decision, MISSED, SCOPE},
-    },
-    Located,
+use super::super::{
+    decision::{Decision, MISSED, SCOPE},
+    model::Document,
+    readings::Located,
 };
 use crate::human::text::counted;
 

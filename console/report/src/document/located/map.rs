@@ -1,17 +1,17 @@
 //! The map of a report on located readings: the track and, if known, the floor that the tool passed over.
 
 use super::super::{
-    Figure, Indication,
+    indications::Indication,
     layers::Layers,
-    maps::{FULL_MM, drawn_track, filled, legend, swatch},
+    maps::{FULL_MM, Figure, drawn_track, filled, legend, swatch},
     marks,
 };
 use crate::{
     drawing::sheet::{Sheet, colour},
-    joined::PastRun,
+    past_run::PastRun,
 };
 
-/// Draws the map; `tool_is_known`: whether the readings show when the tool was on.
+/// Draws the map; `tool_is_known` tells whether the readings show when the tool was on.
 pub(in crate::document) fn map(
     layers: &Layers<'_>,
     past: &[PastRun],

@@ -1,14 +1,14 @@
 //! The sections of a report on located readings. They keep the section numbers of a mission report, so that
 //! references stay valid.
 
-use super::{
-    super::{
-        Document,
-        page::{Block, Section, Table, Value},
-        sections::{closing, cm, counted, floor, number, picture, runs, section},
-    },
-    Located,
+use super::super::{
+    model::Document,
+    page::{Block, Section, Table, Value, picture, section},
+    readings::Located,
+    sections::{closing, floor, runs},
+    words::{cm, number},
 };
+use crate::human::text::counted;
 use account::clock;
 
 const NOT_KNOWN: &str = "The readings do not show when the tool was on (column tool_on, or --tool-on FILE \
@@ -38,7 +38,7 @@ fn scope(document: &Document, located: &Located) -> Vec<Block> {
         Block::Text(format!(
             "Scenario {}: {}. Duration: {}. Tool: swath {} m. Cell size: {} cm.",
             document.scenario,
-            super::scope(located),
+            super::gate::scope(located),
             clock(located.time_s),
             floor.swath_m,
             number(100.0 * floor.cell_m, 1)

@@ -1,14 +1,14 @@
 //! The last sections: equipment, limitations, gate, signatures, provenance.
 
-use super::{
-    super::{
-        Readings, RunPart,
-        page::{Block, SignatureBlock, Table, Value},
-    },
-    Document, cm, number,
+use super::super::{
+    model::Document,
+    page::{Block, SignatureBlock, Table, Value},
+    readings::Readings,
+    run_part::RunPart,
+    words::{cm, number},
 };
 
-/// Equipment, calibration, and the fixes of the run station by station.
+/// Equipment, calibration, and the fixes of each run, station by station.
 pub(in crate::document) fn equipment(document: &Document) -> Vec<Block> {
     let facts = &document.inspection;
     let floor = &document.floor;

@@ -1,12 +1,11 @@
 //! Sections on the floor: map, critical zone, accuracy, plates.
 
-use super::{
-    super::{
-        located::accuracy_how,
-        maps::{plate_bar, plate_legend},
-        page::{Block, Row, Table, Value, per_cent},
-    },
-    Document, cm, number, picture,
+use super::super::{
+    located::gate::accuracy_how,
+    maps::{plate_bar, plate_legend},
+    model::Document,
+    page::{Block, Row, Table, Value, per_cent, picture},
+    words::{cm, number},
 };
 use world::coverage::percent_text;
 

@@ -2,12 +2,16 @@
 
 use super::{
     super::{
-        RunPart,
-        decisions::{Decision, decisions, is_complete},
+        decision::Decision,
+        decisions::{decisions, is_complete},
+        model::Document,
         page::{Block, Field, Page, Section, Share, Table, Todo, Value, Verdict},
+        run_part::RunPart,
+        words::{number, number_of},
     },
-    Document, counted, number, number_of, task,
+    task,
 };
+use crate::human::text::counted;
 use account::Shares;
 use mission::Outcome;
 

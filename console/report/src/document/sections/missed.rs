@@ -1,13 +1,15 @@
 //! The section on missed and unreachable floor.
 
-use super::{
-    super::page::{Block, Cell, Table, Value},
-    Document, counted, number,
+use super::super::{
+    model::Document,
+    page::{Block, Cell, Table, Value},
+    words::number,
 };
+use crate::human::text::counted;
 use account::{Area, Cause, MissReason, OutOfReach};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// With more missed areas than this, small ones are listed in short form.
+/// If there are more missed areas than this, small ones are listed in short form.
 const MOST_ROWS: usize = 40;
 /// Missed areas below this size are small, square metres.
 const SMALL_M2: f64 = 0.05;
@@ -80,7 +82,7 @@ fn listed_one_by_one(missed: &[Area<MissReason>]) -> usize {
     }
 }
 
-/// Small areas in short form: a letter for each reason, with its value. `first`: the number of the first small area.
+/// Small areas in short form: a letter for each reason, with its value. `first` is the number of the first small area.
 fn shortly(areas: &[Area<MissReason>], first: usize) -> Vec<Block> {
     let reasons: BTreeSet<MissReason> =
         areas.iter().flat_map(|area| &area.causes).map(|cause| cause.reason).collect();

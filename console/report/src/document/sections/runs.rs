@@ -1,13 +1,13 @@
 //! The section on each run: track, tether, chart, incidents, indications.
 
-use super::{
-    super::{
-        RunPart, is_marked,
-        page::{Block, Table, Value},
-        run_part::TetherPart,
-    },
-    Document, counted, number, picture,
+use super::super::{
+    charts::is_marked,
+    model::Document,
+    page::{Block, Table, Value, picture},
+    run_part::{RunPart, TetherPart},
+    words::number,
 };
+use crate::human::text::counted;
 use account::clock;
 use mission::Severity;
 use world::coverage::percent_text;

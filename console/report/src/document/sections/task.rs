@@ -2,15 +2,17 @@
 
 use super::{
     super::{
-        TaskPart,
-        page::{Block, Section, Share, Table, Value, Verdict, per_cent},
+        model::Document,
+        page::{Block, Section, Share, Table, Value, Verdict, per_cent, picture, section},
+        task::TaskPart,
+        words::number,
     },
-    Document, closing, floor, number, picture, runs, section,
+    closing, floor, runs,
 };
 use account::{Tracking, clock};
 use mission::Outcome;
 
-/// The sections in order; [`super::number_of`] gives their numbers.
+/// The sections in order; [`super::super::words::number_of`] gives their numbers.
 pub(super) fn sections(document: &Document, task: &TaskPart) -> Vec<Section> {
     vec![
         section("Scope", scope(document, task)),

@@ -27,7 +27,7 @@ const ITEMS: &[Item] = &[
     ),
     item(
         "Eq. 1",
-        "order of the partitions by a genetic algorithm",
+        "order of the partitions, found by a genetic algorithm",
         Ours,
         MAPS,
         "an exact or local search minimizes the same sum; the tether is reeled in between partitions",
@@ -51,7 +51,7 @@ const ITEMS: &[Item] = &[
         "lower risk of entanglement at full coverage",
         Read,
         "tankops reproduce pan-maps",
-        "no figure is printed; ours counts the turns of the tether and its minimum length",
+        "no figure is printed; our study gives the turns of the tether and its minimum length",
     ),
     item(
         "Sec. IV",

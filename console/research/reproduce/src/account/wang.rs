@@ -46,7 +46,7 @@ const ITEMS: &[Item] = &[
         "rotating force",
         Read,
         "tankops reproduce wang-table1 --method rpf",
-        "if it is always on, as in the text, it cannot give the printed figures (literal); the text leaves open when it acts",
+        "always on (literal), it cannot give the printed figures; the text does not say when it acts",
     ),
     item("Fig. 6", "flow chart of the method", Absent, "", "a picture that our copy does not contain"),
     item("Eq. 4 to 9, Fig. 7", "three-point positioning by least squares", Reproduced, TABLE3, ""),
@@ -69,7 +69,8 @@ const ITEMS: &[Item] = &[
         "improved repulsion",
         Read,
         "tankops reproduce wang-table1",
-        "the exponent is not printed; by default 2, as in Ge and Cui, and 0.5 in the readings that come near the table",
+        "the exponent is not printed; by default 2, as in Ge and Cui, and 0.5 in the readings that come \
+         near the table",
     ),
     item(
         "Table 1, VT",
@@ -90,28 +91,31 @@ const ITEMS: &[Item] = &[
         "the method as described in the text",
         Missed,
         "tankops reproduce wang-table1 --method rpf/literal",
-        "P 29/55/80 % in the printed square, printed 77.5/86.6/92.6 %",
+        "P 29/55/80 % in the square as printed; the paper gives 77.5/86.6/92.6 %",
     ),
     item(
         "Table 1",
         "36 cells of IAPF and RPF, without and with IR",
         Fitted,
         "tankops reproduce wang-table1 --case d",
-        "readings K0, K1, J0 and J1, selected with this table, differ from its cells by 8 to 10 % on average: compatible, but not evidence",
+        "the interpretations K0, K1, J0 and J1, chosen to fit this table, differ from its cells by 8 to 10 \
+         % on average: compatible, but not evidence",
     ),
     item(
         "Search",
-        "random readings compared with Table 1, including VT",
+        "random interpretations compared with Table 1, including VT",
         Ours,
         "tankops reproduce wang-search --layouts 100 --out search",
-        "resumes in the same folder; other seeds (--first-seed) generate other readings",
+        "can be resumed in the same folder; different seeds (--first-seed) generate different \
+         interpretations",
     ),
     item(
         "Claim",
         "RPF has 9.49 % less RMSE than IAPF",
         Missed,
         TABLE1,
-        "the paper's own figures give 8.65 %. The sign depends on the side of IAPF's push and on the gate, neither of which the paper states",
+        "the paper's own figures give 8.65 %. The sign depends on the side of IAPF's push and on the gate, \
+         neither of which the paper states",
     ),
     item(
         "Claim",
@@ -125,7 +129,7 @@ const ITEMS: &[Item] = &[
         "P and R over T0",
         Read,
         "tankops reproduce wang-fig8",
-        "only two differences are printed; no reading reproduces the jump at T0 = 0",
+        "only two differences are printed; no interpretation reproduces the jump at T0 = 0",
     ),
     item(
         "Figs 9 to 11",
@@ -146,7 +150,8 @@ const ITEMS: &[Item] = &[
         "gains and range of RPF",
         Read,
         "tankops reproduce wang-table2",
-        "the caption says RPF, but the point counts are those of RPF with IR; equal gains fail here but succeed in Table 1, which is impossible if only the direction of the force matters",
+        "the caption says RPF, but the point counts are those of RPF with IR; equal gains fail here but \
+         succeed in Table 1, which is impossible if only the direction of the force matters",
     ),
     item(
         "Sec. 3.2",
@@ -161,15 +166,17 @@ const ITEMS: &[Item] = &[
         "error of 12 environments at 5 levels of noise",
         Missed,
         TABLE3,
-        "the method as printed gives 1.25 times the printed errors; with E divided by the square root of 2 and points in the square it agrees (rows parity)",
+        "the method as printed gives 1.25 times the printed errors; with E divided by the square root of 2 \
+         and points drawn in the square, it agrees (rows parity)",
     ),
-    item("Fig. 13", "errors as a picture", Absent, "", "the figures are those of Table 3"),
+    item("Fig. 13", "errors as a picture", Absent, "", "the values are those of Table 3"),
     item(
         "Fig. 14, sec. 3.3",
         "error along the spiral, 0.0748 +- 0.0032",
         Missed,
         "tankops reproduce wang-spiral-fix",
-        "the method as printed gives 0.105; dividing by the square root of 2, as in Table 3, gives the printed value",
+        "the method as printed gives 0.105; dividing by the square root of 2, as in Table 3, gives the \
+         printed value",
     ),
     item(
         "Future work",
@@ -183,7 +190,8 @@ const ITEMS: &[Item] = &[
         "limits on the heading, flexible step",
         Ours,
         "tankops reproduce spiral-followers",
-        "turn_limit_deg and flexible_step; spiral-lattice and spiral-tangent follow the path with a clearance",
+        "turn_limit_deg and flexible_step; spiral-lattice and spiral-tangent follow the path with a \
+         clearance",
     ),
     item(
         "Beyond",
@@ -194,7 +202,7 @@ const ITEMS: &[Item] = &[
     ),
     item(
         "Beyond",
-        "the theoretical limit with the same ranges",
+        "the theoretical limit for the same ranges",
         Ours,
         "tankops reproduce positioning-limits",
         "not in the paper",

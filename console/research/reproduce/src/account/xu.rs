@@ -30,7 +30,7 @@ const ITEMS: &[Item] = &[
     ),
     item(
         "Drawback 2, Fig. 2",
-        "robot, obstacle and goal in line",
+        "robot, obstacle and goal in a line",
         Reproduced,
         "tankops reproduce xu-traps --case line",
         "",
@@ -41,14 +41,16 @@ const ITEMS: &[Item] = &[
         "logarithmic pull",
         Read,
         "tankops reproduce xu-table1 --method bvo-apf",
-        "k and n are not printed (parameters k, n); near the goal interpreted as log2(1/rho + 1), or as printed with n of 16 or more",
+        "k and n are not printed (parameters k, n); near the goal interpreted as log2(1/rho + 1), or as \
+         printed with n of 16 or more",
     ),
     item(
         "Eq. 5, 8, 9",
         "a second repulsion, mu over the distance",
         Read,
         "tankops planners",
-        "it has no range and, by eq. 9, points toward the obstacle; eq. 2 is used instead, and eq. 8 with its direction reversed is push_form = hyperbola",
+        "it has no range limit and, by eq. 9, points towards the obstacle; eq. 2 is used instead, and eq. \
+         8 with its direction reversed is available as push_form = hyperbola",
     ),
     item(
         "Eq. 6",
@@ -63,21 +65,24 @@ const ITEMS: &[Item] = &[
         "tangent force",
         Read,
         TRAPS,
-        "eq. 10 is singular at vertical tangents; its plus root is the left tangent. The text leaves open when the force acts",
+        "eq. 10 is singular at vertical tangents; its plus root is the left tangent. The text leaves open \
+         when the force acts",
     ),
     item(
         "Sec. 3.4, Fig. 4",
         "retreat out of the trap, and sealing of its mouth",
         Read,
         BVO,
-        "the side, the distance in front of the seal and the oscillation rule are open: an independent implementation differs by 3 to 13 % in length",
+        "the side, the distance in front of the seal and the oscillation rule are open: an independent \
+         implementation differs by 3 to 13 % in length",
     ),
     item(
         "Eq. 14 to 17, Figs 5, 6",
         "angle at the mouth",
         Read,
         BVO,
-        "as printed, the cotangent of a cosine and a condition that is never true; interpreted as an angle at the mouth",
+        "as printed, the cotangent of a cosine and a condition that is never true; interpreted as an angle \
+         at the mouth",
     ),
     item("Fig. 7", "flow chart of the method", Absent, "", "a picture that our copy does not contain"),
     item(
@@ -92,7 +97,7 @@ const ITEMS: &[Item] = &[
         "stop (44.3, 55.3)",
         Fitted,
         "tankops reproduce xu-table1 --method tapf",
-        "a weight of 0.02 at a radius of 1 m and a weight of 1 at 3.2 to 3.55 m both give it",
+        "a weight of 0.02 with a radius of 1 m, and a weight of 1 with 3.2 to 3.55 m, both give this point",
     ),
     item(
         "Table 1, BVO-APF",
@@ -107,21 +112,21 @@ const ITEMS: &[Item] = &[
         "triangle",
         Read,
         "tankops reproduce xu-traps --case triangle --svg plans",
-        "layout reconstructed; 86.7 m, an independent implementation 89.1 m",
+        "layout reconstructed; ours walks 86.7 m, an independent implementation 89.1 m",
     ),
     item(
         "Fig. 12",
         "U",
         Read,
         "tankops reproduce xu-traps --case u --svg plans",
-        "layout reconstructed; 88.4 m, an independent implementation 98.4 m",
+        "layout reconstructed; ours walks 88.4 m, an independent implementation 98.4 m",
     ),
     item(
         "Fig. 13, Table 2",
         "stopping points of APF and TAPF",
         Fitted,
         TABLE2,
-        "the trap was placed to match them; no reading reproduces the printed shift from APF to TAPF",
+        "the trap was placed to match them; no interpretation reproduces the printed shift from APF to TAPF",
     ),
     item(
         "Table 2",
@@ -156,21 +161,23 @@ const ITEMS: &[Item] = &[
         "success with any shape of trap",
         Read,
         "tankops reproduce trap-suite --first-seed 9000",
-        "true for free-standing traps; for a trap attached to the wall the outline must be treated as an obstacle, which the paper does not discuss",
+        "true for free-standing traps; for a trap attached to the wall the outline must be treated as an \
+         obstacle, which the paper does not discuss",
     ),
     item(
         "Sec. 4.4",
         "ROS navigation, odometry, AMCL",
         Absent,
         "",
-        "no ROS node; instead, recorded runs, MCAP export and positioning by ranges",
+        "no ROS node; instead, there are recorded runs, MCAP export and positioning by ranges",
     ),
     item(
         "Sec. 4.5, Figs 18 to 21",
         "maps by gmapping",
         Ours,
         "tankops run scenarios/laboratory.toml",
-        "no mapping; ROS map files can be imported, and two of the floors are reconstructed (also corridor.toml)",
+        "no mapping; ROS map files can be imported, and two of the floors are reconstructed (also \
+         corridor.toml)",
     ),
     item(
         "Sec. 4.6, Figs 22 to 25",
@@ -195,9 +202,9 @@ const ITEMS: &[Item] = &[
     ),
     item(
         "Scenario",
-        "Table 2 by the paper's method, and by ours",
+        "Table 2 with the paper's method, and with ours",
         Read,
         "tankops run scenarios/papers/xu-table2.toml",
-        "xu-table2-ours.toml flies mode pre",
+        "xu-table2-ours.toml uses mode pre",
     ),
 ];

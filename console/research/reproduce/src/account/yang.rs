@@ -18,14 +18,16 @@ const ITEMS: &[Item] = &[
         "kinetics on land: fins, friction",
         Absent,
         "",
-        "coefficients of the fins and moments of inertia are not printed; we use the limits of Table 1 instead",
+        "coefficients of the fins and moments of inertia are not printed; we use the limits of Table 1 \
+         instead",
     ),
     item(
         "Eq. 5 to 9, Fig. 2",
         "kinetics under water: five degrees of freedom, roll",
         Absent,
         "",
-        "added mass, drag and moments of inertia are not printed; we use a unicycle with the limits of Table 1 instead",
+        "added mass, drag and moments of inertia are not printed; we use a unicycle with the limits of \
+         Table 1 instead",
     ),
     item("Table 1", "mass, fin, wavelength, friction", Absent, "", "they only enter the kinetics"),
     item(
@@ -47,14 +49,16 @@ const ITEMS: &[Item] = &[
         "virtual goals",
         Read,
         TABLE3,
-        "the third case has no slope as printed; interpreted as a constant pull. \"F = 0\" is interpreted as a small force",
+        "the third case has no slope as printed; interpreted as a constant pull. \"F = 0\" is interpreted \
+         as a small force",
     ),
     item(
         "Eq. 18",
         "choice of the virtual goal",
         Read,
         TABLE4,
-        "as printed, the blocked direction scores best; the second vector is reversed. The size of the square is not printed",
+        "as printed, the blocked direction scores best; the second vector is reversed. The size of the \
+         square is not printed",
     ),
     item(
         "Eq. 19",
@@ -68,7 +72,8 @@ const ITEMS: &[Item] = &[
         "windows of speeds",
         Read,
         HYBRID,
-        "missing square roots are restored; accelerations are not printed; the angular V_d does not have the unit of an angle and is left out",
+        "missing square roots are restored; accelerations are not printed; the angular V_d does not have \
+         the unit of an angle and is left out",
     ),
     item(
         "Eq. 23, Table 2",
@@ -83,7 +88,8 @@ const ITEMS: &[Item] = &[
         "a pressure sensor determines the medium, and the robot waits until the medium is known",
         Read,
         "tankops run scenarios/papers/yang-hybrid-free.toml",
-        "pressure_sigma_pa and pressure_depth_m; the text gives neither noise nor threshold: a sequential test decides",
+        "pressure_sigma_pa and pressure_depth_m; the text gives neither noise nor threshold: a sequential \
+         test decides",
     ),
     item("Fig. 6", "transition of 20 steps", Reproduced, HYBRID, ""),
     item(
@@ -96,7 +102,7 @@ const ITEMS: &[Item] = &[
     item("Table 3, 8b, 9b", "9.7637 and 8.9057 m", Fitted, TABLE3, "the layouts were tuned to the lengths"),
     item(
         "Table 3, 8a, 9a",
-        "11.0143 and 17.8513 m of runs that fail",
+        "11.0143 and 17.8513 m in runs that fail",
         Missed,
         TABLE3,
         "ours are 9.57 and 8.71 m; the printed values fit neither fixed nor proportional steps",
@@ -104,7 +110,7 @@ const ITEMS: &[Item] = &[
     item("Table 4, 10b, 11b", "4.1231 and 4.4283 m", Fitted, TABLE4, "the layouts were tuned to the lengths"),
     item(
         "Table 4, 10a, 11a",
-        "2.6717 and 1.3853 m of runs that fail",
+        "2.6717 and 1.3853 m in runs that fail",
         Missed,
         TABLE4,
         "ours oscillate for 19.7 and 19.8 m",
@@ -114,7 +120,8 @@ const ITEMS: &[Item] = &[
         "0.54 to 0.82 s",
         Reproduced,
         TABLE3,
-        "ours take less than a millisecond; the claimed speed advantage of the improved field is within noise",
+        "ours take less than a millisecond; the claimed speed advantage of the improved field is within \
+         noise",
     ),
     item(
         "Claim",
@@ -128,7 +135,8 @@ const ITEMS: &[Item] = &[
         "reaches the goal in all four runs",
         Missed,
         "tankops reproduce yang-hybrid --method apf-dwa/square",
-        "true in 97 % of random layouts, and in 82 % with a block across the way; with the corners of the shortest path (ours), in all",
+        "true in 97 % of random layouts, and in 82 % with a block across the way; with the corners of the \
+         shortest path (ours), in all",
     ),
     item(
         "Claim",
@@ -142,7 +150,7 @@ const ITEMS: &[Item] = &[
         "ten distances, safety limit",
         Read,
         "tankops reproduce yang-distances --svg distances",
-        "the paper shows one layout of each group without coordinates; ours are random",
+        "the paper shows one layout per group, without coordinates; ours are random",
     ),
     item(
         "Fig. 12 (a)",

@@ -11,7 +11,8 @@ use trials::{
 };
 use world::{Pose, tether::TetherError};
 
-/// Edge of a cell in large tanks, metres; coarser, so that counting does not take longer than planning.
+/// Edge length of a cell in large tanks, metres. These cells are coarser, so that counting does not take longer than
+/// planning.
 const COARSE_CELL_M: f64 = 0.1;
 /// Radius from which a tank counts as large, metres.
 const LARGE_M: f64 = 20.0;

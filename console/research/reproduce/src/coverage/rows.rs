@@ -9,12 +9,12 @@ use world::tether::capstan_factor;
 const FRICTION: f64 = 0.3;
 /// Required coverage of the reachable floor.
 const GOAL: f64 = 0.995;
-/// Length of cable still out on return that counts as reeled in, metres.
+/// On return, a cable counts as reeled in if no more than this length is still out, metres.
 const IN_M: f64 = 0.3;
 /// Maximum number of layouts named in a note.
 const NAMED_MAX: usize = 12;
 
-/// A figure of a plan, and the end of its range that is bad.
+/// A figure of a plan, and whether its smallest or its largest value is the worst one, if either is.
 struct Figure {
     metric: &'static str,
     unit: &'static str,

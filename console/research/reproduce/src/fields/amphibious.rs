@@ -22,7 +22,7 @@ const ROUNDING_M_PER_S: f64 = 1e-6;
 const OURS: &str = "virtual goals are the corners of the shortest path on the known map (ours)";
 const PAPER: &str = "virtual goals on a square round the goal, used in a minimum, as published; the size of \
                      the square is not printed";
-const LAYOUT: &str = "the paper shows one layout of each group without coordinates; ours are random";
+const LAYOUT: &str = "the paper shows one layout per group, without coordinates; ours are random";
 
 /// The planner with this number of transition steps.
 struct Entry {

@@ -11,13 +11,13 @@ use std::f64::consts::FRAC_PI_4;
 use trials::amphibious::{AmphibiousLayout, Group};
 use world::Pose;
 
-const NO_NUMBERS: &str = "as flown; in our copy the paper's figure has no numbers";
-const DISTANCES: &str = "as flown, virtual goals on a square round the goal as published; the paper shows one layout of each group \
-                         without coordinates, ours are random";
+const NO_NUMBERS: &str = "as driven; in our copy the paper's figure has no numbers";
+const DISTANCES: &str = "as driven, with virtual goals on a square round the goal as published; the paper \
+                         shows one layout per group, without coordinates, and ours are random";
 
-/// Time limit of a flight over the floor of Table 2, seconds, at one metre per second.
+/// Time limit of a drive over the floor of Table 2, seconds, at one metre per second.
 const FORCES_S: f64 = 250.0;
-/// Time limit of a flight over a floor of Figs 12 to 15, seconds.
+/// Time limit of a drive over a floor of Figs 12 to 15, seconds.
 const DISTANCES_S: f64 = 300.0;
 /// The names of the figures that the planners report.
 const PULL: &str = "F_att";
@@ -112,7 +112,7 @@ fn share(is: bool) -> f64 {
     f64::from(u8::from(is))
 }
 
-/// Draws some of the figures of a flight, if pictures are requested.
+/// Draws some of the figures of a drive, if pictures are requested.
 fn draw(job: &Job<'_>, name: (&str, u64, &str), unit: &str, flown: &Flown, shown: &[&str]) {
     let Some(gallery) = job.runner.gallery() else { return };
     let figures = shown.iter().filter_map(|name| flown.figures.get_key_value(*name));

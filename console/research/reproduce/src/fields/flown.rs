@@ -1,4 +1,4 @@
-//! A flight over a known floor, across the plugin boundary, with the figures that the planner reports in every tick.
+//! A drive over a known floor, across the plugin boundary, with the figures that the planner reports in every tick.
 
 use crate::study::{Method, Planners, Result, StudyError};
 use geometry::{PathFollower, unit_vector};
@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use world::{Point, Pose};
 
-/// Length of its plan ahead of the robot that the planner receives, metres.
+/// Length of the part of its plan, ahead of the robot, that the planner receives, metres.
 const SHOWN_M: f64 = 4.0;
-/// The flight ends after the planner has reported being stuck for this long, seconds.
+/// The drive ends after the planner has reported being stuck for this long, seconds.
 const STUCK_S: f64 = 60.0;
 
 /// A trip.
@@ -23,11 +23,11 @@ pub(super) struct Trip {
     pub goal: Point,
     /// Distance at which the goal counts as reached, metres.
     pub tolerance_m: f64,
-    /// Time limit of the flight, seconds.
+    /// Time limit of the drive, seconds.
     pub most_s: f64,
 }
 
-/// A flight, and the figures that the planner reported.
+/// A drive, and the figures that the planner reported.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Flown {
     /// Places of the robot, one per tick.
@@ -38,7 +38,7 @@ pub(super) struct Flown {
     pub figures: BTreeMap<String, Vec<(f64, f64)>>,
 }
 
-/// Flies a trip: positions are exact, and the robot carries out every command exactly.
+/// Drives a trip: positions are exact, and the robot carries out every command exactly.
 ///
 /// # Errors
 /// The planner is missing, refuses its parameters or fails.

@@ -9,7 +9,7 @@ use world::{Boundary as WallOf, Point, Pose, Vector, polyline, shape::rectangle}
 
 /// Distance of the wall from everything else, metres; the papers have no wall.
 const WALL_OFF_M: f64 = 20.0;
-/// Distance from the goal at which a flight ends, metres.
+/// Distance from the goal at which a drive ends, metres.
 const FLOWN_TOLERANCE_M: f64 = 0.1;
 /// Number of times that every plan is made; the fastest counts.
 const TIMED: usize = 5;
@@ -42,7 +42,7 @@ pub(super) struct Measured {
     pub clearance_m: f64,
     /// Length, metres.
     pub length_m: f64,
-    /// Length over that of the shortest path.
+    /// Length divided by that of the shortest path.
     pub ratio: f64,
 }
 
@@ -66,7 +66,7 @@ impl GotoLayout {
         planners.plan(method, self.start(), task, &self.site(&corners, &obstacles))
     }
 
-    /// Has a planner fly the layout for at most this many seconds, at one metre per second.
+    /// Has a planner drive on the layout for at most this many seconds, at one metre per second.
     ///
     /// # Errors
     /// The planner is missing, refuses its parameters or fails.
@@ -129,7 +129,8 @@ impl GotoLayout {
     }
 }
 
-/// A wall of discs along a line through `corners`, each ahead and to the left of `at`, looking along `toward_rad`.
+/// A wall of discs along a line through `corners`, which are given ahead and to the left of `at`, looking along
+/// `toward_rad`.
 pub(super) fn wall_of_discs(
     corners: &[(f64, f64)],
     at: Point,
@@ -144,7 +145,7 @@ pub(super) fn wall_of_discs(
 }
 
 impl Measured {
-    /// The fields that the paper does not print.
+    /// The figures of a plan, without printed values.
     pub(super) fn rows(&self, block: &Block<'_>) -> Vec<Row> {
         let row = |metric: &str, ours: f64, unit: &str| block.row(metric, ours, unit, 1);
         let mut rows = vec![row("success_rate", f64::from(u8::from(self.arrived)), "")];

@@ -20,8 +20,8 @@ const ALWAYS: &str = "left tangent force always on at a weight of 0.02, fitted t
                       table1/wide)";
 const FULL: &str = "left tangent force always on at its full weight; radius and gain, which the paper does \
                     not print, are fitted to the printed stopping points";
-const BLOCKING: &str =
-    "tangent force only round obstacles that block the path: the other reading; the paper leaves this open";
+const BLOCKING: &str = "tangent force only round obstacles that block the path: the other interpretation; \
+                        the paper leaves this open";
 const LITERAL: &str = "with our corrections where the paper's formulas cannot be applied: eq. 14 (cotangent \
                        of a cosine) and eq. 17 (never true) interpreted as an angle at the mouth with room \
                        for the seal, eq. 4 near the goal as log2(1/rho + 1), eq. 10 as vectors, our \
@@ -34,10 +34,11 @@ const PRINTED_N16: &str = "eq. 4 near the goal as printed with n = 16; the paper
                            does not decide between this and log2(1/rho + 1); the text describes a force \
                            that grows at the goal, which favours the latter";
 const OURS: &str = "ours: not in the paper";
-const NO_SHIFT: &str = "layout placed so that the classical field stops near the printed place; none of the \
-                        readings that we tried gives the printed shift from APF to TAPF (+0.3, -0.3)";
+const NO_SHIFT: &str = "layout placed so that the classical field stops near the printed place; no \
+                        interpretation that we tried gives the printed shift from APF to TAPF (+0.3, \
+                        -0.3)";
 
-/// Gains of a table.
+/// The gains given in one of the paper's tables.
 #[derive(Debug, Clone, Copy)]
 struct Gains {
     tangent_weight: f64,
@@ -49,7 +50,7 @@ struct Gains {
 /// Gain and range of the repulsion and the weight of the tangent force are fitted to the printed stopping points; the
 /// radius of the obstacle is not printed.
 const TABLE1: Gains = Gains { tangent_weight: 0.02, k_rep: 39.5, rho_0_m: 5.0, step_m: 0.01 };
-/// A different set that gives both stopping points, with an obstacle of a different radius.
+/// Different gains that give both stopping points, with an obstacle of a different radius.
 const TABLE1_WIDE: Gains = Gains { tangent_weight: 1.0, k_rep: 0.285, ..TABLE1 };
 const WIDE: &str = "table1/wide";
 const WIDE_M: f64 = 3.3;
@@ -84,8 +85,8 @@ fn methods(gains: Gains) -> Vec<Method> {
     ]
 }
 
-/// The three methods whose forces the paper plots, over the floor of Table 2; the classical field is flown by `tapf`
-/// without its tangent force, because its flight follows the law.
+/// The three methods whose forces the paper plots, over the floor of Table 2; the classical field is `tapf` without
+/// its tangent force, because that drive follows the law.
 pub(super) fn methods_of_forces(note: &'static str) -> Vec<Method> {
     let tapf = |id: &str| {
         let method = Method::new(id, "tapf", note).number("k_rep", TABLE2.k_rep);
@@ -177,20 +178,20 @@ pub(super) fn holistic() -> GotoLayout {
 fn left_open(case: &str) -> Option<&'static str> {
     Some(match case {
         "triangle" => {
-            "layout reconstructed. The paper does not state the side of the detour, the distance in front \
-             of the seal and the oscillation rule: an independent implementation with other choices walks \
-             89.08 m (+2.8 %)"
+            "layout reconstructed. The paper states neither the side of the detour, nor the distance in \
+             front of the seal, nor the oscillation rule: an independent implementation with other choices \
+             walks 89.08 m (+2.8 %)"
         }
         "u" => {
-            "layout reconstructed. The paper does not state the side of the detour, the distance in front \
-             of the seal and the oscillation rule: an independent implementation with other choices walks \
-             98.41 m (+11 %)"
+            "layout reconstructed. The paper states neither the side of the detour, nor the distance in \
+             front of the seal, nor the oscillation rule: an independent implementation with other choices \
+             walks 98.41 m (+11 %)"
         }
         "table2" => {
-            "layout placed and step size of 0.0071 m chosen to match the printed figures. The paper does \
-             not state the side of the detour, the distance in front of the seal and the oscillation rule: \
-             an independent implementation with other choices takes 17,030 steps (+12.7 % of the printed \
-             number, ours -1.4 %), so agreement within about 15 % confirms nothing"
+            "layout placed and step size of 0.0071 m chosen to match the printed figures. The paper states \
+             neither the side of the detour, nor the distance in front of the seal, nor the oscillation \
+             rule: an independent implementation with other choices takes 17,030 steps (12.7 % more than \
+             printed; ours 1.4 % fewer), so agreement within about 15 % confirms nothing"
         }
         _ => return None,
     })

@@ -28,7 +28,8 @@ struct Case {
     note: &'static str,
     /// Distance of the virtual goals from the goal, metres: not printed.
     square_m: f64,
-    /// Length (metres) and time (seconds) of the traditional and of the improved field; whether the former arrives.
+    /// Length (metres) and time (seconds) of the traditional and of the improved field; whether the traditional field
+    /// arrives.
     traditional: (f64, f64, bool),
     improved: (f64, f64),
 }

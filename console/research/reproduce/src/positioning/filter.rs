@@ -15,7 +15,7 @@ use world::{Point, Station};
 
 pub(super) const STUDY: Study = Study {
     name: "positioning-filter",
-    about: "filters over ranges and odometry along the spiral, on the same draws",
+    about: "filters that combine ranges and odometry along the spiral, on the same draws",
     layouts: 30,
     run,
 };

@@ -1,4 +1,4 @@
-//! Every estimator over the floor, on the same ranges, beside the theoretical bounds.
+//! Every estimator at places all over the floor, on the same ranges, beside the theoretical bounds.
 
 use super::{
     bound::cramer_rao_m,
@@ -12,7 +12,8 @@ use sim::NoiseModel;
 
 pub(super) const STUDY: Study = Study {
     name: "positioning-limits",
-    about: "every estimator over the floor on the same ranges, by stations, noise and repetitions, beside the theoretical bound",
+    about: "every estimator at places all over the floor, on the same ranges, by stations, noise and \
+            repetitions, with the theoretical bound",
     layouts: 10_000,
     run,
 };

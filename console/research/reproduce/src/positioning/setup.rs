@@ -11,7 +11,7 @@ use world::{Boundary, Obstacle, ObstacleId, Point, RangeSet, Shape, Station, Sta
 pub(super) const RADIUS_M: f64 = 10.0;
 /// Radius of the columns of a case with columns, metres.
 const COLUMN_M: f64 = 0.35;
-/// Radius of the robot, which keeps beside columns, metres.
+/// Radius of the robot, which must fit beside the columns, metres.
 const HULL_M: f64 = 0.25;
 /// Number of cycles of a session.
 pub(super) const SESSION: usize = 250;
@@ -60,7 +60,7 @@ pub(super) struct Setup {
     pub stations: Vec<Station>,
     /// The ranging model.
     pub ae: AeConfig,
-    /// Whether six columns stand in the tank.
+    /// Whether there are six columns in the tank.
     pub has_columns: bool,
     /// Whether one station, chosen by the seed, measures 1 m too much.
     pub is_biased: bool,

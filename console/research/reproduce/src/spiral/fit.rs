@@ -1,4 +1,4 @@
-//! The distance of readings from the printed Table 1, and the effect on its claim.
+//! How far each reading of the text is from the printed Table 1, and what the reading means for the paper's claim.
 
 use super::{
     figures::{join, with_path},
@@ -11,7 +11,7 @@ use crate::study::{Job, Row, Sample, jackknife_95};
 /// One figure of a plan.
 type Figure = fn(&Measured) -> f64;
 
-/// Figures that differ from the printed one by at most this share of it agree.
+/// A figure agrees with the printed one if it differs by at most this share of the printed one.
 const NEAR: f64 = 0.05;
 
 const DISTANCE: &str = "mean of |ln(ours / printed)| over the 36 printed cells of IAPF and RPF, without and \
@@ -61,7 +61,7 @@ pub(super) fn rows(job: &Job<'_>, planned: Planned<'_>, pair: &Pair, sampling: &
 pub(super) fn claims(job: &Job<'_>, planned: Planned<'_>, pair: &Pair, sampling: &str) -> Vec<Row> {
     let mut rows = Vec::new();
     for (suffix, paper, note) in [
-        ("", 0.0949, "the printed errors give 0.0865: 0.0949 divides the difference by the new value"),
+        ("", 0.0949, "the printed errors give 0.0865; 0.0949 is the difference divided by the new value"),
         ("+ir", 0.0351, "computed from the printed errors"),
     ] {
         let [_, theirs, ours] = pair.ids.each_ref().map(|id| format!("{id}{suffix}"));

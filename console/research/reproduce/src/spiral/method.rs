@@ -24,8 +24,8 @@ pub(super) struct Entry {
 pub(super) enum Set {
     /// The methods of the text, and ours.
     Text,
-    /// The methods of the reading with this name, which was selected with the printed table for obstacles drawn in
-    /// the square.
+    /// The methods of the reading with this name. It was chosen to fit the printed table, with obstacles drawn in the
+    /// square.
     Reading(String),
 }
 
@@ -41,7 +41,7 @@ pub(super) enum Pairing {
 }
 
 const RECONSTRUCTED: &str = "the cited source is not available: reconstructed from one sentence";
-const GATED: &str = "rotating force only in a trap found by our detector and for ten more moves, whereas in \
+const GATED: &str = "rotating force only in a trap that our detector finds, and for ten more moves; in \
                      the text it is always on";
 const FORWARD: &str =
     "reactive: has its own points, compared with the nearest place ahead on the preset path";

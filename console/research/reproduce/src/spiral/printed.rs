@@ -15,7 +15,7 @@ const fn printed(precision_pct: f64, recall_pct: f64, rmse_e2: f64) -> Printed {
     Printed { precision: precision_pct / 100.0, recall: recall_pct / 100.0, rmse_m: rmse_e2 / 100.0 }
 }
 
-/// Table 1, VT, IAPF and RPF; the error is printed multiplied by one hundred, contrary to the head of the table.
+/// Table 1, VT, IAPF and RPF; the error is printed multiplied by one hundred, contrary to the heading of the table.
 pub(super) const TABLE1_CLASSIC: [[Printed; 3]; 3] = [
     [printed(71.07, 66.94, 34.79), printed(84.07, 80.30, 26.38), printed(91.68, 88.09, 14.23)],
     [printed(77.28, 72.79, 30.23), printed(86.02, 81.51, 16.19), printed(92.78, 89.79, 14.17)],

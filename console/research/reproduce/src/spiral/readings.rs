@@ -1,7 +1,7 @@
 //! Choices for the details that the text of Wang et al. 2023 leaves open, selected to come near its Table 1.
 //!
-//! Found by a search that compared some thousands of readings with the printed table. So they show that the table is
-//! compatible with a reading, not what the authors did.
+//! They were found by a search that compared some thousands of readings with the printed table. So they show that the
+//! table is compatible with a reading, but not what the authors did.
 
 use super::{
     fit::Pair,
@@ -13,8 +13,8 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 /// The note of every row of such a reading.
-pub(super) const SELECTED: &str = "selected with the printed table: it shows that the table is compatible \
-                                   with this reading, not what the authors did";
+pub(super) const SELECTED: &str = "chosen to fit the printed table: this shows that the table is \
+                                   compatible with this interpretation, but not what the authors did";
 
 /// One set of choices for the open details; every word is a value of a planner parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,7 +25,7 @@ pub(super) struct Reading {
     k_rep: f64,
     push_form: &'static str,
     push_of: &'static str,
-    /// Improved repulsion: with or without the component toward the target, and the exponent.
+    /// Improved repulsion: with or without the component towards the target, and the exponent.
     improved: (&'static str, f64),
     targets: &'static str,
     move_length: &'static str,

@@ -33,7 +33,7 @@ impl StudyError {
         Self::Planner { case: case.into(), fault: Box::new(fault) }
     }
 
-    /// Returns the same error; a fault of a planner gets this case.
+    /// Returns the same error, with this case if it is a fault of a planner.
     pub(crate) fn in_case(self, case: String) -> Self {
         match self {
             Self::Planner { fault, .. } => Self::Planner { case, fault },

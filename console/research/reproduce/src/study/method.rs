@@ -26,7 +26,7 @@ impl Method {
         self.with(key, ParamValue::Float(value))
     }
 
-    /// Sets a parameter to a word of a choice.
+    /// Sets a parameter that is a choice to one of its words.
     pub(crate) fn word(self, key: &str, value: &str) -> Self {
         self.with(key, ParamValue::Word(value.to_owned()))
     }

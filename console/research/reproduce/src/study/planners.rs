@@ -114,7 +114,7 @@ impl Planners {
     }
 }
 
-/// Whether a planner's refusal is valid; bad parameters are an error of the study.
+/// Whether a planner's refusal counts as a result; refused parameters are an error of the study.
 fn is_refusal(fault: &Fault) -> bool {
     matches!(fault.cause, Cause::Planner(code) if code != Code::Config)
 }

@@ -88,7 +88,7 @@ impl Sample {
     }
 }
 
-/// 95 % jackknife interval of a figure of `n` draws, from its values without each draw.
+/// 95 % jackknife interval of a figure of `n` draws, from the values of the figure when each draw in turn is left out.
 pub(crate) fn jackknife_95(
     figure: f64,
     n: usize,

@@ -1,4 +1,4 @@
-//! What a figure of ours says about the printed one.
+//! How a figure of ours compares with the printed one.
 
 use super::row::Row;
 use serde::{Deserialize, Serialize};
@@ -8,17 +8,17 @@ const NEAR: f64 = 0.05;
 /// Values that differ by less than this are equal.
 const EQUAL: f64 = 1e-9;
 
-/// What a figure of ours says about the printed one.
+/// How a figure of ours compares with the printed one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// Within 5 % of the printed figure, or in the interval of a single draw where a single draw is printed.
     Reproduced,
-    /// Equally near, but with a number or a layout that was fitted to the printed values.
+    /// Equally close, but with a number or a layout that was fitted to the printed values.
     Fitted,
-    /// Further from the printed figure, on the good side.
+    /// Further from the printed figure, but better.
     Better,
-    /// Further from the printed figure, on the bad side.
+    /// Further from the printed figure, and worse.
     NotReproduced,
 }
 

@@ -1,4 +1,4 @@
-//! A flight on a map that is discovered on the way, across the plugin boundary.
+//! A drive over a map that is discovered on the way, across the plugin boundary.
 
 use super::measured::{Attempt, TOLERANCE_M};
 use crate::study::{Method, Planners, Result, StudyError};
@@ -13,14 +13,14 @@ use std::time::Instant;
 use trials::traps::{HULL_M, STEP_M, Trap};
 use world::{Point, polyline};
 
-/// Length of its plan ahead of the robot that the planner receives, metres.
+/// Length of the part of its plan, ahead of the robot, that the planner receives, metres.
 const SHOWN_M: f64 = 4.0;
-/// A flight ends after this multiple of the number of moves on the straight line.
+/// A drive ends after this many times as many moves as the straight line takes.
 const PATIENCE: f64 = 30.0;
-/// A flight also ends when the planner reports this many times in a row that it is stuck.
+/// A drive also ends when the planner reports this many times in a row that it is stuck.
 const MOST_STUCK: u32 = 600;
 
-/// A point robot in flight: moves of at most 0.05 m, one per tick.
+/// A point robot on its way: moves of at most 0.05 m, one per tick.
 struct Journey<'a> {
     trap: &'a Trap,
     all: Vec<Obstacle<'static>>,
@@ -32,7 +32,7 @@ struct Journey<'a> {
     plan_times_ms: Vec<f64>,
 }
 
-/// Flies from start to goal.
+/// Drives from start to goal.
 ///
 /// # Errors
 /// The planner is missing, refuses its parameters or fails.

@@ -25,7 +25,7 @@ pub(super) struct Measured {
     pub replan_times_ms: Vec<f64>,
 }
 
-/// The path that was planned or flown.
+/// The path that was planned or driven.
 pub(super) struct Attempt {
     /// The points of the path.
     pub path: Vec<Point>,

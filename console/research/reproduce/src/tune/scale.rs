@@ -50,7 +50,7 @@ impl Scale {
         value.clamp(self.low, self.high)
     }
 
-    /// Returns the share of the range at which a value is.
+    /// Returns the position of a value in the range, as a share.
     pub(super) fn share(&self, parameters: &Parameters) -> f64 {
         let value = match parameters.get(&self.key) {
             Some(ParamValue::Float(value)) => *value,

@@ -19,7 +19,7 @@ pub struct Entry {
     pub source: Cow<'static, str>,
     /// The text.
     pub text: String,
-    /// How many times in a row the line occurred; its time is that of the last occurrence.
+    /// How many times in a row the line occurred; the line has the time of the last occurrence.
     pub count: u32,
     /// The event that the line reports.
     pub what: What,

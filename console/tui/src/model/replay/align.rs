@@ -17,7 +17,7 @@ pub enum Align {
     Time,
     /// By the share of the path driven.
     Path,
-    /// By the robot's position; if there were several passes, by the one with the nearest share of the path.
+    /// By the robot's position; if there were several passes, by the pass with the nearest share of the path.
     Place,
 }
 

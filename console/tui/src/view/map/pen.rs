@@ -13,13 +13,14 @@ use ratatui::text::Line;
 use ratatui::widgets::canvas::Context;
 use world::{Boundary, Point, ZoneKind};
 
-/// The maximum number of missed areas that are numbered on the map: with the whole tank shown, and with part of it.
+/// The maximum number of missed areas that are numbered on the map: if the whole tank is shown, and if only a part of
+/// the tank is shown.
 const MISSED: (usize, usize) = (9, 99);
 /// The number of segments in a round wall.
 const WALL_PIECES: u32 = 256;
 /// All passes are drawn if a pass of the tool is at least this many columns wide.
 const PASS_COLUMNS: f64 = 2.0;
-/// How much of the trail and plan is drawn when not all of it is, columns.
+/// How much of the trail and of the plan is drawn if they are not drawn completely, columns.
 const REACH_COLUMNS: f64 = 40.0;
 /// Dots per character.
 pub(super) const DOTS: (u16, u16) = (2, 4);
@@ -115,8 +116,8 @@ impl Pen<'_> {
         self.stroke(ctx, behind, Role::Ghost, false);
     }
 
-    /// How much of the plan and of the trail is drawn, metres; `None` for all of it. Where neighbouring passes would
-    /// merge on the map, only the stretch close to the robot is drawn; the scanned cells show the rest.
+    /// How much of the plan and of the trail is drawn, metres; `None` if they are drawn completely. Where neighbouring
+    /// passes would merge on the map, only the stretch close to the robot is drawn; the scanned cells show the rest.
     fn reach_m(&self) -> Option<f64> {
         let swath_m = self.look.run.about.as_ref()?.mission.swath_m;
         (swath_m < PASS_COLUMNS * self.window.column_m).then_some(REACH_COLUMNS * self.window.column_m)

@@ -157,7 +157,7 @@ fn floor(raster: &Raster, at: Point, edge_m: f64, has_missed: bool) -> Option<Sh
     raster.class_in(at, edge_m, has_missed).and_then(Shade::of)
 }
 
-/// The forecast shade at a point: beyond the limit, or beyond half of it.
+/// The forecast shade at a point: beyond the limit, or beyond half of the limit.
 fn forecast(look: &Look, at: Point) -> Option<Shade> {
     let limit_m = look.run.about.as_ref()?.mission.position_limit_m;
     match look.run.accuracy.as_ref()?.at(at)?.error_95_m {
