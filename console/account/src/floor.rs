@@ -81,21 +81,21 @@ impl Account {
     }
 }
 
-/// The division of a floor. The shares refer to its area and add up to 1.
+/// The division of a floor. The shares are shares of the floor's area and add up to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Shares {
     /// Area, square metres.
     pub area_m2: f64,
-    /// Scanned.
+    /// Scanned share.
     pub scanned: f64,
-    /// Reachable by the tool, but not scanned.
+    /// Share that the tool can reach, but that was not scanned.
     pub missed: f64,
-    /// Unreachable: closed off, beside obstacles, or in no-go zones.
+    /// Unreachable share: closed off, beside obstacles, or in no-go zones.
     pub unreachable: f64,
-    /// Unreachable because the robot keeps its distance from the shell.
+    /// Share that is unreachable because the robot keeps its distance from the shell.
     pub margin: f64,
-    /// Scanned for every position of the robot within the 95 % error; part of the scanned share. Absent during a
-    /// mission.
+    /// Share that was scanned for every position of the robot within the 95 % error; part of the scanned share. Absent
+    /// during a mission.
     #[serde(default)]
     pub guaranteed: Option<f64>,
     /// The shares above, as printed.
@@ -106,15 +106,15 @@ pub struct Shares {
 /// Shares in per cent, rounded to one decimal so that they add up to 100.0; all 0 for an empty floor.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Percent {
-    /// Scanned.
+    /// Scanned share.
     pub scanned: f64,
-    /// Reachable by the tool, but not scanned.
+    /// Share that the tool can reach, but that was not scanned.
     pub missed: f64,
-    /// Unreachable.
+    /// Unreachable share.
     pub unreachable: f64,
-    /// Unreachable along the shell.
+    /// Share that is unreachable along the shell.
     pub margin: f64,
-    /// Scanned for every position of the robot within the 95 % error; part of the scanned share.
+    /// Share that was scanned for every position of the robot within the 95 % error; part of the scanned share.
     #[serde(default)]
     pub guaranteed: Option<f64>,
 }

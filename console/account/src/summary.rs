@@ -107,11 +107,11 @@ pub struct Summary {
 pub struct Stops {
     /// Number of stops.
     pub count: u64,
-    /// Median, milliseconds.
+    /// Median time, milliseconds.
     pub p50_ms: f64,
-    /// Not exceeded by 99 % of the stops, milliseconds.
+    /// Time that 99 % of the stops do not exceed, milliseconds.
     pub p99_ms: f64,
-    /// Longest, milliseconds.
+    /// Longest time, milliseconds.
     pub max_ms: f64,
 }
 
@@ -164,11 +164,11 @@ pub struct CoverageByTruth {
 /// does not include errors in the survey or in the speed of sound, or the offset of the tool.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Accuracy {
-    /// Mean, metres.
+    /// Mean error, metres.
     pub mean_m: f64,
-    /// Not exceeded in 95 % of the ticks, metres.
+    /// Error that is not exceeded in 95 % of the ticks, metres.
     pub p95_m: f64,
-    /// Largest, metres.
+    /// Largest error, metres.
     pub max_m: f64,
     /// Limit above which nothing counts as scanned, metres.
     pub limit_m: f64,
@@ -210,13 +210,13 @@ impl Tracking {
 /// Distance between the estimated and the true position, over all ticks that have both.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Positioning {
-    /// Mean, metres.
+    /// Mean error, metres.
     pub mean_error_m: f64,
-    /// Median, metres; by nearest rank, like `p95_m`.
+    /// Median error, metres; by nearest rank, like `p95_m`.
     pub p50_m: f64,
-    /// Not exceeded in 95 % of the ticks, metres.
+    /// Error that is not exceeded in 95 % of the ticks, metres.
     pub p95_m: f64,
-    /// Largest, metres.
+    /// Largest error, metres.
     pub max_m: f64,
     /// Share of the ticks in which the true position was inside the 95 % ellipse, 0 to 1.
     pub in_95_ellipse: f64,
@@ -256,7 +256,7 @@ pub struct PlannerCalls {
     pub step: u64,
     /// Median time of a step, microseconds; absent without steps.
     pub p50_us: Option<f64>,
-    /// Not exceeded by 99 % of the steps, microseconds; absent without steps.
+    /// Time that 99 % of the steps do not exceed, microseconds; absent without steps.
     pub p99_us: Option<f64>,
     /// Number of failed calls.
     pub faults: u64,

@@ -10,8 +10,8 @@ use sha2::{Digest, Sha256};
 const KEY: &str = "tankops.sha256";
 /// Number of hexadecimal digits in a digest.
 const DIGITS: usize = 64;
-/// States in a second place that the file has a digest, so that a file in which the digest cannot be found is not
-/// mistaken for one without a digest.
+/// States in a second place that the file has a digest. If the digest cannot be found, the file is therefore not
+/// mistaken for a file without a digest.
 pub(crate) const CREATED_BY: &str = "tankops campaign, with digest";
 /// The end of a Parquet file: the length of the metadata, and a magic word.
 const TAIL: u64 = 8;

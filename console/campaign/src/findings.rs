@@ -247,9 +247,9 @@ fn by_scenario(campaign: &Campaign, columns: &Columns, rows: &[usize]) -> Vec<(S
     campaign.scenarios.iter().map(|s| (s.name.clone(), share(columns, &of(&s.name)))).collect()
 }
 
-/// The worst missions: first those that failed, then those that ran without success, then those that were refused, and
-/// last those that succeeded despite planner faults. Each group is sorted by the first metric. If several missions of one
-/// arm ended in the same way, only one of them is listed.
+/// The worst missions, in this order: missions that failed, ran without success, were refused, or succeeded despite
+/// planner faults. Each of these groups is sorted by the first metric. If several missions of one arm ended in the same
+/// way, only one of them is listed.
 fn worst(campaign: &Campaign, table: &Table, columns: &Columns) -> Vec<Worst> {
     let Some(metric) = campaign.design.metrics.first() else { return Vec::new() };
     let sign = if more_is_better(metric) { 1.0 } else { -1.0 };

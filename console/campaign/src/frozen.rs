@@ -12,9 +12,9 @@ use std::{collections::BTreeMap, ops::Range};
 
 /// Version of the frozen format; files with any other version are refused.
 const FORMAT: u32 = 2;
-/// Number of missions per block if the plan does not set this number; more if there would be too many blocks.
+/// Number of missions per block if the plan does not set this number.
 const BLOCK: u64 = 64;
-/// Maximum number of blocks if the plan does not set the number of missions per block.
+/// Maximum number of blocks; blocks are made larger if there would be more.
 const MOST_BLOCKS: u64 = 1000;
 
 /// The program and the plugins that run the missions.

@@ -48,8 +48,8 @@ pub fn check_installed(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Res
     })
 }
 
-/// For each planner of the scenario that is contained in more than one plugin, a message that states which plugin is
-/// used.
+/// A message for each planner of the scenario that is contained in more than one plugin; the message states which
+/// plugin is used.
 pub fn shadowed(scenario: &Scenario, plugins: &PluginDirs) -> Vec<String> {
     let ids: Vec<&str> = chosen(scenario).map(|(_, choice)| choice.id.as_str()).collect();
     let worker = WorkerCommand::default();

@@ -26,9 +26,9 @@ const KEYS: &str = "keys.toml";
 /// The operator's configuration.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Config {
-    /// The colour theme; `None`: chosen to suit the terminal's background.
+    /// The colour theme; `None` to choose a theme that suits the terminal's background.
     pub theme: Option<ThemeName>,
-    /// The number of colours; `None`: as many as the terminal supports.
+    /// The number of colours; `None` to use as many as the terminal supports.
     pub colours: Option<Colours>,
     /// The scenario folders of the home screen.
     pub scenarios: Vec<PathBuf>,

@@ -71,7 +71,7 @@ pub(super) enum Request {
     Look,
     /// Run a job on a past run.
     Do(Job),
-    /// Close the open run and stop; after a signal (`hurry`), quickly.
+    /// Close the open run and stop; do so quickly after a signal (`hurry`).
     Leave { hurry: bool },
 }
 
@@ -289,7 +289,7 @@ impl Desk {
         }
     }
 
-    /// Runs on a separate thread, because reading the journals of long runs takes seconds.
+    /// This runs on a separate thread, because reading the journals of long runs takes seconds.
     fn combine(&self, runs: Vec<String>) {
         let Some((run, _)) = &self.opened else { return };
         let screen = RunOutbox { run: *run, outbox: self.tools.outbox.clone() };
@@ -324,7 +324,7 @@ impl Desk {
         outbox.send(Msg::Notice { severity, text });
     }
 
-    /// Runs on a separate thread, because a worker is started for each plugin.
+    /// This runs on a separate thread, because a worker is started for each plugin.
     fn survey(&self) {
         let Tools { plugins, planners, outbox, .. } = self.tools.clone();
         let began = thread::Builder::new().name("survey".into()).spawn(move || {
@@ -337,7 +337,7 @@ impl Desk {
         }
     }
 
-    /// Runs on a separate thread, because reading many or large scenarios takes time.
+    /// This runs on a separate thread, because reading many or large scenarios takes time.
     fn look(&self) {
         let disk = Arc::clone(&self.disk);
         let began = thread::Builder::new().name("look".into()).spawn(move || disk.look());

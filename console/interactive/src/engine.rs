@@ -93,7 +93,7 @@ impl Engine {
         Ok(Self { handle, thread })
     }
 
-    /// Ends the run, closes its files and waits for completion; after a signal (`hurry`), with a shorter time limit.
+    /// Ends the run, closes its files and waits for completion. After a signal (`hurry`), the time limit is shorter.
     pub(super) fn close(self, hurry: bool) -> anyhow::Result<Option<Closed>> {
         self.handle.close(hurry);
         self.thread.join().map_err(|panic| anyhow::anyhow!("the engine panicked: {}", words(&*panic)))
@@ -123,7 +123,7 @@ struct EngineThread {
     speed: Speed,
     /// Events from before the start of the mission; they are written to the journal when the mission starts.
     early: Vec<Event>,
-    /// When the stop that the next tick will carry out was requested.
+    /// The time at which a stop was requested that the next tick will carry out.
     stop_asked: Option<Instant>,
     /// The duration of each stop in milliseconds.
     stops_ms: Vec<f64>,

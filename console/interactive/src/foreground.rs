@@ -23,7 +23,7 @@ use std::{
 pub(super) struct Foreground(Arc<AtomicBool>);
 
 impl Foreground {
-    /// Detects whether the console was started in the background, and so has given up the terminal.
+    /// Detects whether the console was started in the background and has therefore given up the terminal.
     pub(super) fn new() -> Self {
         Self(Arc::new(AtomicBool::new(!has_terminal())))
     }

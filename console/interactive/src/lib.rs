@@ -52,7 +52,7 @@ use tui::{Caps, Colours, Glyphs, Model, Msg, RunId, Source, Speed, Transport, te
 /// The options for opening a console; `None` leaves the choice to `config.toml`, then to the terminal.
 #[derive(Debug)]
 pub struct Options {
-    /// The scenario file; `None`: the demo.
+    /// The scenario file; `None` to open the demo.
     pub scenario: Option<PathBuf>,
     /// Changes to the scenario from the command line.
     pub settings: Settings,
@@ -66,7 +66,7 @@ pub struct Options {
     pub glyphs: Option<Glyphs>,
     /// How the console is operated.
     pub by: By,
-    /// A run to watch instead of opening a scenario: given by its folder, or by its name in `logs`.
+    /// A run to watch instead of opening a scenario. The run is given by its folder, or by its name in `logs`.
     pub view: Option<PathBuf>,
     /// A past run to play back, instead of opening a scenario.
     pub replay: Option<Replay>,
@@ -74,7 +74,7 @@ pub struct Options {
     pub drill: Option<Drill>,
 }
 
-/// A past run to play back: given by its folder, or by its name in the folder of the runs.
+/// A past run to play back. The run is given by its folder, or by its name in the folder of the runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Replay {
     /// The run to play back.

@@ -16,13 +16,13 @@ const SKIPPED: Duration = Duration::from_secs(10);
 /// Measures the performance of the screen.
 pub(super) struct Measure {
     reported: Instant,
-    /// When the key press that the next frame answers arrived.
+    /// The time at which the key press arrived that the next frame answers.
     key: Option<Instant>,
-    /// When each key press was answered, and the response time.
+    /// For each key press, the time of the answer and the response time.
     answered: VecDeque<(Instant, Duration)>,
-    /// When frames were skipped, and how many.
+    /// The times at which frames were skipped, and the number of frames.
     skipped: VecDeque<(Instant, u32)>,
-    /// When the first message that the next frame shows arrived.
+    /// The time at which the first message arrived that the next frame shows.
     changed: Option<Instant>,
 }
 

@@ -55,7 +55,8 @@ impl Pace {
         }
     }
 
-    /// Whether another tick is due that was postponed while the mission rested. If so, this tick counts as run.
+    /// Whether a tick that was postponed while the mission rested is still due. If so, the call counts that tick as
+    /// run.
     pub(super) fn makes_up(&mut self, now: Instant) -> bool {
         let next = self.period.filter(|_| self.rests).map(|period| self.due + period);
         let is_due = next.is_some_and(|next| next <= now);

@@ -31,7 +31,7 @@ pub(super) fn speak(mut session: Session, outbox: &Outbox, engine: &Current) -> 
     let mut is_listening = false;
     let mut said = Said::default();
     loop {
-        // Accept commands only once the scenario is open: an operator, too, waits to see the screen.
+        // Accept commands only once the scenario is open, because an operator would also wait to see the screen.
         if !is_listening && is_open(&session.model) {
             listen(outbox, Arc::clone(&is_over))?;
             is_listening = true;

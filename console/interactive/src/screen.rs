@@ -42,7 +42,7 @@ pub(super) struct Screen {
     frame_interval: Duration,
     /// The shortest time between the last frame and a frame that only shows new values of a robot at rest.
     calm_pause: Duration,
-    /// The time after the last frame during which a line with [`LINE_RATE`] is still busy.
+    /// The time after the last frame for which a line with the data rate [`LINE_RATE`] is still busy.
     line_busy: Duration,
     /// How soon a frame must be drawn.
     due: Redraw,
@@ -121,7 +121,7 @@ impl Screen {
     /// Waits for a message, then takes all others that are waiting.
     fn take_burst(&mut self) -> anyhow::Result<Option<Left>> {
         let first = self.wait();
-        // The model may have been due to change by itself.
+        // The model may have reached a time at which it changes by itself.
         let by_itself = self.session.model.wakes_at_mono_s();
         self.session.update_time();
         if by_itself.is_some_and(|at_s| at_s <= self.session.model.console.now.mono_s) {

@@ -126,7 +126,7 @@ struct Runner {
 
 impl Runner {
     fn carry_out(&mut self, script: &Script) -> Result<(), String> {
-        // Accept commands only once the scenario is open: an operator, too, waits to see the screen.
+        // Accept commands only once the scenario is open, because an operator would also wait to see the screen.
         self.hear_until(OPENING, is_open)?;
         for (line, step) in &script.steps {
             let done = self.step(step);

@@ -106,7 +106,8 @@ pub(super) fn keys(outbox: &Outbox, engine: Current, places: SharedPlaces) -> an
     })
 }
 
-/// Listens for signals. A signal that ends the process ends it within [`GRACE`], whatever the other threads do.
+/// Listens for signals. After a signal that ends the process, the process ends within [`GRACE`], whatever the other
+/// threads do.
 pub(super) fn signals(outbox: &Outbox, engine: Current, foreground: Foreground) -> anyhow::Result<()> {
     let outbox = outbox.clone();
     let others = OTHERS.into_iter().chain(libc::SIGRTMIN()..=libc::SIGRTMAX());

@@ -67,7 +67,8 @@ pub enum EventKind {
         /// The reason why it was refused, and what would be accepted.
         why: String,
     },
-    /// The true geometry of the cable at the start of this tick; reported by the simulator and unknown to the mission.
+    /// The true geometry of the cable at the start of this tick. The simulator reports the geometry; the mission does
+    /// not know it.
     TetherTruth {
         /// Length of cable between anchor and robot, metres.
         length_m: f64,
@@ -121,7 +122,7 @@ pub enum EventKind {
         /// The certificate, or why there is none.
         certificate: Certificate,
     },
-    /// The robot's true pose at the start of this tick; reported by the simulator and unknown to the mission.
+    /// The robot's true pose at the start of this tick. The simulator reports the pose; the mission does not know it.
     Truth {
         /// True pose.
         pose: Pose,

@@ -104,7 +104,7 @@ impl Outcome {
     }
 }
 
-/// Where a step of a held robot ends.
+/// The point at which a step of a held robot ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StepTo {

@@ -1,4 +1,5 @@
-//! Times of fixes from 60 ranges, of eight stations with liars among them, and of steps of the filters.
+//! Measures the time of fixes from 60 ranges, of fixes from eight stations of which some are wrong, and of filter
+//! steps.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::Matrix2;

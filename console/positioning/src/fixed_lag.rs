@@ -150,7 +150,7 @@ mod tests {
         draws::{Draws, paper_stations},
     };
 
-    /// Errors of the filter and ten motions back, on a circle with tracks that slip by 3 %.
+    /// Errors of the filter, and of the estimate ten motions back, on a circle with tracks that slip by 3 %.
     fn errors(seed: u64) -> (f64, f64) {
         let (stations, mut draws) = (paper_stations(), Draws::new(0.05, 1, seed));
         let mut truth = Pose::new(6.0, 0.0, std::f64::consts::FRAC_PI_2);

@@ -1,4 +1,4 @@
-//! Whatever comes in, only finite numbers come out, and nothing panics.
+//! Whatever the input, only finite numbers are returned, and nothing panics.
 
 use nalgebra::Matrix2;
 use positioning::{

@@ -6,8 +6,8 @@ use std::{path::Path, time::Instant};
 
 /// Regenerates the recording of a run from its journal, with the same content as the recording made during the run.
 ///
-/// The recording belongs to the run of the journal (the name of its folder), wherever the recording is stored. A
-/// journal that is cut off yields a recording up to that point, and a text that states what is missing.
+/// The recording belongs to the run of the journal (the name of its folder), wherever the recording is stored. If the
+/// journal is cut off, the recording extends to that point, and the returned text states what is missing.
 ///
 /// # Errors
 /// There is no journal, it is damaged, or the recording cannot be written; an existing recording is never

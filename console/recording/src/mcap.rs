@@ -35,8 +35,8 @@ const COVERAGE_S: f64 = 5.0;
 /// Minimum distance between two points of the track, metres.
 const TRACK_M: f64 = 0.01;
 
-/// Writes the run of a journal as MCAP. A journal that is cut off yields a file up to that point, and a text that
-/// states what is missing.
+/// Writes the run of a journal as MCAP. If the journal is cut off, the file extends to that point, and the returned
+/// text states what is missing.
 ///
 /// # Errors
 /// There is no journal, it is damaged, or the file cannot be written; an existing file is never overwritten.

@@ -8,9 +8,9 @@ use serde::Serialize;
 pub struct Leg {
     /// The purpose of the stretch.
     pub tag: &'static str,
-    /// Index of its first point.
+    /// Index of the first point of the stretch.
     pub first: usize,
-    /// Index of its last point.
+    /// Index of the last point of the stretch.
     pub last: usize,
 }
 

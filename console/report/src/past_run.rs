@@ -1,4 +1,4 @@
-//! A past run, as reports read it.
+//! A past run in the form in which reports use it.
 
 use crate::{document::Files, record::Record};
 use account::{Fold, Logs, Summary};

@@ -51,7 +51,7 @@ pub type Span = (f64, f64);
 /// Everything that a report shows over time and place.
 #[derive(Debug, Default)]
 pub struct Record {
-    /// Every tick.
+    /// The estimated position in every tick.
     pub track: Vec<TrackPoint>,
     /// Scanned share of the reachable floor over time.
     pub progress: Vec<(f64, f64)>,

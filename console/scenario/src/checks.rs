@@ -16,8 +16,8 @@ pub(crate) const MOST_TICKS: f64 = 1e7;
 pub(crate) const ROUNDING_M: f64 = 1e-6;
 
 /// The clearance in millimetres that a robot needs at its start. The robot keeps this far from obstacles that it
-/// senses. With less, a small position error would put an obstacle within this distance, and the mission could not
-/// distinguish moving off from a collision.
+/// senses. With a smaller clearance, a small position error would put an obstacle within this distance. The mission
+/// could then not tell whether the robot moves off or collides.
 const START_ROOM_MM: f64 = 10.0;
 
 /// The longest time in seconds that a robot may need, on average, to detect its medium.

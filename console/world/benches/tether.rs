@@ -1,4 +1,4 @@
-//! What the cable costs: one tick's update, and the certificate of a whole plan.
+//! Measures the cost of the cable: the update in one tick, and the certificate of a whole plan.
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use std::hint::black_box;

@@ -223,7 +223,7 @@ mod tests {
         assert_eq!(mode.toward(Medium::Underwater, 0), Mode::of(Medium::Underwater));
     }
 
-    /// Readings of a seed, pascals, by a sum of twelve uniform numbers.
+    /// Readings generated from a seed, pascals; the noise is a sum of twelve uniform numbers.
     fn readings(mean_pa: f64, sigma_pa: f64, seed: u64) -> impl Iterator<Item = f64> {
         let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
         let mut uniform = move || {
@@ -248,7 +248,7 @@ mod tests {
                     sensed.take(&sensor, pressure_pa)
                 });
                 assert_eq!(decided, Some(medium));
-                // What noise says in the next minute changes nothing.
+                // The noise of the next minute changes nothing.
                 assert_eq!(all.take(600).find_map(|pressure_pa| sensed.take(&sensor, pressure_pa)), None);
             }
             let mean = f64::from(taken) / 300.0;

@@ -364,7 +364,7 @@ mod tests {
                 shapes.iter().enumerate().map(|(i, s)| obstacle(i as u32, s.clone())).collect();
             let map = ObstacleMap::new(&round_tank(), &obstacles);
             let nearest = shapes.iter().map(|s| s.distance_m(point)).fold(f64::INFINITY, f64::min);
-            // Inside overlapping obstacles the depth is that of one of them.
+            // Inside overlapping obstacles, the depth is the depth in one of them.
             if nearest > 0.0 {
                 prop_assert!((map.obstacle_distance_m(point) - nearest).abs() < 1e-9);
             } else {

@@ -1,4 +1,4 @@
-//! What one plan of the paper's whole spiral costs, on layouts of its first distribution with 39 obstacles.
+//! Measures the cost of one plan for the paper's whole spiral, on layouts of its first distribution with 39 obstacles.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use planner_apf::apf::Apf;
@@ -6,7 +6,7 @@ use planner_api::{Motion, PlanRequest, Planner, Reason, Task, testing::Bench};
 use std::hint::black_box;
 use trials::{Distribution, Layout, Sampling, exact_pose};
 
-/// Layouts that take turns.
+/// Number of layouts, which are used in turn.
 const LAYOUTS: u64 = 20;
 /// Settings of Wang et al. 2023, first distribution, with improved repulsion.
 const PAPER: [(&str, f64); 5] =

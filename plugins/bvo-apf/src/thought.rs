@@ -151,7 +151,7 @@ mod tests {
         machine
     }
 
-    /// A side, walked to its end by itself: what it costs, metres, and its steps.
+    /// Walks one side to its end on its own; returns its cost, metres, and the number of steps.
     fn walked_out(machine: &Machine, start: Point, side: Side) -> (f64, usize) {
         let mut detour = Detour::new(machine, start, side);
         let mut steps = 0;

@@ -130,7 +130,7 @@ mod tests {
         let tank = Tank { boundary, anchor: Point::new(-3.0, 0.0), columns: vec![(Point::origin(), 0.3)] };
         let obstacles = tank.obstacles();
         let workspace = Workspace::new(&tank.site(&obstacles), tank.anchor).unwrap();
-        // Hardly aslant to the lane that is missing.
+        // The cut is almost parallel to the missing lane.
         let line = vec![Point::origin(), Point::new(5.0, 0.004)];
         let domain = SlitDomain::new(&workspace, vec![line]).unwrap();
         let mut swept = SweptFloor::new(ReachableFloor::new(&domain, 0.05));

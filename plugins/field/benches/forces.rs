@@ -1,4 +1,5 @@
-//! Cost of one evaluation of the forces against the number of obstacles: only those within reach may cost anything.
+//! Cost of one evaluation of the forces against the number of obstacles: only obstacles within reach may add to the
+//! cost.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use field::{Law, PushForm, Repulsion, RotationForm, Scene, law::Beside};
@@ -6,7 +7,7 @@ use planner_api::{Boundary, Limits, Motion, Obstacle, Outline, Point2, Site};
 use std::hint::black_box;
 use steering::Side;
 
-/// Obstacles per square metre stay the same, so that as many are within reach whatever their number.
+/// The density of obstacles stays the same, so the number within reach does not depend on the total number.
 const AREA_PER_OBSTACLE_M2: f64 = 4.0;
 
 fn columns(n_obstacles: u32) -> (f64, Vec<Obstacle<'static>>) {

@@ -24,7 +24,7 @@ pub struct Descent {
     pub goal: Point,
     /// Length of a move, metres.
     pub step_m: f64,
-    /// Within this distance the goal is reached, metres.
+    /// The goal is reached when the robot is within this distance of it, metres.
     pub tolerance_m: f64,
 }
 

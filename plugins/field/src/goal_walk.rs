@@ -13,7 +13,7 @@ pub struct Trip {
     pub start: Point,
     /// The goal.
     pub goal: Point,
-    /// Within this distance the goal is reached, metres.
+    /// The goal is reached when the robot is within this distance of it, metres.
     pub tolerance_m: f64,
     /// Maximum number of steps.
     pub steps_max: usize,

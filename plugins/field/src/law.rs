@@ -190,7 +190,7 @@ pub(crate) mod tests {
         assert!(all.rotation.norm() > 0.0 && all.repulsion.norm() > 0.0);
         assert_eq!(beside(Beside::Pull), Forces { repulsion: Vector::zeros(), ..all });
         assert_eq!(beside(Beside::Nothing), Forces { rotation: all.rotation, ..Forces::default() });
-        // Without it everything acts.
+        // Without the rotating force, everything acts.
         let still = forces(&Law { beside: Beside::Nothing, ..LAW }, &contacts);
         assert_eq!(still, forces(&LAW, &contacts));
     }

@@ -79,7 +79,7 @@ pub struct PresetPath<'a> {
     pub start: Point,
     /// The preset points; no two neighbours are further apart than a step.
     pub points: &'a [Point],
-    /// Within this distance the last point is reached, metres.
+    /// The last point is reached when the robot is within this distance of it, metres.
     pub tolerance_m: f64,
 }
 
@@ -200,7 +200,7 @@ mod tests {
 
     #[test]
     fn a_path_that_passes_its_end_early_goes_on() {
-        // Out and back: the last point is the first, and without the rule the walk would end where it begins.
+        // Out and back: the last point is also the first point, so without the rule the walk would end where it begins.
         let mut points = line(40, 0.1);
         points.extend(line(40, 0.1).into_iter().rev().skip(1));
         let walk = walk(points[0], &points, 0.15);

@@ -12,7 +12,8 @@ use steering::Tick;
 
 /// Distance covered in a tick at full speed, metres.
 const MOVE_M: f64 = 0.05;
-/// Within this distance a preset point is considered passed, metres; it is also how far the mission looks ahead.
+/// A preset point is considered passed when the robot is within this distance of it, metres. The mission looks ahead
+/// just as far.
 const LOOKAHEAD_M: f64 = 0.5;
 /// Obstacles further from the robot than this do not affect the pilot, metres.
 const RANGE_M: f64 = 4.5;

@@ -19,7 +19,7 @@ const ZERO_SHARE: f64 = 0.5;
 const STALL_STEPS: usize = 6;
 /// The robot is considered to be moving if it moved further than this many steps.
 const STALL_SHARE: f64 = 1.5;
-/// Within this many steps a virtual goal is reached.
+/// A virtual goal is reached when the robot is within this many steps of it.
 const REACHED_STEPS: f64 = 2.0;
 /// Maximum number of steps for which a virtual goal is kept.
 pub const HOLD_STEPS: usize = 30;

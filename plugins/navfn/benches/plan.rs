@@ -1,4 +1,4 @@
-//! What a plan costs on 160 random traps of 50 m by 50 m, and what a discovery costs.
+//! Measures the cost of a plan, and of a discovery, on 160 random traps of 50 m by 50 m.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::Matrix3;
@@ -43,7 +43,7 @@ fn from_scratch<P: Planner>(c: &mut Criterion, name: &str, values: &[(&str, f64)
     });
 }
 
-/// The whole way to the goal with what is within range discovered step by step; one iteration is one new plan.
+/// The whole way to the goal, on which discs within range are discovered step by step; one iteration is one new plan.
 fn replans(c: &mut Criterion) {
     let (traps, corners) = (traps(), Trap::corners());
     let all: Vec<Vec<Obstacle<'static>>> = traps.iter().map(|trap| trap.obstacles(true)).collect();
@@ -62,7 +62,7 @@ fn replans(c: &mut Criterion) {
             let site = Trap::site(&corners, seen, RANGE_M);
             let plan = black_box(asked(&mut navfn, at, trap.goal, &site));
             let path = plan.map(|plan| plan.path).unwrap_or_default();
-            // On to where the next disc in line is seen.
+            // Drives on to the point where the next disc is seen.
             let unseen = all[index].get(n_seen).map(|_| trap.discs[n_seen]);
             if let Some((center, radius_m)) = unseen {
                 let sees = |p: &&Point2<f64>| (**p - center).norm() - radius_m < RANGE_M;

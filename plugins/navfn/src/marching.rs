@@ -238,7 +238,7 @@ mod tests {
             let mut repaired = marched(&[], source);
             let mut blocked: Vec<usize> = Vec::new();
             for change in changes {
-                // What is blocked is freed, what is free is blocked; the source and the frame stay.
+                // Blocked cells are freed and free cells are blocked; the source and the frame stay as they are.
                 let frame = framed(&[]);
                 let mut change: Vec<usize> = change.into_iter().filter(|c| *c != source && !frame[*c]).collect();
                 change.sort_unstable();

@@ -31,7 +31,7 @@ export_planners!(Idle);
 #[test]
 fn the_macro_puts_stamp_and_ids_into_the_file() {
     let own = std::env::current_exe().and_then(std::fs::read).expect("the test can read itself");
-    // Built at run time, so that the bytes searched for are not found in the test's own constants.
+    // Built at run time, so that the search does not find the bytes in the test's own constants.
     let stamp: Vec<u8> = "NALPKNAT"
         .bytes()
         .rev()

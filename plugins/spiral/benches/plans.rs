@@ -13,7 +13,7 @@ use planner_spiral::{
 use std::hint::black_box;
 use trials::{Distribution, Layout, Sampling, exact_pose};
 
-/// Layouts that take turns.
+/// Number of layouts, which are used in turn.
 const LAYOUTS: u64 = 20;
 /// Clearance that our own planners keep, metres.
 const CLEARANCE_M: f64 = 0.3;

@@ -252,7 +252,7 @@ mod tests {
         ) {
             let tank = Layout { radius_m: 2.0, ..layout(columns.iter().map(|(x, y)| (Point::new(*x, *y), 0.0)).collect()) };
             let at = Point::new(at.0, at.1);
-            // For some clearances in between the cells are too coarse to decide.
+            // For some clearances between these, the cells are too coarse to decide.
             let (reached_wide, reached_narrow) = (flood(&tank, 0.33, at), flood(&tank, 0.22, at));
             for (goal, wide, narrow) in reached_wide.into_iter().zip(reached_narrow).map(|((p, w), (_, n))| (p, w, n)) {
                 let least_m = clear_m(&tank, goal).min(clear_m(&tank, at));
@@ -269,7 +269,7 @@ mod tests {
         tank.columns.iter().map(|(c, _)| (at - c).norm()).fold(f64::INFINITY, f64::min)
     }
 
-    /// Places and whether they are reached in moves of 2 cm that keep this distance.
+    /// Places, and whether each can be reached in moves of 2 cm that keep this distance.
     fn flood(tank: &Layout, keep_m: f64, from: Point) -> Vec<(Point, bool)> {
         const N: i32 = 100;
         let place = |(x, y): (i32, i32)| from + Vector::new(f64::from(x), f64::from(y)) * 0.04;

@@ -190,7 +190,8 @@ mod tests {
         Body::new(1, &Outline::Disc { center: at, radius_m }).unwrap()
     }
 
-    /// Flies to the east among movers that start within sight; the least distance to them, and how far it got.
+    /// Flies to the east among movers that start within sight; returns the smallest distance to them, and how far the
+    /// robot got.
     fn flown(movers: &[(Point, Vector)], limits: Limits) -> (f64, Point) {
         let mut pose = exact_pose(Point::origin());
         let mut least_m = f64::INFINITY;
@@ -227,7 +228,7 @@ mod tests {
             for k in 0..24 {
                 let bearing = std::f64::consts::TAU * f64::from(k) / 24.0;
                 let towards = Vector::new(bearing.cos(), bearing.sin());
-                // It would meet the robot on its straight way after ten seconds.
+                // The mover would meet the robot on its straight way after ten seconds.
                 let meeting = Point::new(4.0, 0.0);
                 let (least_m, end) = flown(&[(meeting - towards * 4.0, towards * 0.4)], limits);
                 if (meeting - towards * 4.0).coords.norm() > 1.5 {

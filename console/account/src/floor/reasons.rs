@@ -27,7 +27,7 @@ pub struct Reasons<'a> {
     pub(super) has_tether: bool,
     /// Width of lanes: the swath less the overlap, metres.
     pub(super) lane_m: f64,
-    /// Hull and clearance, metres.
+    /// Radius of the hull plus clearance, metres.
     pub(super) room_m: f64,
     /// Limit of the 95 % error above which nothing counts as scanned, metres.
     pub(super) limit_m: f64,

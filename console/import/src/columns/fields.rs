@@ -34,7 +34,7 @@ pub(super) struct Fields {
     pub unused: Vec<String>,
 }
 
-/// A result; its error is a field and the field's problem.
+/// A result; the error consists of a field and the problem with the field.
 type Wrong<T> = Result<T, (String, String)>;
 
 impl Fields {

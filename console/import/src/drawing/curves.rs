@@ -108,8 +108,8 @@ pub(super) fn spline(spline: &Spline) -> Option<Vec<Point>> {
     (points.len() > 1 && points.iter().all(|p| p.x.is_finite() && p.y.is_finite())).then_some(points)
 }
 
-/// Points of a smooth curve through given points (Catmull–Rom). For drawings that state only these points, the program
-/// that displays them determines the curve.
+/// Points of a smooth curve through given points (Catmull–Rom). If a drawing states only these points, the program that
+/// displays the drawing determines the curve.
 pub(super) fn through(points: &[Point]) -> Vec<Point> {
     let n = points.len();
     if n < 3 || n * SPLINE_POINTS > SPLINE_MOST {

@@ -74,7 +74,8 @@ impl Settings {
         let written: Written = serde_saphyr::from_str(text).map_err(|error| {
             let line = error.location().map(|at| at.line() as usize);
             let whole = error.without_snippet().to_string();
-            // Messages of tankops state the position first, so it is removed from the end.
+            // The messages of tankops state the position first, so the position is removed from the end of this
+            // message.
             let what = whole.rsplit_once(" at line").map_or(whole.as_str(), |(what, _)| what).to_owned();
             match error.without_snippet() {
                 serde_saphyr::Error::DuplicateMappingKey { key, .. } => {

@@ -20,7 +20,7 @@ use tui::model::{
 
 /// The largest number of copies of a run.
 pub(super) const MOST_FRAMES: usize = 128;
-/// The smallest spacing of copies, in bytes of lines; this takes a few milliseconds to read.
+/// The smallest spacing of copies, in bytes of lines. Reading this many bytes takes a few milliseconds.
 const LEAST_SPACING: u64 = 1 << 18;
 /// The largest number of marks of a run.
 const MOST_MARKS: usize = 100_000;
@@ -192,7 +192,7 @@ impl Loading {
             self.end_tick(reel);
         }
         let Some(mark) = self.marker.fold(&mut self.run, event) else { return };
-        // Limit event marks, so that a talkative planner leaves room for more important marks.
+        // Limit the event marks, so that a planner that logs a lot leaves room for more important marks.
         let most = if mark.kind == MarkKind::Event { MOST_MARKS / 2 } else { MOST_MARKS };
         if self.n_marks < most {
             self.n_marks += 1;

@@ -16,11 +16,11 @@ pub(super) struct Condition {
 enum What {
     /// `waiting`, `running`, `held`, `ended`, or an outcome.
     Phase(String),
-    /// The screen of this name is shown.
+    /// The screen with this name is shown.
     Screen(String),
     /// At least this percentage of the reachable floor is scanned.
     Coverage(f64),
-    /// The text of some alarm contains this text; if this text is empty, any alarm will do.
+    /// The text of an alarm contains this text; if this text is empty, any alarm meets the condition.
     Alarm(String),
     /// The screen contains this text.
     Text(String),

@@ -48,7 +48,7 @@ pub(super) struct Driving {
 /// How far a planner is prepared while the robot stands still.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub(super) enum Prepare {
-    /// Not at all.
+    /// Do not prepare the planner.
     #[default]
     No,
     /// Open the planner.
@@ -68,9 +68,9 @@ pub(super) struct LeftPlan {
 }
 
 impl LeftPlan {
-    /// The plan, provided that `choice` is the planner that made it, with the same values, and that the robot is still
-    /// within `near_m` of the point where it left the plan. If the mission switches back to a planner, the planner
-    /// continues its old plan.
+    /// The plan, if `choice` is the planner that made the plan, with the same values, and the robot is still within
+    /// `near_m` of the point where it left the plan. If the mission switches back to a planner, the planner continues
+    /// its old plan.
     pub(super) fn to_go_on_with(&self, choice: &PlannerChoice, here: Point, near_m: f64) -> Option<Plan> {
         (self.choice == *choice && (self.at - here).norm() < near_m).then(|| self.plan.clone())
     }

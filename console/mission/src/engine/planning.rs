@@ -97,7 +97,7 @@ pub(super) fn planned(ask: Option<AskId>, planner: &str, asked: &AskedPlan, plan
     }
 }
 
-/// Puts the return path before a plan.
+/// Adds the return path at the start of a plan.
 pub(super) fn after(return_path: &[Point], mut plan: Plan) -> Plan {
     let Some(last) = return_path.len().checked_sub(1) else { return plan };
     let shifted = |leg: &Leg| Leg { first: leg.first + last + 1, last: leg.last + last + 1, ..*leg };

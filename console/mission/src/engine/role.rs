@@ -35,7 +35,7 @@ pub(super) struct Candidate {
     pub due: Due,
     /// The plan that the candidate is asked to keep to. This is the candidate's own plan, not the plan in use.
     pub keep: Option<Plan>,
-    /// Obstacles found since its plan was requested.
+    /// Obstacles found since the candidate's plan was requested.
     pub found_since: Vec<Shape>,
     /// Whether the robot stands still until the candidate has planned, because it had moved too far during the
     /// candidate's first attempt.

@@ -59,8 +59,9 @@ impl Mission {
 }
 
 impl Known {
-    /// A newly found obstacle blocks a path if the path comes closer than the required clearance. An obstacle that was
-    /// already planned for, and whose position has merely been corrected, blocks a path only within half that clearance.
+    /// A newly found obstacle blocks a path if the path comes closer than the required clearance. If the plan already
+    /// took an obstacle into account and its position has merely been corrected, the obstacle blocks a path only within
+    /// half that clearance.
     fn is_in_the_way(&self, task: &Task, event: &EventKind) -> bool {
         let (radius_m, clearance_m) = (self.config.limits.radius_m, self.config.clearance_m);
         match event {

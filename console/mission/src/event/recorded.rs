@@ -1,4 +1,4 @@
-//! Answers from a journal. Each event that answers an ask contains what a mission needs to repeat that answer.
+//! Answers from a journal. An event that answers an ask contains everything needed to repeat that answer.
 
 use super::EventKind;
 use crate::{

@@ -9,9 +9,9 @@ use world::Point;
 pub struct TetherContact {
     /// Name of the obstacle.
     pub on: String,
-    /// Angle by which the cable bends there, radians, counter-clockwise.
+    /// Angle by which the cable bends round the obstacle, radians, counter-clockwise.
     pub wrap_rad: f64,
-    /// Last point of contact, counted from the anchor.
+    /// Last point of contact, in the direction from the anchor to the robot.
     pub at: Point,
 }
 

@@ -84,7 +84,7 @@ fn a_session_finds_where_the_stations_are() {
         station.position += Vector::new(draws.bell(), draws.bell()) * 0.1;
     }
     let mut calibration =
-        // With the speed of sound free as well a large array could not be distinguished from slow sound.
+        // If the speed of sound were free as well, a large array could not be distinguished from slow sound.
         Calibration::new(&surveyed, Unknowns { survey_sigma_m: 0.1, sound_sigma_ratio: 0.0, offset_sigma_m: 0.0 });
     for _ in 0..400 {
         let truth = draws.on_disc();
@@ -92,7 +92,7 @@ fn a_session_finds_where_the_stations_are() {
     }
     let (mut with, mut without) = (0.0, 0.0);
     let found = calibration.stations();
-    // The session cannot see where the whole array lies and how it is turned, only its shape.
+    // The session reveals only the shape of the array, not its position or rotation.
     let spread = |places: &[Station]| {
         let pairs = (0..6).flat_map(|i| (0..i).map(move |j| (i, j)));
         pairs
@@ -168,7 +168,7 @@ fn a_session_finds_the_offset_of_the_clocks_with_and_without_the_speed_of_sound(
         for _ in 0..6 {
             calibration = calibration.again();
             for ranges in &session {
-                // A cycle whose position does not settle contributes nothing.
+                // A cycle whose position does not converge contributes nothing.
                 let _ = calibration.take(ranges, None);
             }
         }

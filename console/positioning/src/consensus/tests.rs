@@ -84,7 +84,7 @@ fn many_stations_do_not_mean_many_subsets() {
 
 #[test]
 fn beside_a_station_the_other_side_of_its_circle_is_looked_at() {
-    // A station in arm's reach, another one that lies: the first answer that holds together is on the wrong side.
+    // One station is within arm's reach and another is wrong: the first consistent answer is on the wrong side.
     let (stations, mut draws) = (ring(6, 7.5), Draws::new(0.05, 20, 10_001));
     for run in 0..2_000 {
         let truth = stations[0].position + world::Vector::new(draws.even(), draws.even()) * 0.3;

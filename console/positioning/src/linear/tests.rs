@@ -116,7 +116,7 @@ fn moments(truth: Point, runs: usize) -> (Vector, Vector) {
 #[test]
 fn the_scatter_at_the_centre_is_that_of_first_order() {
     let (_, sigma) = moments(Point::origin(), 20_000);
-    // (2 s / 30)^2 (l_A^4 + l_B^4 [+ 4 l_C^4]) / N; 20 000 runs know a sigma to half a percent.
+    // (2 s / 30)^2 (l_A^4 + l_B^4 [+ 4 l_C^4]) / N; 20 000 runs determine a sigma to half a per cent.
     assert!((sigma.x / 0.0342 - 1.0).abs() < 0.02, "{sigma}");
     assert!((sigma.y / 0.0593 - 1.0).abs() < 0.02, "{sigma}");
 }

@@ -16,8 +16,8 @@ type Done = Result<(), RecordingError>;
 
 /// Name of the property with the figures of the run.
 pub(crate) const FIGURES: &str = "figures";
-/// During the mission an account is computed at most once a minute, and less often on a large floor: at least one tick
-/// passes between two accounts for every so many cells of the floor.
+/// During the mission, at least a minute passes between two accounts. On a large floor the interval is longer: one tick
+/// for each [`CELLS_PER_TICK`] cells of the floor.
 const CELLS_PER_TICK: usize = 50;
 const LEAST_PERIOD_S: f64 = 60.0;
 /// Maximum number of missed areas with a label.

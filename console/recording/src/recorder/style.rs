@@ -36,7 +36,7 @@ pub(crate) const FIGURE: [u8; 4] = rgb(120, 200, 255);
 /// A figure that is a warning.
 pub(crate) const WARNING: [u8; 4] = rgb(255, 160, 60);
 
-/// Floor that is scanned, to do, missed, unreachable.
+/// Floor by class: scanned, to do, missed, unreachable.
 pub(crate) const SCANNED: [u8; 4] = rgb(38, 60, 76);
 pub(crate) const TO_DO: [u8; 4] = rgb(26, 30, 36);
 pub(crate) const MISSED: [u8; 4] = rgb(176, 118, 48);

@@ -38,8 +38,8 @@ pub struct Context<'a> {
 }
 
 impl Pictures {
-    /// Draws the pictures. The coverage map and the pictures of individual runs are drawn in a second thread; they
-    /// take as long as all the others together.
+    /// Draws the pictures. The coverage map and the pictures of individual runs are drawn in a second thread; they take
+    /// as long as all other pictures together.
     fn draw(layers: &Layers<'_>, floor: &Account, indications: &[Indication], past: &[PastRun]) -> Self {
         std::thread::scope(|scope| {
             let more = scope.spawn(|| {
@@ -150,7 +150,7 @@ fn of_run(layers: &Layers<'_>, past: &PastRun) -> [Option<Figure>; 3] {
     [maps::track(layers, record), maps::tether(layers, record), over_time]
 }
 
-/// Builds the document number from the seed of the first run and the start time in its name.
+/// Builds the document number from the start time in the name of the first run and from the seed of that run.
 fn number(past: &[PastRun]) -> String {
     let first = past.first();
     let name = first.map(|past| past.files.closed_as.as_ref().unwrap_or(&past.name));

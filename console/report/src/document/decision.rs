@@ -13,7 +13,7 @@ pub(super) struct Decision {
     pub(super) what: String,
     /// The section with the facts.
     pub(super) section: usize,
-    /// Its key under `[inspection]`.
+    /// Key of the decision under `[inspection]`.
     pub(super) key: &'static str,
     /// The gate item that stays open without the decision.
     pub(super) item: usize,

@@ -29,12 +29,12 @@ pub struct Document {
     pub made_by: String,
     /// Whether the runs were simulated; if so, no floor was inspected.
     pub is_simulation: bool,
-    /// The readings that were located; absent for missions.
+    /// The located readings on which the report is made; absent for missions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub located: Option<Located>,
     /// The facts that only people know; a missing fact is `null`.
     pub inspection: Inspection,
-    /// A sentence on how the inspector's facts about the floor contradict the scenario of the run; absent if they
+    /// How the inspector's facts about the floor contradict the scenario of the run, as a sentence; absent if they
     /// agree.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contradiction: Option<String>,
@@ -77,13 +77,13 @@ impl Document {
 /// One of the thirteen items.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct GateItem {
-    /// Its number, from 1.
+    /// Number of the item, from 1.
     pub number: usize,
     /// What the item requires.
     pub what: &'static str,
     /// Whether the item is answered.
     pub is_answered: bool,
-    /// The answer, or the part of it that is known.
+    /// The answer, or the known part of the answer.
     pub answer: String,
     /// What is missing: keys of `[inspection]`, or an action that is still needed.
     pub missing: Vec<String>,

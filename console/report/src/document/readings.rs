@@ -3,7 +3,7 @@
 use crate::past_run::PastRun;
 use serde::Serialize;
 
-/// The readings file of a run.
+/// A readings file, from which a run was located.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Readings {
     /// Name of the run's folder.
@@ -19,7 +19,7 @@ pub struct Readings {
 pub struct Located {
     /// The readings of each run.
     pub readings: Vec<Readings>,
-    /// Time from the first reading to the last, seconds, summed over all runs.
+    /// Time from the first to the last reading of a run, seconds, summed over all runs.
     pub time_s: f64,
     /// Time for which the tool was on, seconds, summed over all runs. Absent if the readings of any run do not show
     /// this; no coverage is then stated.
@@ -46,7 +46,7 @@ impl Located {
         })
     }
 
-    /// The names of the readings files, for people.
+    /// The names of the readings files as text.
     pub(super) fn files(&self) -> String {
         self.readings.iter().map(|readings| readings.file.as_str()).collect::<Vec<_>>().join(", ")
     }

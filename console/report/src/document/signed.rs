@@ -48,9 +48,9 @@ impl Revision {
 pub struct SignedRun {
     /// Name of the run's folder when the run was closed.
     pub run: String,
-    /// SHA-256 of its journal, hexadecimal.
+    /// SHA-256 of the run's journal, hexadecimal.
     pub journal_sha256: Option<String>,
-    /// SHA-256 of its recording, hexadecimal.
+    /// SHA-256 of the run's recording, hexadecimal.
     pub recording_sha256: Option<String>,
 }
 

@@ -1,9 +1,9 @@
 //! Section numbers and numbers as text.
 
-/// The sections of a report on a task other than scanning, given as section numbers in a scan report.
+/// The sections of a report on a task other than scanning, given by the numbers that they have in a scan report.
 const WITHOUT_SCAN: [usize; 9] = [1, 2, 5, 7, 8, 9, 10, 11, 12];
 
-/// Converts a section number in a scan report to the number in this report.
+/// Converts the number of a section in a scan report to its number in this report.
 pub(super) fn number_of(is_to_scan: bool, section: usize) -> usize {
     let place = WITHOUT_SCAN.iter().position(|known| *known == section).map_or(section, |index| index + 1);
     if is_to_scan { section } else { place }

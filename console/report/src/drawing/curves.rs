@@ -23,7 +23,7 @@ const COLOURS: [&str; 6] = [colour::TRACK, colour::MISSED, "#C77700", "#2A9D4A",
 /// A curve.
 #[derive(Debug, Clone, Copy)]
 pub struct Curve<'a> {
-    /// Its name in the legend.
+    /// Name of the curve in the legend.
     pub name: &'a str,
     /// Positions along the axis and values, in order.
     pub points: &'a [(f64, f64)],

@@ -35,7 +35,7 @@ pub struct TetherRecord {
     pub limits: Limits,
     /// Coefficient of friction between tether and steel.
     pub friction: f64,
-    /// Every tick.
+    /// The tether in every tick.
     pub points: Vec<TetherPoint>,
     /// Some lines of the tether, evenly spaced in time.
     pub lines: Vec<Vec<Point>>,

@@ -111,7 +111,7 @@ pub struct Live {
     pub heard_mono_s: f64,
     /// The result of the run, once it has ended and its files are closed.
     pub result: Option<RunResult>,
-    /// For a re-scan: the floor that this run and the runs before it have scanned together, or why that cannot be
+    /// For a re-scan: the floor that this run and the runs before it have scanned together, or why this floor cannot be
     /// computed.
     #[serde(default)]
     pub combined: Option<Result<Box<Account>, String>>,

@@ -60,7 +60,7 @@ pub struct Planning {
     /// Whether the candidate made the last plan; if so, the next certificate is not about the plan that is running.
     #[serde(default)]
     pub proposed: bool,
-    /// A better plan that is on offer, or one that was taken and will run from the point at which it begins.
+    /// A better plan that is on offer, or that was taken and will run from the point at which it begins.
     #[serde(default)]
     pub offer: Option<Offer>,
 }

@@ -204,7 +204,7 @@ pub enum Overlay {
     Commands(Palette),
     /// The list of planners.
     Planners {
-        /// The purpose of the choice.
+        /// The purpose for which the planner is chosen.
         purpose: Purpose,
         /// The index of the selected line.
         selected: usize,

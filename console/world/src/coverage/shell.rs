@@ -296,7 +296,7 @@ mod tests {
 
     const BAR: Tool = Tool::Bar { swath_m: 0.6 };
 
-    /// Once round a tank of 5 m, the robot's centre so far from the wall.
+    /// Drives once around a tank of 5 m, with the robot's centre this far from the wall.
     fn round(distance_m: f64, share: f64) -> ShellZone {
         let mut zone = ShellZone::new(&Boundary::Circle { radius_m: 5.0 }, 0.075);
         let radius_m = 5.0 - distance_m;

@@ -354,7 +354,7 @@ mod tests {
         area.pass(Tool::Bar { swath_m: 12.0 }, Pose::new(-6.0, 0.0, 0.0), Pose::new(-0.5, 0.0, 0.0));
         let west_m2 = PI * 25.0 / 2.0 - (0.5 * (25.0_f64 - 0.25).sqrt() + 25.0 * 0.1_f64.asin());
         let share = area.share_of(&floor, &boundary, &shapes).unwrap();
-        // The column stands to the east of x = -0.2.
+        // The column lies east of x = -0.2.
         let expected = west_m2 / (PI * (25.0 - 1.44));
         assert!((share - expected).abs() < 2e-4, "{share} {expected}");
     }

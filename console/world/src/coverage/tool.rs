@@ -304,7 +304,7 @@ mod tests {
         let grid = grid(0.05);
         let floor = grid.floor();
         let headings = (0..48).map(|k| (0.131 * f64::from(k), 0.05 * f64::from(k % 5)));
-        // From standing still over steps as they are driven to a bar whose ends cross.
+        // From a robot that stands still, through steps of usual length, to a bar whose ends cross.
         for (heading, turn) in headings {
             for (tool, step_m, turn) in [
                 (BAR, 0.0, turn),

@@ -66,7 +66,8 @@ mod tests {
             prop_assert!((along.norm() - found.length_m).abs() < 1e-9);
             for (circle, at) in [(i, found.from), (j, found.to)] {
                 let to_center = circle.center - at;
-                // On the left of a counter-clockwise turn, at its radius, square to the way.
+                // The centre of a counter-clockwise turn is on the left, at the distance of the radius and
+                // perpendicular to the path.
                 prop_assert!((along.perp(&to_center) / found.length_m - circle.signed_m).abs() < 1e-9);
                 prop_assert!(along.dot(&to_center).abs() < 1e-8);
             }

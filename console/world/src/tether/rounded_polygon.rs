@@ -234,7 +234,7 @@ mod tests {
         let disc = RoundedPolygon::new(vec![Point::origin()], 0.4);
         let from = Point::new(-5.0, 0.4);
         for step in 1..60 {
-            // Points on the disc behind the one where the line of sight touches it.
+            // Points on the disc, behind the point where the line of sight touches the disc.
             let angle = 0.5 * std::f64::consts::PI - 0.02 * f64::from(step);
             let to = Point::new(angle.cos(), angle.sin()) * 0.4;
             let mut way = vec![from];

@@ -93,7 +93,7 @@ fn loops_round_a_column_are_counted_in_full() {
         cable.drag_along(&loops(0.0, 0.0, 2.0, turns));
         let contacts = cable.contacts();
         assert_eq!(contacts.len(), 1);
-        // What the tangents from anchor and robot leave of the turns.
+        // The part of the turns that remains beside the tangents from anchor and robot.
         let ends = (0.5_f64 / 4.0).acos() + (0.5_f64 / 2.0).acos();
         let wrap = TAU * turns - ends.copysign(turns);
         assert!((contacts[0].wrap_rad - wrap).abs() < 1e-9, "{contacts:?}");
@@ -171,7 +171,7 @@ fn a_move_through_a_column_passes_it_on_the_side_of_its_centre() {
 
 #[test]
 fn a_tip_on_the_last_contact_goes_back_the_way_it_came() {
-    // Every bearing, as the last digit of the tangent decides which way half a turn seems to lead.
+    // Tests every bearing, because the last digit of the tangent decides in which direction half a turn seems to go.
     for shape in [disc(2.0, 0.0, 0.3), square(2.0, 0.0, 0.3)] {
         for k in 0..720 {
             let out = |bearing_rad: f64, far_m: f64| {
@@ -210,8 +210,8 @@ proptest! {
         at in prop::collection::vec((-5..5_i32, -5..5_i32), 1..12),
         goals in prop::collection::vec((-6..6_i32, -6..6_i32), 1..60),
     ) {
-        // Every other move ends or turns exactly on a tangent of some box. The triangulation does not like places
-        // on its edges: it is asked a hair aside.
+        // Every other move ends or turns exactly on a tangent of some box. The triangulation cannot handle places on
+        // its edges, so it is asked about slightly shifted places.
         let aside = Vector::new(1.3e-7, 0.7e-7);
         let anchor = Point::origin();
         let shapes: Vec<Shape> =
@@ -260,7 +260,7 @@ proptest! {
             cable.drag_to(point);
             funnel.drag_to(point);
         }
-        // A polygon of n corners in a circle is short by (pi/n)^2/6 of the arc, and a little at each tangent.
+        // A polygon of n corners in a circle is too short by (pi/n)^2/6 of the arc, and by a little at each tangent.
         let sum: f64 = cable.wrap_total_rad() + cable.contacts().len() as f64;
         prop_assert!((cable.length_m() - funnel.length_m()).abs() < 1e-6 + 2e-3 * radius * sum,
             "{} {}", cable.length_m(), funnel.length_m());
@@ -337,7 +337,8 @@ proptest! {
         for (k, point) in way.iter().enumerate() {
             let (share, bearing) = noise[k % noise.len()];
             truth.drag_to(*point);
-            // The piece between two estimates is one too: it must not stray further than they do.
+            // The points of the segment between two estimates are estimates, too: they must not stray further than the
+            // two do.
             let far = share * (radius + hull_m - 0.16).max(0.0);
             guess.drag_to(point + Vector::new(bearing.cos(), bearing.sin()) * far);
         }
@@ -360,13 +361,13 @@ proptest! {
             let least_m = shortest.distance_m(point);
             prop_assert!(least_m >= (point - anchor).norm() - 1e-9 && least_m <= cable.length_m() + 1e-6,
                 "{least_m} {}", cable.length_m());
-            // A shortest way is its own cable: dragged straight there and back it is found again.
+            // If the cable is straight and its signature is empty, its length is the shortest distance.
             if cable.signature().is_empty() && cable.is_straight() {
                 prop_assert!((least_m - cable.length_m()).abs() < 1e-6);
             }
             lengths.push((point, cable.length_m()));
         }
-        // The search that goes no further than it has to finds the same.
+        // The search that goes no further than necessary finds the same distance.
         let farthest_m = lengths.iter().map(|(point, _)| shortest.distance_m(*point)).fold(0.0, f64::max);
         let found_m = Geodesic::farthest_m(anchor, std::sync::Arc::clone(cable.obstacles()), &lengths);
         prop_assert!((found_m - farthest_m).abs() <= 1e-6, "{found_m} {farthest_m}");

@@ -81,6 +81,6 @@ fn what_crosses_its_way_is_met_where_it_will_be_unless_it_counts_as_standing() {
         assert!(crossing.arrived && crossing.clearance_m > 0.0, "{from_y_m} {crossing:?}");
     }
     let taken_as_standing = from_m.map(|from_y_m| cross::<ApfVirtualGoals>(&[("evade", 0.0)], from_y_m));
-    // What is evaded is given 0.15 m.
+    // An obstacle that is evaded is given 0.15 m of clearance.
     assert!(taken_as_standing.iter().any(|crossing| crossing.clearance_m < 0.05), "{taken_as_standing:?}");
 }

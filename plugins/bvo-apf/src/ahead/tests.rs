@@ -52,7 +52,7 @@ fn walked(mode: Mode, map: KnownMap, start: Point, goal: Point) -> Ahead {
     Ahead { walked, tried: vec![], news: machine.news }
 }
 
-/// The length of the way of a mode, metres, if it arrives; no way comes too near to anything.
+/// The length of a mode's path, metres, if the path arrives; no path comes too close to anything.
 fn length_m(mode: Mode, map: &KnownMap) -> Option<f64> {
     let ahead = walked(mode, map.clone(), START, GOAL);
     let clearance_m = map.path_clearance_m(&ahead.walked.path, 1.0);
@@ -71,7 +71,7 @@ fn a_spur_of_the_outline_is_gone_round_by_every_mode_but_the_paper_s() {
     assert_eq!(length_m(Mode::Literal, &map), None);
     assert_within(Mode::Hull, &map, 20.0);
     assert_within(Mode::Rollout, &map, 14.0);
-    // The shortest is 9.1 m.
+    // The shortest path is 9.1 m long.
     assert_within(Mode::Pre, &map, 9.4);
 }
 
@@ -100,7 +100,7 @@ fn a_bend_of_two_spurs_is_followed() {
     for mode in [Mode::Hull, Mode::Rollout] {
         assert_within(mode, &map, 40.0);
     }
-    // The shortest is 10.8 m.
+    // The shortest path is 10.8 m long.
     assert_within(Mode::Pre, &map, 11.2);
 }
 

@@ -189,7 +189,7 @@ fn a_swap_in_the_middle_of_a_trap_is_survived() {
     }
 }
 
-/// A cart that crosses the way to the goal at the pace of the robot, from a side, met by a robot without a plan.
+/// A robot without a plan meets a cart that crosses its way to the goal from one side, at the robot's own speed.
 fn crossed(from_y_m: f64) -> (bool, f64) {
     let (bench, open) = (Bench::new(), site(&[], Motion::Unicycle));
     let mut planner: BvoApf = bench.configure(&[("rho_0_m", 1.0), ("k_rep", 1.0)], &open).unwrap();

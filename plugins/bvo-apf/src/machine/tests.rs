@@ -77,7 +77,7 @@ fn in_a_cup_it_retreats_seals_the_mouth_goes_round_and_arrives() {
     };
     assert!(at.x > 0.0 && at.x < 4.0 && circles > 8 && side == Side::Left);
     assert_eq!(machine.virtual_circles().count(), circles);
-    // It does not go in twice.
+    // The robot does not enter the cup twice.
     assert!(walked.path.iter().skip_while(|p| p.y < 4.0).all(|p| p.x > 4.0 || p.y.abs() > 4.0));
 }
 

@@ -21,7 +21,7 @@ fn the_cut_that_seals_floor_off_is_found_wherever_it_runs() {
             let side = direction(0.157 * f64::from(k) + 1.5);
             vec![foot - side * 30.0, foot + side * 30.0]
         };
-        // The one further out keeps nothing out that the first one lets in.
+        // The outer cut seals off nothing that the first cut does not already seal off.
         let made = [across(1.0 + 0.07 * f64::from(k)), across(5.5)];
         let domain = SlitDomain::new(&workspace, vec![made[0].clone()]).unwrap();
         assert!(domain.sealed.area_m2 > 1.0 && !domain.sealed.rim.is_empty());
@@ -29,7 +29,7 @@ fn the_cut_that_seals_floor_off_is_found_wherever_it_runs() {
     }
 }
 
-/// Columns in rows, each a little out of place: few gaps are wide enough for the robot.
+/// Columns in rows, each slightly displaced: few gaps are wide enough for the robot.
 fn crowded_tank(seed: u64) -> Tank {
     let mut rng = rand_pcg::Pcg64Mcg::seed_from_u64(seed);
     let places = (-7..=7).flat_map(|row: i32| (-7..=7).map(move |column: i32| (row, column)));

@@ -73,7 +73,7 @@ fn it_stops_in_front_of_what_stands_on_the_path() {
     assert!(bench.logs().iter().any(|(_, said)| said.contains("obstacle blocks the path")));
 }
 
-/// Places on both sides of a cut; the anchor sees the first one without a cut between.
+/// Places on both sides of a cut; no cut lies between the anchor and the first place.
 fn beside_a_cut(anchor: Point, cuts: &[Vec<Point>]) -> (Point, Point) {
     let pairs = cuts.iter().flat_map(|cut| {
         let (foot, end) = (cut[cut.len() - 2], cut[cut.len() - 1]);

@@ -314,7 +314,7 @@ fn a_column_before_the_inward_corner_of_a_room_winds_no_tether() {
 
 #[test]
 fn no_lane_leads_through_a_gap_that_counts_as_closed() {
-    // Between column and wall hull and clearance have 5 mm to spare: a cut there would be as wide as the gap.
+    // Between column and wall, the hull with its clearance has 5 mm to spare: a cut there would be as wide as the gap.
     let columns = vec![(Point::new(3.861_788_049_049_917_7, 1.482_762_455_154_961), 0.258_261_250_103_515_4)];
     let tank = Tank { boundary: world::Boundary::Circle { radius_m: 5.0 }, columns, anchor: Point::origin() };
     let plan = plan(&tank, &[("pattern", 1.0), ("kicks", 0.5)], None).0.unwrap();
@@ -334,7 +334,8 @@ fn a_room_that_is_too_large_is_refused_with_the_size_that_can_be_planned() {
 
 #[test]
 fn a_robot_millimetres_beyond_a_cut_goes_round_its_end_at_an_obstacle() {
-    // A passage between a column and a straight wall, closed by a cut that begins where the column's room does.
+    // A passage between a column and a straight wall, closed by a cut that begins at the edge of the space to keep
+    // around the column.
     let square = world::shape::rectangle(Point::new(-3.0, -3.0), Point::new(3.0, 3.0));
     let tank = Tank {
         boundary: world::Boundary::Polygon { vertices: square },
@@ -351,7 +352,8 @@ fn a_robot_millimetres_beyond_a_cut_goes_round_its_end_at_an_obstacle() {
     let plan = Plan { cuts: vec![cut.clone()], path: vec![at(-0.15, 0.02)], ..Default::default() };
     let mut planner: TetherSafe = bench.configure(&[], &tank.site(&obstacles)).unwrap();
     planner.follow.take(&plan, &workspace);
-    // On the side of the wall, and on along an arc about the column, on which the chord passes inside the end of the cut.
+    // The robot is on the side of the wall and continues along an arc around the column; the chord of the arc passes
+    // inside the end of the cut.
     let (here, aim) = (Point::new(2.612, -0.09), at(0.3, 0.005));
     assert_eq!(
         world::tether::crossings(&[here, aim], &[cut]),

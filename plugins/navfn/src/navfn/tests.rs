@@ -34,7 +34,7 @@ fn on_an_unknown_map_it_arrives_without_a_touch() {
             newly_seen(&trap, &mut seen, here, 6.0);
             let found = known(&all, &seen);
             let path = plan(&mut navfn, here, trap.goal, &Trap::site(&corners, &found, 6.0)).unwrap().path;
-            // On along the plan until something new is seen.
+            // Drives on along the plan until something new is seen.
             let fresh = path[1..].iter().position(|p| newly_seen(&trap, &mut seen, *p, 6.0));
             flown.extend(&path[1..fresh.map_or(path.len(), |k| k + 2)]);
         }

@@ -10,7 +10,7 @@ use crate::{
 };
 use nalgebra::{Matrix3, Point2, Vector2};
 
-/// Remembers how it was made; does what its `act` parameter says.
+/// Records how it was created, and does what its parameter `act` says.
 struct Probe {
     act: &'static str,
     gain: f64,
@@ -213,7 +213,7 @@ fn zones() -> [Zone<'static>; 1] {
     [Zone { kind: ZoneKind::Underwater, outline: Outline::Polygon { vertices: &CORNERS } }]
 }
 
-/// An instance made through the table that acts as `act` says.
+/// An instance, created through the table, that behaves as `act` says.
 fn instance(sink: &mut Sink, act: f64) -> *mut c_void {
     let (obstacles, zones) = (obstacles(), zones());
     let site = site(&obstacles, &zones);
@@ -512,7 +512,7 @@ fn a_null_instance_is_refused() {
 #[test]
 fn an_older_console_has_services_that_are_absent() {
     let mut sink = Sink::default();
-    // A console that knew the table only up to `error`.
+    // A console that knows the table only up to `error`.
     let older = Host { size: std::mem::offset_of!(Host, log) as u32, ..host(&mut sink) };
     let services = unsafe { HostServices::read(&older) };
     crate::Services::log(&services, crate::LogLevel::Info, "unheard");

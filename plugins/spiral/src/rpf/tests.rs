@@ -113,7 +113,7 @@ fn what_replaces_the_push_frees_more_walks() {
 fn all_gains_together_do_not_change_the_path() {
     let layout = Layout::of_the_paper(3, 39, false);
     let gains = |k: f64| with(&PAPER[3..], &[("k_att", k), ("k_rep", k), ("k_rot", k)]);
-    // A power of two changes no digit on the way.
+    // Scaling by a power of two changes no digit of the result.
     assert_eq!(plan(&layout, &gains(100.0)).path, plan(&layout, &gains(200.0)).path);
 }
 
@@ -165,7 +165,7 @@ fn in_random_tanks_it_touches_nothing_and_arrives() {
         assert!(flights.iter().all(|flight| flight.clearance_m > 0.0));
         let arrived = flights.iter().filter(|flight| flight.completed);
         assert!(arrived.clone().count() == 6, "{}", arrived.count());
-        // Preset points in niches between columns and wall are passed further off.
+        // Preset points in niches between columns and wall are passed at a larger distance.
         for flight in arrived {
             assert!(flight.passed > 0.85 && flight.cross_track_m < 0.4, "{flight:?}");
         }

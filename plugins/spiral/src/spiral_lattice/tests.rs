@@ -50,7 +50,7 @@ fn without_a_turn_limit_it_stays_nearer() {
 fn on_layouts_of_the_paper_it_keeps_clear_and_near() {
     for (distribution, rmse_m, precision) in bounds() {
         let figures = Figures::of::<SpiralLattice>(distribution, 100..120, &[]);
-        // Few layouts scatter.
+        // The figures of a few layouts scatter.
         hold(&figures, rmse_m * 1.1, precision - 0.005);
     }
 }
@@ -67,7 +67,7 @@ fn hold(figures: &Figures, rmse_m: f64, precision: f64) {
     assert!(figures.mean(|s| s.rmse_m) <= rmse_m, "{summary}");
     assert!(figures.mean(|s| s.precision) >= precision, "{summary}");
     assert!(figures.refusals.iter().all(|(_, reason)| reason.contains("proved")), "{summary}");
-    // Here and there the only way turns faster, and the planner says so.
+    // In a few layouts the only path turns faster, and the planner says so.
     let slow = figures.safeties.iter().filter(|s| s.heading_step_rad <= 30.1_f64.to_radians());
     assert!(slow.count() * 10 >= figures.safeties.len() * 9, "{summary}");
 }

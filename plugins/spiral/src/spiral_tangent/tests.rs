@@ -27,7 +27,7 @@ fn a_free_spiral_is_followed_exactly() {
 #[test]
 fn on_layouts_of_the_paper_it_keeps_clear_and_near() {
     for (distribution, ok, cross_track_m, precision) in bounds() {
-        // Few layouts scatter.
+        // The figures of a few layouts scatter.
         let figures = Figures::of::<SpiralTangent>(distribution, 100..120, &[]);
         hold(&figures, ok - 0.02, cross_track_m, precision);
     }
@@ -80,12 +80,12 @@ fn out_of_a_pocket_it_comes_by_what_it_has_seen() {
     let middle = spiral.path[500];
     let along = (spiral.path[501] - middle).normalize();
     let left = Vector::new(-along.y, along.x);
-    // A dead end twice as deep as it can see.
+    // A dead end twice as deep as the robot can see.
     let arms =
         (0..13).flat_map(|k| [-0.6, 0.6].map(|side| middle - along * (0.2 * f64::from(k)) + left * side));
     let back = (-2..=2).map(|k| middle + left * (0.3 * f64::from(k)));
     let dead_end = arms.chain(back).map(|at| (at, 0.0)).collect();
-    // Columns that with the wall leave no way on from the start but backwards.
+    // Columns that, together with the wall, leave no way on from the start except backwards.
     let by_wall = vec![(Point::new(9.143, 0.332), 0.0), (Point::new(9.683, 0.508), 0.0)];
     for columns in [dead_end, by_wall] {
         let layout = Layout { columns, ..spiral.clone() };

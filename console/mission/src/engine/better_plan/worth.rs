@@ -34,8 +34,8 @@ impl Known {
         (lanes.length_m() - joint.station_m >= WORTH_S * v_m_per_s).then_some(joint)
     }
 
-    /// The inputs of a plan for what will be left when the robot reaches the place where the plan begins, together with
-    /// that place; `None` if too little is left.
+    /// The place where a better plan would begin, and the inputs of that plan: it covers what will be left when the
+    /// robot reaches the place; `None` if too little is left.
     pub(in crate::engine) fn better_plan_ask(&self) -> Option<(Joint, (AskedPlan, PlanAsk))> {
         let joint = self.joint()?;
         let way = self.task.cover()?.way_to(&joint);

@@ -59,7 +59,7 @@ impl CutsRule {
 #[derive(Clone, Debug)]
 struct Cut {
     line: Vec<Point>,
-    /// South-west and north-east corners of the box around it.
+    /// South-west and north-east corners of the box around the cut.
     bounds: (Point, Point),
     /// Whether the robot is on the far side of the cut.
     is_beyond: bool,

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// A plugin that has this many faults within [`WINDOW_S`] is not used again.
 pub(in crate::engine) const MOST_FAULTS: usize = 3;
-/// The period for which a fault counts, seconds of mission time.
+/// Mission time after which a fault no longer counts, seconds.
 pub(in crate::engine) const WINDOW_S: f64 = 60.0;
 
 /// Counts the faults of each plugin file, identified by its hash, over mission time.

@@ -20,7 +20,7 @@ pub(super) struct Row<'a> {
     clock: Option<Clock>,
     pub(super) left_m: f64,
     pub(super) ahead_m: f64,
-    /// Its position, if the row has coordinates.
+    /// Position of the indication, if the row has coordinates.
     pub(super) at: Option<Point>,
     pub(super) kind: String,
     pub(super) size_mm: Option<f64>,
@@ -32,7 +32,7 @@ impl<'a> Row<'a> {
     /// Reads a row.
     ///
     /// # Errors
-    /// All faults in its cells.
+    /// All faults in the cells of the row.
     pub(super) fn of(
         table: &'a Table,
         cells: &'a Cells,

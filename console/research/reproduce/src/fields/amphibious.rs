@@ -194,7 +194,7 @@ mod tests {
     #[test]
     fn a_speed_is_held_against_the_limit_of_its_step() {
         let water = AmphibiousLayout::water();
-        // Into the land at the speed of swimming: with no transition 0.1 m/s too fast.
+        // The robot reaches the land at its swimming speed: without a transition, it is 0.1 m/s too fast.
         let path: Vec<Point> = (0..5).map(|k| Point::new(-0.05 + 0.023 * f64::from(k), 0.0)).collect();
         assert!((overspeed_m_per_s(&path, &water, 0) - 0.1).abs() < 1e-9);
         assert!((overspeed_m_per_s(&path, &water, 20) - 0.005).abs() < 1e-9);

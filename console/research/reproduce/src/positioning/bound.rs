@@ -35,7 +35,7 @@ mod tests {
 
     #[test]
     fn the_bound_of_a_round_error_is_that_of_rayleigh() {
-        // Four stations on a ring see the middle with the same error in all directions: sigma^2 / 2 each.
+        // Four stations on a ring locate the middle with the same error in all directions: sigma^2 / 2 each.
         let stations = Layout::Ring(4, 5.0).stations();
         let bound = cramer_rao_m(&stations, Point::origin(), 0.03, 9).expect("a good geometry");
         let sigma = 0.03 * 5.0 / 3.0 / 2.0_f64.sqrt();

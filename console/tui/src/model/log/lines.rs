@@ -10,9 +10,8 @@ use std::{borrow::Cow, collections::VecDeque, sync::Arc};
 
 /// The minimum number of lines kept; older lines are dropped in chunks of 1024.
 pub const MAX_LINES: usize = 100_000;
-/// The maximum memory for full chunks, bytes. Even a rejected station takes only about 0.7 kB with all the data for
-/// its detail view, and only planner messages can take more, so the limit that normally applies is the number of
-/// lines.
+/// The maximum memory for full chunks, bytes. The line about a rejected station takes only about 0.7 kB, with all the
+/// data for its detail view. Only planner messages can take more, so the number of lines is normally reached first.
 const MAX_BYTES: usize = 96 << 20;
 /// The maximum length of a line's text, characters; planner messages can be of any length.
 const MAX_TEXT: usize = 1000;

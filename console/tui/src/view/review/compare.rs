@@ -89,7 +89,7 @@ fn row(look: &Look, role: Role, label: &str, values: [String; 3], width: usize) 
     look.line([(Role::Dim, format!(" {}", text::column(label, LABEL))), (role, values)])
 }
 
-/// The line that says what the two runs have in common, so that the reader can judge the comparison.
+/// The line about what the two runs have in common, so that the reader can judge the comparison.
 fn same(replay: &Replay, other: &Other, summaries: (Option<&Summary>, Option<&Summary>)) -> String {
     let (Some(a), Some(b)) = summaries else {
         let missing = if summaries.0.is_none() { &replay.name } else { &other.name };

@@ -104,7 +104,7 @@ impl Stands {
         Self { at: (0..columns * rows).map(place).collect(), columns }
     }
 
-    /// Those with so much room that can be driven to from the start, step by step.
+    /// Marks the places with this much clearance to which the robot can drive from the start, step by step.
     fn with_room(&self, world: &World, room_m: f64, start: Point) -> Vec<bool> {
         let solid_m = |at: Point| {
             let zones = world.zones.iter().map(|zone| zone.shape.distance_m(at));
@@ -136,7 +136,8 @@ impl Stands {
     }
 }
 
-/// Cells of floor of which brute force and the floor disagree, cells that brute force cannot decide, and all.
+/// Three numbers of floor cells: those on which brute force and the floor disagree, those that brute force cannot
+/// decide, and all.
 fn disagreements(world: &World, cell_m: f64, room_m: f64, swath_m: f64, start: Point) -> [usize; 3] {
     let floor = Floor::new(world, cell_m, room_m, swath_m, start);
     let stands = Stands::new(world);
@@ -192,7 +193,8 @@ fn tanks() -> Vec<(&'static str, World)> {
         ("bent", rooms(&bent, &[])),
         ("slanting", rooms(&slanting, &[(0.0, 0.3, 0.15)])),
         ("columns", round(3.0, &[(1.2, 0.0, 0.15), (-1.2, 0.3, 0.15), (0.1, 1.4, 0.2), (0.0, -1.6, 0.3)])),
-        // Between these columns, and between one and the shell, the robot only just fits, or only just does not.
+        // Between these columns, and between one of them and the shell, the robot only just fits or only just does not
+        // fit.
         ("gate", round(3.0, &[(0.0, 1.0, 0.2), (0.0, -0.13, 0.2), (0.0, -1.4, 0.2), (0.0, 2.2, 0.12)])),
         (
             "closed",

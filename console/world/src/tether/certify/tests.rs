@@ -61,7 +61,7 @@ fn a_path_round_a_column_is_refused_with_its_name() {
         words.contains("still out on return, hooked around C0") && words.contains("crosses cuts 1"),
         "{words}"
     );
-    // A mission that need not return is not refused for that.
+    // A mission that need not return is not refused because it does not return.
     let certificate = certify(&Case { returns: false, cuts: &[], ..case(&path, &columns, &[]) }).unwrap();
     assert_eq!((certificate.end_length_m, certificate.cut_crossings), (None, 0));
 }
@@ -83,7 +83,7 @@ fn a_collision_is_reported_at_the_narrowest_place_with_its_obstacle() {
     let words = |path: &[(f64, f64)], columns: &[Obstacle]| {
         certify(&case(&points(path), columns, &[])).unwrap().reasons.join("; ")
     };
-    // Far from where the piece begins.
+    // The point is far from the beginning of the segment.
     let by_the_wall = words(&[(0., 0.), (9.9, 0.), (0., 0.)], &[]);
     assert!(
         by_the_wall
@@ -143,14 +143,14 @@ proptest! {
                 path.push(next);
             }
         }
-        // Home as the cable leads: it never crosses a cut either.
+        // The way home along the cable never crosses a cut either.
         let mut cable = Cable::new(Point::origin(), &WALL, &shapes).unwrap();
         cable.drag_along(&path);
         let home: Vec<Point> = cable.taut_line().into_iter().rev().collect();
         prop_assert_eq!(cuts::crossings(&home, &cuts), 0);
         path.extend(home);
         let certificate = certify(&Case { room_m: 0.0, ..case(&path, &columns, &cuts) }).unwrap();
-        // A cut may lead by another column too closely for the hull; that is all that can be wrong.
+        // A cut may pass another column too closely for the hull; nothing else can be wrong.
         prop_assert!(certificate.reasons.iter().all(|r| r.contains("seal off")), "{:?}", certificate.reasons);
         prop_assert_eq!((certificate.end_length_m, certificate.crossings_left), (Some(0.0), 0));
         prop_assert!(certificate.tether_length_max_m >= certificate.eccentricity_m - 1e-6);

@@ -84,7 +84,7 @@ fn a_way_home_round_an_inward_corner_of_the_wall_keeps_the_hull_off_it() {
     assert!((polyline::distance_m(&way, Point::origin()) - HULL_M).abs() < 0.01, "{way:?}");
 }
 
-/// A floor in the shape of a U, its two arms joined below a wall that ends in two inward corners.
+/// A U-shaped floor, whose two arms are joined below a wall that ends in two inward corners.
 fn u_shape(wide_m: f64) -> Vec<Point> {
     let corners = [
         (-6.0, -5.0),
@@ -124,7 +124,7 @@ fn a_way_home_round_a_wall_between_two_arms_of_a_floor_never_leads_through_it() 
 
 #[test]
 fn a_cable_in_a_closed_gap_has_no_way_home_on_the_other_side_of_it() {
-    // The gap is 0.4 m wide; there is room enough beyond either column.
+    // The gap is 0.4 m wide; there is enough room beyond either column.
     let columns = [(0.0, 0.5, 0.3), (0.0, -0.5, 0.3)];
     let floor = Floor::new(&WALL, Point::new(-3.0, 0.0), &columns, HULL_M).drag(&[(3.0, 0.0)]);
     assert_eq!(floor.home(HULL_M), None);
@@ -141,7 +141,8 @@ fn a_cable_that_passes_close_by_a_column_after_another_keeps_its_side_of_both() 
     assert!(way.iter().all(|p| p.x < -1.5 || p.y < 1.2 || p.x > -1e-9), "{way:?}");
 }
 
-/// The way of a hull among columns, off by some noise: every true position is free for the hull, the reported ones are not.
+/// The path of a hull among columns, as reported with some noise: the hull fits at every true position, but not at
+/// every reported position.
 fn driven(floor: &Floor, goals: &[(f64, f64)], noise: &[(f64, f64)]) -> Vec<Point> {
     let mut at = floor.grown.outside(floor.cable.anchor());
     let mut way = vec![at];
@@ -204,7 +205,7 @@ fn a_cable_that_lies_flat_along_a_box_has_a_way_home() {
 
 #[test]
 fn a_cable_along_a_wall_of_many_pieces_has_a_way_home() {
-    // A wall of a public map (ipa-apartment), in the convex pieces that it is read in.
+    // A wall of a public map (ipa-apartment), in the convex pieces into which the map reader divides it.
     let pieces: [&[(f64, f64)]; 9] = [
         &[(-2.3, -4.3), (-2.35, -4.25), (-2.4, -4.25), (-2.4, -4.6), (-2.3, -4.75)],
         &[(-2.4, -4.6), (-2.45, -4.6), (-2.35, -4.75), (-2.3, -4.75)],

@@ -13,7 +13,8 @@ use world::{CoverageGrid, Floor, coverage::regions};
 const SEEN_M: f64 = 2.0;
 const ROOM_M: f64 = HULL_M + CLEARANCE_M;
 
-/// A plan for a tank of which one column was not known, and the one that follows when the robot has come near it.
+/// A plan for a tank in which one column was unknown, and the plan that follows once the robot has come near that
+/// column.
 struct UnderWay {
     tank: Tank,
     flown: Vec<Point>,
@@ -32,7 +33,7 @@ impl UnderWay {
         Self::between(&known, tank, values, column.0, &Reason::MapChanged)
     }
 
-    /// Plans a tank, comes near a place, and plans it as it is known by then.
+    /// Plans a tank, drives until it is near a place, and plans the tank again as it is known by then.
     fn between(before: &Tank, tank: Tank, values: &[(&str, f64)], near: Point, reason: &Reason) -> Self {
         let (bench, obstacles) = (Bench::new(), before.obstacles());
         let mut planner: TetherSafe = bench.configure(values, &before.site(&obstacles)).unwrap();
@@ -44,7 +45,7 @@ impl UnderWay {
         let left: Vec<&[Point]> = left.iter().map(Vec::as_slice).collect();
         let under_way = left_of(&first, rest[2.min(rest.len() - 1)]);
         bench.clear();
-        // Another worker knows as much about it.
+        // A new worker knows just as much about the plan.
         let mut planner: TetherSafe = bench.configure(values, &tank.site(&tank.obstacles())).unwrap();
         let kept = (&left[..], &flown[..], Some(&under_way));
         let second = asked(&mut planner, &tank, &bench, (reason, fine[at]), kept);
@@ -55,7 +56,7 @@ impl UnderWay {
         self.bench.logs().iter().any(|(_, said)| said.starts_with("current plan, repaired"))
     }
 
-    /// All that is driven.
+    /// The whole path driven.
     fn driven(&self) -> Vec<Point> {
         [&self.flown[..], &self.second.path].concat()
     }
@@ -75,7 +76,7 @@ fn asked(
     planner.plan(&request, &bench.ctx()).unwrap()
 }
 
-/// What is left of a plan from the first place on its path that is this one.
+/// The rest of a plan, from the first point of its path at this place.
 fn left_of(plan: &Plan, from: Point) -> Plan {
     let is_at = |w: &[Point]| (polyline::nearest_on_segment(w[0], w[1], from) - from).norm() < 1e-6;
     let side = plan.path.windows(2).position(is_at).unwrap();
@@ -108,7 +109,8 @@ fn a_column_that_is_found_changes_the_plan_only_round_itself() {
     assert!(after_m < 1.03 * before_m, "{before_m} m became {after_m} m");
 }
 
-/// A tank with one more column, which stands in a cut of its plan and closes the way between that and another one.
+/// A tank with an additional column, which stands in a cut of the plan and closes the passage between that cut and
+/// another cut.
 fn with_a_plug(tank: &Tank, values: &[(&str, f64)]) -> Option<Tank> {
     let (bench, obstacles) = (Bench::new(), tank.obstacles());
     let mut planner: TetherSafe = bench.configure(values, &tank.site(&obstacles)).unwrap();
@@ -153,7 +155,7 @@ fn a_repair_that_leads_a_long_way_round_is_taken_where_a_new_plan_is_longer_stil
     let scan = left.tank.score(&left.driven(), &[], CELL_M).unwrap();
     assert!(scan.certificate.collisions == 0 && scan.certificate.end_length_m.is_some_and(|m| m < 1e-6));
     assert!(scan.coverage_reachable > 0.985, "{}", scan.coverage_reachable);
-    // Plans under way of which that comes out are too rare to be drawn.
+    // Replanning with this outcome is too rare to occur in random tanks.
     assert!(is_kept_to(500.0, 500.1, true) && !is_kept_to(500.1, 500.0, true));
     assert!(is_kept_to(900.0, 500.0, false), "a tether comes first");
 }
@@ -174,7 +176,7 @@ fn a_new_plan_late_in_a_mission_is_complete_by_all_floor_of_the_mission() {
     let coverage = |path: &[Point]| tank.score(path, &[], CELL_M).unwrap().coverage_reachable;
     let all = coverage(&[&fine[..=at], &second.path].concat());
     assert!(second.complete && all > 0.99, "{all} {:?}", bench.logs());
-    // The same floor is no less than what is asked for if nothing was scanned before.
+    // If nothing was scanned before, the same plan falls short of the request.
     let alone = asked(&mut planner, &tank, &bench, place, (&left, &[], None));
     assert!(!alone.complete, "{:?}", bench.logs());
 }

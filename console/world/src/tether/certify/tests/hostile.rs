@@ -4,7 +4,7 @@ use super::*;
 use geometry::Vector;
 use std::f64::consts::PI;
 
-/// A second opinion: the homotopy signature by rays of another bearing, with none of the certificate's code.
+/// A second opinion: the homotopy signature from rays with a different bearing, without any code of the certificate.
 fn crossings_left(path: &[Point], columns: &[Obstacle]) -> Vec<(u32, bool)> {
     let ray = Vector::new(2.2_f64.cos(), 2.2_f64.sin());
     let mut signature: Vec<(u32, bool)> = Vec::new();
@@ -68,7 +68,7 @@ fn columns_at(at: &[(f64, f64)]) -> Vec<Obstacle> {
     columns
 }
 
-/// A walk with room for the hull that ends at the anchor as soon as the way there is free, after enough goals.
+/// A walk with room for the hull. After enough goals, it ends at the anchor as soon as the way to the anchor is free.
 fn closed_walk(goals: &[(f64, f64)], columns: &[Obstacle]) -> Option<Vec<Point>> {
     let shapes: Vec<Shape> = columns.iter().map(|c| c.shape.clone()).collect();
     let grown = CableObstacles::grown(&WALL, &shapes, 0.3);
@@ -130,7 +130,7 @@ fn a_cut_crossed_and_crossed_back_is_crossed_twice() {
     let over = points(&[(0., 0.), (4., 3.), (8., 1.), (8., -1.), (8., 1.), (4., 3.), (0., 0.)]);
     let certificate = certify(&case(&over, &columns, &cuts)).unwrap();
     assert_eq!((certificate.certified, certificate.cut_crossings, certificate.crossings_left), (false, 2, 0));
-    // Up to the cut and no further is allowed.
+    // A path that goes up to the cut, but no further, is allowed.
     let along = points(&[(0., 0.), (4., 3.), (8., 0.01), (9., 0.01), (4., 3.), (0., 0.)]);
     assert!(certify(&case(&along, &columns, &cuts)).unwrap().certified);
 }
@@ -190,7 +190,7 @@ fn a_path_of_one_point_is_fine_at_the_anchor_only() {
 
 #[test]
 fn a_path_that_ends_beside_the_anchor_is_certified_with_the_cable_reeled_in() {
-    // Round the column and back to 0.2 m of the anchor: near enough, and hooked.
+    // Around the column and back to within 0.2 m of the anchor: the path has returned, but the cable is hooked.
     let columns = [column(0, 0.0, 3.0)];
     let mut path = home_and_out(&[ring(0.0, 3.0, 1.0)]);
     *path.last_mut().unwrap() = Point::new(0.2, 0.0);
@@ -222,7 +222,7 @@ proptest! {
         let certificate = certify(&lenient(&path, &columns)).unwrap();
         prop_assert_eq!(certificate.certified, signature.is_empty(), "{:?} {:?}", signature, certificate.reasons);
         prop_assert_eq!(certificate.end_length_m.unwrap() < 1e-6, signature.is_empty());
-        // With its own way back it is always certified.
+        // A path that returns the way it came is always certified.
         let there_and_back: Vec<Point> = path.iter().chain(path.iter().rev()).copied().collect();
         prop_assert!(certify(&lenient(&there_and_back, &columns)).unwrap().certified);
     }
@@ -254,7 +254,7 @@ proptest! {
         goals in prop::collection::vec((-8..9_i32, -8..9_i32), 1..12),
         inside in (-3..4_i32, -3..4_i32),
     ) {
-        // Everything on a lattice: the path runs through corners of the ring and along its sides.
+        // Everything lies on a lattice: the path runs through corners of the ring and along its sides.
         let ring = [points(&[(-4., -4.), (4., -4.), (4., 4.), (0., 4.), (-4., 4.), (-4., -4.)])];
         let mut path = points(&[(-9.0, -9.0)]);
         path.extend(goals.iter().map(|(x, y)| Point::new(f64::from(*x), f64::from(*y))));
