@@ -20,7 +20,7 @@ fn whatever_a_planner_does_the_robot_holds_and_another_planner_ends_the_mission(
         ("segv", "SIGSEGV"),
         ("abort", "SIGABRT"),
         ("exit", "exit"),
-        ("hang", "did not answer"),
+        ("hang", "did not finish"),
         ("alloc", "memory"),
         ("nan", "not a number"),
         ("stack", "SIG"),

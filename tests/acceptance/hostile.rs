@@ -54,12 +54,13 @@ fn a_plugin_that_is_refused_is_named_with_the_reason_to_who_wants_its_planner() 
     let bench = Bench::new();
     let plugins = hostile(&bench, "IN_CONSTRUCTOR", "socket(AF_INET, SOCK_STREAM, 0)");
     let refused = fly(&bench, &plugins);
-    let sentence = "planner `hostile` cannot be chosen: plugin libplanner_hostile.so is refused: tried socket while being loaded";
+    let sentence = "planner `hostile` cannot be chosen: plugin libplanner_hostile.so is refused: tried a forbidden system call (socket) while being loaded";
     assert!(refused.code == Some(2) && refused.err.contains(sentence), "{refused:?}");
     std::fs::rename(plugins.join("libplanner_hostile.so"), plugins.join("libplanner_x.so")).unwrap();
     let refused = fly(&bench, &plugins);
     let sentence = "there is no planner `hostile`; found: ";
-    let reason = "; plugin libplanner_x.so is refused: tried socket while being loaded";
+    let reason =
+        "; plugin libplanner_x.so is refused: tried a forbidden system call (socket) while being loaded";
     assert!(refused.err.contains(sentence) && refused.err.contains(reason), "{refused:?}");
 }
 
@@ -68,7 +69,7 @@ fn a_planner_that_does_not_end_well_when_it_is_destroyed_is_named() {
     let attacks = [
         ("abort()", "was killed by SIGABRT"),
         ("for (;;) rest(1000)", "took more than 0.1 s to shut down"),
-        (r#"open("/etc/passwd", O_RDONLY)"#, "tried openat of /etc/passwd, which no planner may do,"),
+        (r#"open("/etc/passwd", O_RDONLY)"#, "tried a forbidden system call (openat of /etc/passwd)"),
         ("_exit(3)", "ended its own process with exit code 3"),
     ];
     for (attack, how) in attacks {
@@ -133,7 +134,7 @@ fn a_replay_says_which_step_did_not_answer_and_after_how_long() {
     fly(&bench, &hostile(&bench, "IN_STEP", "for (;;) rest(1000)"));
     let bundle = bench.runs()[0].join("crash-1");
     let replayed = bench.tankops(&["replay-worker", bundle.to_str().unwrap()]);
-    let sentence = "(step 3): planner hostile did not answer step 3 in time and ignored the request to stop; its process was killed (its budget is 2.0 s)";
+    let sentence = "(step 3): planner hostile did not finish step 3 in time and ignored the request to stop; its process was killed (its budget is 2.0 s)";
     assert!(replayed.code == Some(1) && replayed.out.contains(sentence), "{replayed:?}");
 }
 

@@ -86,7 +86,7 @@ fn a_map_is_shown_with_what_became_of_it() {
     let bench = Bench::new();
     let map = scenario("maps/corridor.yaml");
     let shown = bench.tankops(&["map", map.to_str().unwrap(), "--svg", "map.svg"]);
-    assert!(shown.code == Some(0) && shown.out.contains("towards the safe side"), "{shown:?}");
+    assert!(shown.code == Some(0) && shown.out.contains("on the safe side"), "{shown:?}");
     let svg = std::fs::read_to_string(bench.path().join("map.svg")).unwrap();
     let pieces: usize = shown
         .out

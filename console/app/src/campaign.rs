@@ -175,7 +175,7 @@ fn work(args: &WorkArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
         (true, _) => Ok(ExitCode::from(COMPLETE)),
         (false, true) => Ok(incomplete(&left, "stopped")),
         (false, false) if results::missing(&folder, &campaign)?.is_empty() => Ok(ExitCode::from(COMPLETE)),
-        (false, false) => Ok(incomplete(&left, "other workers are running them")),
+        (false, false) => Ok(incomplete(&left, "other workers are still running")),
     }
 }
 

@@ -70,7 +70,7 @@ pub(crate) enum Command {
         /// Print the results of the trial runs as JSON, and nothing else on stdout.
         #[arg(long, requires = "fly")]
         json: bool,
-        /// Save each tank in which a planner did not complete its mission in this folder, as a scenario that can be run
+        /// Save to this folder each tank in which a planner did not complete its mission, as a scenario that can be run
         /// again.
         #[arg(long, value_name = "DIR", requires = "fly")]
         keep: Option<PathBuf>,
@@ -123,7 +123,7 @@ pub(crate) enum Command {
     Report(ReportArgs),
     /// Create a scenario that scans the areas missed by one or more past runs.
     Rescan(RescanArgs),
-    /// Print shell completions for this command line.
+    /// Print shell completions for tankops.
     Completions {
         /// Shell to print completions for.
         shell: clap_complete::Shell,

@@ -65,7 +65,7 @@ fn human(args: &MapArgs, map: &OccupancyMap, floor: &MapFloor) -> String {
         "free floor           {:.1} m² in {} cells; {elsewhere} other free cells count as solid\n\
          outlines             {}, with {before} corners, {after} after simplification\n\
          convex pieces        {}\n\
-         largest shape error  {:.4} m ({:.2} cells), towards the safe side\n",
+         largest shape error  {:.4} m ({:.2} cells), on the safe side\n",
         area_m2(floor.n_free),
         floor.n_free,
         floor.n_outlines,

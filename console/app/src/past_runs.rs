@@ -96,9 +96,7 @@ fn is_located_again(folder: &Path) -> anyhow::Result<bool> {
             format!("different from line {line} on\n  recorded: {recorded}\n  computed: {computed}")
         }
         Again::NoReadings(why) => {
-            format!(
-                "not proven: the positions cannot be recomputed; return the readings to their original place: {why}"
-            )
+            format!("not proven: the positions cannot be recomputed: {why}; restore the original readings")
         }
     })?;
     Ok(matches!(again, Again::Equal(_)))

@@ -119,5 +119,5 @@ fn check_plugin(file: &Path, plugins: &PluginDirs) -> anyhow::Result<Result<Stri
         return Ok(error(reason));
     }
     let ids: Vec<&str> = checked.planners.iter().map(|info| info.id.as_str()).collect();
-    Ok(Ok(format!("plugin with {}", ids.join(", "))))
+    Ok(Ok(format!("plugin; planners: {}", ids.join(", "))))
 }

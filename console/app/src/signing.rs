@@ -85,8 +85,8 @@ pub(crate) fn refuse_other_signer(by: &str, inspector: Option<&str>) -> anyhow::
     match inspector {
         Some(inspector) if inspector.trim() != by.trim() => Err(bad_input(format!(
             "not signed: --sign names {by}, but inspection.inspector is {inspector}, whose certificate the \
-             report states; let {inspector} sign, or state {by} as inspector, with an inspector_certificate, in \
-             a file for --inspection"
+             report states; either {inspector} must sign, or the --inspection file must name {by} \
+             as inspector and give an inspector_certificate"
         ))),
         _ => Ok(()),
     }
@@ -132,9 +132,9 @@ pub(crate) fn refuse_not_located_again(folders: &[PathBuf]) -> anyhow::Result<()
         let why = match ::locate::again(folder)? {
             Again::Equal(_) => continue,
             Again::Different { line, .. } => {
-                format!("they give positions that differ from those in its journal from line {line} on")
+                format!("the positions computed from them differ from the run's journal from line {line} on")
             }
-            Again::NoReadings(why) => format!("return them to their original place: {why}"),
+            Again::NoReadings(why) => format!("{why}; restore the original readings"),
         };
         return Err(bad_input(format!("not signed: the readings of run {name}: {why}")));
     }

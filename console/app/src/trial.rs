@@ -69,7 +69,7 @@ fn keep_lost(folder: &Path, lost: &[Lost]) -> anyhow::Result<()> {
         warn_line(&format!("kept {}", file.display()));
     }
     if lost.is_empty() {
-        warn_line("no tank failed: nothing was written");
+        warn_line("no planner failed in any tank: nothing was written");
     }
     Ok(())
 }
@@ -96,8 +96,8 @@ fn planners_of(file: &Path, plugins: &PluginDirs, found: &[PlannerInfo]) -> anyh
     if let Some(hidden) = planners.iter().find(is_hidden) {
         return Err(refused(format!(
             "cannot be run: its planner `{}` was not found in this folder; the file must be named \
-             libplanner_*.so (.dylib, planner_*.dll), and no plugin found earlier may have a planner with this \
-             id",
+             libplanner_*.so (macOS: libplanner_*.dylib, Windows: planner_*.dll), and no plugin found earlier \
+             may have a planner with this id",
             hidden.id
         )));
     }

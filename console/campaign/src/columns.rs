@@ -65,7 +65,7 @@ const MEANINGS: [(&str, &str); 56] = [
     ("tether.end_length_m", "length of tether out at the end"),
     (
         "tether.entangled",
-        "whether the tether ended the mission, or was still out with the robot back at the anchor",
+        "whether the tether ended the mission, or was still out when the robot was back at the anchor",
     ),
     ("tether.snags", "number of times the mission detected a snagged tether"),
     ("tether.snagged", "whether the tether was snagged when the run ended"),

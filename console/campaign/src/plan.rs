@@ -178,7 +178,7 @@ fn until(root: &Reader<'_>) -> Option<Until> {
     until.require("ci95", "write ci95 = { metric = \"success\", below = 0.02 }");
     let ci95 = until.table("ci95", &["metric", "below"])?;
     ci95.require("metric", "name the figure whose 95 % interval decides");
-    ci95.require("below", "set the half width that is narrow enough");
+    ci95.require("below", "set the half width below which the campaign stops");
     let metric = ci95.word("metric")?;
     if metric != "success" && !is_metric(&metric) {
         ci95.complain("metric", ci95.place("metric"), unknown_metric(&metric));

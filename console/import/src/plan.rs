@@ -87,7 +87,7 @@ impl FloorPlan {
         let _ = write!(
             text,
             "\n# The start is the point with the most clearance; change it to the manhole.\n[robot]\nstart_m = \
-             {}\n\n# Assumed: replace these stations by the surveyed ones.\n[ae]\nnoise = {{ model = \
+             {}\n\n# Assumed: replace these stations with the surveyed ones.\n[ae]\nnoise = {{ model = \
              \"uniform\", ratio = 0.02 }}\nstations = [\n",
             point(start)
         );

@@ -74,7 +74,7 @@ fn view(recording: &Path) -> anyhow::Result<String> {
                 }
                 _ => format!("cannot start rerun: {error}"),
             };
-            bail!("{why}; the recording is {}", recording.display())
+            bail!("{why}; the recording is at {}", recording.display())
         }
     }
 }

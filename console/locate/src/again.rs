@@ -36,7 +36,7 @@ pub fn again(folder: &Path) -> anyhow::Result<Again> {
     let Some(EventKind::RunOpened(opened)) = reader.next_line()?.map(|line| line.event.kind) else {
         return Err(reader.not_opened().into());
     };
-    let measured = opened.measured.context("the run was flown, not located")?;
+    let measured = opened.measured.context("the run is a mission, not located readings")?;
     let file = Path::new(&measured.file);
     match sha256(file) {
         Ok(now) if now == measured.sha256 => {}

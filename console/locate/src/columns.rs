@@ -122,7 +122,10 @@ impl Columns {
                 // A column with a unit takes precedence over a date column.
                 Some((_, present)) if factor <= DATED && present > DATED => {}
                 Some((_, present)) if present > DATED || factor <= DATED => {
-                    return Err(format!("column {name}: {} is duplicated", COLUMNS[column].0));
+                    return Err(format!(
+                        "column {name}: there is already a column for {}",
+                        COLUMNS[column].0
+                    ));
                 }
                 _ => at[column] = Some((index, factor)),
             }

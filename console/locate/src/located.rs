@@ -249,7 +249,7 @@ impl Task<'_> {
         lines.extend((more > 0).then(|| format!("and {more} more")));
         let is_cut = problems.iter().any(|problem| problem.is_end);
         lines.push(if is_cut {
-            "the rest cannot be read; export the readings again".into()
+            "the rest of the file cannot be read; export the readings again".into()
         } else {
             "correct the rows, or leave them out with --skip-bad-rows".into()
         });

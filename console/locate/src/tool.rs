@@ -47,7 +47,7 @@ pub(crate) fn read(file: &Path) -> Result<Vec<[f64; 2]>, String> {
         };
         let at = header.iter().position(is_it);
         at.ok_or_else(|| {
-            format!("line 1: column {name}_s is missing; use from_s and to_s, on the clock of the readings")
+            format!("line 1: column {name}_s is missing; use from_s and to_s, by the clock of the readings")
         })
     };
     let columns = [("from_s", column("from")?), ("to_s", column("to")?)];

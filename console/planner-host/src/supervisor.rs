@@ -133,7 +133,7 @@ impl Failure {
     pub(crate) fn how(&self) -> String {
         match self {
             Self::Died { how, .. } => how.clone(),
-            Self::Forbidden { call, .. } => format!("tried {call}, which no planner may do,"),
+            Self::Forbidden { call, .. } => format!("tried a forbidden system call ({call})"),
             Self::Overweight(limit) => overweight(*limit),
             Self::Protocol => "sent an invalid reply".to_owned(),
             _ => "did not exit in time".to_owned(),

@@ -267,7 +267,7 @@ pub(crate) fn refusal_text(failure: &Failure) -> String {
             format!("{how} while being loaded; last output: {last_output}")
         }
         Failure::Forbidden { call, .. } => {
-            format!("tried {call} while being loaded, which no planner may do; its process was killed")
+            format!("tried a forbidden system call ({call}) while being loaded; its process was killed")
         }
         Failure::Overweight(limit) => {
             format!("{} while being loaded; its process was killed", overweight(*limit))

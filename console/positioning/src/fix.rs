@@ -240,7 +240,7 @@ pub enum FixError {
     },
     /// No place in the tank is within the bounds of all ranges: the real noise is larger than declared.
     #[error(
-        "no position is within {:.1} % of all ranges: the bound is too small, or a range is wrong", ratio * 100.0
+        "no position agrees with all ranges to within {:.1} %: the bound is too small, or a range is wrong", ratio * 100.0
     )]
     EmptySet {
         /// The bound on the error, as a share of the distance.

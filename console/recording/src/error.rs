@@ -52,7 +52,7 @@ pub enum RecordingError {
         path: PathBuf,
     },
     /// The file on disk is not the file that was written.
-    #[error("the recording on disk is not as it was written: {0}")]
+    #[error("the recording on disk differs from what was written: {0}")]
     Changed(#[from] FileChange),
     /// The recording SDK refused data.
     #[error("the recording stopped: the recording SDK refused data ({why})")]

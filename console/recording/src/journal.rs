@@ -66,7 +66,7 @@ pub enum JournalError {
         why: String,
     },
     /// The file on disk is not the file that was written.
-    #[error("the journal on disk is not as it was written: {0}")]
+    #[error("the journal on disk differs from what was written: {0}")]
     Changed(#[from] FileChange),
     /// The file could not be read.
     #[error("cannot read the journal ({why}): {}", path.display())]

@@ -73,7 +73,7 @@ fn warnings(run: &Summary) -> Vec<String> {
     let mut found = Vec::new();
     match run.outcome {
         None if is_open(run) => found.push(
-            "run in progress: the figures cover the journal up to the part that was read, and are not \
+            "run in progress: the figures cover the journal as far as it has been read, and are not \
              checked against [expect]"
                 .to_owned(),
         ),

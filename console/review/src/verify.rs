@@ -127,7 +127,7 @@ fn findings(folder: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findi
             scope.spawn(|| Past::read(folder).map(|past| (SignedRun::names_of(&past.run), past.run.files)));
         let findings = compare(&journal_of(folder), plugins)?;
         let (now, files) =
-            files.join().map_err(|_| anyhow::anyhow!("reading the files of the run panicked"))??;
+            files.join().map_err(|_| anyhow::anyhow!("panicked while reading the files of the run"))??;
         let (signed, not_as_signed) = signed(folder, &now);
         let missing_end = || findings.no_end.as_ref().and_then(|_| end_is_missing(folder));
         let doubt = files.doubts.into_iter().next().or_else(missing_end);
@@ -273,9 +273,9 @@ fn compare(path: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings
             })
             .unzip();
         let findings = recompute(flight, Replayed::sending_to(again), read.flatten());
-        let no_end = reading.join().map_err(|_| anyhow::anyhow!("reading the journal panicked"))?;
+        let no_end = reading.join().map_err(|_| anyhow::anyhow!("panicked while reading the journal"))?;
         let asked = asking.map(ScopedJoinHandle::join).transpose();
-        let planners = asked.map_err(|_| anyhow::anyhow!("asking the planners panicked"))?;
+        let planners = asked.map_err(|_| anyhow::anyhow!("panicked while asking the planners"))?;
         Ok(Findings { no_end, planners, ..findings? })
     })
 }

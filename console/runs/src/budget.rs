@@ -69,7 +69,7 @@ impl Budget {
         digest.map_err(|error| match error.kind() {
             io::ErrorKind::Interrupted => io::Error::new(
                 io::ErrorKind::QuotaExceeded,
-                "not compared with the report, because it is too long to be read for a list; `tankops verify` compares it",
+                "not compared with the report, because reading it would take too long for a list; `tankops verify` compares it",
             ),
             _ => error,
         })
@@ -102,7 +102,7 @@ mod tests {
         let error = budget.sha256(&file).unwrap_err();
         assert!(
             error.kind() == io::ErrorKind::QuotaExceeded
-                && error.to_string().contains("too long to be read for a list")
+                && error.to_string().contains("would take too long for a list")
         );
     }
 }

@@ -132,7 +132,7 @@ fn file_doubt(listed: &Revision, entry: Option<&Revision>) -> Option<String> {
             let or_list = match entry {
                 Some(_) => String::new(),
                 None => format!(
-                    ", or {SIGNED_FILE} was; the register of {}, who signed it, shows which",
+                    ", or {SIGNED_FILE} was changed; the register of {}, who signed it, shows which",
                     listed.signature.by
                 ),
             };
@@ -166,13 +166,13 @@ fn unregistered(listed: &Revision, is_invented: bool, register: &Register) -> St
     let of = register.shown();
     if is_invented {
         format!(
-            "{SIGNED_FILE} lists revision {letter} by {}, {} UTC; {of} has other reports that {} signed on this run, but not this one",
+            "{SIGNED_FILE} lists revision {letter} by {}, {} UTC; {of} contains other reports on this run signed by {}, but not this one",
             signature.by, signature.at, signature.by
         )
     } else {
         format!(
-            "only the register of {} shows whether {} signed revision {letter}; this register does not \
-             list it ({of})",
+            "only the register of {} shows whether {} signed revision {letter}; your own register does \
+             not list it ({of})",
             signature.by, signature.by
         )
     }

@@ -278,7 +278,7 @@ impl Complaint {
                 "choose a point on the free floor".into()
             }
             Self::NoRoomToStart { needed_mm, .. } => {
-                format!("leave {needed_mm} mm, so the robot can move off without touching anything")
+                format!("leave {needed_mm} mm, so that the robot can move off without touching anything")
             }
             Self::LimitOfTank { most_m, .. } => {
                 format!("at most {most_m:.3} m, half the width of the tank; 0.5 is usual")

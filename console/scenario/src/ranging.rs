@@ -154,7 +154,7 @@ fn noise(section: &Section<'_>) -> Option<NoiseModel> {
     match model {
         "uniform" | "triangular" => {
             noise.refuse(&["sigma_ratio"], &beside);
-            noise.require("ratio", "add ratio = 0.05 for at most 5 % of the distance");
+            noise.require("ratio", "add ratio = 0.05 for errors of at most 5 % of the distance");
             let ratio = noise.number("ratio")?;
             let is_uniform = model == "uniform";
             Some(if is_uniform { NoiseModel::Uniform { ratio } } else { NoiseModel::Triangular { ratio } })

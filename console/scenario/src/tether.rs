@@ -63,7 +63,8 @@ pub(crate) fn check_room(
     if section.has(key) && away_m >= 0.0 {
         let must_be = format!(
             "at least {need_m:.3} m from {from}, because the robot returns to the anchor: its hull must fit \
-             there, and its clearance must fit within {aside_m:.3} m of there; the distance is {away_m:.3} m"
+             there, and the hull with its clearance must fit at a point within {aside_m:.3} m of the anchor; \
+             the distance is {away_m:.3} m"
         );
         section.complain(key, Complaint::OutOfRange(must_be));
     }

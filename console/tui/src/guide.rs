@@ -59,7 +59,7 @@ pub fn guide(cause: &Cause) -> Guide {
         },
         Cause::Tether(word) => tether::guide(word),
         Cause::Certificate => Guide {
-            cause: "If it ran to its end, the plan would exceed a tether limit, touch something, or finish \
+            cause: "If run to its end, the plan would exceed a tether limit, touch something, or finish \
             with the tether still out.",
             effect: "A refused plan is not run: the robot is held. An uncertified plan is run only on the \
             operator's order.",

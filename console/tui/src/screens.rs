@@ -1,6 +1,7 @@
 //! The screens, one row each: digit and name, contents, and the effect of Enter, of the arrow keys and of a filter.
 //!
-//! A new screen needs a variant and a row here, and a folder for the functions named in its row.
+//! A new screen needs a variant, a row and its entries in `EACH` and [`Screen::ALL`] here, and one module for the functions that
+//! its row names.
 
 use crate::actions::context::Context::{self, Cursor, Map, On, Pan, Replay, Rows};
 use crate::actions::{Action, ActionId, action};

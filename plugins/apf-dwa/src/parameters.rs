@@ -53,8 +53,8 @@ const WATER_TURN: ParamSpec =
         .group(ROBOT);
 const TRANSITION: ParamSpec = int("transition_steps", "Transition steps", "", -1, 10_000, -1)
     .help(
-        "Number of steps over which the limits change from one mode to the other; 0: immediately, -1: \
-           the robot's own value.",
+        "Number of steps over which the limits change between land and water; 0: immediately; -1: the \
+         robot's own value.",
     )
     .group(ROBOT);
 const ACCELERATION: ParamSpec = float("acceleration_m_per_s2", "Acceleration", "m/s2", 0.0, 100.0, 0.0)
@@ -63,8 +63,8 @@ const ACCELERATION: ParamSpec = float("acceleration_m_per_s2", "Acceleration", "
 const TURN_ACCELERATION: ParamSpec =
     float("turn_acceleration_rad_per_s2", "Turn acceleration", "rad/s2", 0.0, 100.0, 0.0)
         .help(
-            "Maximum change of turn rate; 0: reaches the turn rate on land in 0.3 s. The paper gives no \
-               value.",
+            "Maximum change of turn rate; 0: enough to reach the turn rate on land in 0.3 s. The paper \
+             gives no value.",
         )
         .group(ROBOT);
 const HEADING: ParamSpec = float("weight_heading", "Heading weight", "", 0.0, 100.0, 0.2)

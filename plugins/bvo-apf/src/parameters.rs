@@ -10,9 +10,9 @@ const FIELD: &str = "Field";
 const MODES: [&str; 4] = [Mode::Literal.name(), Mode::Hull.name(), Mode::Rollout.name(), Mode::Pre.name()];
 const MODE: ParamSpec = choice("mode", "Mode", &MODES, 3)
     .help(
-        "literal: around a circle enclosing the trap, on the left, as published. hull: along the convex \
-         hull of the trap. rollout: along the hull, on the side that is shorter in simulation. pre: the \
-         detour begins before the robot enters the trap.",
+        "The detour. literal: around a circle enclosing the trap, on the left, as published. hull: along \
+         the convex hull of the trap. rollout: along the hull, on the side that is shorter in simulation. \
+         pre: begins before the robot enters the trap.",
     )
     .group(TRAP);
 const M: ParamSpec = float("m", "Pull", "N", 0.001, 1000.0, 10.0)
@@ -29,8 +29,8 @@ const NEAR_LAW: ParamSpec = choice("near_law", "Near law", &["corrected", "print
     .group(FIELD);
 const K: ParamSpec = float("k", "Logarithm base", "", 0.0, 1e6, 0.0)
     .help(
-        "k in eq. 4 of the paper. Up to 1: the distance from start to goal plus one, so that the pull \
-           starts at m and falls.",
+        "k in eq. 4 of the paper. If it is 1 or less, the distance from start to goal plus one is used \
+         instead, so that the pull is m at the start and then falls.",
     )
     .group(FIELD);
 const N: ParamSpec = float("n", "Pull near the goal", "N", 0.0, 1e6, 0.0)
@@ -52,12 +52,12 @@ const TANGENT_WEIGHT: ParamSpec = float("tangent_weight", "Tangent force weight"
     )
     .group(FIELD);
 const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.05)
-    .help("Length of a step when planning. The paper gives no value; 0.0071 fits its step count.")
+    .help("Length of a step when planning. The paper gives no value; 0.0071 m fits its number of steps.")
     .group("Plan");
 const MARGIN: ParamSpec = float("margin_m", "Detour margin", "m", 0.02, 5.0, 0.14)
     .help(
-        "Distance from whatever the robot bypasses. Gaps that leave less than this on either side of the \
-         hull are treated as closed.",
+        "Distance kept from whatever the robot bypasses. Gaps that leave less than this on either side of \
+         the hull are treated as closed.",
     )
     .group(TRAP);
 const TAUT_MARGIN: ParamSpec = float("taut_margin_m", "Taut path margin", "m", 0.0, 5.0, 0.05)

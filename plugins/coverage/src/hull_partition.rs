@@ -35,7 +35,7 @@ const BACKTRACKING: ParamSpec = choice("backtracking", "Backtracking", &["tree",
     )
     .group("Plan");
 const ORDER: ParamSpec = choice("order", "Order of cells", &["genetic", "exact"], 0)
-    .help("The published genetic algorithm, or the exact order for up to 13 cells.")
+    .help("Genetic: found by the published genetic algorithm. Exact: the best order, for up to 13 cells.")
     .group("Plan");
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.05)
     .help("Edge length of the cells in which scanned and unreachable floor is counted.")
@@ -79,8 +79,8 @@ impl Planner for HullPartition {
         if self.is_tree && !division.domain.is_simple {
             ctx.log(
                 LogLevel::Warn,
-                "columns that are too close together leave a path around them, which the method does not \
-                 prevent: closed by an added cut",
+                "the method leaves a path open around columns that are too close together; an added cut \
+                 closes it",
             );
             division.domain.close_up();
         }

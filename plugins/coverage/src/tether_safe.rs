@@ -77,7 +77,7 @@ impl Planner for TetherSafe {
                     Some((worth, Repaired { scan, enough })) => {
                         ctx.log(
                             LogLevel::Info,
-                            &worth.summary("the repair is used after all: the new plan is longer"),
+                            &worth.summary("the new plan is longer, so the repair is used after all"),
                         );
                         (worth, scan, Vec::new(), enough)
                     }
@@ -171,8 +171,8 @@ fn no_lane(workspace: &Workspace, reel_length_m: f64) -> Option<String> {
     let needed_m = (home - anchor).norm() + swath_m.min(farthest_m);
     (reel_length_m < needed_m).then(|| {
         format!(
-            "the reel holds {reel_length_m:.2} m of cable; the nearest lanes need {needed_m:.2} m, and the \
-             farthest floor is {farthest_m:.1} m from the anchor"
+            "the reel holds {reel_length_m:.2} m of cable; even the nearest lanes need {needed_m:.2} m, \
+             and the farthest floor is {farthest_m:.1} m from the anchor"
         )
     })
 }

@@ -76,7 +76,7 @@ pub(crate) fn report(scan: &Scan<'_>, scope: &Scope<'_>, ctx: &Ctx<'_>) -> bool 
         ctx.log(LogLevel::Warn, &format!("{place} is left out: the tool cannot reach any of its floor"));
     }
     if let Some(n) = closed.len().checked_sub(MOST_PLACES + 1) {
-        ctx.log(LogLevel::Warn, &format!("{} more areas are left out for the same reason", n + 1));
+        ctx.log(LogLevel::Warn, &format!("left out for the same reason: {} more", n + 1));
     }
     closed.is_empty()
 }
@@ -119,7 +119,7 @@ fn shell_left(scan: &Scan<'_>, scope: &Scope<'_>) -> Vec<String> {
         let causes = causes.iter().filter(|(length_m, _)| *length_m >= 0.05);
         let causes: Vec<String> = causes.map(|(length_m, why)| format!("{length_m:.1} m {why}")).collect();
         lines.push(format!(
-            "shell: {open_m:.1} m of it not scanned as close to the wall as usual: {}",
+            "shell: along {open_m:.1} m of it, the scan is not as close to the wall as usual: {}",
             causes.join(", ")
         ));
     }

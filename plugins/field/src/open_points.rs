@@ -13,7 +13,7 @@ use crate::{
 };
 use planner_api::{Config, ParamSpec, choice};
 
-const GROUP: &str = "Open points of the paper";
+const GROUP: &str = "Left open by the paper";
 
 /// When the robot is considered trapped.
 pub const GATE: ParamSpec = choice("gate", "Gate", &["detected", "backward", "opposed"], 0)
@@ -27,14 +27,14 @@ pub const GATE: ParamSpec = choice("gate", "Gate", &["detected", "backward", "op
 pub const TARGETS: ParamSpec = choice("targets", "Next target", &["lock-step", "ahead"], 0)
     .help(
         "Lock-step: the next preset point after every move. Ahead: the point after the nearest one ahead, \
-         if that point is further on.",
+         but at least the next in the list.",
     )
     .group(GROUP);
 /// The length of a move.
 pub const MOVE_LENGTH: ParamSpec = choice("move_length", "Move length", &["to-target", "by-force"], 0)
     .help(
-        "As far as the target, or as far as the force divided by the attraction gain; never more than \
-           the step.",
+        "To-target: as far as the target. By-force: the force divided by the attraction gain. Neither \
+         exceeds the step.",
     )
     .group(GROUP);
 /// How the push decreases with distance.
@@ -62,17 +62,17 @@ pub const BESIDE: ParamSpec = choice("beside", "Companion force", &["all", "pull
 /// Strength of the sideways push.
 pub const PUSH: ParamSpec = choice("push", "Sideways push", &["held", "half-pull", "pull", "unit-pull"], 0)
     .help(
-        "Held: twice the pull, half of it ahead, for five moves. Half-pull and pull: half or all of the \
-         pull, across the path, for one move. Unit-pull: the pull of a target 1 m away, across the path, \
-         for one move.",
+        "Held: twice the pull across the path and half as much ahead, for five moves. Half-pull and pull: \
+         half or all of the pull, across the path, for one move. Unit-pull: the pull of a target 1 m away, \
+         across the path, for one move.",
     )
     .group(GROUP);
 /// Side of the sideways push.
 pub const PUSH_SIDE: ParamSpec =
     choice("push_side", "Side of the push", &["repulsion", "right", "random", "alternating"], 0)
         .help(
-            "The side to which obstacles push, the right, random (the same sequence in every plan), or \
-               alternating.",
+            "Repulsion: the side to which obstacles push. Right: always the right. Random: a random side, \
+             in the same sequence in every plan. Alternating: each side in turn.",
         )
         .group(GROUP);
 

@@ -95,8 +95,8 @@ impl fmt::Display for Shortfall {
             }
             Self::Close { clearance_m, demanded_m } => write!(
                 f,
-                "the hull would pass an obstacle or the wall at {clearance_m:.2} m; {demanded_m:.2} m \
-                 required"
+                "the hull would pass within {clearance_m:.2} m of an obstacle or the wall; {demanded_m:.2} \
+                 m is required"
             ),
         }
     }

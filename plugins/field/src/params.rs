@@ -129,7 +129,7 @@ pub const MAX_LAG: ParamSpec = float("max_lag_m", "Lag allowed", "m", 0.05, 20.0
 pub const STEERING: ParamSpec = choice("steering", "Rotation in flight", &["paper", "gaps"], 1)
     .help(
         "Paper: as in the plan, and without evading moving obstacles. Gaps: around whatever blocks the \
-           path, on the side of the smaller detour, with narrow gaps closed.",
+         path, on the side of the smaller detour; narrow gaps are treated as closed.",
     )
     .group(FLIGHT)
     .live();

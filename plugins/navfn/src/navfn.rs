@@ -97,7 +97,7 @@ impl Navfn {
         }
         let exact = floor.shortest(problem.start, problem.goal, &mut keep_going)?;
         let message = format!(
-            "cells of {:.2} m are too coarse for the only path; found it with the exact search",
+            "cells of {:.2} m are too coarse for the only path; the exact search found it",
             navigation.cell_m()
         );
         ctx.log(LogLevel::Info, &message);

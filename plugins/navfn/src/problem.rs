@@ -56,7 +56,8 @@ impl PlanningProblem {
         };
         let (site, start) = (request.site, request.start.position);
         if ![start.x, start.y, goal.x, goal.y].iter().all(|x| x.is_finite()) {
-            return Err(PlannerError::new(Code::Invalid, "start and goal must be finite numbers"));
+            let message = "start and goal coordinates must be finite numbers";
+            return Err(PlannerError::new(Code::Invalid, message));
         }
         let hull_m = site.limits.radius_m;
         let wanted_m = hull_m + site.clearance_m.max(clearance_m) + ROUNDING_M;

@@ -44,7 +44,7 @@ impl fmt::Display for Code {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Invalid => "invalid request",
-            Self::Config => "parameters do not fit",
+            Self::Config => "unsuitable parameters",
             Self::StartOccupied => "start in an obstacle",
             Self::StartOutside => "start outside the floor",
             Self::GoalOccupied => "goal in an obstacle",

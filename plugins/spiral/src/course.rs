@@ -44,7 +44,7 @@ impl Course {
         };
         check_targets(&targets)?;
         if !start.x.is_finite() || !start.y.is_finite() {
-            return Err(invalid("the start is not a finite point"));
+            return Err(invalid("start coordinates must be finite numbers"));
         }
         let first = targets[0];
         let mut points = if (first - start).norm() > ON_COURSE_M { vec![start] } else { Vec::new() };
@@ -153,7 +153,7 @@ pub(crate) fn check_start(
     }
     if room.spare_m(course.points[0]) < 0.0 {
         let message = format!(
-            "{place} is closer to something solid than the clearance allows; the path begins beside it"
+            "{place} is closer to something solid than the clearance allows; the path begins beside the start"
         );
         ctx.log(LogLevel::Warn, &message);
     }
@@ -169,7 +169,7 @@ pub(crate) fn check_targets(targets: &[Point]) -> Result<()> {
         return Err(invalid("there is no preset point to follow"));
     }
     if let Some(at) = targets.iter().position(|p| !p.x.is_finite() || !p.y.is_finite()) {
-        return Err(invalid(format!("preset point {at} is not a finite point")));
+        return Err(invalid(format!("the coordinates of preset point {at} are not finite")));
     }
     if let Some(at) = targets.windows(2).position(|w| (w[1] - w[0]).norm() < 1e-9) {
         return Err(invalid(format!("preset points {at} and {} coincide; remove one of them", at + 1)));

@@ -14,8 +14,8 @@ use world::polyline;
 
 const TURN: ParamSpec = float("turn_deg", "Turn limit per 0.2 m", "deg", 0.0, 180.0, 30.0)
     .help(
-        "Largest change of heading along 0.2 m of path where the preset path itself turns less sharply; 0 \
-         means no limit.",
+        "Largest change of heading along 0.2 m of path, except where the preset path itself turns more \
+         sharply; 0: no limit.",
     )
     .group("Plan")
     .live();
@@ -109,7 +109,7 @@ fn plan_of(path: lattice::Path, course: &Course, room: &Room, ctx: &Ctx<'_>) -> 
             LogLevel::Warn,
             &format!(
                 "no path continues from the start along the preset path; the plan begins {beside_m:.2} m \
-                 beside it"
+                 away from the start"
             ),
         );
     }

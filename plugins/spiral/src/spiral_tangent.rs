@@ -61,7 +61,7 @@ impl Planner for SpiralTangent {
         if range_m < least_m {
             let message = format!(
                 "a sensing range of {range_m:.2} m is too short for hull and clearance; it must be at \
-                 least {least_m:.2} m, or the clearance smaller"
+                 least {least_m:.2} m, or the clearance must be smaller"
             );
             return Err(PlannerError::new(Code::Config, message));
         }

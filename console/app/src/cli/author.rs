@@ -38,7 +38,7 @@ pub(crate) struct ReplayWorkerArgs {
     /// Run the plugin's process in gdb, without deadlines.
     #[arg(long, conflicts_with = "core")]
     pub gdb: bool,
-    /// Have gdb write a core dump and the backtraces of all threads to the bundle if the plugin crashes again.
+    /// Have gdb write a core dump and the backtraces of all threads to that folder if the plugin crashes again.
     #[arg(long)]
     pub core: bool,
 }

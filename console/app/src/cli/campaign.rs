@@ -54,7 +54,7 @@ pub(crate) struct RunCampaignArgs {
     /// Where to run the missions.
     #[arg(long, default_value = "local")]
     pub engine: Engine,
-    /// Number of missions run in parallel; 0: one per core.
+    /// Number of missions to run in parallel; 0: one per core.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub jobs: usize,
     /// Start no further block after this many core hours, for example 5ch, counted over all runs of the campaign.
@@ -78,7 +78,7 @@ pub(crate) struct WorkArgs {
     /// Share the blocks with other workers in the same folder: each worker takes a block that no other worker holds.
     #[arg(long)]
     pub pull: bool,
-    /// Number of missions run in parallel; 0: one per core.
+    /// Number of missions to run in parallel; 0: one per core.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
 }

@@ -15,8 +15,8 @@ pub(crate) struct RunArgs {
     /// Do not write a journal or a recording.
     #[arg(long)]
     pub no_record: bool,
-    /// Hold planners to the console's real-time deadlines (for planner authors): a step that is not answered within 60
-    /// % of a tick is late. The result then depends on the machine, but the journal can still be verified.
+    /// Apply the console's real-time deadlines to planners (for planner authors): a step that is not answered within
+    /// 60 % of a tick is late. The result then depends on the machine, but the journal can still be verified.
     #[arg(long)]
     pub live_deadlines: bool,
     #[command(flatten)]

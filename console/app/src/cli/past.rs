@@ -31,7 +31,7 @@ pub(crate) struct ExportArgs {
     pub logs: LogsArg,
 }
 
-/// The files to write; they must not exist.
+/// The files to write; they must not exist yet.
 #[derive(Debug, Args)]
 #[group(required = true, multiple = true)]
 pub(crate) struct ExportTo {

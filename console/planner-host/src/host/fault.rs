@@ -72,14 +72,14 @@ pub(crate) fn of(failure: Failure, planner: &str, phase: Phase) -> Fault {
         Failure::Forbidden { call, last_output } => fault(
             Cause::Forbidden,
             format!(
-                "planner {planner} tried {call} during {phase}, which no planner may do; its process was killed{}",
+                "planner {planner} tried a forbidden system call ({call}) during {phase}; its process was killed{}",
                 last_words(&last_output)
             ),
         ),
         Failure::Hung => fault(
             Cause::Hung,
             format!(
-                "planner {planner} did not answer {phase} in time and ignored the request to stop; its process was killed"
+                "planner {planner} did not finish {phase} in time and ignored the request to stop; its process was killed"
             ),
         ),
         Failure::Late => {

@@ -162,7 +162,7 @@ fn attacks_in_a_step_are_never_made_and_named_with_planner_call_and_step() {
     for (attack, call) in ATTACKS {
         let fault = fault_of("IN_STEP", attack);
         let sentence = format!(
-            "planner hostile tried {call} during step 3, which no planner may do; its process was killed"
+            "planner hostile tried a forbidden system call ({call}) during step 3; its process was killed"
         );
         assert_eq!((fault.message, fault.cause), (sentence, Cause::Forbidden), "{attack}");
         assert!(fault.plugin_sha256.is_some());
@@ -173,7 +173,7 @@ fn attacks_in_a_step_are_never_made_and_named_with_planner_call_and_step() {
 fn attacks_in_a_constructor_do_not_even_harm_who_only_lists_planners() {
     for (attack, call) in ATTACKS {
         let sentence =
-            format!("tried {call} while being loaded, which no planner may do; its process was killed");
+            format!("tried a forbidden system call ({call}) while being loaded; its process was killed");
         assert_eq!(refusal_of(attack), sentence, "{attack}");
     }
 }
@@ -182,7 +182,8 @@ fn attacks_in_a_constructor_do_not_even_harm_who_only_lists_planners() {
 fn attacks_in_a_thread_that_stays_are_named_at_the_step_in_progress() {
     let fault = fault_of("IN_THREAD", r#"open("/etc/passwd", O_RDONLY)"#);
     assert_eq!(fault.cause, Cause::Forbidden, "{fault}");
-    assert!(fault.message.starts_with("planner hostile tried openat of /etc/passwd during step "), "{fault}");
+    let begin = "planner hostile tried a forbidden system call (openat of /etc/passwd) during step ";
+    assert!(fault.message.starts_with(begin), "{fault}");
 }
 
 #[test]

@@ -114,7 +114,7 @@ fn a_planner_that_does_not_answer_is_killed_in_time() {
         let fault = step(&mut host, 5).unwrap_err();
         let took = asked.elapsed();
         assert_eq!(fault.cause, Cause::Hung, "{kind}");
-        let sentence = "planner faulty did not answer step 5 in time and ignored the request to stop; its process was killed";
+        let sentence = "planner faulty did not finish step 5 in time and ignored the request to stop; its process was killed";
         assert_eq!(fault.message, sentence, "{kind}");
         assert!(took < LONG, "{kind} took {took:?}");
         assert_eq!(step(&mut host, 6).unwrap_err().cause, Cause::Died, "its process has ended");
@@ -172,7 +172,7 @@ fn floods_of_text_and_panics_on_the_way_out_harm_nobody() {
 fn a_planner_that_fails_while_it_is_made_leaves_the_one_before_in_place() {
     for (kind, cause, words_of_it) in [
         ("configure_panic", Cause::Panic, "during configure: "),
-        ("configure_hang", Cause::Hung, "did not answer configure in time"),
+        ("configure_hang", Cause::Hung, "did not finish configure in time"),
     ] {
         let mut host = host(impatient());
         choose(&mut host, "faulty", &Parameters::new()).unwrap();

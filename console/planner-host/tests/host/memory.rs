@@ -177,7 +177,7 @@ fn locked_memory_is_forbidden_and_huge_pages_are_not_there() {
     let locked = memory_of("IN_STEP", "map(ONE_MB, PROT_READ | PROT_WRITE, PRIVATE | MAP_LOCKED)");
     let fault = locked.expect_err("locked");
     assert_eq!(
-        (fault.cause, fault.message.contains("tried mmap of locked memory during step 3")),
+        (fault.cause, fault.message.contains("(mmap of locked memory) during step 3")),
         (Cause::Forbidden, true),
         "{fault}"
     );

@@ -28,7 +28,7 @@ pub(super) fn check_expansion(packed: u64, lines: u64) -> io::Result<()> {
         return Ok(());
     }
     let why = format!(
-        "its first {packed} bytes contain more than {lines} bytes of lines, more than any run writes"
+        "its first {packed} bytes unpack to more than {lines} bytes of lines, more than any run writes"
     );
     Err(io::Error::new(io::ErrorKind::InvalidData, why))
 }

@@ -154,8 +154,8 @@ impl Ticks {
         if ends && self.reader.truncated().is_none() {
             return Ok(Some(recorded));
         }
-        let torn = self.reader.truncated().map(|why| format!("{why}, ")).unwrap_or_default();
-        self.no_end = Some(format!("{torn}it stops in tick {}", recorded.tick));
+        let torn = self.reader.truncated().map(|why| format!("{why}; ")).unwrap_or_default();
+        self.no_end = Some(format!("{torn}the journal stops in tick {}", recorded.tick));
         recorded.is_cut = true;
         Ok(Some(recorded))
     }

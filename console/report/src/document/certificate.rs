@@ -46,8 +46,8 @@ pub(super) fn doubts(document: &Document) -> Vec<String> {
         ));
     } else if let Some(day) = Date::until(text).and_then(is_past) {
         doubts.push(format!(
-            "inspection.inspector_certificate states a validity that ends before the inspection on {day}: \
-             `{}`",
+            "inspection.inspector_certificate states that the certificate's validity ends before the \
+             inspection on {day}: `{}`",
             text.trim()
         ));
     }

@@ -227,7 +227,7 @@ pub(super) fn over_time(run: &RunOpened, record: &Record, marks: &[(usize, f64)]
                   dark line, 95 % error; light line, true error (simulation only). Wraps: dark line, \
                   largest wrap on one obstacle; light line, total wrap."
             .into(),
-        svg: self::chart(WIDTH_MM, chart.y + 1.5, &chart.body, "Record over time"),
+        svg: self::chart(WIDTH_MM, chart.y + 1.5, &chart.body, "Values over time"),
         legend: Vec::new(),
     })
 }

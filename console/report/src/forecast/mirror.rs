@@ -70,7 +70,7 @@ impl Mirrored {
         let (percent, by_walls) = (self.share * 100.0, self.by_walls_share * 100.0);
         let open = percent - by_walls;
         let walls = if by_walls > 0.0 {
-            format!("; for {by_walls:.1} % the wall decides, because the image is behind it")
+            format!("; for {by_walls:.1} % the image can be ruled out because it is behind the wall")
         } else {
             String::new()
         };

@@ -35,7 +35,7 @@ impl Rescan {
     /// The reason why nothing is re-scanned, as a sentence.
     pub fn why_nothing(&self, min_area_m2: f64) -> String {
         format!(
-            "no missed area is worth a re-scan: {} smaller than {min_area_m2} m², {:.2} m² together, and {} \
+            "no missed area is worth a re-scan: {} smaller than {min_area_m2} m², {:.2} m² in total, and {} \
              that no lane reaches",
             counted(self.left.len(), "place", "places"),
             total_m2(&self.left),

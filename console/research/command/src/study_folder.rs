@@ -113,9 +113,9 @@ impl Parts for StudyFolder {
     fn wait_for(&self, name: &str) {
         if !self.has_waited.swap(true, Ordering::Relaxed) {
             let (place, claim) = (self.place(name), self.folder.claim_file(name));
-            let until = "until that process has finished or ended, or has been silent for 10 min";
+            let until = "until it has finished or ended, or has been silent for 10 min";
             warn_line(&format!(
-                "waiting for {place}, which another process is computing (see {}), {until}",
+                "another process is computing {place} (see {}); waiting {until}",
                 claim.display()
             ));
         }

@@ -36,8 +36,8 @@ pub(crate) const STUDIES: &[Study] = &[
     },
     Study {
         name: "xu-forces",
-        about: "Xu et al. 2022, Figs 14 to 16: pull and push of three methods on the floor of Table 2, as \
-                driven",
+        about: "Xu et al. 2022, Figs 14 to 16: pull and push of three methods during a drive over the \
+                floor of Table 2",
         layouts: 1,
         run: curves::forces,
     },
@@ -49,7 +49,7 @@ pub(crate) const STUDIES: &[Study] = &[
     },
     Study {
         name: "yang-table4",
-        about: "Yang et al. 2021, Table 4: two minima before obstacles",
+        about: "Yang et al. 2021, Table 4: two local minima in front of obstacles",
         layouts: 1,
         run: yang::table4,
     },
@@ -62,8 +62,7 @@ pub(crate) const STUDIES: &[Study] = &[
     },
     Study {
         name: "yang-distances",
-        about: "Yang et al. 2021, Figs 12 to 15 (b): distances to the ten obstacles along the path, as \
-                driven",
+        about: "Yang et al. 2021, Figs 12 to 15 (b): distances to the ten obstacles during a drive",
         layouts: 10,
         run: curves::distances,
     },

@@ -35,7 +35,7 @@ pub(crate) const STUDIES: &[Study] = &[
     },
     Study {
         name: "wang-fig8",
-        about: "Wang et al. 2023, Fig. 8: precision and recall over the threshold T0",
+        about: "Wang et al. 2023, Fig. 8: precision and recall as functions of the threshold T0",
         layouts: 100,
         run: tables::fig8,
     },

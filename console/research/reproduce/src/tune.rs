@@ -88,7 +88,7 @@ impl Tuning<'_> {
 
     fn checked(&self) -> Result<Search<'_>, String> {
         let group = Group::named(self.on).ok_or_else(|| {
-            let known = "known: wang-d1, wang-d2, wang-d3, and each with -square";
+            let known = "known: wang-d1, wang-d2, wang-d3, and each of these followed by -square";
             format!("unknown layouts `{}`; {known}", self.on)
         })?;
         let numbers =
@@ -205,8 +205,8 @@ impl Tuned {
         let (before, after) = self.loss;
         let values: Vec<String> = self.values.iter().map(|(key, value)| format!("{key} = {value}")).collect();
         format!(
-            "Loss on {} training layouts (cross-track error in m, missing clearance, 1 if the path does not \
-             arrive): {before:.4} at the start, {after:.4} tuned; {} parameter sets \
+            "Loss on {} training layouts (cross-track error in m, missing clearance, 1 if the path does \
+             not arrive): {before:.4} at the start, {after:.4} after tuning; {} parameter sets \
              tried.\n\n[planner.parameters]\n{}\n\nOn {} test layouts:\n\n{}",
             tuning.training.0,
             self.evaluations,

@@ -61,7 +61,7 @@ pub(super) fn guide(word: &str) -> Guide {
             },
         },
         "return path" => Guide {
-            cause: "The hull does not fit along the return path beside the tether.",
+            cause: "The hull does not fit through the return path along the tether.",
             effect: "The robot is held.",
             remedies: const {
                 &[

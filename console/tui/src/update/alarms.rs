@@ -178,7 +178,7 @@ pub(super) fn chosen_remedy(model: &mut Model, number: usize) -> Result<ActionId
     let cause = cause.clone();
     let remedy = number.checked_sub(1).and_then(|index| guide(&cause).remedies.get(index));
     let remedy = remedy.ok_or_else(|| format!("no action {number}"))?;
-    let action = remedy.action.ok_or_else(|| format!("nothing to run: {}", remedy.text))?;
+    let action = remedy.action.ok_or_else(|| format!("no command for this action: {}", remedy.text))?;
     model.ui.alarm = Some(cause);
     model.ui.overlay = Overlay::None;
     Ok(action)

@@ -12,7 +12,7 @@ const PAN_STEPS: f64 = 4.0;
 
 /// Checks that the map is shown.
 pub(crate) fn is_shown(model: &Model) -> Result<(), String> {
-    demand(model.ui.shows(Pane::Map), "the map is not shown; <next-pane>: next pane (needs 60x16)")
+    demand(model.ui.shows(Pane::Map), "the map is not shown (it needs 60x16); <next-pane>: next pane")
 }
 
 /// Checks that the map or its cursor can be moved.

@@ -35,7 +35,7 @@ pub(super) fn add(model: &mut Model, choice: PlannerChoice) -> Vec<Effect> {
     model.ui.overlay = Overlay::WhatIf;
     let Some(what_if) = &mut model.live.what_if else { return Vec::new() };
     if what_if.candidates.iter().any(|candidate| candidate.choice == choice) {
-        return refuse(model, format!("planner {} is already compared", choice.id));
+        return refuse(model, format!("planner {} is already in the comparison", choice.id));
     }
     what_if.candidates.truncate(MOST - 1);
     what_if.candidates.push(candidate(choice));

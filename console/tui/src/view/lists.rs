@@ -20,7 +20,7 @@ use ratatui::layout::Rect;
 const WIDTH: u16 = 78;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
-    // The line above the keys and the keys stay visible.
+    // The keys, and the line above them, stay visible.
     let rows = area.height.saturating_sub(if area.height >= 10 { 3 } else { 0 });
     let columns = area.width.min(WIDTH);
     let list = match &look.model.ui.overlay {

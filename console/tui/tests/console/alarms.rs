@@ -233,7 +233,7 @@ fn keeping_the_robot_held_holds_and_never_asks_to_resume() {
     assert_eq!((notice(&screen), &screen.model.ui.overlay), ("already held", &Overlay::None));
     screen.press(ENTER);
     screen.type_text("1");
-    assert!(notice(&screen).starts_with("nothing to run: Wait"));
+    assert!(notice(&screen).starts_with("no command for this action: Wait"));
 }
 
 #[test]

@@ -110,7 +110,7 @@ fn a_draft_is_forecast_and_moves_nothing() {
     assert!(text(&drawn(&screen.model, RICH, (120, 36))).contains("rpf with rpf_gain = 0.8."));
     // The same once more, and one that is given up.
     assert_eq!(screen.type_text("pw"), []);
-    assert_eq!(notice(&screen), "planner rpf is already compared");
+    assert_eq!(notice(&screen), "planner rpf is already in the comparison");
     screen.press([Key::Char('p'), Key::Esc]);
     assert_eq!(screen.model.ui.overlay, Overlay::WhatIf);
     screen.press([Key::Esc, Key::Char('p')]);

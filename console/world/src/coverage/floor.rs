@@ -450,7 +450,9 @@ impl TryFrom<FloorRuns> for Floor {
             count.ok_or_else(|| format!("the floor has {width} by {height} cells; the limit is {most}"))?;
         let in_runs: u64 = runs.iter().map(|(_, length)| u64::from(*length)).sum();
         if in_runs != count as u64 {
-            return Err(format!("the floor has {width} by {height} cells, but its runs contain {in_runs}"));
+            return Err(format!(
+                "the floor has {width} by {height} cells, but its runs contain {in_runs} cells"
+            ));
         }
         let cells = runs.iter().flat_map(|(cell, length)| std::iter::repeat_n(*cell, *length as usize));
         Ok(Self { origin, cell_m, width, height, cells: Arc::new(cells.collect()) })

@@ -272,7 +272,7 @@ impl<'a> Track<'a> {
     }
 }
 
-/// Divides a straight path into sides that are short enough, and adds them.
+/// Divides a straight path into sides that are short enough, and appends them to `sides`.
 fn divide(from: Point, to: Point, on_lane: bool, sides: &mut Vec<Side>) {
     let way = to - from;
     let length_m = way.norm();

@@ -47,7 +47,7 @@ impl Candidate {
                 format!("straight lanes at {:.0} deg", rows.angle_rad.to_degrees())
             }
         };
-        format!("{lanes}, cuts within {:.0} deg", self.alpha_rad.to_degrees())
+        format!("{lanes}, cuts within {:.0} deg of the ray from the anchor", self.alpha_rad.to_degrees())
     }
 
     /// The domain between the candidate's cuts, if the hull fits at home. Several domains are computed to find the
@@ -188,7 +188,7 @@ impl Worth {
         let c = &self.certificate;
         format!(
             "{name}: {:.1} m, {:.0} turns, {} % of reachable floor, cable {:.2} m ({:.3} of the minimum), \
-             wrap {:.0} / {:.0} deg{}",
+             wrap {:.0} deg on one obstacle, {:.0} deg in all{}",
             self.length_m,
             self.turns,
             percent_text(self.coverage, 2),

@@ -13,9 +13,9 @@ const UNLIMITED: Limits =
 
 const CHOOSE: ParamSpec = choice("choose", "Candidate", &["shortest", "fewest-turns", "shortest-cable"], 0)
     .help(
-        "Which of the candidates within the limits to run; shortest takes length and turns into account. \
-         The log lists the candidates that no other beats in length, turns and cable. Candidates with a \
-         worse first tour are not finished; the log gives their number.",
+        "Which of the candidates within the limits is chosen; shortest takes length and turns into \
+         account. The log lists the candidates that no other beats in length, turns and cable. Candidates \
+         with a worse first tour are not finished; the log gives their number.",
     )
     .group("Plan");
 const PATTERN: ParamSpec = choice("pattern", "Lanes", &["all", "contours", "straight"], 0)
@@ -23,8 +23,9 @@ const PATTERN: ParamSpec = choice("pattern", "Lanes", &["all", "contours", "stra
     .group("Plan");
 const DIRECTIONS: ParamSpec = int("directions", "Directions tried", "", 1, 24, 12)
     .help(
-        "Number of directions tried for straight lanes, fewer in large tanks. In a round tank: the \
-           directions in which cuts and obstacles break the fewest lanes. Between straight walls: two.",
+        "Number of directions tried for straight lanes; fewer are tried in large tanks. In a round tank, \
+         they are the directions in which cuts and obstacles break the fewest lanes. Between straight \
+         walls, two are tried.",
     )
     .group("Plan");
 const ALPHA: ParamSpec = float("alpha_deg", "Cut angle", "deg", 0.0, 80.0, 50.0)
@@ -58,7 +59,7 @@ const TURN: ParamSpec = float("turn_m", "Turn cost in search", "m", 0.0, 20.0, 1
            larger value leaves more floor to touch-ups.",
     )
     .group("Plan");
-const CHOICE_TURN: ParamSpec = float("choice_turn_m", "Turn cost in choice", "m", 0.0, 20.0, 0.0)
+const CHOICE_TURN: ParamSpec = float("choice_turn_m", "Turn cost in selection", "m", 0.0, 20.0, 0.0)
     .help(
         "Extra path length accepted for each whole turn saved when choosing among candidates. 0: the \
            distance the robot drives in the time of one turn, so that the quickest candidate is chosen.",
@@ -66,8 +67,8 @@ const CHOICE_TURN: ParamSpec = float("choice_turn_m", "Turn cost in choice", "m"
     .group("Plan");
 const ENOUGH: ParamSpec = float("coverage_pct", "Coverage target", "%", 50.0, 100.0, 99.58)
     .help(
-        "Touch-ups are added until this share of the reachable floor is scanned, counted in cells to \
-           which no path was fitted.",
+        "Touch-ups are added until this share of the reachable floor is scanned, counted in cells other \
+         than those to which the path was fitted.",
     )
     .group("Plan");
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.025)

@@ -93,7 +93,8 @@ impl Mission {
                 course.want_plan(Reason::Swap { from: self.driving.id().to_owned() });
             }
             _ => self.refuse_promotion(
-                "the robot keeps moving on before a plan from its position is ready; HOLD first".into(),
+                "whenever a plan is ready, the robot has already left the place where it begins; HOLD first"
+                    .into(),
             ),
         }
     }

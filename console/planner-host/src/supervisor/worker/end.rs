@@ -83,7 +83,7 @@ impl Worker {
     pub(super) fn advance_leaving(&mut self, ready: Ready, until: Option<Instant>, now: Instant) {
         let call = until.filter(|_| ready.called).and_then(|_| self.guard.decide());
         if let Some(call) = call {
-            self.end_badly(format!("tried {call}, which no planner may do,"));
+            self.end_badly(format!("tried a forbidden system call ({call})"));
             self.kill();
         } else if let Some(status) = self.process.reap() {
             self.state = State::Gone;

@@ -54,8 +54,8 @@ fn verdict(document: &Document, located: &Located) -> Verdict {
     );
     let floor = match located.tool_on_s {
         Some(on_s) => format!(
-            "While the tool was on, for {}, it passed over {:.1} % of the whole floor with a known \
-             position; {:.1} % is guaranteed, allowing for the position error.",
+            "The tool was on for {}. While it was on and the position was known, it passed over {:.1} % of \
+             the whole floor; {:.1} % is guaranteed, allowing for the position error.",
             clock(on_s),
             document.floor.whole.percent.scanned,
             document.floor.whole.percent.guaranteed.unwrap_or(0.0)

@@ -76,8 +76,8 @@ pub(in crate::document) fn decisions(document: &Document, located: &Located) -> 
     let left_m2 = (1.0 - whole.scanned) * whole.area_m2;
     let decision = Decision {
         what: format!(
-            "The tool did not pass over {left_m2:.1} of {:.1} m² of floor with a known position: accept, \
-             scan, or inspect by hand.",
+            "The tool did not pass over {left_m2:.1} of {:.1} m² of floor while it was on and the position \
+             was known: accept, scan, or inspect by hand.",
             whole.area_m2
         ),
         section: 3,

@@ -78,8 +78,8 @@ fn under_tool(document: &Document, located: &Located) -> Vec<Block> {
     let Some(on_s) = located.tool_on_s else { return vec![Block::Text(NOT_KNOWN.into())] };
     let whole = &document.floor.whole;
     vec![Block::Text(format!(
-        "The tool was on for {} of {}. During that time it passed over {:.2} of {:.2} m² of floor with a \
-         known position, or {:.1} %. No scan of the rest was planned, so no floor counts as missed and no \
+        "The tool was on for {} of {}. During that time, while the position was known, it passed over \
+         {:.2} of {:.2} m² of floor ({:.1} %). No scan of the rest was planned, so no floor counts as missed and no \
          reasons are given.",
         clock(on_s),
         clock(located.time_s),
@@ -138,7 +138,7 @@ fn plates(document: &Document, located: &Located) -> Vec<Block> {
         ]);
     }
     let note = match located.tool_on_s {
-        Some(_) => "Scanned: while the tool was on, with a known position.",
+        Some(_) => "Scanned: passed over by the tool while it was on and the position was known.",
         None => NOT_KNOWN,
     };
     vec![Block::Table(table), Block::Note(note.into())]

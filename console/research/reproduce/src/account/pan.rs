@@ -44,7 +44,7 @@ const ITEMS: &[Item] = &[
         "two round floors and a square floor, with both methods",
         Read,
         "tankops reproduce pan-maps --svg plans",
-        "neither coordinates nor figures are printed; 14, 28 and 18 columns in random places",
+        "neither coordinates nor figures are printed; we place 14, 28 and 18 columns at random",
     ),
     item(
         "Claim",
@@ -58,7 +58,7 @@ const ITEMS: &[Item] = &[
         "simulation in Gazebo, ROS navigation",
         Absent,
         "",
-        "no Gazebo and no ROS node; our simulator and MCAP export",
+        "no Gazebo and no ROS node; we use our own simulator, and runs can be exported as MCAP",
     ),
     item(
         "Beyond",

@@ -32,7 +32,8 @@ const ITEMS: &[Item] = &[
         "attraction and repulsion",
         Read,
         TABLE1,
-        "neither is printed; we use k rho and Khatib's force. The form of the repulsion is open: see Table 1",
+        "neither formula is printed; we use k rho and Khatib's force. The form of the repulsion is open: \
+         see Table 1",
     ),
     item(
         "Figs 2 to 4",
@@ -46,7 +47,8 @@ const ITEMS: &[Item] = &[
         "rotating force",
         Read,
         "tankops reproduce wang-table1 --method rpf",
-        "always on (literal), it cannot give the printed figures; the text does not say when it acts",
+        "if it is always on (literal), it cannot give the printed figures; the text does not say when it \
+         acts",
     ),
     item("Fig. 6", "flow chart of the method", Absent, "", "a picture that our copy does not contain"),
     item("Eq. 4 to 9, Fig. 7", "three-point positioning by least squares", Reproduced, TABLE3, ""),
@@ -55,7 +57,8 @@ const ITEMS: &[Item] = &[
         "P, R and RMSE",
         Read,
         TABLE1,
-        "points are paired by index, as in the formulas; NP counts wrong points, n_max planned points",
+        "points are paired by index, as in the formulas; NP counts wrong points, and n_max counts planned \
+         points",
     ),
     item(
         "Table 1, APF",
@@ -69,8 +72,8 @@ const ITEMS: &[Item] = &[
         "improved repulsion",
         Read,
         "tankops reproduce wang-table1",
-        "the exponent is not printed; by default 2, as in Ge and Cui, and 0.5 in the readings that come \
-         near the table",
+        "the exponent is not printed; we use 2 by default, as in Ge and Cui, and 0.5 in the \
+         interpretations that come near the table",
     ),
     item(
         "Table 1, VT",
@@ -91,7 +94,7 @@ const ITEMS: &[Item] = &[
         "the method as described in the text",
         Missed,
         "tankops reproduce wang-table1 --method rpf/literal",
-        "P 29/55/80 % in the square as printed; the paper gives 77.5/86.6/92.6 %",
+        "our P is 29/55/80 % in the square as printed; the paper gives 77.5/86.6/92.6 %",
     ),
     item(
         "Table 1",
@@ -126,7 +129,7 @@ const ITEMS: &[Item] = &[
     ),
     item(
         "Fig. 8",
-        "P and R over T0",
+        "P and R as functions of T0",
         Read,
         "tankops reproduce wang-fig8",
         "only two differences are printed; no interpretation reproduces the jump at T0 = 0",
@@ -158,7 +161,7 @@ const ITEMS: &[Item] = &[
         "0.40 s and 0.38 s per plan",
         Reproduced,
         TABLE1,
-        "ours take milliseconds, on a different machine and in a different language",
+        "our plans take milliseconds, on a different machine and in a different language",
     ),
     item("Eq. 13, 14", "disturbed ranges, error", Reproduced, TABLE3, ""),
     item(
@@ -209,7 +212,7 @@ const ITEMS: &[Item] = &[
     ),
     item(
         "Beyond",
-        "filters over ranges and odometry",
+        "filters that combine ranges and odometry",
         Ours,
         "tankops reproduce positioning-filter",
         "not in the paper",

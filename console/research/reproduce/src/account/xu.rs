@@ -41,8 +41,8 @@ const ITEMS: &[Item] = &[
         "logarithmic pull",
         Read,
         "tankops reproduce xu-table1 --method bvo-apf",
-        "k and n are not printed (parameters k, n); near the goal interpreted as log2(1/rho + 1), or as \
-         printed with n of 16 or more",
+        "k and n are not printed (parameters k, n); near the goal, eq. 4 is interpreted as log2(1/rho + \
+         1), or used as printed with n of 16 or more",
     ),
     item(
         "Eq. 5, 8, 9",
@@ -81,8 +81,8 @@ const ITEMS: &[Item] = &[
         "angle at the mouth",
         Read,
         BVO,
-        "as printed, the cotangent of a cosine and a condition that is never true; interpreted as an angle \
-         at the mouth",
+        "as printed, they contain the cotangent of a cosine and a condition that is never true; we \
+         interpret them as an angle at the mouth",
     ),
     item("Fig. 7", "flow chart of the method", Absent, "", "a picture that our copy does not contain"),
     item(
@@ -97,7 +97,8 @@ const ITEMS: &[Item] = &[
         "stop (44.3, 55.3)",
         Fitted,
         "tankops reproduce xu-table1 --method tapf",
-        "a weight of 0.02 with a radius of 1 m, and a weight of 1 with 3.2 to 3.55 m, both give this point",
+        "a weight of 0.02 with a radius of 1 m and a weight of 1 with a radius of 3.2 to 3.55 m both give \
+         this point",
     ),
     item(
         "Table 1, BVO-APF",
@@ -112,14 +113,14 @@ const ITEMS: &[Item] = &[
         "triangle",
         Read,
         "tankops reproduce xu-traps --case triangle --svg plans",
-        "layout reconstructed; ours walks 86.7 m, an independent implementation 89.1 m",
+        "layout reconstructed; path length 86.7 m with our implementation, 89.1 m with an independent one",
     ),
     item(
         "Fig. 12",
         "U",
         Read,
         "tankops reproduce xu-traps --case u --svg plans",
-        "layout reconstructed; ours walks 88.4 m, an independent implementation 98.4 m",
+        "layout reconstructed; path length 88.4 m with our implementation, 98.4 m with an independent one",
     ),
     item(
         "Fig. 13, Table 2",
@@ -133,21 +134,22 @@ const ITEMS: &[Item] = &[
         "61,934 and 33,119 steps of APF and TAPF",
         Missed,
         TABLE2,
-        "ours come to rest after 7,100; the paper's runs were stopped by hand",
+        "our runs come to rest after 7,100 steps; the paper's runs were stopped by hand",
     ),
     item(
         "Table 2",
         "15,104 steps of BVO-APF",
         Fitted,
         TABLE2,
-        "the step size of 0.0071 m was chosen to match; an independent implementation takes 17,030",
+        "the step size of 0.0071 m was chosen to match this; an independent implementation takes 17,030 \
+         steps",
     ),
     item(
         "Table 2",
         "1.17 s",
         Reproduced,
         TABLE2,
-        "ours take milliseconds, on a different machine and in a different language",
+        "our plans take milliseconds, on a different machine and in a different language",
     ),
     item(
         "Figs 14 to 16",
@@ -161,7 +163,7 @@ const ITEMS: &[Item] = &[
         "success with any shape of trap",
         Read,
         "tankops reproduce trap-suite --first-seed 9000",
-        "true for free-standing traps; for a trap attached to the wall the outline must be treated as an \
+        "true for free-standing traps; for a trap attached to the wall, the outline must be treated as an \
          obstacle, which the paper does not discuss",
     ),
     item(

@@ -29,7 +29,7 @@ const ITEMS: &[Item] = &[
         "added mass, drag and moments of inertia are not printed; we use a unicycle with the limits of \
          Table 1 instead",
     ),
-    item("Table 1", "mass, fin, wavelength, friction", Absent, "", "they only enter the kinetics"),
+    item("Table 1", "mass, fin, wavelength, friction", Absent, "", "they are used only in the kinetics"),
     item(
         "Table 1",
         "speeds and turn rates in water and on land",
@@ -105,7 +105,7 @@ const ITEMS: &[Item] = &[
         "11.0143 and 17.8513 m in runs that fail",
         Missed,
         TABLE3,
-        "ours are 9.57 and 8.71 m; the printed values fit neither fixed nor proportional steps",
+        "our runs are 9.57 and 8.71 m long; the printed values fit neither fixed nor proportional steps",
     ),
     item("Table 4, 10b, 11b", "4.1231 and 4.4283 m", Fitted, TABLE4, "the layouts were tuned to the lengths"),
     item(
@@ -113,15 +113,15 @@ const ITEMS: &[Item] = &[
         "2.6717 and 1.3853 m in runs that fail",
         Missed,
         TABLE4,
-        "ours oscillate for 19.7 and 19.8 m",
+        "our runs oscillate over a length of 19.7 and 19.8 m",
     ),
     item(
         "Tables 3, 4",
         "0.54 to 0.82 s",
         Reproduced,
         TABLE3,
-        "ours take less than a millisecond; the claimed speed advantage of the improved field is within \
-         noise",
+        "our plans take less than a millisecond; the claimed speed advantage of the improved field is \
+         within noise",
     ),
     item(
         "Claim",
@@ -132,11 +132,11 @@ const ITEMS: &[Item] = &[
     ),
     item(
         "Figs 12 to 15 (a)",
-        "reaches the goal in all four runs",
+        "the robot reaches the goal in all four runs",
         Missed,
         "tankops reproduce yang-hybrid --method apf-dwa/square",
-        "true in 97 % of random layouts, and in 82 % with a block across the way; with the corners of the \
-         shortest path (ours), in all",
+        "true in 97 % of random layouts, and in 82 % with a block across the way; true in all of them if \
+         the virtual goals are the corners of the shortest path (ours)",
     ),
     item(
         "Claim",
@@ -164,7 +164,8 @@ const ITEMS: &[Item] = &[
         "unknown floor, sensed on the way",
         Ours,
         "tankops reproduce trap-suite --case u --method shortest",
-        "our corners are planned on the drawing; shortest and navfn plan on unknown floors",
+        "our corners of the shortest path are planned on the drawing; shortest and navfn plan on unknown \
+         floors",
     ),
     item(
         "Scenarios",

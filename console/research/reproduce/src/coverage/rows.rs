@@ -152,7 +152,7 @@ fn named_one(metric: &str, seed: u64, one: &Measured) -> String {
     let why = match (metric, scan) {
         ("coverage_goal_rate", Some(scan)) => Some(format!("{:.2} %", 100.0 * scan.coverage_reachable)),
         ("reeled_in_rate", Some(scan)) => {
-            Some(format!("{:.1} m out", scan.certificate.end_length_m.unwrap_or(0.0)))
+            Some(format!("{:.1} m of tether out", scan.certificate.end_length_m.unwrap_or(0.0)))
         }
         ("certified_rate", Some(scan)) => scan.certificate.reasons.first().cloned(),
         _ => one.reason.clone(),
@@ -188,7 +188,7 @@ mod tests {
         assert!(
             (path.ours.unwrap() - 2.0 / 3.0).abs() < 1e-9 && (reeled.ours.unwrap() - 1.0 / 3.0).abs() < 1e-9
         );
-        assert!(reeled.note.contains("seed 8 (9.0 m out)"), "{}", reeled.note);
+        assert!(reeled.note.contains("seed 8 (9.0 m of tether out)"), "{}", reeled.note);
         assert!(of("certified_rate").note.contains("still out on return"), "{}", of("certified_rate").note);
         assert_eq!((of("end_length_m").n, of("end_length_m_max").note.as_str()), (2, "seed 8"));
         assert_eq!((of("plan_time_ms").n, of("max_contacts_max").ours), (2, Some(1.0)));

@@ -20,8 +20,8 @@ const TOLERANCE_M: f64 = 0.15;
 const ROUNDING_M_PER_S: f64 = 1e-6;
 
 const OURS: &str = "virtual goals are the corners of the shortest path on the known map (ours)";
-const PAPER: &str = "virtual goals on a square round the goal, used in a minimum, as published; the size of \
-                     the square is not printed";
+const PAPER: &str = "virtual goals on a square round the goal, used in a local minimum, as published; the \
+                     size of the square is not printed";
 const LAYOUT: &str = "the paper shows one layout per group, without coordinates; ours are random";
 
 /// The planner with this number of transition steps.
@@ -156,7 +156,7 @@ fn summary(block: &Block<'_>, all: &[Measured]) -> Vec<Row> {
         block.row("min_clearance", of_all(|one| one.clearance_m).min(), "m", n),
         block
             .row("overspeed", of_all(|one| one.overspeed_m_per_s).max(), "m/s", n)
-            .note("largest excess over the limit at that moment, in any step"),
+            .note("largest amount by which the speed in any step exceeds the limit at that moment"),
         block.row("overspeed_rate", share(|one| one.overspeed_m_per_s > 0.0), "", n),
         block.row("plan_time_ms", of_all(|one| one.plan_time_ms).mean(), "ms", n),
         block
@@ -173,8 +173,8 @@ fn differences(block: &Block<'_>, measured: [&[Measured]; 2]) -> Vec<Row> {
         let conclusion = match mean.zip(sample.mean_margin_95()) {
             None => "too few pairs to compare".into(),
             Some((mean, within)) => {
-                let effect = if mean.abs() <= within { "no effect shown" } else { "an effect" };
-                format!("95 % interval +-{within:.3}: {effect}")
+                let effect = if mean.abs() <= within { "shows no effect" } else { "shows an effect" };
+                format!("95 % interval +-{within:.3}, which {effect}")
             }
         };
         block.row(metric, mean, unit, sample.len()).note(format!(

@@ -11,9 +11,10 @@ use std::f64::consts::FRAC_PI_4;
 use trials::amphibious::{AmphibiousLayout, Group};
 use world::Pose;
 
-const NO_NUMBERS: &str = "as driven; in our copy the paper's figure has no numbers";
-const DISTANCES: &str = "as driven, with virtual goals on a square round the goal as published; the paper \
-                         shows one layout per group, without coordinates, and ours are random";
+const NO_NUMBERS: &str = "recorded during a drive; in our copy the paper's figure has no numbers";
+const DISTANCES: &str = "recorded during a drive, with virtual goals on a square round the goal as \
+                         published; the paper shows one layout per group, without coordinates, and ours \
+                         are random";
 
 /// Time limit of a drive over the floor of Table 2, seconds, at one metre per second.
 const FORCES_S: f64 = 250.0;

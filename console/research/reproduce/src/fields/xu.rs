@@ -13,8 +13,8 @@ const SPACING_M: f64 = 1.2;
 /// Distance at which the goal counts as reached, metres: twice the step of the paper.
 const TOLERANCE_M: f64 = 0.02;
 
-const APF: &str = "attraction k rho, repulsion from the outline; ends when the last steps make no progress, \
-                   whereas the paper's runs were stopped by hand";
+const APF: &str = "attraction k rho, repulsion from the outline; the run ends when the last steps make no \
+                   progress, whereas the paper's runs were stopped by hand";
 const ALWAYS: &str = "left tangent force always on at a weight of 0.02, fitted to the printed stopping \
                       point; a radius of 3.2 to 3.55 m at the full weight gives the same point (case \
                       table1/wide)";
@@ -22,17 +22,17 @@ const FULL: &str = "left tangent force always on at its full weight; radius and 
                     not print, are fitted to the printed stopping points";
 const BLOCKING: &str = "tangent force only round obstacles that block the path: the other interpretation; \
                         the paper leaves this open";
-const LITERAL: &str = "with our corrections where the paper's formulas cannot be applied: eq. 14 (cotangent \
-                       of a cosine) and eq. 17 (never true) interpreted as an angle at the mouth with room \
-                       for the seal, eq. 4 near the goal as log2(1/rho + 1), eq. 10 as vectors, our \
-                       oscillation rule";
+const LITERAL: &str = "with our corrections where the paper's formulas cannot be applied: eq. 14 \
+                       (cotangent of a cosine) and eq. 17 (never true) interpreted as an angle at the \
+                       mouth with room for the seal, eq. 4 near the goal as log2(1/rho + 1), eq. 10 as \
+                       vectors; with our own oscillation rule";
 const PRINTED: &str = "eq. 4 near the goal as printed, n |log2(1/(rho + 1))|, with the n for which its two \
                        branches meet, which the paper does not require: the pull vanishes at the goal and \
                        the robot misses it";
-const PRINTED_N16: &str = "eq. 4 near the goal as printed with n = 16; the paper calls n adaptive but gives \
-                           no value. From 16 on the stopping point rounds to the printed one, so the table \
-                           does not decide between this and log2(1/rho + 1); the text describes a force \
-                           that grows at the goal, which favours the latter";
+const PRINTED_N16: &str = "eq. 4 near the goal as printed with n = 16; the paper calls n adaptive but \
+                           gives no value. If n is 16 or more, the stopping point rounds to the printed \
+                           one, so the table does not decide between this and log2(1/rho + 1); the text \
+                           describes a force that grows at the goal, which favours the latter";
 const OURS: &str = "ours: not in the paper";
 const NO_SHIFT: &str = "layout placed so that the classical field stops near the printed place; no \
                         interpretation that we tried gives the printed shift from APF to TAPF (+0.3, \
@@ -180,12 +180,12 @@ fn left_open(case: &str) -> Option<&'static str> {
         "triangle" => {
             "layout reconstructed. The paper states neither the side of the detour, nor the distance in \
              front of the seal, nor the oscillation rule: an independent implementation with other choices \
-             walks 89.08 m (+2.8 %)"
+             gives a path of 89.08 m (+2.8 %)"
         }
         "u" => {
             "layout reconstructed. The paper states neither the side of the detour, nor the distance in \
              front of the seal, nor the oscillation rule: an independent implementation with other choices \
-             walks 98.41 m (+11 %)"
+             gives a path of 98.41 m (+11 %)"
         }
         "table2" => {
             "layout placed and step size of 0.0071 m chosen to match the printed figures. The paper states \

@@ -147,7 +147,8 @@ impl Case {
         let mut rows: Vec<Row> = measured.rows(block).into_iter().map(with_printed).collect();
         let displacement_m = measured.planned.path().last().map(|stop| (stop - self.layout.start).norm());
         rows.push(block.row("displacement_m", displacement_m, "m", 1).note(
-            "start to end: 4.1231 and 14.1421 are roots of 17 and 200, so the paper may have meant this",
+            "distance from start to end: 4.1231 and 14.1421 are the square roots of 17 and 200, so the \
+             paper may have meant this",
         ));
         rows
     }

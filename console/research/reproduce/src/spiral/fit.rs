@@ -16,7 +16,8 @@ const NEAR: f64 = 0.05;
 
 const DISTANCE: &str = "mean of |ln(ours / printed)| over the 36 printed cells of IAPF and RPF, without and \
                         with improved repulsion; 0.05 is about 5 % in every cell";
-const WITH_VT: &str = "the same over 54 cells, with VT, whose source is not available either";
+const WITH_VT: &str = "the same over 54 cells, including those of VT, whose source is not available, like \
+                       that of IAPF";
 const CLAIM: &str =
     "the sign depends on the side of IAPF's push and on the gate, neither of which the paper states";
 

@@ -44,7 +44,7 @@ const RECONSTRUCTED: &str = "the cited source is not available: reconstructed fr
 const GATED: &str = "rotating force only in a trap that our detector finds, and for ten more moves; in \
                      the text it is always on";
 const FORWARD: &str =
-    "reactive: has its own points, compared with the nearest place ahead on the preset path";
+    "reactive: the path's own points are compared with the nearest place ahead on the preset path";
 const LITERAL: &str = "rotating force always on, as in the text; cannot give the printed figures";
 
 /// The methods of Table 1, the rotating field in both readings, without and with improved repulsion.

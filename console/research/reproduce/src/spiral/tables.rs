@@ -68,7 +68,7 @@ fn with_printed_time(row: Row, method: &str) -> Row {
     let paper = printed::PLAN_TIME_MS.iter().find(|(id, _)| *id == method);
     match paper.filter(|_| row.metric == "plan_time_ms") {
         Some((_, ms)) => {
-            let note = join(&row.note, "printed: MATLAB on an i7-9750H");
+            let note = join(&row.note, "printed value: MATLAB on an i7-9750H");
             row.printed(*ms).note(note)
         }
         None => row,
@@ -96,7 +96,8 @@ pub(super) fn fig8(job: &Job<'_>) -> Result<Vec<Row>> {
             let implied = printed::FIG8_IMPLIED.iter().find(|(id, _)| *id == run.method.id);
             if let Some((_, value)) = implied.filter(|_| t0_m == 0.0 && run.group.column() == 0) {
                 precision = precision.map(|row| row.printed(*value));
-                precision[0].note = join(run.method.note, "printed: implied by the text's differences");
+                precision[0].note =
+                    join(run.method.note, "printed value: implied by differences in the text");
             }
             rows.extend(precision);
             rows.extend(block.mean_and_median("recall", &recalls.into_iter().collect(), ""));

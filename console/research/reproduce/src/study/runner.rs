@@ -39,7 +39,7 @@ impl<'a> Runner<'a> {
     ) -> Result<Self> {
         if n_threads > THREADS_MAX {
             return Err(StudyError::Refused(format!(
-                "--threads {n_threads}: at most {THREADS_MAX}; 0 is one for each core"
+                "--threads {n_threads}: at most {THREADS_MAX}; 0 means one for each core"
             )));
         }
         let threads = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build();

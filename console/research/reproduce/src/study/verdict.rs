@@ -109,7 +109,10 @@ fn far(off: f64, paper: f64) -> String {
     let side = if off > 0.0 { "above" } else { "below" };
     match paper.abs() {
         0.0 => format!("ours is {:.4} {side} the printed 0", off.abs()),
-        size => format!("ours is {} {side} the printed value", percent(off.abs() / size)),
+        size => match off.abs() / size {
+            share if share < 10.0 => format!("ours is {:.1} % {side} the printed value", 100.0 * share),
+            share => format!("ours is {side} the printed value by {share:.0} times its size"),
+        },
     }
 }
 
@@ -122,10 +125,6 @@ fn claim(row: &Row) -> String {
         .map(|[low, high]| format!(" (95 % interval {} to {})", signed(low), signed(high)))
         .unwrap_or_default();
     format!("printed {paper}, ours {ours}{interval}")
-}
-
-fn percent(share: f64) -> String {
-    if share < 10.0 { format!("{:.1} %", 100.0 * share) } else { format!("{share:.0} times its size") }
 }
 
 /// 95 % interval of a rate (Wilson's score).

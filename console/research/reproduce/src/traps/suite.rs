@@ -17,8 +17,8 @@ use world::{Boundary, Pose};
 /// Range within which the discs of an unknown map are discovered, metres.
 const RANGE_M: f64 = 6.0;
 
-const UNKNOWN: &str = "unknown map: discs within 6 m are discovered, even behind others; driven by the \
-                       planner's commands at 1 m/s";
+const UNKNOWN: &str = "unknown map: discs within 6 m are discovered, even behind others; the robot follows \
+                       the planner's commands at 1 m/s";
 
 /// A planner, and whether it knows the map.
 struct Entry {

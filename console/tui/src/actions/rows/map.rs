@@ -29,7 +29,7 @@ pub(super) const ROWS: &[Action] = &[
         .when(|m| map::is_shown(m).and(demand(m.live.run.about.is_some(), "no tank loaded yet"))).looks(map::inspect),
     action(ActionId::Mouse, "mouse", "Toggle mouse support", &[], &[Context::Screen]).does(act::toggle_mouse),
     action(ActionId::Severity, "severity", "Set the minimum severity of events shown", &[Key::Char('m')], &[On(Screen::Mission), Context::Replay]).args(&[may("severity", Kind::Severity)])
-        .when(|m| demand(m.ui.shows(Pane::Events), "the events are not shown; <next-pane>: next pane (needs 60x16)")).looks(events::next_severity),
+        .when(|m| demand(m.ui.shows(Pane::Events), "the events are not shown (they need 60x16); <next-pane>: next pane")).looks(events::next_severity),
     action(ActionId::Filter, "filter", "Filter the list", &[Key::Char('/')], &[On(Screen::Home), On(Screen::Mission), Context::Replay, On(Screen::Events), On(Screen::Review)]).args(&[may("text", Kind::Text)])
         .does(events::open_filter),
     action(ActionId::PanLeft, "pan-west", "Pan the map west", &[Key::Left, Key::Char('h')], &[Context::Pan]).repeats().when(map::can_pan).looks(|m| map::pan(m, Vector::new(-1.0, 0.0))),
@@ -37,5 +37,5 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::PanUp, "pan-north", "Pan the map north", &[Key::Up, Key::Char('k')], &[Context::Pan]).repeats().when(map::can_pan).looks(|m| map::pan(m, Vector::new(0.0, 1.0))),
     action(ActionId::PanDown, "pan-south", "Pan the map south", &[Key::Down, Key::Char('j')], &[Context::Pan]).repeats().when(map::can_pan).looks(|m| map::pan(m, Vector::new(0.0, -1.0))),
     action(ActionId::Redraw, "redraw", "Redraw the screen", &[Key::Ctrl('l')], &[Context::Anywhere]).does(|_| vec![Effect::Redraw]),
-    action(ActionId::Suspend, "suspend", "HOLD, then suspend to the shell (fg)", &[Key::Ctrl('z')], &[Context::Anywhere]).does(|m| [hold_now(m), vec![Effect::Suspend]].concat()),
+    action(ActionId::Suspend, "suspend", "HOLD, then suspend to shell (fg: back)", &[Key::Ctrl('z')], &[Context::Anywhere]).does(|m| [hold_now(m), vec![Effect::Suspend]].concat()),
 ];

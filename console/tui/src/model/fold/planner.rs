@@ -63,7 +63,7 @@ impl Run {
                         .is_some_and(|about| about.mission.better_plan == BetterPlan::Take);
                     self.planning.offer = Some(Offer { flown, better, begins, is_taken });
                     let next = if is_taken {
-                        "will be taken automatically at its first point"
+                        "will be taken automatically where it begins"
                     } else {
                         "<take-plan>: take it"
                     };

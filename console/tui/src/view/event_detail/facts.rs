@@ -86,7 +86,7 @@ fn of_event(run: &Run, event: &Occurrence) -> Vec<Field> {
         EventKind::SpeedLimited { asked_m_per_s, sent_m_per_s, needs_m } => vec![
             ("requested", format!("{} m/s", text::number(*asked_m_per_s, 2))),
             ("sent", format!("{} m/s", text::number(*sent_m_per_s, 2))),
-            ("to stop", format!("{} from the requested speed", metres(*needs_m))),
+            ("to stop", format!("{} at the requested speed", metres(*needs_m))),
         ],
         EventKind::MediumKnown { medium, pressure_pa } => {
             vec![
@@ -159,7 +159,7 @@ fn of_planner(kind: &EventKind) -> Vec<Field> {
                 ("from, to", ends.join(" to ")),
             ];
             if *return_path > 0 {
-                facts.push(("return path", format!("after {return_path} points along the tether")));
+                facts.push(("return path", format!("the first {return_path} points, along the tether")));
             }
             facts
         }
