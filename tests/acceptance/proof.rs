@@ -169,7 +169,14 @@ fn a_journal_of_another_version_is_refused_by_every_command_that_reads_it() {
         let at = text.find("\"journal_version\":").unwrap() + "\"journal_version\":".len();
         let end = at + text[at..].find(',').unwrap();
         change_journal(&run, &[&text[..at], &version.to_string(), &text[end..]].concat());
-        for command in [&["verify"][..], &["report"], &["export", "--mcap", "run.mcap"], &["events"]] {
+        let commands: [&[&str]; 5] = [
+            &["verify"],
+            &["report"],
+            &["export", "--mcap", "run.mcap"],
+            &["events"],
+            &["replay", "--script", "/dev/null"],
+        ];
+        for command in commands {
             let refused = bench.tankops(&[command, &[run.file_name().unwrap().to_str().unwrap()]].concat());
             assert_eq!(refused.code, Some(2), "{command:?} {refused:?}");
             let is_clear = refused.err.contains(&format!("the journal has version {version}"))

@@ -21,7 +21,7 @@ pub struct Scanned {
 }
 
 impl Scanned {
-    /// A floor of which nothing is scanned yet.
+    /// A floor on which nothing has been scanned yet.
     pub fn new(floor: Floor, tool: Tool, start: Pose) -> Self {
         let passes = Passes::new(&floor, tool);
         let truth = vec![false; floor.len()];

@@ -144,9 +144,10 @@ pub(crate) enum Command {
 }
 
 fn person(text: &str) -> Result<String, String> {
-    let is_name = !account::says_nothing(text) && foreign::unplain(text).is_none();
+    let is_one_line = !text.trim().contains(char::is_control);
+    let is_name = is_one_line && !account::says_nothing(text) && foreign::unplain(text).is_none();
     let name = is_name.then(|| text.trim().to_owned());
-    name.ok_or_else(|| "write the name of the person who takes responsibility".into())
+    name.ok_or_else(|| "write the name of the person who takes responsibility, on one line".into())
 }
 
 #[cfg(test)]

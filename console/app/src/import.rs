@@ -66,8 +66,8 @@ fn read(args: &ImportArgs, input: &Input) -> anyhow::Result<FloorPlan> {
     }
 }
 
-/// Explains why a floor does not make a valid scenario. Line numbers are left out, because they refer to a text that is
-/// not written.
+/// Explains why a floor does not make a valid scenario. Line numbers are left out, because they refer to scenario text that is
+/// never written to a file.
 fn no_scenario(errors: &ScenarioErrors) -> String {
     let told = errors.problems.iter().take(LISTED).map(|problem| {
         let help = problem.what.help().map(|help| format!("; {help}")).unwrap_or_default();

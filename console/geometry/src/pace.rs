@@ -45,7 +45,7 @@ impl Amphibious {
         }
     }
 
-    /// The larger of each limit in the two modes.
+    /// For each limit, the larger of its values in the two modes.
     ///
     /// ```
     /// use geometry::Amphibious;

@@ -28,7 +28,7 @@ pub fn readings(
         computed.extend(flight.tick(&recorded.orders(), &mut replayed));
         if recorded.difference(&computed).context("writing an event as JSON")?.is_some() {
             return Err(bad_input(format!(
-                "this tankops computes a different run from tick {} on, so its readings would not be \
+                "from tick {} on, this version of tankops computes a different run, so its readings would not be \
                  those of the run; `tankops verify` shows the difference: {}",
                 recorded.tick,
                 path.display()

@@ -18,7 +18,7 @@ use comfy_table::{
 };
 use recording::journal_of;
 use report::document::Recovered;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::path::{Path, PathBuf};
 
 /// A past run in a list.
@@ -39,6 +39,7 @@ pub struct Listed {
     /// Scanned share of the reachable floor.
     pub coverage_reachable: Option<f64>,
     /// Folder of the run.
+    #[serde(serialize_with = "shown")]
     pub folder: PathBuf,
     /// What is wrong with the run; absent if nothing is wrong.
     pub note: Option<String>,
@@ -77,6 +78,11 @@ pub fn table(runs: &[Listed]) -> String {
         column.set_padding((0, 2)).set_cell_alignment(if is_number { Right } else { Left });
     }
     table.trim_fmt() + "\n"
+}
+
+/// A path as text; bytes that are not UTF-8 become `\u{fffd}`, so that one folder does not make the list unreadable.
+fn shown<S: Serializer>(path: &Path, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str(&path.to_string_lossy())
 }
 
 fn cells(run: &Listed) -> [String; 4] {
@@ -175,5 +181,18 @@ fn by_journal(folder: &Path, doubt: Option<&str>, failure: Option<String>, budge
         (None, None, None) => {
             listed(folder, "CRASHED", Some(&summary), with(&format!("killed; {}", held(&summary))))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::{ffi::OsStr, os::unix::ffi::OsStrExt};
+
+    #[test]
+    fn a_folder_whose_name_is_not_text_is_listed_as_json() {
+        let folder = Path::new(OsStr::from_bytes(b"logs/run\xff"));
+        let json = serde_json::to_value(listed(folder, "CRASHED", None, None)).expect("it is listed");
+        assert_eq!(json["folder"], "logs/run\u{fffd}");
     }
 }

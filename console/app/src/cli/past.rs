@@ -85,7 +85,7 @@ pub(crate) struct ReportArgs {
     pub indications: Option<PathBuf>,
     /// Sign the report (.html): every item of the gate must be answered. A signed report never changes; the next report
     /// is a new revision.
-    #[arg(long, value_name = "NAME", requires = "output")]
+    #[arg(long, value_name = "NAME", requires = "output", value_parser = super::person)]
     pub sign: Option<String>,
     /// Overwrite existing files, but never a signed report.
     #[arg(long, requires = "output", conflicts_with = "sign")]

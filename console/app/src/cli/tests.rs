@@ -7,6 +7,14 @@ fn the_command_line_is_consistent() {
 }
 
 #[test]
+fn a_person_has_a_name_on_one_line() {
+    assert_eq!(person(" L. O'Brien-Söns ").as_deref(), Ok("L. O'Brien-Söns"));
+    for nobody in ["", " ", "a\nb", "a\tb", "\u{1b}[31mred", "\u{202e}name", "-"] {
+        assert!(person(nobody).is_err(), "{nobody:?}");
+    }
+}
+
+#[test]
 fn the_help_of_every_command_is_as_reviewed() {
     let mut command = Cli::command().term_width(100);
     let mut help = vec![command.render_long_help().to_string()];

@@ -145,14 +145,14 @@ fn residuals(args: &LocateArgs, scenario: &Scenario, survey: &Survey) -> Vec<Str
         let fits =
             speed.map_or_else(String::new, |speed| format!("; a speed of sound of {speed:.1} m/s fits"));
         lines.push(format!(
-            "all ranges are {long} by {percent:.2} ± {sigma:.2} %{fits}: no fix is ok; correct the speed of \
+            "all ranges are {long} by {percent:.2} ± {sigma:.2} %{fits}: none of the fixes is ok; correct the speed of \
              sound, or estimate it with --find sound-speed"
         ));
     }
     if let Some(offset) = survey.verdict.offset_m.filter(|offset| offset.is_proven) {
         let long = if offset.value > 0.0 { "too long" } else { "too short" };
         lines.push(format!(
-            "all ranges are {long} by {:.3} ± {:.3} m: no fix is ok; correct the clocks or the height of the \
+            "all ranges are {long} by {:.3} ± {:.3} m: none of the fixes is ok; correct the clocks or the height of the \
              sensors, or estimate the offset with --find clock-offset",
             offset.value.abs(),
             offset.sigma
@@ -170,7 +170,7 @@ fn residuals(args: &LocateArgs, scenario: &Scenario, survey: &Survey) -> Vec<Str
     for (id, wrong) in survey.verdict.stations.iter().filter(|(_, wrong)| wrong.is_proven) {
         let long = if wrong.value > 0.0 { "too long" } else { "too short" };
         lines.push(format!(
-            "the ranges of station {} are {long} by {:.3} ± {:.3} m: no fix is ok; correct its position in the \
+            "the ranges of station {} are {long} by {:.3} ± {:.3} m: none of the fixes is ok; correct its position in the \
              scenario, its clock or its threshold, or leave out its rows",
             name_of(scenario, id.0),
             wrong.value.abs(),

@@ -21,7 +21,7 @@ impl Answers {
         !self.awaited.is_empty()
     }
 
-    /// The reason of the first refusal.
+    /// The reason for the first refusal.
     pub(super) fn refusal(&self) -> Option<&str> {
         self.refused.as_deref()
     }

@@ -11,7 +11,7 @@ use ratatui::text::Line;
 
 /// Maximum number of rows for a fault.
 const FAULT_ROWS: usize = 2;
-/// Width from which labels are full words, columns.
+/// Minimum width, in columns, at which labels are written out in full.
 const WIDE: usize = 40;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {

@@ -1,7 +1,7 @@
 //! A plan for all that is left, made while a repaired one is flown.
 
 use super::{
-    super::preparing::Role,
+    super::role::Role,
     arrivals::replay,
     covering::{covered, covering},
     *,

@@ -159,9 +159,9 @@ fn summary(block: &Block<'_>, all: &[Measured]) -> Vec<Row> {
             .note("largest amount by which the speed in any step exceeds the limit at that moment"),
         block.row("overspeed_rate", share(|one| one.overspeed_m_per_s > 0.0), "", n),
         block.row("plan_time_ms", of_all(|one| one.plan_time_ms).mean(), "ms", n),
-        block
-            .row("step_time_us", step_times.median(), "us", n)
-            .note("time of the plan divided by its steps, including the call across the plugin boundary"),
+        block.row("step_time_us", step_times.median(), "us", n).note(
+            "planning time divided by the number of steps, including the call across the plugin boundary",
+        ),
     ]
 }
 

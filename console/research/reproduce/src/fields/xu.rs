@@ -34,7 +34,7 @@ const PRINTED_N16: &str = "eq. 4 near the goal as printed with n = 16; the paper
                            one, so the table does not decide between this and log2(1/rho + 1); the text \
                            describes a force that grows at the goal, which favours the latter";
 const OURS: &str = "ours: not in the paper";
-const NO_SHIFT: &str = "layout placed so that the classical field stops near the printed place; no \
+const NO_SHIFT: &str = "the obstacle is placed so that the classical field stops near the printed place; no \
                         interpretation that we tried gives the printed shift from APF to TAPF (+0.3, \
                         -0.3)";
 
@@ -188,7 +188,7 @@ fn left_open(case: &str) -> Option<&'static str> {
              gives a path of 98.41 m (+11 %)"
         }
         "table2" => {
-            "layout placed and step size of 0.0071 m chosen to match the printed figures. The paper states \
+            "the position of the trap and the step size, 0.0071 m, were chosen to match the printed figures. The paper states \
              neither the side of the detour, nor the distance in front of the seal, nor the oscillation \
              rule: an independent implementation with other choices takes 17,030 steps (12.7 % more than \
              printed; ours 1.4 % fewer), so agreement within about 15 % confirms nothing"

@@ -13,8 +13,8 @@ use ratatui::text::Line;
 use ratatui::widgets::canvas::Context;
 use world::{Boundary, Point, ZoneKind};
 
-/// The maximum number of missed areas that are numbered on the map: if the whole tank is shown, and if only a part of
-/// the tank is shown.
+/// The maximum number of missed areas that are numbered on the map: first when the whole tank is shown, then when only
+/// a part of it is.
 const MISSED: (usize, usize) = (9, 99);
 /// The number of segments in a round wall.
 const WALL_PIECES: u32 = 256;
