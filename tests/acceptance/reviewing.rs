@@ -57,7 +57,7 @@ fn two_runs_are_compared_from_the_command_line() {
     let bench = Bench::new();
     let (one, other) = (flown(&bench, "3"), flown(&bench, "4"));
     let script = "wait until text \"aligned by time\" within 30s\nkey T\nwait until text \"path share\" within 5s\n\
-                  key D\nreview\nwait until text \"same scenario, other seed, same planner\" within 30s\nassert text \"A-B\"\n";
+                  key D\nreview\nwait until text \"same scenario, different seed, same planner\" within 30s\nassert text \"A-B\"\n";
     let ended = replayed(&bench, &[name(&one), "--compare", name(&other)], script);
     assert_eq!(ended.code, Some(0), "{ended:?}");
 }

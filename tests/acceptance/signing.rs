@@ -83,7 +83,11 @@ fn a_signature_is_missed_where_its_list_was_deleted_and_a_run_where_another_took
     std::fs::remove_file(&list).unwrap();
     assert_refused(&sign(&bench, &run, "b.html"), "was signed as revision A by L. Kern");
     let draft = bench.tankops(&["report", run.to_str().unwrap(), "-o", "draft.json"]);
-    assert!(draft.out.contains("WARNING: run ") && draft.out.contains("signatures says"), "{draft:?}");
+    assert!(
+        draft.out.contains("WARNING: run ")
+            && draft.out.contains("signatures, but its signed.json is missing"),
+        "{draft:?}"
+    );
     std::fs::write(&list, &kept).unwrap();
 
     let renamed = run.with_file_name("20300101T000000Z-cover-circle-tether-safe-1");

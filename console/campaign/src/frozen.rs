@@ -315,7 +315,7 @@ pub(crate) mod tests {
         }
         assert!(refused("\"block\":7", "\"block\":0").contains("no missions, or more"));
         assert!(refused("\"first\":10", "\"first\":18446744073709551615").contains("no missions, or more"));
-        assert!(refused("[\"x\",0.5],", "[\"x\"],").contains("has not 2 values"));
+        assert!(refused("[\"x\",0.5],", "[\"x\"],").contains("does not have 2 values"));
         assert!(refused("\"text\":\"\"", "\"text\":\" \"").contains("the text of scenario a does not match"));
         assert!(refused("[\"x\",0.5]", "[\"x\",0.7]").contains("its SHA-256 does not match"));
         assert!(refused("\"first\":10", "\"first\":11").contains("its SHA-256 does not match"));

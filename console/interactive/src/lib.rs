@@ -34,6 +34,7 @@ use foreground::Foreground;
 use inbox::{Outbox, RunOutbox, inbox};
 use line::Current;
 use planner_host::PluginDirs;
+use recording::{JournalError, Ticks, journal_of};
 use runs::check_logs;
 use scenario::{Scenario, Settings};
 use screen::{Left, Screen};
@@ -204,7 +205,11 @@ enum Opening {
 impl Opening {
     fn of(Options { scenario, settings, logs, view, replay, .. }: &Options) -> anyhow::Result<Self> {
         if let Some(Replay { run, with }) = replay {
-            let name = |run: &PathBuf| anyhow::Ok(named(&runs::find(run, logs)?, logs));
+            let name = |run: &PathBuf| {
+                let folder = runs::find(run, logs)?;
+                check_version(&folder)?;
+                anyhow::Ok(named(&folder, logs))
+            };
             return Ok(Self::Replay { run: name(run)?, with: with.as_ref().map(name).transpose()? });
         }
         if let Some(run) = view {
@@ -217,6 +222,14 @@ impl Opening {
         check_logs(logs)?;
         let flight = Flight::for_operator(&scenario);
         Ok(Self::Mission(source, Box::new((scenario, flight))))
+    }
+}
+
+/// Refuses a run whose journal has a different version: a replay has nothing to show of it.
+fn check_version(folder: &Path) -> anyhow::Result<()> {
+    match Ticks::open(&journal_of(folder)) {
+        Err(error @ JournalError::OtherVersion { .. }) => Err(error.into()),
+        _ => Ok(()),
     }
 }
 

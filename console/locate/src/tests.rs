@@ -297,7 +297,7 @@ fn what_is_no_text_ends_the_reading_even_where_bad_rows_are_left_out() {
         "{message}"
     );
     let long = ["t_s,station,range_m\n".as_bytes(), &vec![b'1'; 200_000]].concat();
-    assert!(refused(&long).contains("a line of more than 65,536 bytes"), "{}", refused(&long));
+    assert!(refused(&long).contains("a line has more than 65,536 bytes"), "{}", refused(&long));
 }
 
 #[test]

@@ -514,8 +514,8 @@ fn a_layer_that_was_named_is_not_asked_for_again() {
     let line = "0 LINE,8 0,10 0,20 0,11 1,21 1";
     assert_eq!(
         with_layers(&[(Role::Shell, "0")], line).unwrap_err(),
-        "d.dxf: no circle and no closed outline on the layer 0 that is named for SHELL; draw the inner side of the shell \
-         there, or name another layer; layers: `0` (1 LINE)"
+        "d.dxf: no circle or closed outline on the layer 0 assigned to SHELL; draw the inner side of the shell \
+         there, or name a different layer; layers: `0` (1 LINE)"
     );
     let plan = with_layers(
         &[(Role::Columns, "POSTS")],

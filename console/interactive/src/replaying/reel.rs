@@ -3,7 +3,7 @@
 use anyhow::Context;
 use mission::Event;
 use recording::{
-    JournalError, JournalPlace, JournalReader, Ticks,
+    JournalPlace, JournalReader,
     ahead::{self, Giver, Taker},
     journal_of,
 };
@@ -78,10 +78,6 @@ impl Reel {
         report: impl Fn(tui::model::replay::Reel) -> bool + Send + 'static,
     ) -> anyhow::Result<Arc<Self>> {
         let journal = journal_of(folder);
-        // A journal of a different version is refused here: there is nothing of it to show.
-        if let Err(error @ JournalError::OtherVersion { .. }) = Ticks::open(&journal) {
-            return Err(error.into());
-        }
         let reader = JournalReader::open(&journal)?;
         let place = reader.place();
         let bytes = std::fs::metadata(&journal).map_or(0, |file| file.len());

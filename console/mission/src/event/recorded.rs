@@ -184,7 +184,7 @@ mod tests {
             recorded(2, &[leg(0, 2), leg(1, 4)]),
             Err("the planner in the journal gave a leg that begins on the return path".into())
         );
-        assert!(recorded(0, &[leg(0, 5)]).unwrap_err().ends_with("to 5 of a path of 5 points"));
+        assert!(recorded(0, &[leg(0, 5)]).unwrap_err().ends_with("to 5 in a path of 5 points"));
         assert!(recorded(usize::MAX, &[leg(0, 0), leg(1, 2)]).is_err());
         assert!(recorded(9, &[leg(0, 9), leg(9, 9)]).is_err());
     }

@@ -98,7 +98,7 @@ fn an_entry_of_a_broken_header_is_refused() {
          TP_EXPORT const tp_entry tank_planner_entry = {{ TP_MAGIC, 1, 0, 12, 1, list, TP_STR(\"C\") }};\n"
     );
     let (_folder, dirs) = folder_with("small", &source);
-    assert!(refusal(&dirs).starts_with("its entry has 12 bytes, ABI 1.4 needs 48"));
+    assert!(refusal(&dirs).starts_with("its entry has 12 bytes, but ABI 1.4 needs 48"));
     let (_folder, dirs) = folder_with("null", &source.replace(" 12,", " sizeof(tp_entry),"));
     assert_eq!(refusal(&dirs), "planner number 0 is null");
 }

@@ -64,10 +64,10 @@ fn a_line_that_is_there_millions_of_times_is_refused_within_its_tick() {
 fn zeros_without_end_are_refused_by_every_reader() {
     let block = vec![0; 1 << 20];
     let (_folder, path) = packed(std::iter::repeat_n(&block, 300));
-    assert_eq!(refused(&path, "contain more than"), 0);
+    assert_eq!(refused(&path, "unpack to more than"), 0);
     let (_folder, path) =
         packed([lines(1)[0].clone().into_bytes()].iter().chain(std::iter::repeat_n(&block, 300)));
-    assert_eq!(refused(&path, "contain more than"), 1);
+    assert_eq!(refused(&path, "unpack to more than"), 1);
     assert!(events_sha256(&path).is_err_and(|error| error.to_string().contains("more than any run writes")));
     assert!(read_ending(&path).is_err());
 }

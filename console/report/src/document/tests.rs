@@ -428,7 +428,7 @@ fn a_run_that_was_not_there_to_scan_missed_no_floor_in_any_format() {
     let follow = TaskConfig::Follow { path, tolerance_m: 0.2 };
     let goto = TaskConfig::Goto { goal: Point::new(1.0, 1.0), tolerance_m: 0.1 };
     for (task, figures) in [
-        (follow, ["preset path of 2 points, 3.5 m", "preset_path_m,3.5"]),
+        (follow, ["preset path of 2 points (3.5 m)", "preset_path_m,3.5"]),
         (goto, ["goal at 1.00, 1.00 m", "straight_to_goal_m,2.926"]),
     ] {
         let mut run = round_tank(0.1);

@@ -268,7 +268,7 @@ mod tests {
             ),
             (
                 &[("end", &[Key::Char(' ')])],
-                "0: \"space\" is too easy to press by accident for an action that ends the mission; take a capital letter, F key or \
+                "0: \"space\" is too easy to press by accident for an action that ends the mission; use a capital letter, F key or \
                  Ctrl; end keeps \"X\"",
             ),
             (&[("redraw", &[Key::Ctrl('c')])], "0: \"Ctrl-C\" is already interrupt; redraw keeps \"Ctrl-L\""),

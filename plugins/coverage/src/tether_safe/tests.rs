@@ -326,8 +326,7 @@ fn no_lane_leads_through_a_gap_that_counts_as_closed() {
 fn a_room_that_is_too_large_is_refused_with_the_size_that_can_be_planned() {
     let (plan, bench) = plan(&room(Vec::new(), 12.0), &[], None);
     let error = plan.unwrap_err();
-    let message =
-        "the floor of 8064 m² between walls is too large: at lanes of 0.60 m at most 4800 m² can be planned";
+    let message = "the floor of 8064 m² between walls is too large: with lanes of 0.60 m at most 4800 m² can be planned";
     assert!(error.code == Code::Config && error.message.starts_with(message), "{error}");
     assert!(bench.progress().is_empty(), "before any work");
 }

@@ -99,7 +99,7 @@ fn a_closed_ring_is_proved_to_be_closed() {
         .collect();
     let error = asked((-6.0, 0.0), (0.0, 0.0), &site(&obstacles, &[])).unwrap_err();
     assert_eq!(error.code, Code::NoPath);
-    assert!(error.message.starts_with("proved: there is no way"), "{}", error.message);
+    assert!(error.message.starts_with("proved: there is no path"), "{}", error.message);
 }
 
 #[test]

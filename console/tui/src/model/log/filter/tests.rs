@@ -71,7 +71,7 @@ fn what_is_not_understood_is_marked_and_explained_and_filters_nothing() {
         ("sev=", "info, watch, warn or crit"),
         ("source=", "source=ae,tether"),
         ("source>ae", "source takes only ="),
-        ("t=5", "t takes < <= > >="),
+        ("t=5", "t takes only < <= > >="),
         ("t>soon", "hh:mm"),
         ("t>1:2:3:4", "hh:mm"),
         ("t>inf", "hh:mm"),
