@@ -126,7 +126,7 @@ fn a_faulty_binding_names_both_places_and_keeps_the_key() {
         ),
         (
             "[keys]\nstart = [\"s\"]\n",
-            "keys.toml:2:10: \"s\" is too easy to press by accident for an action that moves the robot; take a capital letter, F key or \
+            "keys.toml:2:10: \"s\" is too easy to press by accident for an action that moves the robot; use a capital letter, F key or \
              Ctrl; start keeps \"S\""
                 .to_owned(),
         ),
