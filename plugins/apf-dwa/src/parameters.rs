@@ -79,7 +79,7 @@ const VELOCITY: ParamSpec = float("weight_velocity", "Speed weight", "", 0.0, 10
 const STEP_S: ParamSpec = float("step_s", "Step", "s", 0.01, 1.0, 0.1)
     .help("Length of a step when planning; Table 2 of the paper has 0.1 s.")
     .group("Plan");
-const STEPS: ParamSpec = int("steps_max", "Maximum steps", "", 0, 50_000, 0)
+const STEPS: ParamSpec = int("steps_max", "Maximum steps", "", 0, 20_000, 0)
     .help("Largest number of steps in a plan; 0: derived from the length of the trip.")
     .group("Plan");
 
