@@ -51,7 +51,7 @@ pub struct Inspection {
     pub station_check: Option<String>,
     /// Speed of sound in metres per second, and its source: product and temperature, or a measurement.
     pub sound_speed: Option<String>,
-    /// A statement that there are no indications, or a reference to where they are reported.
+    /// A statement that nothing was indicated, or a reference to the report of the indications.
     pub indications: Option<String>,
     /// The person who reviewed alarms, holds and faults.
     pub events_reviewed_by: Option<String>,

@@ -24,7 +24,7 @@ pub struct Comparison {
 /// Paired missions of one group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Group {
-    /// The common value of the group; `all` if there are no groups.
+    /// The common value of the group; `all` without groups.
     pub name: String,
     /// Mean in the first table.
     pub first: Mean,

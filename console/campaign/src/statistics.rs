@@ -20,7 +20,7 @@ pub struct Share {
 }
 
 impl Share {
-    /// The share of `hits` in `n` cases; if there are no cases, the interval is 0 to 1.
+    /// The share of `hits` in `n` cases; without cases, the interval is 0 to 1.
     pub fn of(hits: u64, n: u64) -> Self {
         if n == 0 {
             return Self { hits, n, low: 0.0, high: 1.0 };
@@ -33,7 +33,7 @@ impl Share {
         Self { hits, n, low: (middle - half).clamp(0.0, p), high: (middle + half).clamp(p, 1.0) }
     }
 
-    /// The share itself; `None` if there are no cases.
+    /// The share itself; `None` without cases.
     pub fn share(&self) -> Option<f64> {
         (self.n > 0).then(|| self.hits as f64 / self.n as f64)
     }

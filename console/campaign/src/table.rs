@@ -368,7 +368,7 @@ impl Table {
         self.rows.num_rows()
     }
 
-    /// Whether there are no rows.
+    /// Whether the table is empty.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

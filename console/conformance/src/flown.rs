@@ -21,7 +21,7 @@ pub(crate) struct Flown {
     /// The number of threads left running between the last calls; absent if there were none or the system does not
     /// report it.
     pub(crate) threads_left: Option<u32>,
-    /// How the planner ended when it was no longer needed; absent if it ended cleanly.
+    /// The fault with which the planner ended; absent if it ended cleanly.
     pub(crate) bad_end: Option<String>,
     /// The first fault of a kind that a correct planner never has.
     pub(crate) misbehaved: Option<String>,

@@ -8,16 +8,16 @@ use world::{
     ShellStretch, ShellZone, SweptArea, Tool, ZoneKind, tether::Reach,
 };
 
-/// A plan is drawn on the floor in pieces that are no longer than this, metres.
+/// Maximum length of the pieces in which a plan is drawn on the floor, metres.
 const PIECE_M: f64 = 0.5;
-/// The error stored for a cell over which there was no uncounted pass.
+/// The error stored for a cell that no uncounted pass covers.
 const NEVER: u16 = u16::MAX;
 /// The zone index of a cell that no zone made unreachable.
 const OF_NONE: u16 = u16::MAX;
 /// Distances along a plan that differ by less count as equal, metres.
 const NEARLY_M: f64 = 0.01;
 
-/// A record of what was planned and done, cell by cell.
+/// A cell-by-cell record of the plan and its execution.
 #[derive(Debug, Clone)]
 pub struct Evidence {
     grid: Floor,

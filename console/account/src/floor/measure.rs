@@ -53,7 +53,7 @@ impl Measure {
 }
 
 /// The largest distance of some cells from the edge of the reference cells around them, metres. The distance is at
-/// least one cell; `None` if there are no reference cells.
+/// least one cell; `None` without reference cells.
 pub(crate) fn depth_m(floor: &Floor, cells: &[usize], is_other: impl Fn(usize) -> bool) -> Option<f64> {
     // Each cell takes over the nearest reference cell of a neighbour that is closer to a reference cell: almost
     // exact, in linear time.

@@ -25,7 +25,7 @@ pub struct CriticalZone {
     /// Length of shell along which the full width of the zone was scanned, metres.
     #[serde(default)]
     pub done_m: f64,
-    /// Scanned share of the zone's area, 0 to 1; absent if there is no free floor at the shell.
+    /// Scanned share of the zone's area, 0 to 1; absent if the shell has no free floor beside it.
     pub scanned: Option<f64>,
     /// Median distance from the shell to the edge of the scanned floor, taken over the stretches where the zone is not
     /// done, metres; the width of the zone if none of it was scanned.
