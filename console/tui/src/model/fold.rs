@@ -118,6 +118,9 @@ impl Run {
             | EventKind::Snapshotted { .. }
             | EventKind::Discarded { .. }
             | EventKind::SpeedLimited { .. }
+            | EventKind::ReturnBegan { .. }
+            | EventKind::ZoneBreached { .. }
+            | EventKind::ZoneLeft { .. }
             | EventKind::MediumAwaited
             | EventKind::MediumKnown { .. }
             | EventKind::PlannerLogged { .. }

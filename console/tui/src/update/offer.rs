@@ -183,6 +183,7 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         Refusal::AlreadyStarted
         | Refusal::AlreadyMoving
         | Refusal::StepNeedsHold
+        | Refusal::BackNeedsHold
         | Refusal::SwapNeedsHold => Some("<hold>: HOLD"),
         Refusal::Ended(_) => Some("<home> opens another scenario"),
         Refusal::NoShadow => Some(":shadow NAME runs one"),
@@ -194,6 +195,8 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         | Refusal::RangesInconsistent
         | Refusal::NoPlanRefused
         | Refusal::NoOffer
+        | Refusal::OfferAccepted
+        | Refusal::DrivingBack
         | Refusal::ShadowNotReady { .. } => None,
     }
 }

@@ -152,7 +152,7 @@ fn asked(model: &Model) -> Option<Vec<String>> {
             let begins = offer.and_then(|offer| offer.begins).map_or_else(|| "-".into(), text::place);
             vec![
                 "Take the better plan? <accept>: take, <cancel>: cancel.".into(),
-                format!("It saves {saves}."),
+                format!("It is {saves}."),
                 format!("It begins at {begins}, without a hold."),
             ]
         }

@@ -237,6 +237,7 @@ fn held_for_good(by: &HoldReason) -> Vec<String> {
             (state(by), &[RESUME, PLANNER])
         }
         HoldReason::Tether { .. } => (state(by), &[RESUME, "<end>: end mission."]),
+        HoldReason::ZoneBreached { .. } => (state(by), &[RESUME, "<end>: end mission."]),
         HoldReason::PlanRefused { .. } => (state(by), &[PLANNER, ":fly-uncertified runs it."]),
         HoldReason::PlannerFault { .. } | HoldReason::Stuck { .. } => (state(by), &[PLANNER, RETRY]),
     };
@@ -254,6 +255,7 @@ fn state(by: &HoldReason) -> &'static str {
         HoldReason::Stuck { .. } => "HELD: robot stuck",
         HoldReason::Tether { .. } => "HELD: tether alarm",
         HoldReason::PlanRefused { .. } => "HELD: plan refused",
+        HoldReason::ZoneBreached { .. } => "HELD: hull in a no-go zone",
         HoldReason::PlannerSilent { .. } => "HELD: planner silent",
         HoldReason::PlannerFault { .. } => "HELD: planner failed",
     }

@@ -2,7 +2,10 @@
 
 use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};
-use mission::{AskId, BetterPlan, EventKind, Order, WorkerId, event::Effort};
+use mission::{
+    AskId, BetterPlan, EventKind, Order, WorkerId,
+    event::{Effort, OfferEnd, OfferStage},
+};
 use tui::{Effect, Key, RunMsg};
 use world::Point;
 
@@ -24,6 +27,7 @@ fn better_plan(objection: Option<String>) -> EventKind {
         cuts: Vec::new(),
         flown: FLOWN,
         better: BETTER,
+        scans: None,
         objection,
     }
 }
@@ -39,8 +43,9 @@ fn shown_at(screen: &Screen, size: (u16, u16)) -> String {
 }
 
 fn dropped() -> EventKind {
-    let why = "the robot has passed the place where it begins".into();
-    EventKind::BetterPlanDropped { planner: "rpf".into(), why }
+    let (stage, reason) = (Some(OfferStage::Offered), OfferEnd::Passed);
+    let why = reason.to_string();
+    EventKind::BetterPlanDropped { planner: "rpf".into(), why, stage, reason: Some(reason) }
 }
 
 #[test]

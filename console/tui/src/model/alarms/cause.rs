@@ -96,6 +96,7 @@ impl Cause {
             HoldReason::Stuck { .. } => Some(Self::Stuck),
             HoldReason::PlanRefused { .. } => Some(Self::Certificate),
             HoldReason::Tether { .. }
+            | HoldReason::ZoneBreached { .. }
             | HoldReason::Operator
             | HoldReason::Stepped
             | HoldReason::PlannerReplaced => None,

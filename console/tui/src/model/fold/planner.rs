@@ -68,7 +68,7 @@ impl Run {
                         "<take-plan>: take it"
                     };
                     let saving = better.saving(&flown);
-                    change.say(Severity::Watch, format!("better plan saves {saving}; {next}"));
+                    change.say(Severity::Watch, format!("better plan: {saving}; {next}"));
                 }
             }
             EventKind::BetterPlanTaken { .. } => {
