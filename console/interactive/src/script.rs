@@ -101,6 +101,9 @@ impl Script {
         engine: &Current,
     ) -> anyhow::Result<Result<(), String>> {
         watch::signals(outbox, engine.clone(), Foreground::new())?;
+        let mut session = session;
+        // A script decides about a better plan without reading it.
+        session.model.console.preferences.slows_for_offers = false;
         let mut runner = Runner { session, answers: Answers::default(), is_left: false };
         runner.session.take(Msg::Resize { width: SIZE.0, height: SIZE.1 });
         Ok(runner.carry_out(&self))
