@@ -166,7 +166,7 @@ fn keys_typed_ahead_of_a_question_do_not_answer_it() {
     session.see("Question just appeared: press Enter again");
     session.see("‖ HOLD");
     session.press("\x1b");
-    session.until("the closed question", |session| !session.text().contains("End the mission?"));
+    session.until("the closed question", |session| !session.text().contains("Enter: end"));
     session.press(" \r");
     session.see("Question just appeared: press Enter again");
     session.see("Resume?");
@@ -221,7 +221,7 @@ fn a_light_background_gets_the_light_theme_and_a_late_answer_is_no_key() {
     assert!(has(&session, b"\x1b]11;?") && has(&session, light), "{}", session.text());
     session.send(answer);
     session.press("4");
-    session.see("No alarms");
+    session.see("No open alarms");
     session.press("1q");
     assert_eq!(session.back_in_the_shell(), "code=0");
 }

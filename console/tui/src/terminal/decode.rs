@@ -70,7 +70,7 @@ const INTERRUPT: u8 = 0x03;
 /// A lone Esc is a key if nothing follows within this time.
 const LONE_ESC: Duration = Duration::from_millis(50);
 /// A sequence has broken off if nothing follows within this time.
-const BROKEN_OFF: Duration = Duration::from_secs(1);
+const BROKEN_OFF: Duration = Duration::from_millis(300);
 /// The greatest length of a paste in bytes; what follows is dropped.
 const LONGEST_PASTE: usize = 1 << 16;
 /// The end of a paste.
