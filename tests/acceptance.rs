@@ -69,6 +69,8 @@ mod script;
 mod session;
 #[path = "acceptance/shadow.rs"]
 mod shadow;
+#[path = "acceptance/shift.rs"]
+mod shift;
 #[path = "acceptance/signing.rs"]
 mod signing;
 #[cfg(target_os = "linux")]

@@ -226,3 +226,17 @@ fn a_planner_that_cannot_be_opened_blocks_the_start_and_another_one_flies() {
     session.finish();
     session.bench.prove(&session.run());
 }
+
+#[test]
+fn a_mission_with_long_ticks_that_runs_slowly_starts() {
+    let bench = crate::bench::Bench::new();
+    let script = bench.file(
+        "mission.txt",
+        "start\nkey enter\nwait until phase running within 2m\nend\nkey enter\nwait until phase aborted\n",
+    );
+    let goto = scenario("goto-single-obstacle.toml");
+    let words = ["console", goto.to_str().unwrap(), "--set", "mission.tick_s=0.5", "--speed", "0.25", "--script"];
+    let ended = bench.tankops(&[&words[..], &[script.to_str().unwrap()]].concat());
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    bench.prove(&bench.runs()[0]);
+}

@@ -103,8 +103,20 @@ impl Session {
     }
 
     pub(crate) fn press(&mut self, keys: &str) {
-        self.keys.write_all(keys.as_bytes()).unwrap();
+        self.send(keys.as_bytes());
+    }
+
+    /// Sends bytes in one write.
+    pub(crate) fn send(&mut self, bytes: &[u8]) {
+        self.keys.write_all(bytes).unwrap();
         self.keys.flush().unwrap();
+    }
+
+    /// Answers a question that is on the screen with Enter. A question must be read before it can be answered, and
+    /// Enter immediately after Enter would count as a key that is held down.
+    pub(crate) fn agree(&mut self) {
+        std::thread::sleep(Duration::from_millis(400));
+        self.press("\r");
     }
 
     /// Presses a key until the screen shows a word; on a busy machine the search for planners may still be running.
@@ -136,7 +148,7 @@ impl Session {
         self.see("Press S to start");
         self.press("S");
         self.see("Enter: start, Esc: cancel.");
-        self.press("\r");
+        self.agree();
     }
 
     /// Holds the robot.
@@ -149,7 +161,7 @@ impl Session {
     pub(crate) fn resume(&mut self) {
         self.press(" ");
         self.see("Resume?");
-        self.press("\r");
+        self.agree();
         self.see("▶ RUN");
     }
 
@@ -158,9 +170,7 @@ impl Session {
         self.press_until("P", "coverage is kept");
         self.choose(id);
         self.see(&format!("Change planner to {id}?"));
-        // Enter immediately after Enter would count as a key that is held down.
-        std::thread::sleep(Duration::from_millis(400));
-        self.press("\r");
+        self.agree();
     }
 
     /// Flies the rest of the mission at high speed, and leaves the console.
@@ -178,7 +188,7 @@ impl Session {
     /// Confirms quitting a mission in progress, and returns the exit code.
     pub(crate) fn agree_to_leave(&mut self) -> String {
         self.see("Enter: quit");
-        self.press("\r");
+        self.agree();
         self.back_in_the_shell()
     }
 
@@ -213,6 +223,11 @@ impl Session {
         self.closed.store(true, Ordering::SeqCst);
         drop(self.master.take());
         self.keys = Box::new(std::io::sink());
+    }
+
+    /// Everything written to the terminal so far.
+    pub(crate) fn written(&self) -> Vec<u8> {
+        self.written.lock().unwrap().clone()
     }
 
     /// Whether the console took the whole screen at any time.

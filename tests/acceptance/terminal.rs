@@ -75,7 +75,7 @@ fn a_held_key_moves_nothing() {
         of_kind(&events, "ordered").iter().filter(|event| event["order"] == "step").count()
     };
     assert_eq!(steps(&session), 0);
-    session.press("\r");
+    session.agree();
     session.until("the step", |session| steps(session) == 1);
     session.press("\x1b");
     session.until("the closed line", |session| !session.text().contains("Step?"));
@@ -105,7 +105,7 @@ fn a_terminal_that_another_process_has_taken_is_taken_back_and_the_key_is_heard(
     session.hold();
     session.press("1q");
     session.see("Enter");
-    session.press("\r");
+    session.agree();
     assert_eq!(session.back_in_the_shell(), "code=1");
 }
 
@@ -133,13 +133,13 @@ fn a_small_terminal_keeps_the_controls() {
     session.press("S");
     // The question takes two lines here.
     session.see("Enter: start, Esc:");
-    session.press("\r");
+    session.agree();
     session.see("RUN");
     session.press(" ");
     session.see("HOLD");
     session.press("1q");
     session.see("Enter");
-    session.press("\r");
+    session.agree();
     assert_eq!(session.back_in_the_shell(), "code=1");
 }
 
@@ -150,4 +150,100 @@ fn quitting_before_the_start_leaves_no_run() {
     session.press("qq");
     assert_eq!(session.back_in_the_shell(), "code=0");
     assert!(session.bench.runs().is_empty());
+}
+
+#[test]
+fn keys_typed_ahead_of_a_question_do_not_answer_it() {
+    let mut session = Session::open(&goto(), 120, 36);
+    session.see("Press S to start");
+    session.press("S\r");
+    session.see("Question just appeared: press Enter again");
+    session.see("Enter: start, Esc: cancel.");
+    assert!(session.bench.runs().is_empty());
+    session.agree();
+    session.see("▶ RUN");
+    session.press("X\r");
+    session.see("Question just appeared: press Enter again");
+    session.see("‖ HOLD");
+    session.press("\x1b");
+    session.until("the closed question", |session| !session.text().contains("Enter: end"));
+    session.press(" \r");
+    session.see("Question just appeared: press Enter again");
+    session.see("Resume?");
+    let moved =
+        |session: &Session| kinds(&session.run()).iter().any(|kind| kind == "resumed" || kind == "ended");
+    assert!(!moved(&session));
+    session.agree();
+    session.until("the robot to move again", moved);
+    session.press("1q");
+    assert_eq!(session.agree_to_leave(), "code=1");
+}
+
+#[test]
+fn hold_is_heard_behind_whatever_the_terminal_sends() {
+    let mut session = Session::open(&goto(), 120, 36);
+    session.start();
+    for rubbish in [
+        &b"\x9d11;rgb:1234"[..],
+        b"\x1b[?",
+        b"\x1bP1$r",
+        b"\x1b_",
+        b"\xe2\x82",
+        b"\xff\xfe\x80",
+        b"\x1b[<0;3",
+        b"\x1b[200~S\r",
+    ] {
+        session.see("▶ RUN");
+        session.send(&[rubbish, b" "].concat());
+        session.see("‖ HOLD");
+        assert!(!session.text().contains("Resume?"), "{}", rubbish.escape_ascii());
+        // The sequence has broken off when a space is a key again.
+        session.press_until(" ", "Resume?");
+        session.agree();
+    }
+    session.see("▶ RUN");
+    session.send(b"\x1b[200~pasted \x03 text\x1b[201~");
+    session.see("‖ HOLD");
+    session.press("1q");
+    assert_eq!(session.agree_to_leave(), "code=1");
+}
+
+#[test]
+fn a_light_background_gets_the_light_theme_and_a_late_answer_is_no_key() {
+    let answer = b"\x1b]11;rgb:fdfd/f6f6/e3e3\x1b\\";
+    let light = b"\x1b[38;2;31;35;40";
+    let has =
+        |session: &Session, bytes: &[u8]| session.written().windows(bytes.len()).any(|part| part == bytes);
+    let mut session = Session::open(&format!("{} --colour true", goto()), 120, 36);
+    // The answer waits for the question.
+    session.send(answer);
+    session.see("Press S to start");
+    assert!(has(&session, b"\x1b]11;?") && has(&session, light), "{}", session.text());
+    session.send(answer);
+    session.press("4");
+    session.see("No open alarms");
+    session.press("1q");
+    assert_eq!(session.back_in_the_shell(), "code=0");
+}
+
+#[test]
+fn leaving_a_mission_prints_a_few_lines() {
+    let mut session = Session::open(&goto(), 100, 36);
+    session.start();
+    session.see("▶ RUN");
+    session.hold();
+    session.press("1q");
+    assert_eq!(session.agree_to_leave(), "code=1");
+    let text = session.text();
+    let printed =
+        text.lines().take_while(|line| !line.contains("SHELL-AGAIN")).filter(|line| !line.trim().is_empty());
+    assert!((4..=12).contains(&printed.count()), "{text}");
+    assert!(text.contains("Full report: tankops report 20"), "{text}");
+}
+
+#[test]
+fn a_terminal_that_cannot_draw_is_told_what_can_be_used() {
+    let bench = crate::bench::Bench::new();
+    let ended = bench.tankops(&["console"]);
+    assert!(ended.code == Some(2) && ended.err.contains("--plain"), "{ended:?}");
 }

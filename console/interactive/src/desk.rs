@@ -8,6 +8,7 @@ use super::{
     comparing::Comparing,
     engine::Engine,
     forecasting::Forecasting,
+    handover,
     inbox::{Outbox, RunOutbox},
     jobs,
     line::Current,
@@ -71,6 +72,8 @@ pub(super) enum Request {
     Look,
     /// Run a job on a past run.
     Do(Job),
+    /// Write a handover page.
+    HandOver { file: String, page: String, overwrite: bool },
     /// Close the open run and stop; do so quickly after a signal (`hurry`).
     Leave { hurry: bool },
 }
@@ -206,6 +209,9 @@ impl Desk {
                 Request::Look => self.look(),
                 Request::Combine(runs) => self.combine(runs),
                 Request::Do(job) => jobs::begin(job, &self.tools),
+                Request::HandOver { file, page, overwrite } => {
+                    handover::begin(file, page, overwrite, &self.tools.outbox);
+                }
                 Request::Leave { hurry } => {
                     self.close(hurry)?;
                     break;

@@ -9,6 +9,7 @@ mod desk;
 mod engine;
 mod forecasting;
 mod foreground;
+mod handover;
 mod history;
 mod inbox;
 mod jobs;
@@ -17,6 +18,7 @@ mod look;
 mod measure;
 mod pace;
 mod plain;
+mod reading;
 mod rebuilt;
 mod replaying;
 mod screen;
@@ -34,6 +36,7 @@ use foreground::Foreground;
 use inbox::{Outbox, RunOutbox, inbox};
 use line::Current;
 use planner_host::PluginDirs;
+use reading::{Frames, Reader};
 use recording::{JournalError, Ticks, journal_of};
 use runs::check_logs;
 use scenario::{Scenario, Settings};
@@ -47,8 +50,12 @@ use std::{
     process::ExitCode,
     sync::Arc,
     thread,
+    time::Duration,
 };
 use tui::{Caps, Colours, Glyphs, Model, Msg, RunId, Source, Speed, Transport, terminal};
+
+/// How long the screen waits for the terminal's answer about its background.
+const BACKGROUND_WITHIN: Duration = Duration::from_millis(100);
 
 /// The options for opening a console; `None` leaves the choice to `config.toml`, then to the terminal.
 #[derive(Debug)]
@@ -178,7 +185,11 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
     let ended = match script {
         Some(script) => script.run(session, &outbox, &current).map(Ended::Script),
         None if options.by == By::Lines => plain::speak(session, &outbox, &current).map(Ended::Left),
-        None => show(session, caps(options, &config), logs, (outbox, current), *drill).map(Ended::Left),
+        None => {
+            let caps = caps(options, &config);
+            let asks = config.theme.is_none() && caps.colours != Colours::None;
+            show(session, (caps, asks), logs, (outbox, current), *drill).map(Ended::Left)
+        }
     };
     // Close the run cleanly, whatever happened to the screen.
     let hurry = matches!(&ended, Ok(Ended::Left(left)) if left.signal.is_some());
@@ -254,14 +265,14 @@ fn check_terminal() -> anyhow::Result<()> {
         ));
     }
     if std::env::var("TERM").is_ok_and(|term| term == "dumb") {
-        return Err(bad_input("the console cannot draw with TERM=dumb; use `tankops run SCENARIO`"));
+        return Err(bad_input("the console cannot draw with TERM=dumb; use `tankops console --plain`"));
     }
     Ok(())
 }
 
 fn show(
     session: Session,
-    caps: Caps,
+    (caps, asks_background): (Caps, bool),
     logs: &Path,
     (outbox, current): (Outbox, Current),
     drill: Option<Drill>,
@@ -272,8 +283,14 @@ fn show(
         panic_outbox.send_urgent(panicked);
     });
     let places = watch::SharedPlaces::default();
-    let mut screen = Screen::open(caps, session, places.clone(), drill)?;
-    watch::keys(&outbox, current.clone(), places)?;
+    let frames = Frames::default();
+    let mut screen = Screen::open(caps, session, places.clone(), frames.clone(), drill)?;
+    let mut reader = Reader::new(frames);
+    if asks_background && let Some(background) = reader.background(BACKGROUND_WITHIN) {
+        screen.suit(background);
+    }
+    watch::keys(&outbox, current.clone(), reader, places)?;
+    watch::sizes(&outbox)?;
     let foreground = Foreground::new();
     watch::signals(&outbox, current.clone(), foreground.clone())?;
     watch::terminal(&outbox, current.clone(), foreground)?;

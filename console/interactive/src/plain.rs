@@ -18,7 +18,15 @@ use std::{
     },
     thread,
 };
-use tui::{Effect, Key, Model, Msg, Signal, plain::Said};
+use tui::{
+    Effect, Key, Model, Msg, Signal,
+    plain::{Said, no_question, status},
+};
+
+/// The lines that are not commands of the console.
+const STATUS: &str = "status";
+const YES: &str = "yes";
+const NO: &str = "no";
 
 /// Prints sentences until the operator leaves. The end of stdin holds the robot, ends the mission and leaves the
 /// console.
@@ -30,6 +38,7 @@ pub(super) fn speak(mut session: Session, outbox: &Outbox, engine: &Current) -> 
     let is_over = Arc::new(AtomicBool::new(false));
     let mut is_listening = false;
     let mut said = Said::default();
+    session.model.console.keys.spells_commands = true;
     loop {
         // Accept commands only once the scenario is open, because an operator would also wait to see the screen.
         if !is_listening && is_open(&session.model) {
@@ -42,7 +51,13 @@ pub(super) fn speak(mut session: Session, outbox: &Outbox, engine: &Current) -> 
         let msg = session.next(session.wakes_at());
         session.update_time();
         let Some(msg) = msg else { continue };
-        let effects = session.take(msg);
+        let effects = match answered(&session.model, &msg) {
+            Some(lines) => {
+                lines.iter().try_for_each(|line| say_line(line))?;
+                continue;
+            }
+            None => session.take(pressed(msg)),
+        };
         if let Some(fault) = fault(&session.model) {
             say_line(&fault)?;
             session.take(Msg::Key(Key::Esc.into()));
@@ -55,14 +70,32 @@ pub(super) fn speak(mut session: Session, outbox: &Outbox, engine: &Current) -> 
     }
 }
 
+/// The answer to a line that only concerns what is printed; `None` for any other message.
+fn answered(model: &Model, msg: &Msg) -> Option<Vec<String>> {
+    match msg {
+        Msg::Line(line) if line == STATUS => Some(status(model)),
+        Msg::Line(line) if line == YES || line == NO => Some(vec![no_question(model)?.to_owned()]),
+        _ => None,
+    }
+}
+
+/// The key for which `yes` or `no` stands.
+fn pressed(msg: Msg) -> Msg {
+    match msg {
+        Msg::Line(line) if line == YES => Msg::Key(Key::Enter.into()),
+        Msg::Line(line) if line == NO => Msg::Key(Key::Esc.into()),
+        msg => msg,
+    }
+}
+
 /// The fault in the last command.
 fn fault(model: &Model) -> Option<String> {
     let tui::model::Overlay::Commands(palette) = &model.ui.overlay else { return None };
     palette.fault.as_ref().map(|fault| format!("Refused: {}.", fault.what))
 }
 
-/// Reads commands from stdin: `yes` and `no` answer a question, `key NAME` presses a key, and everything else is a
-/// command line. `is_over` becomes true at the end of stdin.
+/// Reads commands from stdin: `yes` and `no` answer a question, `status` prints the state, `key NAME` presses a key, and
+/// everything else is a command line. `is_over` becomes true at the end of stdin.
 fn listen(outbox: &Outbox, is_over: Arc<AtomicBool>) -> anyhow::Result<()> {
     let outbox = outbox.clone();
     let began = thread::Builder::new().name("stdin".into()).spawn(move || {
@@ -70,8 +103,6 @@ fn listen(outbox: &Outbox, is_over: Arc<AtomicBool>) -> anyhow::Result<()> {
             // A line that is not valid text is refused as an unknown command; later lines are still carried out.
             let msg = match String::from_utf8_lossy(&line).trim() {
                 "" => continue,
-                "yes" => Msg::Key(Key::Enter.into()),
-                "no" => Msg::Key(Key::Esc.into()),
                 line => match line.strip_prefix("key ").and_then(|name| Key::named(name.trim())) {
                     Some(key) => Msg::Key(key.into()),
                     None => Msg::Line(line.to_owned()),

@@ -1,19 +1,20 @@
 //! The drawing thread: takes messages, updates the model, carries out effects, and draws a frame when something has
 //! changed.
 
-use super::{measure::Measure, session::Session, watch::SharedPlaces};
+use super::{measure::Measure, reading::Frames, session::Session, watch::SharedPlaces};
 use crate::Drill;
 use anyhow::Context;
 use flight::failure::{COMPLETE, exit_code, mission_code};
 use mission::EventKind;
-use runs::Closed;
+use runs::{Closed, Kept};
 use std::{
     io::Write,
     process::ExitCode,
     time::{Duration, Instant},
 };
 use tui::{
-    Cache, Caps, Effect, Model, Msg, Redraw, ReplayMsg, RunMsg, Signal, redraw, terminal::TerminalGuard,
+    Cache, Caps, Effect, Model, Msg, Redraw, ReplayMsg, RunMsg, Signal, ThemeName, redraw,
+    terminal::TerminalGuard,
 };
 
 /// The largest number of messages taken before the next frame.
@@ -48,6 +49,7 @@ pub(super) struct Screen {
     due: Redraw,
     cache: Cache,
     places: SharedPlaces,
+    frames: Frames,
     /// Whether the operator is waiting for something that the next frame shows.
     answer_seen: bool,
     measure: Measure,
@@ -67,6 +69,7 @@ impl Screen {
         caps: Caps,
         mut session: Session,
         places: SharedPlaces,
+        frames: Frames,
         drill: Option<Drill>,
     ) -> anyhow::Result<Self> {
         let mut terminal = TerminalGuard::enter().context("taking over the terminal")?;
@@ -85,6 +88,7 @@ impl Screen {
             due: Redraw::Soon,
             cache: Cache::default(),
             places,
+            frames,
             answer_seen: true,
             measure: Measure::since(Instant::now()),
             drill,
@@ -94,6 +98,11 @@ impl Screen {
     /// The model, for a crash report.
     pub(super) fn model(&self) -> &Model {
         &self.session.model
+    }
+
+    /// Chooses the theme for the terminal's background: red, green and blue.
+    pub(super) fn suit(&mut self, background: [u8; 3]) {
+        self.session.model.ui.theme = ThemeName::on(background);
     }
 
     /// Runs until the operator leaves or a signal asks to leave.
@@ -233,6 +242,7 @@ impl Screen {
         if model.ui.mouse {
             self.places.set(self.cache.places());
         }
+        self.session.take(Msg::Drawn(self.frames.count()));
         let now = Instant::now();
         self.measure.drew(now, now - self.drawn, interval);
         (self.drawn, self.due, self.answer_seen) = (now, Redraw::No, false);
@@ -249,7 +259,7 @@ fn taken(bytes: usize, rate: f64) -> Duration {
 /// run.
 fn is_answer(model: &Model, msg: &Msg) -> bool {
     match msg {
-        Msg::Key(_) | Msg::Paste(_) | Msg::Mouse(_) | Msg::Resize { .. } | Msg::Signal(_) => true,
+        Msg::Key(_) | Msg::Stop | Msg::Paste(_) | Msg::Mouse(_) | Msg::Resize { .. } | Msg::Signal(_) => true,
         Msg::Run(_, RunMsg::Events(events)) => {
             events.iter().any(|event| matches!(event.kind, EventKind::Held { .. }))
         }
@@ -271,8 +281,10 @@ impl Left {
         let kept = closed.and_then(|closed| closed.kept.as_ref());
         // A closed terminal cannot show anything.
         if let Some(closed) = closed.filter(|_| self.signal != Some(Signal::Hangup)) {
-            let line = kept.map(|kept| kept.text() + "\n").unwrap_or_default();
-            let text = report::human(&closed.summary) + &line;
+            let columns = crossterm::terminal::size().map_or(80, |(columns, _)| usize::from(columns));
+            let sentence = kept.map(Kept::text);
+            let name = kept.filter(|kept| kept.problem().is_none()).map(Kept::name);
+            let text = report::human::short(&closed.summary, sentence.as_deref(), name.as_deref(), columns);
             let _ = report::print::say(&text);
         }
         if let Some(signal) = self.signal {

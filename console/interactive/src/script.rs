@@ -101,6 +101,9 @@ impl Script {
         engine: &Current,
     ) -> anyhow::Result<Result<(), String>> {
         watch::signals(outbox, engine.clone(), Foreground::new())?;
+        let mut session = session;
+        // A script decides about a better plan without reading it.
+        session.model.console.preferences.slows_for_offers = false;
         let mut runner = Runner { session, answers: Answers::default(), is_left: false };
         runner.session.take(Msg::Resize { width: SIZE.0, height: SIZE.1 });
         Ok(runner.carry_out(&self))
@@ -148,11 +151,13 @@ impl Runner {
                 std::fs::write(file, picture).map_err(|error| format!("{}: {error}", file.display()))
             }
             Step::Command(line) => {
+                self.see_opened()?;
                 let first = line.split(' ').next().unwrap_or_default();
                 self.see_plan(find::named(first).map(|action| action.id))?;
                 self.order(Msg::Line(line.clone()))
             }
             Step::Key(key) => {
+                self.see_opened()?;
                 let model = &self.session.model;
                 let action = find::action_for(&model.console.keys, *key, &contexts(model));
                 self.see_plan(action.map(|action| action.id))?;
@@ -173,6 +178,15 @@ impl Runner {
                 Err(format!("assertion failed: {condition}; {}", condition.instead(&self.session.model)))
             }
         }
+    }
+
+    /// Waits for a scenario or a re-scan that is being opened, as an operator would. Reading the journals of long runs
+    /// takes time, and an order given meanwhile would be lost.
+    fn see_opened(&mut self) -> Result<(), String> {
+        while self.session.model.live.is_opening && !self.is_left {
+            self.hear_until(LOOK_AGAIN, |model| !model.live.is_opening)?;
+        }
+        Ok(())
     }
 
     /// Waits for the plan before a start, as an operator would. The planner has its own time limit for planning.

@@ -92,6 +92,9 @@ impl Session {
             Effect::Survey => self.desk.request(Request::Survey),
             Effect::Look => self.desk.request(Request::Look),
             Effect::Do(job) => self.desk.request(Request::Do(job)),
+            Effect::HandOver { file, page, overwrite } => {
+                self.desk.request(Request::HandOver { file, page, overwrite });
+            }
             Effect::Order(order) => {
                 if let Some(engine) = self.engine.get() {
                     engine.order(order.clone());

@@ -4,13 +4,13 @@ use super::{
     foreground::Foreground,
     inbox::Outbox,
     line::{Current, EngineHandle},
+    reading::Reader,
 };
 use anyhow::Context;
-use crossterm::event::{self, Event};
 use mission::Order;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use signal_hook::{
-    consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP, SIGTTIN},
+    consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP, SIGTTIN, SIGWINCH},
     iterator::Signals,
 };
 use std::{
@@ -21,7 +21,7 @@ use std::{
 };
 use tui::{
     Key, Measured, Msg, Places, Signal,
-    terminal::{self, Keyboard, Pointer},
+    terminal::{self, Input, Keyboard, Pointer},
 };
 
 /// The time for a clean exit after a signal; once it is over, the process exits in any case.
@@ -83,19 +83,24 @@ impl SharedPlaces {
     }
 }
 
-/// Listens for keys, mouse, pastes and size changes. A key that stops the robot takes effect from this thread, whatever
-/// the screen is doing.
-pub(super) fn keys(outbox: &Outbox, engine: Current, places: SharedPlaces) -> anyhow::Result<()> {
+/// Listens for keys, mouse and pastes. A key that stops the robot takes effect from this thread, whatever the screen is
+/// doing.
+pub(super) fn keys(
+    outbox: &Outbox,
+    engine: Current,
+    mut reader: Reader,
+    places: SharedPlaces,
+) -> anyhow::Result<()> {
     let outbox = outbox.clone();
     spawn("keys", move || {
         let (mut pointer, mut keyboard) = (Pointer::default(), Keyboard::default());
-        while let Ok(event) = event::read() {
-            let msg = match event {
-                Event::Key(key) => keyboard.take(&key, Instant::now()).map(Msg::Key),
-                Event::Paste(text) => Some(Msg::Paste(text)),
-                Event::Resize(width, height) => Some(Msg::Resize { width, height }),
-                Event::Mouse(mouse) => pointer.take(&mouse, &places.get()).map(Msg::Mouse),
-                Event::FocusGained | Event::FocusLost => None,
+        while let Some((input, seen)) = reader.next() {
+            let msg = match input {
+                Input::Key(_) | Input::OtherKey => keyboard.take(&input, Instant::now(), seen).map(Msg::Key),
+                Input::Stop => Some(Msg::Stop),
+                Input::Paste(text) => Some(Msg::Paste(text)),
+                Input::Mouse(pointed) => pointer.take(pointed, &places.get()).map(Msg::Mouse),
+                Input::Background(_) | Input::Kind => None,
             };
             let Some(msg) = msg else { continue };
             let stops = is_stop_key(&msg, engine.get().is_some_and(|engine| engine.is_typing()));
@@ -142,6 +147,21 @@ pub(super) fn signals(outbox: &Outbox, engine: Current, foreground: Foreground) 
     })
 }
 
+/// Listens for changes of the terminal's size.
+pub(super) fn sizes(outbox: &Outbox) -> anyhow::Result<()> {
+    let outbox = outbox.clone();
+    let mut changes = Signals::new([SIGWINCH]).context("listening for changes of the terminal's size")?;
+    spawn("sizes", move || {
+        // The size may have changed before this thread began to listen.
+        for _ in std::iter::once(SIGWINCH).chain(changes.forever()) {
+            let Ok((width, height)) = crossterm::terminal::size() else { continue };
+            if !outbox.send_urgent(Msg::Resize { width, height }) {
+                return;
+            }
+        }
+    })
+}
+
 /// Sends a message to the screen, and orders a hold if the message stops the robot and the robot may move. Returns
 /// `false` if the inbox is closed.
 ///
@@ -165,6 +185,7 @@ fn is_stop_key(msg: &Msg, is_typing: bool) -> bool {
         Msg::Key(press) if !press.repeat => {
             press.key == Key::Ctrl('c') || press.key == Key::Char(' ') && !is_typing
         }
+        Msg::Stop => !is_typing,
         _ => false,
     }
 }

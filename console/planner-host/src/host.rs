@@ -243,7 +243,19 @@ impl Host {
         }
     }
 
-    fn is_asked(&self) -> bool {
+    /// Waits until something happens, until the time limit is reached or until the host is woken, and processes what has
+    /// arrived. Answers are left for [`Self::next`].
+    ///
+    /// Call this between the ticks of a mission: a planner that is being opened needs a decision on each of its system
+    /// calls, and goes on from stage to stage. Does nothing if no ask is open.
+    pub fn attend(&mut self, until: Instant) {
+        if self.is_asked() {
+            self.look(Some(until));
+        }
+    }
+
+    /// Whether a planner still owes an answer.
+    pub fn is_asked(&self) -> bool {
         self.planners.iter().any(|planner| planner.asked.is_some())
     }
 

@@ -1,7 +1,10 @@
 //! The summary for people at the end of a run.
 
 pub(crate) mod floor;
+mod short;
 pub(crate) mod text;
+
+pub use short::short;
 
 use account::{
     Account, Accuracy, Coverage, Extreme, Figure, Limit, MissReason, PlannerCalls, Positioning, Stops,

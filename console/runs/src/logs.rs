@@ -8,6 +8,7 @@ use std::{
     fs::{self, File},
     io::{self, Write},
     path::{Path, PathBuf},
+    sync::atomic::{AtomicU64, Ordering},
 };
 
 /// Minimum free space for a run, bytes. A mission takes about 100 MB an hour, so this is enough for ten minutes.
@@ -61,6 +62,9 @@ fn check(logs: &Path) -> Result<(), LogsError> {
     checked
 }
 
+/// The number of recorder checks begun by this process.
+static CHECKS: AtomicU64 = AtomicU64::new(0);
+
 /// Writes a test recording to a separate folder inside the folder for runs, reads it back, and leaves nothing behind.
 /// Returns the length of the recording in bytes.
 ///
@@ -68,7 +72,9 @@ fn check(logs: &Path) -> Result<(), LogsError> {
 /// The recording cannot be written, or is different when it is read back.
 pub fn check_recorder(logs: &Path) -> Result<u64, RunError> {
     make_logs(logs)?;
-    let folder = logs.join(format!(".recorder-{}", std::process::id()));
+    // Two checks at the same time must not use one folder.
+    let number = CHECKS.fetch_add(1, Ordering::Relaxed);
+    let folder = logs.join(format!(".recorder-{}-{number}", std::process::id()));
     let written = record_and_read(&folder);
     let _ = fs::remove_dir_all(&folder);
     written
@@ -166,6 +172,23 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         assert_eq!(check(place.path()), Ok(()));
         assert_eq!(check(&place.path().join("a/b/logs")), Ok(()));
+        assert_eq!(fs::read_dir(place.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn checks_of_the_recorder_at_the_same_time_do_not_disturb_each_other() {
+        let place = tempfile::tempdir().unwrap();
+        std::thread::scope(|scope| {
+            let checks: Vec<_> = (0..4)
+                .map(|_| {
+                    scope
+                        .spawn(|| (0..3).map(|_| check_recorder(place.path())).collect::<Result<Vec<_>, _>>())
+                })
+                .collect();
+            for check in checks {
+                check.join().unwrap().unwrap();
+            }
+        });
         assert_eq!(fs::read_dir(place.path()).unwrap().count(), 0);
     }
 

@@ -99,6 +99,7 @@ pub enum ActionId {
     Rescan,
     Verify,
     Report,
+    HandOver,
     View,
     Replay,
     Play,

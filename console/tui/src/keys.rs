@@ -59,6 +59,10 @@ pub struct KeyPress {
     /// come from a keyboard.
     #[serde(default)]
     pub since_same: Option<Duration>,
+    /// The number of the last frame drawn before the key was read: only a question in that frame can be answered.
+    /// `None` for a press that did not come from a keyboard.
+    #[serde(default)]
+    pub seen: Option<u64>,
 }
 
 /// The kind of a key press, judged by the time since the last press of the same key.
@@ -139,7 +143,7 @@ impl Key {
 
 impl From<Key> for KeyPress {
     fn from(key: Key) -> Self {
-        Self { key, repeat: false, since_same: None }
+        Self { key, repeat: false, since_same: None, seen: None }
     }
 }
 

@@ -10,6 +10,7 @@
 pub mod actions;
 pub mod caps;
 pub mod guide;
+pub mod handover;
 pub mod keys;
 mod layout;
 pub mod model;

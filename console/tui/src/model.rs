@@ -207,6 +207,17 @@ impl Model {
     /// Shows the operator a message for a given number of seconds.
     pub(crate) fn say_for(&mut self, seconds: f64, severity: Severity, text: impl Into<String>) {
         let until_mono_s = self.console.now.mono_s + seconds;
-        self.console.notice = Some(Notice { severity, text: text.into(), until_mono_s });
+        self.console.notice = Some(Notice { severity, text: text.into(), until_mono_s, is_answer: false });
+    }
+
+    /// Tells the operator what became of a key.
+    pub(crate) fn answer(&mut self, text: impl Into<String>) {
+        self.answer_for(NOTICE_S, text);
+    }
+
+    /// Tells the operator what became of a key, for a given number of seconds.
+    pub(crate) fn answer_for(&mut self, seconds: f64, text: impl Into<String>) {
+        self.say_for(seconds, Severity::Info, text);
+        self.console.notice.iter_mut().for_each(|notice| notice.is_answer = true);
     }
 }

@@ -1,11 +1,12 @@
 //! The console as sentences, one per line, for screen readers and logs.
 
 use crate::model::{
-    Entry, Model, Screen,
-    log::clock,
+    Alarm, Entry, Model, Overlay, Recording, Screen,
+    log::{clock, severity_word},
     what_if::{Candidate, Forecast},
 };
-use crate::view::{question, standing};
+use crate::view::text;
+use crate::view::{by_command, question, shares, standing};
 use mission::Outcome;
 use world::coverage::percent;
 
@@ -36,9 +37,7 @@ impl Said {
         let notice = model.notice().map(|notice| notice.text.clone());
         let is_said = |text: &String| entries.iter().any(|entry| entry.text == *text);
         lines.extend(newly(&mut self.notice, notice).filter(|text| !is_said(text)));
-        // Readers of plain text type commands, and `key` is the command that presses the keys named in a question.
-        let question = newly(&mut self.question, question(model));
-        lines.extend(question.map(|question| format!("{question} Commands: `key enter`, `key esc`.")));
+        lines.extend(newly(&mut self.question, question(model)));
         let standing = standing(model);
         if standing != self.standing {
             lines.push(standing.clone());
@@ -79,6 +78,45 @@ impl Said {
         self.tenths = tenths;
         is_more.then(|| format!("{} % of reachable floor scanned.", 10 * u32::from(tenths)))
     }
+}
+
+/// The answer to `status`: state, time, floor, recording, open alarms and the open question, one sentence each.
+pub fn status(model: &Model) -> Vec<String> {
+    let run = &model.live.run;
+    let scenario = run.about.as_ref().map_or("no mission", |about| about.scenario.as_str());
+    let planner = run.planner_id().unwrap_or("unknown");
+    let speed = text::speed(model.live.speed);
+    let mut lines = vec![
+        by_command(model).join(" "),
+        format!("{scenario}, planner {planner}, T+{}, speed {speed}.", clock(run.clock.t_s)),
+    ];
+    let (reachable, whole) = shares(run);
+    if run.coverage.is_some() && run.progress.is_some() {
+        lines.push(format!("Scanned: {reachable} % of reachable floor, {whole} % of whole floor."));
+    }
+    lines.push(match (&model.live.result, &model.live.health.recording) {
+        (Some(result), _) => format!("{}.", text::capitalized(&result.kept)),
+        (None, Recording::On) => "Recording is on.".into(),
+        (None, Recording::Off) => "Nothing is recorded.".into(),
+        (None, Recording::Failed(why)) => format!("RECORDING FAILED: {why}."),
+    });
+    let alarms: Vec<&Alarm> = run.alarms.table().into_iter().filter(|alarm| alarm.is_open()).collect();
+    lines.push(if alarms.is_empty() {
+        "No alarms.".into()
+    } else {
+        format!("Open alarms: {}.", alarms.len())
+    });
+    lines.extend(alarms.iter().map(|alarm| {
+        let unacknowledged = if alarm.is_unacknowledged() { ", not acknowledged" } else { "" };
+        format!("{}{unacknowledged}: {}.", severity_word(alarm.severity), alarm.text)
+    }));
+    lines.extend(question(model));
+    lines
+}
+
+/// What `yes` and `no` are told if no question is open.
+pub fn no_question(model: &Model) -> Option<&'static str> {
+    (model.ui.overlay == Overlay::None).then_some("No question is open: `yes` and `no` have no effect.")
 }
 
 /// The forecast for a planner, if it is finished.

@@ -1,11 +1,13 @@
 //! The shell around the pure part: takes over the terminal and always restores it.
 
 mod clipboard;
+mod decode;
 mod key;
 mod output;
 mod pointer;
 mod restore;
 
+pub use decode::{Decoder, Gesture, Input, Pointed};
 pub use key::Keyboard;
 pub use pointer::Pointer;
 pub use restore::{RESTORE, install_panic_hook, restore, restore_from_signal};

@@ -3,7 +3,7 @@
 mod colours;
 
 use crate::caps::{Caps, Colours};
-use colours::{Rgb, nearest_indexed};
+use colours::{Rgb, contrast, nearest_indexed};
 use ratatui::style::{Color, Modifier, Style};
 use serde::{Deserialize, Serialize};
 
@@ -134,6 +134,13 @@ impl ThemeName {
         Self::ALL.into_iter().find(|theme| theme.name() == name)
     }
 
+    /// The theme for a background colour: red, green and blue.
+    pub fn on([red, green, blue]: [u8; 3]) -> Self {
+        let background = Rgb(red, green, blue);
+        let is_light = contrast(background, Rgb(0, 0, 0)) > contrast(background, Rgb(255, 255, 255));
+        if is_light { Self::Light } else { Self::Dark }
+    }
+
     /// The theme for the background that the terminal reports in `COLORFGBG`, such as `0;15`; dark if the variable is
     /// not set.
     pub fn for_background(colorfgbg: Option<&str>) -> Self {
@@ -214,18 +221,17 @@ fn weight(role: Role) -> Modifier {
     }
 }
 
-/// The terminal's own colours; on a light background, those that are dark enough.
+/// The terminal's own colours; on a light background, those that are dark enough to read in the palette of xterm.
 fn sixteen(role: Role, name: ThemeName) -> Option<Color> {
     let color = sixteen_on_dark(role)?;
     if name != ThemeName::Light {
         return Some(color);
     }
     match color {
-        Color::Cyan | Color::LightCyan => Some(Color::Blue),
+        Color::Cyan | Color::LightCyan | Color::Green | Color::LightGreen => Some(Color::Blue),
         Color::Yellow | Color::LightYellow | Color::LightMagenta => Some(Color::Magenta),
         Color::Blue => Some(Color::Cyan),
         Color::LightRed => Some(Color::Red),
-        Color::LightGreen => Some(Color::Green),
         Color::White | Color::DarkGray => None,
         color => Some(color),
     }
@@ -236,16 +242,14 @@ fn sixteen_on_dark(role: Role) -> Option<Color> {
         Role::Good | Role::Run => Some(Color::Green),
         Role::Watch | Role::Key | Role::Focus => Some(Color::Cyan),
         Role::Warn | Role::Hold | Role::Confirm => Some(Color::Yellow),
-        Role::Crit | Role::Push | Role::Missed => Some(Color::Red),
+        Role::Crit | Role::Push | Role::Missed | Role::Obstacle | Role::NoGo => Some(Color::LightRed),
         Role::Scanned => Some(Color::Blue),
         Role::Partly | Role::Unreachable | Role::Margin | Role::Plate => Some(Color::DarkGray),
         Role::Overlap => Some(Color::LightBlue),
-        Role::Obstacle | Role::NoGo => Some(Color::LightRed),
-        Role::Found | Role::Drawn => Some(Color::LightMagenta),
+        Role::Found | Role::Drawn | Role::Ghost => Some(Color::LightMagenta),
         Role::Tether => Some(Color::White),
         Role::Station | Role::Trail => Some(Color::LightCyan),
         Role::Plan | Role::Target => Some(Color::LightYellow),
-        Role::Ghost => Some(Color::Magenta),
         Role::Pull => Some(Color::LightGreen),
         _ => None,
     }
@@ -284,6 +288,19 @@ mod tests {
         let none = theme(Colours::None);
         assert!(none.style(Role::Selected).add_modifier.contains(Modifier::REVERSED));
         assert!(none.style(Role::Crit).add_modifier.contains(Modifier::BOLD));
+    }
+
+    #[test]
+    fn a_background_gets_the_theme_that_can_be_read_on_it() {
+        for (background, theme) in [
+            ([0, 0, 0], ThemeName::Dark),
+            ([0x28, 0x2c, 0x34], ThemeName::Dark),
+            ([0x80, 0, 0], ThemeName::Dark),
+            ([0xfd, 0xf6, 0xe3], ThemeName::Light),
+            ([255, 255, 255], ThemeName::Light),
+        ] {
+            assert_eq!(ThemeName::on(background), theme, "{background:?}");
+        }
     }
 
     #[test]

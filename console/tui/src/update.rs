@@ -8,6 +8,7 @@ pub(crate) mod go;
 mod health;
 mod hear;
 mod held_keys;
+mod judging;
 mod look_only;
 pub(crate) mod map;
 mod message;
@@ -25,6 +26,7 @@ pub(crate) mod send;
 pub(crate) mod shadow;
 pub(crate) mod stations;
 pub(crate) mod typing;
+mod unseen;
 pub(crate) mod what_if;
 pub(crate) mod zones;
 
@@ -38,7 +40,7 @@ pub use typing::is_typing;
 
 use crate::actions::{ActionId, context::contexts, find};
 use crate::keys::{Key, KeyPress};
-use crate::model::console::Bell;
+use crate::model::console::{Bell, Notice};
 use crate::model::plugins::differences;
 use crate::model::{Cause, Model, Overlay, Pane, ui::Arrangement};
 use mission::{Hold, Phase, PlannerInfo, RefusedPlugin, Severity};
@@ -53,9 +55,13 @@ const UNASSIGNED_S: f64 = 2.0;
 pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
     let alarms_before = ringing(model);
     let said_before = model.console.notice.clone().map(|notice| (notice, Pressing::of(model)));
+    let question_before = unseen::question(model).cloned();
+    let judges_before = judging::is_open(model);
     let mut effects = Vec::new();
     match msg {
         Msg::Key(press) => effects = press_key(model, press),
+        Msg::Stop => effects = stop(model),
+        Msg::Drawn(frame) => unseen::drawn(model, frame),
         Msg::Settled => effects = held_keys::settled(model),
         Msg::Signal(signal) => effects = obey_signal(model, signal),
         Msg::ThreadPanicked { thread, message } => {
@@ -78,12 +84,14 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
         Msg::Notice { severity, text } => news(model, &Cause::Console, severity, text),
     }
     events::refresh(model);
+    unseen::note(model, question_before.as_ref());
     if let Some((notice, before)) = said_before
-        && model.console.notice == Some(notice)
-        && Pressing::of(model).is_more_than(&before)
+        && model.console.notice.as_ref() == Some(&notice)
+        && Pressing::of(model).is_more_than(&before, &notice)
     {
         model.console.notice = None;
     }
+    effects.extend(judging::follow(model, judges_before));
     if ringing(model) > alarms_before {
         effects.push(Effect::Bell);
     }
@@ -107,8 +115,10 @@ impl Pressing {
         Self { hold_asked: model.live.hold_asked, hold, critical: run.alarms.unacknowledged(Severity::Crit) }
     }
 
-    fn is_more_than(&self, before: &Self) -> bool {
-        let is_held_anew = self.hold.is_some() && self.hold != before.hold;
+    fn is_more_than(&self, before: &Self, notice: &Notice) -> bool {
+        // The hold that answers HOLD does not take away what a later key was answered.
+        let is_expected = notice.is_answer && before.hold_asked;
+        let is_held_anew = self.hold.is_some() && self.hold != before.hold && !is_expected;
         self.hold_asked && !before.hold_asked || is_held_anew || self.critical > before.critical
     }
 }
@@ -146,9 +156,19 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
         // A repeat of a held key still stops the robot, but does nothing else.
         ActionId::Hold if press.repeat && model.live.may_move() && !model.live.hold_asked => hold_now(model),
         _ if press.repeat && !action.repeats => Vec::new(),
+        id if held_keys::is_agreement(model, id) && unseen::is_too_early(model, press) => Vec::new(),
         id if held_keys::is_agreement(model, id) && !held_keys::is_pressed(model, press) => Vec::new(),
         id => act(model, id),
     }
+}
+
+/// Holds a moving robot; unlike the key, never asks a question.
+fn stop(model: &mut Model) -> Vec<Effect> {
+    if is_typing(model) || !model.live.may_move() || model.live.hold_asked {
+        return Vec::new();
+    }
+    overlay::withdraw_motion(model);
+    hold_now(model)
 }
 
 /// Reports a key that has no action here. The key also cancels a question: an operator who types anything but an
@@ -157,12 +177,12 @@ fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
     match model.ui.overlay {
         Overlay::None => {
             let help = model.console.keys.spelled("(<help>: show keys)");
-            model.say_for(UNASSIGNED_S, Severity::Info, format!("key {key} is not assigned {help}"));
+            model.answer_for(UNASSIGNED_S, format!("key {key} is not assigned {help}"));
         }
         Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping => {
             let was_stepping = model.ui.overlay == Overlay::Stepping;
             model.ui.overlay = Overlay::None;
-            model.say(Severity::Info, format!("cancelled: key {key} is not an answer"));
+            model.answer(format!("cancelled: key {key} is not an answer"));
             if was_stepping {
                 return act::end_steps(model);
             }

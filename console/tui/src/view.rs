@@ -39,7 +39,8 @@ mod what_if;
 pub use cache::{Cache, Places};
 
 pub(crate) use confirm::question;
-pub(crate) use next::standing;
+pub(crate) use coverage::shares;
+pub(crate) use next::{by_command, standing};
 
 use crate::caps::{Caps, Glyphs};
 use crate::layout::{self, Shown};

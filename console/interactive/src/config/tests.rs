@@ -38,6 +38,7 @@ shelve_max_min = 30
         mouse: true,
         bell: Bell(Some(Severity::Warn)),
         shelve_max_min: 30,
+        slows_for_offers: true,
     };
     let expected = Config {
         theme: Some(ThemeName::Light),

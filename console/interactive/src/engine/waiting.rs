@@ -5,7 +5,7 @@ use crate::{line::Request, pace::Pace};
 use mission::Order;
 use runs::RunLog;
 use std::{
-    sync::mpsc::RecvTimeoutError,
+    sync::mpsc::{RecvTimeoutError, TryRecvError},
     time::{Duration, Instant},
 };
 
@@ -13,7 +13,8 @@ use std::{
 const MOST_BACKLOG: usize = 64;
 /// The interval at which this wait checks again, unless an order arrives.
 const LOOK_AGAIN: Duration = Duration::from_millis(1);
-/// The interval at which ending workers are checked while no ticks pass.
+/// The interval at which ending workers are checked while no ticks pass, and at which requests are checked while a
+/// planner owes an answer.
 const LOOK_AFTER: Duration = Duration::from_millis(20);
 
 impl EngineThread {
@@ -29,7 +30,7 @@ impl EngineThread {
             let due = if is_ahead { due.max(Instant::now() + LOOK_AGAIN) } else { due };
             let wait = due.saturating_duration_since(Instant::now()).min(HEALTH_PERIOD);
             let request = if self.is_under_way() {
-                self.asked.recv_timeout(wait)
+                self.attend_until(Instant::now() + wait)
             } else if orders.is_empty() {
                 self.wait_for_request()
             } else {
@@ -63,6 +64,23 @@ impl EngineThread {
                 Err(RecvTimeoutError::Disconnected) => return (orders, Some(false)),
             }
         }
+    }
+
+    /// Waits for a request. Meanwhile attends to the planners that owe an answer; the next tick uses their answers.
+    fn attend_until(&mut self, until: Instant) -> Result<Request, RecvTimeoutError> {
+        while self.host.is_asked() {
+            match self.asked.try_recv() {
+                Ok(request) => return Ok(request),
+                Err(TryRecvError::Disconnected) => return Err(RecvTimeoutError::Disconnected),
+                Err(TryRecvError::Empty) => {}
+            }
+            let now = Instant::now();
+            if now >= until {
+                return Err(RecvTimeoutError::Timeout);
+            }
+            self.host.attend(until.min(now + LOOK_AFTER));
+        }
+        self.asked.recv_timeout(until.saturating_duration_since(Instant::now()))
     }
 
     /// Waits for a request while no ticks pass, and meanwhile checks workers that are ending.

@@ -17,6 +17,8 @@ type Numbered<T> = (usize, T);
 /// # Errors
 /// Each invalid line with its number and the problem.
 pub(super) fn steps(text: &str, keys: &Keymap) -> Result<Vec<Numbered<Step>>, Vec<Numbered<String>>> {
+    // Some editors begin a text with a byte order mark.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
     let lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
     let (mut steps, mut wrong) = (Vec::new(), Vec::new());
@@ -89,6 +91,21 @@ mod tests {
         let wrong = steps(text, &Keymap::default()).expect_err("faults");
         let lines: Vec<usize> = wrong.iter().map(|(line, _)| *line).collect();
         assert_eq!(lines, [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], "{wrong:?}");
+    }
+
+    #[test]
+    fn a_byte_order_mark_is_no_part_of_the_first_line() {
+        let begins = |text| steps(text, &Keymap::default());
+        assert_eq!(begins("\u{feff}speed max\n"), Ok(vec![(1, Step::Command("speed max".into()))]));
+    }
+
+    #[test]
+    fn a_wait_that_no_clock_can_count_is_refused_when_it_is_read() {
+        let text = "speed max\nwait until phase ended within 10000000000000000000000s\n";
+        let wrong = steps(text, &Keymap::default()).expect_err("too long");
+        let line = "duration `10000000000000000000000s` is too long; at most 1000h";
+        assert_eq!(wrong, [(2, line.to_owned())]);
+        assert!(steps("wait until phase ended within 1000h\n", &Keymap::default()).is_ok());
     }
 
     #[test]

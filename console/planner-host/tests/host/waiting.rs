@@ -1,7 +1,7 @@
 //! When the host waits, and what ends the wait.
 
-use crate::desk::{Desk, LONG, ONE, plan};
-use crate::stand::{built, config};
+use crate::desk::{Desk, LONG, ONE, opening, plan, soon};
+use crate::stand::{built, config, words};
 use mission::What;
 use planner_host::HostConfig;
 use std::time::{Duration, Instant};
@@ -54,4 +54,15 @@ fn what_has_arrived_is_seen_also_when_time_is_up() {
     let looks = std::iter::repeat_with(|| desk.host.next(Some(past)));
     let answer = looks.take_while(|_| past.elapsed() < LONG).flatten().next();
     assert_eq!(answer.unwrap().ask, id);
+}
+
+#[test]
+fn a_planner_is_opened_between_two_ticks_and_its_answer_waits_for_the_next() {
+    let mut desk = Desk::new(&built(), config());
+    let id = desk.submit(ONE, opening("faulty", &words(&[("fault", "none")]), None));
+    while desk.host.is_asked() {
+        desk.host.attend(soon());
+    }
+    let answer = desk.host.next(Some(Instant::now())).unwrap();
+    assert_eq!((answer.ask, answer.result.is_ok()), (id, true));
 }

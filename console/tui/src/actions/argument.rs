@@ -116,10 +116,13 @@ impl Arg {
     }
 }
 
+/// The longest duration, 1000 hours, seconds.
+const LONGEST_S: f64 = 3.6e6;
+
 /// Parses a duration such as `20s`, `15m` or `1h30m`; returns seconds.
 ///
 /// # Errors
-/// Returns a message with the expected format.
+/// Returns a message with the expected format, or with the longest duration.
 pub fn duration_s(text: &str) -> Result<f64, String> {
     let wrong = || format!("invalid duration `{text}`; write 20s, 15m or 1h30m");
     let mut total_s = 0.0;
@@ -135,6 +138,9 @@ pub fn duration_s(text: &str) -> Result<f64, String> {
         };
         total_s += number * unit_s;
         rest = &rest[end + 1..];
+    }
+    if total_s > LONGEST_S {
+        return Err(format!("duration `{text}` is too long; at most 1000h"));
     }
     if total_s > 0.0 { Ok(total_s) } else { Err(wrong()) }
 }

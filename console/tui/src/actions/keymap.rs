@@ -18,6 +18,9 @@ pub struct Keymap {
     changed: BTreeMap<String, Vec<Key>>,
     /// Command lines by alias.
     pub aliases: BTreeMap<String, String>,
+    /// Whether sentences name commands instead of keys, because no keyboard is used.
+    #[serde(default)]
+    pub spells_commands: bool,
 }
 
 /// An action with the keys that the operator assigns to it.
@@ -56,7 +59,7 @@ impl Keymap {
     }
 
     /// Replaces each `<end>`-style placeholder in a sentence with the key of the named action; for an action without
-    /// a key, with its command.
+    /// a key, with its command. Without a keyboard, commands replace all of them. `<press>` is the verb before it.
     pub fn spelled(&self, sentence: &str) -> String {
         let mut parts = sentence.split('<');
         let mut text = parts.next().unwrap_or_default().to_owned();
@@ -71,12 +74,38 @@ impl Keymap {
 
     /// How to run an action from the keyboard: its first key, or its command if it has no key.
     fn spelling(&self, name: &str) -> Option<String> {
+        if name == "press" {
+            return Some(if self.spells_commands { "Enter" } else { "Press" }.into());
+        }
         let action = ACTIONS.iter().find(|action| action.name == name)?;
-        Some(match self.of(action).first() {
+        if self.spells_commands {
+            return Some(self.command(action));
+        }
+        // One key holds, resumes and plays; another opens what is selected.
+        let also = match action.id {
+            ActionId::Resume | ActionId::Play => Some(ActionId::Hold),
+            ActionId::Open => Some(ActionId::Accept),
+            _ => None,
+        };
+        let also = also.and_then(|id| ACTIONS.iter().find(|action| action.id == id));
+        Some(match self.of(action).first().or_else(|| self.of(also?).first()) {
             Some(key) => key.to_string(),
             None if action.is_command() => format!(":{name}"),
             None => "(no key)".into(),
         })
+    }
+
+    /// How to run an action without a keyboard.
+    fn command(&self, action: &Action) -> String {
+        match action.id {
+            ActionId::Accept => "`yes`".into(),
+            ActionId::Cancel => "`no`".into(),
+            _ if action.is_command() => format!("`{}`", action.name),
+            _ => self
+                .of(action)
+                .first()
+                .map_or_else(|| "(no key)".into(), |key| format!("`key {}`", key.name())),
+        }
     }
 
     /// Combines a preset with the operator's own keys. An invalid binding is left out, and its action keeps the
@@ -100,7 +129,7 @@ impl Keymap {
     fn of_bindings(preset: Changes, taken: &[(usize, &Binding)]) -> Self {
         let preset = preset.iter().map(|(name, keys)| ((*name).to_owned(), keys.to_vec()));
         let own = taken.iter().map(|(_, binding)| (binding.action.clone(), with_fixed(binding)));
-        Self { changed: preset.chain(own).collect(), aliases: BTreeMap::new() }
+        Self { changed: preset.chain(own).collect(), ..Self::default() }
     }
 
     fn objection(
@@ -283,6 +312,21 @@ mod tests {
         let (map, _) = bound(&[("end", &[Key::F(9)]), ("zoom-in", &[])]);
         let sentence = "<planner>: change planner, <end>: end mission, <zoom-in>: zoom in, 3 < 4";
         assert_eq!(map.spelled(sentence), "P: change planner, F9: end mission, :zoom-in: zoom in, 3 < 4");
+    }
+
+    #[test]
+    fn without_a_keyboard_sentences_name_commands() {
+        let keys = Keymap { spells_commands: true, ..Keymap::default() };
+        let sentence = "<press> <start>. <resume>: resume, <accept>: end, <cancel>: cancel. <help>";
+        assert_eq!(
+            keys.spelled(sentence),
+            "Enter `start`. `resume`: resume, `yes`: end, `no`: cancel. `help`"
+        );
+        let keys = Keymap::default();
+        assert_eq!(
+            keys.spelled("<press> <start>. <resume>: resume. <play>: play."),
+            "Press S. space: resume. space: play."
+        );
     }
 
     #[test]

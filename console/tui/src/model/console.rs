@@ -85,6 +85,9 @@ pub struct Notice {
     pub text: String,
     /// When the message disappears, on the console's own clock, seconds.
     pub until_mono_s: f64,
+    /// Whether the message answers a key; the hold that an earlier key has caused does not remove it.
+    #[serde(default)]
+    pub is_answer: bool,
 }
 
 /// A key that is either held down or pressed a second time. If no other press follows, it was a second press.
@@ -96,6 +99,15 @@ pub struct Settling {
     pub over: Overlay,
     /// When it becomes clear whether the key is held down, on the console's own clock, seconds.
     pub until_mono_s: f64,
+}
+
+/// When the open question appeared.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Appeared {
+    /// The time, on the console's own clock, seconds.
+    pub at_mono_s: f64,
+    /// The number of the first frame that shows it; `None` until it is drawn.
+    pub frame: Option<u64>,
 }
 
 /// The lowest severity at which a new alarm rings the terminal's bell; `None` for no bell.
@@ -119,11 +131,20 @@ pub struct Preferences {
     pub bell: Bell,
     /// The longest time for which an alarm may be shelved, minutes.
     pub shelve_max_min: u32,
+    /// Whether a better plan on offer slows a fast simulation to real time.
+    #[serde(default)]
+    pub slows_for_offers: bool,
 }
 
 impl Default for Preferences {
     fn default() -> Self {
-        Self { operator: None, mouse: false, bell: Bell::default(), shelve_max_min: 60 }
+        Self {
+            operator: None,
+            mouse: false,
+            bell: Bell::default(),
+            shelve_max_min: 60,
+            slows_for_offers: true,
+        }
     }
 }
 
@@ -156,6 +177,9 @@ pub struct Console {
     /// A key that may be held down; its action waits until it is known whether it is.
     #[serde(default)]
     pub settling: Option<Settling>,
+    /// When the open question appeared; `None` if no question is open.
+    #[serde(default)]
+    pub appeared: Option<Appeared>,
     /// When Ctrl-C was last pressed, on the console's own clock, seconds.
     pub interrupted_mono_s: Option<f64>,
 }

@@ -99,6 +99,10 @@ pub struct Live {
     pub is_cut_off: bool,
     /// The requested speed of the mission.
     pub speed: Speed,
+    /// The speed to which the mission returns when the better plan on offer has been decided; `None` if it was not
+    /// slowed down for it.
+    #[serde(default)]
+    pub slowed_from: Option<Speed>,
     /// The health of the engine.
     pub health: Health,
     /// The work that a planner is doing.

@@ -1,8 +1,8 @@
-//! Converts the terminal's mouse events into actions on the screen.
+//! Converts the terminal's mouse reports into actions on the screen.
 
+use super::decode::{Gesture, Pointed};
 use crate::update::{Mouse, Target};
 use crate::view::Places;
-use crossterm::event::{MouseButton, MouseEvent, MouseEventKind};
 
 /// The mouse state: where the drag began, and whether the mouse has moved since the button went down.
 #[derive(Debug, Default)]
@@ -12,17 +12,17 @@ pub struct Pointer {
 }
 
 impl Pointer {
-    /// Converts a mouse event, using the places recorded for the last frame. A click counts if the button is released
-    /// where it was pressed.
-    pub fn take(&mut self, event: &MouseEvent, places: &Places) -> Option<Mouse> {
-        let at = (event.column, event.row);
+    /// Converts a report, using the places recorded for the last frame. A click counts if the button is released where
+    /// it was pressed.
+    pub fn take(&mut self, pointed: Pointed, places: &Places) -> Option<Mouse> {
+        let at = (pointed.column, pointed.row);
         let on = places.target(at.0, at.1);
-        match event.kind {
-            MouseEventKind::Down(MouseButton::Left) => {
+        match pointed.gesture {
+            Gesture::Down => {
                 (self.at, self.is_dragged) = (Some(at), false);
                 None
             }
-            MouseEventKind::Drag(MouseButton::Left) => {
+            Gesture::Drag => {
                 let from = self.at.replace(at)?;
                 self.is_dragged = true;
                 match (places.target(from.0, from.1), on) {
@@ -30,12 +30,8 @@ impl Pointer {
                     _ => None,
                 }
             }
-            MouseEventKind::Up(MouseButton::Left) => {
-                (self.at.take().is_some() && !self.is_dragged).then_some(Mouse::Click(on))
-            }
-            MouseEventKind::ScrollUp => Some(Mouse::Wheel { up: true, on }),
-            MouseEventKind::ScrollDown => Some(Mouse::Wheel { up: false, on }),
-            _ => None,
+            Gesture::Up => (self.at.take().is_some() && !self.is_dragged).then_some(Mouse::Click(on)),
+            Gesture::Wheel { up } => Some(Mouse::Wheel { up, on }),
         }
     }
 }

@@ -18,7 +18,7 @@ pub(super) fn rgb(role: Role, name: ThemeName) -> Rgb {
             [0xd8_dee4, 0x1f_2328, 0xff_ffff]
         }
         Role::Dim | Role::Border | Role::Stale => [0x8b_98a5, 0x59_636e, 0xc8_c8c8],
-        Role::Good | Role::Run | Role::Pull => [0x6c_c070, 0x1a_7f37, 0x00_ff66],
+        Role::Good | Role::Run | Role::Pull => [0x6c_c070, 0x11_6329, 0x00_ff66],
         Role::Watch | Role::Key | Role::Focus | Role::Plate => [0x5c_c8d8, 0x0b_6e8a, 0x00_e5ff],
         Role::Warn | Role::Hold | Role::Confirm => [0xe0_b040, 0x8a_5a00, 0xff_d000],
         Role::Crit | Role::Push | Role::Missed => [0xff_6b60, 0xc0_1c28, 0xff_8a80],
@@ -30,7 +30,7 @@ pub(super) fn rgb(role: Role, name: ThemeName) -> Rgb {
         Role::Trail | Role::Station => [0x82_cdeb, 0x0a_5a8a, 0x7f_e8ff],
         Role::Plan | Role::Target => [0xd6_af5f, 0x7d_4e00, 0xff_d000],
         Role::Tether => [0xfa_faeb, 0x00_0000, 0xff_ffff],
-        Role::Obstacle | Role::NoGo => [0xf0_8064, 0xa3_3a1c, 0xff_9a7a],
+        Role::Obstacle | Role::NoGo => [0xf0_8064, 0x98_2c12, 0xff_9a7a],
         Role::Found | Role::Drawn => [0xf0_82dc, 0x9c_1f8a, 0xff_7af0],
     };
     rgb_of(match name {
@@ -54,6 +54,20 @@ pub(super) fn nearest_indexed(colour: Rgb) -> u8 {
     all.min_by_key(|(_, known)| distance(*known, colour)).map_or(15, |(index, _)| index)
 }
 
+/// The contrast of two colours, 1 to 21 (WCAG 2.2, relative luminance).
+pub(super) fn contrast(one: Rgb, other: Rgb) -> f64 {
+    let (one, other) = (luminance(one), luminance(other));
+    (one.max(other) + 0.05) / (one.min(other) + 0.05)
+}
+
+fn luminance(Rgb(red, green, blue): Rgb) -> f64 {
+    let linear = |part: u8| {
+        let part = f64::from(part) / 255.0;
+        if part <= 0.040_45 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
+    };
+    0.2126 * linear(red) + 0.7152 * linear(green) + 0.0722 * linear(blue)
+}
+
 fn distance(one: Rgb, other: Rgb) -> u32 {
     let square = |one: u8, other: u8| u32::from(one.abs_diff(other)).pow(2);
     square(one.0, other.0) + square(one.1, other.1) + square(one.2, other.2)
@@ -62,20 +76,9 @@ fn distance(one: Rgb, other: Rgb) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// The contrast of two colours, 1 to 21 (WCAG 2.2, relative luminance).
-    fn contrast(one: Rgb, other: Rgb) -> f64 {
-        let (one, other) = (luminance(one), luminance(other));
-        (one.max(other) + 0.05) / (one.min(other) + 0.05)
-    }
-
-    fn luminance(Rgb(red, green, blue): Rgb) -> f64 {
-        let linear = |part: u8| {
-            let part = f64::from(part) / 255.0;
-            if part <= 0.040_45 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
-        };
-        0.2126 * linear(red) + 0.7152 * linear(green) + 0.0722 * linear(blue)
-    }
+    use crate::caps::{Caps, Colours, Glyphs};
+    use crate::theme::Theme;
+    use ratatui::style::Color;
 
     /// The lightest and the darkest background for which a theme is made.
     fn backgrounds(name: ThemeName) -> [Rgb; 2] {
@@ -103,6 +106,57 @@ mod tests {
         }
     }
 
+    /// A colour as the terminal shows it; the sixteen colours are those of xterm. `None` for the colour of plain text.
+    fn shown(color: Color) -> Option<Rgb> {
+        Some(match color {
+            Color::Rgb(red, green, blue) => Rgb(red, green, blue),
+            Color::Indexed(at @ 16..=231) => {
+                let level = |digit: u8| LEVELS[usize::from(digit % 6)];
+                Rgb(level((at - 16) / 36), level((at - 16) / 6), level(at - 16))
+            }
+            Color::Indexed(at) => Rgb(8 + 10 * (at - 232), 8 + 10 * (at - 232), 8 + 10 * (at - 232)),
+            Color::Red => Rgb(205, 0, 0),
+            Color::Green => Rgb(0, 205, 0),
+            Color::Yellow => Rgb(205, 205, 0),
+            Color::Blue => Rgb(0, 0, 238),
+            Color::Magenta => Rgb(205, 0, 205),
+            Color::Cyan => Rgb(0, 205, 205),
+            Color::Gray => Rgb(229, 229, 229),
+            Color::DarkGray => Rgb(127, 127, 127),
+            Color::LightRed => Rgb(255, 0, 0),
+            Color::LightGreen => Rgb(0, 255, 0),
+            Color::LightYellow => Rgb(255, 255, 0),
+            Color::LightBlue => Rgb(92, 92, 255),
+            Color::LightMagenta => Rgb(255, 0, 255),
+            Color::LightCyan => Rgb(0, 255, 255),
+            Color::White => Rgb(255, 255, 255),
+            Color::Black => Rgb(0, 0, 0),
+            Color::Reset => return None,
+        })
+    }
+
+    #[test]
+    fn text_can_be_read_with_every_number_of_colours() {
+        for (name, colours) in ThemeName::ALL.into_iter().flat_map(|name| {
+            [Colours::Sixteen, Colours::Indexed, Colours::True].map(|colours| (name, colours))
+        }) {
+            let theme = Theme::new(name, &Caps { colours, glyphs: Glyphs::Braille, ssh: false });
+            // With sixteen colours, the terminal's background is one of them.
+            let [lightest, darkest] = backgrounds(name);
+            let grounds = if colours == Colours::Sixteen { [lightest; 2] } else { [lightest, darkest] };
+            for role in Role::ALL.into_iter().filter(|role| !is_fill(*role)) {
+                let Some(text) = shown(theme.color(role)) else { continue };
+                for ground in grounds {
+                    let contrast = contrast(text, ground);
+                    assert!(
+                        contrast >= 4.5,
+                        "{role:?} in {name:?}, {colours:?}: {contrast:.2} on {ground:?}"
+                    );
+                }
+            }
+        }
+    }
+
     #[test]
     fn lines_can_be_seen_on_scanned_floor() {
         for name in ThemeName::ALL {
@@ -114,10 +168,7 @@ mod tests {
     }
 
     fn is_fill(role: Role) -> bool {
-        matches!(
-            role,
-            Role::Scanned | Role::Partly | Role::Overlap | Role::Unreachable | Role::Margin | Role::Missed
-        )
+        matches!(role, Role::Scanned | Role::Partly | Role::Overlap | Role::Unreachable | Role::Margin)
     }
 
     #[test]

@@ -144,7 +144,8 @@ pub(crate) fn change_speed(model: &mut Model, faster: bool) -> Vec<Effect> {
 
 /// Sets the simulation speed.
 pub(super) fn set_speed(model: &mut Model, speed: Speed) -> Vec<Effect> {
-    model.live.speed = speed;
+    // The operator's choice stays when an offered plan has been decided.
+    (model.live.speed, model.live.slowed_from) = (speed, None);
     vec![Effect::Speed(speed)]
 }
 

@@ -20,6 +20,7 @@ use super::stations;
 use super::typing;
 use super::zones;
 use crate::actions::{Action, ActionId, Arg, Kind, find, keymap::Keymap};
+use crate::handover;
 use crate::model::{
     Model,
     palette::LineFault,
@@ -201,6 +202,7 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
         Value::Alarm(_) | Value::Fault(_) => {}
         Value::Preset(name) => return preset::load(model, &name),
         Value::Text(name) if action.id == ActionId::PresetSave => return preset::save(model, name),
+        Value::Text(file) if action.id == ActionId::HandOver => return hand_over(model, file, values),
         Value::Text(text) if action.id == ActionId::Remark => return replay::remark(model, &text),
         Value::Text(text) if action.id == ActionId::Bookmark => {
             let t_s = model.live.run.clock.t_s;
@@ -218,6 +220,16 @@ fn give(model: &mut Model, order: Order) -> Vec<Effect> {
         Ok(()) => send(model, order),
         Err(why) => refuse(model, why),
     }
+}
+
+/// Writes the handover page; an earlier page is only replaced if the operator says so.
+fn hand_over(model: &mut Model, file: String, mut values: impl Iterator<Item = Value>) -> Vec<Effect> {
+    let overwrite = match values.next() {
+        None => false,
+        Some(Value::Text(word)) if word == "overwrite" => true,
+        Some(_) => return refuse(model, "write overwrite after the file to replace an earlier page".into()),
+    };
+    vec![Effect::HandOver { file, page: handover::page(model), overwrite }]
 }
 
 /// Shelves the named or selected alarm.

@@ -18,6 +18,10 @@ use world::Point;
 pub enum Msg {
     /// A key went down.
     Key(KeyPress),
+    /// A space arrived that is not a key: part of a paste or of an answer of the terminal. It stops the robot.
+    Stop,
+    /// The screen shows the model as it is now, in the frame with this number.
+    Drawn(u64),
     /// A key that might have been held down was really pressed, because no other press has followed.
     Settled,
     /// Text was pasted.
@@ -299,6 +303,15 @@ pub enum Effect {
     Look,
     /// Start a background job.
     Do(Job),
+    /// Write a handover page.
+    HandOver {
+        /// The file.
+        file: String,
+        /// The text.
+        page: String,
+        /// Whether a handover page in that file is replaced.
+        overwrite: bool,
+    },
     /// Give the mission an order.
     Order(Order),
     /// Change the simulation speed.

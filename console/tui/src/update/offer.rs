@@ -132,6 +132,11 @@ pub(crate) fn has_planners(model: &Model) -> Result<(), String> {
     demand(!model.console.planners.is_empty(), "no planners found yet")
 }
 
+/// Checks that a mission or a past run is open.
+pub(crate) fn has_mission(model: &Model) -> Result<(), String> {
+    demand(model.live.run.about.is_some(), "no mission is open")
+}
+
 /// Checks that there is planning to cancel.
 pub(crate) fn cancel_plan(model: &Model) -> Result<(), String> {
     let live = &model.live;

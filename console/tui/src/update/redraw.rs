@@ -19,7 +19,7 @@ pub enum Redraw {
 pub fn redraw(model: &Model, msg: &Msg) -> Redraw {
     match msg {
         // Measurements of the console are visible only through its alarms.
-        Msg::Time(_) | Msg::Measured(_) => Redraw::No,
+        Msg::Time(_) | Msg::Measured(_) | Msg::Drawn(_) => Redraw::No,
         Msg::Found(found) if model.home.found.as_ref() == Some(found) => Redraw::No,
         Msg::Presets(presets) if model.console.presets == *presets => Redraw::No,
         Msg::Run(id, _) if *id != model.live.id => Redraw::No,

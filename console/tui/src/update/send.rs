@@ -49,6 +49,6 @@ pub(crate) fn hold_now(model: &mut Model) -> Vec<Effect> {
     }
     model.live.hold_asked = true;
     let slower = (model.live.speed.is_fast()).then(Speed::default);
-    model.live.speed = slower.unwrap_or(model.live.speed);
+    (model.live.speed, model.live.slowed_from) = (slower.unwrap_or(model.live.speed), None);
     std::iter::once(Effect::Order(Order::Hold)).chain(slower.map(Effect::Speed)).collect()
 }

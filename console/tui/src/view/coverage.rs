@@ -92,7 +92,7 @@ fn narrow_lines(look: &Look) -> Vec<(u8, Line<'static>)> {
 }
 
 /// The scanned shares of the reachable floor and of the whole floor; dashes before the first step.
-pub(super) fn shares(run: &Run) -> (String, String) {
+pub(crate) fn shares(run: &Run) -> (String, String) {
     let scanned = |of: fn(&Raster) -> Shares| percent(run, of, |percent| percent.scanned);
     (scanned(Raster::reachable), scanned(Raster::whole))
 }

@@ -25,8 +25,8 @@ pub(super) fn clauses(model: &Model) -> Clauses {
 fn played(model: &Model, replay: &Replay) -> String {
     let next = match (model.live.is_opening, replay.is_playing) {
         (true, _) => "reading the run...",
-        (false, true) => "<hold>: pause.",
-        (false, false) => "<hold>: play.",
+        (false, true) => "<play>: pause.",
+        (false, false) => "<play>: play.",
     };
     format!("Past run, no robot connected; {next}")
 }
@@ -52,7 +52,7 @@ fn by_phase(model: &Model) -> Clauses {
         }
         (None, Phase::Waiting) if model.ui.screen == Screen::Home => (
             Role::Title,
-            vec!["<accept> opens a scenario and makes its plan.".into(), "The robot does not move.".into()],
+            vec!["<open> opens a scenario and makes its plan.".into(), "The robot does not move.".into()],
         ),
         (None, Phase::Waiting) => {
             let (role, start) = idle(model);
@@ -73,6 +73,13 @@ fn by_phase(model: &Model) -> Clauses {
             vec![format!("ENDED ({}): {}.", outcome.word(), model.live.run.end_reason), more(model)],
         ),
     }
+}
+
+/// What comes next, as the state and then what the operator can do, with commands instead of keys.
+pub(crate) fn by_command(model: &Model) -> Vec<String> {
+    let mut keys = model.console.keys.clone();
+    keys.spells_commands = true;
+    by_phase(model).1.iter().map(|clause| keys.spelled(clause)).collect()
 }
 
 /// What comes next, without the figures that keep changing.
@@ -148,7 +155,7 @@ fn idle(model: &Model) -> Clauses {
         return (Role::Warn, vec![what, why, preflight.into()]);
     }
     let who = model.live.run.planner_id().unwrap_or("unknown");
-    (Role::Title, vec![format!("Press <start> to start (planner {who})."), preflight.into()])
+    (Role::Title, vec![format!("<press> <start> to start (planner {who})."), preflight.into()])
 }
 
 fn running(model: &Model) -> Clauses {
@@ -225,8 +232,8 @@ fn held_without_position(by: &HoldReason, (trouble, needs): (&str, &str)) -> Vec
 
 /// A hold that only an order can end.
 fn held_for_good(by: &HoldReason) -> Vec<String> {
-    const RESUME: &str = "<hold>: resume.";
-    const RETRY: &str = "<hold>: retry.";
+    const RESUME: &str = "<resume>: resume.";
+    const RETRY: &str = "<resume>: retry.";
     const PLANNER: &str = "<planner>: change planner.";
     let (state, remedies): (&str, &[&str]) = match by {
         // The reason for the hold is gone.

@@ -6,7 +6,7 @@ use mission::{
     AskId, BetterPlan, EventKind, Order, WorkerId,
     event::{Effort, OfferEnd, OfferStage},
 };
-use tui::{Effect, Key, RunMsg};
+use tui::{Effect, Key, RunMsg, Speed};
 use world::Point;
 
 const FLOWN: Effort = Effort { length_m: 860.0, rotation_rad: 190.0, time_s: 2460.0 };
@@ -101,4 +101,57 @@ fn a_question_that_is_open_when_the_offer_ends_takes_nothing() {
     screen.press([Key::Char('T')]);
     hear(&mut screen, dropped());
     assert_eq!(screen.press([Key::Enter]), []);
+}
+
+fn fast() -> Screen {
+    let mut screen = Screen::running();
+    screen.type_text(":speed 32");
+    assert_eq!(screen.press([Key::Enter]), [Effect::Speed(Speed::Times(32.0))]);
+    screen
+}
+
+fn hear_effects(screen: &mut Screen, kind: EventKind) -> Vec<Effect> {
+    let event = screen.mission.now(kind);
+    screen.hear(RunMsg::Events(vec![event]))
+}
+
+#[test]
+fn an_offer_slows_a_fast_simulation_until_it_ends() {
+    let mut screen = fast();
+    assert_eq!(hear_effects(&mut screen, better_plan(None)), [Effect::Speed(Speed::Times(1.0))]);
+    let said = screen.model.notice().unwrap().text.clone();
+    assert!(said.ends_with("T: take it; simulation at real time meanwhile"), "{said}");
+    assert_eq!(hear_effects(&mut screen, dropped()), [Effect::Speed(Speed::Times(32.0))]);
+    let said = screen.model.notice().unwrap().text.clone();
+    assert!(said.contains("withdrawn") && said.ends_with("simulation at ×32 again"), "{said}");
+    assert_eq!(screen.model.live.speed, Speed::Times(32.0));
+}
+
+#[test]
+fn an_offer_slows_the_simulation_until_it_is_taken() {
+    let mut screen = fast();
+    hear(&mut screen, better_plan(None));
+    let taken = hear_effects(&mut screen, EventKind::Ordered { order: Order::TakePlan });
+    assert_eq!(taken, [Effect::Speed(Speed::Times(32.0))]);
+}
+
+#[test]
+fn a_speed_that_the_operator_chose_meanwhile_and_a_hold_stay() {
+    for way in [":speed 4", ":hold"] {
+        let mut screen = fast();
+        hear(&mut screen, better_plan(None));
+        screen.type_text(way);
+        screen.press([Key::Enter]);
+        let speed = screen.model.live.speed;
+        assert_eq!(hear_effects(&mut screen, dropped()), [], "{way}");
+        assert_eq!(screen.model.live.speed, speed, "{way}");
+    }
+}
+
+#[test]
+fn a_simulation_in_real_time_and_one_run_by_a_script_keep_their_speed() {
+    assert_eq!(hear_effects(&mut Screen::running(), better_plan(None)), []);
+    let mut scripted = fast();
+    scripted.model.console.preferences.slows_for_offers = false;
+    assert_eq!(hear_effects(&mut scripted, better_plan(None)), []);
 }

@@ -90,7 +90,10 @@ fn msg() -> impl Strategy<Value = Msg> {
         Signal::Continue,
     ]);
     prop_oneof![
-        8 => (key(), any::<bool>()).prop_map(|(key, repeat)| Msg::Key(KeyPress { repeat, ..key.into() })),
+        8 => (key(), any::<bool>(), prop::option::of(0..9_u64))
+            .prop_map(|(key, repeat, seen)| Msg::Key(KeyPress { repeat, seen, ..key.into() })),
+        1 => Just(Msg::Stop),
+        1 => (0..9_u64).prop_map(Msg::Drawn),
         4 => prop::collection::vec(event(), 0..6).prop_map(|events| of_run(RunMsg::Events(events))),
         1 => (0..300_u16, 0..100_u16).prop_map(|(width, height)| Msg::Resize { width, height }),
         1 => any::<f64>().prop_map(|mono_s| Msg::Time(Times { mono_s, wall_unix_s: mono_s })),

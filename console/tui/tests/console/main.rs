@@ -23,3 +23,4 @@ mod scripts;
 mod shadow;
 mod start;
 mod stopping;
+mod unseen;

@@ -42,6 +42,8 @@ pub(super) const ROWS: &[Action] = &[
         .when(offer::run).does(|m| go::begin(m, ActionId::Verify)),
     action(ActionId::Report, "report", "Write the report of a run", &[Key::Char('w')], &[On(Screen::Home), On(Screen::Review), On(Screen::Result)]).label("report").args(&[may("run", Kind::Run)]).reaches(Reach::Runs)
         .when(offer::run).does(|m| go::begin(m, ActionId::Report)),
+    action(ActionId::HandOver, "handover", "Write a page for the next operator", &[], &[Context::Screen]).args(&[must("file", Kind::Text), may("overwrite", Kind::Text)]).reaches(Reach::Runs)
+        .when(offer::has_mission),
     action(ActionId::View, "view", "Open the recording of a run in rerun", &[Key::Char('o')], &[On(Screen::Home), On(Screen::Review), Context::Replay, On(Screen::Result)]).label("rerun").args(&[may("run", Kind::Run)])
         .when(offer::run).does(|m| go::begin(m, ActionId::View)),
 ];

@@ -1,0 +1,181 @@
+//! The page that an operator hands over to the next one: what is going on, why, and what comes next.
+
+use crate::guide;
+use crate::model::{
+    Alarm, Model,
+    alarms::State,
+    log::{Entry, clock, severity_word},
+};
+use crate::view::{by_command, shares};
+use mission::{EventKind, Order, TaskConfig};
+use world::ZoneKind;
+
+/// The page as Markdown, from the state of the console; it ends with a line break.
+pub fn page(model: &Model) -> String {
+    let run = &model.live.run;
+    let scenario = run.about.as_ref().map_or("no mission", |about| about.scenario.as_str());
+    let mut page = format!("# Handover: {}, T+{}\n", plain(scenario), clock(run.clock.t_s));
+    let sections = [
+        ("State", state(model)),
+        ("What comes next", next(model)),
+        ("Open alarms", alarms(model, Alarm::is_open)),
+        ("Shelved alarms", alarms(model, |alarm| matches!(alarm.state, State::Shelved(_)))),
+        ("No-go zones", zones(model)),
+        ("Clearance", clearance(model)),
+        ("What was done", done(model)),
+        ("Starts, holds and ends", entries(model, is_hold)),
+        ("Decisions of the operator", entries(model, is_decision)),
+    ];
+    for (title, lines) in sections {
+        page += &format!("\n## {title}\n\n");
+        let lines = if lines.is_empty() { vec!["None.".into()] } else { lines };
+        page.extend(lines.iter().map(|line| format!("- {}\n", plain(line))));
+    }
+    page
+}
+
+/// Text that Markdown shows as it is, on one line.
+fn plain(text: &str) -> String {
+    let one_line = text.replace(|letter: char| letter.is_control(), " ");
+    one_line.chars().fold(String::new(), |mut line, letter| {
+        if matches!(letter, '<' | '>' | '*' | '_' | '`' | '[' | ']' | '\\' | '#') {
+            line.push('\\');
+        }
+        line.push(letter);
+        line
+    })
+}
+
+fn state(model: &Model) -> Vec<String> {
+    let live = &model.live;
+    let run = &live.run;
+    let mut lines = vec![by_command(model).first().cloned().unwrap_or_default()];
+    let operator =
+        model.console.preferences.operator.as_deref().unwrap_or("not named (`operator` in config.toml)");
+    lines.push(format!("Operator: {operator}"));
+    let seed = run.about.as_ref().map_or_else(|| "unknown".into(), |about| about.seed.to_string());
+    lines.push(format!("Planner {}, seed {seed}", run.planner_id().unwrap_or("unknown")));
+    if let (Some(pose), Some(error_m)) = (&run.position.pose, run.position.error_m()) {
+        let at = pose.position;
+        lines.push(format!("Robot at {:.2}, {:.2} m, 95 % error {error_m:.2} m", at.x, at.y));
+    }
+    let recording = match (&live.health.recording, &live.result) {
+        (_, Some(result)) => result.kept.clone(),
+        (crate::model::Recording::On, None) => "Recording is on".into(),
+        (crate::model::Recording::Off, None) => "Nothing is recorded".into(),
+        (crate::model::Recording::Failed(why), None) => format!("RECORDING FAILED: {why}"),
+    };
+    lines.push(recording);
+    lines
+}
+
+fn next(model: &Model) -> Vec<String> {
+    let mut lines: Vec<String> = by_command(model).into_iter().skip(1).collect();
+    if let Some(progress) = &model.live.run.progress {
+        lines.push(format!("Path {:.0} % done", 100.0 * progress.done));
+    }
+    lines.extend(
+        model.live.run.left_s().map(|left_s| format!("About {} of mission time left", clock(left_s))),
+    );
+    lines
+}
+
+fn alarms(model: &Model, is_listed: impl Fn(&Alarm) -> bool) -> Vec<String> {
+    let run = &model.live.run;
+    let line = |alarm: &&Alarm| {
+        let state = match &alarm.state {
+            State::Unacknowledged => "not acknowledged".to_owned(),
+            State::Acknowledged => "acknowledged".to_owned(),
+            State::Returned => "cleared, not acknowledged".to_owned(),
+            State::Cleared => "cleared".to_owned(),
+            State::Shelved(shelf) => {
+                format!("until T+{}, reason: {}", clock(shelf.until_s), or_none(&shelf.reason))
+            }
+        };
+        let name = guide::name(&alarm.cause, run);
+        let severity = severity_word(alarm.severity);
+        format!("{severity} {name}, since T+{}, {state}: {}", clock(alarm.since_s), alarm.text)
+    };
+    run.alarms.table().iter().filter(|alarm| is_listed(alarm)).map(line).collect()
+}
+
+fn or_none(reason: &str) -> &str {
+    if reason.is_empty() { "none given" } else { reason }
+}
+
+fn zones(model: &Model) -> Vec<String> {
+    let about = model.live.run.about.iter();
+    let zones = about.flat_map(|about| &about.world.zones).filter(|zone| zone.kind == ZoneKind::NoGo);
+    let line = |zone: &world::Zone| {
+        let (low, high) = zone.shape.bounds();
+        format!("{}: {:.2}, {:.2} m to {:.2}, {:.2} m", zone.name, low.x, low.y, high.x, high.y)
+    };
+    zones.map(line).collect()
+}
+
+fn clearance(model: &Model) -> Vec<String> {
+    let demanded = model.live.run.about.as_ref().map(|about| about.mission.clearance_m);
+    let planned = model.live.estimate().and_then(|estimate| estimate.clearance_min);
+    let lines = [
+        demanded.map(|clearance_m| format!("Demanded by the scenario: {clearance_m:.2} m")),
+        planned.map(|least| {
+            format!(
+                "Least clearance of the plan: {:.2} m at {:.2}, {:.2} m",
+                least.value, least.at.x, least.at.y
+            )
+        }),
+    ];
+    lines.into_iter().flatten().collect()
+}
+
+fn done(model: &Model) -> Vec<String> {
+    let run = &model.live.run;
+    let task = run.about.as_ref().map(|about| match about.mission.task {
+        TaskConfig::Goto { .. } => "Task: drive to the goal",
+        TaskConfig::Follow { .. } => "Task: follow the preset path",
+        TaskConfig::Cover { .. } => "Task: scan the floor",
+    });
+    let (reachable, whole) = shares(run);
+    let scanned = run
+        .coverage
+        .is_some()
+        .then(|| format!("Scanned: {reachable} % of the reachable floor, {whole} % of the whole floor"));
+    let moving = format!("Mission time {}, under way {}", clock(run.clock.t_s), clock(run.clock.moving_s));
+    task.map(str::to_owned).into_iter().chain(scanned).chain([moving]).collect()
+}
+
+/// The log lines about certain events, oldest first.
+fn entries(model: &Model, is_listed: fn(&EventKind) -> bool) -> Vec<String> {
+    let log = &model.live.run.log;
+    let lines = (log.oldest()..log.end()).filter_map(|number| log.get(number));
+    let listed = |entry: &&Entry| entry.what.event().is_some_and(|event| is_listed(&event.kind));
+    lines.filter(listed).map(|entry| format!("T+{} {}", clock(entry.t_s), entry.text)).collect()
+}
+
+fn is_hold(kind: &EventKind) -> bool {
+    match kind {
+        EventKind::Held { .. } | EventKind::Resumed | EventKind::Ended { .. } => true,
+        EventKind::Ordered { order } => order.is_start(),
+        _ => false,
+    }
+}
+
+/// Whether an event records who decided what: alarms, stations, zones, planners and parameters.
+fn is_decision(kind: &EventKind) -> bool {
+    match kind {
+        EventKind::ZoneDrawn { .. } => true,
+        EventKind::Ordered { order } => matches!(
+            order,
+            Order::Note(_)
+                | Order::UseStation { .. }
+                | Order::Inject(_)
+                | Order::ChoosePlanner(_)
+                | Order::SetParameter { .. }
+                | Order::Shadow(_)
+                | Order::Promote
+                | Order::TakePlan
+                | Order::FlyUncertified
+        ),
+        _ => false,
+    }
+}
