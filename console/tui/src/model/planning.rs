@@ -35,6 +35,21 @@ pub struct Offer {
     pub is_taken: bool,
 }
 
+impl Offer {
+    /// What the better plan saves, as a sentence without a full stop.
+    pub fn sentence(&self) -> String {
+        let (flown, better) = (&self.flown, &self.better);
+        let saved_min = (flown.time_s - better.time_s) / 60.0;
+        let shorter_m = flown.length_m - better.length_m;
+        let path = if shorter_m < 0.0 { "more" } else { "less" };
+        format!(
+            "Better plan: {saved_min:.1} min shorter (of {:.1} from there), {:.0} m {path}",
+            flown.time_s / 60.0,
+            shorter_m.abs()
+        )
+    }
+}
+
 /// The planner and its latest output.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Planning {

@@ -61,14 +61,10 @@ impl Run {
                         .about
                         .as_ref()
                         .is_some_and(|about| about.mission.better_plan == BetterPlan::Take);
-                    self.planning.offer = Some(Offer { flown, better, begins, is_taken });
-                    let next = if is_taken {
-                        "will be taken automatically where it begins"
-                    } else {
-                        "<take-plan>: take it"
-                    };
-                    let saving = better.saving(&flown);
-                    change.say(Severity::Watch, format!("better plan saves {saving}; {next}"));
+                    let offer = Offer { flown, better, begins, is_taken };
+                    let next = if is_taken { "Taken where it begins" } else { "<take-plan>: take" };
+                    change.say(Severity::Watch, format!("{}. {next}", offer.sentence()));
+                    self.planning.offer = Some(offer);
                 }
             }
             EventKind::BetterPlanTaken { .. } => {
@@ -78,7 +74,7 @@ impl Run {
             EventKind::BetterPlanDropped { why, .. } => {
                 self.planning.candidate = None;
                 if self.planning.offer.take().is_some() {
-                    change.say(Severity::Info, format!("better plan withdrawn: {why}"));
+                    change.say(Severity::Info, format!("the offer of a better plan ended: {why}"));
                 }
             }
             EventKind::PlannerRejected { planner, why } => {
