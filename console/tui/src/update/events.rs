@@ -76,7 +76,7 @@ pub(crate) fn copy(model: &mut Model) -> Vec<Effect> {
 /// Changes the minimum severity, which is a term of the filter, to the next severity.
 pub(crate) fn next_severity(model: &mut Model) {
     let next = match model.ui.events.matches.filter().least() {
-        Severity::Info => Severity::Watch,
+        Severity::Debug | Severity::Info => Severity::Watch,
         Severity::Watch => Severity::Warn,
         Severity::Warn => Severity::Crit,
         Severity::Crit => Severity::Info,

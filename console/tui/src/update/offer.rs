@@ -195,11 +195,14 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         Refusal::AlreadyStarted
         | Refusal::AlreadyMoving
         | Refusal::StepNeedsHold
+        | Refusal::BackNeedsHold
         | Refusal::SwapNeedsHold => Some("<hold>: HOLD"),
         Refusal::Ended(_) => Some("<home> opens another scenario"),
         Refusal::NoShadow => Some(":shadow NAME runs one"),
         // If anything can be done, these messages already say what to do.
         Refusal::Planning
+        | Refusal::DrivingBack
+        | Refusal::OfferAccepted
         | Refusal::OtherPlan { .. }
         | Refusal::NotLive { .. }
         | Refusal::PositionLost { .. }

@@ -172,7 +172,9 @@ fn asked(model: &Model) -> Option<Vec<String>> {
             let begins = offer.and_then(|offer| offer.begins).map_or_else(|| "-".into(), text::place);
             vec![
                 "Take the better plan? <accept>: take, <cancel>: cancel.".into(),
-                format!("{saves}."),
+                format!("{saves}. {}", offer.and_then(Offer::scanned).unwrap_or_default())
+                    .trim_end()
+                    .to_owned(),
                 format!("It begins at {begins}, without a hold."),
             ]
         }

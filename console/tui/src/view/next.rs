@@ -244,9 +244,10 @@ fn better_plan(offer: &Offer) -> Vec<String> {
     let begins = offer.begins.map_or_else(String::new, |at| format!(" at {}", text::place(at)));
     if offer.is_taken {
         let change = format!("Better plan accepted: change-over{begins}, without a hold.");
-        return vec![change, format!("It saves {}.", offer.better.saving(&offer.flown))];
+        return vec![change, format!("{}.", text::capitalized(&offer.better.saving(&offer.flown)))];
     }
-    vec![format!("{}.", offer.sentence()), "<take-plan>: take.".into(), format!("It begins{begins}.")]
+    let (saves, take) = (format!("{}.", offer.sentence()), "<take-plan>: take.".to_owned());
+    [saves, take].into_iter().chain(offer.scanned()).chain([format!("It begins{begins}.")]).collect()
 }
 
 #[cfg(test)]

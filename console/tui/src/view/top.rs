@@ -101,6 +101,7 @@ pub(super) fn state(model: &Model) -> Parts {
         Phase::Waiting => ("OPER", Role::Title, "■ IDLE"),
         Phase::Running(Gait::Steady) => ("AUTO", Role::Run, "▶ RUN"),
         Phase::Running(Gait::OneTick | Gait::To(_)) => ("OPER", Role::Run, "▶ STEP"),
+        Phase::Running(Gait::Back) => ("OPER", Role::Run, "▶ BACK"),
         Phase::Held(Hold {
             by: HoldReason::Operator | HoldReason::Stepped | HoldReason::PlannerReplaced,
             ..

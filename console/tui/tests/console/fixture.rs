@@ -403,7 +403,7 @@ impl ScriptedMission {
     pub(crate) fn obeyed(&self, order: Order) -> Vec<Event> {
         let after = match order {
             Order::Hold => Some(EventKind::Held { by: HoldReason::Operator, resumes: Resumes::Never }),
-            Order::Resume | Order::Step | Order::StepTo(_) | Order::FlyUncertified => {
+            Order::Resume | Order::Step | Order::StepTo(_) | Order::DriveBack | Order::FlyUncertified => {
                 Some(EventKind::Resumed)
             }
             _ => None,

@@ -53,15 +53,15 @@ impl Run {
             EventKind::PlannerLate { planner, ticks } => {
                 change.say(Severity::Watch, late_text(planner, *ticks));
             }
-            EventKind::BetterPlanned { path, flown, better, objection, .. } => {
+            EventKind::BetterPlanned { path, flown, better, scans, objection, .. } => {
                 self.planning.candidate = None;
                 if objection.is_none() {
-                    let (flown, better, begins) = (*flown, *better, path.first().copied());
+                    let (flown, better, scans, begins) = (*flown, *better, *scans, path.first().copied());
                     let is_taken = self
                         .about
                         .as_ref()
                         .is_some_and(|about| about.mission.better_plan == BetterPlan::Take);
-                    let offer = Offer { flown, better, begins, is_taken };
+                    let offer = Offer { flown, better, scans, begins, is_taken };
                     let next = if is_taken { "Taken where it begins" } else { "<take-plan>: take" };
                     change.say(Severity::Watch, format!("{}. {next}", offer.sentence()));
                     self.planning.offer = Some(offer);

@@ -40,6 +40,7 @@ impl Entry {
 /// The word for a severity.
 pub fn severity_word(severity: Severity) -> &'static str {
     match severity {
+        Severity::Debug => "DEBUG",
         Severity::Info => "INFO",
         Severity::Watch => "WATCH",
         Severity::Warn => "WARN",

@@ -60,7 +60,7 @@ impl Filter {
 pub fn with_least(text: &str, least: Severity) -> String {
     let rest = without_least(text);
     match least {
-        Severity::Info => rest,
+        Severity::Debug | Severity::Info => rest,
         _ => format!("sev>={} {rest}", severity_word(least).to_lowercase()).trim_end().to_owned(),
     }
 }

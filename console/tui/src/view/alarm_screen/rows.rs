@@ -104,7 +104,7 @@ fn letter(severity: Severity) -> char {
         Severity::Crit => 'C',
         Severity::Warn => 'W',
         Severity::Watch => 'w',
-        Severity::Info => 'i',
+        Severity::Debug | Severity::Info => 'i',
     }
 }
 

@@ -22,7 +22,7 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::OrderRefused { .. } => "order refused",
         EventKind::FixFailed { .. } => "no position fix",
         EventKind::StationRejected { .. } => "station rejected",
-        EventKind::StationRestored { .. } => "station back in use",
+        EventKind::StationRestored { .. } => "station no longer rejected",
         EventKind::PositionLost { .. } => "position lost",
         EventKind::PositionRegained { .. } => "position recovered",
         EventKind::RangesInconsistent { .. } => "ranges contradict each other",
@@ -36,6 +36,9 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::BetterPlanned { .. } => "better plan",
         EventKind::BetterPlanTaken { .. } => "better plan taken",
         EventKind::BetterPlanDropped { .. } => "no better plan",
+        EventKind::ReturnBegan { .. } => "drive back",
+        EventKind::ZoneBreached { .. } => "hull in no-go zone",
+        EventKind::ZoneLeft { .. } => "hull outside no-go zone",
         EventKind::ShadowBegan { .. } | EventKind::Shadowed { .. } => "planner in shadow",
         EventKind::ShadowMissed { .. } => "planner in shadow late",
         EventKind::PromotionRefused { .. } => "promotion refused",
@@ -144,7 +147,7 @@ fn of_planner(kind: &EventKind) -> Vec<Field> {
             vec![("planner", planner.clone()), ("current", effort(flown)), ("better", effort(better))]
         }
         EventKind::PlannerRejected { planner, why }
-        | EventKind::BetterPlanDropped { planner, why }
+        | EventKind::BetterPlanDropped { planner, why, .. }
         | EventKind::ShadowEnded { planner, why }
         | EventKind::PromotionRefused { planner, why } => {
             vec![("planner", planner.clone()), ("reason", why.clone())]
