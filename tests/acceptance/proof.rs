@@ -145,7 +145,7 @@ fn a_run_whose_planner_is_not_installed_is_proven_from_its_journal() {
     let run = bench.runs().remove(0);
     let installed = bench.verify(&run, &with_it);
     assert!(
-        installed.code == Some(0) && installed.out.contains("planner answers are the same"),
+        installed.code == Some(0) && installed.out.contains("planner answers identical"),
         "{installed:?}"
     );
     let missing = bench.verify(&run, &[]);

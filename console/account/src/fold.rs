@@ -4,6 +4,7 @@ use crate::{
     Account, Evidence, Solid,
     accuracy::{Accuracy, Claimed},
     drawn::DrawnZone,
+    figures::{Figure, Figures},
     floor::account,
     scanned::Scanned,
     summary::{REPORT_VERSION, Summary, Tether},
@@ -40,6 +41,7 @@ pub struct Fold {
     tethered: Option<Tethered>,
     /// The tool of located readings; `None` for a mission.
     tool: Option<ToolTrack>,
+    figures: Figures,
     run: Option<Box<RunOpened>>,
     evidence: Option<Evidence>,
     /// Whether the previous event drew a zone: the change of the floor that follows belongs to that zone.
@@ -65,6 +67,7 @@ impl Fold {
         self.known.ticks = Some(event.tick);
         self.known.mission_time_s = Some(event.t_s);
         self.standing.apply(&event.kind);
+        self.figures.apply(event);
         match &event.kind {
             EventKind::RunOpened(run) => self.open(run),
             EventKind::Truth { pose, clearance_m, collided } => {
@@ -200,9 +203,21 @@ impl Fold {
             tether: self.tether(),
             tracking: self.tracker.as_ref().and_then(Tracker::tracking),
             accuracy: self.claimed.statement(self.scan_limit_m()),
+            extremes: self.extremes(),
             positioning: self.accuracy.positioning(self.known.mission_time_s.unwrap_or(0.0)),
             ..self.known.clone()
         }
+    }
+
+    /// The table of figures: the latest and the worst value of each, with its limit.
+    pub fn figures(&self) -> &Figures {
+        &self.figures
+    }
+
+    /// The figures of a mission that have a worst value; none for located readings, in which no robot keeps to limits.
+    fn extremes(&self) -> Vec<Figure> {
+        let rows = self.figures.rows().iter().filter(|row| row.worst.is_some() && self.tool.is_none());
+        rows.copied().collect()
     }
 
     /// The account of the floor; `None` for missions without a scan.

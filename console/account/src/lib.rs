@@ -13,6 +13,8 @@ mod clock;
 mod drawn;
 pub mod estimate;
 pub mod expect;
+mod extremes;
+mod figures;
 mod floor;
 pub mod fold;
 mod inspection;
@@ -32,6 +34,8 @@ pub use clock::clock;
 pub use drawn::DrawnZone;
 pub use estimate::Estimate;
 pub use expect::{Expect, Miss};
+pub use extremes::{Extreme, Worst};
+pub use figures::{Figure, FigureId, Figures, Limit};
 pub use floor::{
     Account, Area, Cause, CriticalZone, Evidence, Explained, Measure, MissReason, OutOfReach, Percent,
     PlateAccount, Reasons, Shares, Slivers, Solid, ZoneArc, ZoneOfPlate, account, area_of, areas, plate_map,

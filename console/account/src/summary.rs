@@ -1,6 +1,6 @@
 //! The figures of one run, as `run --json` prints them.
 
-use crate::{Account, drawn::DrawnZone};
+use crate::{Account, Figure, drawn::DrawnZone};
 use mission::{Check, Outcome, Parameters, Sandbox};
 use serde::{Deserialize, Serialize};
 
@@ -56,6 +56,10 @@ pub struct Summary {
     pub collisions: Option<u64>,
     /// Number of found obstacles that are not on the drawing.
     pub obstacles_found: u64,
+    /// The figures that have a worst value: that value with its time and place, the last value, and the limit; empty for
+    /// located readings.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub extremes: Vec<Figure>,
     /// No-go zones that were drawn before or during the mission, in order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub zones_drawn: Vec<DrawnZone>,

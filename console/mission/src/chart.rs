@@ -88,6 +88,12 @@ impl Chart {
         self.map.clearance_m(at) >= room_m && no_go.all(|zone| zone.shape.distance_m(at) >= room_m)
     }
 
+    /// Depth of a position in the no-go zones, metres; 0 outside all of them.
+    pub(crate) fn depth_m(&self, at: Point) -> f64 {
+        let no_go = self.world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo);
+        no_go.map(|zone| -zone.shape.distance_m(at)).fold(0.0, f64::max)
+    }
+
     /// Whether everything that the hull must not touch is at least `reach_m` metres from a position: the obstacles in
     /// sight, where they are seen, and everything on the chart.
     pub(crate) fn is_free(&self, at: Point, reach_m: f64) -> bool {

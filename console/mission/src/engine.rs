@@ -7,6 +7,7 @@
 
 mod answers;
 mod asks;
+mod back;
 mod better_plan;
 mod candidate;
 mod checking;
@@ -36,7 +37,7 @@ use crate::{
     config::MissionConfig,
     event::{Event, EventKind, TetherAlarm},
     order::Order,
-    phase::{HoldReason, Phase},
+    phase::{Gait, HoldReason, Phase},
     standing::Standing,
     tether::Tether,
 };
@@ -136,7 +137,7 @@ impl Mission {
             position: self.known.position_trust(),
             planner: self.driving.worker.seen(),
             shadow: self.shadow.as_ref().map(|shadow| shadow.tally),
-            has_offer: self.has_offer(),
+            offer: self.offer_stage(),
             readiness: self.driving.readiness(&self.known),
         }
     }
@@ -155,7 +156,11 @@ impl Mission {
         self.known.scan_from(before, &mut self.happened);
         let reached = self.known.drag_tether(map_changed, input.readings.paid_out_m, &mut self.happened);
         self.watch_tether(map_changed);
-        self.apply_rules(input.readings, reached.as_ref());
+        if map_changed {
+            self.doubt_way_back();
+        }
+        let breached = self.known.watch_zones(&mut self.happened);
+        self.apply_rules(input.readings, reached.as_ref(), breached.as_deref());
         if let Some(shadow) = &mut self.shadow {
             shadow.lead(&self.known, self.driving.id());
             self.promote_if_due();
@@ -180,25 +185,30 @@ impl Mission {
         if map_changed {
             self.driving.course.doubt_for_tether(&self.known);
         }
-        if self.driving.course.has_strayed(&self.known) {
+        if !self.known.phase.is_return() && self.driving.course.has_strayed(&self.known) {
             self.happened.push(EventKind::TetherAlarmRaised { alarm: TetherAlarm::Strayed, reached: false });
         }
     }
 
     /// Applies the rules that hold the robot, let it resume, or end the mission; the first rule that returns a verdict
     /// decides.
-    fn apply_rules(&mut self, readings: &Readings, reached: Option<&TetherAlarm>) {
+    fn apply_rules(&mut self, readings: &Readings, reached: Option<&TetherAlarm>, breached: Option<&str>) {
         if matches!(self.known.phase, Phase::Waiting | Phase::Ended(_)) {
             return;
         }
         let here = self.known.position();
+        let back = self.known.back.as_ref().filter(|_| self.known.phase.is_return());
+        let plan = self.driving.course.follower.as_ref();
         let seen = Seen {
             config: &self.known.config,
             now_s: self.known.now_s(),
             here,
             position: self.known.position_trust(),
             task: &self.known.task,
-            plan_left_m: self.driving.course.follower.as_ref().map(|plan| plan.left_m(here)),
+            plan_left_m: back
+                .map_or_else(|| plan.map(|plan| plan.left_m(here)), |back| Some(back.left_m(here))),
+            is_back: back.is_some_and(|back| back.is_done(here)),
+            breached,
             scanned: self.known.floor.coverage.fraction_reachable(),
             touched: readings.contact,
             reached,
@@ -215,6 +225,7 @@ impl Mission {
     /// Does the remaining work of a tick in which no rule stops a running robot or lets a held robot resume.
     fn go_on_or_help(&mut self) {
         match &self.known.phase {
+            Phase::Running(Gait::Back) => {}
             // While the robot waits for its planner, the time limit for reaching a corner must not run.
             Phase::Running(_) if self.robot_waits() => {}
             Phase::Running(_) => self.known.task.wait(self.known.config.tick_s * self.known.briskness()),

@@ -6,6 +6,7 @@
 mod effort;
 mod log_line;
 mod measured;
+mod offer;
 mod recorded;
 mod rounding;
 mod severity;
@@ -15,6 +16,7 @@ mod tether;
 pub use effort::Effort;
 pub use log_line::{LogLine, late_text};
 pub use measured::{Asked, Measured, ToolTrack};
+pub use offer::{OfferEnd, OfferStage, PlanScan, PlanScans};
 pub use recorded::RecordedAnswers;
 pub(crate) use rounding::rounded_command;
 pub use severity::Severity;
@@ -27,6 +29,7 @@ use crate::{
     order::Order,
     phase::{HoldReason, Outcome, Resumes},
     planner::{Fault, PlannerChoice, PlannerInfo},
+    way_back::WayBack,
 };
 use planner_api::{Command, Drawing, Leg, LegTag, LogLevel, PoseEstimate, Reason};
 use positioning::{Exclusion, Fix, FixError, Ranging};
@@ -412,6 +415,9 @@ pub enum EventKind {
         flown: Effort,
         /// The effort of this plan.
         better: Effort,
+        /// The floor that both plans scan; absent if this plan saves too little to be offered.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        scans: Option<PlanScans>,
         /// The reason why the plan is not offered, as a sentence; absent if it is offered.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         objection: Option<String>,
@@ -432,6 +438,29 @@ pub enum EventKind {
         planner: String,
         /// The reason, as a sentence.
         why: String,
+        /// How far the offer had come; absent if the plan was still being made.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        stage: Option<OfferStage>,
+        /// The reason; absent in older journals.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        reason: Option<OfferEnd>,
+    },
+    /// The robot drives back by order; it does not follow a planner.
+    ReturnBegan {
+        /// The way.
+        way: WayBack,
+    },
+    /// The hull entered a no-go zone, according to the estimated position.
+    ZoneBreached {
+        /// Name of the zone.
+        zone: String,
+        /// Depth of the hull in the zone, metres.
+        depth_m: f64,
+    },
+    /// The hull has left the no-go zone.
+    ZoneLeft {
+        /// Name of the zone.
+        zone: String,
     },
     /// Floor was scanned, according to the estimated pose.
     Covered {

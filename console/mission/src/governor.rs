@@ -169,7 +169,7 @@ impl<'a> Surroundings<'a> {
     }
 
     /// Whether a straight path is clear.
-    fn is_clear(&self, from: Point, to: Point) -> bool {
+    pub(crate) fn is_clear(&self, from: Point, to: Point) -> bool {
         let (way, length_m) = (to - from, (to - from).norm());
         let mut gone_m = 0.0;
         loop {

@@ -17,6 +17,7 @@ pub mod event;
 mod governor;
 mod locate;
 pub mod order;
+pub mod outline;
 mod passage;
 pub mod phase;
 mod plan_extent;
@@ -27,6 +28,8 @@ pub mod spelling;
 pub mod standing;
 mod task;
 pub mod tether;
+mod way_back;
+mod zone_cost;
 
 pub use ask::{Answer, Ask, AskId, Awaits, Given, Said, What, WorkerId};
 pub use config::{BetterPlan, Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
@@ -44,3 +47,5 @@ pub use planner::{
 };
 pub use preview::preview;
 pub use standing::{FoldedStanding, PositionTrust, Readiness, Refusal, Standing};
+pub use way_back::{Home, WayBack};
+pub use zone_cost::ZoneCost;

@@ -33,6 +33,9 @@ pub enum Order {
     StepTo(StepTo),
     /// While held because a plan was refused for the tether: run that plan and later ones, until one of them fails.
     FlyUncertified,
+    /// While held: drive back to the anchor along the return path of the tether or, without a tether, to the start. The
+    /// mission ends when the robot is there. See [`Mission::way_back`](crate::Mission::way_back).
+    DriveBack,
     /// End the mission.
     Abort,
     /// End the mission because its process received a signal to exit.
@@ -54,8 +57,9 @@ pub enum Order {
         /// New value of the parameter.
         value: ParamValue,
     },
-    /// Close the floor between these corners (metres, tank frame) from now on: plans stay out of the zone, and the zone
-    /// is not scanned. The mission gives the zone its name.
+    /// Close the floor within this convex outline from now on: plans stay out of the zone, and the zone is not scanned.
+    /// The corners are in metres, tank frame; [`outline`](crate::outline) makes the corners of boxes and circles. The
+    /// mission gives the zone its name. See [`Mission::zone_cost`](crate::Mission::zone_cost).
     DrawZone(Vec<Point>),
     /// For training: make a station of the simulation faulty for a while. The mission records the order, but ignores
     /// the order when it locates the robot.

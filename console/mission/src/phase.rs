@@ -21,6 +21,11 @@ pub enum Phase {
 }
 
 impl Phase {
+    /// Whether the robot is driving back by order.
+    pub fn is_return(&self) -> bool {
+        *self == Self::Running(Gait::Back)
+    }
+
     /// Whether the robot moves or may begin to move without an order.
     pub fn may_move(&self) -> bool {
         match self {
@@ -40,6 +45,8 @@ pub enum Gait {
     OneTick,
     /// Until the awaited event happens.
     To(StepTo),
+    /// Back to the anchor or the start; the mission itself drives, and every hold ends only by order.
+    Back,
 }
 
 /// Why the robot is held, and whether the hold can end without an order.

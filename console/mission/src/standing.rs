@@ -8,9 +8,9 @@ mod folded;
 pub use folded::FoldedStanding;
 
 use crate::{
-    event::{READY_AFTER, ShadowTally},
+    event::{OfferStage, READY_AFTER, ShadowTally},
     order::Order,
-    phase::{Hold, HoldReason, Outcome, Phase},
+    phase::{Gait, Hold, HoldReason, Outcome, Phase},
     plan_id::PlanId,
     planner::PlannerInfo,
 };
@@ -58,8 +58,8 @@ pub struct Standing<'a> {
     pub planner: Option<&'a PlannerInfo>,
     /// The record of the planner in shadow; `None` without one.
     pub shadow: Option<ShadowTally>,
-    /// Whether a better plan is offered and has not been ordered yet.
-    pub has_offer: bool,
+    /// The better plan that is offered or accepted; `None` without one.
+    pub offer: Option<OfferStage>,
     /// The plan with which a start would begin the mission.
     pub readiness: Readiness<'a>,
 }
@@ -93,6 +93,10 @@ pub enum Refusal {
     AlreadyMoving,
     /// A single step is possible only while the robot is held.
     StepNeedsHold,
+    /// The robot can be ordered to drive back only while it is held.
+    BackNeedsHold,
+    /// The robot is driving back.
+    DrivingBack,
     /// The planner can be changed only while the robot is held.
     SwapNeedsHold,
     /// The parameter cannot be changed while the mission runs.
@@ -111,6 +115,8 @@ pub enum Refusal {
     NoPlanRefused,
     /// No better plan is offered.
     NoOffer,
+    /// The better plan has already been accepted.
+    OfferAccepted,
     /// No planner runs in shadow.
     NoShadow,
     /// The planner in shadow has not answered enough steps in a row yet.
@@ -140,6 +146,8 @@ impl fmt::Display for Refusal {
             ),
             Self::AlreadyMoving => f.write_str("the mission is already running"),
             Self::StepNeedsHold => f.write_str("a single step requires HOLD first"),
+            Self::BackNeedsHold => f.write_str("driving back requires HOLD first"),
+            Self::DrivingBack => f.write_str("the robot is driving back; HOLD first"),
             Self::SwapNeedsHold => f.write_str("changing the planner requires HOLD first"),
             Self::NotLive { key } => {
                 write!(f, "parameter `{key}` cannot be changed while running; HOLD first")
@@ -152,6 +160,9 @@ impl fmt::Display for Refusal {
             }
             Self::NoPlanRefused => f.write_str("no plan has been refused because of the tether"),
             Self::NoOffer => f.write_str("no better plan is offered"),
+            Self::OfferAccepted => {
+                f.write_str("the better plan has been accepted; the robot changes over where it begins")
+            }
             Self::NoShadow => f.write_str("no planner runs in shadow"),
             Self::ShadowNotReady { in_row } => write!(
                 f,
@@ -180,11 +191,16 @@ impl Standing<'_> {
                 _,
             )
             | (Order::Plan | Order::NoteChecks(_), Phase::Waiting)
-            | (Order::Hold | Order::Inject(_) | Order::Shadow(_), Phase::Running(_) | Phase::Held(_))
+            | (Order::Hold | Order::Inject(_), Phase::Running(_) | Phase::Held(_))
+            | (Order::Shadow(_), Phase::Held(_))
             | (Order::NoteOutlooks(_), Phase::Held(_))
             | (Order::ChoosePlanner(_) | Order::SetParameter { .. }, Phase::Waiting | Phase::Held(_)) => {
                 Ok(())
             }
+            (Order::Shadow(_) | Order::SetParameter { .. }, Phase::Running(Gait::Back)) => {
+                Err(Refusal::DrivingBack)
+            }
+            (Order::Shadow(_), Phase::Running(_)) => Ok(()),
             (Order::Start, Phase::Waiting) => self.can_start(None),
             (Order::StartPlan(seen), Phase::Waiting) => self.can_start(Some(*seen)),
             (
@@ -196,6 +212,7 @@ impl Standing<'_> {
                 | Order::Resume
                 | Order::Step
                 | Order::StepTo(_)
+                | Order::DriveBack
                 | Order::NoteOutlooks(_)
                 | Order::Inject(_)
                 | Order::Shadow(_)
@@ -204,15 +221,23 @@ impl Standing<'_> {
                 | Order::TakePlan,
                 Phase::Waiting,
             ) => Err(Refusal::NotStarted),
-            (Order::Resume | Order::Step | Order::StepTo(_), Phase::Held(_)) => self.can_move(),
+            (Order::Resume | Order::Step | Order::StepTo(_) | Order::DriveBack, Phase::Held(_)) => {
+                self.can_move()
+            }
             (Order::Resume | Order::NoteOutlooks(_), Phase::Running(_)) => Err(Refusal::AlreadyMoving),
             (Order::Step | Order::StepTo(_), Phase::Running(_)) => Err(Refusal::StepNeedsHold),
+            (Order::DriveBack, Phase::Running(Gait::Back)) => Err(Refusal::DrivingBack),
+            (Order::DriveBack, Phase::Running(_)) => Err(Refusal::BackNeedsHold),
             (Order::FlyUncertified, Phase::Held(Hold { by: HoldReason::PlanRefused { .. }, .. })) => {
                 self.can_move()
             }
             (Order::Promote, _) => self.can_promote(),
             (Order::DropShadow, _) => self.shadow.map(|_| ()).ok_or(Refusal::NoShadow),
-            (Order::TakePlan, _) => self.has_offer.then_some(()).ok_or(Refusal::NoOffer),
+            (Order::TakePlan, _) => match self.offer {
+                Some(OfferStage::Offered) => Ok(()),
+                Some(OfferStage::Accepted) => Err(Refusal::OfferAccepted),
+                None => Err(Refusal::NoOffer),
+            },
             (Order::FlyUncertified, _) => Err(Refusal::NoPlanRefused),
             (Order::ChoosePlanner(_), Phase::Running(_)) => Err(Refusal::SwapNeedsHold),
             (Order::SetParameter { key, .. }, Phase::Running(_)) => {

@@ -1,8 +1,10 @@
 //! The task in progress: the next target, the progress, and whether it is done.
 
+mod corner;
 mod cover;
 mod rest;
 
+pub(crate) use corner::CornerPatience;
 use cover::Cover;
 pub(crate) use cover::Joint;
 pub(crate) use geometry::PathFollower;

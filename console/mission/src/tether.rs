@@ -224,6 +224,11 @@ impl Tether {
         contacts.collect()
     }
 
+    /// The path driven, from the anchor on, without the parts that were driven there and back.
+    pub(crate) fn way_driven(&self) -> &[Point] {
+        self.driven.points()
+    }
+
     /// The place where the cable is attached.
     pub fn anchor(&self) -> Point {
         self.config.anchor

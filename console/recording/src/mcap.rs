@@ -141,6 +141,7 @@ impl Export {
     fn log(&mut self, run: &Run, event: &Event) -> Done {
         let Some(line) = event.log_line(&run.stations) else { return Ok(()) };
         let level = match line.severity {
+            Severity::Debug => 10,
             Severity::Info => 20,
             Severity::Watch | Severity::Warn => 30,
             Severity::Crit => 40,

@@ -4,7 +4,8 @@ pub(crate) mod floor;
 pub(crate) mod text;
 
 use account::{
-    Account, Accuracy, Coverage, MissReason, PlannerCalls, Positioning, Stops, Summary, Tether, Tracking,
+    Account, Accuracy, Coverage, Extreme, Figure, Limit, MissReason, PlannerCalls, Positioning, Stops,
+    Summary, Tether, Tracking,
 };
 use mission::{Check, CheckOutcome, Outcome, Sandbox};
 use text::{Text, counted, percent};
@@ -29,6 +30,7 @@ pub fn human(run: &Summary) -> String {
     text.lines(run.tracking.iter().flat_map(tracking).map(|line| ("tracking", line)));
     text.lines(run.accuracy.iter().flat_map(accuracy).map(|line| ("position", line)));
     text.lines(run.positioning.iter().flat_map(positioning).map(|line| ("true position", line)));
+    text.lines(run.extremes.iter().filter_map(extreme).map(|line| ("extremes", line)));
     text.some("tether", run.tether.as_ref().map(tether));
     text.some("sandbox", run.sandbox.as_ref());
     text.lines(run.zones_drawn.iter().map(|zone| ("zones drawn", zone.to_string())));
@@ -133,6 +135,20 @@ fn beyond_reel(floor: &Account) -> Option<String> {
             the reel"
         )
     })
+}
+
+/// The worst value of a figure, with time, place and limit.
+fn extreme(Figure { id, limit, worst, .. }: &Figure) -> Option<String> {
+    let Extreme { value, t_s, at } = (*worst)?;
+    let (decimals, unit) = (id.decimals(), id.unit());
+    let space = if unit == "°" { "" } else { " " };
+    let amount = |value: f64| format!("{value:.decimals$}{space}{unit}");
+    let limit = limit.map(|limit| match limit {
+        Limit::Most(most) => format!(", limit {}", amount(most)),
+        Limit::Least(least) => format!(", at least {} required", amount(least)),
+    });
+    let (value, x, y) = (amount(value), at.x + 0.0, at.y + 0.0);
+    Some(format!("{}: {value} at {t_s:.1} s, {x:.2}, {y:.2} m{}", id.name(), limit.unwrap_or_default()))
 }
 
 /// Whether the run is still being written.

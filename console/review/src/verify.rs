@@ -216,7 +216,7 @@ fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
         // A report counts the ticks after the first one, which has the number 0.
         let how = if planners.is_some() { "" } else { " from the recorded answers" };
         lines.push(format!(
-            "equal: {events} events recomputed{how}, byte for byte, from tick 0 to tick {last_tick}; {}",
+            "equal: all {events} events identical when recomputed{how}, from tick 0 to tick {last_tick}; {}",
             proven(planners.as_ref())
         ));
     }
@@ -240,7 +240,7 @@ fn proven(planners: Option<&Asked>) -> String {
         0 => String::new(),
         n => format!(", {n} from a planner that failed earlier than it did in the run cannot be compared"),
     };
-    format!("{same} planner answers are the same{refused}{failed}")
+    format!("{same} planner answers identical{refused}{failed}")
 }
 
 /// The run in a journal, ready to be recomputed.

@@ -164,7 +164,7 @@ impl ApfDwa {
         let guide = self.hybrid.guide();
         if guide.used() > self.used {
             self.used = guide.used();
-            ctx.log(LogLevel::Info, "in a local minimum: heading for a virtual goal");
+            ctx.log(LogLevel::Debug, "in a local minimum: heading for a virtual goal");
         }
         if !ctx.wants_drawing() {
             return;

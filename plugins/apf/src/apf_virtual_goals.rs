@@ -137,7 +137,7 @@ impl Planner for ApfVirtualGoals {
             law.forces(at, sensed.target, map, nearby, goals)
         })?;
         if self.goals.used > used {
-            ctx.log(LogLevel::Info, "in a local minimum: heading for a virtual goal");
+            ctx.log(LogLevel::Debug, "in a local minimum: heading for a virtual goal");
         }
         if let Some(corner) = self.goals.current() {
             ctx.circle(Layer::Virtual, corner, 0.2);

@@ -76,7 +76,7 @@ impl Planner for TetherSafe {
                 match other.if_shorter_than(&worth, &lead_in) {
                     Some((worth, Repaired { scan, enough })) => {
                         ctx.log(
-                            LogLevel::Info,
+                            LogLevel::Debug,
                             &worth.summary("the new plan is longer, so the repair is used after all"),
                         );
                         (worth, scan, Vec::new(), enough)

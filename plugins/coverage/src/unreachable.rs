@@ -72,8 +72,8 @@ pub(crate) fn report(scan: &Scan<'_>, scope: &Scope<'_>, ctx: &Ctx<'_>) -> bool 
         .map(|ring| mean_of(ring))
         .collect();
     for at in closed.iter().take(MOST_PLACES) {
-        let place = format!("the requested area around ({:.1}, {:.1})", at.x, at.y);
-        ctx.log(LogLevel::Warn, &format!("{place} is left out: the tool cannot reach any of its floor"));
+        let place = format!("area at {:.1}, {:.1} m", at.x, at.y);
+        ctx.log(LogLevel::Warn, &format!("{place} left out: out of the tool's reach"));
     }
     if let Some(n) = closed.len().checked_sub(MOST_PLACES + 1) {
         ctx.log(LogLevel::Warn, &format!("left out for the same reason: {} more", n + 1));

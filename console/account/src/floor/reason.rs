@@ -71,10 +71,7 @@ impl Explained for MissReason {
             Self::FoundObstacle => format!("{} from {near}, found during the run", measure.range()),
             Self::NotAsked => format!("not requested, up to {value_m:.2} m outside the requested areas"),
             Self::Narrow => {
-                format!(
-                    "{value_m:.2} m outside the nearest lane (lanes are {limit_m:.2} m wide: the swath less \
-                     the overlap)"
-                )
+                format!("outside the outermost lane by {value_m:.2} m (lane width {limit_m:.2} m)")
             }
             Self::Clearance => {
                 format!(
@@ -82,7 +79,7 @@ impl Explained for MissReason {
                     measure.range()
                 )
             }
-            Self::Wrap => format!("not planned: {value_m:.2} m from a line that keeps the tether unwound"),
+            Self::Wrap => "not planned: would wind the tether".to_owned(),
             Self::NotPlanned => format!(
                 "not planned: up to {value_m:.2} m from the planned lanes (lanes \
                 are {limit_m:.2} m wide)"
@@ -95,7 +92,7 @@ impl Explained for MissReason {
                 )
             }
             Self::NotReached => {
-                format!("planned, but the mission ended first, with up to {value_m:.1} m of path to go")
+                format!("planned, not reached: mission ended up to {value_m:.1} m earlier")
             }
             Self::PassedBeside => format!("planned, but the robot passed {value_m:.2} m to one side"),
         }
@@ -109,13 +106,13 @@ impl MissReason {
             Self::PositionUncertain => "position error above the limit",
             Self::FoundObstacle => "beside a found obstacle",
             Self::NotAsked => "not requested",
-            Self::Narrow => "beyond the lanes",
+            Self::Narrow => "outside the outermost lane",
             Self::Clearance => "not planned (clearance)",
             Self::Wrap => "not planned (tether)",
             Self::NotPlanned => "not planned",
             Self::NoPlan => "the run had no plan",
             Self::BeyondReel => "not planned (beyond the reel)",
-            Self::NotReached => "the mission ended first",
+            Self::NotReached => "mission ended",
             Self::PassedBeside => "the robot passed to one side",
         }
     }
@@ -126,13 +123,13 @@ impl MissReason {
             Self::PositionUncertain => "passed, but the position error was above the limit",
             Self::FoundObstacle => "beside an obstacle found during the run",
             Self::NotAsked => "not requested",
-            Self::Narrow => "beyond the lanes, which are narrower than the swath by the overlap",
+            Self::Narrow => "outside the outermost lane",
             Self::Clearance => "not planned (too little room for hull and clearance)",
-            Self::Wrap => "not planned (along a line that keeps the tether unwound)",
+            Self::Wrap => "not planned: would wind the tether",
             Self::NotPlanned => "not planned",
             Self::NoPlan => "the run had no plan when it ended",
             Self::BeyondReel => "not planned (beyond the reel)",
-            Self::NotReached => "planned, but the mission ended first",
+            Self::NotReached => "planned, not reached: mission ended",
             Self::PassedBeside => "planned, but the robot passed to one side",
         }
     }

@@ -179,16 +179,16 @@ fn every_gap_has_a_cause_with_its_number() {
     let says = |text: String, expected: &str| assert!(text.contains(expected), "{text}, not {expected}");
     says(
         why(&run, &evidence, |p| p.x > 4.0 && p.coords.norm() > 4.77 && p.y.abs() < 0.3),
-        "m outside the nearest lane (lanes are 0.40 m wide: the swath less the overlap)",
+        "m (lane width 0.40 m)",
     );
     says(why(&run, &evidence, square(0.0, 3.4)), "m from column, but hull and clearance require 0.45 m");
-    says(why(&run, &evidence, square(0.0, 0.2)), "m from a line that keeps the tether unwound");
+    says(why(&run, &evidence, square(0.0, 0.2)), "not planned: would wind the tether");
     let untethered =
         RunOpened { mission: mission::MissionConfig { tether: None, ..run.mission.clone() }, ..run.clone() };
     says(why(&untethered, &evidence, square(0.0, 0.2)), "m from the planned lanes (lanes are 0.40 m wide)");
     says(why(&run, &Evidence::new(&run), square(0.0, 0.2)), "the run had no plan when it ended");
     says(why(&run, &evidence, square(0.0, -1.0)), "m from the planned lanes (lanes are 0.40 m wide)");
-    says(why(&run, &evidence, square(0.0, -3.9)), "planned, but the mission ended first, with up to");
+    says(why(&run, &evidence, square(0.0, -3.9)), "planned, not reached: mission ended up to");
     evidence.fly(1e3);
     says(why(&run, &evidence, square(0.0, -3.9)), "planned, but the robot passed 0.10 m to one side");
 }

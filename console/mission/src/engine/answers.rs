@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     ask::{Answer, AskId, Given, Said},
-    event::EventKind,
+    event::{EventKind, OfferEnd},
     phase::{Gait, Hold, HoldReason, Phase, Resumes},
     planner::{Cause, Fault, PlannerInfo},
 };
@@ -105,7 +105,7 @@ impl Mission {
 
     /// Switches to a plan. This ends a hold that was waiting for the plan, or one that was caused by another planner.
     pub(super) fn take_plan(&mut self, plan: &Plan) {
-        self.drop_better_plan("a different plan has been taken");
+        self.drop_better_plan(OfferEnd::OtherPlan);
         self.better_plan_due_s = None;
         self.known.task.take_plan(plan);
         // From here on, progress is measured along the new plan.
@@ -165,10 +165,10 @@ impl Mission {
 
     /// Handles an active planner that cannot continue.
     fn driving_is_no_use(&mut self, by: HoldReason) {
-        self.drop_better_plan("the active planner failed");
+        self.drop_better_plan(OfferEnd::PlannerFailed);
         self.driving.prepare = Prepare::No;
         let is_to_be_held = match &self.known.phase {
-            Phase::Running(_) => true,
+            Phase::Running(gait) => *gait != Gait::Back,
             Phase::Held(hold) => hold.by.blames_planner(),
             Phase::Waiting | Phase::Ended(_) => false,
         };

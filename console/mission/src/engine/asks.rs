@@ -24,7 +24,7 @@ impl Mission {
         let preparing = self.preparing.as_ref().filter(|preparing| preparing.worker.pending.is_some());
         let shadow = self.shadow.as_ref().filter(|shadow| shadow.worker.pending.is_some());
         match (preparing, shadow) {
-            (Some(preparing), _) if self.known.is_running() && preparing.robot_waits() => Awaits::Work,
+            (Some(preparing), _) if self.known.follows_planner() && preparing.robot_waits() => Awaits::Work,
             (Some(_), _) => Awaits::Candidate,
             (None, Some(_)) => Awaits::Shadow,
             (None, None) => Awaits::Nothing,

@@ -18,7 +18,7 @@ use super::{
 use crate::{
     ask::{AskId, Said},
     config::BetterPlan,
-    event::{Effort, EventKind},
+    event::{Effort, EventKind, OfferEnd, OfferStage},
     task::rest_of,
 };
 use geometry::PathFollower;
@@ -42,7 +42,7 @@ impl Mission {
     /// the map has settled.
     pub(super) fn postpone_better_plan(&mut self) {
         let is_under_way = self.better().is_some();
-        self.drop_better_plan("the map has changed");
+        self.drop_better_plan(OfferEnd::MapChanged);
         if is_under_way || self.better_plan_due_s.is_some() {
             self.want_better_plan();
         }
@@ -55,9 +55,9 @@ impl Mission {
         }
     }
 
-    /// Whether a better plan is offered and has not been ordered yet.
-    pub(super) fn has_offer(&self) -> bool {
-        matches!(self.better(), Some(Better::Offered(offer)) if !offer.is_ordered)
+    /// How far the offer of a better plan has come; `None` if none is offered or accepted.
+    pub(super) fn offer_stage(&self) -> Option<OfferStage> {
+        self.better()?.stage(self.known.config.better_plan)
     }
 
     /// Orders the better plan to be taken at the place where it begins.
@@ -68,16 +68,18 @@ impl Mission {
     }
 
     /// Abandons a better plan that is being made or offered, if there is one.
-    pub(super) fn drop_better_plan(&mut self, why: &str) {
+    pub(super) fn drop_better_plan(&mut self, reason: OfferEnd) {
         let dropped = self.preparing.take_if(|preparing| matches!(preparing.role, Role::Better(_)));
-        if let Some(Preparing { worker, .. }) = dropped {
-            self.close_better_plan(worker, why.into());
+        if let Some(Preparing { worker, role: Role::Better(better) }) = dropped {
+            self.close_better_plan(worker, &better, reason);
         }
     }
 
-    pub(super) fn close_better_plan(&mut self, mut worker: Worker, why: String) {
+    pub(super) fn close_better_plan(&mut self, mut worker: Worker, better: &Better, reason: OfferEnd) {
         self.workers.close(worker.leave());
-        self.happened.push(EventKind::BetterPlanDropped { planner: worker.choice.id, why });
+        let (planner, why) = (worker.choice.id, reason.to_string());
+        let stage = better.stage(self.known.config.better_plan);
+        self.happened.push(EventKind::BetterPlanDropped { planner, why, stage, reason: Some(reason) });
     }
 
     /// Starts the search for a better plan if one is due. When the robot reaches the place where an offered plan begins,
@@ -92,25 +94,25 @@ impl Mission {
         }
         let Some(better) = self.better() else { return };
         if !self.driving.is_flying() {
-            return self.drop_better_plan("another plan is being made");
+            return self.drop_better_plan(OfferEnd::OtherPlan);
         }
         let along_m = self.known.task.lanes().map_or(0.0, PathFollower::along_m);
         let is_there = better.joint().is_some_and(|joint| along_m >= joint.station_m - AT_JOINT_M);
-        if !self.known.is_running() || !is_there {
+        if !self.known.follows_planner() || !is_there {
             return;
         }
         let takes_any = self.known.config.better_plan == BetterPlan::Take;
         match better {
             Better::Offered(offer) if offer.is_ordered || takes_any => self.take_better_plan(),
-            Better::Offered(_) => self.drop_better_plan("the robot has passed the place where it begins"),
-            _ => self.drop_better_plan("it arrived after the robot had passed the place where it begins"),
+            Better::Offered(_) => self.drop_better_plan(OfferEnd::Passed),
+            _ => self.drop_better_plan(OfferEnd::TooLate),
         }
     }
 
     fn is_better_plan_due(&self) -> bool {
         let is_due = self.better_plan_due_s.is_some_and(|due_s| due_s <= self.known.now_s());
         let is_steady = self.driving.is_flying() && self.driving.newest_change().is_none();
-        is_due && is_steady && self.preparing.is_none() && self.known.is_running()
+        is_due && is_steady && self.preparing.is_none() && self.known.follows_planner()
     }
 
     /// Judges a plan for all that is left; returns the planner if its plan is offered.
@@ -128,7 +130,7 @@ impl Mission {
         let before = &way[way.len().saturating_sub(2)..way.len().saturating_sub(1)];
         let effort = |path: &[Point]| Effort::of(&[before, path].concat(), &self.known.config.limits);
         let (flown, better) = (effort(&rest), effort(&plan.path));
-        let objection = self.known.objection_to_better(&way, &rest, (flown, better), &plan);
+        let (scans, objection) = self.known.judge_better(&way, &rest, (flown, better), &plan);
         self.happened.push(EventKind::BetterPlanned {
             ask,
             planner: worker.id().to_owned(),
@@ -138,6 +140,7 @@ impl Mission {
             cuts: plan.cuts.clone(),
             flown,
             better,
+            scans,
             objection: objection.clone(),
         });
         if objection.is_some() {
@@ -154,12 +157,13 @@ impl Mission {
         else {
             return;
         };
-        let Offer { plan, flown, better, .. } = *offer;
+        let Offer { flown, better, .. } = *offer;
         let (here, planner) = (self.known.position(), worker.id().to_owned());
         let asked = AskedPlan::from_here(Reason::MapChanged, here);
-        let mut evaluated = self.known.evaluate(None, &planner, &asked, rest_of(&plan, 0.0, &[here]));
+        let mut evaluated = self.known.evaluate(None, &planner, &asked, rest_of(&offer.plan, 0.0, &[here]));
         if let Some(objection) = evaluated.objection.take() {
-            return self.close_better_plan(worker, objection.message);
+            let reason = OfferEnd::Unsafe { message: objection.message };
+            return self.close_better_plan(worker, &Better::Offered(offer), reason);
         }
         self.happened.push(EventKind::BetterPlanTaken { planner, flown, better });
         self.take_over(Driving::with_plan(worker, Vec::new(), Prepare::No), Said::default(), evaluated);

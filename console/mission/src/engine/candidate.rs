@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     ask::{AskId, Said},
-    event::EventKind,
+    event::{EventKind, OfferEnd},
 };
 use planner_api::Plan;
 
@@ -65,7 +65,7 @@ impl Mission {
 
     /// Rejects the planner that is being prepared, because a different one takes over.
     pub(super) fn reject_preparing(&mut self, why: &str) {
-        self.drop_better_plan("a different planner is active");
+        self.drop_better_plan(OfferEnd::OtherPlannerActive);
         if let Some(Preparing { worker, .. }) = self.preparing.take() {
             self.reject(worker, why.to_owned());
         }

@@ -81,7 +81,7 @@ impl Known {
         None
     }
 
-    fn as_governed(&self) -> Here {
+    pub(super) fn as_governed(&self) -> Here {
         let limits = match self.config.limits.amphibious {
             Some(amphibious) => {
                 let pace = amphibious.pace(self.governor.mode.weight());

@@ -22,6 +22,7 @@ impl Mission {
             Verdict::Resume => self.go_on(Gait::Steady),
             Verdict::Replan(reason) => self.driving.course.want_plan(reason),
             Verdict::Done => self.end_done(),
+            Verdict::Back => self.end_back(),
             Verdict::End(outcome, reason) => self.end(outcome, reason),
         }
     }
@@ -68,6 +69,9 @@ impl Mission {
 
     /// Lets the robot move again, with the given gait.
     pub(super) fn resume(&mut self, gait: Gait) {
+        if gait != Gait::Back {
+            self.leave_way_back();
+        }
         self.driving.prepare = Prepare::No;
         self.go_on(gait);
     }
@@ -81,6 +85,9 @@ impl Mission {
     /// Sends the command for this tick to the robot; without a command, the robot stands still.
     pub(super) fn drive(&mut self) -> Drive {
         let Phase::Running(gait) = self.known.phase else { return Drive::STILL };
+        if gait == Gait::Back {
+            return self.drive_along_way_back();
+        }
         let Some(drive) = self.driving.send(&mut self.known, &mut self.happened) else { return Drive::STILL };
         if gait == Gait::OneTick {
             self.hold(Hold { by: HoldReason::Stepped, resumes: Resumes::Never });

@@ -1,6 +1,6 @@
 //! The state of a mission, apart from its planners.
 
-use super::{floor::ScannedFloor, governing::state::Governor};
+use super::{back::Back, floor::ScannedFloor, governing::state::Governor};
 use crate::{
     chart::Chart,
     config::MissionConfig,
@@ -34,6 +34,10 @@ pub(super) struct Known {
     pub governor: Governor,
     /// The command at the end of the last tick.
     pub last_drive: Drive,
+    /// The drive back that was ordered, until the mission is resumed.
+    pub back: Option<Back>,
+    /// The no-go zones that the hull is in.
+    pub breached: Vec<String>,
 }
 
 impl Known {
@@ -52,6 +56,8 @@ impl Known {
             floor: ScannedFloor::new(floor),
             trail: vec![start],
             last_drive: Drive::STILL,
+            back: None,
+            breached: Vec::new(),
             config,
         }
     }
@@ -63,6 +69,11 @@ impl Known {
 
     pub(super) fn is_running(&self) -> bool {
         matches!(self.phase, Phase::Running(_))
+    }
+
+    /// Whether the robot moves as its planner commands.
+    pub(super) fn follows_planner(&self) -> bool {
+        self.is_running() && !self.phase.is_return()
     }
 
     pub(super) fn is_waiting(&self) -> bool {

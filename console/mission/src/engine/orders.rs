@@ -7,7 +7,7 @@ use super::{
     role::Candidate,
 };
 use crate::{
-    event::EventKind,
+    event::{EventKind, OfferEnd},
     order::Order,
     phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes},
     planner::{ParamValue, PlannerChoice},
@@ -41,6 +41,7 @@ impl Mission {
                 self.stepped_from = Some(self.known.place_on_plan());
                 self.resume(Gait::To(*to));
             }
+            Order::DriveBack => self.drive_back(),
             Order::Abort => self.end(Outcome::Aborted, "ended by operator".into()),
             Order::Terminate => self.end(Outcome::Aborted, "ended by a signal to the process".into()),
             Order::ChoosePlanner(choice) => {
@@ -101,7 +102,7 @@ impl Mission {
     pub(super) fn choose(&mut self, choice: PlannerChoice, reason: Reason) {
         self.stay_held();
         self.cancel_promotion();
-        self.drop_better_plan("a different planner was chosen");
+        self.drop_better_plan(OfferEnd::OtherPlannerChosen);
         let waiting = self.known.is_waiting();
         let reason = if waiting { Reason::Start } else { reason };
         let goes_on = self.driving.takes_live(&choice).then(|| self.known.task.under_way()).flatten();
@@ -127,7 +128,7 @@ impl Mission {
     }
 
     fn set_parameter(&mut self, key: &str, value: &ParamValue) {
-        self.drop_better_plan("a parameter was changed");
+        self.drop_better_plan(OfferEnd::ParameterChanged);
         // This is a change on top of one that is still in progress.
         let prepared = self.preparing.as_ref().map(|preparing| &preparing.worker.choice);
         let newest = prepared.filter(|choice| choice.id == self.driving.id());

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     ask::{Answer, Ask, AskId, Given, Said},
-    event::EventKind,
+    event::{EventKind, OfferEnd},
     planner::Fault,
 };
 
@@ -39,7 +39,7 @@ impl Mission {
             Role::Better(_) => return None,
         };
         if plan.is_none() {
-            self.drop_better_plan("too little of the current plan is left");
+            self.drop_better_plan(OfferEnd::TooLittleLeft);
         }
         self.preparing.as_mut()?.worker.ask_for_plan(self.known.tick, plan?)
     }
@@ -82,9 +82,9 @@ impl Mission {
                 self.reject(worker, why);
             }
             // The robot is not affected, so the fault counts against no plugin.
-            Role::Better(_) => {
+            Role::Better(better) => {
                 self.happened.push(EventKind::PlannerFailed { ask: Some(ask), fault });
-                self.close_better_plan(worker, why);
+                self.close_better_plan(worker, &better, OfferEnd::MakerFailed { message: why });
             }
         }
     }

@@ -1,7 +1,12 @@
 //! A planner that is being prepared while another one is active, and the purpose of the preparation.
 
 use super::{course::Due, known::Known, requests::AskedPlan, worker::Worker};
-use crate::{ask::PlanAsk, event::Effort, task::Joint};
+use crate::{
+    ask::PlanAsk,
+    config::BetterPlan,
+    event::{Effort, OfferStage},
+    task::Joint,
+};
 use planner_api::{Plan, Reason};
 use world::Shape;
 
@@ -79,6 +84,13 @@ pub(super) struct Offer {
 }
 
 impl Better {
+    /// How far the offer has come; `None` until there is one. With some settings, every offer is taken.
+    pub(super) fn stage(&self, setting: BetterPlan) -> Option<OfferStage> {
+        let Self::Offered(offer) = self else { return None };
+        let is_accepted = offer.is_ordered || setting == BetterPlan::Take;
+        Some(if is_accepted { OfferStage::Accepted } else { OfferStage::Offered })
+    }
+
     /// The place where the better plan begins; `None` until the planner has been asked for the plan.
     pub(super) fn joint(&self) -> Option<Joint> {
         match self {

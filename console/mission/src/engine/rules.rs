@@ -12,6 +12,7 @@ mod seen;
 mod stuck;
 mod tether;
 mod time_limit;
+mod zone;
 
 pub(super) use blocked::BlockedRule;
 pub(super) use cuts::{CutsRule, HOME_M, Solids};
@@ -22,10 +23,12 @@ pub(super) use seen::{PlannerSeen, Seen, Verdict};
 use stuck::StuckRule;
 use tether::TetherRule;
 use time_limit::TimeLimitRule;
+use zone::ZoneRule;
 
 use crate::{
     config::MissionConfig,
-    phase::{Hold, HoldReason, Outcome, Phase, Resumes},
+    event::TetherAlarm,
+    phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes},
 };
 
 /// The rules that do not depend on which planner is active.
@@ -52,12 +55,15 @@ impl Rules {
 
     /// Updates the rules for one tick of a mission in progress; the first rule that returns a verdict decides.
     pub(super) fn update(&mut self, seen: &Seen<'_>, phase: &Phase) -> Option<Verdict> {
-        let time_is_up = self.time_limit.update(seen, matches!(phase, Phase::Held(_)));
+        // The time of a drive back, like that of a hold, is the operator's.
+        let is_operators = matches!(phase, Phase::Held(_)) || phase.is_return();
+        let time_is_up = self.time_limit.update(seen, is_operators);
         if seen.touched {
             return Some(Verdict::End(Outcome::Collision, "bumper contact".into()));
         }
         match phase {
             _ if time_is_up.is_some() => time_is_up,
+            Phase::Running(Gait::Back) => self.update_return(seen),
             Phase::Running(_) => self.update_running(seen),
             Phase::Held(hold) => self.update_held(seen, hold),
             Phase::Waiting | Phase::Ended(_) => None,
@@ -68,14 +74,31 @@ impl Rules {
         let Self { lost_position, tether, stuck, .. } = self;
         lost_position
             .update(seen)
+            .or_else(|| ZoneRule::update(seen))
             .or_else(|| seen.task.is_done(seen.here).then_some(Verdict::Done))
             .or_else(|| seen.reached.map(|alarm| tether.update(seen, alarm)))
             .or_else(|| LatePlannerRule::update(&seen.planner))
             .or_else(|| if seen.planner.is_waited_for { None } else { stuck.update(seen) })
     }
 
+    /// The rules for a robot that drives back: it is held, but neither asks planners nor ends the mission unfinished.
+    fn update_return(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
+        let Self { lost_position, stuck, .. } = self;
+        let hold = |by| Verdict::Hold(Hold { by, resumes: Resumes::Never });
+        let by_tether = |alarm: &TetherAlarm| hold(HoldReason::Tether { message: alarm.to_string() });
+        lost_position
+            .update(seen)
+            .or_else(|| ZoneRule::update(seen))
+            .or_else(|| seen.is_back.then_some(Verdict::Back))
+            .or_else(|| seen.reached.map(by_tether))
+            .or_else(|| stuck.update_return(seen))
+    }
+
     /// The rules that let the robot resume from holds that last until a condition has cleared.
     fn update_held(&mut self, seen: &Seen<'_>, hold: &Hold) -> Option<Verdict> {
+        if let Some(breach) = ZoneRule::update(seen).filter(|_| !hold.resumes.is_never()) {
+            return Some(breach);
+        }
         if hold.resumes != Resumes::WhenCleared {
             return None;
         }

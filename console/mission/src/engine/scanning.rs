@@ -2,6 +2,7 @@
 
 use super::{
     Mission,
+    back::Back,
     happened::Happened,
     known::Known,
     role::{Preparing, Role},
@@ -78,7 +79,11 @@ impl Known {
     pub(super) fn scan_from(&mut self, before: Pose, happened: &mut Happened) {
         let here = self.locator.pose();
         let (chart, room_m) = (&self.chart, self.config.room_m());
-        self.task.advance(here.position, chart.map(), |at| chart.has_room(at, room_m));
+        // A robot that drives back makes no progress along its task.
+        let back = self.back.as_ref().filter(|_| self.phase.is_return());
+        if back.is_none() {
+            self.task.advance(here.position, chart.map(), |at| chart.has_room(at, room_m));
+        }
         let passage = Passage::of(&self.phase, self.locator.error_95_m(), self.config.scan_limit_m());
         if passage == Passage::Idle {
             return;
@@ -96,11 +101,11 @@ impl Known {
         happened.push(EventKind::Progressed {
             done: self.task.done(),
             along_m: self.task.along_m(),
-            cross_track_m: self.task.cross_track_m(here.position),
-            target: self.task.target(),
+            cross_track_m: if back.is_none() { self.task.cross_track_m(here.position) } else { None },
+            target: back.map_or_else(|| self.task.target(), Back::target),
             covered_reachable: self.floor.coverage.fraction_reachable(),
             covered_whole: self.floor.coverage.fraction_whole(),
-            leg: self.task.leg(),
+            leg: if back.is_none() { self.task.leg() } else { None },
         });
     }
 

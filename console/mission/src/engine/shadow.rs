@@ -120,7 +120,7 @@ impl Shadow {
         let here = known.position();
         self.advance(here, known);
         self.now = Now {
-            is_running: known.is_running(),
+            is_running: known.follows_planner(),
             may_plan: !known.is_coverage() || known.task.lanes().is_some(),
             n_flown: known.trail.len(),
         };

@@ -5,6 +5,7 @@ mod better_plan;
 mod braking;
 mod caught;
 mod covering;
+mod returning;
 mod shadow;
 mod start;
 mod stopping;

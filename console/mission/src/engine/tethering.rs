@@ -60,7 +60,7 @@ impl Known {
     }
 
     /// Searches for a path with decreasing amounts of room beside the hull; returns the first path found.
-    fn widest(&self, way: impl Fn(f64) -> Option<Vec<Point>>) -> Option<Vec<Point>> {
+    pub(super) fn widest(&self, way: impl FnMut(f64) -> Option<Vec<Point>>) -> Option<Vec<Point>> {
         let rooms =
             [1.0, 0.5, 0.0].map(|share| share * self.config.clearance_m + self.config.limits.radius_m);
         rooms.into_iter().find_map(way)

@@ -2,7 +2,6 @@
 
 use planner_api::{Limits, Motion};
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
 use world::{Point, polyline};
 
 /// The effort of driving a path at the robot's maximum speeds. The robot is assumed to drive straight between points and
@@ -29,21 +28,20 @@ impl Effort {
         Self { length_m, rotation_rad, time_s: length_m / limits.v_max_m_per_s + turning_s }
     }
 
-    /// Describes how much this effort saves compared with a larger one.
-    pub fn saving(&self, other: &Self) -> String {
-        let turns = (other.rotation_rad - self.rotation_rad) / TAU;
-        format!(
-            "{:.0} m, {turns:.1} turns, {:.1} of {:.1} min",
-            other.length_m - self.length_m,
-            (other.time_s - self.time_s) / 60.0,
-            other.time_s / 60.0
-        )
+    /// Describes how much this effort saves compared with the effort of the present plan from the same place on.
+    pub fn saving(&self, present: &Self) -> String {
+        let (less_s, less_m) = (present.time_s - self.time_s, present.length_m - self.length_m);
+        let time = if less_s < 0.0 { "longer" } else { "shorter" };
+        let way = if less_m < 0.0 { "more" } else { "less" };
+        let (min, of_min) = (less_s.abs() / 60.0, present.time_s / 60.0);
+        format!("{min:.1} min {time} (of {of_min:.1} from there), {:.0} m {way}", less_m.abs())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::TAU;
 
     #[test]
     fn turning_takes_time_unless_the_robot_has_no_heading() {
@@ -64,7 +62,8 @@ mod tests {
         assert!((turning.time_s - 20.0 - TAU).abs() < 1e-12);
         let straight = Effort::of(&path, &limits(Motion::Point));
         assert!((straight.time_s - 20.0).abs() < 1e-12);
-        assert_eq!(straight.saving(&turning), "0 m, 0.0 turns, 0.1 of 0.4 min");
+        assert_eq!(straight.saving(&turning), "0.1 min shorter (of 0.4 from there), 0 m less");
+        assert_eq!(turning.saving(&straight), "0.1 min longer (of 0.3 from there), 0 m less");
         assert_eq!(Effort::of(&[], &limits(Motion::Point)), Effort::default());
     }
 }

@@ -1,11 +1,11 @@
 //! Events as lines of text. The log on the screen, the recording and the command line use the same words.
 
 use super::{
-    Event, EventKind, TetherAlarm,
+    Event, EventKind, OfferStage, TetherAlarm,
     severity::{self, Severity},
 };
 use crate::{
-    order::{Injection, Note, Noted, Order, RangeFault},
+    order::{Check, CheckOutcome, Injection, Note, Noted, Order, RangeFault},
     phase::{Outcome, StepTo},
 };
 use planner_api::LogLevel;
@@ -47,7 +47,7 @@ impl Event {
                 format!("{} rejected: {}", station_text(*station, stations), exclusion_text(reason)),
             ),
             EventKind::StationRestored { station } => {
-                line(Severity::Info, "ae", format!("{} back in use", station_text(*station, stations)))
+                line(Severity::Info, "ae", format!("{} no longer rejected", station_text(*station, stations)))
             }
             EventKind::PositionLost { error_m, limit_m } => line(
                 Severity::Crit,
@@ -78,6 +78,13 @@ impl Event {
                 let corners = format!("{:.2}, {:.2} to {:.2}, {:.2} m", low.x, low.y, high.x, high.y);
                 line(Severity::Watch, "map", format!("{} drawn by the operator: {corners}", zone.name))
             }
+            EventKind::ZoneBreached { zone, depth_m } => {
+                line(Severity::Crit, "robot", format!("hull {depth_m:.2} m inside zone {zone}"))
+            }
+            EventKind::ZoneLeft { zone } => {
+                line(Severity::Info, "robot", format!("hull outside zone {zone} again"))
+            }
+            EventKind::ReturnBegan { way } => line(Severity::Info, "mission", way.to_string()),
             EventKind::PlannerChosen { .. }
             | EventKind::PlannerPrepared { .. }
             | EventKind::PlannerRejected { .. }
@@ -169,7 +176,7 @@ fn of_planner(kind: &EventKind) -> Option<LogLine> {
             line(Severity::Info, "plan", format!("{planner} planned {length_m:.1} m{part}"))
         }
         EventKind::PlannerLogged { planner, level, message } => match level {
-            LogLevel::Debug => return None,
+            LogLevel::Debug => line(Severity::Debug, "plan", format!("{planner}: {message}")),
             LogLevel::Info => line(Severity::Info, "plan", format!("{planner}: {message}")),
             LogLevel::Warn => line(Severity::Watch, "plan", format!("{planner}: {message}")),
         },
@@ -190,19 +197,23 @@ fn of_planner(kind: &EventKind) -> Option<LogLine> {
 fn of_better_plan(kind: &EventKind) -> Option<LogLine> {
     Some(match kind {
         EventKind::BetterPlanned { planner, flown, better, objection: None, .. } => {
-            let text = format!("{planner} has a better plan; it saves {}", better.saving(flown));
+            let text = format!("better plan of {planner}: {}", better.saving(flown));
             line(Severity::Watch, "plan", text)
         }
         EventKind::BetterPlanned { planner, objection: Some(why), .. } => {
-            line(Severity::Info, "plan", format!("{planner} has no better plan: {why}"))
+            line(Severity::Info, "plan", format!("re-planned {planner}: {why}; the present plan is kept"))
         }
         EventKind::BetterPlanTaken { planner, flown, better } => {
-            let text = format!("better plan of {planner} taken; it saves {}", better.saving(flown));
+            let text = format!("better plan of {planner} taken: {}", better.saving(flown));
             line(Severity::Info, "plan", text)
         }
-        EventKind::BetterPlanDropped { planner, why } => {
-            line(Severity::Info, "plan", format!("better plan of {planner} dropped: {why}"))
-        }
+        EventKind::BetterPlanDropped { planner, why, stage, .. } => match stage {
+            None => line(Severity::Info, "plan", format!("better plan of {planner} dropped: {why}")),
+            Some(OfferStage::Offered) => line(Severity::Info, "plan", format!("offer ended: {why}")),
+            Some(OfferStage::Accepted) => {
+                line(Severity::Watch, "plan", format!("accepted better plan dropped: {why}"))
+            }
+        },
         _ => return None,
     })
 }
@@ -278,11 +289,12 @@ fn order_text(order: &Order, stations: &[Station]) -> String {
             let planners: Vec<&str> = outlooks.iter().map(|outlook| outlook.choice.id.as_str()).collect();
             format!("forecasts compared: {}", planners.join(", "))
         }
-        Order::NoteChecks(checks) => format!("{} pre-flight checks noted", checks.len()),
+        Order::NoteChecks(checks) => checks_text(checks),
         Order::Hold => "hold".into(),
         Order::Resume => "resume".into(),
         Order::Step => "single step".into(),
         Order::FlyUncertified => "run uncertified plan".into(),
+        Order::DriveBack => "drive back".into(),
         Order::Abort => "end mission".into(),
         Order::Terminate => "end mission, by a signal to the process".into(),
         Order::ChoosePlanner(choice) => format!("change planner to {}", choice.id),
@@ -299,6 +311,19 @@ fn order_text(order: &Order, stations: &[Station]) -> String {
         }
         Order::Note(note) => note_text(note),
     }
+}
+
+fn checks_text(checks: &[Check]) -> String {
+    let count = |outcome| checks.iter().filter(|check| check.outcome == outcome).count();
+    let parts = [
+        (CheckOutcome::Passed, "ok"),
+        (CheckOutcome::Ticked, "by hand"),
+        (CheckOutcome::Warning, "with a warning"),
+        (CheckOutcome::Failed, "failed"),
+    ];
+    let parts = parts.map(|(outcome, word)| (count(outcome), word));
+    let parts = parts.iter().filter(|(n, _)| *n > 0).map(|(n, word)| format!("{n} {word}"));
+    format!("pre-flight: {}", parts.collect::<Vec<_>>().join(", "))
 }
 
 /// The end of a sentence that tells who acted: ` by NAME`, or nothing.
@@ -384,7 +409,7 @@ mod tests {
             Event { tick: 7, t_s: 0.7, kind: EventKind::StationRestored { station: StationId(3) } };
         let text =
             |stations: &[Station]| restored.log_line(stations).map(|line| line.text).unwrap_or_default();
-        assert_eq!(text(&stations), "station C back in use");
-        assert_eq!(text(&[]), "station 3 back in use");
+        assert_eq!(text(&stations), "station C no longer rejected");
+        assert_eq!(text(&[]), "station 3 no longer rejected");
     }
 }

@@ -6,7 +6,7 @@
 //! from the journal. Commands are rounded before they are sent ([`crate::Sending::as_sent`]).
 
 use super::{Event, EventKind, TetherContact};
-use crate::ask::Said;
+use crate::{ask::Said, way_back::WayBack};
 use nalgebra::SMatrix;
 use planner_api::{Command, Drawing, Drive, PoseEstimate};
 use positioning::{Exclusion, Fix, Ranging};
@@ -116,6 +116,16 @@ impl EventKind {
             }
             Self::SpeedLimited { asked_m_per_s, sent_m_per_s, needs_m } => {
                 [asked_m_per_s, sent_m_per_s, needs_m].into_iter().for_each(round);
+            }
+            Self::ReturnBegan { way: WayBack { path, length_m, clearance_m, .. } } => {
+                path.iter_mut().for_each(round_point);
+                [length_m, clearance_m].into_iter().for_each(round);
+            }
+            Self::ZoneBreached { depth_m, .. } => round(depth_m),
+            Self::BetterPlanned { scans: Some(scans), .. } => {
+                for scan in [&mut scans.flown, &mut scans.better] {
+                    [&mut scan.left_m2, &mut scan.covered_reachable].into_iter().for_each(round);
+                }
             }
             Self::MediumKnown { pressure_pa, .. } => round(pressure_pa),
             Self::Ranged { ranges } => ranges.iter_mut().for_each(round_ranging),

@@ -11,6 +11,8 @@ use world::tether::Certificate;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Severity {
+    /// For the developers of planners; hidden unless asked for.
+    Debug,
     /// Worth knowing.
     Info,
     /// Worth watching.
@@ -37,6 +39,7 @@ impl Fault {
 pub(super) fn of_hold(by: &HoldReason) -> Severity {
     match by {
         HoldReason::Operator | HoldReason::Stepped | HoldReason::PlannerReplaced => Severity::Info,
+        HoldReason::ZoneBreached { .. } => Severity::Crit,
         HoldReason::PositionLost
         | HoldReason::RangesInconsistent
         | HoldReason::PlannerFault { .. }

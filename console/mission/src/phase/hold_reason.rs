@@ -38,6 +38,11 @@ pub enum HoldReason {
         /// The reason, as a sentence.
         message: String,
     },
+    /// The hull is in a no-go zone.
+    ZoneBreached {
+        /// Name of the zone.
+        zone: String,
+    },
     /// A single step is complete.
     Stepped,
     /// The planner that caused the hold was replaced; the operator decides when the robot moves again.
@@ -58,6 +63,7 @@ impl HoldReason {
             Self::Stuck { message: message() },
             Self::Tether { message: message() },
             Self::PlanRefused { message: message() },
+            Self::ZoneBreached { zone: message() },
             Self::Stepped,
             Self::PlannerReplaced,
         ];
@@ -72,6 +78,7 @@ impl HoldReason {
                 | Self::Stuck { .. }
                 | Self::Tether { .. }
                 | Self::PlanRefused { .. }
+                | Self::ZoneBreached { .. }
                 | Self::Stepped
                 | Self::PlannerReplaced => {}
             }
@@ -96,6 +103,7 @@ impl fmt::Display for HoldReason {
             | Self::Tether { message }
             | Self::PlanRefused { message } => write!(f, "held: {message}"),
             Self::Stuck { message } => write!(f, "held: robot stuck, {message}"),
+            Self::ZoneBreached { zone } => write!(f, "held: hull in zone {zone}"),
             Self::Stepped => f.write_str("held after single step"),
             Self::PlannerReplaced => f.write_str("held: planner replaced"),
         }

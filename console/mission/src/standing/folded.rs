@@ -4,7 +4,8 @@ mod ready;
 
 use super::{PositionTrust, Readiness, Standing};
 use crate::{
-    event::{EventKind, ShadowTally},
+    config::BetterPlan,
+    event::{EventKind, OfferStage, ShadowTally},
     order::Order,
     phase::{Gait, Hold, Phase},
     plan_id::PlanId,
@@ -29,9 +30,12 @@ pub struct FoldedStanding {
     /// The record of the planner in shadow; `None` without one.
     #[serde(default)]
     shadow: Option<ShadowTally>,
-    /// Whether a better plan is offered and has not been ordered yet.
+    /// The better plan that is offered or accepted; `None` without one.
     #[serde(default)]
-    has_offer: bool,
+    offer: Option<OfferStage>,
+    /// Whether the scenario takes better plans without an order.
+    #[serde(default)]
+    takes_offers: bool,
     /// The plan with which a start would begin the mission, and its planner.
     #[serde(default)]
     ready: Ready,
@@ -41,18 +45,22 @@ impl FoldedStanding {
     /// Processes one event; the events must be passed in the order of the journal.
     pub fn apply(&mut self, event: &EventKind) {
         match event {
-            EventKind::RunOpened(run) => *self = Self { ready: Ready::of(run), ..Self::default() },
+            EventKind::RunOpened(run) => {
+                let takes_offers = run.mission.better_plan == BetterPlan::Take;
+                *self = Self { ready: Ready::of(run), takes_offers, ..Self::default() };
+            }
             EventKind::Ordered { order } if order.is_start() => self.phase = Phase::Running(Gait::Steady),
             EventKind::Ordered { order } => {
                 if matches!(order, Order::Shadow(_)) {
                     self.shadow = Some(ShadowTally::default());
                 }
                 if *order == Order::TakePlan {
-                    self.has_offer = false;
+                    self.offer = Some(OfferStage::Accepted);
                 }
                 self.gait = match order {
                     Order::Step => Some(Gait::OneTick),
                     Order::StepTo(to) => Some(Gait::To(*to)),
+                    Order::DriveBack => Some(Gait::Back),
                     _ => None,
                 };
             }
@@ -68,8 +76,11 @@ impl FoldedStanding {
             EventKind::RangesInconsistent { .. } => self.is_alarmed = true,
             EventKind::RangesConsistent => self.is_alarmed = false,
             EventKind::PlannerChosen { info, .. } => self.planner = Some(info.clone()),
-            EventKind::BetterPlanned { objection, .. } => self.has_offer = objection.is_none(),
-            EventKind::BetterPlanTaken { .. } | EventKind::BetterPlanDropped { .. } => self.has_offer = false,
+            EventKind::BetterPlanned { objection, .. } => {
+                let stage = if self.takes_offers { OfferStage::Accepted } else { OfferStage::Offered };
+                self.offer = objection.is_none().then_some(stage);
+            }
+            EventKind::BetterPlanTaken { .. } | EventKind::BetterPlanDropped { .. } => self.offer = None,
             EventKind::Promoted { .. } | EventKind::ShadowEnded { .. } => self.shadow = None,
             _ => {}
         }
@@ -99,7 +110,7 @@ impl FoldedStanding {
             position,
             planner: self.planner.as_deref(),
             shadow: self.shadow,
-            has_offer: self.has_offer,
+            offer: self.offer,
             readiness: self.ready.readiness(),
         }
     }

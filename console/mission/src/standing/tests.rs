@@ -15,6 +15,7 @@ fn phases() -> Vec<Phase> {
         Phase::Waiting,
         Phase::Running(Gait::Steady),
         Phase::Running(Gait::OneTick),
+        Phase::Running(Gait::Back),
         Phase::Ended(Outcome::Complete),
     ];
     others.into_iter().chain(held).collect()
@@ -31,6 +32,7 @@ fn orders() -> Vec<Order> {
         Order::Resume,
         Order::Step,
         Order::StepTo(StepTo::LaneEnd),
+        Order::DriveBack,
         Order::FlyUncertified,
         Order::Abort,
         Order::ChoosePlanner(choice.clone()),
@@ -55,7 +57,7 @@ fn standing(phase: &Phase, position: PositionTrust) -> Standing<'_> {
         position,
         planner: None,
         shadow: Some(shadow),
-        has_offer: true,
+        offer: Some(OfferStage::Offered),
         readiness: Readiness::Unseen,
     }
 }
@@ -79,7 +81,14 @@ fn nothing_that_moves_the_robot_is_accepted_without_a_position() {
     let lost = PositionTrust::Lost { limit_m: 0.3 };
     for position in [lost, PositionTrust::Alarmed] {
         for phase in phases() {
-            for order in [Order::Resume, Order::Step, Order::StepTo(StepTo::Event), Order::FlyUncertified] {
+            let moves = [
+                Order::Resume,
+                Order::Step,
+                Order::StepTo(StepTo::Event),
+                Order::DriveBack,
+                Order::FlyUncertified,
+            ];
+            for order in moves {
                 assert!(standing(&phase, position).allows(&order).is_err(), "{phase:?} {order:?}");
             }
         }

@@ -1,6 +1,6 @@
 //! Scanning the floor along the legs of a plan, and returning to the anchor.
 
-use super::rest_of;
+use super::{CornerPatience, rest_of};
 use crate::ask::TaskLeft;
 use geometry::PathFollower;
 use planner_api::{self as api, LegTag, Plan};
@@ -9,13 +9,6 @@ use world::{CoverageGrid, ObstacleMap, Point, Shape, coverage::regions, polyline
 
 /// Size of the blocks of floor that planners receive, as a multiple of the lane width.
 const BLOCK_LANES: f64 = 0.25;
-
-/// A corner closer than this is given up if the robot stops getting closer to the corner, metres.
-const NEAR_CORNER_M: f64 = 0.3;
-/// Time after which such a corner is given up, seconds: longer than a turn on the spot takes.
-const CORNER_PATIENCE_S: f64 = 6.0;
-/// Minimum change that counts as getting closer, metres.
-const NEARER_M: f64 = 0.01;
 
 /// Progress of a coverage mission. The scanned floor is recorded in the mission's grid, so any planner can continue from
 /// the current state.
@@ -29,8 +22,7 @@ pub(crate) struct Cover {
     lanes: Option<Lanes>,
     /// Distance driven along earlier plans, metres.
     before_m: f64,
-    /// The minimum distance so far from the corner ahead, metres, and the time since the robot was that close, seconds.
-    at_corner: (f64, f64),
+    at_corner: CornerPatience,
 }
 
 /// A place on the plan.
@@ -61,7 +53,7 @@ impl Cover {
             position: start,
             lanes: None,
             before_m: 0.0,
-            at_corner: (f64::INFINITY, 0.0),
+            at_corner: CornerPatience::default(),
         }
     }
 
@@ -70,7 +62,7 @@ impl Cover {
         self.before_m += self.lanes.as_ref().map_or(0.0, |lanes| lanes.follower.along_m());
         let stations_m = polyline::stations_m(&plan.path);
         let ends_m = plan.legs.iter().map(|leg| stations_m[leg.last]).collect();
-        self.at_corner = (f64::INFINITY, 0.0);
+        self.at_corner = CornerPatience::default();
         self.lanes = (!plan.path.is_empty()).then(|| Lanes {
             plan: Arc::new(plan.clone()),
             follower: PathFollower::exact(&plan.path),
@@ -88,17 +80,8 @@ impl Cover {
 
     /// Counts time during which the robot was free to move; a corner that the robot cannot reach is given up.
     pub(crate) fn wait(&mut self, passed_s: f64) {
-        let Some(lanes) = &mut self.lanes else { return };
-        let corner_m = lanes.follower.corner_m(self.position).filter(|corner_m| *corner_m < NEAR_CORNER_M);
-        let (least_m, waited_s) = self.at_corner;
-        self.at_corner = match corner_m {
-            None => (f64::INFINITY, 0.0),
-            Some(corner_m) if corner_m < least_m - NEARER_M => (corner_m, 0.0),
-            Some(_) => (least_m, waited_s + passed_s),
-        };
-        if self.at_corner.1 > CORNER_PATIENCE_S {
-            lanes.follower.give_up_corner();
-            self.at_corner = (f64::INFINITY, 0.0);
+        if let Some(lanes) = &mut self.lanes {
+            self.at_corner.wait(&mut lanes.follower, self.position, passed_s);
         }
     }
 

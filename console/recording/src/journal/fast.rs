@@ -6,7 +6,7 @@ mod within;
 
 use mission::{
     AskId, Event, EventKind,
-    event::{Effort, TetherContact},
+    event::{Effort, PlanScans, TetherContact},
 };
 use planner_api::{Command, Leg, LegTag, PoseEstimate, Reason};
 use positioning::{Fix, Ranging};
@@ -74,7 +74,7 @@ pub(super) fn event(line: &[u8]) -> Option<Event> {
             line,
             BetterPlanned {
                 ask: AskId, planner: String, path: Vec<Point>, complete: bool, flown: Effort, better: Effort;
-                legs: Vec<Leg>, cuts: Vec<Vec<Point>>, objection: Option<String>
+                legs: Vec<Leg>, cuts: Vec<Vec<Point>>, scans: Option<PlanScans>, objection: Option<String>
             }
         ),
         b"shadowed" | b"discarded" => within::event(line),

@@ -150,6 +150,10 @@ impl Opened {
                     stream.once(paths::CUTS, at, &strips(cuts.iter().map(strip).collect()))?;
                 }
             }
+            EventKind::ReturnBegan { way } => {
+                let line = way.path.iter().map(|point| super::lane::flat(*point)).collect();
+                stream.once(paths::WAY_BACK, at, &scene::lines([line], style::PLAN, 2.0))?;
+            }
             EventKind::ObstacleFound { obstacle } | EventKind::ObstacleMoved { obstacle, .. } => {
                 draw_found(stream, at, obstacle)?;
             }
@@ -217,6 +221,7 @@ fn log(stream: &Stream, event: &Event, stations: &[Station], at: At) -> Done {
     let Some(line) = event.log_line(stations) else { return Ok(()) };
     // The viewer has no level for WATCH; it shows an unknown level as plain text without a colour.
     let level = match line.severity {
+        Severity::Debug => rr::TextLogLevel::DEBUG,
         Severity::Info => rr::TextLogLevel::INFO,
         Severity::Watch => "WATCH",
         Severity::Warn => rr::TextLogLevel::WARN,

@@ -26,6 +26,8 @@ pub(crate) const FIX: &str = "map/world/ae/fix";
 pub(crate) const PRESET: &str = "map/world/path/preset";
 pub(crate) const GOAL: &str = "map/world/path/goal";
 pub(crate) const PLANNED: &str = "map/world/path/planned";
+/// The way of a robot that drives back by order.
+pub(crate) const WAY_BACK: &str = "map/world/path/back";
 pub(crate) const CUTS: &str = "map/world/path/cuts";
 pub(crate) const TARGET: &str = "map/world/path/target";
 pub(crate) const WAY_TRUE: &str = "map/world/way/true";

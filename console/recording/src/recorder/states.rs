@@ -23,6 +23,8 @@ const HELD_FAULT: &str = "held, planner fault";
 const HELD_STUCK: &str = "held, stuck";
 const HELD_TETHER: &str = "held, tether";
 const HELD_REFUSED: &str = "held, plan refused";
+const HELD_ZONE: &str = "held, hull in a no-go zone";
+const RETURNING: &str = "driving back";
 const KNOWN: &str = "known";
 const LOST: &str = "lost";
 
@@ -50,6 +52,8 @@ impl States {
             (HELD_STUCK, "stuck", red),
             (HELD_TETHER, "tether", red),
             (HELD_REFUSED, "refused", red),
+            (HELD_ZONE, "zone", red),
+            (RETURNING, "back", green),
             outcome(Outcome::Complete, style::rgb(60, 120, 200)),
             outcome(Outcome::Stuck, amber),
             outcome(Outcome::Collision, red),
@@ -67,7 +71,10 @@ impl States {
     pub(crate) fn apply(&mut self, stream: &Stream, event: &EventKind, at: At) -> Done {
         match event {
             EventKind::Ordered { order } if order.is_start() => self.enter(stream, MOVING, at),
+            // The beginning of a drive back precedes the event that the robot may move again.
+            EventKind::Resumed if self.mission == RETURNING => Ok(()),
             EventKind::Resumed => self.enter(stream, MOVING, at),
+            EventKind::ReturnBegan { .. } => self.enter(stream, RETURNING, at),
             // A run without an operator never receives a start order.
             EventKind::Commanded { .. } if self.mission == WAITING => self.enter(stream, MOVING, at),
             EventKind::Held { by, .. } => self.enter(stream, held(by), at),
@@ -110,6 +117,7 @@ fn held(by: &HoldReason) -> &'static str {
         HoldReason::Stuck { .. } => HELD_STUCK,
         HoldReason::Tether { .. } => HELD_TETHER,
         HoldReason::PlanRefused { .. } => HELD_REFUSED,
+        HoldReason::ZoneBreached { .. } => HELD_ZONE,
     }
 }
 

@@ -116,7 +116,8 @@ fn pieces(text: &str, filter: &Filter) -> Vec<(bool, String)> {
 /// The role of a severity.
 pub(super) fn role(severity: Severity) -> Role {
     match severity {
-        Severity::Debug | Severity::Info => Role::Text,
+        Severity::Debug => Role::Dim,
+        Severity::Info => Role::Text,
         Severity::Watch => Role::Watch,
         Severity::Warn => Role::Warn,
         Severity::Crit => Role::Crit,

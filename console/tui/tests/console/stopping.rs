@@ -28,6 +28,7 @@ fn phases() -> Vec<Phase> {
         Phase::Running(Gait::Steady),
         Phase::Running(Gait::OneTick),
         Phase::Running(Gait::To(mission::StepTo::LaneEnd)),
+        Phase::Running(Gait::Back),
     ]
     .into_iter()
     .chain(held)
@@ -183,6 +184,9 @@ fn screen_in(phase: &Phase) -> Screen {
     let mission = &screen.mission;
     let events = match phase {
         Phase::Waiting | Phase::Running(Gait::Steady) => Vec::new(),
+        Phase::Running(Gait::Back) => {
+            [mission.obeyed(Order::Hold), mission.obeyed(Order::DriveBack)].concat()
+        }
         Phase::Running(Gait::OneTick) => [mission.obeyed(Order::Hold), mission.obeyed(Order::Step)].concat(),
         Phase::Running(Gait::Back) => {
             [mission.obeyed(Order::Hold), mission.obeyed(Order::DriveBack)].concat()

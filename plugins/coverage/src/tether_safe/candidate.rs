@@ -187,13 +187,13 @@ impl Worth {
     pub(super) fn summary(&self, name: &str) -> String {
         let c = &self.certificate;
         format!(
-            "{name}: {:.1} m, {:.0} turns, {} % of reachable floor, cable {:.2} m ({:.3} of the minimum), \
+            "{name}: {:.1} m, {:.0} turns, {} % of reachable floor, tether {:.2} m ({:.0} % above the minimum), \
              wrap {:.0} deg on one obstacle, {:.0} deg in all{}",
             self.length_m,
             self.turns,
             percent_text(self.coverage, 2),
             c.tether_length_max_m,
-            Strain::from(c).cable_share(),
+            100.0 * (Strain::from(c).cable_share() - 1.0),
             c.wrap_max_rad.to_degrees(),
             c.wrap_total_max_rad.to_degrees(),
             if c.certified { String::new() } else { format!("; not certified: {}", c.reasons.join("; ")) },

@@ -133,8 +133,8 @@ impl<'a> Pipeline<'a> {
         if let (Some(next), Some(last)) = (hopeless.first(), hopeless.last()) {
             let [from_m, to_m] = [next, last].map(|draft| draft.estimate_m - least_m);
             let n = hopeless.len();
-            let longer = format!("about {from_m:.0} to {to_m:.0} m longer, judging by their first tours");
-            ctx.log(LogLevel::Info, &format!("candidates not finished: {n}, {longer}"));
+            let more = format!("{n} more candidates not worked out ({from_m:.0} to {to_m:.0} m longer)");
+            ctx.log(LogLevel::Debug, &more);
         }
         Ok(())
     }
@@ -218,7 +218,7 @@ impl<'a> Tried<'a> {
     pub(super) fn chosen(self, ctx: &Ctx<'_>) -> Option<(Worth, Scan<'a>)> {
         for Finished { name, worth, .. } in &self.finished {
             if !self.finished.iter().any(|other| worth.is_beaten_by(&other.worth)) {
-                ctx.log(LogLevel::Info, &worth.summary(name));
+                ctx.log(LogLevel::Debug, &worth.summary(name));
             }
         }
         self.finished.into_iter().find_map(|finished| Some((finished.worth, finished.scan?)))

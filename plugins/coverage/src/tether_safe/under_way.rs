@@ -63,7 +63,7 @@ pub(super) fn repaired<'a>(
         run_all(repair.domains(), &stages.next(0.4, "repair"), |domain, job| repair.laid(domain, job))?;
     let laid = likeliest_first(laid.into_iter().flatten(), &limits, pipeline);
     let ctx = stages.ctx;
-    let log = |message: &str| ctx.log(LogLevel::Info, message);
+    let log = |message: &str| ctx.log(LogLevel::Debug, message);
     let mut why = "the cuts leave no path".to_owned();
     for laid in laid {
         let polished = run_all(vec![laid], &stages.next(0.7, "repair"), |laid, job| {

@@ -1,7 +1,11 @@
 //! How much time a plan for all that is left must save, and where it begins.
 
 use super::super::{known::Known, requests::AskedPlan};
-use crate::{ask::PlanAsk, event::Effort, task::Joint};
+use crate::{
+    ask::PlanAsk,
+    event::{Effort, PlanScan, PlanScans},
+    task::Joint,
+};
 use planner_api::{Plan, PoseEstimate, Reason};
 use world::{CoverageGrid, Point, Tool};
 
@@ -56,44 +60,58 @@ impl Known {
         coverage
     }
 
-    /// Why a plan is not offered in place of the rest of the current path: it saves too little, scans less floor, or is
-    /// not safe for the tether.
-    pub(super) fn objection_to_better(
+    /// The floor that both plans scan, and why a plan is not offered in place of the rest of the current path: it saves too
+    /// little, scans less floor, or is not safe for the tether.
+    pub(super) fn judge_better(
         &self,
         way: &[Point],
         rest: &[Point],
         (flown, better): (Effort, Effort),
         plan: &Plan,
-    ) -> Option<String> {
-        let (saves_s, worth_s) = (flown.time_s - better.time_s, CHANGE_S + CHANGE_SHARE * flown.time_s);
-        if saves_s <= worth_s {
-            let [flown_min, better_min, worth_min] = [flown.time_s, better.time_s, worth_s].map(|s| s / 60.0);
-            return Some(format!(
-                "its plan would take {better_min:.1} min instead of {flown_min:.1}; a change must save \
-                 more than {worth_min:.1} min"
-            ));
+    ) -> (Option<PlanScans>, Option<String>) {
+        if let Some(why) = saves_too_little(&flown, &better) {
+            return (None, Some(why));
         }
         let coverage = self.coverage_after(way);
         let cell_m2 = coverage.floor().cell_m2();
-        let same = SAME_FLOOR_SHARE * self.task.floor_left(&coverage).len() as f64;
-        let [left, as_now] = [&plan.path[..], rest].map(|path| {
+        let same_m2 = SAME_FLOOR_SHARE * self.task.floor_left(&coverage).len() as f64 * cell_m2;
+        let scan = |path: &[Point]| {
             let mut coverage = coverage.clone();
             Tool::along(path, |from, to| coverage.mark(self.config.tool(), from, to));
-            self.task.floor_left(&coverage).len()
-        });
-        let less = left as f64 - as_now as f64;
-        if less > same {
-            let missed_m2 = less * cell_m2;
-            return Some(format!(
-                "its plan saves {} but scans {missed_m2:.2} m² less",
-                better.saving(&flown)
-            ));
-        }
-        let certificate = self
-            .tether
-            .as_ref()
-            .map(|tether| tether.certify_after(way, plan, self.chart.world(), self.task_ends_at_anchor()))?;
-        let why = || format!("its plan is not safe for the tether: {}", certificate.reasons.join("; "));
+            let left_m2 = self.task.floor_left(&coverage).len() as f64 * cell_m2;
+            PlanScan { left_m2, covered_reachable: coverage.fraction_reachable() }
+        };
+        let scans = PlanScans { flown: scan(rest), better: scan(&plan.path) };
+        let less_m2 = scans.better.left_m2 - scans.flown.left_m2;
+        let objection = if less_m2 > same_m2 {
+            Some(format!("{}, but it scans {less_m2:.2} m² less", better.saving(&flown)))
+        } else {
+            self.objection_for_tether(way, plan)
+        };
+        (Some(scans), objection)
+    }
+
+    fn objection_for_tether(&self, way: &[Point], plan: &Plan) -> Option<String> {
+        let tether = self.tether.as_ref()?;
+        let certificate = tether.certify_after(way, plan, self.chart.world(), self.task_ends_at_anchor());
+        let why = || format!("not safe for the tether: {}", certificate.reasons.join("; "));
         (!certificate.certified).then(why)
     }
+}
+
+/// Why a plan saves too little time to justify a change, as a sentence.
+fn saves_too_little(flown: &Effort, better: &Effort) -> Option<String> {
+    let (saves_s, worth_s) = (flown.time_s - better.time_s, CHANGE_S + CHANGE_SHARE * flown.time_s);
+    let [flown_min, better_min, saves_min, worth_min] =
+        [flown.time_s, better.time_s, saves_s, worth_s].map(|s| s / 60.0);
+    if saves_s <= 0.0 {
+        return Some(format!("{better_min:.1} min, slower than the present {flown_min:.1}"));
+    }
+    let why = || {
+        format!(
+            "{better_min:.1} min, {saves_min:.1} min shorter than the present plan; a change must save \
+             {worth_min:.1} min"
+        )
+    };
+    (saves_s <= worth_s).then(why)
 }

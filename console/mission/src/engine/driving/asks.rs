@@ -25,7 +25,7 @@ impl Driving {
         if self.worker.pending.is_some() || matches!(known.phase, Phase::Ended(_)) {
             return None;
         }
-        let is_running = known.is_running();
+        let is_running = known.follows_planner();
         if !self.worker.is_ready() {
             return (is_running || self.prepare > Prepare::No).then(|| self.open(known, workers));
         }
@@ -84,7 +84,7 @@ impl Driving {
     /// The answer from this planner that the mission would like to have before the tick ends.
     pub(in crate::engine) fn awaits(&self, known: &Known) -> Option<Awaits> {
         self.worker.pending.as_ref()?;
-        Some(if !known.is_running() {
+        Some(if !known.follows_planner() {
             Awaits::Candidate
         } else if self.worker.is_being_prepared() {
             Awaits::Work

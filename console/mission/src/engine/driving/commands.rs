@@ -13,7 +13,7 @@ use crate::{
     ask::{AskId, Said},
     event::{EventKind, rounded_command},
 };
-use geometry::motion::drive_for;
+use geometry::motion::{TURN_FIRST_IN_LANES_RAD, drive_for};
 use planner_api::{Command, Drive, Limits};
 
 /// Spacing of the stored points of the path driven, which planners receive; metres.
@@ -43,7 +43,7 @@ impl Driving {
         let late_ticks = self.late.arrived(ticks).then_some(ticks);
         let arrived = Arrived { ask: asked.id, command, said, late_ticks };
         let is_fresh = LatePlannerRule::is_fresh(ticks as f64 * known.config.tick_s);
-        if !(usable && known.is_running() && is_fresh) {
+        if !(usable && known.follows_planner() && is_fresh) {
             return self.discard(arrived, happened);
         }
         self.saved_at_s.get_or_insert(known.now_s());
@@ -123,7 +123,12 @@ impl Known {
         Sending {
             heading_rad: self.locator.pose().heading_rad,
             limits: self.config.limits,
-            turn_first_rad: self.config.task.turn_first_rad(),
+            // A way back is followed as exactly as lanes are.
+            turn_first_rad: if self.phase.is_return() {
+                TURN_FIRST_IN_LANES_RAD
+            } else {
+                self.config.task.turn_first_rad()
+            },
         }
     }
 

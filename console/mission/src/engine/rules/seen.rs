@@ -22,8 +22,12 @@ pub(in crate::engine) struct Seen<'a> {
     pub here: Point,
     pub position: PositionTrust,
     pub task: &'a Task,
-    /// Length left of the planner's path, metres, if the planner has a path.
+    /// Length left of the planner's path or of the way back, metres, if there is one.
     pub plan_left_m: Option<f64>,
+    /// Whether the robot has reached the end of the way back.
+    pub is_back: bool,
+    /// The no-go zone that the hull entered in this tick, if any.
+    pub breached: Option<&'a str>,
     /// Scanned share of the reachable floor, 0 to 1.
     pub scanned: f64,
     /// Whether the bumper was touched.
@@ -67,6 +71,8 @@ pub(in crate::engine) enum Verdict {
     Replan(Reason),
     /// The task is done.
     Done,
+    /// The robot is back, as ordered.
+    Back,
     /// The mission is over.
     End(Outcome, String),
 }

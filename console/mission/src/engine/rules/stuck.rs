@@ -41,6 +41,16 @@ impl StuckRule {
         self.watch.reset();
         Some(Verdict::Replan(Reason::Blocked))
     }
+
+    /// Processes one tick in which the robot was free to drive back.
+    pub(crate) fn update_return(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
+        let is_stuck = self.watch.update(seen.task, seen.plan_left_m, seen.here, seen.config.tick_s);
+        let (x, y) = (seen.here.x, seen.here.y);
+        let message = || format!("no progress at {x:.2}, {y:.2} m on the way back");
+        is_stuck.then(|| {
+            Verdict::Hold(Hold { by: HoldReason::Stuck { message: message() }, resumes: Resumes::Never })
+        })
+    }
 }
 
 /// An operator may find a way out; in an unattended mission, the mission ends.

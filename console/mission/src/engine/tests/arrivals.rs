@@ -199,7 +199,7 @@ pub(super) fn replay_asking(
 }
 
 fn order(n: u8) -> Order {
-    match n % 12 {
+    match n % 13 {
         0 => Order::Hold,
         1 => Order::Resume,
         2 => Order::Step,
@@ -211,6 +211,7 @@ fn order(n: u8) -> Order {
         8 => shadow("straight"),
         9 => Order::Promote,
         10 => Order::TakePlan,
+        11 => Order::DriveBack,
         _ => Order::DropShadow,
     }
 }
@@ -229,9 +230,9 @@ enum Leave {
 impl Leave {
     fn after(self, events: &[Event]) -> Self {
         events.iter().fold(self, |leave, event| match &event.kind {
-            EventKind::Ordered { order: Order::Start | Order::Resume | Order::FlyUncertified } => {
-                Self::Steady
-            }
+            EventKind::Ordered {
+                order: Order::Start | Order::Resume | Order::DriveBack | Order::FlyUncertified,
+            } => Self::Steady,
             EventKind::Ordered { order: Order::Step } => Self::OneTick,
             EventKind::Ordered { order: Order::Hold | Order::ChoosePlanner(_) } => Self::None,
             _ => leave,
@@ -253,7 +254,7 @@ proptest! {
         silent in prop::option::of(20_u64..300),
         delays in prop::collection::vec(prop_oneof![4 => 0_u64..1, 2 => 1_u64..5, 1 => 20_u64..60], 64),
         faults in prop::collection::vec(0_u64..400, 0..4),
-        orders in prop::collection::vec((0_u64..400, 0_u8..24), 0..16),
+        orders in prop::collection::vec((0_u64..400, 0_u8..26), 0..16),
     ) {
         let config = if covers { covering() } else { config() };
         let fallback = PlannerChoice { id: "fallback".into(), parameters: Parameters::new() };
@@ -286,7 +287,7 @@ proptest! {
             }
             let standing = flight.mission.standing();
             prop_assert_eq!(&folded.phase, standing.phase);
-            for n in [0, 1, 2, 3, 5, 6, 7, 9, 10, 11] {
+            for n in [0, 1, 2, 3, 5, 6, 7, 9, 10, 11, 12] {
                 prop_assert_eq!(folded.standing().allows(&order(n)), standing.allows(&order(n)), "{:?}", order(n));
             }
             let holds = now.last() == Some(&Order::Hold);

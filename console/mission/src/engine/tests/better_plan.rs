@@ -6,7 +6,10 @@ use super::{
     covering::{covered, covering},
     *,
 };
-use crate::{AskId, FoldedStanding, WorkerId, event::Effort};
+use crate::{
+    AskId, FoldedStanding, WorkerId,
+    event::{Effort, OfferStage},
+};
 use planner_api::Reason;
 use proptest::prelude::*;
 
@@ -59,7 +62,7 @@ fn with_offer() -> Flight {
     let mut flight = flight(wasteful(BetterPlan::Offer));
     for _ in 0..4000 {
         fly_past(&mut flight, &[COLUMN], 1);
-        if flight.mission.standing().has_offer {
+        if flight.mission.standing().offer == Some(OfferStage::Offered) {
             return flight;
         }
     }
@@ -97,8 +100,8 @@ fn a_better_plan_is_taken_where_it_begins_in_one_tick_and_without_a_hold() {
     let (taken, off) =
         (flown(&MissionConfig { attended: false, ..config.clone() }), flown(&wasteful(BetterPlan::Off)));
     let [planned, took] = &better_events(&taken)[..] else { panic!("{:?}", better_events(&taken)) };
-    assert!(planned.1.starts_with("straight has a better plan; it saves "), "{planned:?}");
-    assert!(took.1.starts_with("better plan of straight taken; it saves "), "{took:?}");
+    assert!(planned.1.starts_with("better plan of straight: "), "{planned:?}");
+    assert!(took.1.starts_with("better plan of straight taken: "), "{took:?}");
     assert!(driven_s(&taken) < 0.8 * driven_s(&off), "{} s, {} s", driven_s(&taken), driven_s(&off));
     assert_eq!(taken.planner.kept.iter().map(Option::is_some).collect::<Vec<_>>(), [false, true, false]);
     assert_eq!(taken.closed, [WorkerId(1), WorkerId(2)], "the worker of before, and at the end");
@@ -132,10 +135,10 @@ fn the_plan_is_asked_from_a_place_ahead_for_what_will_be_left_there() {
 #[test]
 fn an_offer_that_nobody_takes_ends_where_the_plan_begins() {
     let mut flight = with_offer();
-    assert!(folded(&flight).standing().has_offer);
+    assert_eq!(folded(&flight).standing().offer, Some(OfferStage::Offered));
     fly_past(&mut flight, &[COLUMN], 4000);
     let [.., last] = &texts(&flight)[..] else { panic!() };
-    assert_eq!(last, "better plan of straight dropped: the robot has passed the place where it begins");
+    assert_eq!(last, "offer ended: robot passed its start point");
     assert_eq!((flight.closed.as_slice(), flight.planner.plans), (&[WorkerId(2)][..], 3));
     assert!(refusal(&flight.tick(&[Order::TakePlan])).is_some_and(|why| why == "no better plan is offered"));
 }
@@ -174,7 +177,10 @@ fn a_plan_that_saves_less_than_a_change_costs_is_named_and_not_offered() {
     flight.planner.wasteful_plans = 9;
     fly_past(&mut flight, &[COLUMN], 40_000);
     let [said] = &texts(&flight)[..] else { panic!("{:?}", texts(&flight)) };
-    assert!(said.starts_with("straight has no better plan: ") && said.contains(" min instead of "), "{said}");
+    assert!(
+        said.starts_with("re-planned straight: ") && said.ends_with("; the present plan is kept"),
+        "{said}"
+    );
     assert_eq!(flight.closed, [WorkerId(2), WorkerId(1)]);
 }
 
@@ -213,7 +219,7 @@ fn a_plan_that_is_not_there_in_time_is_given_up_and_the_robot_never_waits_for_it
         stood += usize::from(flight.pose == before);
     }
     let [said] = &texts(&flight)[..] else { panic!("{:?}", texts(&flight)) };
-    let late = "it arrived after the robot had passed the place where it begins";
+    let late = "it arrived after the robot had passed its start point";
     assert_eq!(*said, format!("better plan of straight dropped: {late}"));
     assert_eq!((stood, flight.closed.as_slice()), (0, &[WorkerId(2)][..]));
 }
@@ -242,10 +248,10 @@ fn orders_that_change_the_plan_drop_it() {
     ] {
         let mut flight = with_offer();
         flight.tick(&[Order::Hold]);
-        assert!(flight.mission.standing().has_offer, "a hold changes no plan");
+        assert_eq!(flight.mission.standing().offer, Some(OfferStage::Offered), "a hold changes no plan");
         flight.tick(&[order]);
-        assert!(!flight.mission.standing().has_offer && !folded(&flight).standing().has_offer);
-        assert_eq!(texts(&flight)[1], format!("better plan of straight dropped: {why}"));
+        assert_eq!((flight.mission.standing().offer, folded(&flight).standing().offer), (None, None));
+        assert_eq!(texts(&flight)[1], format!("offer ended: {why}"));
         assert_eq!(flight.closed[0], WorkerId(2));
         assert!(flight.mission.preparing.is_none());
     }
@@ -335,7 +341,7 @@ proptest! {
             let n_before = flight.events.len();
             fly_past(&mut flight, &[COLUMN], 1);
             flight.events[n_before..].iter().for_each(|event| standing.apply(&event.kind));
-            prop_assert_eq!(standing.standing().has_offer, flight.mission.standing().has_offer);
+            prop_assert_eq!(standing.standing().offer, flight.mission.standing().offer);
         }
         let again = replay(config, &flight);
         prop_assert_eq!(again.len(), flight.events.len());

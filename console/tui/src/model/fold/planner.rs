@@ -73,8 +73,12 @@ impl Run {
             }
             EventKind::BetterPlanDropped { why, .. } => {
                 self.planning.candidate = None;
-                if self.planning.offer.take().is_some() {
-                    change.say(Severity::Info, format!("the offer of a better plan ended: {why}"));
+                match self.planning.offer.take() {
+                    Some(offer) if offer.is_taken => {
+                        change.say(Severity::Warn, format!("accepted better plan dropped: {why}"));
+                    }
+                    Some(_) => change.say(Severity::Watch, format!("offer ended: {why}")),
+                    None => {}
                 }
             }
             EventKind::PlannerRejected { planner, why } => {

@@ -1,0 +1,159 @@
+//! The drive back to the anchor or the start, by order of the operator. The mission itself drives: no planner is asked,
+//! so that the robot comes home even if every planner has failed.
+//!
+//! The way is fixed when the order is accepted, and is searched for again only if something new is in the way. The rules
+//! for a running robot apply, but every hold ends only by order. After a hold, the operator may order the drive again, or
+//! resume the mission; the planner then makes a new plan from there.
+
+mod escape;
+mod way;
+
+use super::{Mission, known::Known};
+use crate::{
+    event::{EventKind, OfferEnd},
+    order::Order,
+    phase::{Gait, Hold, HoldReason, Outcome, Resumes},
+    task::CornerPatience,
+    way_back::{Home, WayBack},
+};
+use geometry::{Braking, PathFollower};
+use planner_api::{Command, Drive, Reason};
+use world::Point;
+
+/// Distance from the end of the way within which the robot counts as back, metres.
+const THERE_M: f64 = 0.1;
+/// Speed at corners and at the end of the way, metres per second.
+const SLOW_M_PER_S: f64 = 0.05;
+
+/// A drive back that was ordered.
+#[derive(Clone)]
+pub(super) struct Back {
+    to: Home,
+    follower: PathFollower,
+    at_corner: CornerPatience,
+}
+
+impl Back {
+    fn along(way: &WayBack) -> Self {
+        let follower = PathFollower::exact(&way.path);
+        Self { to: way.to, follower, at_corner: CornerPatience::default() }
+    }
+
+    /// The point to drive to.
+    pub(super) fn target(&self) -> Point {
+        self.follower.target()
+    }
+
+    /// Length left of the way, metres.
+    pub(super) fn left_m(&self, here: Point) -> f64 {
+        self.follower.left_m(here)
+    }
+
+    /// Whether the robot is back.
+    pub(super) fn is_done(&self, here: Point) -> bool {
+        self.follower.is_done(here, THERE_M)
+    }
+}
+
+impl Mission {
+    /// The way back from the place where the robot is held, with its length and clearance: what
+    /// [`Order::DriveBack`] would do now.
+    ///
+    /// Cost: a few searches for a path on the map, each bounded.
+    ///
+    /// # Errors
+    /// Why the order would be refused, as a sentence.
+    pub fn way_back(&self) -> Result<WayBack, String> {
+        self.standing().allows(&Order::DriveBack).map_err(|why| why.to_string())?;
+        self.known.way_back()
+    }
+
+    /// Begins to drive back. The planner's plan is abandoned; what is being prepared is dropped.
+    pub(super) fn drive_back(&mut self) {
+        // The order is accepted only if there is a way.
+        let Ok(way) = self.known.way_back() else { return };
+        self.drop_better_plan(OfferEnd::DrivingBack);
+        self.better_plan_due_s = None;
+        self.drop_preparing();
+        self.end_shadow();
+        self.driving.course.cuts.clear();
+        self.take_way_back(way);
+        self.resume(Gait::Back);
+    }
+
+    fn take_way_back(&mut self, way: WayBack) {
+        self.known.back = Some(Back::along(&way));
+        self.happened.push(EventKind::ReturnBegan { way });
+    }
+
+    /// Searches for a different way if something that was not there before is in the way; without one, holds the robot.
+    pub(super) fn doubt_way_back(&mut self) {
+        if !self.known.phase.is_return() || self.known.is_way_back_free() {
+            return;
+        }
+        match self.known.way_back() {
+            Ok(way) => self.take_way_back(way),
+            Err(why) => {
+                let by = HoldReason::Stuck { message: format!("no way back: {why}") };
+                self.hold(Hold { by, resumes: Resumes::Never });
+            }
+        }
+    }
+
+    /// The drive for this tick along the way back.
+    pub(super) fn drive_along_way_back(&mut self) -> Drive {
+        if !self.known.knows_medium() {
+            return Drive::STILL;
+        }
+        let Some(wanted) = self.known.command_back() else { return Drive::STILL };
+        let sent = self.known.governed(wanted);
+        let asked = (sent != wanted).then_some(wanted);
+        self.happened.push(EventKind::Commanded { ask: None, command: sent, asked });
+        let limited = self.known.note_limit(wanted, sent);
+        self.happened.extend(limited);
+        sent.drive
+    }
+
+    /// Ends the mission of a robot that is back.
+    pub(super) fn end_back(&mut self) {
+        let Some(back) = &self.known.back else { return };
+        let place = back.to.word();
+        let tether = self.known.tether.as_ref().filter(|_| back.to == Home::Anchor);
+        match tether.and_then(|tether| tether.left_out(self.known.chart.world())) {
+            Some(why) => {
+                self.end(
+                    Outcome::Entangled,
+                    format!("ended by operator: robot is back at the {place}, but {why}"),
+                );
+            }
+            None => self.end(Outcome::Aborted, format!("ended by operator: robot is back at the {place}")),
+        }
+    }
+
+    /// Forgets a drive back that was broken off: the planner plans again from here.
+    pub(super) fn leave_way_back(&mut self) {
+        if self.known.back.take().is_some() {
+            self.driving.course.cuts.clear();
+            self.driving.course.want_plan(Reason::Operator);
+        }
+    }
+}
+
+impl Known {
+    /// Advances along the way back; the command for this tick, in the form in which the robot receives it.
+    fn command_back(&mut self) -> Option<Command> {
+        self.keep_trail();
+        let (here, passed_s) = (self.position(), self.config.tick_s * self.briskness());
+        let (back, map) = (self.back.as_mut()?, self.chart.map());
+        back.follower.advance(here, |at| map.clearance_m(at) >= 0.0);
+        back.at_corner.wait(&mut back.follower, here, passed_s);
+        let onward = back.follower.target() - here;
+        let braking = Braking::of(&self.config.limits);
+        let before = |way_m: f64| braking.speed_before(way_m, SLOW_M_PER_S);
+        let to_corner = back.follower.corner_m(here).map_or(f64::INFINITY, before);
+        let speed =
+            before(back.follower.left_m(here) - THERE_M).min(to_corner).min(self.config.limits.v_max_m_per_s);
+        let velocity = onward.try_normalize(1e-9).map_or(onward, |direction| direction * speed);
+        Some(self.sending().as_sent(Command::velocity(velocity)))
+    }
+}

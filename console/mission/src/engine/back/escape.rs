@@ -1,0 +1,34 @@
+//! Leads a hull that is too close to something out of there.
+
+use super::super::known::Known;
+use crate::governor::Surroundings;
+use world::Point;
+
+/// Number of cells of the search on each side of the robot; the search looks at no more than `(2 N + 1)²` places.
+const CELLS: i32 = 20;
+/// Minimum reach of the search, metres.
+const LEAST_REACH_M: f64 = 1.0;
+/// The place must have this much more room than required, metres.
+const SPARE_M: f64 = 0.005;
+
+impl Known {
+    /// The nearest place with at least `room_m` metres of room for the hull's centre that the robot can reach straight
+    /// from here, without coming closer to anything that it is too close to: here, if there is room here.
+    pub(super) fn outside(&self, room_m: f64) -> Option<Point> {
+        let here = self.position();
+        let is_roomy = |at: Point| self.chart.has_room(at, room_m + SPARE_M);
+        if self.chart.has_room(here, room_m) {
+            return Some(here);
+        }
+        let reach_m = (self.chart.depth_m(here) + room_m + SPARE_M).max(LEAST_REACH_M) + room_m;
+        let governed = self.as_governed();
+        let solids = self.chart.solids(here, reach_m + governed.limits.radius_m);
+        let around = Surroundings::of(&solids, &governed);
+        let step_m = reach_m / f64::from(CELLS);
+        let cells = (-CELLS..=CELLS).flat_map(|x| (-CELLS..=CELLS).map(move |y| (x, y)));
+        let mut places: Vec<(i32, i32)> = cells.collect();
+        places.sort_unstable_by_key(|(x, y)| (x * x + y * y, *x, *y));
+        let at = |(x, y): (i32, i32)| here + world::Vector::new(f64::from(x), f64::from(y)) * step_m;
+        places.into_iter().map(at).find(|place| is_roomy(*place) && around.is_clear(here, *place))
+    }
+}

@@ -1,0 +1,126 @@
+//! Finds the way back.
+
+use super::super::known::Known;
+use crate::{
+    tether::Tether,
+    way_back::{Home, WayBack},
+};
+use world::{Obstacle, ObstacleId, Point, World, ZoneKind, polyline, shortest::NoWay};
+
+/// Maximum number of times that a search for a path may ask whether to go on.
+const MOST_STEPS: usize = 200_000;
+/// The way is searched for again if the hull would overlap something by this much, metres: found obstacles are placed
+/// with about this accuracy.
+const DOUBT_M: f64 = 0.02;
+
+impl Known {
+    /// The way back from here, with the most room.
+    ///
+    /// # Errors
+    /// Why there is none, as a sentence.
+    pub(in crate::engine) fn way_back(&self) -> Result<WayBack, String> {
+        let (to, path) = match &self.tether {
+            Some(tether) => (Home::Anchor, self.way_along(tether)?),
+            None => (Home::Start, self.shortest_way(self.config.start.position)?),
+        };
+        let path = self.without_narrow_end(path);
+        let clearance_m = self.hull_clearance_m(&path);
+        Ok(WayBack { to, length_m: polyline::length_m(&path), clearance_m, path })
+    }
+
+    /// Whether the rest of the way back is free.
+    pub(super) fn is_way_back_free(&self) -> bool {
+        let room_m = self.config.limits.radius_m - DOUBT_M;
+        let rest = self.back.as_ref().map_or(&[][..], |back| back.follower.remaining());
+        // The robot may be leaving a place without room.
+        let mut ahead = rest.iter().skip_while(|at| !self.chart.has_room(**at, room_m));
+        ahead.all(|at| self.chart.has_room(*at, room_m))
+    }
+
+    /// The way on which the tether is only reeled in; if it is caught, it is freed first. No-go zones are avoided without
+    /// changing the side on which any obstacle is passed.
+    fn way_along(&self, tether: &Tether) -> Result<Vec<Point>, String> {
+        let fenced = fenced(self.chart.world());
+        let along = |room_m: f64| {
+            let out = self.outside(room_m)?;
+            let mut there = tether.clone();
+            there.drag_to(out);
+            let is_caught = tether.is_snagged();
+            let home =
+                if is_caught { there.way_out(&fenced, room_m) } else { there.return_path(&fenced, room_m) }?;
+            Some(self.from_here(home))
+        };
+        self.widest(along)
+            .or_else(|| self.retraced(tether))
+            .ok_or_else(|| "the hull does not fit through the return path along the tether".into())
+    }
+
+    /// The path driven, backwards; `None` if the hull no longer fits on it.
+    fn retraced(&self, tether: &Tether) -> Option<Vec<Point>> {
+        let room_m = self.config.limits.radius_m;
+        let way: Vec<Point> = tether.way_driven().iter().rev().copied().collect();
+        way.iter().all(|at| self.chart.has_room(*at, room_m)).then(|| self.from_here(way))
+    }
+
+    /// The shortest way to a place for a robot without a tether.
+    fn shortest_way(&self, goal: Point) -> Result<Vec<Point>, String> {
+        let mut why = "the hull does not fit where the robot is".to_owned();
+        let way = |room_m: f64| {
+            let start = self.outside(room_m)?;
+            let mut steps = 0..MOST_STEPS;
+            match self.floor_for(room_m, None).shortest(start, goal, &mut || steps.next().is_some()) {
+                Ok(way) => Some(self.from_here(way.points())),
+                Err(no_way) => {
+                    why = words(no_way);
+                    None
+                }
+            }
+        };
+        self.widest(way).ok_or(why)
+    }
+
+    /// The path, beginning at the robot.
+    fn from_here(&self, mut path: Vec<Point>) -> Vec<Point> {
+        path.insert(0, self.position());
+        path.dedup_by(|next, before| (*next - *before).norm() < 1e-6);
+        path
+    }
+
+    /// The path without its last points at which the hull does not fit: an anchor may be close to a wall.
+    fn without_narrow_end(&self, mut path: Vec<Point>) -> Vec<Point> {
+        let fits = |at: &Point| self.chart.has_room(*at, self.config.limits.radius_m);
+        while path.len() > 1 && path.last().is_some_and(|at| !fits(at)) {
+            path.pop();
+        }
+        path
+    }
+
+    fn hull_clearance_m(&self, path: &[Point]) -> f64 {
+        let map = self.chart.map();
+        let at_points = path.iter().map(|at| map.clearance_m(*at));
+        let between = path.windows(2).map(|pair| map.segment_clearance_m(pair[0], pair[1]));
+        at_points.chain(between).fold(f64::INFINITY, f64::min) - self.config.limits.radius_m
+    }
+}
+
+/// The tank with its no-go zones as obstacles.
+fn fenced(world: &World) -> World {
+    let zones = world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo);
+    let solid = zones.map(|zone| Obstacle {
+        id: ObstacleId(u32::MAX),
+        name: zone.name.clone(),
+        shape: zone.shape.clone(),
+        known: true,
+    });
+    World { obstacles: world.obstacles.iter().cloned().chain(solid).collect(), ..world.clone() }
+}
+
+/// Why no path leads back, as a sentence.
+fn words(no_way: NoWay) -> String {
+    match no_way {
+        NoWay::StartBlocked { .. } => "the hull does not fit where the robot is".into(),
+        NoWay::GoalBlocked { by_m, .. } => format!("the start is {by_m:.2} m too close to something solid"),
+        NoWay::Unreachable { .. } => "no path leads back to the start".into(),
+        NoWay::Stopped => format!("no path found within {MOST_STEPS} steps of the search"),
+    }
+}

@@ -1,0 +1,45 @@
+//! The way back of a held robot, and its cost, as known before the order.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use world::Point;
+
+/// The place to which a robot drives back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Home {
+    /// The anchor of the tether.
+    Anchor,
+    /// The place where the mission began, for a robot without a tether.
+    Start,
+}
+
+impl Home {
+    /// The word used in sentences.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Anchor => "anchor",
+            Self::Start => "start",
+        }
+    }
+}
+
+/// A way back: along the return path of the taut cable or, without a tether, the shortest path.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct WayBack {
+    /// Where the way ends.
+    pub to: Home,
+    /// The path, from the robot on, tank frame.
+    pub path: Vec<Point>,
+    /// Length of the path, metres.
+    pub length_m: f64,
+    /// Smallest distance along the path from the hull to anything solid on the chart, metres.
+    pub clearance_m: f64,
+}
+
+impl fmt::Display for WayBack {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { to, length_m, clearance_m, .. } = self;
+        write!(f, "driving back to the {}: {length_m:.1} m, clearance {clearance_m:.2} m", to.word())
+    }
+}

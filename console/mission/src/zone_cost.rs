@@ -1,0 +1,16 @@
+//! The cost of a no-go zone, as known before it is drawn.
+
+use serde::{Deserialize, Serialize};
+
+/// What a no-go zone would cost.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct ZoneCost {
+    /// Length of the present plan that leads through the zone or too close to it, metres.
+    pub path_m: f64,
+    /// Reachable floor that would be closed, square metres: in the zone, beside it, and behind it.
+    pub closed_m2: f64,
+    /// The part of `closed_m2` that has not been scanned yet and is requested, square metres.
+    pub lost_m2: f64,
+    /// Whether a better plan that is offered or accepted would be dropped.
+    pub drops_offer: bool,
+}
