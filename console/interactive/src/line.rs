@@ -11,12 +11,14 @@ use std::{
     },
     time::{Duration, Instant},
 };
-use tui::Speed;
+use tui::{Query, Speed};
 
 /// A request to the engine's thread.
 pub(super) enum Request {
     /// An order, and when it was received.
     Order(Order, Instant),
+    /// Answer a question about the mission on the screen; nothing changes.
+    Ask(Query),
     /// Change the speed.
     Speed(Speed),
     /// Answer immediately, to measure how long an order waits.
@@ -69,6 +71,11 @@ impl EngineHandle {
     pub(super) fn report(&self, may_move: bool, is_typing: bool) {
         self.may_move.store(may_move, Ordering::Relaxed);
         self.is_typing.store(is_typing, Ordering::Relaxed);
+    }
+
+    /// Asks the mission something; the answer goes to the screen.
+    pub(super) fn ask(&self, query: Query) {
+        self.request(Request::Ask(query), false);
     }
 
     /// Sets the speed.

@@ -101,6 +101,11 @@ impl Session {
                     self.sent.push(order);
                 }
             }
+            Effect::Ask(query) => {
+                if let Some(engine) = self.engine.get() {
+                    engine.ask(query);
+                }
+            }
             Effect::Speed(speed) => match self.engine.get() {
                 Some(engine) => engine.speed(speed),
                 None => self.desk.request(Request::Pace(speed)),

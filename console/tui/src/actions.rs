@@ -10,7 +10,7 @@ mod rows;
 #[cfg(test)]
 mod tests;
 
-pub use action::{Action, Risk};
+pub use action::{Action, Risk, Topic};
 pub(crate) use action::{Deed, Reach, action};
 pub use argument::{Arg, Kind, duration_s, moment_s};
 
@@ -29,6 +29,7 @@ pub enum ActionId {
     Suspend,
     Start,
     Resume,
+    DriveBack,
     FlyUncertified,
     Step,
     StepLane,
@@ -62,6 +63,10 @@ pub enum ActionId {
     Inject,
     Exclude,
     DrawZone,
+    Draw,
+    DrawnForm,
+    DrawnUndo,
+    DrawnClose,
     Include,
     /// The action with this number (from 1) in the selected alarm's list.
     Remedy(u8),
@@ -87,6 +92,7 @@ pub enum ActionId {
     PreviousPane,
     Commands,
     Help,
+    Messages,
     Open,
     GoTo,
     Theme,

@@ -10,6 +10,7 @@ pub use remedy::{Guide, Remedy};
 use crate::actions::ActionId;
 use crate::model::{Cause, Run};
 use crate::screens::Screen;
+use crate::view::text;
 use remedy::{END, HOLD, OTHER_PLANNER, PARAMETERS, RESUME, SHOW, run, wait};
 
 /// The name of an alarm in a table, short enough for one row.
@@ -24,6 +25,7 @@ pub fn name(cause: &Cause, of: &Run) -> String {
         Cause::Map => "new obstacle, not on drawing".into(),
         Cause::Tether(word) => tether::name(word),
         Cause::Certificate => "plan not certified for tether".into(),
+        Cause::Zone(zone) => format!("hull in zone {}", text::fit(zone, 18)),
         Cause::Planner => "planner failed".into(),
         Cause::Stuck => "robot stuck".into(),
         Cause::Ended => "mission ended early".into(),
@@ -52,7 +54,7 @@ pub fn guide(cause: &Cause) -> Guide {
         Cause::RecorderLag => console::RECORDER_LAG,
         Cause::Disk => console::DISK,
         Cause::Map => Guide {
-            cause: "The robot detects something that is not on the drawing.",
+            cause: "Unknown obstacle: the robot detects something that is not on the drawing.",
             effect: "Planners avoid it. The floor under it is not counted; floor that it blocks becomes \
             unreachable.",
             remedies: const { &[SHOW, wait("Check what it is: nozzle, sump, debris."), HOLD] },
@@ -67,7 +69,19 @@ pub fn guide(cause: &Cause) -> Guide {
                 &[
                     OTHER_PLANNER,
                     PARAMETERS,
-                    run("Run the plan anyway: asks first.", ActionId::FlyUncertified),
+                    run("Run the plan uncertified. Asks first.", ActionId::FlyUncertified),
+                    END,
+                ]
+            },
+        },
+        Cause::Zone(_) => Guide {
+            cause: "The hull entered a no-go zone: the zone was drawn around its way, or the position was wrong.",
+            effect: "The robot is held until the operator decides.",
+            remedies: const {
+                &[
+                    SHOW,
+                    run("Resume: replans from here, out of the zone. Asks first.", ActionId::Resume),
+                    run("Drive back to the anchor or the start. Asks first.", ActionId::DriveBack),
                     END,
                 ]
             },

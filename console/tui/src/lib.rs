@@ -27,7 +27,7 @@ pub use keys::{Key, KeyPress};
 pub use model::{Health, Measured, Model, Recording, RunId, RunResult, Source, Speed, Times};
 pub use theme::{Role, Theme, ThemeName};
 pub use update::{
-    Effect, Job, Mouse, Msg, Redraw, ReplayMsg, Rows, RunMsg, Signal, Target, Transport, check_line,
+    Effect, Job, Mouse, Msg, Query, Redraw, ReplayMsg, Rows, RunMsg, Signal, Target, Transport, check_line,
     is_typing, redraw, update,
 };
 pub use view::{Cache, Places, view, view_cached, view_with};

@@ -24,6 +24,7 @@ pub mod replay;
 pub mod review;
 pub mod run;
 pub mod shadow;
+pub mod sketch;
 pub mod tether;
 pub mod trail;
 pub mod ui;
@@ -32,7 +33,7 @@ pub mod what_if;
 pub use crate::screens::Screen;
 pub use alarms::{Alarm, Alarms, Cause};
 pub use change::{Change, Withdrawn};
-pub use console::{Console, Notice, Settling, Speed, Times};
+pub use console::{Console, Message, Notice, Settling, Speed, Times};
 pub use coverage::Raster;
 pub use event_list::EventList;
 pub use health::{Health, Measured, Recording, Watches};
@@ -51,6 +52,7 @@ pub use replay::Replay;
 pub use review::Review;
 pub use run::{About, Clock, Progress, Run};
 pub use shadow::Shadow;
+pub use sketch::Sketch;
 pub use tether::Tether;
 pub use trail::Trail;
 pub use ui::{Overlay, Pane, Ui};
@@ -59,10 +61,14 @@ pub use what_if::{Candidate, Forecast, WhatIf};
 use mission::{PlannerChoice, PlannerInfo, Severity};
 use serde::{Deserialize, Serialize};
 
-/// Seconds for which a refusal or an announcement stays on the line above the keys.
-const NOTICE_S: f64 = 8.0;
-/// Characters per second that an operator reads while doing other work.
-const READ_PER_S: f64 = 10.0;
+/// Seconds for which a hint about a key stays beside the keys.
+const HINT_S: f64 = 2.0;
+/// Seconds for which an announcement stays beside the keys.
+const NEWS_S: f64 = 3.0;
+/// Seconds for which a refusal or a warning stays beside the keys.
+const WARNING_S: f64 = 4.0;
+/// Characters per second that an operator reads while doing other work; a long message stays until it has been read.
+const READ_PER_S: f64 = 20.0;
 /// Seconds without an event after which a running mission is considered silent.
 const SILENCE_S: f64 = 2.0;
 
@@ -197,27 +203,28 @@ impl Model {
         [notice, silence, busy, health, settling].into_iter().flatten().reduce(f64::min)
     }
 
-    /// Shows the operator a message on the line above the keys.
+    /// Shows the operator a message beside the keys and adds it to the history of messages.
     pub(crate) fn say(&mut self, severity: Severity, text: impl Into<String>) {
         let text = text.into();
         let reading_s = text.chars().count() as f64 / READ_PER_S;
-        self.say_for(NOTICE_S.max(reading_s), severity, text);
+        let least_s = if severity == Severity::Info { NEWS_S } else { WARNING_S };
+        self.console.remember(Message {
+            t_s: self.live.run.about.is_some().then_some(self.live.run.clock.t_s),
+            wall_unix_s: self.console.now.wall_unix_s,
+            severity,
+            text: text.clone(),
+        });
+        self.show(least_s.max(reading_s), severity, text);
     }
 
-    /// Shows the operator a message for a given number of seconds.
-    pub(crate) fn say_for(&mut self, seconds: f64, severity: Severity, text: impl Into<String>) {
-        let until_mono_s = self.console.now.mono_s + seconds;
-        self.console.notice = Some(Notice { severity, text: text.into(), until_mono_s, is_answer: false });
-    }
-
-    /// Tells the operator what became of a key.
-    pub(crate) fn answer(&mut self, text: impl Into<String>) {
-        self.answer_for(NOTICE_S, text);
-    }
-
-    /// Tells the operator what became of a key, for a given number of seconds.
-    pub(crate) fn answer_for(&mut self, seconds: f64, text: impl Into<String>) {
-        self.say_for(seconds, Severity::Info, text);
+    /// Shows the operator a hint about the key that was pressed; hints are not kept.
+    pub(crate) fn hint(&mut self, text: impl Into<String>) {
+        self.show(HINT_S, Severity::Info, text.into());
         self.console.notice.iter_mut().for_each(|notice| notice.is_answer = true);
+    }
+
+    fn show(&mut self, seconds: f64, severity: Severity, text: String) {
+        let until_mono_s = self.console.now.mono_s + seconds;
+        self.console.notice = Some(Notice { severity, text, until_mono_s, is_answer: false });
     }
 }

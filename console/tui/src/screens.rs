@@ -47,6 +47,8 @@ pub(crate) struct Row {
     contexts: &'static [&'static [Context]],
     /// The index of the active set of contexts.
     active: fn(&Model) -> usize,
+    /// The action for which the operator comes to the screen; the footer shows its key first.
+    pub first: ActionId,
     /// The label of Enter in the footer; `None` while there is nothing to open.
     pub opens: fn(&Model) -> Option<&'static str>,
     /// The effect of Enter, if there is anything to open.
@@ -73,6 +75,7 @@ const fn row(go: Action, name: &'static str, contexts: &'static [&'static [Conte
         draw,
         contexts,
         active: |model| usize::from(model.ui.cursor.is_some()),
+        first: ActionId::Accept,
         opens: |_| None,
         enter: |_| Vec::new(),
         select: |_, _| {},
@@ -95,15 +98,16 @@ const ROWS: &[Row] = &[
         ..row(shows(Screen::Home, "home", "Screen 1: scenarios and past runs", &[Key::Char('1')]), "Home",
             &[&[On(Screen::Home), Rows]], view::home::draw) },
     // Esc closes the cursor here and does nothing else.
-    row(shows(Screen::Plan, "plan", "Screen 2: the plan before the start", &[Key::Char('2')]).when(offer::is_open), "Plan",
-        &[&[On(Screen::Plan), Map, Pan], &[Map, Pan, Cursor]], view::plan::draw),
-    Row { active: of_mission, opens: |m| (m.ui.pane == Pane::Events).then_some("open"), enter: events::enter,
+    Row { first: ActionId::Start,
+        ..row(shows(Screen::Plan, "plan", "Screen 2: the plan before the start", &[Key::Char('2')]).when(offer::is_open), "Plan",
+            &[&[On(Screen::Plan), Map, Pan], &[Map, Pan, Cursor]], view::plan::draw) },
+    Row { first: ActionId::Hold, active: of_mission, opens: |m| (m.ui.pane == Pane::Events).then_some("open"), enter: events::enter,
         select: |m, by| m.ui.events.select(by),
         ..row(shows(Screen::Mission, "mission", "Screen 3: the mission", &[Key::Char('3')]).when(offer::is_open), "Mission",
             &[&[On(Screen::Mission), Map, Pan], &[On(Screen::Mission), Map, Rows], &[On(Screen::Mission), Map],
               &[On(Screen::Mission), Map, Pan, Cursor],
               &[Replay, Map, Pan], &[Replay, Map, Rows], &[Replay, Map], &[Replay, Map, Pan, Cursor]], view::mission) },
-    Row { opens: |_| Some("actions"), enter: alarms::open_actions, select: alarms::select,
+    Row { first: ActionId::Acknowledge, opens: |_| Some("actions"), enter: alarms::open_actions, select: alarms::select,
         ..row(shows(Screen::Alarms, "alarms", "Screen 4: what is wrong, what to do", &[Key::Char('4')]), "Alarms",
             &[&[On(Screen::Alarms), Rows]], view::alarm_screen::draw) },
     Row { opens: |m| Some(if m.ui.events.is_open { "close detail" } else { "detail" }), enter: events::enter,
@@ -115,11 +119,11 @@ const ROWS: &[Row] = &[
         run: |m| m.review.run(&m.home).map(|run| run.name.clone()),
         ..row(shows(Screen::Review, "review", "Screen 6: past runs: replay, compare", &[Key::Char('6')]), "Review",
             &[&[On(Screen::Review), Rows]], view::review::draw) },
-    Row { select: go::select_missed,
+    Row { first: ActionId::Rescan, select: go::select_missed,
         ..row(shows(Screen::Result, "result", "Screen 7: what was achieved", &[Key::Char('7')])
                 .when(|m| offer::demand(m.live.result.is_some(), "no run has ended yet")), "Result",
             &[&[On(Screen::Result), Map, Rows], &[On(Screen::Result), Map, Pan, Cursor]], view::result::draw) },
-    Row { select: act::select_plugin,
+    Row { first: ActionId::Reload, select: act::select_plugin,
         ..row(shows(Screen::Plugins, "plugins", "Screen 8: plugins and their planners", &[Key::Char('8')]), "Plugins",
             &[&[On(Screen::Plugins), Rows]], view::plugins::draw) },
 ];

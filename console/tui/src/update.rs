@@ -4,6 +4,7 @@ pub(crate) mod act;
 pub(crate) mod alarms;
 mod command;
 pub(crate) mod events;
+pub(crate) mod finish;
 pub(crate) mod go;
 mod health;
 mod hear;
@@ -32,9 +33,9 @@ pub(crate) mod zones;
 
 pub use act::act;
 pub use command::check_line;
-pub use message::{Effect, Job, Mouse, Msg, ReplayMsg, Rows, RunMsg, Signal, Target, Transport};
+pub use message::{Effect, Job, Mouse, Msg, Query, ReplayMsg, Rows, RunMsg, Signal, Target, Transport};
 pub use offer::offered;
-pub use palette::{Choice, choices};
+pub use palette::{Choice, Group, choices, group, values};
 pub use redraw::{Redraw, redraw};
 pub use typing::is_typing;
 
@@ -45,9 +46,6 @@ use crate::model::plugins::differences;
 use crate::model::{Cause, Model, Overlay, Pane, ui::Arrangement};
 use mission::{Hold, Phase, PlannerInfo, RefusedPlugin, Severity};
 use send::hold_now;
-
-/// How long the message about an unassigned key is shown, seconds.
-const UNASSIGNED_S: f64 = 2.0;
 
 /// Applies one message and returns the effects for the caller to carry out.
 ///
@@ -176,13 +174,13 @@ fn stop(model: &mut Model) -> Vec<Effect> {
 fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
     match model.ui.overlay {
         Overlay::None => {
-            let help = model.console.keys.spelled("(<help>: show keys)");
-            model.answer_for(UNASSIGNED_S, format!("key {key} is not assigned {help}"));
+            let help = model.console.keys.spelled("<help>: keys");
+            model.hint(format!("{key} does nothing here; {help}"));
         }
-        Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping => {
+        ref overlay if overlay.is_question() => {
             let was_stepping = model.ui.overlay == Overlay::Stepping;
             model.ui.overlay = Overlay::None;
-            model.answer(format!("cancelled: key {key} is not an answer"));
+            model.hint(format!("cancelled: key {key} is not an answer"));
             if was_stepping {
                 return act::end_steps(model);
             }

@@ -30,6 +30,7 @@ mod shadow;
 mod stations;
 mod strip;
 pub(crate) mod table;
+mod tabs;
 mod tether;
 pub(crate) mod text;
 mod timeline;
@@ -93,16 +94,21 @@ fn draw(model: &Model, caps: Caps, theme: &Theme, cache: &mut Cache, frame: &mut
     *cache = shared.into_inner();
 }
 
-/// Draws a screen between the top line and the two bottom lines, which every screen has.
+/// Draws a screen between the top lines and the two bottom lines, which every screen has.
 fn framed(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
-    let [top, body, next, keys] = Layout::vertical([
+    let has_tabs = tabs::has_row(area);
+    let [top, screens, body, next, keys] = Layout::vertical([
         Constraint::Length(1),
+        Constraint::Length(has_tabs.into()),
         Constraint::Fill(1),
         Constraint::Length(confirm::rows(look, area.width)),
         Constraint::Length(1),
     ])
     .areas(area);
     top::draw(look, frame, top);
+    if has_tabs {
+        tabs::draw(look, frame, screens, tabs::Form::Names);
+    }
     if look.model.ui.overlay == Overlay::WhatIf {
         what_if::draw(look, frame, body, arrangement);
         confirm::draw(look, frame, next);

@@ -29,6 +29,37 @@ impl Risk {
     }
 }
 
+/// The topic under which the help lists an action, in the order of the help.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Topic {
+    /// The mission and its planner.
+    Mission,
+    /// Alarms, zones and stations.
+    Alarms,
+    /// Past runs.
+    Runs,
+    /// The map.
+    Map,
+    /// The console.
+    Console,
+    /// The screens.
+    Screens,
+}
+
+impl Topic {
+    /// The heading in the help.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mission => "Mission and planner",
+            Self::Alarms => "Alarms, zones, stations",
+            Self::Runs => "Past runs",
+            Self::Map => "Map",
+            Self::Console => "Console",
+            Self::Screens => "Screens",
+        }
+    }
+}
+
 /// What an action affects beyond the screen; this determines which consoles offer the action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Reach {
@@ -76,6 +107,8 @@ pub struct Action {
     pub synonyms: &'static [&'static str],
     /// The arguments of the command.
     pub args: &'static [Arg],
+    /// The topic under which the help lists the action.
+    pub topic: Topic,
     /// What the action affects beyond the screen.
     pub(crate) reach: Reach,
     /// Checks whether the action is possible now; the error is the reason why it is not, with keys written as
@@ -114,6 +147,7 @@ pub(crate) const fn action(
         repeats: false,
         synonyms: &[],
         args: &[],
+        topic: Topic::Console,
         reach: Reach::Screen,
         can: |_| Ok(()),
         deed: Deed::Begin,

@@ -20,6 +20,8 @@ pub enum Context {
     Pan,
     /// While the arrow keys move the cursor on the map.
     Cursor,
+    /// While a no-go zone is being drawn on the map.
+    Drawing,
     /// While the arrow keys move through a list.
     Rows,
     /// In an overlay list.
@@ -68,6 +70,7 @@ const OVER: &[&[Context]] = &[
     &[Context::Anywhere, Context::List, Context::Rows, Context::Preflight],
     &[Context::Anywhere, Context::List, Context::Rows, Context::Remedies],
     &[Context::Anywhere, Context::WhatIf, Context::Map],
+    &[Context::Anywhere, Context::Drawing, Context::Pan],
     &[Context::Anywhere, Context::Text],
     &[Context::Anywhere, Context::Text, Context::Commands],
     &[Context::Anywhere, Context::Confirm],
@@ -98,11 +101,14 @@ pub fn contexts(model: &Model) -> Vec<Context> {
         }
         Overlay::Parameters { edit: None, .. } => &[Context::List, Context::Rows, Context::Parameters],
         Overlay::WhatIf => &[Context::WhatIf, Context::Map],
+        Overlay::Sketch(_) => &[Context::Drawing, Context::Pan],
         Overlay::Preflight { .. } => &[Context::List, Context::Rows, Context::Preflight],
         Overlay::Remedies { .. } => &[Context::List, Context::Rows, Context::Remedies],
-        Overlay::Planners { .. } | Overlay::Preset { .. } | Overlay::Layers { .. } => {
-            &[Context::List, Context::Rows]
-        }
+        Overlay::Planners { .. }
+        | Overlay::Preset { .. }
+        | Overlay::Layers { .. }
+        | Overlay::Finish { .. }
+        | Overlay::Messages { .. } => &[Context::List, Context::Rows],
     };
     [&[Context::Anywhere], here].concat()
 }

@@ -112,8 +112,8 @@ mod tests {
             ("zoom-in", "xyzzy", None),
             // What moves the robot or ends the mission is not found by its description or by a part of its name.
             ("start", "mission", None),
-            ("fly-uncertified", "fu", None),
-            ("fly-uncertified", "certified", None),
+            ("run-uncertified", "ru", None),
+            ("run-uncertified", "certified", None),
             ("end", "mission", None),
             ("end", "abo", Some(Match::Synonym)),
         ];
@@ -127,8 +127,10 @@ mod tests {
         let table = [
             ("hold", ["stop", "pause", "halt"].as_slice()),
             ("resume", &["continue"]),
+            ("return", &["drive-back"]),
             ("leave", &["quit", "exit"]),
             ("end", &["abort", "finish"]),
+            ("run-uncertified", &["fly-uncertified"]),
             ("speed", &["rate", "pace"]),
             ("acknowledge", &["silence"]),
         ];

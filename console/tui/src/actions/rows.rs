@@ -7,12 +7,22 @@ mod map;
 mod mission;
 mod runs;
 
-use super::Action;
+use super::{Action, Topic};
 use crate::screens;
 
 /// Every row.
 pub(super) fn all() -> Vec<Action> {
-    let before = [mission::ROWS, alarms::ROWS, runs::ROWS, console::ROWS].concat();
-    let after = [console::LEAVING, map::ROWS, lists::ROWS].concat();
-    [before, screens::actions(), after].concat()
+    [
+        (Topic::Mission, mission::ROWS),
+        (Topic::Alarms, alarms::ROWS),
+        (Topic::Runs, runs::ROWS),
+        (Topic::Console, console::ROWS),
+        (Topic::Screens, &screens::actions()),
+        (Topic::Console, console::LEAVING),
+        (Topic::Map, map::ROWS),
+        (Topic::Console, lists::ROWS),
+    ]
+    .into_iter()
+    .flat_map(|(topic, rows)| rows.iter().map(move |row| Action { topic, ..*row }))
+    .collect()
 }

@@ -30,13 +30,13 @@ pub(super) const WRITER: Guide = Guide {
 pub(super) const CONSOLE: Guide = Guide {
     cause: "A thread of the console panicked, or an order did not reach the mission.",
     effect: "If a thread failed, the robot is held. Orders may have no effect.",
-    remedies: &[HOLD, END, run("Quit the console: holds, then asks.", ActionId::Leave)],
+    remedies: &[HOLD, END, run("Quit the console. Holds, then asks.", ActionId::Leave)],
 };
 
 pub(super) const RESPONSE: Guide = Guide {
     cause: "One key press in a hundred takes longer than 33 ms to appear on the screen: the machine or the \
     terminal is too busy.",
-    effect: "The screen lags. HOLD does not: it is sent to the mission before anything is drawn.",
+    effect: "The screen is slow. HOLD is not: it is handled first.",
     remedies: &[SLOWER, wait("Close other programs, or make the terminal smaller.")],
 };
 

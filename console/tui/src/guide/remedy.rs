@@ -33,11 +33,11 @@ pub(super) const fn run(text: &'static str, action: ActionId) -> Remedy {
 pub(super) const STAY: Remedy =
     run("Stay held (HOLD): then only the operator can resume the mission.", ActionId::Hold);
 pub(super) const HOLD: Remedy = run("HOLD the robot until this is resolved.", ActionId::Hold);
-pub(super) const END: Remedy = run("End the mission (<end>): holds, then asks.", ActionId::Abort);
+pub(super) const END: Remedy = run("End the mission (<end>). Holds, then asks.", ActionId::Abort);
 pub(super) const SHOW: Remedy = run("Show it on the map.", ActionId::ShowPlace);
 pub(super) const SLOWER: Remedy = run("Slow the simulation down (<slower>).", ActionId::Slower);
 pub(super) const OTHER_PLANNER: Remedy =
-    run("Change the planner (<planner>): asks first.", ActionId::ChoosePlanner);
+    run("Change the planner (<planner>). Asks first.", ActionId::ChoosePlanner);
 pub(super) const PARAMETERS: Remedy =
     run("Change the planner's parameters (<parameters>).", ActionId::Parameters);
-pub(super) const RESUME: Remedy = run("Resume: the planner tries again; asks first.", ActionId::Resume);
+pub(super) const RESUME: Remedy = run("Resume: the planner tries again. Asks first.", ActionId::Resume);

@@ -24,10 +24,7 @@ pub(super) fn guide(word: &str) -> Guide {
             effect: "When the reel is empty, the robot is held.",
             remedies: const {
                 &[
-                    run(
-                        "Resume (with confirmation): slackens the tether, then replans the scan.",
-                        ActionId::Resume,
-                    ),
+                    run("Resume: frees the tether, then replans from here. Asks first.", ActionId::Resume),
                     OTHER_PLANNER,
                     END,
                 ]
@@ -39,7 +36,7 @@ pub(super) fn guide(word: &str) -> Guide {
             remedies: const {
                 &[
                     SHOW,
-                    run("Resume (with confirmation): slackens the tether first.", ActionId::Resume),
+                    run("Resume: frees the tether first. Asks first.", ActionId::Resume),
                     OTHER_PLANNER,
                     END,
                 ]
@@ -51,7 +48,7 @@ pub(super) fn guide(word: &str) -> Guide {
             remedies: const {
                 &[
                     run(
-                        "Resume (with confirmation): drives back the way it came to free the tether.",
+                        "Resume: drives back the way it came to free the tether. Asks first.",
                         ActionId::Resume,
                     ),
                     SHOW,

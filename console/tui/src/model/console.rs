@@ -5,6 +5,10 @@ use crate::actions::keymap::Keymap;
 use crate::keys::Key;
 use mission::{PlannerInfo, RefusedPlugin, Severity};
 use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
+
+/// The maximum number of messages that are remembered.
+const MAX_MESSAGES: usize = 200;
 
 /// The current time, set by the caller.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -90,6 +94,19 @@ pub struct Notice {
     pub is_answer: bool,
 }
 
+/// A message in the history of messages.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Message {
+    /// The time of the run, seconds; `None` if no run was open.
+    pub t_s: Option<f64>,
+    /// The time of day, seconds since 1970, UTC.
+    pub wall_unix_s: f64,
+    /// The severity of the message.
+    pub severity: Severity,
+    /// The message, as a sentence.
+    pub text: String,
+}
+
 /// A key that is either held down or pressed a second time. If no other press follows, it was a second press.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Settling {
@@ -162,6 +179,9 @@ pub struct Console {
     pub reloaded: Option<Vec<String>>,
     /// The latest notice.
     pub notice: Option<Notice>,
+    /// The latest messages, newest last.
+    #[serde(default)]
+    pub messages: VecDeque<Message>,
     /// The key assignments.
     pub keys: Keymap,
     /// The saved parameter presets.
@@ -182,4 +202,13 @@ pub struct Console {
     pub appeared: Option<Appeared>,
     /// When Ctrl-C was last pressed, on the console's own clock, seconds.
     pub interrupted_mono_s: Option<f64>,
+}
+
+impl Console {
+    /// Adds a message to the history; the oldest one is dropped when the history is full.
+    pub(crate) fn remember(&mut self, message: Message) {
+        let surplus = (self.messages.len() + 1).saturating_sub(MAX_MESSAGES);
+        self.messages.drain(..surplus);
+        self.messages.push_back(message);
+    }
 }

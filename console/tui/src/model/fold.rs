@@ -69,6 +69,9 @@ impl Run {
                 }
                 self.about.iter_mut().for_each(|about| about.world.zones.push(zone.clone()));
             }
+            EventKind::ReturnBegan { way } => self.way_back = Some(way.clone()),
+            EventKind::ZoneBreached { zone, .. } => self.raise_as_logged(event, Cause::Zone(zone.clone())),
+            EventKind::ZoneLeft { zone } => self.clear(&Cause::Zone(zone.clone())),
             EventKind::ObstacleMoved { id, obstacle } => self.moved(*id, obstacle),
             EventKind::PlannerPrepared { .. }
             | EventKind::PlannerChosen { .. }
@@ -118,9 +121,6 @@ impl Run {
             | EventKind::Snapshotted { .. }
             | EventKind::Discarded { .. }
             | EventKind::SpeedLimited { .. }
-            | EventKind::ReturnBegan { .. }
-            | EventKind::ZoneBreached { .. }
-            | EventKind::ZoneLeft { .. }
             | EventKind::MediumAwaited
             | EventKind::MediumKnown { .. }
             | EventKind::PlannerLogged { .. }

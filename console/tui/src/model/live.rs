@@ -2,7 +2,7 @@
 
 use super::{Health, Plans, Preflight, Replay, Run, Speed, WhatIf};
 use account::{Account, Area, Estimate, MissReason, Summary};
-use mission::{Order, Phase};
+use mission::{Order, Phase, WayBack, ZoneCost};
 use serde::{Deserialize, Serialize};
 
 /// The id of a run opened since the console was started; 0 means none.
@@ -94,6 +94,13 @@ pub struct Live {
     pub preflight: Preflight,
     /// Forecasts of how the held mission would continue; `None` until they are requested.
     pub what_if: Option<WhatIf>,
+    /// The way back that was asked for before the robot is ordered to take it, or why there is none, as a sentence;
+    /// `None` until it is known.
+    #[serde(default)]
+    pub way_back: Option<Result<WayBack, String>>,
+    /// The cost of the no-go zone that was drawn; `None` until it is known.
+    #[serde(default)]
+    pub zone_cost: Option<ZoneCost>,
     /// Whether the console that runs the mission has exited, so no more events will come.
     #[serde(default)]
     pub is_cut_off: bool,

@@ -1,6 +1,6 @@
 //! Planner parameters as the operator reads and types them.
 
-use mission::{ParamInfo, ParamKind, ParamValue, PlannerChoice};
+use mission::{ParamInfo, ParamKind, ParamValue, PlannerChoice, PlannerInfo};
 
 /// The value of a planner parameter: the value set by hand or, if none is set, the default.
 pub fn value(choice: Option<&PlannerChoice>, info: &ParamInfo) -> ParamValue {
@@ -15,6 +15,20 @@ pub fn default(kind: &ParamKind) -> ParamValue {
         ParamKind::Int { default, .. } => ParamValue::Int(*default),
         ParamKind::Flag { default } => ParamValue::Flag(*default),
         ParamKind::Choice { default, .. } => ParamValue::Word(default.clone()),
+    }
+}
+
+/// A change of a parameter: `rho_0_m 0.6 → 1.1 m`.
+pub fn change(
+    planner: Option<&PlannerInfo>,
+    choice: Option<&PlannerChoice>,
+    key: &str,
+    then: &ParamValue,
+) -> String {
+    match planner.and_then(|planner| planner.parameters.iter().find(|info| info.key == key)) {
+        Some(info) if info.unit.is_empty() => format!("{key} {} → {then}", value(choice, info)),
+        Some(info) => format!("{key} {} → {then} {}", value(choice, info), info.unit),
+        None => format!("{key} to {then}"),
     }
 }
 

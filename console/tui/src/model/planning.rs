@@ -1,9 +1,10 @@
 //! The planner as shown on the screen.
 
-use mission::{AskId, PlannerChoice, PlannerInfo, WorkerId, event::Effort, planner::Fault};
+use mission::event::{Effort, PlanScans};
+use mission::{AskId, PlannerChoice, PlannerInfo, WorkerId, planner::Fault};
 use planner_api::{Command, Drawing};
 use serde::{Deserialize, Serialize};
-use world::Point;
+use world::{Point, coverage::percent_text};
 
 /// A plan, thinned for drawing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -28,11 +29,28 @@ pub struct Offer {
     pub flown: Effort,
     /// The effort for the better plan.
     pub better: Effort,
+    /// The floor that both plans scan; `None` if that is not known.
+    #[serde(default)]
+    pub scans: Option<PlanScans>,
     /// The point at which the better plan begins.
     pub begins: Option<Point>,
     /// Whether the mission will switch to the better plan at the point where that plan begins, because the operator or
     /// the scenario says so.
     pub is_taken: bool,
+}
+
+impl Offer {
+    /// What the better plan saves, as a sentence without a full stop.
+    pub fn sentence(&self) -> String {
+        format!("Better plan: {}", self.better.saving(&self.flown))
+    }
+
+    /// The floor that the better plan scans, as a sentence; `None` if that is not known.
+    pub fn scanned(&self) -> Option<String> {
+        let scans = self.scans?;
+        let [better, flown] = [scans.better, scans.flown].map(|scan| percent_text(scan.covered_reachable, 1));
+        Some(format!("It scans {better} % (now {flown} %)."))
+    }
 }
 
 /// The planner and its latest output.

@@ -34,6 +34,23 @@ impl Model {
         checks
     }
 
+    /// All checks as the operator reads them: failed ones, warnings, the checklist, and those that passed. An item of
+    /// the checklist comes with its place there.
+    pub fn grouped_checks(&self) -> Vec<(Check, Option<usize>)> {
+        let all = self.checks();
+        let first_by_hand = all.len() - self.n_by_hand();
+        let numbered = all.into_iter().enumerate();
+        let mut grouped: Vec<(Check, Option<usize>)> =
+            numbered.map(|(index, check)| (check, index.checked_sub(first_by_hand))).collect();
+        grouped.sort_by_key(|(check, item)| match (item, check.outcome) {
+            (None, CheckOutcome::Failed) => 0,
+            (None, CheckOutcome::Warning) => 1,
+            (Some(_), _) => 2,
+            (None, CheckOutcome::Passed | CheckOutcome::Ticked) => 3,
+        });
+        grouped
+    }
+
     /// The items of the scenario's checklist.
     fn hand_checks(&self) -> Vec<Check> {
         let items = self.live.run.about.iter().flat_map(|about| &about.checklist).enumerate();
@@ -122,20 +139,18 @@ impl Model {
         let run = &self.live.run;
         let tether = run.about.as_ref()?.mission.tether.as_ref()?;
         Some(match run.tether.as_ref().and_then(|tether| tether.certified) {
-            Some(true) => check(
-                "tether",
-                CheckOutcome::Passed,
-                "plan certified: the cable can always be reeled in".into(),
-            ),
+            Some(true) => {
+                check("tether", CheckOutcome::Passed, "tether certified: can always be reeled in".into())
+            }
             Some(false) if tether.allow_uncertified => check(
                 "tether",
                 CheckOutcome::Warning,
-                "plan NOT certified, but allowed by the scenario".into(),
+                "tether NOT certified, but allowed by the scenario".into(),
             ),
             Some(false) => check(
                 "tether",
                 CheckOutcome::Failed,
-                "plan NOT certified; change planner or parameters".into(),
+                "tether NOT certified; change planner or parameters".into(),
             ),
             None => check("tether", CheckOutcome::Failed, "no certified plan yet".into()),
         })

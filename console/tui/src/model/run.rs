@@ -1,7 +1,7 @@
 //! A run reconstructed from its events; live runs and replays use the same fold.
 
 use super::{Alarms, History, Log, Planning, Position, Raster, Shadow, Tether, Trail, log::What};
-use mission::{FoldedStanding, MissionConfig, Phase, PlannerInfo, TaskConfig};
+use mission::{FoldedStanding, MissionConfig, Phase, PlannerInfo, TaskConfig, WayBack};
 use positioning::AccuracyMap;
 use serde::{Deserialize, Serialize};
 use world::{PlateLayout, Point, Station, StationId, World};
@@ -37,6 +37,9 @@ pub struct Run {
     /// The planner in shadow; `None` without one.
     #[serde(default)]
     pub shadow: Option<Shadow>,
+    /// The way of the last drive back by order.
+    #[serde(default)]
+    pub way_back: Option<WayBack>,
     /// The alarms.
     pub alarms: Alarms,
     /// The log.

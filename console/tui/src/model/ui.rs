@@ -2,10 +2,10 @@
 
 use super::line_edit::LineEdit;
 use super::palette::Palette;
-use super::{Cause, EventList};
+use super::{Cause, EventList, Sketch};
 use crate::screens::Screen;
 use crate::theme::ThemeName;
-use mission::{Order, PlanId, PlannerChoice};
+use mission::{Order, ParamValue, PlanId, PlannerChoice};
 use serde::{Deserialize, Serialize};
 use world::Point;
 
@@ -232,6 +232,18 @@ pub enum Overlay {
     },
     /// Forecasts of how the mission would continue with different planners.
     WhatIf,
+    /// The ways to end the mission: end here, or drive back.
+    Finish {
+        /// The index of the selected line.
+        selected: usize,
+    },
+    /// A no-go zone being drawn on the map.
+    Sketch(Sketch),
+    /// The history of messages, newest first.
+    Messages {
+        /// The index of the selected line.
+        selected: usize,
+    },
     /// The pre-flight check.
     Preflight {
         /// The index of the selected line.
@@ -250,6 +262,13 @@ pub enum Overlay {
     Shelve(Shelving),
     /// The input line for the text of a bookmark at the replay cursor.
     Bookmark(LineEdit),
+}
+
+impl Overlay {
+    /// Whether the overlay asks something that only its own keys on the keyboard may answer.
+    pub fn is_question(&self) -> bool {
+        matches!(self, Self::Confirm(_) | Self::Quit | Self::Stepping | Self::Finish { .. })
+    }
 }
 
 /// The input for shelving an alarm: how long and why.
@@ -293,6 +312,17 @@ pub enum Ask {
     Promote,
     /// Take the better plan.
     TakePlan,
+    /// Drive back to the anchor or the start.
+    DriveBack,
+    /// Close the floor within an outline: its corners, metres, tank frame.
+    DrawZone(Vec<Point>),
+    /// Change a parameter of a planner that is driving.
+    Set {
+        /// The parameter.
+        key: String,
+        /// Its new value.
+        value: ParamValue,
+    },
 }
 
 impl Ask {
@@ -306,6 +336,9 @@ impl Ask {
             Self::Swap(choice) => Order::ChoosePlanner(choice.clone()),
             Self::Promote => Order::Promote,
             Self::TakePlan => Order::TakePlan,
+            Self::DriveBack => Order::DriveBack,
+            Self::DrawZone(corners) => Order::DrawZone(corners.clone()),
+            Self::Set { key, value } => Order::SetParameter { key: key.clone(), value: value.clone() },
         }
     }
 }

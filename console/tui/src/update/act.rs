@@ -79,7 +79,7 @@ pub(crate) fn interrupt(model: &mut Model) -> Vec<Effect> {
         model.ui.overlay = Overlay::Quit;
     } else {
         let text = format!("press <interrupt> again within {INTERRUPT_TWICE_S} s to quit");
-        model.say_for(INTERRUPT_TWICE_S, Severity::Info, model.console.keys.spelled(&text));
+        model.hint(model.console.keys.spelled(&text));
     }
     effects
 }

@@ -174,11 +174,13 @@ pub(crate) fn open_actions(model: &mut Model) -> Vec<Effect> {
 /// # Errors
 /// Returns the reason why no action can be run.
 pub(super) fn chosen_remedy(model: &mut Model, number: usize) -> Result<ActionId, String> {
-    let Overlay::Remedies { cause, .. } = &model.ui.overlay else { return Err("no actions are open".into()) };
+    let Overlay::Remedies { cause, .. } = &model.ui.overlay else {
+        return Err("choose an alarm first, then <accept>".into());
+    };
     let cause = cause.clone();
     let remedy = number.checked_sub(1).and_then(|index| guide(&cause).remedies.get(index));
     let remedy = remedy.ok_or_else(|| format!("no action {number}"))?;
-    let action = remedy.action.ok_or_else(|| format!("no command for this action: {}", remedy.text))?;
+    let action = remedy.action.ok_or_else(|| format!("advice, not an action: {}", remedy.text))?;
     model.ui.alarm = Some(cause);
     model.ui.overlay = Overlay::None;
     Ok(action)

@@ -24,7 +24,7 @@ use crate::handover;
 use crate::model::{
     Model,
     palette::LineFault,
-    ui::{MapView, Purpose},
+    ui::{Ask, MapView, Purpose},
 };
 use line::Word;
 use mission::{Order, Parameters, PlannerChoice};
@@ -172,6 +172,8 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
         Value::Parameter { key, value } => {
             let order = Order::SetParameter { key: key.clone(), value: value.clone() };
             return match accepted(model, &order) {
+                // A value that changes how the robot is driving needs an answer.
+                Ok(()) if model.live.run.is_running() => overlay::ask(model, Ask::Set { key, value }),
                 Ok(()) => set_parameter(model, key, value),
                 Err(why) => refuse(model, why),
             };
@@ -191,8 +193,13 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
         Value::Theme(theme) => model.ui.theme = theme,
         Value::Duration(for_s) => return shelve(model, for_s, values),
         Value::Corner(corner) => {
-            let order = zones::order(corner, values);
-            return order.map_or_else(Vec::new, |order| give(model, order));
+            let corners = zones::corners(corner, values);
+            return corners.map_or_else(Vec::new, |corners| {
+                match accepted(model, &Order::DrawZone(Vec::new())) {
+                    Ok(()) => zones::propose(model, corners),
+                    Err(why) => refuse(model, why),
+                }
+            });
         }
         Value::Station(station) => {
             let order = stations::order(model, action.id, station, values);

@@ -1,6 +1,6 @@
 //! Handles messages about the open run.
 
-use super::{Effect, RunMsg, go, health, news, preflight, replay, what_if};
+use super::{Effect, RunMsg, finish, go, health, news, preflight, replay, what_if, zones};
 use crate::model::{
     Busy, Cause, Change, Health, Live, Model, Overlay, Recording, RunId, RunResult, Screen, Withdrawn,
     ui::Ask,
@@ -46,6 +46,8 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
         }
         RunMsg::Checked(found) => return preflight::checked(model, found),
         RunMsg::Estimated(ask, estimate) => model.live.plans.estimate = Some((ask, *estimate)),
+        RunMsg::WayBack(way) => finish::found(model, way),
+        RunMsg::ZoneCost(corners, cost) => zones::priced(model, &corners, cost),
         RunMsg::CompareAt(share, what) => {
             if let Some(ghost) = &mut model.live.plans.ghost {
                 ghost.at = Some((share, what));
@@ -58,8 +60,7 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
         }
         RunMsg::WriterGone => {
             model.live.is_cut_off = true;
-            let text = "the run was not closed: its console has exited; the values shown are the last in \
-            its journal";
+            let text = "CONSOLE LOST: the run was not closed; these are the last known values";
             news(model, &Cause::Writer, Severity::Crit, text.into());
         }
         RunMsg::Health(health) => take_health(model, health),
@@ -92,7 +93,13 @@ fn take(model: &mut Model, event: &Event) {
     let Change { withdrawn, notice, answered } = model.live.run.fold(event);
     match &event.kind {
         EventKind::RunOpened(_) => (model.live.is_opening, model.live.before) = (false, None),
-        EventKind::Ended { .. } => (model.live.asked, model.live.hold_asked) = (None, false),
+        EventKind::Ended { .. } => {
+            (model.live.asked, model.live.hold_asked) = (None, false);
+            // A zone that is being drawn ends with its mission.
+            if matches!(model.ui.overlay, Overlay::Sketch(_)) {
+                model.ui.overlay = Overlay::None;
+            }
+        }
         _ => {}
     }
     if let Some(order) = answered {
@@ -124,7 +131,10 @@ fn withdraw_start(model: &mut Model) {
 fn withdraw(model: &mut Model, withdrawn: Withdrawn) {
     let is_withdrawn = match (withdrawn, &model.ui.overlay) {
         (Withdrawn::Nothing, _) => false,
-        (_, Overlay::Confirm(Ask::Resume | Ask::FlyUncertified))
+        (
+            _,
+            Overlay::Confirm(Ask::Resume | Ask::DriveBack | Ask::FlyUncertified) | Overlay::Finish { .. },
+        )
         | (Withdrawn::All, Overlay::Confirm(_) | Overlay::Stepping) => true,
         _ => false,
     };

@@ -23,7 +23,7 @@ pub(super) fn no_orders(model: &Model) -> Result<(), String> {
 }
 
 /// The refusal of a view-only console.
-const LOOK_ONLY: &str = "VIEW: this console is view-only; use the console that runs the mission";
+const LOOK_ONLY: &str = "VIEW only: give orders on the console that runs the mission";
 
 /// The refusal of a replay.
-const REPLAY: &str = "REPLAY: a past run takes no orders; <home>: open a scenario";
+const REPLAY: &str = "replay, no robot connected; <home>: open a scenario";

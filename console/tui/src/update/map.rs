@@ -12,6 +12,7 @@ const PAN_STEPS: f64 = 4.0;
 
 /// Checks that the map is shown.
 pub(crate) fn is_shown(model: &Model) -> Result<(), String> {
+    demand(model.ui.screen.has_map(), "no map on this screen; <mission>: the mission's map")?;
     demand(model.ui.shows(Pane::Map), "the map is not shown (it needs 60x16); <next-pane>: next pane")
 }
 

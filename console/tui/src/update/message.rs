@@ -8,7 +8,9 @@ use crate::model::{
     replay::{Align, Reel, Side},
 };
 use account::{Account, Estimate, Notes, Summary};
-use mission::{AskId, Check, Event, Order, PlannerChoice, PlannerInfo, RefusedPlugin, Severity};
+use mission::{
+    AskId, Check, Event, Order, PlannerChoice, PlannerInfo, RefusedPlugin, Severity, WayBack, ZoneCost,
+};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use world::Point;
@@ -158,6 +160,10 @@ pub enum RunMsg {
     Checked(Vec<Check>),
     /// The estimate for a plan, and the ask that the plan answers.
     Estimated(Option<AskId>, Box<Estimate>),
+    /// The way back of the held robot, or why there is none, as a sentence.
+    WayBack(Result<WayBack, String>),
+    /// What a no-go zone with these corners would cost, or why it would be refused, as a sentence.
+    ZoneCost(Vec<Point>, Result<ZoneCost, String>),
     /// The progress of the plan for comparison: the share done, and the current activity.
     CompareAt(f64, String),
     /// The plan for comparison, or why there is none, as a sentence.
@@ -252,6 +258,15 @@ pub enum Job {
     ViewAt(String, String),
 }
 
+/// A question to the mission.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Query {
+    /// The way back from here.
+    WayBack,
+    /// The cost of a no-go zone with these corners, metres, tank frame.
+    ZoneCost(Vec<Point>),
+}
+
 /// An effect that the caller carries out, in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Effect {
@@ -312,6 +327,8 @@ pub enum Effect {
         /// Whether a handover page in that file is replaced.
         overwrite: bool,
     },
+    /// Ask the mission something; nothing changes.
+    Ask(Query),
     /// Give the mission an order.
     Order(Order),
     /// Change the simulation speed.

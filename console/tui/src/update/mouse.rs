@@ -2,9 +2,9 @@
 //! with the keyboard.
 
 use super::act::{act, select};
-use super::map;
 use super::message::{Effect, Mouse, Rows, Target};
-use crate::actions::ActionId;
+use super::{map, zones};
+use crate::actions::{ACTIONS, ActionId, context::contexts};
 use crate::model::home::HomeList;
 use crate::model::{Model, Overlay};
 
@@ -13,20 +13,24 @@ const WHEEL: isize = 3;
 
 /// Handles mouse input.
 pub(super) fn take(model: &mut Model, mouse: Mouse) -> Vec<Effect> {
-    let is_question = matches!(model.ui.overlay, Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping);
-    if is_question || !model.ui.mouse {
+    if model.ui.overlay.is_question() || !model.ui.mouse {
         return Vec::new();
     }
     let is_open = model.ui.overlay == Overlay::None;
     match mouse {
-        Mouse::Click(Target::Key(id)) => return act(model, id),
+        Mouse::Click(Target::Map(place)) if zones::point_at(model, place) => {}
+        Mouse::Drag { from, to } if zones::drag(model, from, to) => {}
+        // Under a list, a key or screen drawn beneath it does nothing.
+        Mouse::Click(Target::Key(id)) if works(model, id) => return act(model, id),
         Mouse::Click(Target::Map(place)) if is_open => map::read(model, place),
         Mouse::Click(Target::Row(list, index)) if is_open => return click(model, list, index),
         Mouse::Wheel { up, on: Target::Map(place) } if is_open => {
             map::zoom_at(model, if up { 1 } else { -1 }, place);
         }
         Mouse::Wheel { up, on } => {
-            if let Target::Row(list, _) = on {
+            if let Target::Row(list, _) = on
+                && is_open
+            {
                 focus(model, list);
             }
             select(model, if up { -WHEEL } else { WHEEL });
@@ -35,6 +39,12 @@ pub(super) fn take(model: &mut Model, mouse: Mouse) -> Vec<Effect> {
         Mouse::Click(_) | Mouse::Drag { .. } => {}
     }
     Vec::new()
+}
+
+/// Whether the key of an action works now.
+fn works(model: &Model, id: ActionId) -> bool {
+    let contexts = contexts(model);
+    ACTIONS.iter().any(|action| action.id == id && action.works_in(&contexts))
 }
 
 /// Selects a line. A click on the selected line opens it, as Enter does, which never moves the robot.

@@ -29,7 +29,7 @@ pub(crate) fn accept(model: &Model) -> Result<(), String> {
 /// Checks that there is another pane to switch to.
 pub(crate) fn other_pane(model: &Model) -> Result<(), String> {
     let turns = model.ui.screen == Screen::Home || !model.ui.panes().is_empty();
-    demand(turns, "there is only one pane")
+    demand(turns, "this size shows one pane")
 }
 
 /// Checks that a mission is open.
@@ -49,7 +49,10 @@ pub(crate) fn run(model: &Model) -> Result<(), String> {
 
 /// Checks that the run's own planner, which the re-scan uses, can scan.
 pub(crate) fn rescan(model: &Model) -> Result<(), String> {
-    let planner = model.planner().filter(|_| model.ui.screen == Screen::Result);
+    let is_result = model.ui.screen == Screen::Result;
+    let has_missed = model.live.floor().is_none() || !model.live.missed().is_empty();
+    demand(!is_result || has_missed, "this run missed no floor")?;
+    let planner = model.planner().filter(|_| is_result);
     match planner.and_then(|planner| Some((planner, planner.why_no_coverage()?))) {
         Some((planner, why)) => {
             let other = "`tankops rescan RUN` writes a scenario for another planner";
@@ -115,6 +118,15 @@ pub(crate) fn abort(model: &Model) -> Result<(), String> {
     let is_waiting = *model.live.run.phase() == Phase::Waiting && !model.live.may_move();
     demand(!is_waiting, "the mission has not been started")?;
     accepted(model, &Order::Abort)
+}
+
+/// Checks that a plan which was refused because of the tether can be run.
+pub(crate) fn uncertified(model: &Model) -> Result<(), String> {
+    let is_refused = model.live.run.tether.as_ref().and_then(|tether| tether.certified) == Some(false);
+    let why = "the mission cannot start with an uncertified plan; <planner>: change planner, or set \
+        tether.allow_uncertified in the scenario";
+    demand(!(model.live.waits() && is_refused), why)?;
+    accepted(model, &Order::FlyUncertified)
 }
 
 /// Checks that the planner can be changed.
@@ -194,6 +206,8 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         Refusal::NoShadow => Some(":shadow NAME runs one"),
         // If anything can be done, these messages already say what to do.
         Refusal::Planning
+        | Refusal::DrivingBack
+        | Refusal::OfferAccepted
         | Refusal::OtherPlan { .. }
         | Refusal::NotLive { .. }
         | Refusal::PositionLost { .. }

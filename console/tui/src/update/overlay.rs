@@ -8,7 +8,7 @@ use super::preflight;
 use super::preset::take as take_preset;
 use super::replay;
 use super::send::{send, set_parameter};
-use super::{palette, shadow, typing, what_if};
+use super::{finish, palette, shadow, typing, what_if, zones};
 use crate::actions::ActionId;
 use crate::guide::guide;
 use crate::model::ui::{Ask, Edit, MapLayer, Purpose};
@@ -31,7 +31,9 @@ pub(crate) fn ask(model: &mut Model, ask: Ask) -> Vec<Effect> {
 pub(super) fn withdraw_motion(model: &mut Model) -> bool {
     let moves = matches!(
         model.ui.overlay,
-        Overlay::Stepping | Overlay::Confirm(Ask::Start(_) | Ask::Resume | Ask::FlyUncertified)
+        Overlay::Stepping
+            | Overlay::Finish { .. }
+            | Overlay::Confirm(Ask::Start(_) | Ask::Resume | Ask::DriveBack | Ask::FlyUncertified)
     );
     if moves {
         model.ui.overlay = Overlay::None;
@@ -61,6 +63,10 @@ pub(crate) fn accept(model: &mut Model) -> Vec<Effect> {
         }
         Overlay::Preset { name, choice, .. } => take_preset(model, &name, choice),
         Overlay::WhatIf => what_if::choose(model),
+        Overlay::Finish { selected } => finish::choose(model, selected),
+        Overlay::Sketch(_) => zones::set(model),
+        // The selected message is already shown in full.
+        Overlay::Messages { .. } => open(model, Overlay::None),
         Overlay::Preflight { .. } => preflight::tick(model),
         Overlay::Filter(_) => open(model, Overlay::None),
         Overlay::Shelve(shelving) => alarms::take_shelving(model, shelving),
@@ -106,16 +112,20 @@ fn agree(model: &mut Model, ask: &Ask) -> Vec<Effect> {
         Ask::Swap(_) => ActionId::ChoosePlanner,
         Ask::Promote => ActionId::Promote,
         Ask::TakePlan => ActionId::TakePlan,
+        Ask::DriveBack => ActionId::DriveBack,
+        Ask::DrawZone(_) => ActionId::DrawZone,
+        Ask::Set { .. } => ActionId::SetParameter,
     };
-    match offered(model, id) {
-        Ok(()) => {
-            if let Ask::Start(seen) = ask {
-                preflight::start(model, *seen)
-            } else {
-                send(model, ask.order())
-            }
-        }
-        Err(why) => refuse(model, why),
+    let can = offered(model, id).and_then(|()| match ask {
+        Ask::Set { .. } => accepted(model, &ask.order()),
+        Ask::DriveBack => finish::can_drive_back(model),
+        _ => Ok(()),
+    });
+    match (can, ask) {
+        (Ok(()), Ask::Start(seen)) => preflight::start(model, *seen),
+        (Ok(()), Ask::Set { key, value }) => set_parameter(model, key.clone(), value.clone()),
+        (Ok(()), ask) => send(model, ask.order()),
+        (Err(why), _) => refuse(model, why),
     }
 }
 
@@ -242,11 +252,14 @@ pub(super) fn select(model: &mut Model, by: isize) {
         }
         Overlay::Layers { .. } => MapLayer::ALL.len(),
         Overlay::Preflight { .. } => model.checks().len(),
+        Overlay::Messages { .. } => model.console.messages.len(),
+        Overlay::Finish { .. } => finish::WAYS,
         Overlay::Remedies { cause, .. } => guide(cause).remedies.len(),
         Overlay::None
         | Overlay::Confirm(_)
         | Overlay::Stepping
         | Overlay::Quit
+        | Overlay::Sketch(_)
         | Overlay::WhatIf
         | Overlay::Filter(_)
         | Overlay::Shelve(_)
@@ -257,6 +270,8 @@ pub(super) fn select(model: &mut Model, by: isize) {
     | Overlay::Parameters { selected, .. }
     | Overlay::Preset { selected, .. }
     | Overlay::Preflight { selected }
+    | Overlay::Messages { selected }
+    | Overlay::Finish { selected }
     | Overlay::Remedies { selected, .. }
     | Overlay::Layers { selected } = &mut model.ui.overlay
     {

@@ -6,7 +6,7 @@ use super::offer::{offered, refuse};
 use super::overlay::open;
 use crate::actions::context::Context;
 use crate::actions::find::{self, Match};
-use crate::actions::{Action, ActionId, Risk};
+use crate::actions::{Action, ActionId, Risk, Topic};
 use crate::model::{Model, Overlay, Palette, palette::LineFault};
 use crate::screens;
 use mission::spelling::nearest;
@@ -41,15 +41,33 @@ pub fn choices(model: &Model, palette: &Palette) -> Vec<Choice> {
     exact.into_iter().chain(ranked(model, typed).into_iter().map(Choice::Command)).chain(others).collect()
 }
 
-/// The commands that match the typed text, best first; if nothing is typed, commands for other screens and panes come
-/// last.
+/// The group of a command in the list of all commands: those of this screen come first, the screens last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Group {
+    /// The commands of this screen.
+    Here,
+    /// The other commands about a topic.
+    Topic(Topic),
+}
+
+/// The group of a command.
+pub fn group(model: &Model, action: &Action) -> Group {
+    if action.works_in(screens::contexts(model)) { Group::Here } else { Group::Topic(action.topic) }
+}
+
+/// The values to choose from for the first argument of a command; empty if there are none.
+pub fn values(model: &Model, action: &Action) -> Vec<String> {
+    command::candidates(model, &format!("{} ", action.name)).unwrap_or_default()
+}
+
+/// The commands that match the typed text, best first; if nothing is typed, in groups.
 fn ranked(model: &Model, typed: &str) -> Vec<&'static Action> {
-    let here = [&[Context::Anywhere, Context::Screen], screens::contexts(model)].concat();
     if typed.is_empty() {
         let mut all: Vec<&Action> = find::commands().collect();
-        all.sort_by_key(|action| !action.works_in(&here));
+        all.sort_by_key(|action| group(model, action));
         return all;
     }
+    let here = [&[Context::Anywhere, Context::Screen], screens::contexts(model)].concat();
     let found = find::commands().filter_map(|action| Some((Match::of(action, typed)?, action)));
     let mut found: Vec<(Match, &Action)> = found.collect();
     found.sort_by_cached_key(|(how, action)| {
@@ -119,7 +137,7 @@ fn chosen(model: &mut Model, action: &'static Action, typed: &str) -> Vec<Effect
 /// runs even while a question is open.
 pub(super) fn obey(model: &mut Model, line: &str) -> Vec<Effect> {
     let stops = command::read(model, line).is_ok_and(|command| command.stops());
-    if !stops && matches!(model.ui.overlay, Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping) {
+    if !stops && model.ui.overlay.is_question() {
         return refuse(model, "a question is open; answer it first".into());
     }
     run(model, Palette::begun(line), line)

@@ -57,8 +57,7 @@ pub(super) fn cancel(model: &mut Model) {
 pub(super) fn tick(model: &mut Model) -> Vec<Effect> {
     let Overlay::Preflight { selected } = model.ui.overlay else { return Vec::new() };
     let n_by_hand = model.n_by_hand();
-    let first = model.checks().len() - n_by_hand;
-    let Some(point) = selected.checked_sub(first) else {
+    let Some(point) = model.grouped_checks().get(selected).and_then(|(_, item)| *item) else {
         let why = model.console.keys.spelled("checked automatically; <check-again>: check again");
         return refuse(model, why);
     };

@@ -7,8 +7,10 @@ use mission::{Order, ParamValue, Severity};
 
 /// Sends an order; if it makes the robot move, records that an answer is due.
 pub(crate) fn send(model: &mut Model, order: Order) -> Vec<Effect> {
-    let moves = matches!(order, Order::Resume | Order::FlyUncertified | Order::Step | Order::StepTo(_))
-        || order.is_start();
+    let moves = matches!(
+        order,
+        Order::Resume | Order::DriveBack | Order::FlyUncertified | Order::Step | Order::StepTo(_)
+    ) || order.is_start();
     if moves {
         model.live.asked = Some(order.clone());
         // An earlier HOLD does not stop a robot that was moved by a later order.
@@ -22,14 +24,9 @@ pub(crate) fn send(model: &mut Model, order: Order) -> Vec<Effect> {
 
 /// Sends a new parameter value and shows the old one; while the robot is moving, the value takes effect immediately.
 pub(super) fn set_parameter(model: &mut Model, key: String, value: ParamValue) -> Vec<Effect> {
-    let info = model.planner().and_then(|info| info.parameters.iter().find(|info| info.key == key));
-    if let Some(info) = info {
-        let before = parameter::value(model.live.run.planning.choice.as_ref(), info);
-        let unit = if info.unit.is_empty() { String::new() } else { format!(" {}", info.unit) };
-        let now = if model.live.run.is_running() { ", takes effect now" } else { "" };
-        let text = format!("{key}: {before} → {value}{unit}{now}");
-        model.say(Severity::Info, text);
-    }
+    let change = parameter::change(model.planner(), model.live.run.planning.choice.as_ref(), &key, &value);
+    let now = if model.live.run.is_running() { ", takes effect now" } else { "" };
+    model.say(Severity::Info, format!("{change}{now}"));
     send(model, Order::SetParameter { key, value })
 }
 

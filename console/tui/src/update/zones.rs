@@ -1,9 +1,13 @@
-//! No-go zones drawn by the operator.
+//! No-go zones drawn by the operator: with two corners in a command, or on the map.
 
 use super::command::Value;
-use super::offer::{accepted, demand};
-use crate::model::Model;
-use mission::Order;
+use super::message::{Effect, Query};
+use super::offer::{accepted, demand, refuse};
+use super::overlay::ask;
+use crate::model::sketch::Form;
+use crate::model::ui::Ask;
+use crate::model::{Model, Overlay, Sketch};
+use mission::{Order, ZoneCost, outline};
 use world::Point;
 
 /// Checks that a zone can be drawn now.
@@ -15,12 +19,136 @@ pub(crate) fn can(model: &Model) -> Result<(), String> {
     accepted(model, &Order::DrawZone(Vec::new()))
 }
 
-/// The order to draw a box between two corners; `None` if the second corner is missing.
-pub(super) fn order(a: Point, mut values: impl Iterator<Item = Value>) -> Option<Order> {
+/// The corners of the box between two corners; `None` if the second corner is missing.
+pub(super) fn corners(a: Point, mut values: impl Iterator<Item = Value>) -> Option<Vec<Point>> {
     let b = values.find_map(|value| match value {
         Value::Corner(corner) => Some(corner),
         _ => None,
     })?;
-    let (low, high) = (a.inf(&b), a.sup(&b));
-    Some(Order::DrawZone(vec![low, Point::new(high.x, low.y), high, Point::new(low.x, high.y)]))
+    Some(outline::boxed(a, b))
+}
+
+/// Shows a zone on the map and asks whether to close it; meanwhile, the mission computes what the zone costs.
+pub(super) fn propose(model: &mut Model, corners: Vec<Point>) -> Vec<Effect> {
+    model.live.zone_cost = None;
+    let query = Effect::Ask(Query::ZoneCost(corners.clone()));
+    ask(model, Ask::DrawZone(corners));
+    vec![query]
+}
+
+/// Receives the cost of the zone in the open question; a zone that would be refused closes the question.
+pub(super) fn priced(model: &mut Model, corners: &[Point], cost: Result<ZoneCost, String>) {
+    let is_asked =
+        matches!(&model.ui.overlay, Overlay::Confirm(Ask::DrawZone(asked)) if asked.as_slice() == corners);
+    match cost {
+        _ if !is_asked => {}
+        Ok(cost) => model.live.zone_cost = Some(cost),
+        Err(why) => {
+            model.ui.overlay = Overlay::None;
+            refuse(model, why);
+        }
+    }
+}
+
+/// Checks that a zone can be drawn from the cursor on.
+pub(crate) fn can_draw(model: &Model) -> Result<(), String> {
+    can(model)?;
+    demand(model.ui.cursor.is_some(), "<inspect>: open the cursor first")
+}
+
+/// Begins a zone at the cursor.
+pub(crate) fn draw(model: &mut Model) -> Vec<Effect> {
+    if let Some(cursor) = model.ui.cursor {
+        model.ui.overlay = Overlay::Sketch(Sketch::begun(cursor));
+    }
+    Vec::new()
+}
+
+/// The zone being drawn and the cursor.
+fn sketch(model: &mut Model) -> Option<(&mut Sketch, Point)> {
+    let cursor = model.ui.cursor?;
+    match &mut model.ui.overlay {
+        Overlay::Sketch(sketch) => Some((sketch, cursor)),
+        _ => None,
+    }
+}
+
+/// Handles Enter: sets the corner at the cursor. The second point of a box or circle completes it.
+pub(super) fn set(model: &mut Model) -> Vec<Effect> {
+    let Some((sketch, cursor)) = sketch(model) else { return Vec::new() };
+    if sketch.form != Form::Polygon {
+        return close(model);
+    }
+    if !sketch.points.contains(&cursor) {
+        sketch.points.push(cursor);
+    }
+    Vec::new()
+}
+
+/// Checks that the polygon has an area.
+pub(crate) fn can_close(model: &Model) -> Result<(), String> {
+    let corners = drawn(model).map_or(0, |corners| corners.len());
+    let is_polygon = matches!(&model.ui.overlay, Overlay::Sketch(sketch) if sketch.form == Form::Polygon);
+    demand(is_polygon && corners >= 3, "a polygon needs three corners; <accept>: set a corner")
+}
+
+/// Completes the zone with the cursor as its last point and asks whether to close it.
+pub(crate) fn close(model: &mut Model) -> Vec<Effect> {
+    match drawn(model).filter(|corners| corners.len() >= 3) {
+        Some(corners) => propose(model, corners),
+        None => refuse(model, "the zone has no area yet; move the cursor first".into()),
+    }
+}
+
+/// Changes the form of the zone.
+pub(crate) fn reshape(model: &mut Model) {
+    if let Some((sketch, _)) = sketch(model) {
+        sketch.reshape();
+    }
+}
+
+/// Checks that a corner can be removed.
+pub(crate) fn can_undo(model: &Model) -> Result<(), String> {
+    let corners = match &model.ui.overlay {
+        Overlay::Sketch(sketch) => sketch.points.len(),
+        _ => 0,
+    };
+    demand(corners > 1, "only the first corner is set; <cancel>: cancel")
+}
+
+/// Removes the last corner of a polygon.
+pub(crate) fn undo(model: &mut Model) {
+    if let Some((sketch, _)) = sketch(model) {
+        sketch.points.pop();
+    }
+}
+
+/// Puts the cursor at a clicked point while a zone is being drawn; returns whether one is.
+pub(super) fn point_at(model: &mut Model, place: Point) -> bool {
+    let is_drawing = matches!(model.ui.overlay, Overlay::Sketch(_));
+    if is_drawing {
+        super::map::read(model, place);
+    }
+    is_drawing
+}
+
+/// Draws a box or circle with the mouse: it begins where the drag began; returns whether a zone is being drawn.
+pub(super) fn drag(model: &mut Model, from: Point, to: Point) -> bool {
+    let Some((sketch, cursor)) = sketch(model) else { return false };
+    // The steps of one drag follow one another.
+    let goes_on = cursor == from;
+    if !goes_on && sketch.form != Form::Polygon {
+        sketch.points = vec![from];
+    }
+    super::map::read(model, to);
+    true
+}
+
+/// The outline to show on the map: of the zone being drawn or of the zone in the open question.
+pub(crate) fn drawn(model: &Model) -> Option<Vec<Point>> {
+    match &model.ui.overlay {
+        Overlay::Sketch(sketch) => Some(sketch.corners(model.ui.cursor?)),
+        Overlay::Confirm(Ask::DrawZone(corners)) => Some(corners.clone()),
+        _ => None,
+    }
 }

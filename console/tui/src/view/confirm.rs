@@ -1,4 +1,5 @@
-//! The line above the keys: the open question, otherwise what comes next.
+//! The lines above the keys: the state with what comes next, which nothing covers, and below it the open question or
+//! input line.
 
 use super::field::field;
 use super::lists::place_cursor;
@@ -6,65 +7,64 @@ use super::look::Look;
 use super::next::{self, Clauses};
 use super::{coverage, text};
 use crate::guide;
+use crate::model::sketch::Form;
 use crate::model::ui::{Ask, Shelving};
-use crate::model::{LineEdit, Model, Overlay, log::clock};
+use crate::model::{LineEdit, Model, Offer, Overlay, log::clock, parameter};
 use crate::theme::Role;
+use mission::WayBack;
 use ratatui::Frame;
-use ratatui::layout::Rect;
+use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
 use ratatui::widgets::Paragraph;
 
-/// Maximum rows of the question before the start.
+/// Maximum rows of a question.
 const MOST_ROWS: usize = 3;
 
-/// The rows of the line: more than one only for what must not be overlooked before the robot first moves.
+/// The rows of the lines: one for the state, and as many as the open question needs.
 pub(super) fn rows(look: &Look, columns: u16) -> u16 {
-    whole_question(look.model, columns).map_or(1, |lines| lines.len() as u16)
+    let is_typed =
+        matches!(look.model.ui.overlay, Overlay::Filter(_) | Overlay::Shelve(_) | Overlay::Bookmark(_));
+    1 + u16::from(is_typed) + question_lines(look.model, columns).len() as u16
 }
 
-/// The full question before the start, in as many lines as it needs.
-fn whole_question(model: &Model, columns: u16) -> Option<Vec<String>> {
-    let is_start = matches!(model.ui.overlay, Overlay::Confirm(Ask::Start(_)));
-    let clauses = asked(model).filter(|_| is_start)?;
-    let mut lines = text::wrap(&clauses.join(" "), usize::from(columns).saturating_sub(2));
+/// The open question in as many lines as it needs. If space is short, clauses of a question about nothing that could
+/// be overlooked are left out.
+fn question_lines(model: &Model, columns: u16) -> Vec<String> {
+    let Some(clauses) = asked(model) else { return Vec::new() };
+    let columns = usize::from(columns).saturating_sub(2);
+    let is_whole =
+        matches!(model.ui.overlay, Overlay::Confirm(Ask::Start(_) | Ask::DriveBack | Ask::DrawZone(_)));
+    if !is_whole {
+        return vec![next::joined(&clauses, columns)];
+    }
+    let mut lines = text::wrap(&clauses.join(" "), columns);
     lines.truncate(MOST_ROWS);
-    Some(lines)
+    lines
 }
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
-    if let Some(lines) = whole_question(look.model, area.width).filter(|_| area.height > 1) {
-        let columns = usize::from(area.width).saturating_sub(1);
-        let asked = |line: String| text::column(&line, columns);
-        let lines =
-            lines.into_iter().map(|line| look.line([(Role::Text, " ".into()), (Role::Confirm, asked(line))]));
-        return frame.render_widget(Paragraph::new(lines.collect::<Vec<Line>>()), area);
-    }
-    if let Overlay::Filter(line) = &look.model.ui.overlay {
-        return filter(look, frame, area, line);
-    }
-    if let Overlay::Shelve(shelving) = &look.model.ui.overlay {
-        return typed(
-            look,
-            frame,
-            area,
-            (" Shelve (minutes, reason): ", &shelving.line),
-            &shelve(look.model, shelving),
-        );
-    }
-    if let Overlay::Bookmark(line) = &look.model.ui.overlay {
-        return typed(
-            look,
-            frame,
-            area,
-            (" Bookmark: ", line),
-            &look.keys("  <accept>: set, <cancel>: cancel."),
-        );
-    }
-    let (role, clauses) = clauses(look.model);
+    let [state, below] = Layout::vertical([Constraint::Length(1), Constraint::Fill(1)]).areas(area);
+    let (role, clauses) = next::clauses(look.model);
     let columns = usize::from(area.width).saturating_sub(1);
-    let text = next::joined(&clauses, columns.saturating_sub(1));
-    let text = if role == Role::Confirm { text::column(&text, columns) } else { text };
-    frame.render_widget(Line::from(vec![look.span(Role::Text, " "), look.span(role, text)]), area);
+    let text = next::line(look.model, &clauses, columns.saturating_sub(1));
+    frame.render_widget(Line::from(vec![look.span(Role::Text, " "), look.span(role, text)]), state);
+    match &look.model.ui.overlay {
+        Overlay::Filter(line) => filter(look, frame, below, line),
+        Overlay::Shelve(shelving) => {
+            let prompt = (" Shelve (minutes, reason): ", &shelving.line);
+            typed(look, frame, below, prompt, &shelve(look.model, shelving));
+        }
+        Overlay::Bookmark(line) => {
+            let keys = look.keys("  <accept>: set, <cancel>: cancel.");
+            typed(look, frame, below, (" Bookmark: ", line), &keys);
+        }
+        _ => {
+            let asked = |line: String| text::column(&line, columns);
+            let lines = question_lines(look.model, area.width).into_iter();
+            let lines = lines.map(|line| look.line([(Role::Text, " ".into()), (Role::Confirm, asked(line))]));
+            frame.render_widget(Paragraph::new(lines.collect::<Vec<Line>>()), below);
+        }
+    }
 }
 
 /// Draws the filter input line with its error and the keys that close it.
@@ -104,15 +104,15 @@ pub(crate) fn question(model: &Model) -> Option<String> {
 
 /// The clauses of the open question. The first one contains the question and its keys, and is never left out.
 fn asked(model: &Model) -> Option<Vec<String>> {
-    let moves = || format!("Robot will move (planner {}).", model.live.run.planner_id().unwrap_or("unknown"));
+    let moves =
+        || format!("The robot will move (planner {}).", model.live.run.planner_id().unwrap_or("unknown"));
     let clauses = match &model.ui.overlay {
         Overlay::Confirm(Ask::Start(_)) => {
             let planner = text::fit(model.live.run.planner_id().unwrap_or("unknown"), 18);
             let speed = text::speed(model.live.speed);
             vec![
                 format!("Start ({planner}, {speed})? <accept>: start, <cancel>: cancel."),
-                "Robot will move.".into(),
-                promised(model),
+                format!("The robot will move: {}.", promised(model)),
             ]
         }
         Overlay::Confirm(Ask::Resume) => {
@@ -125,7 +125,7 @@ fn asked(model: &Model) -> Option<Vec<String>> {
         ],
         Overlay::Confirm(Ask::Abort) => {
             let scanned = format!("{} % of reachable floor scanned.", coverage::shares(&model.live.run).0);
-            vec!["End mission for good? <accept>: end, <cancel>: cancel.".into(), scanned]
+            vec!["End the mission? <accept>: end, <cancel>: cancel. It cannot be resumed.".into(), scanned]
         }
         Overlay::Confirm(Ask::Swap(choice)) => {
             let next = text::fit(&choice.id, 18);
@@ -136,6 +136,26 @@ fn asked(model: &Model) -> Option<Vec<String>> {
                 _ => format!("Change planner to {next}? <accept>: change, <cancel>: cancel."),
             };
             vec![question, "No motion yet.".into()]
+        }
+        Overlay::Confirm(Ask::DriveBack) => {
+            let way = match &model.live.way_back {
+                Some(Ok(way)) => format!("{}. The mission ends there.", finish_way(way)),
+                _ => "Looking for the way...".into(),
+            };
+            vec![
+                "Drive back? <accept>: drive back, <cancel>: stay held.".into(),
+                "The robot will move.".into(),
+                way,
+            ]
+        }
+        Overlay::Confirm(Ask::DrawZone(_)) => {
+            vec!["Close this floor? <accept>: close, <cancel>: cancel.".into(), zone_cost(model)]
+        }
+        Overlay::Sketch(sketch) => vec![drawing(sketch.form), "Mouse: drag.".into()],
+        Overlay::Confirm(Ask::Set { key, value }) => {
+            let change =
+                parameter::change(model.planner(), model.live.run.planning.choice.as_ref(), key, value);
+            vec![format!("Set {change}? <accept>: set, <cancel>: cancel."), "It takes effect now.".into()]
         }
         Overlay::Confirm(Ask::Promote) => {
             let shadow = model.live.run.shadow.as_ref();
@@ -148,11 +168,13 @@ fn asked(model: &Model) -> Option<Vec<String>> {
         }
         Overlay::Confirm(Ask::TakePlan) => {
             let offer = model.live.run.planning.offer.as_ref();
-            let saves = offer.map_or_else(|| "-".into(), |offer| offer.better.saving(&offer.flown));
+            let saves = offer.map_or_else(|| "-".into(), Offer::sentence);
             let begins = offer.and_then(|offer| offer.begins).map_or_else(|| "-".into(), text::place);
             vec![
                 "Take the better plan? <accept>: take, <cancel>: cancel.".into(),
-                format!("It is {saves}."),
+                format!("{saves}. {}", offer.and_then(Offer::scanned).unwrap_or_default())
+                    .trim_end()
+                    .to_owned(),
                 format!("It begins at {begins}, without a hold."),
             ]
         }
@@ -170,12 +192,40 @@ fn asked(model: &Model) -> Option<Vec<String>> {
     Some(clauses.iter().map(|clause| model.console.keys.spelled(clause)).collect())
 }
 
-/// The plan to be started, as a clause: its length and time, and whether it is certified for the tether.
-fn promised(model: &Model) -> String {
+/// The length and clearance of a way back: `To the anchor, 5.5 m, clearance 0.12 m`.
+pub(super) fn finish_way(way: &WayBack) -> String {
+    let (length, clearance) = (text::number(way.length_m, 1), text::number(way.clearance_m, 2));
+    format!("To the {}, {length} m, clearance {clearance} m", way.to.word())
+}
+
+/// What the zone in the question costs, as sentences.
+fn zone_cost(model: &Model) -> String {
+    let Some(cost) = model.live.zone_cost else { return "Computing what it costs...".into() };
+    let path = match text::number(cost.path_m, 1) {
+        zero if zero == "0.0" => "The plan does not pass it.".to_owned(),
+        path_m => format!("The plan passes it for {path_m} m and is made again."),
+    };
+    let [closed, lost] = [cost.closed_m2, cost.lost_m2].map(|area_m2| text::number(area_m2, 2));
+    let offer = if cost.drops_offer { " The better plan is dropped." } else { "" };
+    format!("{path} It closes {closed} m² of reachable floor, {lost} m² of it not scanned yet.{offer}")
+}
+
+/// The next point of a zone that is being drawn, with the keys.
+fn drawing(form: Form) -> String {
+    match form {
+        Form::Box => "No-go box: opposite corner, then <accept>. <drawn-form>: circle, <cancel>: cancel.",
+        Form::Circle => "No-go circle: edge, then <accept>. <drawn-form>: polygon, <cancel>: cancel.",
+        Form::Polygon => "No-go polygon: <accept>: set a corner, <drawn-close>: close, <drawn-form>: box, <cancel>: cancel.",
+    }
+    .into()
+}
+
+/// The plan to be started, as the end of a sentence: its length and time, and whether it is certified for the tether.
+pub(super) fn promised(model: &Model) -> String {
     let length = match &model.live.run.planning.plan {
-        Some(plan) if plan.path.is_empty() => "Step by step, no path planned".to_owned(),
-        Some(plan) => format!("Plan: {} m", text::number(plan.length_m, 1)),
-        None => "No plan yet".into(),
+        Some(plan) if plan.path.is_empty() => "step by step, no path planned".to_owned(),
+        Some(plan) => format!("{} m", text::number(plan.length_m, 1)),
+        None => "no plan yet".into(),
     };
     let time = model.live.estimate().map_or_else(
         || "time unknown".to_owned(),
@@ -188,7 +238,7 @@ fn promised(model: &Model) -> String {
         Some(false) => "NOT certified for the tether",
         None => "not certified for the tether",
     };
-    format!("{length}, {time}, {certificate}.")
+    format!("{length}, {time}, {certificate}")
 }
 
 /// The note after the input line in which an alarm is shelved.

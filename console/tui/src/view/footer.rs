@@ -1,13 +1,14 @@
 //! The keys that are active now, taken from the action table.
 
 use super::look::Look;
-use super::text;
+use super::{notice, text};
 use crate::actions::{
     ACTIONS, Action, ActionId,
     context::{Context, contexts},
 };
 use crate::keys::Key;
 use crate::model::replay::Jump;
+use crate::model::sketch::Form;
 use crate::model::{Model, Overlay, Screen, ui::Arrangement};
 use crate::theme::Role;
 use crate::update::{is_typing, offered};
@@ -39,8 +40,14 @@ const DISPENSABLE: [ActionId; 19] = [
     ActionId::Help,
 ];
 
+/// Columns around a notice beside the keys.
+const GAP: usize = 3;
+
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
-    let hints = fitting(look.model, usize::from(area.width));
+    let columns = usize::from(area.width);
+    let notice = notice::beside(look.model, columns);
+    let taken = notice.as_ref().map_or(0, |(_, said)| text::width(said) + GAP);
+    let hints = fitting(look.model, columns.saturating_sub(taken));
     let mut x = area.x;
     for hint in &hints {
         let width = hint.width() as u16;
@@ -49,6 +56,14 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         x = x.saturating_add(width);
     }
     frame.render_widget(written(look, hints), area);
+    if let Some((role, said)) = notice {
+        frame.render_widget(look.line([(role, format!("{said} "))]).right_aligned(), area);
+    }
+}
+
+/// The columns that remain for a notice beside the keys that are always shown.
+pub(super) fn room(model: &Model, columns: usize) -> usize {
+    columns.saturating_sub(width(&fitting(model, 0)) + GAP)
 }
 
 /// The footer line, with as many keys as fit.
@@ -97,8 +112,10 @@ fn width(hints: &[Hint]) -> usize {
 /// The active keys; keys with the same label are grouped.
 fn hints(model: &Model) -> Vec<Hint> {
     let contexts = contexts(model);
+    let mut shown: Vec<&Action> = ACTIONS.iter().filter(|action| shown(action, &contexts, model)).collect();
+    shown.sort_by_key(|action| place(model, action));
     let mut hints: Vec<Hint> = Vec::new();
-    for action in ACTIONS.iter().filter(|action| shown(action, &contexts, model)) {
+    for action in shown {
         let is_text = contexts.contains(&Context::Text);
         let mut keys = model.console.keys.of(action).iter();
         // In an input line a character is text, not a key.
@@ -115,6 +132,17 @@ fn hints(model: &Model) -> Vec<Hint> {
     hints
 }
 
+/// The place of an action in the line: first the key that stops a robot, then the screen's own key. The other keys
+/// keep their order.
+fn place(model: &Model, action: &Action) -> u8 {
+    let is_over = model.ui.overlay != Overlay::None;
+    match action.id {
+        ActionId::Hold if model.live.may_move() => 0,
+        id if !is_over && model.ui.screen.row().first == id => 1,
+        _ => 2,
+    }
+}
+
 fn shown(action: &Action, contexts: &[Context], model: &Model) -> bool {
     let in_screen = contexts.contains(&Context::Screen);
     // In a list or input line the stop keys only stop the robot, so they are shown only while there is something to
@@ -123,8 +151,20 @@ fn shown(action: &Action, contexts: &[Context], model: &Model) -> bool {
         matches!(action.id, ActionId::Hold | ActionId::Interrupt) && !in_screen && !model.live.may_move();
     action.works_in(contexts)
         && !idle
+        && !is_pointless(action.id, model)
         && !label(action, model).is_empty()
         && offered(model, action.id).is_ok()
+}
+
+/// Whether a key that works would do nothing useful now.
+fn is_pointless(id: ActionId, model: &Model) -> bool {
+    match id {
+        // The checks would refuse the start.
+        ActionId::Start => model.start_is_blocked().is_some(),
+        // Nothing on the home screen moves.
+        ActionId::Slower | ActionId::Faster => model.ui.screen == Screen::Home,
+        _ => false,
+    }
 }
 
 fn label(action: &Action, model: &Model) -> String {
@@ -133,7 +173,7 @@ fn label(action: &Action, model: &Model) -> String {
         (ActionId::Hold, Overlay::None) if is_playing == Some(true) => "pause",
         (ActionId::Hold, Overlay::None) if is_playing == Some(false) => "play",
         (ActionId::Hold, _) if matches!(model.live.run.phase(), Phase::Held(_)) && !model.live.may_move() => {
-            "resume?"
+            "resume…"
         }
         (ActionId::Interrupt, _) if is_typing(model) => "HOLD",
         (ActionId::Cancel, Overlay::None) => "close cursor",
@@ -143,6 +183,11 @@ fn label(action: &Action, model: &Model) -> String {
         (ActionId::Accept, Overlay::Planners { .. } | Overlay::WhatIf) => "choose",
         (ActionId::Accept, Overlay::Preflight { .. }) => "tick",
         (ActionId::Accept, Overlay::Preset { .. }) => "take",
+        (ActionId::Accept, Overlay::Messages { .. }) => "",
+        (ActionId::Accept, Overlay::Finish { selected: 0 }) => "end here",
+        (ActionId::Accept, Overlay::Finish { .. }) => "drive back",
+        (ActionId::Accept, Overlay::Sketch(sketch)) if sketch.form == Form::Polygon => "set corner",
+        (ActionId::Accept, Overlay::Sketch(_)) => "set",
         (ActionId::Accept, Overlay::Layers { .. }) => "show/hide",
         (ActionId::Accept, Overlay::Parameters { edit: None, .. }) => "edit",
         (ActionId::Accept, Overlay::Parameters { edit: Some(_), .. }) => "send",
@@ -159,6 +204,7 @@ fn label(action: &Action, model: &Model) -> String {
             | Overlay::Preset { .. }
             | Overlay::Preflight { .. }
             | Overlay::WhatIf
+            | Overlay::Messages { .. }
             | Overlay::Remedies { .. }
             | Overlay::Parameters { edit: None, .. },
         ) => "close",

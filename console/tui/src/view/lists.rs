@@ -1,7 +1,9 @@
 //! Overlay lists: commands, planners, parameters, layers.
 
 mod commands;
+mod finish;
 pub(super) mod list;
+mod messages;
 mod parameters;
 mod planners;
 mod preflight;
@@ -9,7 +11,11 @@ mod preset;
 
 use super::alarm_screen;
 use super::look::Look;
-use crate::model::{Overlay, ui::MapLayer};
+use super::tabs;
+use crate::model::{
+    Overlay,
+    ui::{Arrangement, MapLayer},
+};
 use crate::theme::Role;
 use list::List;
 pub(super) use list::place_cursor;
@@ -18,17 +24,25 @@ use ratatui::layout::Rect;
 
 /// Maximum width of a list, columns.
 const WIDTH: u16 = 78;
+/// Width of the map beside the side panes on a wide terminal, columns.
+const MAP: u16 = 70;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     // The keys, and the line above them, stay visible.
-    let rows = area.height.saturating_sub(if area.height >= 10 { 3 } else { 0 });
-    let columns = area.width.min(WIDTH);
+    let top = u16::from(tabs::has_row(area));
+    let rows = area.height.saturating_sub(if area.height >= 10 { 3 + top } else { 0 });
+    let wide = Arrangement::of(area.width, area.height) == Arrangement::Wide;
+    let is_left = wide && matches!(look.model.ui.overlay, Overlay::Preflight { .. });
+    // The checks leave the estimate beside the map visible.
+    let columns = area.width.min(if is_left { MAP } else { WIDTH });
     let list = match &look.model.ui.overlay {
         Overlay::Commands(palette) => commands::list(look, palette, columns),
         Overlay::Planners { purpose, selected } => planners::list(look, *purpose, *selected, columns),
         Overlay::Parameters { selected, edit } => parameters::list(look, *selected, edit.as_ref(), columns),
         Overlay::Preset { name, choice, selected } => preset::list(look, name, choice, *selected, columns),
         Overlay::Preflight { selected } => preflight::list(look, *selected, columns),
+        Overlay::Finish { selected } => finish::list(look, *selected, columns),
+        Overlay::Messages { selected } => messages::list(look, *selected, columns),
         Overlay::Layers { selected } => layers(look, *selected),
         Overlay::Remedies { cause, selected } if !alarm_screen::shows_actions(look.model) => {
             alarm_screen::action_list(look, cause, *selected, columns)
@@ -37,8 +51,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     };
     let wanted = list.above.len() + list.rows.len() + list.below.len() + 2;
     let height = rows.min(wanted as u16).max(3).min(area.height);
-    let x = area.x + (area.width - columns) / 2;
-    let y = area.y + 1.min(area.height - height);
+    let x = if is_left { area.x } else { area.x + (area.width - columns) / 2 };
+    let y = area.y + (1 + top).min(area.height - height);
     list.draw(look, frame, Rect { x, y, width: columns, height });
 }
 

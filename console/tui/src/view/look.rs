@@ -55,16 +55,33 @@ impl Look<'_> {
         self.model.console.keys.spelled(sentence)
     }
 
+    /// The frame of a pane; a mark before the title shows that the arrow keys apply to the pane.
     pub(crate) fn pane<'t>(&self, pane: Pane, title: &str, note: &str) -> Block<'t> {
-        let focus = self.model.ui.pane == pane && self.model.ui.panes().contains(&pane);
-        let border = if focus { Role::Focus } else { Role::Border };
-        self.block(border, title, note)
+        let panes = self.model.ui.panes();
+        let focus = self.model.ui.pane == pane && panes.contains(&pane);
+        match (focus, panes.len()) {
+            (true, _) => self.block(Role::Focus, title, note),
+            // With one pane, or none that could have the focus, every title is bold.
+            (false, 0 | 1) => self.frame(Role::Border, (Role::Title, &format!(" {title} ")), note),
+            (false, _) => self.frame(Role::Border, (Role::Text, &format!(" {title} ")), note),
+        }
     }
 
+    /// A frame with a title; a mark before the title shows that the arrow keys apply here.
     pub(crate) fn block<'t>(&self, border: Role, title: &str, note: &str) -> Block<'t> {
+        let title = if border == Role::Focus { format!("▸ {title} ") } else { format!(" {title} ") };
+        self.frame(border, (Role::Title, &title), note)
+    }
+
+    /// A frame around a list that lies over the screen.
+    pub(crate) fn list_block<'t>(&self, title: &str, note: &str) -> Block<'t> {
+        self.frame(Role::Focus, (Role::Title, &format!(" {title} ")), note)
+    }
+
+    fn frame<'t>(&self, border: Role, (role, title): (Role, &str), note: &str) -> Block<'t> {
         let block = Block::bordered()
             .border_style(self.theme.style(border))
-            .title_top(Line::from(vec![Span::raw("─"), self.span(Role::Title, format!(" {title} "))]));
+            .title_top(Line::from(vec![Span::raw("─"), self.span(role, title.to_owned())]));
         if note.is_empty() {
             block
         } else {

@@ -8,6 +8,7 @@ mod readout;
 mod shade;
 mod shadow;
 mod shapes;
+mod sketch;
 
 pub(super) use plates::{Key as PlateKey, PlateDrawing};
 pub(super) use shade::{Key as ShadeKey, Shades};
@@ -104,6 +105,7 @@ fn draw_floor(look: &Look, frame: &mut Frame, area: Rect, window: Window) {
     let canvas = Canvas::default().marker(marker).x_bounds(window.x).y_bounds(window.y).paint(|ctx| {
         pen.plates(ctx);
         pen.zones(ctx);
+        pen.sketch(ctx);
         pen.paths(ctx);
         pen.drawings(ctx);
         pen.solid(ctx);

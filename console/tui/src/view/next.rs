@@ -1,9 +1,13 @@
 //! The line that tells what comes next and whether the operator is needed.
 
-use super::{events, text};
-use crate::model::{Busy, Model, Replay, Screen};
+mod held;
+
+use super::{confirm, events, text};
+use crate::guide;
+use crate::model::{Busy, Model, Offer, Overlay, Replay, Screen};
 use crate::theme::Role;
-use mission::{Hold, HoldReason, Outcome, Phase, PositionTrust, Readiness, Resumes, Severity};
+use mission::{Outcome, Phase, Readiness, Severity};
+use world::{Point, polyline};
 
 /// The role of the line, and its clauses, most important first.
 pub(super) type Clauses = (Role, Vec<String>);
@@ -11,7 +15,12 @@ pub(super) type Clauses = (Role, Vec<String>);
 /// What comes next, with the operator's keys.
 pub(super) fn clauses(model: &Model) -> Clauses {
     let (role, mut clauses) = by_phase(model);
-    if model.live.is_look_only() {
+    // While a question is open, other keys do not do what they usually do.
+    if model.ui.overlay.is_question() || matches!(model.ui.overlay, Overlay::Sketch(_)) {
+        clauses.retain(|clause| !clause.contains(['<', '>']));
+    }
+    // No console gives orders to a run whose console is gone.
+    if model.live.is_look_only() && !model.live.is_cut_off {
         clauses.retain(|clause| !clause.contains(['<', '>']));
         clauses.push(match &model.live.replay {
             Some(replay) => played(model, replay),
@@ -24,14 +33,18 @@ pub(super) fn clauses(model: &Model) -> Clauses {
 /// The line for a replay, with the key that plays or pauses.
 fn played(model: &Model, replay: &Replay) -> String {
     let next = match (model.live.is_opening, replay.is_playing) {
-        (true, _) => "reading the run...",
+        (true, _) => "Reading the run...",
         (false, true) => "<play>: pause.",
         (false, false) => "<play>: play.",
     };
-    format!("Past run, no robot connected; {next}")
+    format!("Replay, no robot connected. {next}")
 }
 
 fn by_phase(model: &Model) -> Clauses {
+    if model.live.is_cut_off {
+        let lost = ["CONSOLE LOST: the run was not closed.", "Last known values."].map(str::to_owned);
+        return (Role::Crit, lost.into());
+    }
     if let Some(silent_s) = model.silent_s() {
         let news = format!("◌ No data from the mission for {} s: values are stale.", silent_s as u64);
         return (Role::Stale, vec![news, "<hold>: HOLD.".into()]);
@@ -44,7 +57,7 @@ fn by_phase(model: &Model) -> Clauses {
         (Some(order), _) if order.is_start() => (Role::Title, vec!["Starting...".into()]),
         (Some(_), _) => (Role::Title, vec!["Order sent...".into()]),
         (None, Phase::Held(hold)) => {
-            let mut clauses = held(model, hold);
+            let mut clauses = held::clauses(model, hold);
             // The warning that the robot will move automatically comes before the work of a planner.
             let at = if hold.resumes.is_never() { 1 } else { 2 }.min(clauses.len());
             clauses.splice(at..at, work.into_iter().flatten());
@@ -96,7 +109,8 @@ pub(crate) fn standing(model: &Model) -> String {
 /// The keys for what can be done after a mission has ended.
 fn more(model: &Model) -> String {
     match model.ui.screen {
-        Screen::Result => "<again>: plan again, <rescan>: re-scan, <home>: home.",
+        Screen::Result if model.live.missed().is_empty() => "<again>: replan, <home>: home.",
+        Screen::Result => "<again>: replan, <rescan>: re-scan, <home>: home.",
         _ => "<result>: result. <home>: home.",
     }
     .into()
@@ -117,14 +131,34 @@ fn work(model: &Model, busy: &Busy) -> Vec<String> {
 
 /// As many clauses as fit into a given width; the first one is cut if necessary.
 pub(super) fn joined(clauses: &[String], columns: usize) -> String {
+    counted(clauses, columns).0
+}
+
+/// The clauses that fit, and how many of them do.
+fn counted(clauses: &[String], columns: usize) -> (String, usize) {
     let mut line = clauses.first().map_or_else(String::new, |first| text::fit(first, columns));
+    let mut count = usize::from(clauses.first().is_some_and(|first| text::width(first) <= columns));
     for clause in clauses.iter().skip(1) {
         if text::width(&line) + 1 + text::width(clause) <= columns {
             line.push(' ');
             line.push_str(clause);
+            count += 1;
         }
     }
-    line
+    (line, count)
+}
+
+/// The line in a given width. While the robot is held, its first clause also says where and how far the mission is, if
+/// no other clause is lost for that.
+pub(super) fn line(model: &Model, clauses: &[String], columns: usize) -> String {
+    let (short, count) = counted(clauses, columns);
+    let longer = held::whereabouts(model).into_iter().filter_map(|where_to| {
+        let mut clauses = clauses.to_vec();
+        let first = clauses.first_mut()?;
+        *first = format!("{}{where_to}.", first.strip_suffix('.')?);
+        Some(counted(&clauses, columns)).filter(|(_, other)| *other >= count).map(|(line, _)| line)
+    });
+    longer.into_iter().next().unwrap_or(short)
 }
 
 fn idle(model: &Model) -> Clauses {
@@ -154,11 +188,14 @@ fn idle(model: &Model) -> Clauses {
             (format!("Start blocked: {}.", failed.what), format!("{}.", text::capitalized(&failed.found)));
         return (Role::Warn, vec![what, why, preflight.into()]);
     }
-    let who = model.live.run.planner_id().unwrap_or("unknown");
-    (Role::Title, vec![format!("<press> <start> to start (planner {who})."), preflight.into()])
+    let plan = format!("{}.", text::capitalized(&confirm::promised(model)));
+    (Role::Title, vec!["Ready.".into(), "<start> starts this mission.".into(), plan, preflight.into()])
 }
 
 fn running(model: &Model) -> Clauses {
+    if model.live.run.phase().is_return() {
+        return (Role::Run, driving_back(model));
+    }
     if model.live.run.position.lost {
         let hold_s = model.live.run.about.as_ref().map_or(0.0, |run| run.mission.position_lost_hold_s);
         let text = format!("POSITION LOST: automatic HOLD after {} s.", text::number(hold_s, 1));
@@ -172,10 +209,13 @@ fn running(model: &Model) -> Clauses {
         .filter(|alarm| alarm.is_unacknowledged() && alarm.severity >= Severity::Warn);
     if let Some(alarm) = open {
         let over = if alarm.is_active() { "" } else { " (cleared)" };
-        return (
-            events::role(alarm.severity),
-            vec![format!("<acknowledge>: acknowledge{over}: {}", alarm.text)],
-        );
+        let name = text::capitalized(&guide::name(&alarm.cause, &model.live.run));
+        let details = format!("{}.", text::capitalized(&alarm.text));
+        let clauses = vec![format!("{name}{over}."), "<acknowledge>: acknowledge.".into(), details];
+        return (events::role(alarm.severity), clauses);
+    }
+    if let Some(offer) = &model.live.run.planning.offer {
+        return (Role::Watch, better_plan(offer));
     }
     let calm = "No action required.".to_owned();
     let Some(progress) = &model.live.run.progress else {
@@ -185,104 +225,50 @@ fn running(model: &Model) -> Clauses {
     (Role::Title, vec![format!("Next target: {at}; path {done} % done."), calm])
 }
 
-/// Why the robot is held, then what ends the hold.
-fn held(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String> {
-    let position = model.live.run.standing.standing().position;
-    let clauses = match trouble(position) {
-        _ if !resumes.is_never() => held_for_now(by, *resumes),
-        Some(trouble) => held_without_position(by, trouble),
-        None => held_for_good(by),
-    };
-    clauses.into_iter().chain(message(by)).collect()
+/// The drive back to the anchor or the start.
+fn driving_back(model: &Model) -> Vec<String> {
+    let stop = "<hold>: HOLD.".to_owned();
+    let Some(way) = &model.live.run.way_back else { return vec!["Driving back.".into(), stop] };
+    let here = model.live.run.position.pose.map(|pose| pose.position);
+    let left_m = here.map_or(way.length_m, |here| left_m(&way.path, here));
+    let left = format!("Driving back to the {}: {} m left.", way.to.word(), text::number(left_m, 1));
+    vec![left, stop, format!("Clearance {} m.", text::number(way.clearance_m, 2))]
 }
 
-/// What is wrong with the position, and what is needed before the robot may move again.
-fn trouble(position: PositionTrust) -> Option<(&'static str, &'static str)> {
-    match position {
-        PositionTrust::Good => None,
-        PositionTrust::Lost { .. } => Some(("position lost", "Cannot resume without a position fix.")),
-        PositionTrust::Alarmed => {
-            Some(("ranges contradict each other", "Cannot resume without a consistent fix."))
-        }
+/// The length of a path from the point nearest to `here` on, metres.
+fn left_m(path: &[Point], here: Point) -> f64 {
+    let nearest = |pair: &[Point]| polyline::nearest_on_segment(pair[0], pair[1], here);
+    let off_m = |pair: &[Point]| (nearest(pair) - here).norm();
+    let pairs = path.windows(2).enumerate();
+    let closest = pairs.min_by(|(_, one), (_, other)| off_m(one).total_cmp(&off_m(other)));
+    closest.map_or(0.0, |(index, pair)| {
+        (pair[1] - nearest(pair)).norm() + polyline::length_m(&path[index + 1..])
+    })
+}
+
+/// A better plan that is on offer or will be taken.
+fn better_plan(offer: &Offer) -> Vec<String> {
+    let begins = offer.begins.map_or_else(String::new, |at| format!(" at {}", text::place(at)));
+    if offer.is_taken {
+        let change = format!("Better plan accepted: change-over{begins}, without a hold.");
+        return vec![change, format!("{}.", text::capitalized(&offer.better.saving(&offer.flown)))];
     }
-}
-
-/// A hold that ends automatically. The first two clauses fit into 60 columns, so that nobody is surprised by a robot
-/// that starts to move.
-fn held_for_now(by: &HoldReason, resumes: Resumes) -> Vec<String> {
-    let when = match (resumes, by) {
-        (Resumes::ByFallback, _) => "Resumes with fallback planner.",
-        (_, HoldReason::PositionLost) => "Resumes automatically when recovered.",
-        (_, HoldReason::Tether { .. }) => "Resumes automatically when clear.",
-        (_, HoldReason::PlannerSilent { .. }) => "Resumes automatically on answer.",
-        _ => "Resumes automatically.",
-    };
-    vec![format!("{}.", state(by)), when.into(), "<hold>: HOLD (stay held).".into()]
-}
-
-/// A hold that only an order can end, while the mission accepts no order that moves the robot.
-fn held_without_position(by: &HoldReason, (trouble, needs): (&str, &str)) -> Vec<String> {
-    let state = match by {
-        HoldReason::PositionLost | HoldReason::RangesInconsistent => format!("HELD: {trouble}."),
-        by => format!("{}; {trouble}.", state(by)),
-    };
-    let planner = by.blames_planner().then(|| "<planner>: change planner.".to_owned());
-    [state, needs.into()].into_iter().chain(planner).collect()
-}
-
-/// A hold that only an order can end.
-fn held_for_good(by: &HoldReason) -> Vec<String> {
-    const RESUME: &str = "<resume>: resume.";
-    const RETRY: &str = "<resume>: retry.";
-    const PLANNER: &str = "<planner>: change planner.";
-    let (state, remedies): (&str, &[&str]) = match by {
-        // The reason for the hold is gone.
-        HoldReason::PositionLost => ("HELD: position recovered", &[RESUME]),
-        HoldReason::RangesInconsistent => ("HELD: ranges agree again", &[RESUME]),
-        HoldReason::Stepped => (state(by), &[RESUME]),
-        HoldReason::Operator | HoldReason::PlannerReplaced | HoldReason::PlannerSilent { .. } => {
-            (state(by), &[RESUME, PLANNER])
-        }
-        HoldReason::Tether { .. } => (state(by), &[RESUME, "<end>: end mission."]),
-        HoldReason::ZoneBreached { .. } => (state(by), &[RESUME, "<end>: end mission."]),
-        HoldReason::PlanRefused { .. } => (state(by), &[PLANNER, ":fly-uncertified runs it."]),
-        HoldReason::PlannerFault { .. } | HoldReason::Stuck { .. } => (state(by), &[PLANNER, RETRY]),
-    };
-    std::iter::once(format!("{state}.")).chain(remedies.iter().map(|remedy| (*remedy).to_owned())).collect()
-}
-
-/// Why the robot is held, without a closing full stop.
-fn state(by: &HoldReason) -> &'static str {
-    match by {
-        HoldReason::Operator => "HELD by operator",
-        HoldReason::Stepped => "HELD after single step",
-        HoldReason::PlannerReplaced => "HELD: planner replaced",
-        HoldReason::RangesInconsistent => "HELD: ranges contradict each other",
-        HoldReason::PositionLost => "HELD: position lost",
-        HoldReason::Stuck { .. } => "HELD: robot stuck",
-        HoldReason::Tether { .. } => "HELD: tether alarm",
-        HoldReason::PlanRefused { .. } => "HELD: plan refused",
-        HoldReason::ZoneBreached { .. } => "HELD: hull in a no-go zone",
-        HoldReason::PlannerSilent { .. } => "HELD: planner silent",
-        HoldReason::PlannerFault { .. } => "HELD: planner failed",
-    }
-}
-
-/// More about the hold, shown if there is space.
-fn message(by: &HoldReason) -> Option<String> {
-    match by {
-        HoldReason::PlannerFault { message }
-        | HoldReason::PlannerSilent { message }
-        | HoldReason::Stuck { message }
-        | HoldReason::Tether { message }
-        | HoldReason::PlanRefused { message } => Some(format!("{}.", text::capitalized(message))),
-        _ => None,
-    }
+    let (saves, take) = (format!("{}.", offer.sentence()), "<take-plan>: take.".to_owned());
+    [saves, take].into_iter().chain(offer.scanned()).chain([format!("It begins{begins}.")]).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_left_of_a_way_is_counted_from_the_place_next_to_the_robot() {
+        let path = [Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 3.0)];
+        for (here, left) in [((0.0, 0.2), 7.0), ((3.0, -0.1), 4.0), ((4.2, 2.0), 1.0), ((4.0, 3.0), 0.0)] {
+            assert!((left_m(&path, Point::new(here.0, here.1)) - left).abs() < 1e-9, "{here:?}");
+        }
+        assert_eq!(left_m(&[], Point::origin()), 0.0);
+    }
 
     #[test]
     fn clauses_that_do_not_fit_are_left_out_whole() {

@@ -1,8 +1,8 @@
-//! The latest notice to the operator, in separate lines just above the state; it covers neither the state nor a
-//! question.
+//! The latest notice to the operator: beside the keys if it fits there, otherwise in separate lines just above the
+//! state. It covers neither the state nor a question.
 
 use super::look::Look;
-use super::{confirm, events, text};
+use super::{confirm, events, footer, text};
 use crate::model::Model;
 use crate::theme::Role;
 use mission::Severity;
@@ -14,18 +14,33 @@ use ratatui::widgets::{Clear, Paragraph};
 /// The maximum rows of a notice.
 const MOST_ROWS: usize = 3;
 
+/// The notice in the line of keys, if it fits beside the keys that are always shown.
+pub(super) fn beside(model: &Model, columns: usize) -> Option<(Role, String)> {
+    let (role, said) = said(model)?;
+    (text::width(&said) <= footer::room(model, columns)).then_some((role, said))
+}
+
 /// The role and the wrapped lines of a notice.
 pub(super) fn lines(model: &Model, columns: usize) -> Option<(Role, Vec<String>)> {
-    let notice = model.notice()?;
-    let role = if notice.severity == Severity::Info { Role::Title } else { events::role(notice.severity) };
-    let mut lines = text::wrap(&text::capitalized(&notice.text), columns.saturating_sub(2));
+    let (role, said) = said(model)?;
+    let mut lines = text::wrap(&said, columns.saturating_sub(2));
     lines.truncate(MOST_ROWS);
     Some((role, lines))
 }
 
-/// Draws the notice over the last rows above the state; `area` is the whole screen.
+/// The role and the text of a notice.
+fn said(model: &Model) -> Option<(Role, String)> {
+    let notice = model.notice()?;
+    let role = if notice.severity == Severity::Info { Role::Dim } else { events::role(notice.severity) };
+    Some((role, text::capitalized(&notice.text)))
+}
+
+/// Draws a notice that does not fit beside the keys over the last rows above the state; `area` is the whole screen.
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let columns = usize::from(area.width);
+    if beside(look.model, columns).is_some() {
+        return;
+    }
     let Some((role, lines)) = lines(look.model, columns) else { return };
     let foot = confirm::rows(look, area.width) + 1;
     // Leave the top line and one row of the screen visible.

@@ -1,50 +1,94 @@
 //! The top line: who is in control, what is running, whether it is being recorded, and the alarms.
 
 use super::look::{Look, Parts};
+use super::tabs::{self, Form};
 use super::text;
 use crate::model::{Model, Recording, ui::Arrangement};
 use crate::theme::Role;
 use mission::{Gait, Hold, HoldReason, Outcome, Phase, Severity};
 use ratatui::Frame;
 use ratatui::layout::Rect;
-use ratatui::text::Line;
 use world::Boundary;
 
-/// Width of the tank and planner names below which the alarm words are reduced to letters, columns.
-const LEAST_NAMES: usize = 24;
+/// The width of a terminal from which the counts of alarms are spelled out, columns.
+const LONG_ALARMS: u16 = 160;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
-    let arrangement = Arrangement::of(frame.area().width, frame.area().height);
-    let wide = arrangement == Arrangement::Wide;
+    let model = look.model;
+    let wide = Arrangement::of(frame.area().width, frame.area().height) == Arrangement::Wide;
     let gap = if wide { "   " } else { " " };
-    let state = state(look.model);
-    let time = time(look.model);
-    // The names get the remaining columns. The tank's name is dropped first, because the planner can change.
-    let screen = look.model.ui.screen;
-    let name = format!("{} {} ", screen.digit(), screen.name());
-    let screen = if wide { text::width(&name) + gap.len() } else { 0 };
+    let (state, time, names) = (state(model), time(model), Names::of(model));
     let sum = |parts: &Parts| parts.iter().map(|(_, text)| text::width(text)).sum::<usize>();
-    let beside = 1 + 4 * gap.len() + sum(&state) + sum(&time) + screen;
-    let room = |alarms: &Parts| usize::from(area.width).saturating_sub(beside + sum(alarms));
-    let words = alarms(look.model, wide);
-    let alarms = if room(&words) < LEAST_NAMES { alarms(look.model, false) } else { words };
-    let room = room(&alarms);
-    let names = names(look.model, wide, gap, room);
+    let fixed = 1 + 3 * gap.len() + sum(&state) + sum(&time);
+    let columns = usize::from(area.width).saturating_sub(fixed);
+    let alarms_in = |long| Some(alarms(model, long)).filter(|alarms| sum(alarms) + names.width() <= columns);
+    let alarms = alarms_in(area.width >= LONG_ALARMS).unwrap_or_else(|| alarms(model, false));
+    let room = columns.saturating_sub(sum(&alarms));
+    let scenario = text::fit(&names.scenario, room);
+    let mut room = room - text::width(&scenario);
+    // What does not fit beside the scenario is left out whole.
+    let mut fits = |columns: usize| {
+        let fits = columns <= room;
+        room -= if fits { columns } else { 0 };
+        fits
+    };
+    let form_width = |form| tabs::width(model, form);
+    let has_screen = !tabs::has_row(frame.area()) && fits(form_width(Form::Current) + 1);
+    let more = form_width(Form::Digits) - form_width(Form::Current);
+    let mut planner =
+        (!names.planner.is_empty()).then(|| format!("{gap}{}", names.planner)).unwrap_or_default();
+    if !fits(text::width(&planner)) {
+        planner.clear();
+    }
+    let has_version = wide && !planner.is_empty() && fits(text::width(&names.version));
+    let has_size = wide && fits(text::width(&names.size));
+    let form = if has_screen && fits(more) { Form::Digits } else { Form::Current };
     let blank = || vec![(Role::Text, gap.to_owned())];
-    let left = [vec![(Role::Text, " ".into())], state, blank(), names, time, blank(), alarms].concat();
-    let used: usize = left.iter().map(|(_, text)| text::width(text)).sum();
-    frame.render_widget(look.line(left), area);
-    // The names on the left are cut before the screen name is dropped.
-    if wide && used + screen <= usize::from(area.width) {
-        let width = text::width(&name) as u16;
-        let line = Line::from(look.span(Role::Dim, name)).right_aligned();
-        frame.render_widget(line, right_of(area, width));
+    let named = vec![
+        (Role::Text, if has_size { scenario + &names.size } else { scenario }),
+        (Role::Title, if has_version { planner + &names.version } else { planner }),
+    ];
+    let line =
+        [vec![(Role::Text, " ".into())], state, blank(), named, blank(), time, blank(), alarms].concat();
+    frame.render_widget(look.line(line), area);
+    if has_screen {
+        tabs::draw(look, frame, right_of(area, form_width(form) as u16), form);
     }
 }
 
 fn right_of(area: Rect, width: u16) -> Rect {
     let width = width.min(area.width);
     Rect { x: area.right() - width, width, ..area }
+}
+
+/// The names of what is running.
+struct Names {
+    scenario: String,
+    /// The size of the tank, after the scenario; empty for a tank that is not round.
+    size: String,
+    planner: String,
+    /// The planner's version, after its name.
+    version: String,
+}
+
+impl Names {
+    fn of(model: &Model) -> Self {
+        let run = &model.live.run;
+        let about = run.about.as_ref();
+        let size = match about.map(|about| &about.world.boundary) {
+            Some(Boundary::Circle { radius_m }) => format!(" Ø{} m", text::number(2.0 * radius_m, 0)),
+            _ => String::new(),
+        };
+        let planner = run.planner_id().unwrap_or_default().to_owned();
+        let version = model.planner().map_or_else(String::new, |info| format!(" {}", info.version));
+        let scenario = about.map_or_else(|| "no run".to_owned(), |about| about.scenario.clone());
+        Self { scenario, size, planner, version }
+    }
+
+    /// The width of all names, columns.
+    fn width(&self) -> usize {
+        [&self.scenario, &self.size, &self.planner, &self.version].map(|name| text::width(name)).iter().sum()
+    }
 }
 
 /// Who is in control, and whether the robot moves.
@@ -71,34 +115,6 @@ pub(super) fn state(model: &Model) -> Parts {
     vec![(Role::Title, format!("{who} ")), (role, word.into())]
 }
 
-fn names(model: &Model, wide: bool, gap: &str, room: usize) -> Parts {
-    let planner = match (wide, model.planner(), model.live.run.planner_id()) {
-        (true, Some(info), _) => format!("{} {}", info.id, info.version),
-        (_, _, Some(id)) => id.to_owned(),
-        _ => String::new(),
-    };
-    let tank = model.live.run.about.as_ref().map_or_else(
-        || "no run".into(),
-        |run| match (&run.world.boundary, wide) {
-            (Boundary::Circle { radius_m }, true) => {
-                format!("{} Ø{} m", run.scenario, text::number(2.0 * radius_m, 0))
-            }
-            _ => run.scenario.clone(),
-        },
-    );
-    let planner = text::fit(&planner, room);
-    let left = room.saturating_sub(text::width(&planner));
-    let parts = [
-        (Role::Text, if left >= 4 { text::fit(&tank, left) } else { String::new() }),
-        (Role::Title, planner),
-    ];
-    parts
-        .into_iter()
-        .filter(|(_, text)| !text.is_empty())
-        .flat_map(|part| [part, (Role::Text, gap.into())])
-        .collect()
-}
-
 /// The mission time, speed and recording.
 pub(super) fn time(model: &Model) -> Parts {
     let clock = match model.silent_s() {
@@ -109,7 +125,7 @@ pub(super) fn time(model: &Model) -> Parts {
     };
     // The speed is the replay speed; no robot is connected.
     if model.live.is_replay() {
-        return vec![clock, (Role::Text, format!("{} ", text::speed(model.live.speed)))];
+        return vec![clock, (Role::Text, text::speed(model.live.speed))];
     }
     // The journal records neither the speed of its mission nor whether the mission was being recorded.
     if model.live.is_look_only() {
@@ -129,31 +145,29 @@ fn recording(model: &Model) -> (Role, String) {
     }
 }
 
-/// The number of alarms of each severity, marked if any of them are unacknowledged.
-pub(super) fn alarms(model: &Model, wide: bool) -> Parts {
-    if model.live.run.alarms.open().next().is_none() {
-        return vec![(Role::Dim, if wide { "ALARM none" } else { "! none" }.into())];
+/// The number of open alarms of each severity, marked if any of them are unacknowledged.
+pub(super) fn alarms(model: &Model, long: bool) -> Parts {
+    let alarms = &model.live.run.alarms;
+    if alarms.open().next().is_none() {
+        return vec![(Role::Dim, "no alarm".into())];
     }
     let counted = [
         (Severity::Crit, Role::Crit, "crit", "C"),
         (Severity::Warn, Role::Warn, "warn", "W"),
         (Severity::Watch, Role::Watch, "watch", "w"),
     ];
-    let mut parts = vec![(Role::Title, if wide { "ALARM".into() } else { "!".into() })];
+    let mut parts = vec![(Role::Title, if long { "ALARM".into() } else { "!".into() })];
     for (severity, role, word, letter) in counted {
-        let (count, open) =
-            (model.live.run.alarms.count(severity), model.live.run.alarms.unacknowledged(severity) > 0);
-        let role = if count == 0 { Role::Dim } else { role };
-        parts.push((Role::Text, " ".into()));
-        parts.push((
-            role,
-            match (wide, open) {
-                (true, true) => format!("{count} {word}(unack)"),
-                (true, false) => format!("{count} {word}"),
-                (false, true) => format!("{count}{letter}*"),
-                (false, false) => format!("{count}{letter}"),
-            },
-        ));
+        let count = alarms.count(severity);
+        let words = match (long, alarms.unacknowledged(severity)) {
+            (true, 0) => format!("{count} {word}"),
+            (true, open) => format!("{count} {word} ({open} unacknowledged)"),
+            (false, 0) => format!("{count}{letter}"),
+            (false, _) => format!("{count}{letter}*"),
+        };
+        if count > 0 {
+            parts.extend([(Role::Text, " ".into()), (role, words)]);
+        }
     }
     parts
 }

@@ -2,15 +2,18 @@
 
 use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};
-use mission::{
-    AskId, BetterPlan, EventKind, Order, WorkerId,
-    event::{Effort, OfferEnd, OfferStage},
-};
+use mission::event::{Effort, OfferEnd, OfferStage, PlanScan, PlanScans};
+use mission::{AskId, BetterPlan, EventKind, Order, WorkerId};
 use tui::{Effect, Key, RunMsg, Speed};
 use world::Point;
 
 const FLOWN: Effort = Effort { length_m: 860.0, rotation_rad: 190.0, time_s: 2460.0 };
 const BETTER: Effort = Effort { length_m: 792.0, rotation_rad: 150.0, time_s: 2238.0 };
+
+const SCANS: PlanScans = PlanScans {
+    flown: PlanScan { left_m2: 0.4, covered_reachable: 0.996 },
+    better: PlanScan { left_m2: 0.5, covered_reachable: 0.995 },
+};
 
 fn hear(screen: &mut Screen, kind: EventKind) {
     let event = screen.mission.now(kind);
@@ -27,7 +30,7 @@ fn better_plan(objection: Option<String>) -> EventKind {
         cuts: Vec::new(),
         flown: FLOWN,
         better: BETTER,
-        scans: None,
+        scans: objection.is_none().then_some(SCANS),
         objection,
     }
 }
@@ -43,8 +46,8 @@ fn shown_at(screen: &Screen, size: (u16, u16)) -> String {
 }
 
 fn dropped() -> EventKind {
-    let (stage, reason) = (Some(OfferStage::Offered), OfferEnd::Passed);
-    let why = reason.to_string();
+    let reason = OfferEnd::Passed;
+    let (why, stage) = (reason.to_string(), Some(OfferStage::Offered));
     EventKind::BetterPlanDropped { planner: "rpf".into(), why, stage, reason: Some(reason) }
 }
 
@@ -65,7 +68,9 @@ fn a_better_plan_is_taken_by_its_key_or_by_its_command_after_a_question() {
         }
         let shown = shown_at(&screen, (120, 36));
         assert!(shown.contains("Take the better plan? Enter: take, Esc: cancel."), "{shown}");
-        assert!(shown.contains("It saves 68 m, 6.4 turns, 3.7 of 41.0 min."), "{shown}");
+        let offer =
+            "Better plan: 3.7 min shorter (of 41.0 from there), 68 m less. It scans 99.5 % (now 99.6 %).";
+        assert!(shown.contains(offer), "{shown}");
         assert_eq!(screen.press([Key::Enter]), [Effect::Order(Order::TakePlan)]);
         hear(&mut screen, EventKind::Ordered { order: Order::TakePlan });
         let shown = shown_at(&screen, (120, 36));

@@ -54,6 +54,13 @@ fn overlays() -> Vec<Overlay> {
         Overlay::Confirm(Ask::Swap(choice("apf"))),
         Overlay::Confirm(Ask::Promote),
         Overlay::Confirm(Ask::TakePlan),
+        Overlay::Confirm(Ask::DriveBack),
+        Overlay::Confirm(Ask::DrawZone(Vec::new())),
+        Overlay::Confirm(Ask::Set { key: "order".into(), value: mission::ParamValue::Int(1) }),
+        Overlay::Finish { selected: 0 },
+        Overlay::Finish { selected: 1 },
+        Overlay::Sketch(tui::model::Sketch::begun(world::Point::origin())),
+        Overlay::Messages { selected: 0 },
         Overlay::Stepping,
         Overlay::Quit,
         commands(false),
@@ -81,8 +88,14 @@ fn overlays() -> Vec<Overlay> {
                 | Ask::Abort
                 | Ask::Swap(_)
                 | Ask::Promote
-                | Ask::TakePlan,
+                | Ask::TakePlan
+                | Ask::DriveBack
+                | Ask::DrawZone(_)
+                | Ask::Set { .. },
             )
+            | Overlay::Finish { .. }
+            | Overlay::Sketch(_)
+            | Overlay::Messages { .. }
             | Overlay::Stepping
             | Overlay::Quit
             | Overlay::Commands(_)
@@ -175,6 +188,9 @@ fn screen_in(phase: &Phase) -> Screen {
             [mission.obeyed(Order::Hold), mission.obeyed(Order::DriveBack)].concat()
         }
         Phase::Running(Gait::OneTick) => [mission.obeyed(Order::Hold), mission.obeyed(Order::Step)].concat(),
+        Phase::Running(Gait::Back) => {
+            [mission.obeyed(Order::Hold), mission.obeyed(Order::DriveBack)].concat()
+        }
         Phase::Running(Gait::To(to)) => {
             [mission.obeyed(Order::Hold), mission.obeyed(Order::StepTo(*to))].concat()
         }
@@ -193,7 +209,7 @@ fn screen_in(phase: &Phase) -> Screen {
 
 /// Every phase with every hold reason, position, planner's work and order that was sent and not answered yet.
 fn situations() -> Vec<Model> {
-    let orders = [Order::Start, Order::Resume, Order::Step, Order::FlyUncertified];
+    let orders = [Order::Start, Order::Resume, Order::Step, Order::DriveBack, Order::FlyUncertified];
     let asked: Vec<Option<Order>> = orders.into_iter().map(Some).chain([None]).collect();
     let mut all = Vec::new();
     for phase in phases() {

@@ -25,10 +25,15 @@ pub(super) const ROWS: &[Action] = &[
         .when(|m| demand(m.live.source.is_some() && !m.live.is_under_way(), "a mission is in progress")).does(go::again),
     action(ActionId::Shelve, "shelve", "Shelve or unshelve the alarm", &[Key::Char('d')], &[On(Screen::Alarms)]).label("shelve").args(&[may("time", Kind::Duration), may("reason", Kind::Text), may("alarm", Kind::Alarm)]).reaches(Reach::Mission)
         .when(alarms::can_shelve).does(alarms::shelve),
-    action(ActionId::Inject, "inject", "Make a simulated station fail (training)", &[], &[Context::Screen]).args(&[must("station", Kind::Station), must("fault", Kind::Fault), must("time", Kind::Duration)]).reaches(Reach::Mission)
+    action(ActionId::Inject, "inject", "Inject a station fault (training)", &[], &[Context::Screen]).args(&[must("station", Kind::Station), must("fault", Kind::Fault), must("time", Kind::Duration)]).reaches(Reach::Mission)
         .when(|m| stations::can(m, ActionId::Inject)),
     action(ActionId::DrawZone, "no-go", "Draw a no-go zone between two corners", &[], &[Context::Screen]).args(&[must("corner", Kind::Corner), must("opposite", Kind::Corner)]).reaches(Reach::Mission)
         .when(zones::can),
+    action(ActionId::Draw, "draw-zone", "Draw a no-go zone from the cursor on", &[Key::Char('d')], &[Context::Cursor]).label("no-go").reaches(Reach::Mission)
+        .when(zones::can_draw).does(zones::draw),
+    action(ActionId::DrawnForm, "drawn-form", "Box, circle or polygon", &[Key::Char('s')], &[Context::Drawing]).label("form").looks(zones::reshape),
+    action(ActionId::DrawnUndo, "drawn-undo", "Remove the last corner", &[Key::Backspace], &[Context::Drawing]).label("undo").when(zones::can_undo).looks(zones::undo),
+    action(ActionId::DrawnClose, "drawn-close", "Close the polygon", &[Key::Char('c')], &[Context::Drawing]).label("close").when(zones::can_close).does(zones::close),
     action(ActionId::Exclude, "exclude", "Exclude a station from the position fix", &[], &[Context::Screen]).args(&[must("station", Kind::Station)]).reaches(Reach::Mission)
         .when(|m| stations::can(m, ActionId::Exclude)),
     action(ActionId::Include, "include", "Use an excluded station again", &[], &[Context::Screen]).args(&[must("station", Kind::Station)]).reaches(Reach::Mission).when(|m| stations::can(m, ActionId::Include)),

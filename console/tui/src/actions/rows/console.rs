@@ -15,6 +15,7 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::Commands, "commands", "Find a command by name", &[Key::Char(':'), Key::Ctrl('p')], &[Context::Screen]).label("command").does(|m| open(m, Overlay::Commands(Palette::default()))),
     action(ActionId::Help, "help", "Show keys and commands", &[Key::Char('?'), Key::F(1)], &[Context::Screen]).label("keys")
         .does(|m| open(m, Overlay::Commands(Palette { help: true, ..Palette::default() }))),
+    action(ActionId::Messages, "messages", "Show the latest messages", &[], &[Context::Screen]).does(|m| open(m, Overlay::Messages { selected: 0 })),
     action(ActionId::NextPane, "next-pane", "Go to the next pane", &[Key::Tab], &[Context::Screen]).label("pane").repeats().when(offer::other_pane).looks(|m| act::turn_to(m, 1)),
     action(ActionId::PreviousPane, "previous-pane", "Go to the previous pane", &[Key::BackTab], &[Context::Screen]).repeats().when(offer::other_pane).looks(|m| act::turn_to(m, -1)),
     action(ActionId::GoTo, "goto", "Show a screen", &[], &[Context::Screen]).args(&[must("screen", Kind::Screen)]),
@@ -23,7 +24,7 @@ pub(super) const ROWS: &[Action] = &[
 /// Actions that leave a screen or the console.
 #[rustfmt::skip]
 pub(super) const LEAVING: &[Action] = &[
-    action(ActionId::Reload, "reload", "Rescan the plugins", &[Key::Char('r')], &[On(Screen::Plugins)]).label("reload").reaches(Reach::Mission)
+    action(ActionId::Reload, "reload", "Reload plugins", &[Key::Char('r')], &[On(Screen::Plugins)]).label("reload").reaches(Reach::Mission)
         .when(|m| demand(!m.live.run.is_running(), "hold the robot to rescan plugins; <hold>: HOLD")).does(|_| vec![Effect::Survey]),
     action(ActionId::Back, "back", "Go back; the mission continues", &[Key::Char('q')], &[Context::Screen]).label("back").does(|m| go::back(m).unwrap_or_else(|| act::leave(m))),
     action(ActionId::Leave, "leave", "Quit; a running mission is held first", &[], &[Context::Screen]).also(&["quit", "exit"]).does(act::leave),

@@ -17,7 +17,7 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::Remedy(2), "second-action", "Run action 2 of the alarm", &[Key::Char('2')], &[Context::Remedies]),
     action(ActionId::Remedy(3), "third-action", "Run action 3 of the alarm", &[Key::Char('3')], &[Context::Remedies]),
     action(ActionId::Remedy(4), "fourth-action", "Run action 4 of the alarm", &[Key::Char('4')], &[Context::Remedies]),
-    action(ActionId::Accept, "accept", "Confirm, or select the line", &[Key::Enter], &[Context::Rows, Context::Text, Context::Confirm, Context::Stepping, Context::WhatIf]).label("yes")
+    action(ActionId::Accept, "accept", "Confirm, or select the line", &[Key::Enter], &[Context::Rows, Context::Text, Context::Confirm, Context::Stepping, Context::WhatIf, Context::Drawing]).label("yes")
         .when(offer::accept).does(overlay::accept),
     action(ActionId::Step, "step", "Move for one more tick", &[Key::Char('.')], &[Context::Stepping]).label("step").risk(Risk::Moves)
         .when(|m| accepted(m, &Order::Step)).does(|m| act::step(m, Order::Step)),
@@ -26,7 +26,7 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::StepEvent, "step-event", "Move to the next event", &[Key::Char(']')], &[Context::Stepping]).label("event").risk(Risk::Moves)
         .when(|m| accepted(m, &Order::Step)).does(|m| act::step(m, Order::StepTo(StepTo::Event))),
     action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc], &[Context::Text, Context::Stepping, Context::Cursor]).label("cancel").does(act::cancel),
-    action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc, Key::Char('q')], &[Context::List, Context::Confirm, Context::WhatIf]).label("cancel").does(act::cancel),
+    action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc, Key::Char('q')], &[Context::List, Context::Confirm, Context::WhatIf, Context::Drawing]).label("cancel").does(act::cancel),
     action(ActionId::Up, "up", "Select the line above", &[Key::Up, Key::Char('k')], &[Context::Rows]).repeats().looks(|m| select(m, -1)),
     action(ActionId::Down, "down", "Select the line below", &[Key::Down, Key::Char('j')], &[Context::Rows]).repeats().looks(|m| select(m, 1)),
     action(ActionId::PageUp, "page-up", "Ten lines up", &[Key::PageUp, Key::Ctrl('u')], &[Context::Rows]).repeats().looks(|m| select(m, -PAGE)),

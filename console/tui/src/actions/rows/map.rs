@@ -27,7 +27,7 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::Centre, "centre", "Centre the map on a named object", &[], &[Context::Map]).args(&[must("place", Kind::Place)]).when(map::is_shown),
     action(ActionId::Inspect, "inspect", "Inspect a map position (<cancel>: end)", &[Key::Char('i')], &[Context::Map])
         .when(|m| map::is_shown(m).and(demand(m.live.run.about.is_some(), "no tank loaded yet"))).looks(map::inspect),
-    action(ActionId::Mouse, "mouse", "Toggle mouse support", &[], &[Context::Screen]).does(act::toggle_mouse),
+    action(ActionId::Mouse, "mouse", "Mouse on or off", &[], &[Context::Screen]).does(act::toggle_mouse),
     action(ActionId::Severity, "severity", "Set the minimum severity of events shown", &[Key::Char('m')], &[On(Screen::Mission), Context::Replay]).args(&[may("severity", Kind::Severity)])
         .when(|m| demand(m.ui.shows(Pane::Events), "the events are not shown (they need 60x16); <next-pane>: next pane")).looks(events::next_severity),
     action(ActionId::Filter, "filter", "Filter the list", &[Key::Char('/')], &[On(Screen::Home), On(Screen::Mission), Context::Replay, On(Screen::Events), On(Screen::Review)]).args(&[may("text", Kind::Text)])

@@ -9,20 +9,22 @@ use crate::model::Screen;
 use crate::model::ui::{Ask, Purpose};
 use crate::update::offer::{self, accepted, demand};
 use crate::update::overlay::ask;
-use crate::update::send::{hold_now, send};
-use crate::update::{Effect, act, overlay, preflight, preset, shadow, what_if};
+use crate::update::send::send;
+use crate::update::{Effect, act, finish, overlay, preflight, preset, shadow, what_if};
 use mission::Order;
 
 #[rustfmt::skip]
 pub(super) const ROWS: &[Action] = &[
-    action(ActionId::Hold, "hold", "HOLD now; if held, ask to resume", &[Key::Char(' ')], &[Context::Anywhere]).label("HOLD").also(&["stop", "pause", "halt"]).reaches(Reach::Pace)
+    action(ActionId::Hold, "hold", "HOLD; when held: resume (asks)", &[Key::Char(' ')], &[Context::Anywhere]).label("HOLD").also(&["stop", "pause", "halt"]).reaches(Reach::Pace)
         .when(offer::hold).does(act::hold),
-    action(ActionId::Interrupt, "interrupt", "HOLD now; twice: ask to quit", &[Key::Ctrl('c')], &[Context::Anywhere]).does(act::interrupt),
+    action(ActionId::Interrupt, "interrupt", "HOLD; twice: quit (asks)", &[Key::Ctrl('c')], &[Context::Anywhere]).does(act::interrupt),
     action(ActionId::Start, "start", "Start the mission", &[Key::Char('S')], &[On(Screen::Plan), On(Screen::Mission)]).label("start").risk(Risk::Moves)
         .when(offer::start).does(|m| ask(m, Ask::Start(m.live.run.standing.ready_plan()))),
     action(ActionId::Resume, "resume", "Resume after a hold", &[], &[Context::Screen]).risk(Risk::Moves).also(&["continue"]).when(|m| accepted(m, &Order::Resume)).does(|m| ask(m, Ask::Resume)),
-    action(ActionId::FlyUncertified, "fly-uncertified", "Run a plan refused because of the tether", &[], &[Context::Screen]).risk(Risk::Moves)
-        .when(|m| accepted(m, &Order::FlyUncertified)).does(|m| ask(m, Ask::FlyUncertified)),
+    action(ActionId::DriveBack, "return", "Drive back to the anchor or start (held)", &[], &[Context::Screen]).risk(Risk::Moves).also(&["drive-back"])
+        .when(|m| accepted(m, &Order::DriveBack)).does(finish::ask_way_back),
+    action(ActionId::FlyUncertified, "run-uncertified", "Run a plan refused because of the tether", &[], &[Context::Screen]).risk(Risk::Moves)
+        .also(&["fly-uncertified"]).when(offer::uncertified).does(|m| ask(m, Ask::FlyUncertified)),
     action(ActionId::Step, "step", "Move for one tick (while held)", &[Key::Char('.')], &[On(Screen::Mission)]).label("step").risk(Risk::Moves)
         .when(|m| accepted(m, &Order::Step)).does(|m| act::step(m, Order::Step)),
     action(ActionId::Slower, "slower", "Slow the simulation down", &[Key::Char('<')], &[Context::Screen]).label("speed").repeats().reaches(Reach::Pace)
@@ -30,15 +32,15 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::Faster, "faster", "Speed the simulation up", &[Key::Char('>')], &[Context::Screen]).label("speed").repeats().reaches(Reach::Pace)
         .when(|m| offer::speed(m, true)).does(|m| act::change_speed(m, true)),
     action(ActionId::SetSpeed, "speed", "Set the speed of the simulation", &[], &[Context::Screen]).args(&[must("factor", Kind::Speed)]).also(&["rate", "pace"]).reaches(Reach::Pace).when(offer::simulating),
-    action(ActionId::Abort, "end", "HOLD, then ask to end the mission", &[Key::Char('X')], &[Context::Screen]).label("end").risk(Risk::Destroys).also(&["abort", "finish"])
-        .when(offer::abort).does(|m| [hold_now(m), ask(m, Ask::Abort)].concat()),
+    action(ActionId::Abort, "end", "HOLD, then end or drive back (asks)", &[Key::Char('X')], &[Context::Screen]).label("end").risk(Risk::Destroys).also(&["abort", "finish"])
+        .when(offer::abort).does(finish::begin),
     action(ActionId::ChoosePlanner, "planner", "Change the planner (while held)", &[Key::Char('P')], &[On(Screen::Plan), On(Screen::Mission)]).label("planner").risk(Risk::Moves).args(&[may("planner", Kind::Planner)])
         .when(offer::swap).does(|m| act::choose(m, Purpose::Drive)),
     action(ActionId::Shadow, "shadow", "Run a planner in shadow", &[], &[Context::Screen]).args(&[may("planner", Kind::Planner)]).reaches(Reach::Mission)
         .when(shadow::can_begin).does(|m| act::choose(m, Purpose::Shadow)),
     action(ActionId::Promote, "promote", "Promote the planner in shadow", &[], &[Context::Screen]).risk(Risk::Moves).when(|m| accepted(m, &Order::Promote)).does(|m| ask(m, Ask::Promote)),
     action(ActionId::DropShadow, "shadow-off", "Stop the planner in shadow", &[], &[Context::Screen]).reaches(Reach::Mission).when(|m| accepted(m, &Order::DropShadow)).does(|m| send(m, Order::DropShadow)),
-    action(ActionId::TakePlan, "take-plan", "Take the better plan on offer", &[Key::Char('T')], &[On(Screen::Mission)]).risk(Risk::Moves)
+    action(ActionId::TakePlan, "take-plan", "Take the better plan on offer", &[Key::Char('T')], &[On(Screen::Mission)]).label("take plan").risk(Risk::Moves)
         .when(|m| accepted(m, &Order::TakePlan)).does(|m| ask(m, Ask::TakePlan)),
     action(ActionId::Parameters, "parameters", "View and change planner parameters", &[Key::Char('p')], &[On(Screen::Plan), On(Screen::Mission)]).label("parameters")
         .when(offer::parameters).does(overlay::open_parameters),
@@ -58,7 +60,7 @@ pub(super) const ROWS: &[Action] = &[
         .when(|m| demand(m.live.waits(), "plans can only be compared before the start").and(offer::has_planners(m))).does(|m| act::choose(m, Purpose::Compare)),
     action(ActionId::Preflight, "check-again", "Check again", &[Key::Char('r')], &[Context::Preflight]).label("check again").reaches(Reach::Mission)
         .when(|m| demand(m.live.waits(), "checks can only be run before the start")).does(preflight::open),
-    action(ActionId::PlanAgain, "plan-again", "Plan again", &[], &[On(Screen::Plan)]).reaches(Reach::Mission)
+    action(ActionId::PlanAgain, "plan-again", "Replan", &[], &[On(Screen::Plan)]).reaches(Reach::Mission)
         .when(|m| demand(m.live.waits(), "no mission is waiting to start")).does(|_| vec![Effect::Order(Order::Plan)]),
     action(ActionId::CancelPlan, "cancel-plan", "Cancel planning or comparison", &[Key::Esc], &[On(Screen::Plan)]).label("cancel").reaches(Reach::Mission).when(offer::cancel_plan).does(overlay::cancel_plan),
 ];

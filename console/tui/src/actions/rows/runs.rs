@@ -14,10 +14,10 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::Play, "play", "Play or pause the run (<hold>)", &[], &[Context::Replay]).when(replay::is_loaded).does(replay::toggle),
     action(ActionId::Jump(Jump::TickBack), "tick-back", "Step back one tick", &[Key::Char(',')], &[Context::Replay]).label("tick").repeats().when(replay::is_loaded),
     action(ActionId::Jump(Jump::Tick), "tick-on", "Step forward one tick", &[Key::Char('.')], &[Context::Replay]).label("tick").repeats().when(replay::is_loaded),
-    action(ActionId::Jump(Jump::EventBack), "event-back", "Go to the previous event", &[Key::Char('[')], &[Context::Replay]).label("event").repeats().when(replay::is_loaded),
-    action(ActionId::Jump(Jump::Event), "event-on", "Go to the next event", &[Key::Char(']')], &[Context::Replay]).label("event").repeats().when(replay::is_loaded),
-    action(ActionId::Jump(Jump::AlarmBack), "alarm-back", "Go to the previous alarm", &[Key::Char('{')], &[Context::Replay]).label("alarm").repeats().when(replay::is_loaded),
-    action(ActionId::Jump(Jump::Alarm), "alarm-on", "Go to the next alarm", &[Key::Char('}')], &[Context::Replay]).label("alarm").repeats().when(replay::is_loaded),
+    action(ActionId::Jump(Jump::EventBack), "event-back", "Previous event", &[Key::Char('[')], &[Context::Replay]).label("event").repeats().when(replay::is_loaded),
+    action(ActionId::Jump(Jump::Event), "event-on", "Next event", &[Key::Char(']')], &[Context::Replay]).label("event").repeats().when(replay::is_loaded),
+    action(ActionId::Jump(Jump::AlarmBack), "alarm-back", "Previous alarm", &[Key::Char('{')], &[Context::Replay]).label("alarm").repeats().when(replay::is_loaded),
+    action(ActionId::Jump(Jump::Alarm), "alarm-on", "Next alarm", &[Key::Char('}')], &[Context::Replay]).label("alarm").repeats().when(replay::is_loaded),
     action(ActionId::Jump(Jump::MinuteBack), "minute-back", "Step back one minute", &[Key::Char('(')], &[Context::Replay]).label("minute").repeats().when(replay::is_loaded),
     action(ActionId::Jump(Jump::Minute), "minute-on", "Step forward one minute", &[Key::Char(')')], &[Context::Replay]).label("minute").repeats().when(replay::is_loaded),
     action(ActionId::Jump(Jump::Start), "to-start", "Go to the beginning of the run", &[Key::Char('^')], &[Context::Replay]).when(replay::is_loaded),
@@ -26,8 +26,8 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::Bookmark, "bookmark", "Set a bookmark, or change its text", &[Key::Char('b')], &[Context::Replay]).label("bookmark").args(&[may("text", Kind::Text)]).reaches(Reach::Runs)
         .when(replay::can_note).does(replay::open_bookmark),
     action(ActionId::Unmark, "remove-bookmark", "Remove the bookmark at this moment", &[Key::Char('B')], &[Context::Replay]).reaches(Reach::Runs).when(replay::can_unmark).does(replay::unmark),
-    action(ActionId::Jump(Jump::Bookmark), "next-bookmark", "Go to the next bookmark", &[Key::Char('n')], &[Context::Replay]).repeats().when(replay::is_loaded),
-    action(ActionId::Jump(Jump::BookmarkBack), "previous-bookmark", "Go to the previous bookmark", &[Key::Char('N')], &[Context::Replay]).repeats().when(replay::is_loaded),
+    action(ActionId::Jump(Jump::Bookmark), "next-bookmark", "Next bookmark", &[Key::Char('n')], &[Context::Replay]).repeats().when(replay::is_loaded),
+    action(ActionId::Jump(Jump::BookmarkBack), "previous-bookmark", "Previous bookmark", &[Key::Char('N')], &[Context::Replay]).repeats().when(replay::is_loaded),
     action(ActionId::Remark, "remark", "Write a remark about the whole run", &[], &[Context::Replay]).args(&[must("text", Kind::Text)]).reaches(Reach::Runs).when(replay::can_note),
     action(ActionId::Difference, "difference", "Show floor that only one run scanned", &[Key::Char('D')], &[Context::Replay]).label("difference")
         .when(replay::has_second).looks(replay::toggle_difference),
@@ -35,7 +35,7 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::Replay, "replay", "Replay a past run", &[], &[Context::Screen]).args(&[may("run", Kind::Run)]).reaches(Reach::Runs).when(replay::can_open).does(|m| go::begin(m, ActionId::Replay)),
     action(ActionId::CompareRun, "compare-run", "Compare a run with the replayed one", &[Key::Char('c')], &[On(Screen::Review)]).label("compare").args(&[may("run", Kind::Run)]).reaches(Reach::Runs)
         .when(replay::can_compare).does(|m| go::begin(m, ActionId::CompareRun)),
-    action(ActionId::Sort, "sort", "Cycle the sort order", &[Key::Char('s')], &[On(Screen::Review)]).label("sort").when(|m| offer::on_screen(m, Screen::Review)).does(review::sort),
+    action(ActionId::Sort, "sort", "Change the sort order", &[Key::Char('s')], &[On(Screen::Review)]).label("sort").when(|m| offer::on_screen(m, Screen::Review)).does(review::sort),
     action(ActionId::Rescan, "rescan", "Re-scan what a run missed", &[Key::Char('r')], &[On(Screen::Home), On(Screen::Review), On(Screen::Result)]).label("re-scan").args(&[may("run", Kind::Run)]).reaches(Reach::Runs)
         .when(offer::rescan).does(|m| go::begin(m, ActionId::Rescan)),
     action(ActionId::Verify, "verify", "Recompute a run and compare its journal", &[Key::Char('v')], &[On(Screen::Home), On(Screen::Review), On(Screen::Result)]).label("verify").args(&[may("run", Kind::Run)])

@@ -176,7 +176,7 @@ impl Alarm {
     /// Why the alarm cannot be shelved; `None` if it can.
     pub fn cannot_be_shelved(&self) -> Option<&'static str> {
         match self.state {
-            State::Returned => Some("the alarm has cleared; <acknowledge>: acknowledge"),
+            State::Returned => Some("cleared alarms are acknowledged (<acknowledge>), not shelved"),
             State::Cleared => Some("the alarm has cleared"),
             _ if self.severity == Severity::Crit => Some("a CRIT alarm cannot be shelved"),
             _ => None,

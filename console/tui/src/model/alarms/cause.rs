@@ -20,6 +20,8 @@ pub enum Cause {
     Tether(String),
     /// The last plan could not be certified for the tether.
     Certificate,
+    /// The hull is in this no-go zone.
+    Zone(String),
     /// The planner failed.
     Planner,
     /// The robot makes no progress.
@@ -58,6 +60,7 @@ impl Cause {
                 Self::Tether(alarm.word().to_owned())
             }
             EventKind::Certified { .. } => Self::Certificate,
+            EventKind::ZoneBreached { zone, .. } | EventKind::ZoneLeft { zone } => Self::Zone(zone.clone()),
             EventKind::PlannerFailed { .. } | EventKind::PlannerChosen { .. } => Self::Planner,
             EventKind::Ended { .. } => Self::Ended,
             EventKind::Held { by, .. } => Self::of_hold(by)?,
@@ -75,6 +78,7 @@ impl Cause {
             Self::Map => "map".into(),
             Self::Tether(word) => format!("tether {word}"),
             Self::Certificate => "certificate".into(),
+            Self::Zone(zone) => format!("zone {zone}"),
             Self::Planner => "planner".into(),
             Self::Stuck => "stuck".into(),
             Self::Ended => "ended".into(),
@@ -95,8 +99,8 @@ impl Cause {
             HoldReason::PlannerFault { .. } | HoldReason::PlannerSilent { .. } => Some(Self::Planner),
             HoldReason::Stuck { .. } => Some(Self::Stuck),
             HoldReason::PlanRefused { .. } => Some(Self::Certificate),
+            HoldReason::ZoneBreached { zone } => Some(Self::Zone(zone.clone())),
             HoldReason::Tether { .. }
-            | HoldReason::ZoneBreached { .. }
             | HoldReason::Operator
             | HoldReason::Stepped
             | HoldReason::PlannerReplaced => None,
@@ -114,6 +118,7 @@ impl Cause {
             Self::Station(world::StationId(1)),
             Self::Map,
             Self::Certificate,
+            Self::Zone("no-go 1".into()),
             Self::Planner,
             Self::Stuck,
             Self::Ended,
@@ -138,6 +143,7 @@ impl Cause {
                 | Self::Map
                 | Self::Tether(_)
                 | Self::Certificate
+                | Self::Zone(_)
                 | Self::Planner
                 | Self::Stuck
                 | Self::Ended

@@ -53,22 +53,18 @@ impl Run {
             EventKind::PlannerLate { planner, ticks } => {
                 change.say(Severity::Watch, late_text(planner, *ticks));
             }
-            EventKind::BetterPlanned { path, flown, better, objection, .. } => {
+            EventKind::BetterPlanned { path, flown, better, scans, objection, .. } => {
                 self.planning.candidate = None;
                 if objection.is_none() {
-                    let (flown, better, begins) = (*flown, *better, path.first().copied());
+                    let (flown, better, scans, begins) = (*flown, *better, *scans, path.first().copied());
                     let is_taken = self
                         .about
                         .as_ref()
                         .is_some_and(|about| about.mission.better_plan == BetterPlan::Take);
-                    self.planning.offer = Some(Offer { flown, better, begins, is_taken });
-                    let next = if is_taken {
-                        "will be taken automatically where it begins"
-                    } else {
-                        "<take-plan>: take it"
-                    };
-                    let saving = better.saving(&flown);
-                    change.say(Severity::Watch, format!("better plan: {saving}; {next}"));
+                    let offer = Offer { flown, better, scans, begins, is_taken };
+                    let next = if is_taken { "Taken where it begins" } else { "<take-plan>: take" };
+                    change.say(Severity::Watch, format!("{}. {next}", offer.sentence()));
+                    self.planning.offer = Some(offer);
                 }
             }
             EventKind::BetterPlanTaken { .. } => {
@@ -77,8 +73,12 @@ impl Run {
             }
             EventKind::BetterPlanDropped { why, .. } => {
                 self.planning.candidate = None;
-                if self.planning.offer.take().is_some() {
-                    change.say(Severity::Info, format!("better plan withdrawn: {why}"));
+                match self.planning.offer.take() {
+                    Some(offer) if offer.is_taken => {
+                        change.say(Severity::Warn, format!("accepted better plan dropped: {why}"));
+                    }
+                    Some(_) => change.say(Severity::Watch, format!("offer ended: {why}")),
+                    None => {}
                 }
             }
             EventKind::PlannerRejected { planner, why } => {

@@ -4,7 +4,7 @@ use super::list::{List, hint, paragraph};
 use crate::actions::{Action, ActionId, find, keymap::Keymap};
 use crate::model::Palette;
 use crate::theme::Role;
-use crate::update::{Choice, choices, offered};
+use crate::update::{Choice, Group, choices, group, offered, values};
 use crate::view::field::field;
 use crate::view::look::{Look, Parts as Row};
 use crate::view::next::joined;
@@ -18,7 +18,8 @@ const PROMPT: &str = " > ";
 pub(super) fn list(look: &Look, palette: &Palette, columns: u16) -> List {
     let found = choices(look.model, palette);
     let room = usize::from(columns).saturating_sub(3);
-    let rows = found.iter().map(|choice| row(look, choice, columns)).collect();
+    let is_whole = palette.line.text().trim().is_empty();
+    let (rows, selected) = grouped(look, &found, palette.selected, (columns, is_whole));
     let below = if palette.help {
         rules(&look.model.console.keys, room)
     } else {
@@ -30,10 +31,41 @@ pub(super) fn list(look: &Look, palette: &Palette, columns: u16) -> List {
         note: "type to filter".into(),
         above,
         rows,
-        selected: palette.selected,
+        selected,
         below,
         cursor: Some((0, cursor)),
         ..List::default()
+    }
+}
+
+/// The rows of the list and the row of the selected entry; each group of the whole list has a heading.
+fn grouped(
+    look: &Look,
+    found: &[Choice],
+    selected: usize,
+    (columns, is_whole): (u16, bool),
+) -> (Vec<Row>, usize) {
+    let (mut rows, mut at, mut last) = (Vec::new(), 0, None);
+    for (index, choice) in found.iter().enumerate() {
+        if let (Choice::Command(action), true) = (choice, is_whole) {
+            let group = Some(group(look.model, action));
+            if group != last {
+                rows.push(vec![(Role::Title, heading(look, group))]);
+                last = group;
+            }
+        }
+        if index == selected {
+            at = rows.len();
+        }
+        rows.push(row(look, choice, columns));
+    }
+    (rows, at)
+}
+
+fn heading(look: &Look, group: Option<Group>) -> String {
+    match group {
+        Some(Group::Topic(topic)) => topic.name().into(),
+        Some(Group::Here) | None => format!("This screen: {}", look.model.ui.screen.name()),
     }
 }
 
@@ -95,6 +127,12 @@ fn below(look: &Look, selected: Option<&Choice>, room: usize) -> Vec<Row> {
         Some(Choice::Command(action)) if !action.args.is_empty() => Some(format!("{}.", action.usage())),
         _ => None,
     };
+    let values = match selected {
+        Some(Choice::Command(action)) => values(look.model, action),
+        _ => Vec::new(),
+    };
+    let listed =
+        (!values.is_empty()).then(|| hint(&format!(" {}", listing(&values, room.saturating_sub(1)))));
     let keys = [
         "<accept>: run.",
         "<cancel>: close.",
@@ -104,7 +142,22 @@ fn below(look: &Look, selected: Option<&Choice>, room: usize) -> Vec<Row> {
     ]
     .map(|clause| look.keys(clause));
     let clauses: Vec<String> = usage.into_iter().chain(keys).collect();
-    vec![hint(&format!(" {}", joined(&clauses, room)))]
+    listed.into_iter().chain([hint(&format!(" {}", joined(&clauses, room)))]).collect()
+}
+
+/// As many values as fit, and how many more there are.
+fn listing(values: &[String], room: usize) -> String {
+    let mut line = String::new();
+    for (index, value) in values.iter().enumerate() {
+        let more = values.len() - index;
+        let needed = text::width(&line) + text::width(value) + 2 + more.to_string().len();
+        if needed > room && index > 0 {
+            return format!("{line}+{more}");
+        }
+        line.push_str(value);
+        line.push_str("  ");
+    }
+    line.trim_end().to_owned()
 }
 
 /// General rules; the keys that they mention come from the table.

@@ -16,6 +16,8 @@ pub(in crate::view) struct List {
     pub above: Vec<Row>,
     pub rows: Vec<Row>,
     pub selected: usize,
+    /// The number of rows that the selected entry takes; 0 counts as one.
+    pub selected_rows: usize,
     pub below: Vec<Row>,
     /// How many of the lines below the list take precedence over the list's last lines.
     pub needed_below: usize,
@@ -26,18 +28,19 @@ pub(in crate::view) struct List {
 
 impl List {
     pub(super) fn draw(self, look: &Look, frame: &mut Frame, area: Rect) {
-        let block = look.block(Role::Focus, &self.title, &self.note);
+        let block = look.list_block(&self.title, &self.note);
         let inner = block.inner(area);
         let room = usize::from(inner.height).saturating_sub(self.above.len());
         // The selected line takes precedence over anything below the list.
         let below =
             self.below.len().min(room.saturating_sub(3).max(self.needed_below)).min(room.saturating_sub(1));
-        let shown = table::window(self.selected, self.rows.len(), room - below);
+        let chosen = self.selected..self.selected + self.selected_rows.max(1);
+        let shown = table::window(chosen.end - 1, self.rows.len(), room - below);
         let above = self.above.len();
         let mut lines: Vec<Line> = self.above.into_iter().map(|row| look.line(row)).collect();
         for (index, row) in self.rows.into_iter().enumerate() {
             if shown.contains(&index) {
-                lines.push(table::row(look, row, index == self.selected, usize::from(inner.width)));
+                lines.push(table::row(look, row, chosen.contains(&index), usize::from(inner.width)));
             }
         }
         if let Some((line, column)) = self.cursor {

@@ -66,6 +66,7 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
         below,
         needed_below,
         cursor,
+        ..List::default()
     }
 }
 

@@ -11,20 +11,19 @@ const WHAT: usize = 12;
 
 pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
     let model = look.model;
-    let checks = model.checks();
-    let first_by_hand = checks.len() - model.n_by_hand();
+    let checks = model.grouped_checks();
     let room = usize::from(columns).saturating_sub(4);
-    let count = |outcome| checks.iter().filter(|check| check.outcome == outcome).count();
-    let (blocking, warned) = (count(CheckOutcome::Failed), count(CheckOutcome::Warning));
-    let failed = checks[..first_by_hand].iter().filter(|check| check.outcome == CheckOutcome::Failed).count();
-    let blocks = Blocks { failed, not_ticked: blocking - failed };
-    let rows =
-        checks.iter().enumerate().map(|(index, check)| row(check, index >= first_by_hand, room)).collect();
-    let mut below: Vec<Row> = checks
-        .get(selected)
-        .into_iter()
-        .flat_map(|check| paragraph(Role::Dim, &format!("{}: {}", check.what, check.found), room))
-        .collect();
+    let by_hand = checks.iter().filter(|(_, item)| item.is_some());
+    let not_ticked = by_hand.filter(|(check, _)| check.outcome == CheckOutcome::Failed).count();
+    let count =
+        |outcome| checks.iter().filter(|(check, item)| item.is_none() && check.outcome == outcome).count();
+    let blocks = Blocks { failed: count(CheckOutcome::Failed), not_ticked };
+    let warned = count(CheckOutcome::Warning);
+    let rows: Vec<Vec<Row>> = checks.iter().map(|(check, item)| entry(check, item.is_some(), room)).collect();
+    let first = rows.iter().take(selected).map(Vec::len).sum();
+    let selected_rows = rows.get(selected).map_or(1, Vec::len);
+    let chosen = checks.get(selected).map(|(check, _)| format!("{}: {}", check.what, check.found));
+    let mut below: Vec<Row> = chosen.iter().flat_map(|words| paragraph(Role::Dim, words, room)).collect();
     let verdict = match (model.live.preflight.is_checking, blocks.sentence()) {
         (true, _) => (Role::Watch, " Checking...".to_owned()),
         (false, None) => {
@@ -33,14 +32,22 @@ pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
         (false, Some(why)) => (Role::Crit, format!(" Start is blocked: {why}.")),
     };
     below.push(vec![verdict]);
-    // Here, where nothing moves yet, the key that holds the robot ticks an item.
-    let tick = if model.n_by_hand() > 0 { " <hold>: tick " } else { "" };
+    let tick = if model.n_by_hand() > 0 { " <accept>: tick " } else { "" };
     below.push(hint(&look.keys(&format!("{tick} <check-again>: check again  <cancel>: close"))));
+    let parts = [
+        (blocks.failed, "FAIL"),
+        (warned, "WARN"),
+        (model.n_by_hand(), "by hand"),
+        (count(CheckOutcome::Passed), "ok"),
+    ];
+    let parts: Vec<String> =
+        parts.iter().filter(|(n, _)| *n > 0).map(|(n, word)| format!("{n} {word}")).collect();
     List {
-        title: format!("Pre-flight  {} checks, {} by hand", first_by_hand, model.n_by_hand()),
+        title: format!("Pre-flight  {}", parts.join(", ")),
         note: note(&blocks, warned).into(),
-        rows,
-        selected,
+        rows: rows.concat(),
+        selected: first,
+        selected_rows,
         needed_below: 2,
         below,
         ..List::default()
@@ -71,7 +78,8 @@ fn note(blocks: &Blocks, warned: usize) -> &'static str {
     }
 }
 
-fn row(check: &Check, by_hand: bool, room: usize) -> Row {
+/// The rows of a check: a failed check or a warning is shown in full, any other in one row.
+fn entry(check: &Check, by_hand: bool, room: usize) -> Vec<Row> {
     let (role, mark) = match (check.outcome, by_hand) {
         (CheckOutcome::Passed, _) => (Role::Good, "[ ok ]"),
         (CheckOutcome::Ticked, _) => (Role::Good, "[  x ]"),
@@ -80,12 +88,19 @@ fn row(check: &Check, by_hand: bool, room: usize) -> Row {
         (CheckOutcome::Failed, false) => (Role::Crit, "[FAIL]"),
     };
     let room = room.saturating_sub(7);
-    let words = if by_hand {
-        text::clauses(&format!(" by hand: {}", check.what), room)
-    } else {
-        let what = format!(" {} ", text::column(&check.what, WHAT));
-        let found = text::clauses(&check.found, room.saturating_sub(text::width(&what)));
-        what + &found
+    let front = |text: &str| vec![(role, mark.to_owned()), (Role::Text, text.to_owned())];
+    if by_hand {
+        return vec![front(&text::clauses(&format!(" by hand: {}", check.what), room))];
+    }
+    let what = format!(" {} ", text::column(&check.what, WHAT));
+    let rest = room.saturating_sub(text::width(&what));
+    let found = match check.outcome {
+        CheckOutcome::Failed | CheckOutcome::Warning => text::wrap(&check.found, rest),
+        CheckOutcome::Passed | CheckOutcome::Ticked => vec![text::clauses(&check.found, rest)],
     };
-    vec![(role, mark.to_owned()), (Role::Text, words)]
+    let mut found = found.into_iter();
+    let first = front(&(what.clone() + &found.next().unwrap_or_default()));
+    let indent = " ".repeat(mark.len() + text::width(&what));
+    let more = found.map(|words| vec![(Role::Text, format!("{indent}{words}"))]);
+    std::iter::once(first).chain(more).collect()
 }
