@@ -8,6 +8,7 @@ use super::{
     comparing::Comparing,
     engine::Engine,
     forecasting::Forecasting,
+    glimpsing::Glimpsing,
     inbox::{Outbox, RunOutbox},
     jobs,
     line::Current,
@@ -37,7 +38,7 @@ use std::{
     },
     thread::{self, JoinHandle},
 };
-use tui::{Job, Msg, RunId, RunMsg, Source, Speed, Transport};
+use tui::{Job, Msg, RunId, RunMsg, Source, Speed, Transport, model::glimpse::RunKey};
 
 /// A request to the desk.
 pub(super) enum Request {
@@ -69,6 +70,8 @@ pub(super) enum Request {
     Survey,
     /// Rescan the scenarios and runs on disk.
     Look,
+    /// Read what is known about a past run.
+    Glimpse(RunKey),
     /// Run a job on a past run.
     Do(Job),
     /// Close the open run and stop; do so quickly after a signal (`hurry`).
@@ -105,6 +108,7 @@ pub(super) struct Tools {
 pub(super) struct Desk {
     tools: Tools,
     disk: Arc<Disk>,
+    glimpsing: Glimpsing,
     /// Changes from the command line, for the scenario named there.
     settings: Settings,
     /// The speed of newly opened runs.
@@ -137,10 +141,12 @@ impl Desk {
     /// Creates a desk without a run.
     pub(super) fn new(tools: Tools, settings: Settings, speed: Speed, drill: Option<Drill>) -> Self {
         let disk = Arc::new(Disk::new(tools.clone()));
+        let glimpsing = Glimpsing::new(tools.logs.clone(), tools.outbox.clone());
         let current = Current::default();
         Self {
             tools,
             disk,
+            glimpsing,
             settings,
             speed,
             drill,
@@ -205,6 +211,7 @@ impl Desk {
                 Request::Survey => self.survey(),
                 Request::Look => self.look(),
                 Request::Combine(runs) => self.combine(runs),
+                Request::Glimpse(key) => self.glimpsing.ask(key),
                 Request::Do(job) => jobs::begin(job, &self.tools),
                 Request::Leave { hurry } => {
                     self.close(hurry)?;

@@ -69,6 +69,7 @@ pub enum ActionId {
     NextLike,
     PreviousLike,
     Copy,
+    PlannerMessages,
     ZoomIn,
     ZoomOut,
     WholeTank,

@@ -52,7 +52,7 @@ pub fn guide(cause: &Cause) -> Guide {
         Cause::RecorderLag => console::RECORDER_LAG,
         Cause::Disk => console::DISK,
         Cause::Map => Guide {
-            cause: "The robot detects something that is not on the drawing.",
+            cause: "Unknown obstacle: the robot detects something that is not on the drawing.",
             effect: "Planners avoid it. The floor under it is not counted; floor that it blocks becomes \
             unreachable.",
             remedies: const { &[SHOW, wait("Check what it is: nozzle, sump, debris."), HOLD] },

@@ -36,7 +36,7 @@ pub(super) const CONSOLE: Guide = Guide {
 pub(super) const RESPONSE: Guide = Guide {
     cause: "One key press in a hundred takes longer than 33 ms to appear on the screen: the machine or the \
     terminal is too busy.",
-    effect: "The screen lags. HOLD does not: it is sent to the mission before anything is drawn.",
+    effect: "The screen is slow. HOLD is not: it is handled first.",
     remedies: &[SLOWER, wait("Close other programs, or make the terminal smaller.")],
 };
 

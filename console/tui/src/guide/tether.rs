@@ -20,14 +20,11 @@ pub(super) fn name(word: &str) -> String {
 pub(super) fn guide(word: &str) -> Guide {
     match word {
         "reel" => Guide {
-            cause: "More than 80 % of the tether is out.",
+            cause: "More than 80 % of the tether is out, the limit of this alarm.",
             effect: "When the reel is empty, the robot is held.",
             remedies: const {
                 &[
-                    run(
-                        "Resume (with confirmation): slackens the tether, then replans the scan.",
-                        ActionId::Resume,
-                    ),
+                    run("Resume: frees the tether, then replans from here. Asks first.", ActionId::Resume),
                     OTHER_PLANNER,
                     END,
                 ]
@@ -39,7 +36,7 @@ pub(super) fn guide(word: &str) -> Guide {
             remedies: const {
                 &[
                     SHOW,
-                    run("Resume (with confirmation): slackens the tether first.", ActionId::Resume),
+                    run("Resume: frees the tether, then replans from here. Asks first.", ActionId::Resume),
                     OTHER_PLANNER,
                     END,
                 ]
@@ -51,7 +48,7 @@ pub(super) fn guide(word: &str) -> Guide {
             remedies: const {
                 &[
                     run(
-                        "Resume (with confirmation): drives back the way it came to free the tether.",
+                        "Resume: drives back the way it came to free the tether. Asks first.",
                         ActionId::Resume,
                     ),
                     SHOW,

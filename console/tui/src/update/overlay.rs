@@ -8,9 +8,8 @@ use super::preflight;
 use super::preset::take as take_preset;
 use super::replay;
 use super::send::{send, set_parameter};
-use super::{palette, shadow, typing, what_if};
+use super::{palette, remedies, shadow, typing, what_if};
 use crate::actions::ActionId;
-use crate::guide::guide;
 use crate::model::ui::{Ask, Edit, MapLayer, Purpose};
 use crate::model::{Ghost, Model, Overlay, Palette, parameter, preset};
 use mission::{Order, ParamValue, Parameters, PlannerChoice, PlannerInfo, Severity};
@@ -242,7 +241,7 @@ pub(super) fn select(model: &mut Model, by: isize) {
         }
         Overlay::Layers { .. } => MapLayer::ALL.len(),
         Overlay::Preflight { .. } => model.checks().len(),
-        Overlay::Remedies { cause, .. } => guide(cause).remedies.len(),
+        Overlay::Remedies { cause, .. } => remedies::steps(model, cause).len(),
         Overlay::None
         | Overlay::Confirm(_)
         | Overlay::Stepping

@@ -23,6 +23,7 @@ pub(super) struct Chunk {
 struct Key {
     severity: Severity,
     t_s: f64,
+    is_chatter: bool,
     /// The end of the line's words.
     end: usize,
 }
@@ -33,6 +34,8 @@ pub(super) struct Line<'a> {
     pub severity: Severity,
     /// Mission time, seconds.
     pub t_s: f64,
+    /// Whether the line is a planner's message about its own work.
+    pub is_chatter: bool,
     /// Source and text in lower case.
     pub words: &'a str,
 }
@@ -49,7 +52,8 @@ impl Chunk {
         self.words.push_str(&entry.source.to_lowercase());
         self.words.push(BETWEEN);
         self.words.push_str(&entry.text.to_lowercase());
-        self.keys.push(Key { severity: entry.severity, t_s: entry.t_s, end: self.words.len() });
+        let (severity, t_s, is_chatter) = (entry.severity, entry.t_s, entry.is_chatter());
+        self.keys.push(Key { severity, t_s, is_chatter, end: self.words.len() });
         self.entries.push(entry);
     }
 
@@ -76,7 +80,7 @@ impl Chunk {
         self.keys.iter().enumerate().skip(from).map(move |(index, key)| {
             let words = self.words.get(start..key.end).unwrap_or_default();
             start = key.end;
-            (index, Line { severity: key.severity, t_s: key.t_s, words })
+            (index, Line { severity: key.severity, t_s: key.t_s, is_chatter: key.is_chatter, words })
         })
     }
 

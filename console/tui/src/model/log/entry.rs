@@ -2,7 +2,8 @@
 
 use super::occurrence::What;
 use account::clock;
-use mission::Severity;
+use mission::{EventKind, Severity};
+use planner_api::LogLevel;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
@@ -26,6 +27,12 @@ pub struct Entry {
 }
 
 impl Entry {
+    /// Whether the line is a planner's message about its own work, which is hidden unless the filter asks for it.
+    pub fn is_chatter(&self) -> bool {
+        let kind = self.what.event().map(|event| &event.kind);
+        matches!(kind, Some(EventKind::PlannerLogged { level: LogLevel::Debug | LogLevel::Info, .. }))
+    }
+
     /// The line as copied to the clipboard.
     pub fn line(&self) -> String {
         format!("T+{} {} {} {}", clock(self.t_s), severity_word(self.severity), self.source, self.text)

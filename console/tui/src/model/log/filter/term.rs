@@ -26,6 +26,10 @@ pub(super) struct Term {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 enum Test {
     Severity(Compare, Severity),
+    /// The messages of planners about their own work: only these, or these as well.
+    Debug {
+        only: bool,
+    },
     Source(Vec<String>),
     /// Station names, each preceded by the word "station".
     Station(Vec<String>),
@@ -77,6 +81,7 @@ impl Term {
 
     pub(super) fn passes(&self, line: &Line) -> bool {
         let holds = match &self.test {
+            Test::Debug { only } => line.is_chatter || !only,
             Test::Severity(compare, severity) => compare.holds(line.severity.partial_cmp(severity)),
             Test::Source(names) => names.iter().any(|name| line.source() == name),
             Test::Station(names) => names.iter().any(|name| names_station(line.words, name)),
@@ -90,8 +95,14 @@ impl Term {
     pub(super) fn least(&self) -> Option<Severity> {
         match self.test {
             Test::Severity(Compare::AtLeast, severity) if !self.negated => Some(severity),
+            Test::Debug { only: false } if !self.negated => Some(Severity::Info),
             _ => None,
         }
+    }
+
+    /// Whether the term asks for the messages of planners about their own work.
+    pub(super) fn is_debug(&self) -> bool {
+        matches!(self.test, Test::Debug { .. }) && !self.negated
     }
 }
 
@@ -116,6 +127,9 @@ fn field(word: &str) -> Option<(&str, Compare, usize)> {
 fn field_test(name: &str, compare: Compare, value: &str) -> Result<Test, String> {
     let name = name.to_ascii_lowercase();
     match (name.as_str(), compare) {
+        ("sev" | "severity", Compare::AtLeast | Compare::Equal) if is_debug(value) => {
+            Ok(Test::Debug { only: compare == Compare::Equal })
+        }
         ("sev" | "severity", _) => Ok(Test::Severity(compare, severity(value)?)),
         ("source", Compare::Equal) => Ok(Test::Source(list(value, "source=ae,tether")?)),
         ("station", Compare::Equal) => {
@@ -129,13 +143,18 @@ fn field_test(name: &str, compare: Compare, value: &str) -> Result<Test, String>
     }
 }
 
+/// Whether the value begins the word for the messages of planners about their own work.
+fn is_debug(value: &str) -> bool {
+    !value.is_empty() && "debug".starts_with(&value.to_ascii_lowercase())
+}
+
 /// The severity whose word begins with the given text.
 fn severity(value: &str) -> Result<Severity, String> {
     let typed = value.to_ascii_lowercase();
     let mut found = SEVERITIES.iter().filter(|(word, _)| !typed.is_empty() && word.starts_with(&typed));
     match (found.next(), found.next()) {
         (Some((_, severity)), None) => Ok(*severity),
-        _ => Err("sev must be info, watch, warn or crit".into()),
+        _ => Err("sev must be debug, info, watch, warn or crit".into()),
     }
 }
 
