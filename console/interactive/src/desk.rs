@@ -8,6 +8,7 @@ use super::{
     comparing::Comparing,
     engine::Engine,
     forecasting::Forecasting,
+    glimpsing::Glimpsing,
     handover,
     inbox::{Outbox, RunOutbox},
     jobs,
@@ -38,7 +39,7 @@ use std::{
     },
     thread::{self, JoinHandle},
 };
-use tui::{Job, Msg, RunId, RunMsg, Source, Speed, Transport};
+use tui::{Job, Msg, RunId, RunMsg, Source, Speed, Transport, model::glimpse::RunKey};
 
 /// A request to the desk.
 pub(super) enum Request {
@@ -70,6 +71,8 @@ pub(super) enum Request {
     Survey,
     /// Rescan the scenarios and runs on disk.
     Look,
+    /// Read what is known about a past run.
+    Glimpse(RunKey),
     /// Run a job on a past run.
     Do(Job),
     /// Write a handover page.
@@ -108,6 +111,7 @@ pub(super) struct Tools {
 pub(super) struct Desk {
     tools: Tools,
     disk: Arc<Disk>,
+    glimpsing: Glimpsing,
     /// Changes from the command line, for the scenario named there.
     settings: Settings,
     /// The speed of newly opened runs.
@@ -140,10 +144,12 @@ impl Desk {
     /// Creates a desk without a run.
     pub(super) fn new(tools: Tools, settings: Settings, speed: Speed, drill: Option<Drill>) -> Self {
         let disk = Arc::new(Disk::new(tools.clone()));
+        let glimpsing = Glimpsing::new(tools.logs.clone(), tools.outbox.clone());
         let current = Current::default();
         Self {
             tools,
             disk,
+            glimpsing,
             settings,
             speed,
             drill,
@@ -208,6 +214,7 @@ impl Desk {
                 Request::Survey => self.survey(),
                 Request::Look => self.look(),
                 Request::Combine(runs) => self.combine(runs),
+                Request::Glimpse(key) => self.glimpsing.ask(key),
                 Request::Do(job) => jobs::begin(job, &self.tools),
                 Request::HandOver { file, page, overwrite } => {
                     handover::begin(file, page, overwrite, &self.tools.outbox);

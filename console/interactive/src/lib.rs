@@ -9,6 +9,7 @@ mod desk;
 mod engine;
 mod forecasting;
 mod foreground;
+mod glimpsing;
 mod handover;
 mod history;
 mod inbox;

@@ -130,6 +130,7 @@ fn entry_of(source: Source, name: &str, scenario: Result<Scenario, String>, disk
             planner: scenario.mission.planner.id.clone(),
             expected: scenario.expect.words(),
             problem: None,
+            world: Some(Box::new(scenario.sim.world.as_drawn())),
         },
         Err(problem) => ScenarioEntry {
             source,
@@ -140,6 +141,7 @@ fn entry_of(source: Source, name: &str, scenario: Result<Scenario, String>, disk
             planner: String::new(),
             expected: String::new(),
             problem: Some(problem),
+            world: None,
         },
     }
 }
@@ -163,26 +165,22 @@ fn tank(boundary: &Boundary) -> String {
 }
 
 fn past_run(listed: &Listed) -> PastRun {
+    let began = runs::began(&listed.name);
     PastRun {
         name: listed.name.clone(),
-        began: began(&listed.name),
+        began: began.map(runs::utc_day_minute).unwrap_or_default(),
+        began_unix_s: began
+            .and_then(|began| began.duration_since(SystemTime::UNIX_EPOCH).ok())
+            .map(|since| since.as_secs_f64()),
         scenario: listed.scenario.clone().unwrap_or_default(),
         planner: listed.planner.clone().unwrap_or_default(),
         end: listed.end.clone(),
         mission_time_s: listed.mission_time_s,
         reachable: listed.coverage_reachable,
+        verified: listed.verified.clone(),
         note: listed.note.clone(),
         remark: listed.remark.clone(),
         bookmarks: listed.bookmarks,
-    }
-}
-
-/// The month, day and time from a folder name, `20261122T040049Z-...`.
-fn began(name: &str) -> String {
-    let digits = |range| name.get(range).filter(|part: &&str| part.bytes().all(|byte| byte.is_ascii_digit()));
-    match (digits(4..6), digits(6..8), digits(9..11), digits(11..13)) {
-        (Some(month), Some(day), Some(hour), Some(minute)) => format!("{month}-{day} {hour}:{minute}"),
-        _ => String::new(),
     }
 }
 

@@ -91,6 +91,7 @@ impl Session {
             Effect::Combine(runs) => self.desk.request(Request::Combine(runs)),
             Effect::Survey => self.desk.request(Request::Survey),
             Effect::Look => self.desk.request(Request::Look),
+            Effect::Glimpse(key) => self.desk.request(Request::Glimpse(key)),
             Effect::Do(job) => self.desk.request(Request::Do(job)),
             Effect::HandOver { file, page, overwrite } => {
                 self.desk.request(Request::HandOver { file, page, overwrite });

@@ -23,13 +23,14 @@ use recording::{
     journal_of,
 };
 use report::document::{Recovered, Revision, SignedRun};
-use runs::{Past, Signatures, end_is_missing, signatures, signed_under_another_name};
+use runs::{Past, Proof, Signatures, end_is_missing, signatures, signed_under_another_name};
 use scenario::Scenario;
 use std::{
     collections::BTreeMap,
     path::Path,
     sync::mpsc::sync_channel,
     thread::{self, ScopedJoinHandle},
+    time::SystemTime,
 };
 
 /// Maximum number of ticks read together; fewer if their lines reach this many bytes.
@@ -74,7 +75,8 @@ pub struct Verified {
     pub lines: Vec<String>,
 }
 
-/// Verifies the run in a folder. With plugins, the planners are asked again, too.
+/// Verifies the run in a folder. With plugins, the planners are asked again, too; a run that is then found equal is marked
+/// as verified in its folder.
 ///
 /// Takes about as long as computing the mission took, without waiting for the clock.
 ///
@@ -84,8 +86,14 @@ pub fn verify(folder: &Path, plugins: &PluginDirs, from_journal: bool) -> anyhow
     if let Some(measured) = Ticks::open(&journal_of(folder))?.opened()?.measured.clone() {
         return verify_located(folder, &measured);
     }
+    let proof = Proof::begin(folder)?;
     let findings = findings(folder, (!from_journal).then_some(plugins))?;
-    Ok(Verified { is_equal: findings.are_equal(), is_located: false, lines: lines(&findings, plugins) })
+    let (is_equal, mut lines) = (findings.are_equal(), lines(&findings, plugins));
+    if is_equal && !from_journal {
+        let not_kept = proof.keep(folder, SystemTime::now()).err();
+        lines.extend(not_kept.map(|error| format!("note: the run could not be marked as verified: {error}")));
+    }
+    Ok(Verified { is_equal, is_located: false, lines })
 }
 
 /// Verifies located readings: there is no mission to recompute, so only files and signed reports are compared.

@@ -22,10 +22,11 @@ mod register;
 mod report_file;
 mod signed;
 mod standing;
+mod verified;
 mod whole;
 
 pub use error::RunError;
-pub use files::{utc, utc_minute};
+pub use files::{began, utc, utc_day_minute, utc_minute};
 pub use folder::{RunFolder, find, is_run};
 pub use kept::Kept;
 pub use list::{Listed, list, table};
@@ -38,4 +39,5 @@ pub use register::Register;
 pub use report_file::{end_is_missing, journal_doubt};
 pub use signed::{SIGNED_FILE, Signatures, add_signed, signatures, signed_list, signed_under_another_name};
 pub use standing::{Standing, standing};
+pub use verified::{Proof, VERIFIED_FILE};
 pub use whole::{write_by_draft, write_whole};

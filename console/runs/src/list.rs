@@ -10,6 +10,7 @@ use crate::{
     report_file::{Now, Reported},
     signed::signatures,
     standing::{Standing, held, standing_within},
+    verified::verified,
 };
 use account::{Notes, Summary};
 use comfy_table::{
@@ -41,6 +42,10 @@ pub struct Listed {
     /// Folder of the run.
     #[serde(serialize_with = "shown")]
     pub folder: PathBuf,
+    /// When the run was last verified, UTC, such as `2026-11-22 04:01`; absent if it was not, or if its journal has
+    /// changed since.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verified: Option<String>,
     /// What is wrong with the run; absent if nothing is wrong.
     pub note: Option<String>,
     /// The remark that people wrote about the run.
@@ -60,7 +65,8 @@ pub fn list(logs: &Path, register: &Register) -> Result<Vec<Listed>, RunError> {
     let look = |folder: &PathBuf| {
         let listed = look_at(folder, &budget);
         let notes = listed.note.into_iter().chain(signatures(folder, register).doubts);
-        Listed { note: notes.reduce(|one, other| format!("{one}; {other}")), ..listed }
+        let note = notes.reduce(|one, other| format!("{one}; {other}"));
+        Listed { note, verified: verified(folder, &budget), ..listed }
     };
     // The budget is spent on the newest runs first, because people usually look for those.
     let mut listed: Vec<Listed> = past_runs(logs)?.iter().rev().map(look).collect();
@@ -149,6 +155,7 @@ fn listed(folder: &Path, end: &str, summary: Option<&Summary>, note: Option<Stri
         mission_time_s: summary.and_then(|summary| summary.mission_time_s),
         coverage_reachable: summary.and_then(|summary| summary.coverage.as_ref()).map(|c| c.reachable),
         folder: folder.to_path_buf(),
+        verified: None,
         note,
         remark: Some(notes.remark).filter(|remark| !remark.is_empty()),
         bookmarks: notes.bookmarks.len(),

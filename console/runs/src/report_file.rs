@@ -135,7 +135,8 @@ impl Reported {
         let Some(then) = &self.source.events_sha256 else { return Ok(summary) };
         let path = journal_of(folder);
         let no_journal = |error: io::Error| format!("{} cannot be read: {error}", name_of(&path));
-        let untouched = is_untouched(&path, self.source.journal_bytes, folder).map_err(no_journal)?;
+        let untouched =
+            is_untouched(&path, self.source.journal_bytes, &folder.join(REPORT_FILE)).map_err(no_journal)?;
         if !untouched && budget.events_sha256(&path).map_err(no_journal)? != *then {
             return Err(NOT_THE_ONE.to_owned());
         }
@@ -182,7 +183,7 @@ impl Reported {
             Now::Is(now) => return (*now != Some(then)).then(|| NOT_THE_RECORDING.to_owned()),
             Now::Within(budget) => budget,
         };
-        if is_untouched(&path, self.source.recording_bytes, folder).unwrap_or(false) {
+        if is_untouched(&path, self.source.recording_bytes, &folder.join(REPORT_FILE)).unwrap_or(false) {
             return None;
         }
         let length = fs::metadata(&path).map_or(0, |file| file.len());
@@ -236,15 +237,15 @@ fn name_of(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Whether a file has the length stated in the report and was last written before the report was; such a file need not be
-/// hashed.
+/// Whether a file has the length that another file (`stated_in`) states and was last written before that file was; such a
+/// file need not be hashed.
 ///
 /// This is sufficient for lists. Where certainty is needed, the file itself is read ([`Reported::journal_doubt`],
 /// [`Reported::recording_doubt`]).
-fn is_untouched(file: &Path, bytes: Option<u64>, folder: &Path) -> io::Result<bool> {
+pub(crate) fn is_untouched(file: &Path, bytes: Option<u64>, stated_in: &Path) -> io::Result<bool> {
     // If the times are within one tick of the file system's clock, the two files may have been written together, or the
     // file may have been changed afterwards.
-    let (file, report) = (fs::metadata(file)?, fs::metadata(folder.join(REPORT_FILE))?);
+    let (file, report) = (fs::metadata(file)?, fs::metadata(stated_in)?);
     let written = |file: &Metadata| file.modified().unwrap_or(SystemTime::UNIX_EPOCH);
     Ok(bytes == Some(file.len()) && written(&file) < written(&report))
 }

@@ -74,6 +74,7 @@ pub enum ActionId {
     NextLike,
     PreviousLike,
     Copy,
+    PlannerMessages,
     ZoomIn,
     ZoomOut,
     WholeTank,

@@ -93,7 +93,7 @@ const fn shows(screen: Screen, name: &'static str, about: &'static str, keys: &'
 /// All screens, in the order of their digits.
 #[rustfmt::skip]
 const ROWS: &[Row] = &[
-    Row { lists_runs: true, opens: |_| Some("open"), enter: go::open_selected, select: |m, by| m.home.select(by),
+    Row { lists_runs: true, opens: go::opens_at_home, enter: go::open_selected, select: |m, by| m.home.select(by),
         filter: Some((|m| &m.home.filter, |m| &mut m.home.filter)), run: go::run_at_home,
         ..row(shows(Screen::Home, "home", "Screen 1: scenarios and past runs", &[Key::Char('1')]), "Home",
             &[&[On(Screen::Home), Rows]], view::home::draw) },

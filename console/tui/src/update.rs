@@ -21,6 +21,7 @@ mod place;
 pub(crate) mod preflight;
 pub(crate) mod preset;
 mod redraw;
+pub(crate) mod remedies;
 pub(crate) mod replay;
 pub(crate) mod review;
 pub(crate) mod send;
@@ -77,12 +78,14 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
         Msg::Run(id, msg) => effects = hear::hear(model, id, msg),
         Msg::Presets(presets) => model.console.presets = presets,
         Msg::Found(found) => model.home.found = Some(*found),
+        Msg::Glimpsed(key, found) => model.home.glimpses.take(key, found),
         Msg::Done(job, result) => effects = go::done(model, &job, result),
         Msg::Planners { found, refused } => take_planners(model, found, refused),
         Msg::Notice { severity, text } => news(model, &Cause::Console, severity, text),
     }
     events::refresh(model);
     unseen::note(model, question_before.as_ref());
+    effects.extend(go::glimpse(model));
     if let Some((notice, before)) = said_before
         && model.console.notice.as_ref() == Some(&notice)
         && Pressing::of(model).is_more_than(&before, &notice)
@@ -144,7 +147,7 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
     if typing::press(model, press.key) {
         return Vec::new();
     }
-    if press.key == Key::Esc && events::close(model) {
+    if press.key == Key::Esc && (events::close(model) || go::close_text(model)) {
         return Vec::new();
     }
     let Some(action) = find::action_for(&model.console.keys, press.key, &contexts(model)) else {

@@ -65,6 +65,9 @@ pub enum TetherAlarm {
 }
 
 impl TetherAlarm {
+    /// Share of a limit at which the operator is warned.
+    pub const NEAR: f64 = 0.8;
+
     /// The kind of alarm in one or two words.
     pub fn word(&self) -> &'static str {
         match self {

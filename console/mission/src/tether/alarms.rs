@@ -3,8 +3,6 @@
 use crate::event::{EventKind, TetherAlarm};
 use std::collections::BTreeMap;
 
-/// Share of a limit at which the operator is warned.
-const NEAR: f64 = 0.8;
 /// Share of a limit below which an alarm is cleared.
 const EASED: f64 = 0.75;
 
@@ -30,7 +28,7 @@ impl Alarms {
         let level = self.levels.entry(alarm.word()).or_default();
         let now = match share {
             share if share > 1.0 => Level::Reached,
-            share if share > NEAR => Level::Near,
+            share if share > TetherAlarm::NEAR => Level::Near,
             _ => Level::Calm,
         };
         if now > *level {

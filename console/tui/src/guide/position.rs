@@ -23,7 +23,7 @@ pub(super) const CONTRADICTION: Guide = Guide {
     remedies: &[
         wait("Wait: the mission resumes automatically when the ranges agree again."),
         STAY,
-        wait("Check the residuals: a station that is always wrong has wrong survey data."),
+        wait("Check the residuals. A station that is always wrong has wrong survey data."),
         END,
     ],
 };

@@ -9,7 +9,7 @@ pub struct Guide {
     pub cause: &'static str,
     /// The consequence.
     pub effect: &'static str,
-    /// What the operator can do; at most four remedies.
+    /// What the operator can do; at most four remedies. Those without an action are advice.
     pub remedies: &'static [Remedy],
 }
 

@@ -20,7 +20,7 @@ pub(super) fn name(word: &str) -> String {
 pub(super) fn guide(word: &str) -> Guide {
     match word {
         "reel" => Guide {
-            cause: "More than 80 % of the tether is out.",
+            cause: "More than 80 % of the tether is out, the limit of this alarm.",
             effect: "When the reel is empty, the robot is held.",
             remedies: const {
                 &[

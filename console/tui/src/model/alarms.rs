@@ -11,7 +11,7 @@ mod list;
 
 pub mod limit;
 
-pub use alarm::{Alarm, Reading, Shelf, State};
+pub use alarm::{Acknowledged, Alarm, Reading, Shelf, State};
 pub use cause::Cause;
 pub use list::Alarms;
 

@@ -35,7 +35,7 @@ impl Run {
                     self.clock.started_s = Some(event.t_s);
                 }
                 if let Order::Note(note) = order {
-                    self.alarms.take(&note.what, event.t_s);
+                    self.alarms.take(note, event.t_s);
                 }
                 if *order == Order::TakePlan {
                     self.planning.offer.iter_mut().for_each(|offer| offer.is_taken = true);

@@ -1,8 +1,10 @@
 //! The scenarios and past runs that can be opened, and any problems with them.
 
+use super::glimpse::Glimpses;
 use super::live::Source;
 use mission::Severity;
 use serde::{Deserialize, Serialize};
+use world::World;
 
 /// A scenario and, if it cannot be opened, the reason.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -23,6 +25,30 @@ pub struct ScenarioEntry {
     pub expected: String,
     /// Why the scenario cannot be opened, with file, line and key.
     pub problem: Option<String>,
+    /// The tank as drawn; `None` if the scenario cannot be opened.
+    #[serde(default)]
+    pub world: Option<Box<World>>,
+}
+
+impl ScenarioEntry {
+    /// Why the scenario cannot be opened, in one line without the path of its file: `line 14: unknown key`.
+    pub fn briefly(&self) -> Option<String> {
+        let problem = self.problem.as_ref()?;
+        let line = problem.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or_default();
+        let (Source::File(path), Some(rest)) =
+            (&self.source, line.split_once(".toml:").map(|(_, rest)| rest))
+        else {
+            return Some(line.to_owned());
+        };
+        let is_of_file = line.starts_with(path.as_str());
+        let place = rest.split_once(": ").filter(|_| is_of_file);
+        let numbered = place.and_then(|(place, why)| {
+            let number =
+                place.split(':').next().filter(|number| number.bytes().all(|b| b.is_ascii_digit()))?;
+            Some(format!("line {number}: {why}"))
+        });
+        Some(numbered.unwrap_or_else(|| line.to_owned()))
+    }
 }
 
 /// A past run.
@@ -30,8 +56,11 @@ pub struct ScenarioEntry {
 pub struct PastRun {
     /// The name of the run's folder.
     pub name: String,
-    /// When the run began, UTC, taken from the folder's name; empty if the name contains no time.
+    /// When the run began, UTC, taken from the folder's name: `22 Nov 04:01`; empty if the name contains no time.
     pub began: String,
+    /// The same moment, seconds since 1970.
+    #[serde(default)]
+    pub began_unix_s: Option<f64>,
     /// The name of the scenario; empty if unknown.
     pub scenario: String,
     /// The id of the first planner; empty if unknown.
@@ -42,6 +71,9 @@ pub struct PastRun {
     pub mission_time_s: Option<f64>,
     /// Scanned share of the reachable floor; `None` for missions without scanning.
     pub reachable: Option<f64>,
+    /// When the run was verified, UTC; `None` if it was not, or if its journal has changed since.
+    #[serde(default)]
+    pub verified: Option<String>,
     /// What is wrong with the run.
     pub note: Option<String>,
     /// The remark that was written about the run.
@@ -84,6 +116,20 @@ pub enum HomeList {
     Scenarios,
     /// Past runs.
     Runs,
+    /// Problems, and checks that passed.
+    Attention,
+}
+
+impl HomeList {
+    /// The lists, in Tab order.
+    pub const ALL: [Self; 3] = [Self::Scenarios, Self::Runs, Self::Attention];
+
+    /// The list that follows by `by` in Tab order.
+    #[must_use]
+    pub fn turned(self, by: isize) -> Self {
+        let at = (self as isize + by).rem_euclid(Self::ALL.len() as isize);
+        Self::ALL[at as usize]
+    }
 }
 
 /// The home screen.
@@ -97,8 +143,17 @@ pub struct Home {
     pub scenario: usize,
     /// The index of the selected run among those that pass the filter.
     pub run: usize,
+    /// The index of the selected item in the attention list.
+    #[serde(default)]
+    pub attention: usize,
+    /// Whether the whole text of the selected attention item is shown.
+    #[serde(default)]
+    pub is_read: bool,
     /// The filter: text that the names in the lists must contain.
     pub filter: String,
+    /// What is known about past runs that were selected.
+    #[serde(default)]
+    pub glimpses: Glimpses,
 }
 
 impl Home {
@@ -124,11 +179,23 @@ impl Home {
         self.found.as_ref()?.runs.iter().find(|run| run.scenario == scenario)
     }
 
+    /// The selected scenario.
+    pub fn selected_scenario(&self) -> Option<&ScenarioEntry> {
+        self.scenarios().get(self.scenario).copied()
+    }
+
+    /// The selected past run.
+    pub fn selected_run(&self) -> Option<&PastRun> {
+        self.runs().get(self.run).copied()
+    }
+
     /// Moves the selection down by `by` lines in the list that responds to the arrow keys.
     pub(crate) fn select(&mut self, by: isize) {
+        let points = self.found.as_ref().map_or(0, |found| found.attention.len());
         let (lines, selected) = match self.list {
             HomeList::Scenarios => (self.scenarios().len(), &mut self.scenario),
             HomeList::Runs => (self.runs().len(), &mut self.run),
+            HomeList::Attention => (points, &mut self.attention),
         };
         *selected = selected.saturating_add_signed(by).min(lines.saturating_sub(1));
     }

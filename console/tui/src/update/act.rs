@@ -5,9 +5,8 @@ use super::message::Effect;
 use super::offer::{offered, refuse};
 use super::overlay::{self, ask, open};
 use super::send::{hold_now, send};
-use super::{alarms, palette, replay};
+use super::{palette, remedies, replay};
 use crate::actions::{ActionId, Deed, find};
-use crate::model::home::HomeList;
 use crate::model::plugins::plugins;
 use crate::model::ui::{Ask, Purpose};
 use crate::model::{Model, Overlay, Pane, Screen, Speed};
@@ -31,7 +30,7 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
     match (id, find::row(id).map(|action| action.deed)) {
         (ActionId::Go(screen), _) => go::go(model, screen),
         (ActionId::Jump(jump), _) => replay::go_to(model, jump),
-        (ActionId::Remedy(number), _) => run_remedy(model, number),
+        (ActionId::Remedy(number), _) => remedies::run(model, number.into()),
         (_, Some(Deed::Act(act))) => act(model),
         (_, Some(Deed::Look(look))) => {
             look(model);
@@ -161,15 +160,6 @@ pub(crate) fn toggle_mouse(model: &mut Model) -> Vec<Effect> {
     vec![Effect::Mouse(model.ui.mouse)]
 }
 
-/// Runs an action from the open action list of an alarm.
-fn run_remedy(model: &mut Model, number: u8) -> Vec<Effect> {
-    match alarms::chosen_remedy(model, number.into()) {
-        Ok(ActionId::Hold) => hold_only(model),
-        Ok(action) => act(model, action),
-        Err(why) => refuse(model, why),
-    }
-}
-
 fn driving(model: &Model) -> usize {
     let id = model.live.run.planner_id();
     model.console.planners.iter().position(|planner| Some(planner.id.as_str()) == id).unwrap_or(0)
@@ -178,10 +168,7 @@ fn driving(model: &Model) -> usize {
 /// Moves the focus by `by` panes; on the home screen, switches between the lists.
 pub(crate) fn turn_to(model: &mut Model, by: isize) {
     if model.ui.screen == Screen::Home {
-        model.home.list = match model.home.list {
-            HomeList::Scenarios => HomeList::Runs,
-            HomeList::Runs => HomeList::Scenarios,
-        };
+        model.home.list = model.home.list.turned(by);
         return;
     }
     let panes = model.ui.panes();

@@ -3,8 +3,7 @@
 use super::message::Effect;
 use super::offer::{accepted, demand, on_screen, refuse};
 use super::place;
-use crate::actions::ActionId;
-use crate::guide::{guide, name};
+use crate::guide::name;
 use crate::model::alarms::State;
 use crate::model::ui::Shelving;
 use crate::model::{Alarm, Cause, LineEdit, Model, Overlay, Screen};
@@ -78,9 +77,9 @@ pub(super) fn note(model: &mut Model, what: Noted) -> Vec<Effect> {
     if model.live.run.about.is_some() && accepted(model, &order).is_ok() {
         return vec![Effect::Order(order)];
     }
-    if let Order::Note(Note { what, .. }) = &order {
+    if let Order::Note(note) = &order {
         let t_s = model.live.run.clock.t_s;
-        model.live.run.alarms.take(what, t_s);
+        model.live.run.alarms.take(note, t_s);
     }
     Vec::new()
 }
@@ -166,24 +165,6 @@ pub(crate) fn open_actions(model: &mut Model) -> Vec<Effect> {
     let Some(cause) = selected_cause(model) else { return refuse(model, "no alarms".into()) };
     model.ui.overlay = Overlay::Remedies { cause, selected: 0 };
     Vec::new()
-}
-
-/// Runs the action with the given number, from 1, in the open action list, and closes the list. Actions that move the
-/// robot still ask first.
-///
-/// # Errors
-/// Returns the reason why no action can be run.
-pub(super) fn chosen_remedy(model: &mut Model, number: usize) -> Result<ActionId, String> {
-    let Overlay::Remedies { cause, .. } = &model.ui.overlay else {
-        return Err("choose an alarm first, then <accept>".into());
-    };
-    let cause = cause.clone();
-    let remedy = number.checked_sub(1).and_then(|index| guide(&cause).remedies.get(index));
-    let remedy = remedy.ok_or_else(|| format!("no action {number}"))?;
-    let action = remedy.action.ok_or_else(|| format!("advice, not an action: {}", remedy.text))?;
-    model.ui.alarm = Some(cause);
-    model.ui.overlay = Overlay::None;
-    Ok(action)
 }
 
 /// Shows the position of the selected alarm on the map.

@@ -3,7 +3,7 @@
 use super::message::Effect;
 use super::offer::{demand, on_screen, refuse};
 use super::{place, typing};
-use crate::model::log::filter::with_least;
+use crate::model::log::filter::{with_debug, with_least};
 use crate::model::{Model, Overlay, Screen};
 use mission::Severity;
 
@@ -75,13 +75,27 @@ pub(crate) fn copy(model: &mut Model) -> Vec<Effect> {
 
 /// Changes the minimum severity, which is a term of the filter, to the next severity.
 pub(crate) fn next_severity(model: &mut Model) {
-    let next = match model.ui.events.matches.filter().least() {
-        Severity::Debug | Severity::Info => Severity::Watch,
+    let filter = model.ui.events.matches.filter();
+    let next = match filter.least() {
+        Severity::Debug => Severity::Info,
+        Severity::Info => Severity::Watch,
         Severity::Watch => Severity::Warn,
         Severity::Warn => Severity::Crit,
         Severity::Crit => Severity::Info,
     };
     set_least(model, next);
+}
+
+/// Shows or hides the messages of planners about their own work.
+pub(crate) fn toggle_debug(model: &mut Model) {
+    let needle = &model.ui.needle;
+    model.ui.needle = if model.ui.events.matches.filter().shows_debug() {
+        with_least(needle, Severity::Info)
+    } else {
+        with_debug(needle)
+    };
+    model.ui.events.at = None;
+    refresh(model);
 }
 
 /// Lists only events of the given severity or above.

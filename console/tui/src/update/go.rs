@@ -6,7 +6,8 @@ use super::{news, replay};
 use crate::actions::ActionId;
 use crate::model::home::HomeList;
 use crate::model::log::clock;
-use crate::model::{Cause, Live, Model, RunId, Screen, Source};
+use crate::model::ui::Arrangement;
+use crate::model::{Cause, Live, Model, Overlay, RunId, ScenarioEntry, Screen, Source};
 use mission::{PlannerChoice, Severity};
 use world::Point;
 
@@ -28,22 +29,61 @@ fn looked(screen: Screen) -> Vec<Effect> {
     if screen.row().lists_runs { vec![Effect::Look] } else { Vec::new() }
 }
 
+/// The effect of Enter on the home screen, in a word or two; `None` if nothing is selected.
+pub(crate) fn opens_at_home(model: &Model) -> Option<&'static str> {
+    let home = &model.home;
+    match home.list {
+        HomeList::Scenarios => {
+            let entry = home.selected_scenario()?;
+            let is_shown = is_open_mission(model, entry) && model.live.is_under_way();
+            Some(if is_shown { "show" } else { "open" })
+        }
+        HomeList::Runs => {
+            let is_open = selected_run(model)? == result_name(model).unwrap_or_default();
+            Some(if is_open { "result" } else { "replay" })
+        }
+        HomeList::Attention => {
+            home.found.as_ref().filter(|found| !found.attention.is_empty())?;
+            Some(if home.is_read { "close text" } else { "full text" })
+        }
+    }
+}
+
 /// Opens the selected item on the home screen.
 pub(crate) fn open_selected(model: &mut Model) -> Vec<Effect> {
     let home = &model.home;
-    if home.list == HomeList::Runs {
-        return go_to_run(model);
+    match home.list {
+        HomeList::Scenarios => {}
+        HomeList::Runs => return go_to_run(model),
+        HomeList::Attention => {
+            model.home.is_read = !model.home.is_read;
+            return Vec::new();
+        }
     }
-    let scenarios = home.scenarios();
-    let Some(entry) = scenarios.get(home.scenario) else {
+    let Some(entry) = home.selected_scenario() else {
         return refuse(model, "no scenario is listed".into());
     };
-    if let Some(why) = &entry.problem {
-        let why = why.clone();
+    if let Some(why) = entry.briefly() {
+        let why = format!("{} cannot be opened: {why}", entry.name);
         return refuse(model, why);
+    }
+    if is_open_mission(model, entry) && model.live.is_under_way() {
+        return go(model, Screen::Mission);
     }
     let source = entry.source.clone();
     open(model, source, None)
+}
+
+/// Whether a scenario is that of the open mission, which has not ended.
+pub(crate) fn is_open_mission(model: &Model, entry: &ScenarioEntry) -> bool {
+    let live = &model.live;
+    live.source.as_ref() == Some(&entry.source) && !live.is_look_only() && !live.run.has_ended()
+}
+
+/// Closes the text of an attention item; returns whether one was open.
+pub(super) fn close_text(model: &mut Model) -> bool {
+    let is_shown = model.ui.overlay == Overlay::None && model.ui.screen == Screen::Home;
+    is_shown && std::mem::take(&mut model.home.is_read)
 }
 
 /// Shows the result of the selected run if it is the open one; replays any other run.
@@ -116,13 +156,26 @@ pub(crate) fn run_at_home(model: &Model) -> Option<String> {
     if model.home.list == HomeList::Runs { selected_run(model) } else { None }
 }
 
+/// Requests what is known about the selected run, if there is room to show it. While the robot moves, the disk and the
+/// processor are left to the mission.
+pub(super) fn glimpse(model: &mut Model) -> Option<Effect> {
+    let is_shown = model.ui.arrangement() == Arrangement::Wide && !model.live.may_move();
+    let run = match model.ui.screen {
+        Screen::Home if model.home.list == HomeList::Runs => model.home.selected_run(),
+        Screen::Review => model.review.run(&model.home),
+        _ => None,
+    }?;
+    let key = (run.name.clone(), run.end.clone());
+    (is_shown && model.home.glimpses.ask(key.clone())).then_some(Effect::Glimpse(key))
+}
+
 /// The open run, if it is a replay or has ended.
 pub(crate) fn open_run(model: &Model) -> Option<String> {
     model.live.replay.as_ref().map(|replay| replay.name.clone()).or_else(|| result_name(model))
 }
 
 fn selected_run(model: &Model) -> Option<String> {
-    model.home.runs().get(model.home.run).map(|run| run.name.clone())
+    model.home.selected_run().map(|run| run.name.clone())
 }
 
 fn result_name(model: &Model) -> Option<String> {

@@ -93,8 +93,9 @@ fn compare(model: &mut Model, figure: &Figure, value: f64) {
         }
         None => {}
     }
-    run.alarms.read(cause, || Reading {
+    run.alarms.read(cause, t_s, || Reading {
         now: format!("{value:.0} {unit}"),
         limit: format!("{:.0} {unit}", limit.alarm),
+        numbers: Some((value, Some(limit.alarm))),
     });
 }

@@ -3,7 +3,8 @@
 use crate::actions::ActionId;
 use crate::keys::KeyPress;
 use crate::model::{
-    Forecast, GhostPlan, Health, Measured, Preset, Run, RunId, RunResult, Source, Speed, Times,
+    Forecast, GhostPlan, Glimpse, Health, Measured, Preset, Run, RunId, RunResult, Source, Speed, Times,
+    glimpse::RunKey,
     home::Found,
     replay::{Align, Reel, Side},
 };
@@ -47,6 +48,8 @@ pub enum Msg {
     Run(RunId, RunMsg),
     /// The contents of the disk.
     Found(Box<Found>),
+    /// What was found about a past run, or why it cannot be read, as a sentence.
+    Glimpsed(RunKey, Result<Box<Glimpse>, String>),
     /// The saved presets.
     Presets(Vec<Preset>),
     /// A job has finished: its result, or why it failed, as a sentence.
@@ -117,6 +120,8 @@ pub enum Rows {
     Scenarios,
     /// Past runs on the home screen.
     Runs,
+    /// Problems on the home screen.
+    Attention,
     /// The table of alarms.
     Alarms,
     /// The events, newest first.
@@ -316,6 +321,8 @@ pub enum Effect {
     Survey,
     /// Rescan the scenarios, past runs and disk space.
     Look,
+    /// Read what is known about a past run; replaces an earlier request that has not been answered.
+    Glimpse(RunKey),
     /// Start a background job.
     Do(Job),
     /// Write a handover page.

@@ -51,7 +51,10 @@ fn works(model: &Model, id: ActionId) -> bool {
 fn click(model: &mut Model, list: Rows, index: usize) -> Vec<Effect> {
     let was_focused = !focus(model, list);
     let before = selected(model, list);
-    let opens = matches!(list, Rows::Scenarios | Rows::Runs | Rows::Alarms | Rows::Events | Rows::Past);
+    let opens = matches!(
+        list,
+        Rows::Scenarios | Rows::Runs | Rows::Attention | Rows::Alarms | Rows::Events | Rows::Past
+    );
     if was_focused && before == index {
         return if opens { act(model, ActionId::Accept) } else { Vec::new() };
     }
@@ -64,6 +67,7 @@ fn focus(model: &mut Model, list: Rows) -> bool {
     let wanted = match list {
         Rows::Scenarios => HomeList::Scenarios,
         Rows::Runs => HomeList::Runs,
+        Rows::Attention => HomeList::Attention,
         Rows::Alarms | Rows::Events | Rows::Plugins | Rows::Missed | Rows::Past => return false,
     };
     std::mem::replace(&mut model.home.list, wanted) != wanted
@@ -74,6 +78,7 @@ fn selected(model: &Model, list: Rows) -> usize {
     match list {
         Rows::Scenarios => model.home.scenario,
         Rows::Runs => model.home.run,
+        Rows::Attention => model.home.attention,
         Rows::Alarms => {
             let chosen = model.selected_alarm().map(|alarm| &alarm.cause);
             let table = model.live.run.alarms.table();

@@ -8,9 +8,8 @@ use super::preflight;
 use super::preset::take as take_preset;
 use super::replay;
 use super::send::{send, set_parameter};
-use super::{finish, palette, shadow, typing, what_if, zones};
+use super::{finish, palette, remedies, shadow, typing, what_if, zones};
 use crate::actions::ActionId;
-use crate::guide::guide;
 use crate::model::ui::{Ask, Edit, MapLayer, Purpose};
 use crate::model::{Ghost, Model, Overlay, Palette, parameter, preset};
 use mission::{Order, ParamValue, Parameters, PlannerChoice, PlannerInfo, Severity};
@@ -254,7 +253,7 @@ pub(super) fn select(model: &mut Model, by: isize) {
         Overlay::Preflight { .. } => model.checks().len(),
         Overlay::Messages { .. } => model.console.messages.len(),
         Overlay::Finish { .. } => finish::WAYS,
-        Overlay::Remedies { cause, .. } => guide(cause).remedies.len(),
+        Overlay::Remedies { cause, .. } => remedies::steps(model, cause).len(),
         Overlay::None
         | Overlay::Confirm(_)
         | Overlay::Stepping

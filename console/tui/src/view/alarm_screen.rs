@@ -3,34 +3,40 @@
 mod actions;
 mod detail;
 mod rows;
+mod table;
 
 pub(super) use actions::list as action_list;
 
+use super::charts::{self, Series};
 use super::look::{Look, fill};
-use super::{events, table};
-use crate::model::alarms::State;
+use super::sketch::{self, Sketch};
+use super::{events, text};
 use crate::model::ui::Arrangement;
 use crate::model::{Alarm, Model, Overlay, Screen};
 use crate::theme::Role;
-use crate::update::Rows;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
 
 /// Width of the detail pane when the actions are beside it, columns.
 const DETAIL: u16 = 72;
-/// Rows of the pane with an alarm's events, including the frame.
+/// Minimum rows of the pane with an alarm's events, including the frame.
 const EVENTS: u16 = 5;
-/// The keys that run the actions in the open list.
-const RUN: &str = "<first-action>-<fourth-action> run";
 /// Minimum rows of the table, including the frame.
 const TABLE: u16 = 7;
+/// Minimum and preferred rows of the chart, including the frame.
+const CHART: (u16, u16) = (7, 16);
+/// Columns and rows of the screen from which everything about an alarm is beside the table.
+const BESIDE: (u16, u16) = (170, 40);
 
 pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     match (look.model.selected_alarm(), arrangement) {
+        (Some(alarm), Arrangement::Wide) if area.width >= BESIDE.0 && area.height >= BESIDE.1 => {
+            beside(look, frame, area, alarm);
+        }
         (Some(alarm), Arrangement::Wide) => wide(look, frame, area, alarm),
         (Some(alarm), Arrangement::Narrow) => narrow(look, frame, area, alarm),
-        _ => draw_table(look, frame, area, false),
+        _ => table::draw(look, frame, area, arrangement),
     }
 }
 
@@ -40,94 +46,128 @@ pub(super) fn shows_actions(model: &Model) -> bool {
     whole && model.ui.screen == Screen::Alarms
 }
 
+/// Table and events on the left; the alarm with its actions, its chart and its place on the right.
+fn beside(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
+    let [left, right] =
+        Layout::horizontal([Constraint::Length(rows::WIDTH + 2), Constraint::Fill(1)]).areas(area);
+    let wanted = table::rows(look, Arrangement::Wide).max(TABLE).min(left.height - EVENTS);
+    let [list, below] = Layout::vertical([Constraint::Length(wanted), Constraint::Fill(1)]).areas(left);
+    table::draw(look, frame, list, Arrangement::Wide);
+    draw_events(look, frame, below, alarm);
+    let columns = usize::from(right.width) - 2;
+    let (detail, actions) = (detail::lines(look, alarm, columns), actions::lines(look, alarm, columns));
+    let chart = if is_charted(alarm) { CHART.1 } else { 0 };
+    let [about, steps, curve, map] = Layout::vertical([
+        Constraint::Length(detail.len() as u16 + 2),
+        Constraint::Length(actions.len() as u16 + 2),
+        Constraint::Length(chart),
+        Constraint::Fill(1),
+    ])
+    .areas(right);
+    draw_detail(look, frame, about, alarm, detail);
+    fill(frame, steps, actions_block(look, alarm, "Actions"), actions);
+    draw_chart(look, frame, curve, alarm);
+    draw_place(look, frame, map, alarm);
+}
+
 fn wide(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
-    let columns = usize::from(DETAIL) - 2;
-    let detail = detail::lines(look, alarm, columns);
+    let detail = detail::lines(look, alarm, usize::from(DETAIL) - 2);
     let actions = actions::lines(look, alarm, usize::from(area.width.saturating_sub(DETAIL)) - 2);
-    let rows = detail.len().max(actions.len()) as u16 + 2;
-    let rows = rows.min(area.height.saturating_sub(EVENTS + TABLE));
+    let chart = if is_charted(alarm) { CHART.0 } else { 0 };
+    let table = table::rows(look, Arrangement::Wide).max(TABLE);
+    let about = (detail.len() as u16 + 2).max(actions.len() as u16 + 2 + chart);
+    let about = about.min(area.height.saturating_sub(EVENTS + TABLE));
+    let table = table.min(area.height.saturating_sub(EVENTS + about));
     let [list, middle, below] =
-        Layout::vertical([Constraint::Fill(1), Constraint::Length(rows), Constraint::Length(EVENTS)])
+        Layout::vertical([Constraint::Length(table), Constraint::Length(about), Constraint::Fill(1)])
             .areas(area);
     let [left, right] = Layout::horizontal([Constraint::Length(DETAIL), Constraint::Fill(1)]).areas(middle);
-    draw_table(look, frame, list, true);
-    let map = alarm.place.map_or_else(String::new, |_| look.keys("<show-place> map"));
-    fill(frame, left, look.block(Role::Border, &detail::title(look, alarm), &map), detail);
-    fill(frame, right, actions_block(look, "Actions"), actions);
-    let block = look.block(Role::Border, "Events of this alarm", &look.keys("<events> all events"));
-    fill(frame, below, block, of_alarm(look, alarm, usize::from(below.width) - 2));
+    // The actions need all their rows; the chart gets the rest.
+    let rest = right.height.saturating_sub(actions.len() as u16 + 2);
+    let chart = if chart > 0 && rest >= CHART.0 { rest } else { 0 };
+    let [steps, curve] = Layout::vertical([Constraint::Fill(1), Constraint::Length(chart)]).areas(right);
+    table::draw(look, frame, list, Arrangement::Wide);
+    draw_detail(look, frame, left, alarm, detail);
+    fill(frame, steps, actions_block(look, alarm, "Actions"), actions);
+    draw_chart(look, frame, curve, alarm);
+    draw_events(look, frame, below, alarm);
 }
 
 fn narrow(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
     let columns = usize::from(area.width) - 2;
     let actions = actions::lines(look, alarm, columns);
-    let rows = usize::from(area.height.saturating_sub(TABLE + 2)).saturating_sub(actions.len());
+    let least = TABLE.min(table::rows(look, Arrangement::Narrow));
+    let rows = usize::from(area.height.saturating_sub(least + 2)).saturating_sub(actions.len());
     let mut lines = detail::lines(look, alarm, columns);
     lines.truncate(rows);
     lines.extend(actions);
     let rows = lines.len() as u16 + 2;
     let [list, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(area);
-    draw_table(look, frame, list, false);
-    fill(frame, below, actions_block(look, &detail::title(look, alarm)), lines);
+    table::draw(look, frame, list, Arrangement::Narrow);
+    fill(frame, below, actions_block(look, alarm, &detail::title(look, alarm)), lines);
 }
 
-fn actions_block<'t>(look: &Look, title: &str) -> ratatui::widgets::Block<'t> {
+fn draw_detail(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm, lines: Vec<Line<'_>>) {
+    let map = alarm.place.map_or_else(String::new, |_| look.keys("<show-place> map"));
+    fill(frame, area, look.block(Role::Border, &detail::title(look, alarm), &map), lines);
+}
+
+fn actions_block<'t>(look: &Look, alarm: &Alarm, title: &str) -> ratatui::widgets::Block<'t> {
     let is_open = matches!(look.model.ui.overlay, Overlay::Remedies { .. });
-    let (border, note) = if is_open {
-        (Role::Focus, RUN)
-    } else {
-        (Role::Border, "<accept>, then <first-action>-<fourth-action>")
+    let note = match (actions::keys(look, &alarm.cause), is_open) {
+        (Some(keys), true) => format!("{keys} run"),
+        (Some(keys), false) => format!("{}, then {keys}", look.keys("<accept>")),
+        (None, _) => "advice only".to_owned(),
     };
-    look.block(border, title, &look.keys(note))
+    look.block(if is_open { Role::Focus } else { Role::Border }, title, &note)
+}
+
+/// Whether the figure of an alarm can be drawn as a curve.
+fn is_charted(alarm: &Alarm) -> bool {
+    alarm.history.last(crate::model::history::HISTORY_S).len() > 1
+}
+
+/// The figure of an alarm over the last minutes, with the limit of the alarm.
+fn draw_chart(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
+    if area.height < CHART.0 || !is_charted(alarm) {
+        return;
+    }
+    let numbers = |reading: &Option<crate::model::alarms::Reading>| {
+        reading.as_ref().and_then(|reading| reading.numbers.as_ref()?.1)
+    };
+    let limit = numbers(&alarm.reading).or_else(|| numbers(&alarm.peak));
+    let largest = alarm.history.last(crate::model::history::HISTORY_S).fold(0.0, f64::max);
+    let decimals = match largest.max(limit.unwrap_or(0.0)) {
+        most if most < 10.0 => 2,
+        most if most < 100.0 => 1,
+        _ => 0,
+    };
+    let series = Series { title: detail::figure(&alarm.cause), values: &alarm.history, limit, decimals };
+    let block = look.block(Role::Border, series.title, &charts::note(&series));
+    charts::framed(look, frame, area, block, &series);
+}
+
+/// The place of an alarm on a small map.
+fn draw_place(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
+    let Some(sketch) = Sketch::of_run(look.run) else { return };
+    let robot = look.run.position.pose.as_ref().map(|pose| pose.position);
+    let sketch = robot.into_iter().fold(sketch, |sketch, at| sketch.marked(at, Role::Robot, "@"));
+    let (sketch, title) = match alarm.place {
+        Some(place) => (sketch.marked(place, Role::Warn, "X"), format!("Place  X {}", text::place(place))),
+        None => (sketch, "Tank".to_owned()),
+    };
+    let block = look.block(Role::Border, &title, "@ robot");
+    let inner = block.inner(area);
+    frame.render_widget(block, area);
+    sketch::draw(look, frame, inner, &sketch);
 }
 
 /// The last log lines about an alarm, newest first.
-fn of_alarm(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'static>> {
-    let entries = alarm.events.iter().rev().filter_map(|number| look.run.log.get(*number));
-    entries.take(usize::from(EVENTS) - 2).map(|entry| look.line(events::row(entry, columns))).collect()
-}
-
-fn draw_table(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
-    let alarms = look.run.alarms.table();
-    let count = |is: fn(&State) -> bool| alarms.iter().filter(|alarm| is(&alarm.state)).count();
-    let shelved = count(|state| matches!(state, State::Shelved(_)));
-    let cleared = count(|state| *state == State::Cleared);
-    let open = alarms.len() - shelved - cleared;
-    let title = format!("Alarms  {open} open, {shelved} shelved, {cleared} cleared");
-    let block = look.block(
-        Role::Focus,
-        &title,
-        &if wide { look.keys("<acknowledge-all> acknowledge all  <shelve> shelve") } else { String::new() },
-    );
+fn draw_events(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
+    let block = look.block(Role::Border, "Events of this alarm", &look.keys("<events> all events"));
     let inner = block.inner(area);
-    let (columns, height) = (usize::from(inner.width), usize::from(inner.height));
-    let mut lines = vec![look.line([(Role::Dim, rows::heads(columns, wide))])];
-    if open == 0 {
-        lines.push(look.line([(Role::Good, " No open alarms.".into())]));
-    }
-    let mut selected = 0;
-    let chosen = look.model.selected_alarm().map(|alarm| &alarm.cause);
-    let mut group = None;
-    let mut places = Vec::new();
-    for alarm in alarms {
-        let heading = rows::heading(&alarm.state);
-        if heading != group {
-            group = heading;
-            let number = if alarm.state == State::Cleared { cleared } else { shelved };
-            lines.push(look.line([(Role::Dim, format!("   {} {number}", heading.unwrap_or_default()))]));
-        }
-        let is_selected = chosen == Some(&alarm.cause);
-        if is_selected {
-            selected = lines.len();
-        }
-        places.push(lines.len());
-        lines.push(table::row(look, rows::row(look, alarm, columns, wide), is_selected, columns));
-    }
-    let shown = table::window(selected, lines.len(), height);
-    for (index, line) in places.into_iter().enumerate().filter(|(_, line)| shown.contains(line)) {
-        let row = Rect { y: inner.y + (line - shown.start) as u16, height: 1, ..inner };
-        table::place(look, row, Rows::Alarms, index..index + 1);
-    }
-    let lines = lines.into_iter().enumerate().filter(|(index, _)| shown.contains(index));
-    fill(frame, area, block, lines.map(|(_, line)| line).collect());
+    let entries = alarm.events.iter().rev().filter_map(|number| look.run.log.get(*number));
+    let lines = entries.take(usize::from(inner.height));
+    let lines = lines.map(|entry| look.line(events::row(entry, usize::from(inner.width)))).collect();
+    fill(frame, area, block, lines);
 }

@@ -43,8 +43,8 @@ fn rows(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Parts> {
     let severity = (events::role(alarm.severity), format!(" {:<5}", severity_word(alarm.severity)));
     let front = (Role::Dim, format!(" {state:<7} T+{} ", text::clock(alarm.since_s)));
     let name = guide::name(&alarm.cause, look.run);
-    let words =
-        alarm.reading.as_ref().map_or_else(|| name.clone(), |reading| format!("{name}: {}", reading.now));
+    let reading = alarm.reading.as_ref().filter(|_| alarm.is_active());
+    let words = reading.map_or_else(|| name.clone(), |reading| format!("{name}: {}", reading.now));
     let words = |room: usize| (Role::Text, text::fit(&words, room));
     let used = text::width(&severity.1) + text::width(&front.1);
     if columns >= BESIDE {

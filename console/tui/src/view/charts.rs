@@ -10,6 +10,7 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::symbols::Marker;
 use ratatui::text::Line;
+use ratatui::widgets::Block;
 use ratatui::widgets::canvas::Canvas;
 use world::Point;
 
@@ -21,22 +22,31 @@ const PAGE_S: f64 = 60.0;
 const HEADROOM: f64 = 1.15;
 
 /// The contents of a chart.
-struct Series<'a> {
-    title: &'static str,
-    values: &'a History,
-    limit: Option<f64>,
-    decimals: usize,
+pub(super) struct Series<'a> {
+    pub title: &'a str,
+    pub values: &'a History,
+    pub limit: Option<f64>,
+    pub decimals: usize,
 }
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, chart: Chart) {
     let Some(series) = series(look, chart) else { return };
+    let block = look.pane(Pane::Chart(chart), series.title, &note(&series));
+    framed(look, frame, area, block, &series);
+}
+
+/// The time that a chart covers, and its limit.
+pub(super) fn note(series: &Series) -> String {
     let limit = series.limit.map(|limit| format!(", limit {}", text::number(limit, series.decimals)));
-    let note = format!("{} min{}", HISTORY_S / 60, limit.unwrap_or_default());
-    let block = look.pane(Pane::Chart(chart), series.title, &note);
+    format!("{} min{}", HISTORY_S / 60, limit.unwrap_or_default())
+}
+
+/// Draws a chart in a pane.
+pub(super) fn framed(look: &Look, frame: &mut Frame, area: Rect, block: Block<'_>, series: &Series) {
     let inner = block.inner(area);
     frame.render_widget(block, area);
     if inner.width > LABELS && inner.height >= 2 {
-        plot(look, frame, inner, &series);
+        plot(look, frame, inner, series);
     }
 }
 

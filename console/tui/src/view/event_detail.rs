@@ -14,6 +14,8 @@ use ratatui::text::Line;
 
 /// Width of the figure names, columns.
 const NAMES: usize = 12;
+/// The number of earlier planner messages shown with the last one.
+const ALSO: usize = 8;
 /// How many lines are searched for an event of the same kind, in every frame.
 const NEAR: usize = 2000;
 
@@ -38,6 +40,8 @@ fn tenths(t_s: f64) -> u64 {
 fn lines(look: &Look, (number, entry): (u64, &Entry), columns: usize) -> Vec<Line<'static>> {
     let mut all: Vec<Field> = vec![("event", text::capitalized(&entry.text))];
     all.extend(facts::facts(look.run, entry));
+    let also = look.model.ui.events.matches.grouped(&look.run.log, number).take(ALSO);
+    all.extend(also.map(|entry| ("before", text::capitalized(&entry.text))));
     all.extend(alarm(look, entry));
     all.extend(same_kind(look, number));
     let again = if entry.count > 1 { format!(", {} times in a row", entry.count) } else { String::new() };

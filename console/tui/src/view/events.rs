@@ -1,8 +1,10 @@
 //! Events, newest first: the pane of the mission screen, and the events screen.
 
 use super::look::{Look, Parts, fill};
+use super::sketch::{self, Sketch};
 use super::{event_detail, table, text};
 use crate::model::log::filter::{Filter, without_least};
+use crate::model::log::matches::Listed;
 use crate::model::log::severity_word;
 use crate::model::ui::Arrangement;
 use crate::model::{Entry, Overlay, Pane};
@@ -16,6 +18,13 @@ use ratatui::text::Line;
 
 /// Examples of filter terms.
 const TERMS: &str = "   sev>=watch source=ae,tether station=C t>00:05 \"two words\" -text";
+/// Width from which each event states how long ago it happened, and the width of that column.
+const AGED: usize = 100;
+const AGE: usize = 11;
+/// Columns and rows of the screen from which the place of the selected event is shown beside the list, and the width of
+/// its map.
+const BESIDE: (u16, u16) = (170, 40);
+const MAP: u16 = 72;
 /// Minimum rows of the list beside the detail, including the frame.
 const LIST: u16 = 7;
 
@@ -31,8 +40,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let note = if area.width >= 60 { "<severity> severity  <filter> filter" } else { "" };
     let block = look.pane(Pane::Events, &title, &look.keys(note));
     let inner = block.inner(area);
-    let entries = ui.events.matches.newest(&look.run.log, newer).take(usize::from(inner.height));
-    let lines = entries.map(|(_, entry)| look.line(row(entry, usize::from(inner.width)))).collect();
+    let listed = ui.events.matches.newest(&look.run.log, newer).take(usize::from(inner.height));
+    let lines = listed.map(|listed| look.line(listed_row(&listed, usize::from(inner.width)))).collect();
     fill(frame, area, block, lines);
 }
 
@@ -41,6 +50,7 @@ pub(crate) fn screen(look: &Look, frame: &mut Frame, area: Rect, arrangement: Ar
     let events = &look.model.ui.events;
     let selected = events.selected().filter(|_| events.is_open);
     let open = selected.and_then(|number| Some((number, look.run.log.get(number)?)));
+    let area = place(look, frame, area, selected.or_else(|| events.selected()));
     let Some((number, entry)) = open else { return list(look, frame, area) };
     if arrangement == Arrangement::Paged {
         return event_detail::draw(look, frame, area, (number, entry));
@@ -51,10 +61,30 @@ pub(crate) fn screen(look: &Look, frame: &mut Frame, area: Rect, arrangement: Ar
     event_detail::draw(look, frame, below, (number, entry));
 }
 
+/// Draws the place of an event on a small map if there is room for one; returns the remaining area.
+fn place(look: &Look, frame: &mut Frame, area: Rect, number: Option<u64>) -> Rect {
+    let entry = number.and_then(|number| look.run.log.get(number));
+    let sketch = Sketch::of_run(look.run).filter(|_| area.width >= BESIDE.0 && area.height >= BESIDE.1);
+    let Some((sketch, entry)) = sketch.zip(entry) else { return area };
+    let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(MAP)]).areas(area);
+    let (sketch, title) = match look.run.place_of(&entry.what) {
+        Some(at) => (sketch.marked(at, role(entry.severity), "X"), format!("Place  X {}", text::place(at))),
+        None => (sketch, "This event has no place".to_owned()),
+    };
+    let block = look.block(Role::Border, &title, &format!("T+{}", text::clock(entry.t_s)));
+    let inner = block.inner(right);
+    frame.render_widget(block, right);
+    sketch::draw(look, frame, inner, &sketch);
+    left
+}
+
 fn list(look: &Look, frame: &mut Frame, area: Rect) {
     let events = &look.model.ui.events;
     let title = format!("Events  {} of {}, newest first", events.matches.len(), look.run.log.len());
-    let block = look.block(Role::Focus, &title, "CRIT always listed");
+    let shows_debug = events.matches.filter().shows_debug();
+    let note = if shows_debug { "planner messages shown" } else { "planner messages hidden" };
+    let note = if area.width >= 76 { note } else { "" };
+    let block = look.block(Role::Focus, &title, note);
     let inner = block.inner(area);
     let columns = usize::from(inner.width);
     let mut lines = filter_lines(look, columns);
@@ -71,9 +101,14 @@ fn list(look: &Look, frame: &mut Frame, area: Rect) {
     let shown = table::window(newer, events.matches.len(), height);
     let below = Rect { y: inner.y + lines.len() as u16, height: height as u16, ..inner };
     table::place(look, below, Rows::Events, shown.clone());
-    let entries = events.matches.newest(&look.run.log, shown.start).take(shown.len());
-    lines.extend(entries.enumerate().map(|(index, (_, entry))| {
-        let parts = row(entry, columns.saturating_sub(1));
+    let listed = events.matches.newest(&look.run.log, shown.start).take(shown.len());
+    lines.extend(listed.enumerate().map(|(index, listed)| {
+        let age = if columns >= AGED { AGE } else { 0 };
+        let mut parts = listed_row(&listed, columns.saturating_sub(1 + age));
+        if age > 0 {
+            let passed_s = look.run.clock.t_s - listed.entry.t_s;
+            parts.insert(1, (Role::Dim, text::column(&format!("{:>6} ago", text::ago(passed_s)), age)));
+        }
         table::row(look, parts, shown.start + index == newer, columns)
     }));
     fill(frame, area, block, lines);
@@ -122,6 +157,14 @@ pub(super) fn role(severity: Severity) -> Role {
         Severity::Warn => Role::Warn,
         Severity::Crit => Role::Crit,
     }
+}
+
+/// A listed line, cut to a given width, with the number of lines that are listed with it.
+fn listed_row(listed: &Listed, columns: usize) -> Parts {
+    let more = if listed.more > 0 { format!(" (+{} more)", listed.more) } else { String::new() };
+    let mut parts = row(listed.entry, columns.saturating_sub(text::width(&more)));
+    parts.push((Role::Dim, more));
+    parts
 }
 
 /// A log line, cut to a given width.

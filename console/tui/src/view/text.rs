@@ -38,6 +38,19 @@ pub(crate) fn speed(speed: Speed) -> String {
     }
 }
 
+/// How long ago something happened, in its largest unit: `12 s`, `4 min`, `2 h`, `3 d`; a dash if the time is unknown or
+/// in the future.
+pub(crate) fn ago(seconds: f64) -> String {
+    const UNITS: [(f64, &str); 3] = [(86_400.0, "d"), (3600.0, "h"), (60.0, "min")];
+    // Clocks that differ slightly must not look like an error.
+    if !seconds.is_finite() || seconds < -60.0 {
+        return "-".into();
+    }
+    let unit = UNITS.into_iter().find(|(length_s, _)| seconds >= *length_s);
+    let (length_s, unit) = unit.unwrap_or((1.0, "s"));
+    format!("{} {unit}", (seconds.max(0.0) / length_s).floor())
+}
+
 /// A heading in degrees, 0 to 359, counter-clockwise from east.
 pub(crate) fn degrees(heading_rad: f64) -> String {
     let degrees = heading_rad.to_degrees().rem_euclid(360.0).round();
@@ -169,6 +182,12 @@ mod tests {
     #[test]
     fn numbers_without_a_value_are_a_dash_and_zero_has_no_sign() {
         assert_eq!([number(f64::NAN, 2), number(-0.001, 2), number(-1.005, 1)], ["-", "0.00", "-1.0"]);
+    }
+
+    #[test]
+    fn an_age_has_one_unit() {
+        let ages = [-5.0, 59.9, 60.0, 7300.0, 200_000.0, -100.0, f64::NAN].map(ago);
+        assert_eq!(ages, ["0 s", "59 s", "1 min", "2 h", "2 d", "-", "-"]);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};
 use mission::event::TetherAlarm;
-use mission::{EventKind, HoldReason, Noted, Order, Resumes, Severity};
+use mission::{EventKind, HoldReason, Note, Noted, Order, Resumes, Severity};
 use tui::actions::keymap::{Binding, Keymap};
 use tui::model::alarms::State;
 use tui::model::ui::Ask;
@@ -42,11 +42,12 @@ fn troubled() -> Screen {
         for_s: 1500.0,
         reason: "pump noise".into(),
     };
-    screen.model.live.run.alarms.take(&shelved, 0.0);
+    screen.model.live.run.alarms.take(&Note { what: shelved, by: Some("lk".into()) }, 0.0);
     let events = screen.mission.planner_fails();
     screen.hear(RunMsg::Events(events[..1].to_vec()));
     let text = screen.model.live.run.alarms.get(&Cause::Planner).expect("an alarm").text.clone();
-    screen.model.live.run.alarms.take(&Noted::Acknowledged { alarm: Cause::Planner.key(), text }, 0.0);
+    let seen = Noted::Acknowledged { alarm: Cause::Planner.key(), text };
+    screen.model.live.run.alarms.take(&Note { what: seen, by: Some("lk".into()) }, 0.0);
     screen.type_text("4");
     screen
 }

@@ -19,6 +19,8 @@ fn with_home(mut screen: Screen) -> Screen {
         scenario: "demo".into(),
         planner: String::new(),
         end: "complete".into(),
+        began_unix_s: None,
+        verified: None,
         mission_time_s: None,
         reachable: None,
         note: None,

@@ -674,5 +674,6 @@ pub(crate) fn listed(name: &str, problem: Option<&str>) -> tui::model::ScenarioE
         planner: "apf".into(),
         expected: String::new(),
         problem: problem.map(str::to_owned),
+        world: None,
     }
 }

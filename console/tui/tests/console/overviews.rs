@@ -31,16 +31,19 @@ fn scenario(name: &str, task: &str, planner: &str) -> ScenarioEntry {
         planner: planner.into(),
         expected: "complete, no collision".into(),
         problem: None,
+        world: None,
     }
 }
 
 fn past(name: &str, end: &str, reachable: Option<f64>) -> PastRun {
     PastRun {
         name: format!("20261122T040049Z-{name}"),
-        began: "11-22 04:00".into(),
+        began: "22 Nov 04:00".into(),
         scenario: name.into(),
         planner: "rpf".into(),
         end: end.into(),
+        began_unix_s: None,
+        verified: None,
         mission_time_s: Some(875.0),
         reachable,
         note: None,

@@ -19,10 +19,12 @@ const B: &str = "20261121T093000Z-tank-07-apf-42";
 fn past(name: &str, planner: &str, end: &str) -> PastRun {
     PastRun {
         name: name.into(),
-        began: "11-22 04:00".into(),
+        began: "22 Nov 04:00".into(),
         scenario: "tank-07".into(),
         planner: planner.into(),
         end: end.into(),
+        began_unix_s: None,
+        verified: None,
         mission_time_s: Some(967.5),
         reachable: (end == "complete").then_some(0.969),
         note: (end == "CRASHED").then(|| "killed; the journal holds everything up to T+401.0 s".into()),

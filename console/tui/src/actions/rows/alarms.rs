@@ -42,5 +42,6 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::NextLike, "next-like", "Next event of the same kind", &[Key::Char('n')], &[On(Screen::Events)]).label("same kind").when(events::is_selected).does(|m| events::next_like(m, false)),
     action(ActionId::PreviousLike, "previous-like", "Previous event of the same kind", &[Key::Char('N')], &[On(Screen::Events)]).label("same kind")
         .when(events::is_selected).does(|m| events::next_like(m, true)),
+    action(ActionId::PlannerMessages, "planner-messages", "Show or hide planner messages", &[Key::Char('d')], &[On(Screen::Events)]).label("planner messages").looks(events::toggle_debug),
     action(ActionId::Copy, "copy", "Copy the event's line", &[Key::Char('y')], &[On(Screen::Events)]).label("copy").when(events::is_selected).does(events::copy),
 ];

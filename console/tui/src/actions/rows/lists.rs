@@ -17,6 +17,7 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::Remedy(2), "second-action", "Run action 2 of the alarm", &[Key::Char('2')], &[Context::Remedies]),
     action(ActionId::Remedy(3), "third-action", "Run action 3 of the alarm", &[Key::Char('3')], &[Context::Remedies]),
     action(ActionId::Remedy(4), "fourth-action", "Run action 4 of the alarm", &[Key::Char('4')], &[Context::Remedies]),
+    action(ActionId::Remedy(5), "fifth-action", "Run action 5 of the alarm", &[Key::Char('5')], &[Context::Remedies]),
     action(ActionId::Accept, "accept", "Confirm, or select the line", &[Key::Enter], &[Context::Rows, Context::Text, Context::Confirm, Context::Stepping, Context::WhatIf, Context::Drawing]).label("yes")
         .when(offer::accept).does(overlay::accept),
     action(ActionId::Step, "step", "Move for one more tick", &[Key::Char('.')], &[Context::Stepping]).label("step").risk(Risk::Moves)

@@ -1,6 +1,7 @@
 //! An alarm and its life cycle.
 
 use super::Cause;
+use crate::model::History;
 use mission::Severity;
 use serde::{Deserialize, Serialize};
 use std::{cmp::Ordering, collections::VecDeque};
@@ -33,15 +34,30 @@ pub struct Shelf {
     pub reason: String,
     /// Whether the cause persists.
     pub active: bool,
+    /// The person who shelved the alarm, if known.
+    #[serde(default)]
+    pub by: Option<String>,
 }
 
-/// The figure that an alarm is about, and its limit, both with units.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+/// The figure that an alarm is about, and its limit.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Reading {
-    /// The last value measured while the cause persisted.
+    /// The value, with its unit.
     pub now: String,
-    /// The limit.
+    /// The limit at which the alarm is raised, with its unit.
     pub limit: String,
+    /// The value without sign and the limit as numbers, for a chart; `None` if the figure is not a number.
+    #[serde(default)]
+    pub numbers: Option<(f64, Option<f64>)>,
+}
+
+/// Who acknowledged an alarm, and when.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Acknowledged {
+    /// The person, if known.
+    pub by: Option<String>,
+    /// Mission time, seconds.
+    pub t_s: f64,
 }
 
 /// One alarm.
@@ -55,6 +71,9 @@ pub struct Alarm {
     pub text: String,
     /// Mission time at which the alarm was raised, seconds.
     pub since_s: f64,
+    /// Mission time at which the cause first occurred, seconds.
+    #[serde(default)]
+    pub first_s: f64,
     /// The alarm's state in its life cycle.
     pub state: State,
     /// The lower severity to which the alarm has dropped since, and its text; shown once the operator has
@@ -65,8 +84,17 @@ pub struct Alarm {
     pub count: u32,
     /// Mission time at which the cause last disappeared, seconds.
     pub cleared_s: Option<f64>,
-    /// The figure that the alarm is about, if there is one.
+    /// The figure that the alarm is about, if there is one: the last value measured while the cause persisted.
     pub reading: Option<Reading>,
+    /// The worst value measured while the cause persisted.
+    #[serde(default)]
+    pub peak: Option<Reading>,
+    /// The values of the figure without sign, also after the alarm has cleared.
+    #[serde(default)]
+    pub history: History,
+    /// Who acknowledged the alarm since it was last raised.
+    #[serde(default)]
+    pub acknowledged: Option<Acknowledged>,
     /// The position that the alarm is about, metres, tank frame; `None` if it has none.
     pub place: Option<Point>,
     /// Numbers of the alarm's latest log lines, oldest first.
@@ -84,11 +112,15 @@ impl Alarm {
             severity: Severity::Info,
             text: String::new(),
             since_s: 0.0,
+            first_s: 0.0,
             state: State::Cleared,
             fallen: None,
             count: 0,
             cleared_s: None,
             reading: None,
+            peak: None,
+            history: History::default(),
+            acknowledged: None,
             place: None,
             events: VecDeque::new(),
             burst: 0,
@@ -125,6 +157,9 @@ impl Alarm {
     pub(super) fn take(&mut self, severity: Severity, text: String, t_s: f64) {
         // Each new obstacle is a separate alarm condition.
         let is_new = !self.is_active() || self.cause == Cause::Map;
+        if self.count == 0 {
+            self.first_s = t_s;
+        }
         self.count = self.count.saturating_add(u32::from(is_new));
         let next = match &self.state {
             State::Shelved(shelf) if severity < Severity::Crit => {
@@ -135,6 +170,9 @@ impl Alarm {
         };
         let is_lower = self.is_unacknowledged() && severity < self.severity;
         self.state = next;
+        if self.is_unacknowledged() {
+            self.acknowledged = None;
+        }
         if is_lower {
             self.fallen = Some((severity, text));
             return;
@@ -158,13 +196,31 @@ impl Alarm {
         }
     }
 
+    /// Takes the latest value of the alarm's figure.
+    pub(super) fn read(&mut self, reading: Reading, t_s: f64) {
+        if let Some((value, _)) = reading.numbers {
+            self.history.add(t_s, value);
+        }
+        if !self.is_active() {
+            return;
+        }
+        let value = |reading: &Reading| reading.numbers.map_or(f64::NEG_INFINITY, |(value, _)| value);
+        if self.peak.as_ref().is_none_or(|peak| value(peak) <= value(&reading)) {
+            self.peak = Some(reading.clone());
+        }
+        self.reading = Some(reading);
+    }
+
     /// Records the operator's acknowledgement. If the alarm has since dropped to a lower severity, the text for that
     /// severity was not on the screen and may be about something else with the same cause; the operator must
     /// acknowledge it next.
-    pub(super) fn acknowledge(&mut self) {
+    pub(super) fn acknowledge(&mut self, by: Option<&str>, t_s: f64) {
         if let Some((severity, text)) = self.fallen.take() {
             (self.severity, self.text) = (severity, text);
             return;
+        }
+        if self.is_unacknowledged() {
+            self.acknowledged = Some(Acknowledged { by: by.map(str::to_owned), t_s });
         }
         match self.state {
             State::Unacknowledged => self.state = State::Acknowledged,
@@ -184,11 +240,11 @@ impl Alarm {
     }
 
     /// Shelves the alarm until the given mission time, if shelving is allowed.
-    pub(super) fn shelve(&mut self, until_s: f64, reason: &str) {
+    pub(super) fn shelve(&mut self, until_s: f64, reason: &str, by: Option<&str>) {
         if self.cannot_be_shelved().is_none() {
             self.fallen = None;
-            let active = self.is_active();
-            self.state = State::Shelved(Shelf { until_s, reason: reason.to_owned(), active });
+            let (active, by) = (self.is_active(), by.map(str::to_owned));
+            self.state = State::Shelved(Shelf { until_s, reason: reason.to_owned(), active, by });
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::alarm::{Alarm, Reading, State};
 use super::cause::Cause;
-use mission::{Noted, Severity};
+use mission::{Note, Noted, Severity};
 use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
 use world::Point;
@@ -64,7 +64,8 @@ impl Alarms {
 
     /// Applies what the operator did about an alarm. An acknowledgement applies only to the text that the operator
     /// saw.
-    pub fn take(&mut self, noted: &Noted, t_s: f64) {
+    pub fn take(&mut self, Note { what: noted, by }: &Note, t_s: f64) {
+        let by = by.as_deref();
         let (Noted::Acknowledged { alarm: key, .. }
         | Noted::Shelved { alarm: key, .. }
         | Noted::Unshelved { alarm: key, .. }) = noted
@@ -74,9 +75,9 @@ impl Alarms {
         let Some(alarm) = self.list.iter_mut().find(|alarm| alarm.cause.key() == *key) else { return };
         match noted {
             Noted::Acknowledged { text, .. } if alarm.is_unacknowledged() && alarm.text == *text => {
-                alarm.acknowledge();
+                alarm.acknowledge(by, t_s);
             }
-            Noted::Shelved { for_s, reason, .. } => alarm.shelve(t_s + for_s, reason),
+            Noted::Shelved { for_s, reason, .. } => alarm.shelve(t_s + for_s, reason, by),
             Noted::Unshelved { .. } => alarm.unshelve(),
             _ => {}
         }
@@ -92,10 +93,10 @@ impl Alarms {
         self.list.iter_mut().for_each(|alarm| alarm.expire(t_s));
     }
 
-    /// Updates the figure of an alarm whose cause persists.
-    pub fn read(&mut self, cause: &Cause, reading: impl FnOnce() -> Reading) {
-        if let Some(alarm) = self.get_mut(cause).filter(|alarm| alarm.is_active()) {
-            alarm.reading = Some(reading());
+    /// Updates the figure of an alarm.
+    pub fn read(&mut self, cause: &Cause, t_s: f64, reading: impl FnOnce() -> Reading) {
+        if let Some(alarm) = self.get_mut(cause) {
+            alarm.read(reading(), t_s);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use mission::{
-    Noted,
+    Note, Noted,
     Severity::{self, Crit, Info, Warn, Watch},
 };
 
@@ -14,10 +14,14 @@ fn raised(severity: Severity) -> Alarms {
     alarms
 }
 
+fn note(what: Noted) -> Note {
+    Note { what, by: Some("lk".into()) }
+}
+
 /// The operator acknowledges an alarm in the words that it has.
 fn acknowledge_one(alarms: &mut Alarms, cause: &Cause) {
     let text = alarms.get(cause).map(|alarm| alarm.text.clone()).unwrap_or_default();
-    alarms.take(&Noted::Acknowledged { alarm: cause.key(), text }, 5.0);
+    alarms.take(&note(Noted::Acknowledged { alarm: cause.key(), text }), 5.0);
 }
 
 /// The operator acknowledges the worst alarm; its words.
@@ -30,11 +34,11 @@ fn acknowledge(alarms: &mut Alarms) -> Option<String> {
 
 fn shelve(alarms: &mut Alarms, cause: &Cause) {
     let (text, reason) = (String::new(), "known".into());
-    alarms.take(&Noted::Shelved { alarm: cause.key(), text, for_s: 55.0, reason }, 5.0);
+    alarms.take(&note(Noted::Shelved { alarm: cause.key(), text, for_s: 55.0, reason }), 5.0);
 }
 
 fn unshelve(alarms: &mut Alarms, cause: &Cause) {
-    alarms.take(&Noted::Unshelved { alarm: cause.key(), text: String::new() }, 5.0);
+    alarms.take(&note(Noted::Unshelved { alarm: cause.key(), text: String::new() }), 5.0);
 }
 
 /// What can happen to an alarm.
@@ -234,12 +238,12 @@ fn words_that_were_not_seen_are_not_acknowledged() {
     let mut alarms = raised(Warn);
     let seen = Noted::Acknowledged { alarm: CAUSE.key(), text: "position lost".into() };
     alarms.raise(CAUSE, Crit, "position lost for good".into(), 2.0);
-    alarms.take(&seen, 2.0);
+    alarms.take(&note(seen), 2.0);
     assert_eq!(alarms.unacknowledged(Crit), 1, "it became worse in the tick before");
     acknowledge_one(&mut alarms, &CAUSE);
     assert_eq!(alarms.unacknowledged(Crit), 0);
     // An alarm that the run does not have, as in the journal of a console that was slow.
-    alarms.take(&Noted::Acknowledged { alarm: "response".into(), text: String::new() }, 2.0);
+    alarms.take(&note(Noted::Acknowledged { alarm: "response".into(), text: String::new() }), 2.0);
     assert_eq!(alarms.list().len(), 1);
 }
 

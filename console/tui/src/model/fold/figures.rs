@@ -2,7 +2,7 @@
 
 use crate::model::alarms::Reading;
 use crate::model::{Cause, Run};
-use mission::{EventKind, event::TetherAlarm};
+use mission::{EventKind, Severity, event::TetherAlarm};
 use positioning::{Exclusion, Fix, FixError};
 
 impl Run {
@@ -13,19 +13,23 @@ impl Run {
             EventKind::Fixed { fix } => self.read_fix(fix),
             EventKind::FixFailed { error, .. } => self.read_failure(error),
             EventKind::RangesInconsistent { chi2, degrees_of_freedom } => {
-                self.alarms.read(&Cause::Contradiction, || chi_squared(*chi2, *degrees_of_freedom));
+                self.read(&Cause::Contradiction, || chi_squared(*chi2, *degrees_of_freedom));
             }
             EventKind::StationRejected { station, reason } => {
-                self.alarms.read(&Cause::Station(*station), || residual(reason));
+                self.read(&Cause::Station(*station), || residual(reason));
             }
-            EventKind::TetherAlarmRaised { alarm, .. } => {
-                if let Some(reading) = of_tether(alarm) {
-                    self.alarms.read(&Cause::Tether(alarm.word().to_owned()), || reading);
+            EventKind::TetherAlarmRaised { alarm, reached } => {
+                if let Some(reading) = of_tether(alarm, *reached) {
+                    self.read(&Cause::Tether(alarm.word().to_owned()), || reading);
                 }
             }
             EventKind::Tethered { .. } => self.read_tether(),
             _ => {}
         }
+    }
+
+    fn read(&mut self, cause: &Cause, reading: impl FnOnce() -> Reading) {
+        self.alarms.read(cause, self.clock.t_s, reading);
     }
 
     fn read_error(&mut self, kind: &EventKind) {
@@ -35,26 +39,31 @@ impl Run {
             _ => (self.position.error_m().unwrap_or(f64::NAN), limit_m),
         };
         let metres = |m: f64| format!("±{m:.2} m");
-        self.alarms.read(&Cause::PositionLost, || Reading {
+        self.read(&Cause::PositionLost, || Reading {
             now: metres(error_m),
             limit: limit_m.map(metres).unwrap_or_default(),
+            numbers: Some((error_m, limit_m)),
         });
     }
 
     fn read_fix(&mut self, fix: &Fix) {
-        self.alarms.read(&Cause::Contradiction, || chi_squared(fix.chi2, fix.degrees_of_freedom));
+        self.read(&Cause::Contradiction, || chi_squared(fix.chi2, fix.degrees_of_freedom));
         for (station, reason) in &fix.excluded {
-            self.alarms.read(&Cause::Station(*station), || residual(reason));
+            self.read(&Cause::Station(*station), || residual(reason));
+        }
+        for used in &fix.residuals {
+            self.read(&Cause::Station(used.station), || used_residual(used.residual_m));
         }
     }
 
     fn read_failure(&mut self, error: &FixError) {
         if let FixError::Inconsistent { chi2, degrees_of_freedom } = error {
-            self.alarms.read(&Cause::Contradiction, || chi_squared(*chi2, *degrees_of_freedom));
+            self.read(&Cause::Contradiction, || chi_squared(*chi2, *degrees_of_freedom));
         }
         if let FixError::TooFewStations { have, need } = error {
             let ranges = |n: &usize| format!("{n} range{}", if *n == 1 { "" } else { "s" });
-            self.alarms.read(&Cause::NoFix, || Reading { now: ranges(have), limit: ranges(need) });
+            let reading = Reading { now: ranges(have), limit: ranges(need), numbers: None };
+            self.read(&Cause::NoFix, || reading);
         }
     }
 
@@ -69,44 +78,61 @@ impl Run {
         let total = TetherAlarm::WrapTotal { sum_rad: total_rad, limit_rad: limits.wrap_total_max_rad };
         for alarm in [reel, total] {
             let cause = Cause::Tether(alarm.word().to_owned());
-            self.alarms.read(&cause, || of_tether(&alarm).unwrap_or_default());
+            let reached = self.alarms.get(&cause).is_some_and(|alarm| alarm.severity == Severity::Crit);
+            self.read(&cause, || of_tether(&alarm, reached).unwrap_or_default());
         }
     }
 }
 
 fn chi_squared(chi2: f64, degrees_of_freedom: u32) -> Reading {
-    let limit = match degrees_of_freedom {
-        0 => String::new(),
-        n => format!("{:.1}", positioning::alarm_limit(n)),
-    };
-    Reading { now: format!("χ² {chi2:.0}"), limit }
-}
-
-fn residual(reason: &Exclusion) -> Reading {
-    match reason {
-        Exclusion::Silent => Reading { now: "not heard".into(), limit: String::new() },
-        Exclusion::ByOrder => Reading { now: "excluded".into(), limit: String::new() },
-        Exclusion::Impossible { range_m, most_m } => {
-            Reading { now: format!("{range_m:.1} m"), limit: format!("{most_m:.1} m") }
-        }
-        Exclusion::Residual { residual_m, gate_m } => {
-            Reading { now: format!("{residual_m:+.2} m"), limit: format!("{gate_m:.2} m") }
-        }
+    let limit = (degrees_of_freedom > 0).then(|| positioning::alarm_limit(degrees_of_freedom));
+    Reading {
+        now: format!("χ² {chi2:.0}"),
+        limit: limit.map_or_else(String::new, |limit| format!("{limit:.1}")),
+        numbers: Some((chi2, limit)),
     }
 }
 
-fn of_tether(alarm: &TetherAlarm) -> Option<Reading> {
-    let metres =
-        |now: f64, limit: f64| Reading { now: format!("{now:.1} m"), limit: format!("{limit:.1} m") };
-    let degrees = |now: f64, limit: f64| Reading {
-        now: format!("{:.0}°", now.to_degrees()),
-        limit: format!("{:.0}°", limit.to_degrees()),
+fn residual(reason: &Exclusion) -> Reading {
+    let words = |now: &str| Reading { now: now.into(), ..Reading::default() };
+    match reason {
+        Exclusion::Silent => words("not heard"),
+        Exclusion::ByOrder => words("excluded"),
+        Exclusion::Impossible { range_m, most_m } => {
+            Reading { now: format!("{range_m:.1} m"), limit: format!("{most_m:.1} m"), numbers: None }
+        }
+        Exclusion::Residual { residual_m, gate_m } => Reading {
+            now: format!("{residual_m:+.2} m"),
+            limit: format!("{gate_m:.2} m"),
+            numbers: Some((residual_m.abs(), Some(*gate_m))),
+        },
+    }
+}
+
+/// The residual of a station whose range is used.
+fn used_residual(residual_m: f64) -> Reading {
+    let numbers = Some((residual_m.abs(), None));
+    Reading { now: format!("{residual_m:+.2} m"), limit: String::new(), numbers }
+}
+
+/// The figure of a tether alarm with the limit at which it was raised: a share of the tether's own limit until that is
+/// `reached`.
+fn of_tether(alarm: &TetherAlarm, reached: bool) -> Option<Reading> {
+    let share = if reached { 1.0 } else { TetherAlarm::NEAR };
+    let reading = |now: f64, limit: f64, written: fn(f64) -> String| Reading {
+        now: written(now),
+        limit: written(limit),
+        numbers: Some((now, Some(limit))),
     };
+    let metres = |m: f64| format!("{m:.1} m");
+    let degrees = |degrees: f64| format!("{degrees:.0}°");
     match alarm {
-        TetherAlarm::Reel { out_m, reel_length_m } => Some(metres(*out_m, *reel_length_m)),
-        TetherAlarm::Wrap { wrap_rad, limit_rad, .. } => Some(degrees(*wrap_rad, *limit_rad)),
-        TetherAlarm::WrapTotal { sum_rad, limit_rad } => Some(degrees(*sum_rad, *limit_rad)),
-        TetherAlarm::Snag { paid_out_m, explained_m } => Some(metres(*paid_out_m, *explained_m)),
+        TetherAlarm::Reel { out_m, reel_length_m } => Some(reading(*out_m, share * reel_length_m, metres)),
+        TetherAlarm::Wrap { wrap_rad: now_rad, limit_rad, .. }
+        | TetherAlarm::WrapTotal { sum_rad: now_rad, limit_rad } => {
+            Some(reading(now_rad.to_degrees(), share * limit_rad.to_degrees(), degrees))
+        }
+        TetherAlarm::Snag { paid_out_m, explained_m } => Some(reading(*paid_out_m, *explained_m, metres)),
         TetherAlarm::NoReturnPath | TetherAlarm::Strayed => None,
     }
 }

@@ -2,13 +2,13 @@
 
 use crate::model::Run;
 use crate::model::log::{Entry, Occurrence, Robot, What, slim};
-use mission::{Event, EventKind, Severity};
+use mission::{Event, EventKind};
 use positioning::Ranging;
 
 impl Run {
     /// Writes the log line of an event, if it has one; returns the number of the line.
     pub(super) fn write_line(&mut self, event: &Event) -> Option<u64> {
-        let line = event.log_line(self.stations()).filter(|line| line.severity > Severity::Debug)?;
+        let line = event.log_line(self.stations())?;
         self.log.push(Entry {
             tick: event.tick,
             t_s: event.t_s,

@@ -49,7 +49,8 @@ impl Chunk {
         self.words.push_str(&entry.source.to_lowercase());
         self.words.push(BETWEEN);
         self.words.push_str(&entry.text.to_lowercase());
-        self.keys.push(Key { severity: entry.severity, t_s: entry.t_s, end: self.words.len() });
+        let (severity, t_s) = (entry.severity, entry.t_s);
+        self.keys.push(Key { severity, t_s, end: self.words.len() });
         self.entries.push(entry);
     }
 

@@ -3,6 +3,8 @@
 //! ```text
 //! sev>=watch source=ae,tether station=C t>00:05 "position lost" -text
 //! ```
+//!
+//! The messages of planners about their own work pass only if a term asks for them: `sev>=debug`.
 
 mod term;
 mod word;
@@ -47,7 +49,13 @@ impl Filter {
 
     /// Whether a line passes the filter. Critical lines always pass.
     pub(super) fn passes(&self, line: &Line) -> bool {
-        line.severity == Severity::Crit || self.terms.iter().all(|term| term.passes(line))
+        let is_asked = line.severity > Severity::Debug || self.shows_debug();
+        line.severity == Severity::Crit || is_asked && self.terms.iter().all(|term| term.passes(line))
+    }
+
+    /// Whether the messages of planners about their own work pass.
+    pub fn shows_debug(&self) -> bool {
+        self.terms.iter().any(Term::is_debug)
     }
 
     /// The minimum severity that the filter requires.
@@ -63,6 +71,12 @@ pub fn with_least(text: &str, least: Severity) -> String {
         Severity::Debug | Severity::Info => rest,
         _ => format!("sev>={} {rest}", severity_word(least).to_lowercase()).trim_end().to_owned(),
     }
+}
+
+/// The filter text with its minimum severity replaced by one that all lines have, including the messages of planners
+/// about their own work.
+pub fn with_debug(text: &str) -> String {
+    format!("sev>=debug {}", without_least(text)).trim_end().to_owned()
 }
 
 /// The filter text without its minimum severity.

@@ -1,8 +1,10 @@
-//! The lines that pass a filter, kept up to date as lines arrive and the filter changes.
+//! The lines that pass a filter, kept up to date as lines arrive and the filter changes. Messages of a planner about its
+//! own work that follow each other are one group.
 
 use super::entry::Entry;
 use super::filter::Filter;
 use super::lines::Log;
+use mission::EventKind;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
@@ -14,10 +16,29 @@ use std::collections::VecDeque;
 pub struct Matches {
     text: String,
     filter: Filter,
-    /// The numbers of the lines that pass, ascending.
-    found: VecDeque<u64>,
+    /// The lines that pass, ascending.
+    found: VecDeque<Group>,
     /// All lines before this number have already been tested.
     seen: u64,
+}
+
+/// Lines that are listed as one: a single line, or messages of one planner about its own work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+struct Group {
+    first: u64,
+    last: u64,
+    lines: u32,
+}
+
+/// A listed line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Listed<'a> {
+    /// The number of the line in the log.
+    pub number: u64,
+    /// The line.
+    pub entry: &'a Entry,
+    /// The number of earlier lines that are listed with this one.
+    pub more: u32,
 }
 
 impl Matches {
@@ -31,16 +52,38 @@ impl Matches {
         if self.seen > log.end() {
             self.seen = 0;
         }
-        // The newest line may have been repeated since then.
-        let from = self.seen.saturating_sub(1).max(log.oldest());
-        while self.found.back().is_some_and(|number| *number >= from) {
-            self.found.pop_back();
+        // The newest line may have been repeated since then, and the next one may join its group.
+        let mut from = self.seen.saturating_sub(1).max(log.oldest());
+        while let Some(group) = self.found.pop_back_if(|group| group.last >= from) {
+            from = from.min(group.first.max(log.oldest()));
         }
-        while self.found.front().is_some_and(|number| *number < log.oldest()) {
-            self.found.pop_front();
+        while self.found.pop_front_if(|group| group.last < log.oldest()).is_some() {}
+        if let Some(cut) = self.found.pop_front_if(|group| group.first < log.oldest()) {
+            self.restore(log, cut.last);
         }
-        self.found.extend(log.passing(&self.filter, from));
+        for number in log.passing(&self.filter, from) {
+            Self::add(&mut self.found, log, number);
+        }
         self.seen = log.end();
+    }
+
+    /// Adds a passing line to a list.
+    fn add(found: &mut VecDeque<Group>, log: &Log, number: u64) {
+        match found.back_mut() {
+            Some(group) if belongs(log, group.last, number) => {
+                (group.last, group.lines) = (number, group.lines + 1);
+            }
+            _ => found.push_back(Group { first: number, last: number, lines: 1 }),
+        }
+    }
+
+    /// Replaces the group up to `last`, of which the first lines have been dropped from the log.
+    fn restore(&mut self, log: &Log, last: u64) {
+        let mut kept = VecDeque::new();
+        for number in log.passing(&self.filter, log.oldest()).take_while(|number| *number <= last) {
+            Self::add(&mut kept, log, number);
+        }
+        kept.into_iter().rev().for_each(|group| self.found.push_front(group));
     }
 
     /// The parsed filter.
@@ -60,32 +103,53 @@ impl Matches {
 
     /// The number of passing lines that are newer than the given one.
     pub fn newer_than(&self, number: u64) -> usize {
-        self.found.len() - self.found.partition_point(|found| *found <= number)
+        self.found.len() - self.found.partition_point(|group| group.first <= number)
     }
 
     /// The number of the passing line that is followed by `newer` newer ones; the oldest line if there are fewer.
     pub fn number(&self, newer: usize) -> Option<u64> {
         let index = self.found.len().checked_sub(1)?.saturating_sub(newer);
-        self.found.get(index).copied()
+        self.found.get(index).map(|group| group.last)
     }
 
-    /// Numbers and lines, newest first, skipping the first `skip`.
-    pub fn newest<'a>(&'a self, log: &'a Log, skip: usize) -> impl Iterator<Item = (u64, &'a Entry)> {
-        self.found.iter().rev().skip(skip).filter_map(|number| Some((*number, log.get(*number)?)))
+    /// The listed lines, newest first, skipping the first `skip`.
+    pub fn newest<'a>(&'a self, log: &'a Log, skip: usize) -> impl Iterator<Item = Listed<'a>> {
+        self.found.iter().rev().skip(skip).filter_map(|group| {
+            Some(Listed { number: group.last, entry: log.get(group.last)?, more: group.lines - 1 })
+        })
+    }
+
+    /// The earlier lines that are listed with a line, newest first.
+    pub fn grouped<'a>(&self, log: &'a Log, number: u64) -> impl Iterator<Item = &'a Entry> {
+        let group = self.found.iter().rev().find(|group| (group.first..=group.last).contains(&number));
+        let before = group.map_or(number..number, |group| group.first..group.last);
+        before.rev().filter_map(|number| log.get(number)).filter(|entry| entry.severity == Severity::Debug)
     }
 
     /// The next line of the same kind within the next `among` lines, or within the preceding ones if `back` is set.
     pub fn next_like(&self, log: &Log, number: u64, back: bool, among: usize) -> Option<u64> {
         let what = &log.get(number)?.what;
-        let at = self.found.partition_point(|found| *found < number);
+        let at = self.found.partition_point(|group| group.last < number);
         let is_like = |other: &u64| log.get(*other).is_some_and(|other| other.what.is_like(what));
         if back {
-            self.found.range(..at).rev().copied().take(among).find(is_like)
+            self.found.range(..at).rev().map(|group| group.last).take(among).find(is_like)
         } else {
-            let after = self.found.range(at..).copied().skip_while(|found| *found == number);
-            after.take(among).find(is_like)
+            let after = self.found.range(at..).skip_while(|group| group.first <= number);
+            after.map(|group| group.last).take(among).find(is_like)
         }
     }
+}
+
+/// Whether two passing lines are listed as one.
+fn belongs(log: &Log, one: u64, next: u64) -> bool {
+    let planner = |number| {
+        let entry = log.get(number).filter(|entry| entry.severity == Severity::Debug)?;
+        match &entry.what.event()?.kind {
+            EventKind::PlannerLogged { planner, .. } => Some(planner),
+            _ => None,
+        }
+    };
+    planner(one).is_some_and(|planner_of_one| Some(planner_of_one) == planner(next))
 }
 
 #[cfg(test)]
@@ -95,7 +159,7 @@ mod tests {
     use mission::Severity;
 
     fn texts<'a>(matches: &'a Matches, log: &'a Log) -> Vec<&'a str> {
-        matches.newest(log, 0).map(|(_, entry)| entry.text.as_str()).collect()
+        matches.newest(log, 0).map(|listed| listed.entry.text.as_str()).collect()
     }
 
     /// What refreshing step by step has to agree with.
@@ -111,6 +175,47 @@ mod tests {
         log.add(1.0, Severity::Crit, "ae", "position lost".into());
         log.add(2.0, Severity::Info, "plan", "planned".into());
         assert_eq!(texts(&fresh("sev>=warn column", &log), &log), ["position lost"]);
+    }
+
+    fn said(planner: &str, n: usize) -> Entry {
+        let (planner, message) = (planner.to_owned(), n.to_string());
+        let kind = EventKind::PlannerLogged { planner, level: planner_api::LogLevel::Info, message };
+        let what = What::Event(Box::new(super::super::Occurrence { kind, robot: None, range: None }));
+        let (severity, source) = (Severity::Info, "plan".into());
+        Entry { tick: 0, t_s: 1.0, severity, source, text: n.to_string(), count: 1, what }
+    }
+
+    #[test]
+    fn messages_of_one_planner_that_follow_each_other_are_listed_as_one() {
+        let (mut log, mut matches) = (Log::default(), Matches::default());
+        for n in 0..4 {
+            log.push(said("rpf", n));
+            matches.refresh("sev>=debug", &log);
+        }
+        log.push(said("apf", 4));
+        log.add(2.0, Severity::Info, "plan", "planned".into());
+        matches.refresh("sev>=debug", &log);
+        assert_eq!(matches, fresh("sev>=debug", &log));
+        let listed: Vec<_> = matches.newest(&log, 0).map(|listed| (listed.number, listed.more)).collect();
+        assert_eq!(listed, [(5, 0), (4, 0), (3, 3)]);
+        assert_eq!((matches.newer_than(1), matches.newer_than(3)), (2, 2), "a grown group stays selected");
+        let also: Vec<&str> = matches.grouped(&log, 3).map(|entry| entry.text.as_str()).collect();
+        assert_eq!(also, ["2", "1", "0"]);
+        matches.refresh("", &log);
+        assert_eq!(matches.len(), 1, "hidden unless asked for");
+    }
+
+    #[test]
+    fn a_group_of_which_lines_were_dropped_is_counted_again() {
+        let (mut log, mut matches) = (Log::default(), Matches::default());
+        for n in 0..MAX_LINES + 5000 {
+            log.push(said("rpf", n));
+            if n % 700 == 0 {
+                matches.refresh("sev>=debug", &log);
+            }
+        }
+        matches.refresh("sev>=debug", &log);
+        assert_eq!(matches, fresh("sev>=debug", &log));
     }
 
     #[test]

@@ -1,69 +1,91 @@
-//! The actions on an alarm.
+//! The actions on an alarm, numbered, and the advice about it.
 
-use crate::guide::{Remedy, guide, name};
+use crate::guide::{guide, name};
 use crate::model::{Alarm, Cause, Overlay};
 use crate::theme::Role;
-use crate::update::offered;
+use crate::update::remedies::{self, Step};
 use crate::view::lists::list::{List, paragraph};
 use crate::view::look::{Look, Parts};
 use crate::view::{table, text};
 use ratatui::text::Line;
 
 /// The keys that run the actions while the action list is open.
-const NUMBERS: [&str; 4] = ["<first-action>", "<second-action>", "<third-action>", "<fourth-action>"];
+const NUMBERS: [&str; remedies::MOST] =
+    ["<first-action>", "<second-action>", "<third-action>", "<fourth-action>", "<fifth-action>"];
 /// Rows that a list cannot use: its frame, and the three lines that always stay visible.
 const FRAME: usize = 5;
 
-/// The actions, numbered; while the list is open, the selected action is marked.
+/// The actions, numbered; while the list is open, the selected action is marked. The advice follows, not numbered: there is
+/// nothing to run.
 pub(super) fn lines(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'static>> {
     let selected = match &look.model.ui.overlay {
         Overlay::Remedies { cause, selected } if *cause == alarm.cause => Some(*selected),
         _ => None,
     };
-    let remedies = guide(&alarm.cause).remedies.iter().enumerate();
-    remedies
-        .flat_map(|(index, remedy)| {
-            let is_selected = selected == Some(index);
-            let rows = rows(look, index, remedy, columns.saturating_sub(1));
-            let numbered = rows.into_iter().enumerate();
-            numbered.map(move |(line, row)| table::row(look, row, is_selected && line == 0, columns))
-        })
-        .collect()
+    let steps = remedies::steps(look.model, &alarm.cause);
+    let numbered = steps.iter().enumerate().flat_map(|(index, step)| {
+        let is_selected = selected == Some(index);
+        let rows = rows(&number(look, index), role(look, step), &look.keys(&step.text), columns);
+        let rows = rows.into_iter().enumerate();
+        rows.map(move |(line, row)| (row, is_selected && line == 0))
+    });
+    let advice = advice(look, &alarm.cause).into_iter();
+    let advice = advice.flat_map(|words| rows("·", Role::Text, &words, columns)).map(|row| (row, false));
+    numbered.chain(advice).map(|(row, is_selected)| table::row(look, row, is_selected, columns)).collect()
 }
 
-/// The actions as an overlay list, with cause and effect.
+/// The keys that run the actions: `1-3`; `None` if there is only advice.
+pub(super) fn keys(look: &Look, cause: &Cause) -> Option<String> {
+    let steps = remedies::steps(look.model, cause).len();
+    let first = number(look, 0);
+    match steps {
+        0 => None,
+        1 => Some(first),
+        n => Some(format!("{first}-{}", number(look, n - 1))),
+    }
+}
+
+/// What the operator can do that no key does.
+fn advice(look: &Look, cause: &Cause) -> Vec<String> {
+    let remedies = guide(cause).remedies.iter().filter(|remedy| remedy.action.is_none());
+    remedies.map(|remedy| look.keys(remedy.text)).collect()
+}
+
+/// The actions as an overlay list, with advice, cause and effect.
 pub(in crate::view) fn list(look: &Look, cause: &Cause, selected: usize, columns: u16) -> List {
     let room = usize::from(columns).saturating_sub(3);
-    let guide = guide(cause);
-    let about = format!("{} {}", guide.cause, guide.effect);
-    let remedies = guide.remedies.iter().enumerate();
-    let spelled = |remedy: &Remedy| look.keys(remedy.text);
-    let chosen = guide.remedies.get(selected).map_or_else(String::new, spelled);
-    let text = |(index, remedy): (usize, &Remedy)| {
-        vec![(role(look, remedy), text::fit(&format!("{} {}", number(look, index), spelled(remedy)), room))]
+    let steps = remedies::steps(look.model, cause);
+    let text = |(index, step): (usize, &Step)| {
+        let words = format!("{} {}", number(look, index), look.keys(&step.text));
+        vec![(role(look, step), text::fit(&words, room))]
     };
-    let mut below: Vec<Parts> = paragraph(Role::Text, &chosen, room).collect();
-    below.extend(paragraph(Role::Dim, &about, room));
+    let chosen = steps.get(selected).map_or_else(String::new, |step| look.keys(&step.text));
+    let is_cut = text::width(&chosen) + 2 > room;
+    let mut below: Vec<Parts> = Vec::new();
+    if is_cut {
+        below.extend(paragraph(Role::Text, &chosen, room));
+    }
+    let advice = advice(look, cause).into_iter();
+    below.extend(advice.flat_map(|words| rows("·", Role::Text, &words, room)));
+    let guide = guide(cause);
+    below.extend(paragraph(Role::Dim, &format!("{} {}", guide.cause, guide.effect), room));
     // If space is short, the last lines about the alarm are dropped, never an action.
-    let free = usize::from(look.model.ui.height).saturating_sub(FRAME + guide.remedies.len());
-    below.truncate(free);
+    below.truncate(usize::from(look.model.ui.height).saturating_sub(FRAME + steps.len()));
     List {
         title: name(cause, look.run),
-        note: look.keys(super::RUN),
-        rows: remedies.map(text).collect(),
+        note: keys(look, cause).map_or_else(|| "advice only".into(), |keys| format!("{keys} run")),
+        rows: steps.iter().enumerate().map(text).collect(),
         selected,
         below,
         ..List::default()
     }
 }
 
-fn rows(look: &Look, index: usize, remedy: &Remedy, columns: usize) -> Vec<Parts> {
-    let role = role(look, remedy);
-    let sentence = look.keys(remedy.text);
-    let number = number(look, index);
-    let width = text::width(&number) + 1;
-    let wrapped = text::wrap(&sentence, columns.saturating_sub(width + 1));
-    let front = |line: usize| text::column(if line == 0 { &number } else { "" }, width);
+/// A sentence behind its number or mark, wrapped.
+fn rows(mark: &str, role: Role, sentence: &str, columns: usize) -> Vec<Parts> {
+    let width = text::width(mark) + 1;
+    let wrapped = text::wrap(sentence, columns.saturating_sub(width + 1));
+    let front = |line: usize| text::column(if line == 0 { mark } else { "" }, width);
     let row = |(line, words)| vec![(Role::Key, front(line)), (role, words)];
     wrapped.into_iter().enumerate().map(row).collect()
 }
@@ -73,9 +95,6 @@ fn number(look: &Look, index: usize) -> String {
 }
 
 /// Actions that cannot run now are dimmed.
-fn role(look: &Look, remedy: &Remedy) -> Role {
-    match remedy.action {
-        Some(action) if offered(look.model, action).is_err() => Role::Dim,
-        _ => Role::Text,
-    }
+fn role(look: &Look, step: &Step) -> Role {
+    if remedies::can(look.model, &step.deed).is_ok() { Role::Text } else { Role::Dim }
 }

@@ -24,14 +24,18 @@ pub(super) fn lines(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'sta
 fn fields_of(look: &Look, alarm: &Alarm) -> Vec<Field> {
     let guide = guide(&alarm.cause);
     let mut fields: Vec<Field> = vec![("Cause", guide.cause.into()), ("Effect", guide.effect.into())];
-    fields.push(("Message", message(alarm)));
+    fields.push(("Message", text::capitalized(&alarm.text)));
     if let Some((_, text)) = &alarm.fallen {
-        fields.push(("Since then", text::capitalized(text)));
+        fields.push(("Then", text::capitalized(text)));
     }
+    fields.extend(reading(alarm).map(|words| ("Figure", words)));
     fields.push(("Since", since(look, alarm)));
+    if let Some(seen) = &alarm.acknowledged {
+        fields.push(("Ack", signed(seen.by.as_deref(), &format!("at T+{}", text::clock(seen.t_s)))));
+    }
     if let State::Shelved(shelf) = &alarm.state {
-        let until = text::clock(shelf.until_s);
-        fields.push(("Shelved", format!("until T+{until}: {}", shelf.reason)));
+        let until = format!("until T+{}: {}", text::clock(shelf.until_s), shelf.reason);
+        fields.push(("Shelved", signed(shelf.by.as_deref(), &until)));
     }
     fields.extend(alarm.place.map(|place| ("Place", text::place(place))));
     let is_acoustic = matches!(alarm.cause, Cause::PositionLost | Cause::Contradiction | Cause::Station(_));
@@ -41,11 +45,35 @@ fn fields_of(look: &Look, alarm: &Alarm) -> Vec<Field> {
     fields
 }
 
-fn message(alarm: &Alarm) -> String {
-    let text = text::capitalized(&alarm.text);
-    match alarm.reading.as_ref().filter(|_| alarm.is_active()) {
-        Some(reading) => format!("{text}; now {}", reading.now),
-        None => text,
+/// What a person did, with the person's name if it is known.
+fn signed(by: Option<&str>, what: &str) -> String {
+    by.map_or_else(|| what.to_owned(), |by| format!("{what}, by {by}"))
+}
+
+/// The figure of an alarm: as it is now, its peak and the limit of the alarm.
+fn reading(alarm: &Alarm) -> Option<String> {
+    let reading = alarm.reading.as_ref()?;
+    let now = if alarm.is_active() {
+        format!("now {}", reading.now)
+    } else {
+        format!("now ok, last {}", reading.now)
+    };
+    let peak = alarm.peak.as_ref().filter(|peak| peak.now != reading.now);
+    let peak = peak.map_or_else(String::new, |peak| format!(", peak {}", peak.now));
+    let limit = if reading.limit.is_empty() { String::new() } else { format!(", limit {}", reading.limit) };
+    Some(format!("{now}{peak}{limit}"))
+}
+
+/// The name of an alarm's figure, with its unit.
+pub(super) fn figure(cause: &Cause) -> &'static str {
+    match cause {
+        Cause::PositionLost => "95 % error, m",
+        Cause::Contradiction => "Contradiction, χ²",
+        Cause::Station(_) => "Residual, m",
+        Cause::Tether(word) if word.contains("wrap") => "Wrap, °",
+        Cause::Tether(_) => "Tether out, m",
+        Cause::Response => "Response, ms",
+        _ => "Figure",
     }
 }
 
@@ -55,10 +83,10 @@ fn since(look: &Look, alarm: &Alarm) -> String {
         words = format!("{words}, cleared T+{}", text::clock(cleared_s));
     }
     if alarm.count > 1 {
-        words = format!("{words}, {} times", alarm.count);
+        words = format!("{words}; {} times, first T+{}", alarm.count, text::clock(alarm.first_s));
     }
     if look.run.alarms.is_first_out(alarm) {
-        words = format!("{words}, first of several");
+        words = format!("{words}; first of several");
     }
     words
 }

@@ -9,7 +9,8 @@ use std::cmp::Ordering;
 /// The field names, as the screen lists them.
 const FIELDS: &str = "sev source station t";
 
-const SEVERITIES: [(&str, Severity); 4] = [
+const SEVERITIES: [(&str, Severity); 5] = [
+    ("debug", Severity::Debug),
     ("info", Severity::Info),
     ("watch", Severity::Watch),
     ("warn", Severity::Warn),
@@ -93,6 +94,11 @@ impl Term {
             _ => None,
         }
     }
+
+    /// Whether the term asks for the messages of planners about their own work.
+    pub(super) fn is_debug(&self) -> bool {
+        matches!(self.test, Test::Severity(Compare::AtLeast | Compare::Equal, Severity::Debug)) && !self.negated
+    }
 }
 
 /// The field name, the comparison, and the start of the value; `None` for plain text.
@@ -135,7 +141,7 @@ fn severity(value: &str) -> Result<Severity, String> {
     let mut found = SEVERITIES.iter().filter(|(word, _)| !typed.is_empty() && word.starts_with(&typed));
     match (found.next(), found.next()) {
         (Some((_, severity)), None) => Ok(*severity),
-        _ => Err("sev must be info, watch, warn or crit".into()),
+        _ => Err("sev must be debug, info, watch, warn or crit".into()),
     }
 }
 

@@ -1,7 +1,9 @@
 //! What filters understand, and what they say of what they do not.
 
-use super::super::{Entry, Log, What};
+use super::super::{Entry, Log, Occurrence, What};
 use super::*;
+use mission::EventKind;
+use planner_api::LogLevel;
 
 fn entry(t_s: f64, severity: Severity, source: &'static str, text: &str) -> Entry {
     Entry { tick: 0, t_s, severity, source: source.into(), text: text.into(), count: 1, what: What::Console }
@@ -94,4 +96,24 @@ fn the_least_severity_can_be_changed_without_touching_the_rest() {
     assert_eq!(with_least(text, Severity::Info), "source=ae \"position lost\"");
     assert_eq!(with_least("", Severity::Warn), "sev>=warn");
     assert_eq!(without_least("-sev>=warn sev=info a"), "-sev>=warn sev=info a");
+    assert_eq!(with_debug(text), "sev>=debug source=ae \"position lost\"");
+    assert_eq!(with_least(&with_debug("a"), Severity::Info), "a");
+}
+
+#[test]
+fn messages_of_planners_about_their_own_work_pass_only_if_a_term_asks_for_them() {
+    let said = |level, severity| {
+        let kind = EventKind::PlannerLogged { planner: "rpf".into(), level, message: "11 candidates".into() };
+        let what = What::Event(Box::new(Occurrence { kind, robot: None, range: None }));
+        Entry { what, ..entry(600.0, severity, "plan", "rpf: 11 candidates") }
+    };
+    let mut log = Log::default();
+    log.push(said(LogLevel::Info, Severity::Info));
+    log.push(said(LogLevel::Warn, Severity::Watch));
+    let passing = |text: &str| log.passing(&Filter::parse(text), 0).collect::<Vec<u64>>();
+    assert_eq!([passing(""), passing("rpf"), passing("sev>=info")], [[1], [1], [1]]);
+    assert_eq!(
+        (passing("sev>=debug"), passing("sev=debug"), passing("-sev>=debug")),
+        (vec![0, 1], vec![0], vec![])
+    );
 }

@@ -1,0 +1,117 @@
+//! What the operator can do about an alarm: the actions of its guide, and those that depend on the state of the alarm.
+
+use super::act::{act, hold_only};
+use super::message::Effect;
+use super::offer::{accepted, offered, refuse};
+use crate::actions::ActionId;
+use crate::guide::guide;
+use crate::model::{Cause, Model, Overlay};
+use mission::Order;
+use positioning::Exclusion;
+use world::StationId;
+
+/// The number of actions that have a key.
+pub(crate) const MOST: usize = 5;
+
+/// What an action on an alarm does.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Deed {
+    /// Carries out an action of the console.
+    Act(ActionId),
+    /// Excludes a station from the fix, or uses it again.
+    UseStation(StationId, bool),
+}
+
+/// An action on an alarm.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Step {
+    /// The action as a sentence, with keys written as `<end>`.
+    pub text: String,
+    pub deed: Deed,
+}
+
+/// The actions on an alarm, in the order of their numbers.
+pub(crate) fn steps(model: &Model, cause: &Cause) -> Vec<Step> {
+    let remedies = guide(cause).remedies.iter();
+    let of_guide = remedies.filter_map(|remedy| Some((remedy.text, remedy.action?)));
+    let of_guide = of_guide.map(|(text, action)| Step { text: text.to_owned(), deed: Deed::Act(action) });
+    let alarm = model.live.run.alarms.get(cause);
+    let acknowledge = alarm.filter(|alarm| alarm.is_unacknowledged()).map(|_| Step {
+        text: "Acknowledge (<acknowledge>).".to_owned(),
+        deed: Deed::Act(ActionId::Acknowledge),
+    });
+    of_guide.chain(station(model, cause)).chain(acknowledge).take(MOST).collect()
+}
+
+/// Excluding the station that an alarm is about, or using it again.
+fn station(model: &Model, cause: &Cause) -> Option<Step> {
+    let run = &model.live.run;
+    let excluded = run.position.fix.iter().flat_map(|fix| &fix.excluded);
+    let (id, why) = match cause {
+        Cause::Station(id) => (*id, String::new()),
+        Cause::Contradiction => {
+            let (id, residual_m) = largest_residual(model)?;
+            (id, format!(" (largest residual, {residual_m:+.2} m)"))
+        }
+        _ => return None,
+    };
+    let name = run.station_name(id);
+    let name = name.trim_start_matches("station ");
+    let is_excluded = excluded.clone().any(|(other, why)| *other == id && *why == Exclusion::ByOrder);
+    let text = if is_excluded {
+        format!("Use station {name} again.")
+    } else {
+        format!("Exclude station {name} from the fix{why}.")
+    };
+    Some(Step { text, deed: Deed::UseStation(id, is_excluded) })
+}
+
+/// The station whose range disagrees most with the last fix.
+fn largest_residual(model: &Model) -> Option<(StationId, f64)> {
+    let fix = model.live.run.position.fix.as_ref()?;
+    let used = fix.residuals.iter().map(|residual| (residual.station, residual.residual_m));
+    let rejected = fix.excluded.iter().filter_map(|(station, why)| match why {
+        Exclusion::Residual { residual_m, .. } => Some((*station, *residual_m)),
+        Exclusion::Silent | Exclusion::ByOrder | Exclusion::Impossible { .. } => None,
+    });
+    used.chain(rejected).max_by(|one, other| one.1.abs().total_cmp(&other.1.abs()))
+}
+
+/// Checks that an action on an alarm is possible now.
+///
+/// # Errors
+/// Returns the reason why not, as a sentence.
+pub(crate) fn can(model: &Model, deed: &Deed) -> Result<(), String> {
+    match deed {
+        Deed::Act(action) => offered(model, *action),
+        Deed::UseStation(station, used) => accepted(model, &order(model, *station, *used)),
+    }
+}
+
+fn order(model: &Model, station: StationId, used: bool) -> Order {
+    Order::UseStation { station, used, by: model.console.preferences.operator.clone() }
+}
+
+/// Runs the action with the given number, from 1, in the open action list, and closes the list. Actions that move the
+/// robot still ask first.
+pub(super) fn run(model: &mut Model, number: usize) -> Vec<Effect> {
+    let Overlay::Remedies { cause, .. } = &model.ui.overlay else {
+        return refuse(model, "open the actions of an alarm first".into());
+    };
+    let cause = cause.clone();
+    let steps = steps(model, &cause);
+    let Some(step) = number.checked_sub(1).and_then(|index| steps.get(index)) else {
+        let why = if steps.is_empty() { "this alarm has advice only" } else { "no action with this number" };
+        return refuse(model, why.into());
+    };
+    model.ui.alarm = Some(cause);
+    model.ui.overlay = Overlay::None;
+    match step.deed {
+        Deed::Act(ActionId::Hold) => hold_only(model),
+        Deed::Act(action) => act(model, action),
+        Deed::UseStation(station, used) => match can(model, &step.deed) {
+            Ok(()) => vec![Effect::Order(order(model, station, used))],
+            Err(why) => refuse(model, why),
+        },
+    }
+}

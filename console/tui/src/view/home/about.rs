@@ -1,0 +1,121 @@
+//! What the selected line of the home screen is about, beside the lists of a wide screen.
+
+use super::{attention, runs, scenarios};
+use crate::model::ScenarioEntry;
+use crate::model::home::{Found, HomeList};
+use crate::theme::Role;
+use crate::view::fields::{self, Field};
+use crate::view::look::{Look, Parts, fill};
+use crate::view::sketch::{self, Sketch};
+use crate::view::{past_run, text};
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::text::Line;
+use std::collections::BTreeSet;
+
+/// Width of the figure names, columns.
+const NAMES: usize = 10;
+/// The number of past runs listed about a scenario.
+const RUNS: usize = 6;
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, found: &Found) {
+    let home = &look.model.home;
+    let nothing = || vec![look.line([(Role::Dim, " Nothing is selected.".into())])];
+    match home.list {
+        HomeList::Scenarios => match home.selected_scenario() {
+            Some(entry) => scenario(look, frame, area, entry),
+            None => fill(frame, area, look.block(Role::Border, "Scenario", ""), nothing()),
+        },
+        HomeList::Runs => match home.selected_run() {
+            Some(run) => past_run::draw(look, frame, area, run),
+            None => fill(frame, area, look.block(Role::Border, "Run", ""), nothing()),
+        },
+        HomeList::Attention => {
+            let columns = usize::from(area.width).saturating_sub(2);
+            let (title, lines) = match attention::selected(look, found) {
+                Some(point) => {
+                    let lines = attention::whole(point, columns).into_iter().map(|parts| look.line(parts));
+                    (point.kind.clone(), lines.collect())
+                }
+                None => ("Attention".to_owned(), nothing()),
+            };
+            fill(frame, area, look.block(Role::Border, &title, ""), lines);
+        }
+    }
+}
+
+fn scenario(look: &Look, frame: &mut Frame, area: Rect, entry: &ScenarioEntry) {
+    let block = look.block(Role::Border, &entry.name, "");
+    let inner = block.inner(area);
+    frame.render_widget(block, area);
+    let lines = lines(look, entry, usize::from(inner.width));
+    let rows = (lines.len() as u16).min(inner.height);
+    let [text, below] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(inner);
+    fill(frame, text, ratatui::widgets::Block::new(), lines);
+    if let Some(world) = &entry.world {
+        sketch::draw(look, frame, below, &Sketch::of(world));
+    }
+}
+
+fn lines(look: &Look, entry: &ScenarioEntry, columns: usize) -> Vec<Line<'static>> {
+    let wrapped = |role, words: &str| {
+        let lines = text::wrap(words, columns.saturating_sub(2)).into_iter();
+        lines.map(move |line| vec![(role, format!(" {line}"))]).collect::<Vec<Parts>>()
+    };
+    if let Some(problem) = &entry.problem {
+        let lines = problem.lines().flat_map(|line| wrapped(Role::Warn, line));
+        return lines.map(|parts| look.line(parts)).collect();
+    }
+    let mut lines: Vec<Line> = wrapped(Role::Text, &scenarios::description(entry))
+        .into_iter()
+        .map(|parts| look.line(parts))
+        .collect();
+    let mut fields: Vec<Field> =
+        vec![("task", format!("{}, {}", entry.task, entry.tank)), ("planner", entry.planner.clone())];
+    if let Some(world) = &entry.world {
+        let (stations, obstacles) = (world.stations.len(), world.obstacles.len());
+        fields.push(("drawing", format!("{stations} stations, {obstacles} obstacles")));
+    }
+    lines.extend(fields::lines(look, &fields, NAMES, columns));
+    lines.push(Line::default());
+    lines.extend(last_runs(look, entry).into_iter().map(|parts| look.line(parts)));
+    lines
+}
+
+/// The last runs of a scenario, newest first.
+fn last_runs(look: &Look, entry: &ScenarioEntry) -> Vec<Parts> {
+    let runs = look.model.home.found.iter().flat_map(|found| &found.runs);
+    let runs: Vec<_> = runs.filter(|run| run.scenario == entry.name).collect();
+    if runs.is_empty() {
+        return vec![vec![(Role::Dim, " No run of this scenario yet.".into())]];
+    }
+    let row = |run: &&crate::model::PastRun| -> Parts {
+        let reach = run.reachable.map_or_else(String::new, |share| format!("{} %", text::percent(share)));
+        vec![
+            (Role::Dim, format!(" {}", text::column(&run.began, 13))),
+            (runs::role(run), text::column(runs::end_word(run), 11)),
+            (Role::Text, format!("{reach:>8}")),
+            (Role::Good, runs::verified(run).to_owned()),
+        ]
+    };
+    let mut rows: Vec<Parts> = runs.iter().take(RUNS).map(row).collect();
+    if let Some(more) = runs.len().checked_sub(RUNS).filter(|more| *more > 0) {
+        rows.push(vec![(Role::Dim, format!(" {more} earlier runs"))]);
+    }
+    rows
+}
+
+/// The number of plugins and planners, and the plugins that were refused.
+pub(super) fn plugins(look: &Look, frame: &mut Frame, area: Rect) {
+    let console = &look.model.console;
+    let block = look.block(Role::Border, "Plugins", &look.keys("<plugins> details"));
+    let columns = usize::from(block.inner(area).width);
+    let plugins: BTreeSet<&str> = console.planners.iter().map(|info| info.plugin.as_str()).collect();
+    let found = format!(" {} planners in {} plugins", console.planners.len(), plugins.len());
+    let mut lines = vec![look.line([(Role::Text, found)])];
+    lines.extend(console.refused.iter().take(2).map(|refused| {
+        let words = format!(" REFUSED {}: {}", refused.plugin, refused.reason);
+        look.line([(Role::Watch, text::clauses(&words, columns))])
+    }));
+    fill(frame, area, block, lines);
+}

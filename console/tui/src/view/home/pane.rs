@@ -1,0 +1,81 @@
+//! A list of the home screen: a heading, rows, and below them what the selected row is about.
+
+use crate::theme::Role;
+use crate::update::Rows;
+use crate::view::look::{Look, Parts, fill};
+use crate::view::{table, text};
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+
+/// Rows of the text about the selected row, without its title.
+pub(super) const ABOUT: u16 = 2;
+/// The rows of a pane from which it has a text about the selected row.
+const LEAST: u16 = 8;
+
+/// The contents of a list.
+pub(super) struct Pane<'a> {
+    pub border: Role,
+    pub title: &'a str,
+    pub note: String,
+    /// The column headings; `None` for a list without columns.
+    pub heads: Option<String>,
+    pub rows: Vec<Parts>,
+    /// The selected row; `None` if the list does not respond to the arrow keys.
+    pub selected: Option<usize>,
+    pub list: Rows,
+    /// What is shown if there are no rows.
+    pub empty: String,
+    /// The title and the lines about the selected row.
+    pub about: Option<(String, Vec<Parts>)>,
+}
+
+impl Pane<'_> {
+    pub(super) fn draw(self, look: &Look, frame: &mut Frame, area: Rect) {
+        let about = self.about.filter(|(_, lines)| area.height >= LEAST && !lines.is_empty());
+        let below = about.as_ref().map_or(0, |(_, lines)| lines.len() as u16 + 1);
+        let below = below.min(area.height.saturating_sub(LEAST - ABOUT - 1));
+        let inner = look.block(self.border, "", "").inner(area);
+        let heads = u16::from(self.heads.is_some());
+        let (columns, height) =
+            (usize::from(inner.width), usize::from(inner.height.saturating_sub(heads + below)));
+        let shown = table::window(self.selected.unwrap_or(0), self.rows.len(), height);
+        let title = format!("{}  {}", self.title, table::counted(&shown, self.rows.len()));
+        let block = look.block(self.border, &title, &self.note);
+        let place = Rect { y: inner.y + heads, height: height as u16, ..inner };
+        table::place(look, place, self.list, shown);
+        let mut lines: Vec<Line> = self
+            .heads
+            .into_iter()
+            .map(|heads| look.line([(Role::Dim, text::fit(&heads, columns))]))
+            .collect();
+        if self.rows.is_empty() {
+            lines.push(look.line([(Role::Dim, text::fit(&self.empty, columns))]));
+        }
+        lines.extend(table::rows(look, self.rows, self.selected, (columns, height)));
+        fill(frame, area, block, lines);
+        if let Some((title, lines)) = about {
+            let y = inner.bottom().saturating_sub(below);
+            divide(look, frame, Rect { y, height: 1, ..area }, (self.border, &title));
+            let place = Rect { y: y + 1, height: below.saturating_sub(1), ..inner };
+            let lines = lines.into_iter().map(|parts| look.line(parts)).collect();
+            fill(frame, place, ratatui::widgets::Block::new(), lines);
+        }
+    }
+}
+
+/// Draws a line with a title across a pane.
+fn divide(look: &Look, frame: &mut Frame, area: Rect, (border, title): (Role, &str)) {
+    let room = usize::from(area.width).saturating_sub(6);
+    let title = text::fit(title, room);
+    let rest = "─".repeat(room.saturating_sub(text::width(&title)));
+    let parts = [(border, "├─ ".to_owned()), (Role::Title, title), (border, format!(" {rest}─┤"))];
+    frame.render_widget(look.line(parts), area);
+}
+
+/// The first lines of a sentence about the selected row, for the space below a list.
+pub(super) fn sentence(role: Role, words: &str, columns: usize) -> Vec<Parts> {
+    let columns = columns.saturating_sub(2);
+    let lines = text::first_lines(text::wrap(words, columns), usize::from(ABOUT), columns);
+    lines.into_iter().map(|line| vec![(role, format!(" {line}"))]).collect()
+}

@@ -1,0 +1,108 @@
+//! The list of past runs.
+
+use super::pane::{Pane, sentence};
+use super::{border, note};
+use crate::model::PastRun;
+use crate::model::home::HomeList;
+use crate::theme::Role;
+use crate::update::Rows;
+use crate::view::look::{Look, Parts};
+use crate::view::past_run::name;
+use crate::view::text;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+
+/// Width of the columns, each with a blank.
+const BEGAN: usize = 13;
+const PLANNER: usize = 13;
+const END: usize = 11;
+const TIME: usize = 9;
+const REACH: usize = 8;
+const VERIFIED: usize = 4;
+/// Width from which the planner is shown, columns.
+const WIDE: usize = 76;
+
+/// The mark of a verified run.
+pub(in crate::view) fn verified(run: &PastRun) -> &'static str {
+    if run.verified.is_some() { "  ✓v" } else { "" }
+}
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, about: bool) {
+    let home = &look.model.home;
+    let listed = home.runs();
+    let room = usize::from(area.width).saturating_sub(2);
+    let planner = if room >= WIDE { PLANNER } else { 0 };
+    let names = room.saturating_sub(1 + BEGAN + planner + END + TIME + REACH + VERIFIED);
+    let is_focused = home.list == HomeList::Runs;
+    let selected = home.selected_run().filter(|_| about);
+    let verified_too = if listed.iter().any(|run| run.verified.is_some()) { "✓v verified" } else { "" };
+    let pane = Pane {
+        border: border(look, HomeList::Runs),
+        title: "Past runs, UTC",
+        note: if is_focused && !verified_too.is_empty() {
+            verified_too.into()
+        } else {
+            note(look, HomeList::Runs)
+        },
+        heads: Some(heads(names, planner)),
+        rows: listed.iter().map(|run| row(run, names, planner)).collect(),
+        selected: is_focused.then_some(home.run),
+        list: Rows::Runs,
+        empty: if home.filter.is_empty() { " No runs yet.".into() } else { " No run matches.".into() },
+        about: selected.map(|run| (run.name.clone(), about_lines(run, room))),
+    };
+    pane.draw(look, frame, area);
+}
+
+fn heads(names: usize, planner: usize) -> String {
+    let planner = if planner > 0 { text::column("planner", planner) } else { String::new() };
+    format!(
+        " {}{}{planner}{}{}{:>REACH$}",
+        text::column("began", BEGAN),
+        text::column("scenario", names),
+        text::column("end", END),
+        text::column("T+", TIME),
+        "reach"
+    )
+}
+
+fn row(run: &PastRun, names: usize, planner: usize) -> Parts {
+    let took = run.mission_time_s.map_or_else(|| "-".into(), text::clock);
+    let reach = run.reachable.map_or_else(|| "-".into(), |share| format!("{} %", text::percent(share)));
+    vec![
+        (Role::Dim, text::column(if run.began.is_empty() { "-" } else { &run.began }, BEGAN)),
+        (Role::Text, text::column(&text::fit(name(run), names.saturating_sub(1)), names)),
+        (Role::Dim, text::column(&text::fit(&run.planner, planner.saturating_sub(1)), planner)),
+        (role(run), text::column(end_word(run), END)),
+        (Role::Dim, text::column(&took, TIME)),
+        (Role::Text, format!("{reach:>REACH$}")),
+        (Role::Good, text::column(verified(run), VERIFIED)),
+    ]
+}
+
+/// What is wrong with a run, or what people wrote about it.
+fn about_lines(run: &PastRun, columns: usize) -> Vec<Parts> {
+    let verified = run.verified.as_ref().map(|at| format!("Verified {at} UTC."));
+    match (&run.note, &run.remark) {
+        (Some(note), _) => sentence(Role::Warn, &text::capitalized(note), columns),
+        (None, Some(remark)) => sentence(Role::Text, &format!("Remark: {remark}"), columns),
+        (None, None) => {
+            let words = verified.unwrap_or_else(|| "Not verified.".into());
+            sentence(Role::Dim, &words, columns)
+        }
+    }
+}
+
+/// The role of a run's end.
+pub(in crate::view) fn role(run: &PastRun) -> Role {
+    if matches!(run.end.as_str(), "complete" | "aborted" | "RUNNING") { Role::Text } else { Role::Warn }
+}
+
+/// How a run ended, in at most ten columns.
+pub(in crate::view) fn end_word(run: &PastRun) -> &str {
+    match run.end.as_str() {
+        "RECORDING FAILED" => "REC FAILED",
+        "time_limit" => "time limit",
+        other => other,
+    }
+}

@@ -1,0 +1,149 @@
+//! The list of scenarios.
+
+use super::pane::{Pane, sentence};
+use super::{border, note, runs};
+use crate::model::home::HomeList;
+use crate::model::{PastRun, ScenarioEntry};
+use crate::theme::Role;
+use crate::update::{Rows, go};
+use crate::view::look::{Look, Parts};
+use crate::view::text;
+use mission::Phase;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+
+/// The column widths; a column that does not fit is 0 wide.
+#[derive(Clone, Copy)]
+struct Columns {
+    name: usize,
+    task: usize,
+    tank: usize,
+    planner: usize,
+    end: usize,
+    reach: usize,
+    age: usize,
+}
+
+const FULL: Columns = Columns { name: 0, task: 7, tank: 9, planner: 13, end: 13, reach: 8, age: 7 };
+
+/// The columns that fit beside the names. If space is short, the tank is dropped first, then the planner.
+fn columns(listed: &[&ScenarioEntry], room: usize) -> Columns {
+    let widest = listed.iter().map(|entry| text::width(&entry.name)).max().unwrap_or(0).max(8) + 1;
+    let of = |columns: Columns| {
+        let Columns { task, tank, planner, end, reach, age, .. } = columns;
+        let name = room.saturating_sub(1 + task + tank + planner + end + reach + age);
+        Columns { name, ..columns }
+    };
+    let short = Columns { tank: 0, ..FULL };
+    let least = Columns { planner: 0, ..short };
+    let all = [of(FULL), of(short), of(least)];
+    let fitting = all.into_iter().find(|columns| columns.name >= widest.min(22)).unwrap_or(all[2]);
+    // What is left over goes to the end, where it tells more.
+    Columns {
+        end: fitting.end + fitting.name.saturating_sub(widest),
+        name: fitting.name.min(widest),
+        ..fitting
+    }
+}
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, about: bool) {
+    let home = &look.model.home;
+    let listed = home.scenarios();
+    let room = usize::from(area.width).saturating_sub(2);
+    let at = columns(&listed, room);
+    let empty = if home.filter.is_empty() {
+        " No scenarios here; `tankops console FILE` opens one.".to_owned()
+    } else {
+        format!(" No scenario matches `{}`.", text::fit(&home.filter, room.saturating_sub(26)))
+    };
+    let selected = home.selected_scenario().filter(|_| about);
+    let pane = Pane {
+        border: border(look, HomeList::Scenarios),
+        title: "Scenarios",
+        note: note(look, HomeList::Scenarios),
+        heads: Some(heads(at)),
+        rows: listed.iter().map(|entry| row(look, entry, at, room)).collect(),
+        selected: (home.list == HomeList::Scenarios).then_some(home.scenario),
+        list: Rows::Scenarios,
+        empty,
+        about: selected.map(|entry| (entry.name.clone(), about_lines(entry, room))),
+    };
+    pane.draw(look, frame, area);
+}
+
+fn heads(at: Columns) -> String {
+    let head = |word: &str, width: usize| if width > 0 { text::column(word, width) } else { String::new() };
+    let right = |word: &str, width: usize| format!("{word:>width$}");
+    [
+        format!(" {}", text::column("name", at.name)),
+        head("task", at.task),
+        head("tank", at.tank),
+        head("planner", at.planner),
+        head("last end", at.end),
+        right("reach", at.reach),
+        right("age", at.age),
+    ]
+    .concat()
+}
+
+fn row(look: &Look, entry: &ScenarioEntry, at: Columns, room: usize) -> Parts {
+    let name = (Role::Text, text::column(&entry.name, at.name));
+    if let Some(why) = entry.briefly() {
+        let left = room.saturating_sub(at.name + 1);
+        return vec![name, (Role::Warn, text::clauses(&format!("INVALID  {why}"), left))];
+    }
+    let last = look.model.home.last_end(&entry.name);
+    let reach =
+        last.and_then(|run| run.reachable).map_or_else(|| "-".into(), |s| format!("{} %", text::percent(s)));
+    let (role, end) = end(look, entry, last);
+    vec![
+        name,
+        (Role::Dim, text::column(&entry.task, at.task)),
+        (Role::Dim, text::column(&entry.tank, at.tank)),
+        (Role::Dim, text::column(&entry.planner, at.planner)),
+        (role, text::column(&end, at.end)),
+        (Role::Text, format!("{reach:>width$}", width = at.reach)),
+        (Role::Dim, format!("{:>width$}", age(look, last), width = at.age)),
+    ]
+}
+
+/// The state of the open mission, or how the last run of the scenario ended.
+fn end(look: &Look, entry: &ScenarioEntry, last: Option<&PastRun>) -> (Role, String) {
+    let live = &look.model.live;
+    if go::is_open_mission(look.model, entry) {
+        let state = match live.run.phase() {
+            _ if live.is_opening => "opening",
+            Phase::Waiting if live.busy.is_some() => "planning",
+            Phase::Waiting => "ready",
+            Phase::Running(_) => "RUN",
+            Phase::Held(_) => "HELD",
+            Phase::Ended(_) => "ended",
+        };
+        return (Role::Title, format!("open, {state}"));
+    }
+    last.map_or((Role::Dim, "-".into()), |run| (runs::role(run), runs::end_word(run).to_owned()))
+}
+
+/// How long ago a run began.
+fn age(look: &Look, run: Option<&PastRun>) -> String {
+    let now_s = look.model.console.now.wall_unix_s;
+    let began_s = run.and_then(|run| run.began_unix_s);
+    began_s.map_or_else(|| "-".into(), |began_s| text::ago(now_s - began_s))
+}
+
+fn about_lines(entry: &ScenarioEntry, columns: usize) -> Vec<Parts> {
+    match &entry.problem {
+        Some(problem) => sentence(Role::Warn, problem, columns),
+        None => sentence(Role::Dim, &description(entry), columns),
+    }
+}
+
+/// What a scenario is about, and what is expected of it.
+pub(super) fn description(entry: &ScenarioEntry) -> String {
+    match (entry.about.is_empty(), entry.expected.is_empty()) {
+        (true, true) => "No description.".into(),
+        (false, true) => format!("{}.", entry.about),
+        (true, false) => format!("Expected: {}.", entry.expected),
+        (false, false) => format!("{}. Expected: {}.", entry.about, entry.expected),
+    }
+}

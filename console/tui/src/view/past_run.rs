@@ -1,0 +1,183 @@
+//! What is known about a past run: figures, holds, alarms, notes and a small map.
+
+use super::fields::{self, Field};
+use super::look::{Look, Parts, fill};
+use super::sketch::{self, Sketch};
+use super::text;
+use crate::guide;
+use crate::model::{Glimpse, PastRun, Run};
+use crate::theme::Role;
+use account::{MissReason, Summary};
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::text::Line;
+use std::cmp::Reverse;
+
+/// Width of the figure names, columns.
+const NAMES: usize = 10;
+/// Width from which the map is beside the figures, columns.
+const BESIDE: u16 = 76;
+/// Width of the figures beside a map, columns.
+const FIGURES: u16 = 46;
+/// The rows below the figures from which the map is drawn there.
+const BELOW: u16 = 9;
+/// The number of missed areas that are marked on the map.
+const MARKED: usize = 9;
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, run: &PastRun) {
+    let began = if run.began.is_empty() { String::new() } else { format!("  {} UTC", run.began) };
+    let scenario = name(run);
+    let block = look.block(Role::Border, &format!("{scenario}{began}"), "");
+    let inner = block.inner(area);
+    frame.render_widget(block, area);
+    let glimpse = look.model.home.glimpses.of(&run.name).and_then(|found| found.as_ref().ok());
+    let sketch = glimpse.and_then(|glimpse| sketch(glimpse));
+    let beside = sketch.is_some() && inner.width >= BESIDE;
+    let figures = if beside { FIGURES } else { inner.width };
+    let lines = lines(look, run, usize::from(figures));
+    let [left, right] = Layout::horizontal([Constraint::Length(figures), Constraint::Fill(1)]).areas(inner);
+    let rows = (lines.len() as u16).min(left.height);
+    let [text, below] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(left);
+    fill(frame, text, ratatui::widgets::Block::new(), lines);
+    if let Some(sketch) = sketch {
+        if beside {
+            sketch::draw(look, frame, right, &sketch);
+        } else if below.height >= BELOW {
+            sketch::draw(look, frame, below, &sketch);
+        }
+    }
+}
+
+/// The name of the run's scenario; of its folder if the scenario is unknown.
+pub(super) fn name(run: &PastRun) -> &str {
+    if run.scenario.is_empty() { &run.name } else { &run.scenario }
+}
+
+/// The lines about a run, most important first.
+pub(super) fn lines(look: &Look, run: &PastRun, columns: usize) -> Vec<Line<'static>> {
+    let found = look.model.home.glimpses.of(&run.name);
+    let glimpse = found.and_then(|found| found.as_ref().ok());
+    let summary = glimpse.and_then(|glimpse| glimpse.summary.as_deref());
+    let mut lines = fields::lines(look, &outcome(run, summary), NAMES, columns);
+    lines.extend(notes(look, run, columns).into_iter().map(|parts| look.line(parts)));
+    if let Some(glimpse) = glimpse {
+        let figures = summary.map(figures).unwrap_or_default();
+        let all: Vec<Field> = figures.into_iter().chain(events(&glimpse.run, summary)).collect();
+        lines.extend(fields::lines(look, &all, NAMES, columns));
+    } else if let Some(Err(why)) = found {
+        lines.extend(wrapped(Role::Warn, why, columns).map(|parts| look.line(parts)));
+    }
+    lines
+}
+
+fn outcome(run: &PastRun, summary: Option<&Summary>) -> Vec<Field> {
+    let took = run.mission_time_s.map_or_else(String::new, |s| format!(" after {}", text::clock(s)));
+    let reason = summary.and_then(|summary| summary.reason.as_ref());
+    let reason = reason.map_or_else(String::new, |reason| format!(": {reason}"));
+    let verified = run.verified.as_ref().map(|at| ("verified", format!("{at} UTC, equal")));
+    let mut fields = vec![("end", format!("{}{took}{reason}", run.end))];
+    fields.extend(
+        run.reachable.map(|share| ("scanned", format!("{} % of reachable floor", text::percent(share)))),
+    );
+    fields.extend((!run.planner.is_empty()).then(|| ("planner", run.planner.clone())));
+    fields.push(("folder", run.name.clone()));
+    fields.extend(verified);
+    fields
+}
+
+/// The problem, the remark and the bookmarks of a run.
+fn notes(look: &Look, run: &PastRun, columns: usize) -> Vec<Parts> {
+    let mut lines: Vec<Parts> = Vec::new();
+    if let Some(note) = &run.note {
+        lines.extend(wrapped(Role::Warn, &format!("* {note}"), columns));
+    }
+    if let Some(remark) = &run.remark {
+        lines.extend(wrapped(Role::Title, &format!("Remark: {remark}"), columns));
+    }
+    let replay = look.model.live.replay.as_ref().filter(|replay| replay.name == run.name);
+    for bookmark in replay.iter().flat_map(|replay| &replay.notes.bookmarks) {
+        let words = format!("● T+{} {}", text::clock(bookmark.t_s), bookmark.text);
+        lines.extend(wrapped(Role::Text, &words, columns));
+    }
+    if replay.is_none() && run.bookmarks > 0 {
+        let plural = if run.bookmarks == 1 { "" } else { "s" };
+        lines.extend(wrapped(Role::Dim, &format!("● {} bookmark{plural}", run.bookmarks), columns));
+    }
+    lines
+}
+
+fn figures(summary: &Summary) -> Vec<Field> {
+    let metres = |m: f64, decimals| format!("{} m", text::number(m, decimals));
+    let mut fields: Vec<Field> = Vec::new();
+    fields.extend(summary.path_length_m.map(|m| ("path", metres(m, 1))));
+    fields.extend(summary.clearance_min_m.map(|m| ("clearance", format!("{} at least", metres(m, 2)))));
+    if let Some(accuracy) = &summary.accuracy {
+        let (p95, most, limit) =
+            (metres(accuracy.p95_m, 2), metres(accuracy.max_m, 2), metres(accuracy.limit_m, 2));
+        fields.push(("95 % error", format!("p95 {p95}, worst {most}, limit {limit}")));
+    }
+    if let Some(tether) = &summary.tether {
+        let wrap = text::number(tether.wrap_max_rad.to_degrees(), 0);
+        fields.push(("tether", format!("{} out, wrap {wrap}°", metres(tether.tether_length_max_m, 1))));
+    }
+    if let Some(floor) = &summary.floor {
+        let missed: Vec<_> = floor.missed.iter().filter(|area| area.reason != MissReason::NotAsked).collect();
+        let area_m2: f64 = missed.iter().map(|area| area.area_m2).sum();
+        fields
+            .push(("missed", format!("{}, {} m²", counted(missed.len(), "area"), text::number(area_m2, 2))));
+    }
+    for violation in summary.violations.iter().flatten() {
+        fields.push(("not met", violation.clone()));
+    }
+    fields
+}
+
+fn counted(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
+}
+
+/// What happened during the run.
+fn events(run: &Run, summary: Option<&Summary>) -> Vec<Field> {
+    let mut fields: Vec<Field> = Vec::new();
+    if let Some(summary) = summary {
+        let faults = summary.planner_faults;
+        fields.push((
+            "holds",
+            format!(
+                "{}, collisions {}, planner faults {faults}",
+                summary.holds,
+                summary.collisions.unwrap_or(0)
+            ),
+        ));
+        fields.extend(
+            (summary.obstacles_found > 0)
+                .then(|| ("found", counted(summary.obstacles_found as usize, "obstacle"))),
+        );
+    }
+    let mut alarms: Vec<_> = run.alarms.list().iter().collect();
+    alarms.sort_by_key(|alarm| Reverse(alarm.severity));
+    let words = alarms.iter().map(|alarm| {
+        let times = if alarm.count > 1 { format!(" {}×", alarm.count) } else { String::new() };
+        format!("{}{times}", guide::name(&alarm.cause, run))
+    });
+    let words: Vec<String> = words.collect();
+    fields.push(("alarms", if words.is_empty() { "none".into() } else { words.join(", ") }));
+    fields
+}
+
+/// The map of a run with its largest missed areas.
+fn sketch(glimpse: &Glimpse) -> Option<Sketch<'_>> {
+    let mut sketch = Sketch::of_run(&glimpse.run)?;
+    let floor = glimpse.summary.as_ref().and_then(|summary| summary.floor.as_ref());
+    let missed = floor.into_iter().flat_map(|floor| &floor.missed);
+    let listed = missed.filter(|area| area.reason != MissReason::NotAsked).take(MARKED);
+    for (index, area) in listed.enumerate() {
+        sketch = sketch.marked(area.at, Role::Missed, &(index + 1).to_string());
+    }
+    Some(sketch)
+}
+
+fn wrapped(role: Role, words: &str, columns: usize) -> impl Iterator<Item = Parts> + use<> {
+    let lines = text::wrap(words, columns.saturating_sub(2)).into_iter();
+    lines.map(move |line| vec![(role, format!(" {}", text::fit(&line, columns.saturating_sub(2))))])
+}
