@@ -33,9 +33,9 @@ pub use drawn::DrawnZone;
 pub use estimate::Estimate;
 pub use expect::{Expect, Miss};
 pub use floor::{
-    Account, Area, Cause, CriticalZone, Evidence, Explained, Measure, MissReason, OutOfReach, Percent,
-    PlateAccount, Reasons, Shares, Slivers, Solid, ZoneArc, ZoneOfPlate, account, area_of, areas, plate_map,
-    together, updated_floor,
+    Account, Area, Cause, CriticalZone, Evidence, Explained, LeftOut, Measure, MissReason, OutOfReach,
+    Percent, PlateAccount, Reasons, Shares, Slivers, Solid, ZoneArc, ZoneOfPlate, account, area_of, areas,
+    plate_map, together, updated_floor,
 };
 pub use fold::Fold;
 pub use inspection::{Date, Inspection, is_placeholder, says_nothing};

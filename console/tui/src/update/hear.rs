@@ -46,6 +46,7 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
         }
         RunMsg::Checked(found) => return preflight::checked(model, found),
         RunMsg::Estimated(ask, estimate) => model.live.plans.estimate = Some((ask, *estimate)),
+        RunMsg::LeftOut(ask, left_out) => model.live.plans.left_out = Some((ask, *left_out)),
         RunMsg::CompareAt(share, what) => {
             if let Some(ghost) = &mut model.live.plans.ghost {
                 ghost.at = Some((share, what));

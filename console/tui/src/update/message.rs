@@ -7,7 +7,7 @@ use crate::model::{
     home::Found,
     replay::{Align, Reel, Side},
 };
-use account::{Account, Estimate, Notes, Summary};
+use account::{Account, Estimate, LeftOut, Notes, Summary};
 use mission::{AskId, Check, Event, Order, PlannerChoice, PlannerInfo, RefusedPlugin, Severity};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -119,6 +119,8 @@ pub enum Rows {
     Plugins,
     /// The missed areas on the result screen.
     Missed,
+    /// The areas that the plan leaves out, on the plan screen.
+    LeftOut,
     /// Past runs on the review screen.
     Past,
 }
@@ -154,6 +156,8 @@ pub enum RunMsg {
     Checked(Vec<Check>),
     /// The estimate for a plan, and the ask that the plan answers.
     Estimated(Option<AskId>, Box<Estimate>),
+    /// The floor that a plan leaves out, for the plan that answers the given ask.
+    LeftOut(Option<AskId>, Box<LeftOut>),
     /// The progress of the plan for comparison: the share done, and the current activity.
     CompareAt(f64, String),
     /// The plan for comparison, or why there is none, as a sentence.

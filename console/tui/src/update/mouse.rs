@@ -6,7 +6,7 @@ use super::map;
 use super::message::{Effect, Mouse, Rows, Target};
 use crate::actions::ActionId;
 use crate::model::home::HomeList;
-use crate::model::{Model, Overlay};
+use crate::model::{Model, Overlay, Pane};
 
 /// Lines scrolled per wheel step.
 const WHEEL: isize = 3;
@@ -41,7 +41,10 @@ pub(super) fn take(model: &mut Model, mouse: Mouse) -> Vec<Effect> {
 fn click(model: &mut Model, list: Rows, index: usize) -> Vec<Effect> {
     let was_focused = !focus(model, list);
     let before = selected(model, list);
-    let opens = matches!(list, Rows::Scenarios | Rows::Runs | Rows::Alarms | Rows::Events | Rows::Past);
+    let opens = matches!(
+        list,
+        Rows::Scenarios | Rows::Runs | Rows::Alarms | Rows::Events | Rows::LeftOut | Rows::Past
+    );
     if was_focused && before == index {
         return if opens { act(model, ActionId::Accept) } else { Vec::new() };
     }
@@ -49,11 +52,12 @@ fn click(model: &mut Model, list: Rows, index: usize) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Makes a list on the home screen respond to the arrow keys; returns whether a different list did so before.
+/// Makes a list respond to the arrow keys; returns whether a different list or pane did so before.
 fn focus(model: &mut Model, list: Rows) -> bool {
     let wanted = match list {
         Rows::Scenarios => HomeList::Scenarios,
         Rows::Runs => HomeList::Runs,
+        Rows::LeftOut => return std::mem::replace(&mut model.ui.pane, Pane::LeftOut) != Pane::LeftOut,
         Rows::Alarms | Rows::Events | Rows::Plugins | Rows::Missed | Rows::Past => return false,
     };
     std::mem::replace(&mut model.home.list, wanted) != wanted
@@ -72,6 +76,7 @@ fn selected(model: &Model, list: Rows) -> usize {
         Rows::Events => model.ui.events.newer(),
         Rows::Plugins => model.ui.plugin,
         Rows::Missed => model.ui.missed,
+        Rows::LeftOut => model.ui.left_out,
         Rows::Past => model.review.selected,
     }
 }

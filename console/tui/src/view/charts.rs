@@ -1,7 +1,7 @@
 //! Charts of recent minutes, with the limit drawn as a line.
 
 use super::look::Look;
-use super::map::{Stroke, Window};
+use super::map::{Pattern, Stroke, Window};
 use super::text;
 use crate::model::history::{HISTORY_S, SLOT_S};
 use crate::model::{History, Pane, ui::Chart};
@@ -30,8 +30,16 @@ struct Series<'a> {
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, chart: Chart) {
     let Some(series) = series(look, chart) else { return };
-    let limit = series.limit.map(|limit| format!(", limit {}", text::number(limit, series.decimals)));
-    let note = format!("{} min{}", HISTORY_S / 60, limit.unwrap_or_default());
+    let said = |value: f64| text::number(value, series.decimals);
+    let now = series.values.last(SLOT_S).last().map_or_else(|| "-".into(), said);
+    let limit = series.limit.map_or_else(String::new, |limit| format!(", limit {}", said(limit)));
+    let room = usize::from(area.width).saturating_sub(text::width(series.title) + 8);
+    let words = [
+        format!("now {now}{limit}, {} min", HISTORY_S / 60),
+        format!("now {now}{limit}"),
+        format!("now {now}"),
+    ];
+    let note = text::wording(words, room);
     let block = look.pane(Pane::Chart(chart), series.title, &note);
     let inner = block.inner(area);
     frame.render_widget(block, area);
@@ -49,6 +57,12 @@ fn series<'a>(look: &Look<'a>, chart: Chart) -> Option<Series<'a>> {
             values: &run.position.history_m,
             limit: Some(about.mission.position_limit_m),
             decimals: 2,
+        },
+        Chart::Residual => Series {
+            title: "Residual RMS, mm",
+            values: &run.position.residual_history_mm,
+            limit: None,
+            decimals: 0,
         },
         Chart::TetherOut => Series {
             title: "Tether out, m",
@@ -89,17 +103,24 @@ fn plot(look: &Look, frame: &mut Frame, area: Rect, series: &Series<'_>) {
         values.iter().enumerate().map(|(index, value)| Point::new(at_s(index), *value)).collect();
     let marker = if look.caps.glyphs.has_dots() { Marker::Braille } else { Marker::Custom('*') };
     let canvas = Canvas::default().marker(marker).x_bounds(window.x).y_bounds(window.y).paint(|ctx| {
-        let mut stroke = |points: &[Point], role, dotted| {
-            ctx.draw(&Stroke { points, window, dotted, color: look.theme.color(role) });
+        let mut stroke = |points: &[Point], role, pattern| {
+            ctx.draw(&Stroke { points, window, pattern, color: look.theme.color(role) });
         };
         if let Some(limit) = limit {
-            stroke(&[Point::new(window.x[0], limit), Point::new(window.x[1], limit)], Role::Warn, true);
+            stroke(
+                &[Point::new(window.x[0], limit), Point::new(window.x[1], limit)],
+                Role::Warn,
+                Pattern::Dotted,
+            );
         }
-        stroke(&points, Role::Watch, false);
+        stroke(&points, Role::Watch, Pattern::Solid);
     });
     frame.render_widget(canvas, plot);
-    label(look, frame, area, series, top, limit.unwrap_or(largest));
     label(look, frame, area, series, top, 0.0);
+    if limit.is_some() {
+        label(look, frame, area, series, top, largest);
+    }
+    label(look, frame, area, series, top, limit.unwrap_or(largest));
 }
 
 /// Writes a value beside the curve, at its height.
