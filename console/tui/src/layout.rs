@@ -78,7 +78,9 @@ pub(crate) fn mission(area: Rect, (width, height): (u16, u16), shown: Shown) -> 
         placed.extend(stack(side, &wishes));
     } else {
         let [one, two] = Layout::horizontal([Constraint::Fill(1); 2]).areas(side);
-        placed.extend(stack(one, &first(shown, true)));
+        let mut wishes = first(shown, true);
+        wishes.extend((shown.stations > 0).then_some(chart(Chart::Residual)));
+        placed.extend(stack(one, &wishes));
         placed.extend(stack(two, &second(shown, !has_alarms_below)));
     }
     if has_alarms_below {
@@ -146,14 +148,17 @@ fn first(shown: Shown, wide: bool) -> Vec<Wish> {
         .collect()
 }
 
+/// A chart.
+const fn chart(chart: Chart) -> Wish {
+    wish(Pane::Chart(chart), 6, 10)
+}
+
 /// The panes in the second stack.
 fn second(shown: Shown, alarms: bool) -> Vec<Wish> {
-    let chart = |chart| wish(Pane::Chart(chart), 6, 11);
     let tether = [chart(Chart::TetherOut), chart(Chart::Wrap)];
     let alarms = alarms.then_some(wish(Pane::Alarms, 5, 8));
     let stations = (shown.stations > 0)
         .then(|| wish(Pane::Stations, (shown.stations + 3).min(9), 2 * shown.stations + 3));
-    let residual = (shown.stations > 0).then_some(chart(Chart::Residual));
     let missed = shown.missed.then_some(wish(Pane::Missed, 5, 10));
     let tether = tether.into_iter().filter(|_| shown.tether);
     alarms
@@ -162,7 +167,6 @@ fn second(shown: Shown, alarms: bool) -> Vec<Wish> {
         .chain([chart(Chart::Error)])
         .chain(stations)
         .chain(tether)
-        .chain(residual)
         .chain([chart(Chart::Scanned)])
         .collect()
 }

@@ -40,7 +40,7 @@ use crate::actions::{ActionId, context::contexts, find};
 use crate::keys::{Key, KeyPress};
 use crate::model::console::Bell;
 use crate::model::plugins::differences;
-use crate::model::{Cause, Model, Overlay, Pane, ui::Arrangement};
+use crate::model::{Cause, Model, Overlay, Pane, Screen, ui::Arrangement};
 use mission::{Hold, Phase, PlannerInfo, RefusedPlugin, Severity};
 use send::hold_now;
 

@@ -60,8 +60,12 @@ impl PlanShown {
         points.min_by(|a, b| distance(a.1).total_cmp(&distance(b.1))).map_or(0, |(index, _)| index)
     }
 
-    /// The lane on which a point of the path lies, or the stretch between two lanes: first and last index.
+    /// The lane on which a point of the path lies, or the stretch between two lanes: first and last index. A path
+    /// without lanes has no legs: both indices are that of the point.
     pub fn leg_at(&self, index: usize) -> Lane {
+        if self.lanes.is_empty() {
+            return (index, index);
+        }
         let end = self.path.len().saturating_sub(1);
         let next = self.lanes.partition_point(|(_, last)| *last <= index);
         let before = next.checked_sub(1).map_or(0, |before| self.lanes[before].1);
@@ -186,7 +190,7 @@ mod tests {
         let plan = shown(vec![(0, 10), (11, 21), (22, 32)]);
         assert_eq!([plan.leg_at(0), plan.leg_at(9), plan.leg_at(10)], [(0, 10), (0, 10), (10, 11)]);
         assert_eq!([plan.leg_at(11), plan.leg_at(32)], [(11, 21), (32, 32)]);
-        assert_eq!(shown(Vec::new()).leg_at(5), (0, 32));
+        assert_eq!(shown(Vec::new()).leg_at(5), (5, 5));
         assert!((plan.rest_m(Point::new(3.1, 0.0)) - 29.0).abs() < 1e-9);
     }
 }

@@ -31,14 +31,12 @@ struct Series<'a> {
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, chart: Chart) {
     let Some(series) = series(look, chart) else { return };
     let said = |value: f64| text::number(value, series.decimals);
-    let now = series.values.last(SLOT_S).last().map_or_else(|| "-".into(), said);
-    let limit = series.limit.map_or_else(String::new, |limit| format!(", limit {}", said(limit)));
+    let now =
+        series.values.last(SLOT_S).last().map_or_else(String::new, |now| format!("now {}, ", said(now)));
+    let limit = series.limit.map_or_else(String::new, |limit| format!("limit {}, ", said(limit)));
     let room = usize::from(area.width).saturating_sub(text::width(series.title) + 8);
-    let words = [
-        format!("now {now}{limit}, {} min", HISTORY_S / 60),
-        format!("now {now}{limit}"),
-        format!("now {now}"),
-    ];
+    let minutes = format!("{} min", HISTORY_S / 60);
+    let words = [format!("{now}{limit}{minutes}"), format!("{limit}{minutes}"), minutes];
     let note = text::wording(words, room);
     let block = look.pane(Pane::Chart(chart), series.title, &note);
     let inner = block.inner(area);
@@ -77,7 +75,7 @@ fn series<'a>(look: &Look<'a>, chart: Chart) -> Option<Series<'a>> {
             decimals: 0,
         },
         Chart::Scanned => Series {
-            title: "Scanned, % of reachable floor",
+            title: "Scanned, % of reachable",
             values: &run.scanned_history,
             limit: None,
             decimals: 1,

@@ -104,16 +104,12 @@ pub(crate) fn question(model: &Model) -> Option<String> {
 
 /// The clauses of the open question. The first one contains the question and its keys, and is never left out.
 fn asked(model: &Model) -> Option<Vec<String>> {
-    let moves = || format!("Robot will move (planner {}).", model.live.run.planner_id().unwrap_or("unknown"));
+    let moves =
+        || format!("The robot will move (planner {}).", model.live.run.planner_id().unwrap_or("unknown"));
     let clauses = match &model.ui.overlay {
         Overlay::Confirm(Ask::Start(_)) => {
-            let planner = text::fit(model.live.run.planner_id().unwrap_or("unknown"), 18);
             let speed = text::speed(model.live.speed);
-            vec![
-                format!("Start ({planner}, {speed})? <accept>: start, <cancel>: cancel."),
-                "Robot will move.".into(),
-                promised(model),
-            ]
+            vec![format!("Start ({speed})? <accept>: start, <cancel>: cancel."), promised(model)]
         }
         Overlay::Confirm(Ask::Resume) => {
             vec!["Resume? <accept>: resume, <cancel>: stay held.".into(), moves()]
@@ -125,7 +121,7 @@ fn asked(model: &Model) -> Option<Vec<String>> {
         ],
         Overlay::Confirm(Ask::Abort) => {
             let scanned = format!("{} % of reachable floor scanned.", coverage::shares(&model.live.run).0);
-            vec!["End mission for good? <accept>: end, <cancel>: cancel.".into(), scanned]
+            vec!["End the mission? It cannot be resumed. <accept>: end, <cancel>: cancel.".into(), scanned]
         }
         Overlay::Confirm(Ask::Swap(choice)) => {
             let next = text::fit(&choice.id, 18);
@@ -170,25 +166,23 @@ fn asked(model: &Model) -> Option<Vec<String>> {
     Some(clauses.iter().map(|clause| model.console.keys.spelled(clause)).collect())
 }
 
-/// The plan to be started, as a clause: its length and time, and whether it is certified for the tether.
+/// What starts: the length and the time of the plan, its planner, and whether it is certified for the tether.
 fn promised(model: &Model) -> String {
-    let length = match &model.live.run.planning.plan {
-        Some(plan) if plan.path.is_empty() => "Step by step, no path planned".to_owned(),
-        Some(plan) => format!("Plan: {} m", text::number(plan.length_m, 1)),
-        None => "No plan yet".into(),
+    let time =
+        model.live.estimate().map_or_else(|| "time unknown".to_owned(), |estimate| clock(estimate.time_s));
+    let way = match &model.live.run.planning.plan {
+        Some(plan) if plan.path.is_empty() => "step by step, no path planned".to_owned(),
+        Some(plan) => format!("{} m, {time}", text::number(plan.length_m, 1)),
+        None => "no plan yet".into(),
     };
-    let time = model.live.estimate().map_or_else(
-        || "time unknown".to_owned(),
-        |estimate| format!("{} of mission time", clock(estimate.time_s)),
-    );
     let has_tether = model.live.run.about.as_ref().is_some_and(|about| about.mission.tether.is_some());
     let certificate = match model.live.run.tether.as_ref().and_then(|tether| tether.certified) {
         _ if !has_tether => "no tether",
-        Some(true) => "certified for the tether",
-        Some(false) => "NOT certified for the tether",
-        None => "not certified for the tether",
+        Some(true) => "certified",
+        Some(false) | None => "NOT certified for the tether",
     };
-    format!("{length}, {time}, {certificate}.")
+    let planner = text::fit(model.live.run.planner_id().unwrap_or("unknown"), 18);
+    format!("The robot will move: {way} (planner {planner}), {certificate}.")
 }
 
 /// The note after the input line in which an alarm is shelved.

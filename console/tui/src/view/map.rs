@@ -55,7 +55,9 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         frame.render_widget(Line::from(look.span(Role::Dim, " no tank loaded yet")), floor);
     }
     if let Some(text) = critical(look) {
-        let text = text::column(&format!(" CRIT {text}"), usize::from(alarm.width));
+        let columns = usize::from(alarm.width);
+        let text = text::clauses(text, columns.saturating_sub(7));
+        let text = text::column(&format!(" CRIT {text}"), columns);
         frame.render_widget(Line::from(look.span(Role::Crit, text)), alarm);
     }
     let window = look.cache.borrow().places().window();

@@ -29,14 +29,22 @@ fn wide_lines(look: &Look, inner: Rect) -> Vec<(u8, Line<'static>)> {
     let columns = usize::from(inner.width);
     let run = look.run;
     let row = |label: &str, value: (Role, String)| look.line([(Role::Dim, format!(" {label:<11}")), value]);
-    let heard = marked(is_ranging_stale(look), (Role::Text, format!("{} stations", heard(run, " of "))));
-    let rms = marked(is_fix_stale(look), (Role::Text, format!(", residual {}", residual(run))));
+    let heard = marked(is_ranging_stale(look), (Role::Text, heard(run, " of ")));
+    let rms = marked(is_fix_stale(look), (Role::Text, residual(run)));
     let (role, age) = fix(look);
     let fix = (role, text::wording([format!("{age}, {}", source(look)), age], columns.saturating_sub(12)));
     let mut lines = vec![
         (0, row("95 % error", error(look))),
         (1, row("fix", fix)),
-        (2, look.line([(Role::Dim, format!(" {:<11}", "heard")), heard, rms])),
+        (
+            2,
+            look.line([
+                (Role::Dim, format!(" {:<11}", "heard")),
+                heard,
+                (Role::Dim, ", residual ".into()),
+                rms,
+            ]),
+        ),
         (4, curve(look, columns)),
     ];
     let rows = usize::from(inner.height).saturating_sub(lines.len()).max(1);

@@ -11,7 +11,8 @@ use super::shapes::Window;
 
 /// All passes of the trail are drawn if a pass of the tool is at least this many columns wide.
 const PASS_COLUMNS: f64 = 2.0;
-/// The lanes of a plan are drawn as lines if they are at least this many columns apart.
+/// The lanes of a plan are drawn as lines if they are at least this many columns apart, and all of them as dashes if
+/// they are [`PASS_COLUMNS`] apart.
 const LANE_COLUMNS: f64 = 1.2;
 /// How much of the trail and of the plan is drawn if they are not drawn completely, columns.
 const REACH_COLUMNS: f64 = 40.0;
@@ -45,7 +46,7 @@ pub(super) fn course<'a>(look: &Look<'a>) -> Option<Course<'a>> {
 
 /// How the plan is drawn: as lines before the start and as dashes afterwards; where its lanes would merge, as dots.
 pub(super) fn plan_ink(look: &Look, window: Window) -> Ink {
-    match (look.run.progress.is_some(), are_lanes_apart(look, window)) {
+    match (look.run.progress.is_some(), are_lanes_apart(look, window, LANE_COLUMNS)) {
         (true, _) => ink::AHEAD,
         (false, true) => ink::PLAN,
         (false, false) => ink::PLAN_CLOSE,
@@ -53,9 +54,9 @@ pub(super) fn plan_ink(look: &Look, window: Window) -> Ink {
 }
 
 /// Whether the lanes of a plan can be told apart on the map.
-fn are_lanes_apart(look: &Look, window: Window) -> bool {
+fn are_lanes_apart(look: &Look, window: Window, columns: f64) -> bool {
     let lane_m = look.run.about.as_ref().map_or(0.0, |about| about.mission.lane_m());
-    lane_m >= LANE_COLUMNS * window.column_m
+    lane_m >= columns * window.column_m
 }
 
 /// Whether the map shows the robot's trail; on the plan screen, the plan shows what has been driven.
@@ -89,8 +90,8 @@ impl Pen<'_> {
         if let Some(course) = course(&self.look) {
             let (look, window) = (&self.look, self.window);
             let on_plan = look.model.ui.screen == Screen::Plan;
-            let reach_m =
-                Some(REACH_COLUMNS * window.column_m).filter(|_| !on_plan && !are_lanes_apart(look, window));
+            let reach_m = Some(REACH_COLUMNS * window.column_m)
+                .filter(|_| !on_plan && !are_lanes_apart(look, window, PASS_COLUMNS));
             if on_plan {
                 self.draw(ctx, course.driven, ink::DRIVEN);
             }

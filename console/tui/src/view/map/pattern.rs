@@ -26,7 +26,7 @@ impl Pattern {
             Self::Solid | Self::Double => true,
             Self::Dashed => step % 7 < 4,
             Self::Dotted => step.is_multiple_of(3),
-            Self::DashDot => matches!(step % 8, 0..4 | 5),
+            Self::DashDot => matches!(step % 8, 0..=3 | 5),
             Self::Sparse => step.is_multiple_of(5),
         }
     }

@@ -10,8 +10,6 @@ use mission::{MissionConfig, Phase};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
-/// Rows of the table, including its heading.
-pub(crate) const ROWS: u16 = 9;
 /// Width of a label, of a figure and of a limit, columns.
 const LABEL: usize = 10;
 const VALUE: usize = 11;
@@ -26,13 +24,17 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let has_started = *run.phase() != Phase::Waiting;
     let second = match ghost {
         _ if has_started => Some((Role::Title, "now".to_owned())),
-        Some((ghost, _)) => Some((Role::Ghost, text::fit(&ghost.choice.id, second_width(columns)))),
+        Some((ghost, _)) => Some((Role::Ghost, named(&ghost.choice.id, "compared", columns))),
         None => None,
     };
-    let mine = if second.is_none() { "" } else { run.planner_id().unwrap_or("-") };
+    let mine = match second {
+        None => String::new(),
+        Some(_) if has_started => "promised".into(),
+        Some(_) => named(run.planner_id().unwrap_or("-"), "active", columns),
+    };
     let first_width =
         columns.saturating_sub(1 + LABEL + LIMIT + second.as_ref().map_or(0, |_| second_width(columns)));
-    let mine = (Role::Title, text::fit(mine, first_width.saturating_sub(1)));
+    let mine = (Role::Title, mine);
     let mut rows = vec![row(("", mine, second.clone(), String::new()), columns)];
     let Some(mission) = run.about.as_ref().map(|about| &about.mission) else {
         return fill(frame, area, block, Vec::new());
@@ -81,6 +83,11 @@ pub(super) fn in_a_line(look: &Look, columns: usize) -> String {
         }
     }
     line
+}
+
+/// The name of a planner at the head of a column, or another word if the name is too long; the pane above names it.
+fn named(id: &str, word: &str, columns: usize) -> String {
+    text::wording([id.to_owned(), word.to_owned()], second_width(columns).saturating_sub(1))
 }
 
 fn second_width(columns: usize) -> usize {

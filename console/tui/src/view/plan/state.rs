@@ -19,7 +19,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let columns = usize::from(block.inner(area).width).saturating_sub(1);
     let mut rows = wrapped(progress(look), columns);
     rows.extend(certificate(look).map(one));
-    rows.push(one((Role::Text, text::fit(&planner(look), columns))));
+    rows.push(one((Role::Text, text::wording(planner(look), columns))));
     let ghost = ghost(look, columns);
     let room = usize::from(block.inner(area).height).saturating_sub(rows.len() + ghost.len()).min(REASONS);
     let why = objections(look).into_iter().flat_map(|why| text::wrap(&why, columns)).collect();
@@ -43,13 +43,15 @@ fn wrapped((role, words): (Role, String), columns: usize) -> Vec<Parts> {
     text::wrap(&words, columns).into_iter().map(|line| one((role, line))).collect()
 }
 
-fn planner(look: &Look) -> String {
+/// The planner, and when the plan was made, from the longest wording to the shortest.
+fn planner(look: &Look) -> [String; 3] {
     let name = match (look.model.planner(), look.run.planner_id()) {
         (Some(info), _) => format!("{} {}", info.id, info.version),
         (None, id) => id.unwrap_or("-").to_owned(),
     };
-    let made = look.run.planning.plan.as_ref().map(|plan| text::clock(plan.t_s));
-    made.map_or_else(|| format!("planner {name}"), |made| format!("planner {name}, plan made T+{made}"))
+    let plan = look.run.planning.plan.as_ref();
+    let made = plan.map_or_else(String::new, |plan| format!(", plan made T+{}", text::clock(plan.t_s)));
+    [format!("planner {name}{made}"), format!("planner {name}"), name]
 }
 
 fn progress(look: &Look) -> (Role, String) {
