@@ -12,8 +12,9 @@ use ratatui::layout::{Constraint, Layout, Rect};
 
 /// Minimum and maximum width of a stack of panes, columns.
 const STACK: (u16, u16) = (30, 50);
-/// Minimum and maximum width of the panes beside the map on the plan screen, columns.
-const PLAN_SIDE: (u16, u16) = (34, 80);
+/// Width of the panes beside the map on the plan screen, columns: the minimum on a narrow and on a wide screen, and the
+/// maximum.
+const PLAN_SIDE: (u16, u16, u16) = (34, 50, 80);
 /// Width of the map, in columns, for a given number of floor rows: the round tank, its legend and the frame.
 const MAP: (u16, u16) = (2, 22);
 /// Rows beside the map from which a single stack has a table of the stations.
@@ -99,16 +100,17 @@ pub(crate) fn plan(area: Rect, (width, height): (u16, u16), pane: Pane) -> Vec<(
     let arrangement = Arrangement::of(width, height);
     if arrangement == Arrangement::Paged {
         return match pane {
-            Pane::Promise => stack(area, &[wish(Pane::Promise, 11, 11), wish(Pane::Plan, 3, 20)]),
+            Pane::Promise => stack(area, &[wish(Pane::Promise, 10, 11), wish(Pane::Plan, 3, 20)]),
             Pane::LeftOut | Pane::Parameters | Pane::Checks => vec![(pane, area)],
             _ => vec![(Pane::Map, area)],
         };
     }
     let floor_rows = area.height.saturating_sub(MAP_FRAME);
-    let side = width.saturating_sub(MAP.0 * floor_rows + MAP.1).clamp(PLAN_SIDE.0, PLAN_SIDE.1);
+    let side = width.saturating_sub(MAP.0 * floor_rows + MAP.1).min(PLAN_SIDE.2);
+    let side = side.max(if arrangement == Arrangement::Wide { PLAN_SIDE.1 } else { PLAN_SIDE.0 });
     let [map, side] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(side)]).areas(area);
     let mut placed = vec![(Pane::Map, map)];
-    let promise = wish(Pane::Promise, 11, 11);
+    let promise = wish(Pane::Promise, 10, 11);
     if arrangement == Arrangement::Narrow {
         placed.extend(match pane {
             Pane::LeftOut | Pane::Checks | Pane::Parameters => {

@@ -10,8 +10,8 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 
 /// Width of an area and of a place, columns.
-const AREA: usize = 9;
-const PLACE: usize = 15;
+const AREA: usize = 8;
+const PLACE: usize = 14;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let left_out = look.model.live.left_out();
@@ -55,12 +55,21 @@ fn keys(look: &Look, columns: usize) -> String {
 fn row(area: &Area<MissReason>, columns: usize) -> Parts {
     let room = columns.saturating_sub(AREA + 2);
     let place = text::column(&text::place(area.at), PLACE);
-    let reason = text::wording(
-        [area.reason.plainly().to_owned(), area.reason.briefly().to_owned()],
-        room.saturating_sub(PLACE),
-    );
-    let words = text::wording([format!("{place}{reason}"), area.reason.briefly().to_owned()], room);
+    let [whole, brief, word] = [area.reason.plainly(), area.reason.briefly(), in_a_word(area.reason)];
+    let words = [whole, brief, word].map(|reason| format!("{place}{reason}"));
+    let [whole, brief, short] = words;
+    let words = text::wording([whole, brief, short, word.to_owned()], room);
     vec![(Role::Text, format!("{:>AREA$} ", square_metres(area.area_m2))), (Role::Text, words)]
+}
+
+/// The reason in a word or two, below the title that says that the area is left out.
+fn in_a_word(reason: MissReason) -> &'static str {
+    match reason {
+        MissReason::Clearance => "clearance",
+        MissReason::Wrap => "tether",
+        MissReason::BeyondReel => "beyond the reel",
+        reason => reason.briefly(),
+    }
 }
 
 fn smaller(left_out: &LeftOut, columns: usize) -> Option<Parts> {

@@ -13,70 +13,81 @@ use ratatui::layout::Rect;
 /// Width of a label, of a figure and of a limit, columns.
 const LABEL: usize = 10;
 const VALUE: usize = 11;
-const LIMIT: usize = 9;
+const LIMIT: usize = 8;
+/// Width from which limits stand beside two columns of figures, columns.
+const WITH_LIMIT: usize = 42;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
-    let block = look.pane(Pane::Promise, "What it promises", "limit");
-    let columns = usize::from(block.inner(area).width);
-    let (live, run) = (&look.model.live, look.run);
-    let ghost =
-        live.plans.ghost.as_ref().and_then(|ghost| Some((ghost, ghost.made.as_ref()?.as_ref().ok()?)));
-    let has_started = *run.phase() != Phase::Waiting;
-    let second = match ghost {
-        _ if has_started => Some((Role::Title, "now".to_owned())),
-        Some((ghost, _)) => Some((Role::Ghost, named(&ghost.choice.id, "compared", columns))),
-        None => None,
-    };
-    let mine = match second {
-        None => String::new(),
-        Some(_) if has_started => "promised".into(),
-        Some(_) => named(run.planner_id().unwrap_or("-"), "active", columns),
-    };
-    let first_width =
-        columns.saturating_sub(1 + LABEL + LIMIT + second.as_ref().map_or(0, |_| second_width(columns)));
-    let mine = (Role::Title, mine);
-    let mut rows = vec![row(("", mine, second.clone(), String::new()), columns)];
-    let Some(mission) = run.about.as_ref().map(|about| &about.mission) else {
+    let second = second(look);
+    let columns = usize::from(look.pane(Pane::Promise, "", "").inner(area).width);
+    let widths = Widths::new(columns, second.is_some());
+    let note = if widths.limit > 0 { "limit" } else { "" };
+    let block = look.pane(Pane::Promise, "What it promises", note);
+    let Some(mission) = look.run.about.as_ref().map(|about| &about.mission) else {
         return fill(frame, area, block, Vec::new());
     };
-    for figure in FIGURES {
+    let mut rows: Vec<Parts> =
+        second.as_ref().map(|second| head(look, second, &widths)).into_iter().collect();
+    let cell = |figure: Figure, estimate: Option<&Estimate>, (role, room): (Role, usize)| {
         let limit = (figure.limit)(mission);
-        let of = |estimate: Option<&Estimate>, role: Role, room: usize| {
-            let found = estimate.and_then(figure.promised);
-            found.map_or((role, "-".into()), |found| {
-                let role = if found.is_beyond(figure, limit) { Role::Warn } else { role };
-                (role, found.words(figure, limit, room))
-            })
-        };
-        let second = second.as_ref().map(|_| match ghost.filter(|_| !has_started) {
-            Some((_, plan)) => of(Some(&plan.estimate), Role::Ghost, second_width(columns)),
-            None => (Role::Text, (figure.now)(run).unwrap_or_else(|| "-".into())),
-        });
-        let mut mine = of(live.promised(), Role::Text, first_width.saturating_sub(1));
-        let lanes = run.planning.plan.as_ref().map_or(0, |plan| plan.lanes.len());
-        let with_lanes = format!("{}, {lanes} lanes", mine.1);
-        if figure.label == "path" && lanes > 0 && text::width(&with_lanes) < first_width {
-            mine.1 = with_lanes;
+        estimate.and_then(figure.promised).map_or((role, "-".into()), |found| {
+            let role = if found.is_beyond(figure, limit) { Role::Warn } else { role };
+            (role, found.words(figure, limit, room))
+        })
+    };
+    for figure in FIGURES {
+        let mut mine = cell(figure, look.model.live.promised(), (Role::Text, widths.first));
+        let lanes = look.run.planning.plan.as_ref().map_or(0, |plan| plan.lanes.len());
+        if figure.label == "path" && lanes > 0 {
+            mine.1 = text::wording([format!("{}, {lanes} lanes", mine.1), mine.1], widths.first);
         }
-        rows.push(row(
-            (figure.label, mine, second, limit.map_or_else(String::new, |limit| figure.said(limit))),
-            columns,
-        ));
+        let second = second.as_ref().map(|second| match second {
+            Second::Now => (
+                Role::Text,
+                (figure.now)(look.run).map_or_else(|| "-".into(), |now| text::wording(now, widths.second)),
+            ),
+            Second::Compared(_, estimate) => cell(figure, Some(estimate), (Role::Ghost, widths.second)),
+        });
+        let limit = (figure.limit)(mission).map_or_else(String::new, |limit| figure.said(limit));
+        rows.push(row(figure.label, mine, second, &limit, &widths));
     }
     fill(frame, area, block, rows.into_iter().map(|parts| look.line(parts)).collect());
 }
 
-/// The figures that fit into a line, the most important first.
+/// What stands beside the promise.
+enum Second<'a> {
+    /// What holds now, once the mission has started.
+    Now,
+    /// What the plan of a different planner promises.
+    Compared(&'a str, &'a Estimate),
+}
+
+fn second<'a>(look: &Look<'a>) -> Option<Second<'a>> {
+    if *look.run.phase() != Phase::Waiting {
+        return Some(Second::Now);
+    }
+    let ghost = look.model.live.plans.ghost.as_ref()?;
+    let plan = ghost.made.as_ref()?.as_ref().ok()?;
+    Some(Second::Compared(&ghost.choice.id, &plan.estimate))
+}
+
+/// The figures that fit into a line: those beyond their limits, then the others in table order.
 pub(super) fn in_a_line(look: &Look, columns: usize) -> String {
     let Some(estimate) = look.model.live.promised() else { return "Estimate not known yet.".into() };
-    let limits = look.run.about.as_ref().map(|about| &about.mission);
-    let mut line = String::new();
+    let mission = look.run.about.as_ref().map(|about| &about.mission);
+    let mut figures: Vec<(bool, String)> = Vec::new();
     for figure in FIGURES {
         let Some(found) = (figure.promised)(estimate) else { continue };
-        let limit =
-            limits.and_then(figure.limit).filter(|_| found.is_beyond(figure, limits.and_then(figure.limit)));
-        let over = limit.map_or_else(String::new, |limit| format!(" (limit {})", figure.said(limit)));
-        let words = format!("{} {}{over}", figure.label, figure.said(found.value));
+        let limit = mission.and_then(figure.limit);
+        let is_beyond = found.is_beyond(figure, limit);
+        let over = limit
+            .filter(|_| is_beyond)
+            .map_or_else(String::new, |limit| format!(" > {}", figure.said(limit)));
+        figures.push((is_beyond, format!("{} {}{over}", figure.label, figure.said(found.value))));
+    }
+    figures.sort_by_key(|(is_beyond, _)| !is_beyond);
+    let mut line = String::new();
+    for (_, words) in figures {
         let gap = if line.is_empty() { "" } else { "  " };
         if text::width(&line) + gap.len() + text::width(&words) <= columns {
             line = line + gap + &words;
@@ -85,25 +96,48 @@ pub(super) fn in_a_line(look: &Look, columns: usize) -> String {
     line
 }
 
-/// The name of a planner at the head of a column, or another word if the name is too long; the pane above names it.
-fn named(id: &str, word: &str, columns: usize) -> String {
-    text::wording([id.to_owned(), word.to_owned()], second_width(columns).saturating_sub(1))
-}
-
-fn second_width(columns: usize) -> usize {
-    columns.saturating_sub(1 + LABEL + LIMIT) / 2
-}
-
 /// A cell in the table: role and text.
 type Cell = (Role, String);
 
-fn row((label, mine, second, limit): (&str, Cell, Option<Cell>, String), columns: usize) -> Parts {
-    let second_width = second.as_ref().map_or(0, |_| second_width(columns));
-    let first = columns.saturating_sub(1 + LABEL + LIMIT + second_width);
-    let mut parts =
-        vec![(Role::Dim, format!(" {}", text::column(label, LABEL))), (mine.0, text::column(&mine.1, first))];
-    parts.extend(second.map(|(role, words)| (role, text::column(&words, second_width))));
-    parts.push((Role::Dim, format!("{limit:>width$}", width = LIMIT - 1)));
+/// The widths of the columns after the label, without the blanks between them; 0 for a column that is left out.
+struct Widths {
+    first: usize,
+    second: usize,
+    limit: usize,
+}
+
+impl Widths {
+    fn new(columns: usize, has_second: bool) -> Self {
+        // A second column takes precedence over the limits: a figure beyond its limit is marked.
+        let limit = if has_second && columns < WITH_LIMIT { 0 } else { LIMIT };
+        let room = columns.saturating_sub(1 + LABEL + limit + usize::from(limit > 0));
+        let second = if has_second { room / 2 } else { 0 };
+        Self { first: room.saturating_sub(second + 1), second: second.saturating_sub(1), limit }
+    }
+}
+
+/// The heads of the columns. A name that is too long is replaced; the pane above names the planners.
+fn head(look: &Look, second: &Second, widths: &Widths) -> Parts {
+    let fits = |name: &str, word: &str, width| text::wording([name.to_owned(), word.to_owned()], width);
+    let (mine, second) = match second {
+        Second::Now => ("promised".into(), (Role::Title, "now".into())),
+        Second::Compared(id, _) => (
+            fits(look.run.planner_id().unwrap_or("-"), "active", widths.first),
+            (Role::Ghost, fits(id, "compared", widths.second)),
+        ),
+    };
+    row("", (Role::Title, mine), Some(second), "", widths)
+}
+
+fn row(label: &str, mine: Cell, second: Option<Cell>, limit: &str, widths: &Widths) -> Parts {
+    let mut parts = vec![
+        (Role::Dim, format!(" {}", text::column(label, LABEL))),
+        (mine.0, format!("{} ", text::column(&mine.1, widths.first))),
+    ];
+    parts.extend(second.map(|(role, words)| (role, format!("{} ", text::column(&words, widths.second)))));
+    if widths.limit > 0 {
+        parts.push((Role::Dim, format!("{limit:>width$}", width = widths.limit)));
+    }
     parts
 }
 
@@ -120,8 +154,8 @@ struct Figure {
     limit: fn(&MissionConfig) -> Option<f64>,
     /// Whether the figure must not be below its limit, instead of above it.
     is_least: bool,
-    /// What holds during the mission.
-    now: fn(&Run) -> Option<String>,
+    /// What holds during the mission, in a longer and a shorter wording.
+    now: fn(&Run) -> Option<[String; 2]>,
 }
 
 /// A promised value: where it is reached, or what it is about.
@@ -191,20 +225,20 @@ const FIGURES: [Figure; 8] = [
     Figure {
         promised: |e| Some(Found::of(e.time_s)),
         limit: |m| Some(m.time_limit_s),
-        now: |run| Some(format!("{} left", text::clock(run.left_s()?))),
+        now: |run| Some(left(text::clock(run.left_s()?))),
         ..figure("time", "", "clock", 0)
     },
     Figure {
         promised: |e| Some(Found::of(e.length_m)),
         now: |run| {
             let plan = run.planning.plan.as_ref()?;
-            Some(format!("{} m left", text::number(plan.rest_m(run.progress.as_ref()?.target), 1)))
+            Some(left(format!("{} m", text::number(plan.rest_m(run.progress.as_ref()?.target), 1))))
         },
         ..figure("path", "", " m", 1)
     },
     Figure {
         promised: |e| Some(Found { note: " of reachable".into(), ..Found::of(e.reachable?) }),
-        now: |run| Some(format!("{} %", text::percent(run.progress.as_ref()?.covered_reachable))),
+        now: |run| Some(alike(format!("{} %", text::percent(run.progress.as_ref()?.covered_reachable)))),
         ..figure("scanned", "", "%", 1)
     },
     Figure {
@@ -216,7 +250,7 @@ const FIGURES: [Figure; 8] = [
     Figure {
         promised: |e| Some(Found::worst(e.tether.as_ref()?.length_max)),
         limit: |m| Some(m.tether.as_ref()?.limits.reel_length_m),
-        now: |run| Some(format!("{} m", text::number(run.tether.as_ref()?.length_m, 1))),
+        now: |run| Some(alike(format!("{} m", text::number(run.tether.as_ref()?.length_m, 1)))),
         ..figure("tether", "t", " m", 1)
     },
     Figure {
@@ -229,7 +263,7 @@ const FIGURES: [Figure; 8] = [
         limit: |m| Some(m.tether.as_ref()?.limits.wrap_max_rad.to_degrees()),
         now: |run| {
             let most = run.tether.as_ref()?.largest().map_or(0.0, |contact| contact.wrap_rad.abs());
-            Some(format!("{}°", text::number(most.to_degrees(), 0)))
+            Some(alike(format!("{}°", text::number(most.to_degrees(), 0))))
         },
         ..figure("wrap", "w", "°", 0)
     },
@@ -237,7 +271,7 @@ const FIGURES: [Figure; 8] = [
         around: ("±", " m"),
         promised: |e| Some(Found::worst(e.accuracy_worst?)),
         limit: |m| Some(m.position_limit_m),
-        now: |run| Some(format!("±{} m", text::number(run.position.error_m()?, 2))),
+        now: |run| Some(alike(format!("±{} m", text::number(run.position.error_m()?, 2)))),
         ..figure("AE error", "e", " m", 2)
     },
     Figure {
@@ -245,3 +279,12 @@ const FIGURES: [Figure; 8] = [
         ..figure("no fix on", "", " m", 1)
     },
 ];
+
+/// What is left of a figure.
+fn left(value: String) -> [String; 2] {
+    [format!("{value} left"), value]
+}
+
+fn alike(value: String) -> [String; 2] {
+    [value.clone(), value]
+}

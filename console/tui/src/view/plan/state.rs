@@ -18,7 +18,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let block = look.pane(Pane::Plan, "Plan", &text::wording(keys, room));
     let columns = usize::from(block.inner(area).width).saturating_sub(1);
     let mut rows = wrapped(progress(look), columns);
-    rows.extend(certificate(look).map(one));
+    rows.extend(certificate(look, columns).map(one));
     rows.push(one((Role::Text, text::wording(planner(look), columns))));
     let ghost = ghost(look, columns);
     let room = usize::from(block.inner(area).height).saturating_sub(rows.len() + ghost.len()).min(REASONS);
@@ -31,7 +31,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
 /// The state of the plan, and whether it is certified, in one line.
 pub(super) fn in_a_line(look: &Look, columns: usize) -> (Role, String) {
     let (role, state) = progress(look);
-    let certificate = certificate(look).map_or_else(String::new, |(_, words)| format!(" {words}."));
+    let certificate = certificate(look, columns).map_or_else(String::new, |(_, words)| format!(" {words}."));
     (role, text::wording([format!("{state}{certificate}"), text::clauses(&state, columns)], columns))
 }
 
@@ -89,10 +89,13 @@ fn ready(look: &Look, is_complete: bool) -> (Role, String) {
     (role, words)
 }
 
-fn certificate(look: &Look) -> Option<(Role, String)> {
+fn certificate(look: &Look, columns: usize) -> Option<(Role, String)> {
     look.run.about.as_ref()?.mission.tether.as_ref()?;
     Some(match look.run.tether.as_ref().and_then(|tether| tether.certified) {
-        Some(true) => (Role::Good, "tether certified: can always be reeled in".into()),
+        Some(true) => {
+            let words = ["tether certified: can always be reeled in", "tether certified"].map(str::to_owned);
+            (Role::Good, text::wording(words, columns))
+        }
         Some(false) => (Role::Crit, "tether NOT certified".into()),
         None => (Role::Dim, "tether not certified yet".into()),
     })
