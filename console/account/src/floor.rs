@@ -2,6 +2,7 @@
 
 mod areas;
 mod evidence;
+mod left_out;
 mod measure;
 mod reason;
 mod reasons;
@@ -10,6 +11,7 @@ mod zone;
 
 pub use areas::{Area, Cause, Explained, Slivers, area_of, areas, together};
 pub use evidence::{Evidence, Solid};
+pub use left_out::LeftOut;
 pub use measure::Measure;
 pub use reason::{MissReason, OutOfReach};
 pub use reasons::Reasons;

@@ -37,9 +37,9 @@ pub use expect::{Expect, Miss};
 pub use extremes::{Extreme, Worst};
 pub use figures::{Figure, FigureId, Figures, Limit};
 pub use floor::{
-    Account, Area, Cause, CriticalZone, Evidence, Explained, Measure, MissReason, OutOfReach, Percent,
-    PlateAccount, Reasons, Shares, Slivers, Solid, ZoneArc, ZoneOfPlate, account, area_of, areas, plate_map,
-    together, updated_floor,
+    Account, Area, Cause, CriticalZone, Evidence, Explained, LeftOut, Measure, MissReason, OutOfReach,
+    Percent, PlateAccount, Reasons, Shares, Slivers, Solid, ZoneArc, ZoneOfPlate, account, area_of, areas,
+    plate_map, together, updated_floor,
 };
 pub use fold::Fold;
 pub use inspection::{Date, Inspection, is_placeholder, says_nothing};

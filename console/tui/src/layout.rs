@@ -12,8 +12,13 @@ use ratatui::layout::{Constraint, Layout, Rect};
 
 /// Minimum and maximum width of a stack of panes, columns.
 const STACK: (u16, u16) = (30, 50);
+/// Width of the panes beside the map on the plan screen, columns: the minimum on a narrow and on a wide screen, and the
+/// maximum.
+const PLAN_SIDE: (u16, u16, u16) = (34, 50, 80);
 /// Width of the map, in columns, for a given number of floor rows: the round tank, its legend and the frame.
 const MAP: (u16, u16) = (2, 22);
+/// Rows beside the map from which a single stack has a table of the stations.
+const TABLE_ROWS: u16 = 32;
 /// Rows of the map that show no floor: the frame and the readout.
 const MAP_FRAME: u16 = 3;
 
@@ -67,10 +72,16 @@ pub(crate) fn mission(area: Rect, (width, height): (u16, u16), shown: Shown) -> 
     let has_alarms_below = n_stacks == 2 && width >= 200 && height >= 60;
     let mut placed = vec![(Pane::Map, map)];
     if n_stacks == 1 {
-        placed.extend(stack(side, &first(shown, arrangement == Arrangement::Wide)));
+        let mut wishes = first(shown, arrangement == Arrangement::Wide);
+        // A shorter screen names the stations in a row of the position pane.
+        let has_table = width >= 100 && side.height >= TABLE_ROWS && shown.stations > 0;
+        wishes.extend(has_table.then_some(wish(Pane::Stations, 6, shown.stations + 3)));
+        placed.extend(stack(side, &wishes));
     } else {
         let [one, two] = Layout::horizontal([Constraint::Fill(1); 2]).areas(side);
-        placed.extend(stack(one, &first(shown, true)));
+        let mut wishes = first(shown, true);
+        wishes.extend((shown.stations > 0).then_some(chart(Chart::Residual)));
+        placed.extend(stack(one, &wishes));
         placed.extend(stack(two, &second(shown, !has_alarms_below)));
     }
     if has_alarms_below {
@@ -80,6 +91,43 @@ pub(crate) fn mission(area: Rect, (width, height): (u16, u16), shown: Shown) -> 
     } else {
         placed.push((Pane::Events, below));
     }
+    placed
+}
+
+/// The panes of the plan screen and their areas. On a small screen the panes beside the map, or all panes, are shown
+/// one at a time; `pane` is the one that responds to keys.
+pub(crate) fn plan(area: Rect, (width, height): (u16, u16), pane: Pane) -> Vec<(Pane, Rect)> {
+    let arrangement = Arrangement::of(width, height);
+    if arrangement == Arrangement::Paged {
+        return match pane {
+            Pane::Promise => stack(area, &[wish(Pane::Promise, 10, 11), wish(Pane::Plan, 3, 20)]),
+            Pane::LeftOut | Pane::Parameters | Pane::Checks => vec![(pane, area)],
+            _ => vec![(Pane::Map, area)],
+        };
+    }
+    let floor_rows = area.height.saturating_sub(MAP_FRAME);
+    let side = width.saturating_sub(MAP.0 * floor_rows + MAP.1).min(PLAN_SIDE.2);
+    let side = side.max(if arrangement == Arrangement::Wide { PLAN_SIDE.1 } else { PLAN_SIDE.0 });
+    let [map, side] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(side)]).areas(area);
+    let mut placed = vec![(Pane::Map, map)];
+    let promise = wish(Pane::Promise, 10, 11);
+    if arrangement == Arrangement::Narrow {
+        placed.extend(match pane {
+            Pane::LeftOut | Pane::Checks | Pane::Parameters => {
+                stack(side, &[wish(pane, 8, side.height), wish(Pane::Plan, 5, 6)])
+            }
+            _ => stack(side, &[promise, wish(Pane::Plan, 5, 8), wish(Pane::Checks, 3, 5)]),
+        });
+        return placed;
+    }
+    let panes = [
+        promise,
+        wish(Pane::Plan, 5, 8),
+        wish(Pane::LeftOut, 4, 12),
+        wish(Pane::Checks, 4, 14),
+        wish(Pane::Parameters, 3, 14),
+    ];
+    placed.extend(stack(side, &panes));
     placed
 }
 
@@ -102,13 +150,17 @@ fn first(shown: Shown, wide: bool) -> Vec<Wish> {
         .collect()
 }
 
+/// A chart.
+const fn chart(chart: Chart) -> Wish {
+    wish(Pane::Chart(chart), 6, 10)
+}
+
 /// The panes in the second stack.
 fn second(shown: Shown, alarms: bool) -> Vec<Wish> {
-    let chart = |chart| wish(Pane::Chart(chart), 6, 11);
     let tether = [chart(Chart::TetherOut), chart(Chart::Wrap)];
     let alarms = alarms.then_some(wish(Pane::Alarms, 5, 8));
-    let stations =
-        (shown.stations > 0).then(|| wish(Pane::Stations, (shown.stations + 3).min(9), shown.stations + 4));
+    let stations = (shown.stations > 0)
+        .then(|| wish(Pane::Stations, (shown.stations + 3).min(9), 2 * shown.stations + 3));
     let missed = shown.missed.then_some(wish(Pane::Missed, 5, 10));
     let tether = tether.into_iter().filter(|_| shown.tether);
     alarms
@@ -156,8 +208,13 @@ fn stack(area: Rect, wishes: &[Wish]) -> Vec<(Pane, Rect)> {
 
 /// The position of a pane in the stack, from top to bottom.
 fn order(pane: Pane) -> usize {
-    const ORDER: [Pane; 12] = [
+    const ORDER: [Pane; 18] = [
         Pane::Map,
+        Pane::Plan,
+        Pane::Promise,
+        Pane::LeftOut,
+        Pane::Parameters,
+        Pane::Checks,
         Pane::Coverage,
         Pane::Position,
         Pane::Tether,
@@ -166,6 +223,7 @@ fn order(pane: Pane) -> usize {
         Pane::Missed,
         Pane::Stations,
         Pane::Chart(Chart::Error),
+        Pane::Chart(Chart::Residual),
         Pane::Chart(Chart::TetherOut),
         Pane::Chart(Chart::Wrap),
         Pane::Chart(Chart::Scanned),

@@ -143,6 +143,13 @@ impl Model {
         run.planning.info.as_ref().or_else(listed)
     }
 
+    /// The selected area that the plan leaves out, while the plan screen shows their list or the cursor is on it.
+    pub fn left_out_at(&self) -> Option<world::Point> {
+        let is_listed = self.ui.screen == Screen::Plan && self.ui.pane == Pane::LeftOut;
+        let areas = &self.live.left_out().filter(|_| is_listed)?.areas;
+        Some(areas.get(self.ui.left_out)?.at)
+    }
+
     /// The description of a planner.
     pub fn info_of(&self, id: &str) -> Option<&PlannerInfo> {
         let driving = self.live.run.planning.info.as_ref();

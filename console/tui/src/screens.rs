@@ -7,7 +7,7 @@ use crate::actions::context::Context::{self, Cursor, Map, On, Pan, Replay, Rows}
 use crate::actions::{Action, ActionId, action};
 use crate::keys::Key;
 use crate::model::{Model, Pane, ui::Arrangement};
-use crate::update::{Effect, act, alarms, events, go, offer, review};
+use crate::update::{Effect, act, alarms, events, go, offer, place, review};
 use crate::view::{self, look::Look};
 use ratatui::{Frame, layout::Rect};
 use serde::{Deserialize, Serialize};
@@ -98,9 +98,10 @@ const ROWS: &[Row] = &[
         ..row(shows(Screen::Home, "home", "Screen 1: scenarios and past runs", &[Key::Char('1')]), "Home",
             &[&[On(Screen::Home), Rows]], view::home::draw) },
     // Esc closes the cursor here and does nothing else.
-    Row { first: ActionId::Start,
+    Row { first: ActionId::Start, active: of_plan, opens: |m| m.left_out_at().map(|_| "on the map"), enter: place::left_out, select: place::select_left_out,
         ..row(shows(Screen::Plan, "plan", "Screen 2: the plan before the start", &[Key::Char('2')]).when(offer::is_open), "Plan",
-            &[&[On(Screen::Plan), Map, Pan], &[Map, Pan, Cursor]], view::plan::draw) },
+            &[&[On(Screen::Plan), Map, Pan], &[On(Screen::Plan), Map, Rows], &[On(Screen::Plan), Map], &[Map, Pan, Cursor]],
+            view::plan::draw) },
     Row { first: ActionId::Hold, active: of_mission, opens: |m| (m.ui.pane == Pane::Events).then_some("open"), enter: events::enter,
         select: |m, by| m.ui.events.select(by),
         ..row(shows(Screen::Mission, "mission", "Screen 3: the mission", &[Key::Char('3')]).when(offer::is_open), "Mission",
@@ -127,6 +128,16 @@ const ROWS: &[Row] = &[
         ..row(shows(Screen::Plugins, "plugins", "Screen 8: plugins and their planners", &[Key::Char('8')]), "Plugins",
             &[&[On(Screen::Plugins), Rows]], view::plugins::draw) },
 ];
+
+/// The index of the plan screen's contexts: by pane or cursor.
+fn of_plan(model: &Model) -> usize {
+    match model.ui.pane {
+        _ if model.ui.cursor.is_some() => 3,
+        Pane::LeftOut => 1,
+        Pane::Map => 0,
+        _ => 2,
+    }
+}
 
 /// The index of the mission screen's contexts: by pane or cursor, then the same again for a replay.
 fn of_mission(model: &Model) -> usize {

@@ -17,7 +17,7 @@ mod mouse;
 pub(crate) mod offer;
 pub(crate) mod overlay;
 mod palette;
-mod place;
+pub(crate) mod place;
 pub(crate) mod preflight;
 pub(crate) mod preset;
 mod redraw;
@@ -44,7 +44,7 @@ use crate::actions::{ActionId, context::contexts, find};
 use crate::keys::{Key, KeyPress};
 use crate::model::console::{Bell, Notice};
 use crate::model::plugins::differences;
-use crate::model::{Cause, Model, Overlay, Pane, ui::Arrangement};
+use crate::model::{Cause, Model, Overlay, Pane, Screen, ui::Arrangement};
 use mission::{Hold, Phase, PlannerInfo, RefusedPlugin, Severity};
 use send::hold_now;
 
@@ -196,7 +196,8 @@ fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
 fn resize(model: &mut Model, width: u16, height: u16) {
     (model.ui.width, model.ui.height) = (width, height);
     let whole = matches!(model.ui.arrangement(), Arrangement::Wide | Arrangement::Narrow);
-    if whole && !model.ui.panes().contains(&model.ui.pane) {
+    let turns = whole || model.ui.screen == Screen::Plan;
+    if turns && !model.ui.panes().contains(&model.ui.pane) {
         model.ui.pane = Pane::Map;
     }
 }

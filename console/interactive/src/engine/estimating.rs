@@ -1,7 +1,7 @@
 //! Estimates for the plans made before or at the start, computed on a separate thread so that the engine does not wait.
 
 use super::EngineThread;
-use account::Estimate;
+use account::{Estimate, LeftOut};
 use mission::{Event, EventKind, Phase};
 use std::thread;
 use tui::RunMsg;
@@ -13,15 +13,20 @@ impl EngineThread {
             return;
         }
         for event in events {
-            let EventKind::Planned { ask, path, complete, .. } = &event.kind else { continue };
+            let EventKind::Planned { ask, path, complete, cuts, .. } = &event.kind else { continue };
             self.has_estimated = true;
-            let (ask, path, complete) = (*ask, path.clone(), *complete);
+            let (ask, path, complete, cuts) = (*ask, path.clone(), *complete, cuts.clone());
+            let opened = self.flight.opened();
             let (mission, drawing) = (self.scenario.mission.clone(), self.scenario.sim.world.as_drawn());
             let screen = self.screen.clone();
             // If the thread cannot be started, the estimate is left out.
             let _ = thread::Builder::new().name("estimate".into()).spawn(move || {
                 let estimate = Estimate::new(&mission, &drawing, &path, complete);
                 screen.send(RunMsg::Estimated(ask, Box::new(estimate)));
+                let EventKind::RunOpened(run) = opened.kind else { return };
+                if let Some(left_out) = LeftOut::of(&run, &path, &cuts, complete) {
+                    screen.send(RunMsg::LeftOut(ask, Box::new(left_out)));
+                }
             });
         }
     }

@@ -1,7 +1,7 @@
 //! The open run, and the communication between the operator and its mission.
 
 use super::{Health, Plans, Preflight, Replay, Run, Speed, WhatIf};
-use account::{Account, Area, Estimate, MissReason, Summary};
+use account::{Account, Area, Estimate, LeftOut, MissReason, Summary};
 use mission::{Order, Phase, WayBack, ZoneCost};
 use serde::{Deserialize, Serialize};
 
@@ -153,6 +153,20 @@ impl Live {
     pub fn estimate(&self) -> Option<&Estimate> {
         let (ask, estimate) = self.plans.estimate.as_ref()?;
         (self.run.planning.plan.as_ref()?.ask == *ask).then_some(estimate)
+    }
+
+    /// What was promised for the plan that would run now or, once the mission has started, for the plan with which it
+    /// started; `None` if it is not known.
+    pub fn promised(&self) -> Option<&Estimate> {
+        let started = *self.run.phase() != Phase::Waiting;
+        self.estimate().or_else(|| Some(&self.plans.estimate.as_ref().filter(|_| started)?.1))
+    }
+
+    /// The requested floor that the promised plan leaves out; `None` if it is not known, or nothing is to be scanned.
+    pub fn left_out(&self) -> Option<&LeftOut> {
+        let (ask, left_out) = self.plans.left_out.as_ref()?;
+        let is_current = self.run.planning.plan.as_ref().is_some_and(|plan| plan.ask == *ask);
+        (is_current || *self.run.phase() != Phase::Waiting).then_some(left_out)
     }
 
     /// Reachable floor that was requested but missed by the run, largest area first.

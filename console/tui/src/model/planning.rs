@@ -1,10 +1,17 @@
 //! The planner as shown on the screen.
 
+use super::Trail;
 use mission::event::{Effort, PlanScans};
 use mission::{AskId, PlannerChoice, PlannerInfo, WorkerId, planner::Fault};
-use planner_api::{Command, Drawing};
+use planner_api::{Command, Drawing, Leg, LegTag};
 use serde::{Deserialize, Serialize};
-use world::{Point, coverage::percent_text};
+use world::{Point, coverage::percent_text, polyline};
+
+/// How far the heading may turn within a lane that the planner did not state, radians.
+const STRAIGHT_RAD: f64 = 0.03;
+
+/// A lane of a plan: the first and the last index of its points in [`PlanShown::path`].
+pub type Lane = (usize, usize);
 
 /// A plan, thinned for drawing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -14,12 +21,84 @@ pub struct PlanShown {
     pub ask: Option<AskId>,
     /// The points of the path.
     pub path: Vec<Point>,
+    /// The lanes in driving order: those that the planner states, otherwise the long straight stretches of the path.
+    #[serde(default)]
+    pub lanes: Vec<Lane>,
     /// The length of the whole path, metres.
     pub length_m: f64,
     /// Whether the plan achieves the whole task.
     pub complete: bool,
     /// Mission time at which the plan was made, seconds.
     pub t_s: f64,
+}
+
+impl PlanShown {
+    /// The lanes of a path of which `thin` contains evenly picked points. Stretches shorter than `least_m`, metres, are
+    /// no lanes.
+    pub fn lanes_of(path: &[Point], thin: &[Point], legs: &[Leg], least_m: f64) -> Vec<Lane> {
+        let step = Trail::step(path.len());
+        let last = thin.len().saturating_sub(1);
+        let index = |at: usize| (at / step).min(last);
+        let swaths = legs.iter().filter(|leg| leg.tag == LegTag::Swath);
+        let stated: Vec<Lane> = swaths.map(|leg| (index(leg.first), index(leg.last))).collect();
+        if !legs.is_empty() {
+            return stated.into_iter().filter(|(first, last)| first < last).collect();
+        }
+        let long = |lane: &Lane| polyline::length_m(&thin[lane.0..=lane.1]) >= least_m;
+        straights(thin).into_iter().filter(long).collect()
+    }
+
+    /// The length of the path from the point nearest to a place on, metres.
+    pub fn rest_m(&self, from: Point) -> f64 {
+        polyline::length_m(&self.path[self.nearest(from).min(self.path.len())..])
+    }
+
+    /// The index of the path point nearest to a place; 0 if the path is empty.
+    pub fn nearest(&self, place: Point) -> usize {
+        let distance = |point: &Point| (point - place).norm_squared();
+        let points = self.path.iter().enumerate();
+        points.min_by(|a, b| distance(a.1).total_cmp(&distance(b.1))).map_or(0, |(index, _)| index)
+    }
+
+    /// The lane on which a point of the path lies, or the stretch between two lanes: first and last index. A path
+    /// without lanes has no legs: both indices are that of the point.
+    pub fn leg_at(&self, index: usize) -> Lane {
+        if self.lanes.is_empty() {
+            return (index, index);
+        }
+        let end = self.path.len().saturating_sub(1);
+        let next = self.lanes.partition_point(|(_, last)| *last <= index);
+        let before = next.checked_sub(1).map_or(0, |before| self.lanes[before].1);
+        match self.lanes.get(next) {
+            Some((first, last)) if *first <= index => (*first, *last),
+            Some((first, _)) => (before, *first),
+            None => (before, end),
+        }
+    }
+}
+
+/// The stretches of a path on which its heading stays nearly the same.
+fn straights(path: &[Point]) -> Vec<Lane> {
+    let mut found: Vec<(Lane, f64)> = Vec::new();
+    for (index, pair) in path.windows(2).enumerate().filter(|(_, pair)| pair[0] != pair[1]) {
+        let way = pair[1] - pair[0];
+        let heading_rad = way.y.atan2(way.x);
+        match found.last_mut() {
+            Some(((_, last), began_rad))
+                if *last == index && apart(heading_rad, *began_rad) < STRAIGHT_RAD =>
+            {
+                *last = index + 1;
+            }
+            _ => found.push(((index, index + 1), heading_rad)),
+        }
+    }
+    found.into_iter().map(|(lane, _)| lane).collect()
+}
+
+/// The angle between two headings, radians.
+fn apart(a_rad: f64, b_rad: f64) -> f64 {
+    let turn = (a_rad - b_rad).rem_euclid(std::f64::consts::TAU);
+    turn.min(std::f64::consts::TAU - turn)
 }
 
 /// A plan that is better than the rest of the current one.
@@ -34,6 +113,9 @@ pub struct Offer {
     pub scans: Option<PlanScans>,
     /// The point at which the better plan begins.
     pub begins: Option<Point>,
+    /// The points of its path, thinned for drawing.
+    #[serde(default)]
+    pub path: Vec<Point>,
     /// Whether the mission will switch to the better plan at the point where that plan begins, because the operator or
     /// the scenario says so.
     pub is_taken: bool,
@@ -81,4 +163,51 @@ pub struct Planning {
     /// A better plan that is on offer, or that was taken and will run from the point at which it begins.
     #[serde(default)]
     pub offer: Option<Offer>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A meander of three lanes, each of 11 points a metre apart, 1 m from each other.
+    fn meander() -> Vec<Point> {
+        let lane = |row: i32| {
+            (0..=10)
+                .map(move |x| Point::new(f64::from(if row % 2 == 0 { x } else { 10 - x }), f64::from(row)))
+        };
+        (0..3).flat_map(lane).collect()
+    }
+
+    fn shown(lanes: Vec<Lane>) -> PlanShown {
+        PlanShown { ask: None, path: meander(), lanes, length_m: 32.0, complete: true, t_s: 0.0 }
+    }
+
+    #[test]
+    fn the_lanes_are_those_that_the_planner_states() {
+        let leg = |tag, first, last| Leg { tag, first, last };
+        let legs = [leg(LegTag::Swath, 0, 10), leg(LegTag::Connector, 10, 11), leg(LegTag::Swath, 11, 21)];
+        let path = meander();
+        assert_eq!(PlanShown::lanes_of(&path, &path, &legs, 2.0), [(0, 10), (11, 21)]);
+        let long: Vec<Point> = (0..5000).map(|i| Point::new(f64::from(i), 0.0)).collect();
+        let thin = Trail::thinned(&long);
+        let legs = [leg(LegTag::Swath, 0, 2400), leg(LegTag::Swath, 2401, 4999)];
+        let lanes = PlanShown::lanes_of(&long, &thin, &legs, 2.0);
+        assert_eq!(thin[lanes[0].1], long[2400], "the indices are those of the thinned path");
+        assert!(thin.len() - lanes[1].1 <= 2, "{lanes:?}");
+    }
+
+    #[test]
+    fn without_legs_the_long_straight_stretches_are_lanes() {
+        let path = meander();
+        assert_eq!(PlanShown::lanes_of(&path, &path, &[], 2.0), [(0, 10), (11, 21), (22, 32)]);
+    }
+
+    #[test]
+    fn the_leg_is_the_lane_or_the_way_to_the_next() {
+        let plan = shown(vec![(0, 10), (11, 21), (22, 32)]);
+        assert_eq!([plan.leg_at(0), plan.leg_at(9), plan.leg_at(10)], [(0, 10), (0, 10), (10, 11)]);
+        assert_eq!([plan.leg_at(11), plan.leg_at(32)], [(11, 21), (32, 32)]);
+        assert_eq!(shown(Vec::new()).leg_at(5), (5, 5));
+        assert!((plan.rest_m(Point::new(3.1, 0.0)) - 29.0).abs() < 1e-9);
+    }
 }

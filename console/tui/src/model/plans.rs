@@ -1,6 +1,6 @@
 //! The plan before the start, with its estimate, and a second plan for comparison.
 
-use account::Estimate;
+use account::{Estimate, LeftOut};
 use mission::{AskId, PlannerChoice};
 use serde::{Deserialize, Serialize};
 use world::Point;
@@ -10,6 +10,9 @@ use world::Point;
 pub struct Plans {
     /// The estimate for the mission's plan, and the ask that the plan answers.
     pub estimate: Option<(Option<AskId>, Estimate)>,
+    /// The floor that the mission's plan leaves out, and the ask that the plan answers.
+    #[serde(default)]
+    pub left_out: Option<(Option<AskId>, LeftOut)>,
     /// A different planner's plan, for comparison.
     pub ghost: Option<Ghost>,
 }

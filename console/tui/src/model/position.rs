@@ -2,7 +2,7 @@
 
 use super::History;
 use planner_api::PoseEstimate;
-use positioning::{Fix, Ranging, fix};
+use positioning::{Exclusion, Fix, Ranging, fix};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, VecDeque};
 use world::{Point, StationId};
@@ -41,6 +41,12 @@ pub struct Position {
     pub lost: bool,
     /// The history of the 95 % error, metres.
     pub history_m: History,
+    /// The history of the root mean square of the residuals, millimetres.
+    #[serde(default)]
+    pub residual_history_mm: History,
+    /// The history of each station's residual without its sign, millimetres.
+    #[serde(default)]
+    pub station_history_mm: BTreeMap<StationId, History>,
     recent: VecDeque<(f64, Point)>,
 }
 
@@ -62,6 +68,22 @@ impl Position {
         }
         (self.heard, self.ranged_t_s) = (ranges.len(), Some(t_s));
         ranges.clone_into(&mut self.ranges);
+    }
+
+    /// Records a fix.
+    pub fn fixed(&mut self, t_s: f64, fix: &Fix) {
+        (self.fix, self.fix_t_s, self.failure) = (Some(fix.clone()), t_s, None);
+        if let Some(rms_m) = self.residual_rms_m() {
+            self.residual_history_mm.add(t_s, 1000.0 * rms_m);
+        }
+        let rejected = fix.excluded.iter().filter_map(|(station, why)| match why {
+            Exclusion::Residual { residual_m, .. } => Some((*station, *residual_m)),
+            _ => None,
+        });
+        let used = fix.residuals.iter().map(|residual| (residual.station, residual.residual_m));
+        for (station, residual_m) in used.chain(rejected) {
+            self.station_history_mm.entry(station).or_default().add(t_s, 1000.0 * residual_m.abs());
+        }
     }
 
     /// The 95 % error of the pose, metres.
@@ -118,6 +140,7 @@ pub fn ellipse_95(pose: &PoseEstimate) -> (f64, f64, f64) {
 mod tests {
     use super::*;
     use nalgebra::{Matrix2, Matrix3};
+    use positioning::Residual;
 
     fn pose(x: f64, sigma_m: f64) -> PoseEstimate {
         let covariance = Matrix3::from_diagonal_element(sigma_m * sigma_m);
@@ -144,6 +167,22 @@ mod tests {
         position.fix = Some(fix());
         assert!(!position.is_fix_stale(11.9));
         assert!(position.is_fix_stale(12.1));
+    }
+
+    #[test]
+    fn every_station_has_its_history_of_residuals() {
+        let mut position = Position::default();
+        let residual = |id, residual_m| Residual { station: StationId(id), residual_m, sigma_m: 0.05 };
+        let rejected = (StationId(3), Exclusion::Residual { residual_m: 0.4, gate_m: 0.1 });
+        let residuals = vec![residual(1, -0.03), residual(2, 0.04)];
+        position.fixed(8.0, &Fix { residuals, excluded: vec![rejected], ..fix() });
+        let newest = |id| position.station_history_mm.get(&StationId(id)).and_then(|all| all.last(4).next());
+        let near = |found: Option<f64>, mm: f64| found.is_some_and(|found| (found - mm).abs() < 0.01);
+        assert!(near(newest(1), 30.0) && near(newest(2), 40.0) && near(newest(3), 400.0));
+        assert!(
+            near(position.residual_history_mm.last(4).next(), 35.355),
+            "the rejected one is not part of the fix"
+        );
     }
 
     fn fix() -> Fix {

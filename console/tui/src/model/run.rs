@@ -4,7 +4,10 @@ use super::{Alarms, History, Log, Planning, Position, Raster, Shadow, Tether, Tr
 use mission::{FoldedStanding, MissionConfig, Phase, PlannerInfo, TaskConfig, WayBack};
 use positioning::AccuracyMap;
 use serde::{Deserialize, Serialize};
-use world::{PlateLayout, Point, Station, StationId, World};
+use world::{PlateLayout, Point, Pose, Station, StationId, World};
+
+/// The time under way before which the average pace says nothing about the rest, seconds.
+const SETTLED_S: f64 = 30.0;
 
 /// A run reconstructed from its events.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -126,6 +129,35 @@ impl Run {
         self.covers() && self.has_ended()
     }
 
+    /// Whether the mission ended before the end of its plan.
+    pub fn is_cut_short(&self) -> bool {
+        self.rest().is_some_and(|rest| rest.len() > 1)
+    }
+
+    /// The part of the plan that had not been driven when the mission ended; `None` before the end.
+    fn rest(&self) -> Option<&[Point]> {
+        let (plan, progress) =
+            (self.planning.plan.as_ref()?, self.progress.as_ref().filter(|_| self.has_ended())?);
+        plan.path.get(plan.nearest(progress.target)..)
+    }
+
+    /// Whether the rest of the plan led to each cell of the floor; empty before the end, and without a rest.
+    pub fn not_reached(&self) -> Vec<bool> {
+        let Some((coverage, about)) = self.coverage.as_ref().zip(self.about.as_ref()) else {
+            return Vec::new();
+        };
+        let rest = self.rest().filter(|rest| rest.len() > 1).unwrap_or_default();
+        let mut ahead = vec![false; if rest.is_empty() { 0 } else { coverage.floor().len() }];
+        for pair in rest.windows(2).filter(|pair| pair[0] != pair[1]) {
+            let way = pair[1] - pair[0];
+            let at = |position| Pose { position, heading_rad: way.y.atan2(way.x) };
+            for cell in coverage.floor().cells_under(about.mission.tool(), at(pair[0]), at(pair[1])) {
+                ahead[cell] = true;
+            }
+        }
+        ahead
+    }
+
     /// Why a planner cannot run this mission; `None` if it can.
     pub fn cannot_fly(&self, planner: &PlannerInfo) -> Option<&'static str> {
         if self.covers() { planner.why_no_coverage() } else { None }
@@ -136,10 +168,15 @@ impl Run {
         self.planning.choice.as_ref().map(|choice| choice.id.as_str())
     }
 
+    /// The estimated speed over ground, metres per second; `None` once the run has ended.
+    pub fn speed_m_per_s(&self) -> Option<f64> {
+        self.position.speed_m_per_s().filter(|_| !self.has_ended())
+    }
+
     /// Estimated remaining mission time at the average pace so far, seconds.
     pub fn left_s(&self) -> Option<f64> {
         let done = self.progress.as_ref()?.done;
-        let known = self.clock.moving_s > 10.0 && done > 0.01 && done <= 1.0 && !self.has_ended();
+        let known = self.clock.moving_s > SETTLED_S && done > 0.01 && done <= 1.0 && !self.has_ended();
         known.then(|| self.clock.moving_s * (1.0 - done) / done)
     }
 

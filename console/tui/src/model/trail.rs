@@ -41,9 +41,14 @@ impl Trail {
         &self.points
     }
 
+    /// Of how many points of a path [`Self::thinned`] keeps one.
+    pub fn step(points: usize) -> usize {
+        points.div_ceil(MAX_POINTS).max(1)
+    }
+
     /// All points of a path; evenly picked points if the path has more than a trail may keep. Both ends are kept.
     pub fn thinned(path: &[Point]) -> Vec<Point> {
-        let step = path.len().div_ceil(MAX_POINTS).max(1);
+        let step = Self::step(path.len());
         let mut points: Vec<Point> =
             path.iter().copied().step_by(step).filter(|p| p.x.is_finite() && p.y.is_finite()).collect();
         if let Some(last) = path.last().filter(|_| step > 1 && !(path.len() - 1).is_multiple_of(step)) {

@@ -28,6 +28,9 @@ pub struct Ui {
     pub layers: Layers,
     /// The index of the selected missed area in the list on the result screen.
     pub missed: usize,
+    /// The index of the selected area in the list of what the plan leaves out.
+    #[serde(default)]
+    pub left_out: usize,
     /// The index of the selected plugin on the plugins screen.
     pub plugin: usize,
     /// The map cursor, metres, tank frame; `None` without a cursor.
@@ -59,6 +62,7 @@ impl Default for Ui {
             map: MapView::default(),
             layers: Layers::default(),
             missed: 0,
+            left_out: 0,
             plugin: 0,
             cursor: None,
             mouse: false,
@@ -94,11 +98,26 @@ pub enum Pane {
     Missed,
     /// A chart of a quantity over recent minutes.
     Chart(Chart),
+    /// The plan screen: the state of the plan.
+    Plan,
+    /// The plan screen: what the plan promises.
+    Promise,
+    /// The plan screen: the floor that the plan leaves out.
+    LeftOut,
+    /// The plan screen: the parameters of the planner.
+    Parameters,
+    /// The plan screen: the pre-flight checks.
+    Checks,
 }
 
 impl Pane {
     /// The panes that are shown one at a time on a small terminal, in Tab order.
     pub const PAGES: [Self; 5] = [Self::Map, Self::Coverage, Self::Position, Self::Planner, Self::Events];
+    /// The panes of the plan screen that are shown one at a time on a small terminal, in Tab order.
+    pub const PLAN_PAGES: [Self; 5] =
+        [Self::Map, Self::Promise, Self::LeftOut, Self::Checks, Self::Parameters];
+    /// The panes beside the map of the plan screen that are shown one at a time on a narrow terminal, in Tab order.
+    pub const PLAN_PARTS: [Self; 4] = [Self::Map, Self::LeftOut, Self::Checks, Self::Parameters];
 }
 
 /// The quantity of a chart.
@@ -106,6 +125,8 @@ impl Pane {
 pub enum Chart {
     /// The 95 % error of the position.
     Error,
+    /// The root mean square of the residuals of the stations.
+    Residual,
     /// The length of the tether paid out.
     TetherOut,
     /// The largest wrap.
@@ -395,6 +416,9 @@ impl Ui {
             self.back.push(self.screen);
         }
         self.screen = screen;
+        if !self.panes().is_empty() && !self.panes().contains(&self.pane) {
+            self.pane = Pane::Map;
+        }
         if screen == Screen::Mission {
             // The pane beside the map shows the newest events, whatever was selected on the events screen.
             self.events.at = None;
@@ -404,7 +428,10 @@ impl Ui {
     /// Whether a pane is visible.
     pub fn shows(&self, pane: Pane) -> bool {
         if self.screen != Screen::Mission {
-            return pane == Pane::Map && self.has_map();
+            let is_paged = self.screen == Screen::Plan && self.arrangement() == Arrangement::Paged;
+            return pane == Pane::Map
+                && self.has_map()
+                && (!is_paged || !self.panes().contains(&self.pane) || self.pane == pane);
         }
         match self.arrangement() {
             Arrangement::Wide | Arrangement::Narrow => true,
@@ -420,8 +447,12 @@ impl Ui {
 
     /// The panes through which Tab cycles.
     pub fn panes(&self) -> &'static [Pane] {
-        if self.screen != Screen::Mission {
-            return &[];
+        match (self.screen, self.arrangement()) {
+            (Screen::Plan, Arrangement::Wide) => return &[Pane::Map, Pane::LeftOut],
+            (Screen::Plan, Arrangement::Narrow) => return &Pane::PLAN_PARTS,
+            (Screen::Plan, Arrangement::Paged) => return &Pane::PLAN_PAGES,
+            (Screen::Mission, _) => {}
+            _ => return &[],
         }
         match self.arrangement() {
             Arrangement::Wide | Arrangement::Narrow => &[Pane::Map, Pane::Events],

@@ -48,6 +48,7 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
         RunMsg::Estimated(ask, estimate) => model.live.plans.estimate = Some((ask, *estimate)),
         RunMsg::WayBack(way) => finish::found(model, way),
         RunMsg::ZoneCost(corners, cost) => zones::priced(model, &corners, cost),
+        RunMsg::LeftOut(ask, left_out) => model.live.plans.left_out = Some((ask, *left_out)),
         RunMsg::CompareAt(share, what) => {
             if let Some(ghost) = &mut model.live.plans.ghost {
                 ghost.at = Some((share, what));

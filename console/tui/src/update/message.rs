@@ -8,7 +8,7 @@ use crate::model::{
     home::Found,
     replay::{Align, Reel, Side},
 };
-use account::{Account, Estimate, Notes, Summary};
+use account::{Account, Estimate, LeftOut, Notes, Summary};
 use mission::{
     AskId, Check, Event, Order, PlannerChoice, PlannerInfo, RefusedPlugin, Severity, WayBack, ZoneCost,
 };
@@ -130,6 +130,8 @@ pub enum Rows {
     Plugins,
     /// The missed areas on the result screen.
     Missed,
+    /// The areas that the plan leaves out, on the plan screen.
+    LeftOut,
     /// Past runs on the review screen.
     Past,
 }
@@ -169,6 +171,8 @@ pub enum RunMsg {
     WayBack(Result<WayBack, String>),
     /// What a no-go zone with these corners would cost, or why it would be refused, as a sentence.
     ZoneCost(Vec<Point>, Result<ZoneCost, String>),
+    /// The floor that a plan leaves out, for the plan that answers the given ask.
+    LeftOut(Option<AskId>, Box<LeftOut>),
     /// The progress of the plan for comparison: the share done, and the current activity.
     CompareAt(f64, String),
     /// The plan for comparison, or why there is none, as a sentence.

@@ -6,7 +6,7 @@ use super::message::{Effect, Mouse, Rows, Target};
 use super::{map, zones};
 use crate::actions::{ACTIONS, ActionId, context::contexts};
 use crate::model::home::HomeList;
-use crate::model::{Model, Overlay};
+use crate::model::{Model, Overlay, Pane};
 
 /// Lines scrolled per wheel step.
 const WHEEL: isize = 3;
@@ -53,7 +53,13 @@ fn click(model: &mut Model, list: Rows, index: usize) -> Vec<Effect> {
     let before = selected(model, list);
     let opens = matches!(
         list,
-        Rows::Scenarios | Rows::Runs | Rows::Attention | Rows::Alarms | Rows::Events | Rows::Past
+        Rows::Scenarios
+            | Rows::Runs
+            | Rows::Attention
+            | Rows::Alarms
+            | Rows::Events
+            | Rows::LeftOut
+            | Rows::Past
     );
     if was_focused && before == index {
         return if opens { act(model, ActionId::Accept) } else { Vec::new() };
@@ -62,12 +68,13 @@ fn click(model: &mut Model, list: Rows, index: usize) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Makes a list on the home screen respond to the arrow keys; returns whether a different list did so before.
+/// Makes a list respond to the arrow keys; returns whether a different list or pane did so before.
 fn focus(model: &mut Model, list: Rows) -> bool {
     let wanted = match list {
         Rows::Scenarios => HomeList::Scenarios,
         Rows::Runs => HomeList::Runs,
         Rows::Attention => HomeList::Attention,
+        Rows::LeftOut => return std::mem::replace(&mut model.ui.pane, Pane::LeftOut) != Pane::LeftOut,
         Rows::Alarms | Rows::Events | Rows::Plugins | Rows::Missed | Rows::Past => return false,
     };
     std::mem::replace(&mut model.home.list, wanted) != wanted
@@ -87,6 +94,7 @@ fn selected(model: &Model, list: Rows) -> usize {
         Rows::Events => model.ui.events.newer(),
         Rows::Plugins => model.ui.plugin,
         Rows::Missed => model.ui.missed,
+        Rows::LeftOut => model.ui.left_out,
         Rows::Past => model.review.selected,
     }
 }

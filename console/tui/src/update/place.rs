@@ -12,6 +12,30 @@ const PLACE_ZOOM: u8 = 2;
 
 /// Shows a place on the mission screen's map, centred and with the cursor on it.
 pub(super) fn show(model: &mut Model, place: Point, what: &str) -> Vec<Effect> {
+    let effects = center(model, place, what);
+    if model.live.run.about.is_some() {
+        model.ui.go(Screen::Mission);
+    }
+    effects
+}
+
+/// Shows the selected area that the plan leaves out on the map of the plan screen.
+pub(crate) fn left_out(model: &mut Model) -> Vec<Effect> {
+    let area = model.live.left_out().and_then(|left_out| left_out.areas.get(model.ui.left_out));
+    match area.map(|area| (area.at, area.reason.plainly())) {
+        Some((place, why)) => center(model, place, why),
+        None => refuse(model, "the plan leaves no area out".into()),
+    }
+}
+
+/// Selects an area that the plan leaves out.
+pub(crate) fn select_left_out(model: &mut Model, by: isize) {
+    let n = model.live.left_out().map_or(0, |left_out| left_out.areas.len());
+    model.ui.left_out = model.ui.left_out.saturating_add_signed(by).min(n.saturating_sub(1));
+}
+
+/// Centres the map on a place, with the cursor on it.
+fn center(model: &mut Model, place: Point, what: &str) -> Vec<Effect> {
     let Some(about) = &model.live.run.about else { return refuse(model, "no mission loaded yet".into()) };
     let (low, high) = about.world.boundary.bounds();
     let zoom = model.ui.map.zoom.max(PLACE_ZOOM);
@@ -19,6 +43,5 @@ pub(super) fn show(model: &mut Model, place: Point, what: &str) -> Vec<Effect> {
     model.ui.map = MapView { zoom, follow: false, offset };
     (model.ui.pane, model.ui.cursor) = (Pane::Map, Some(place));
     model.say(Severity::Info, format!("map centred at {:.2}, {:.2} m: {what}", place.x, place.y));
-    model.ui.go(Screen::Mission);
     Vec::new()
 }

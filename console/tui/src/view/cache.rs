@@ -91,6 +91,11 @@ impl Cache {
 }
 
 impl Places {
+    /// The part of the floor that the map shows.
+    pub(super) fn window(&self) -> Option<Window> {
+        self.map.map(|(_, window)| window)
+    }
+
     /// The screen element at a position in the last frame.
     pub fn target(&self, column: u16, row: u16) -> Target {
         let at = Position { x: column, y: row };

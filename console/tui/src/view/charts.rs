@@ -1,7 +1,7 @@
 //! Charts of recent minutes, with the limit drawn as a line.
 
 use super::look::Look;
-use super::map::{Stroke, Window};
+use super::map::{Pattern, Stroke, Window};
 use super::text;
 use crate::model::history::{HISTORY_S, SLOT_S};
 use crate::model::{History, Pane, ui::Chart};
@@ -31,14 +31,19 @@ pub(super) struct Series<'a> {
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, chart: Chart) {
     let Some(series) = series(look, chart) else { return };
-    let block = look.pane(Pane::Chart(chart), series.title, &note(&series));
+    let room = usize::from(area.width).saturating_sub(text::width(series.title) + 8);
+    let block = look.pane(Pane::Chart(chart), series.title, &note(&series, room));
     framed(look, frame, area, block, &series);
 }
 
-/// The time that a chart covers, and its limit.
-pub(super) fn note(series: &Series) -> String {
-    let limit = series.limit.map(|limit| format!(", limit {}", text::number(limit, series.decimals)));
-    format!("{} min{}", HISTORY_S / 60, limit.unwrap_or_default())
+/// The value now, the limit and the time that a chart covers, as far as they fit into `room` columns.
+pub(super) fn note(series: &Series, room: usize) -> String {
+    let said = |value: f64| text::number(value, series.decimals);
+    let now =
+        series.values.last(SLOT_S).last().map_or_else(String::new, |now| format!("now {}, ", said(now)));
+    let limit = series.limit.map_or_else(String::new, |limit| format!("limit {}, ", said(limit)));
+    let minutes = format!("{} min", HISTORY_S / 60);
+    text::wording([format!("{now}{limit}{minutes}"), format!("{limit}{minutes}"), minutes], room)
 }
 
 /// Draws a chart in a pane.
@@ -60,6 +65,12 @@ fn series<'a>(look: &Look<'a>, chart: Chart) -> Option<Series<'a>> {
             limit: Some(about.mission.position_limit_m),
             decimals: 2,
         },
+        Chart::Residual => Series {
+            title: "Residual RMS, mm",
+            values: &run.position.residual_history_mm,
+            limit: None,
+            decimals: 0,
+        },
         Chart::TetherOut => Series {
             title: "Tether out, m",
             values: &run.tether.as_ref()?.length_history_m,
@@ -73,7 +84,7 @@ fn series<'a>(look: &Look<'a>, chart: Chart) -> Option<Series<'a>> {
             decimals: 0,
         },
         Chart::Scanned => Series {
-            title: "Scanned, % of reachable floor",
+            title: "Scanned, % of reachable",
             values: &run.scanned_history,
             limit: None,
             decimals: 1,
@@ -99,17 +110,24 @@ fn plot(look: &Look, frame: &mut Frame, area: Rect, series: &Series<'_>) {
         values.iter().enumerate().map(|(index, value)| Point::new(at_s(index), *value)).collect();
     let marker = if look.caps.glyphs.has_dots() { Marker::Braille } else { Marker::Custom('*') };
     let canvas = Canvas::default().marker(marker).x_bounds(window.x).y_bounds(window.y).paint(|ctx| {
-        let mut stroke = |points: &[Point], role, dotted| {
-            ctx.draw(&Stroke { points, window, dotted, color: look.theme.color(role) });
+        let mut stroke = |points: &[Point], role, pattern| {
+            ctx.draw(&Stroke { points, window, pattern, color: look.theme.color(role) });
         };
         if let Some(limit) = limit {
-            stroke(&[Point::new(window.x[0], limit), Point::new(window.x[1], limit)], Role::Warn, true);
+            stroke(
+                &[Point::new(window.x[0], limit), Point::new(window.x[1], limit)],
+                Role::Warn,
+                Pattern::Dotted,
+            );
         }
-        stroke(&points, Role::Watch, false);
+        stroke(&points, Role::Watch, Pattern::Solid);
     });
     frame.render_widget(canvas, plot);
-    label(look, frame, area, series, top, limit.unwrap_or(largest));
     label(look, frame, area, series, top, 0.0);
+    if limit.is_some() {
+        label(look, frame, area, series, top, largest);
+    }
+    label(look, frame, area, series, top, limit.unwrap_or(largest));
 }
 
 /// Writes a value beside the curve, at its height.

@@ -108,10 +108,9 @@ fn asked(model: &Model) -> Option<Vec<String>> {
         || format!("The robot will move (planner {}).", model.live.run.planner_id().unwrap_or("unknown"));
     let clauses = match &model.ui.overlay {
         Overlay::Confirm(Ask::Start(_)) => {
-            let planner = text::fit(model.live.run.planner_id().unwrap_or("unknown"), 18);
             let speed = text::speed(model.live.speed);
             vec![
-                format!("Start ({planner}, {speed})? <accept>: start, <cancel>: cancel."),
+                format!("Start ({speed})? <accept>: start, <cancel>: cancel."),
                 format!("The robot will move: {}.", promised(model)),
             ]
         }
@@ -220,25 +219,24 @@ fn drawing(form: Form) -> String {
     .into()
 }
 
-/// The plan to be started, as the end of a sentence: its length and time, and whether it is certified for the tether.
+/// The plan to be started, as the end of a sentence: its length, time and planner, and whether it is certified for the
+/// tether.
 pub(super) fn promised(model: &Model) -> String {
+    let time =
+        model.live.estimate().map_or_else(|| "time unknown".to_owned(), |estimate| clock(estimate.time_s));
     let length = match &model.live.run.planning.plan {
         Some(plan) if plan.path.is_empty() => "step by step, no path planned".to_owned(),
-        Some(plan) => format!("{} m", text::number(plan.length_m, 1)),
+        Some(plan) => format!("{} m, {time}", text::number(plan.length_m, 1)),
         None => "no plan yet".into(),
     };
-    let time = model.live.estimate().map_or_else(
-        || "time unknown".to_owned(),
-        |estimate| format!("{} of mission time", clock(estimate.time_s)),
-    );
     let has_tether = model.live.run.about.as_ref().is_some_and(|about| about.mission.tether.is_some());
     let certificate = match model.live.run.tether.as_ref().and_then(|tether| tether.certified) {
         _ if !has_tether => "no tether",
-        Some(true) => "certified for the tether",
-        Some(false) => "NOT certified for the tether",
-        None => "not certified for the tether",
+        Some(true) => "certified",
+        Some(false) | None => "NOT certified for the tether",
     };
-    format!("{length}, {time}, {certificate}")
+    let planner = text::fit(model.live.run.planner_id().unwrap_or("unknown"), 18);
+    format!("{length} (planner {planner}), {certificate}")
 }
 
 /// The note after the input line in which an alarm is shelved.

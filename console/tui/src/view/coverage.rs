@@ -60,7 +60,7 @@ fn wide_lines(look: &Look, columns: usize) -> Vec<(u8, Line<'static>)> {
         (1, look.line([(Role::Good, format!(" {}", bar(run, columns.saturating_sub(2))))])),
         row(3, to_do_label(run), shares(format!("{to_do_reachable} %"), &to_do)),
         row(7, "unreachable", out_of_reach),
-        row(5, "rate", rate(run)),
+        row(5, "speed", pace(run, room)),
         row(6, "overlap", format!("{overlap} % of scanned floor")),
         row(4, way_label(run), way(run)),
         row(2, "time left", left(run, true)),
@@ -116,11 +116,15 @@ fn to_do_label(run: &Run) -> &'static str {
     }
 }
 
-fn rate(run: &Run) -> String {
+/// The speed over ground while the robot may move, the scanned floor per minute, and the scanned floor.
+fn pace(run: &Run, room: usize) -> String {
     let scanned_m2 = run.coverage.as_ref().map_or(0.0, Raster::scanned_m2);
     let minutes = run.clock.moving_s / 60.0;
     let rate = if minutes > 0.2 { text::number(scanned_m2 / minutes, 1) } else { "-".into() };
-    format!("{rate} m²/min, {} m² scanned", text::number(scanned_m2, 0))
+    let speed = run.speed_m_per_s().map_or_else(|| "-".into(), |speed| text::number(speed, 2));
+    let pace = format!("{speed} m/s, {rate} m²/min");
+    let scanned = text::number(scanned_m2, 0);
+    text::wording([format!("{pace}, {scanned} m² scanned"), format!("{pace}, {scanned} m²"), pace], room)
 }
 
 fn way_label(run: &Run) -> &'static str {

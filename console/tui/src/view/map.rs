@@ -1,7 +1,11 @@
 //! The map, on one canvas: scanned floor at the bottom; walls, obstacles, paths and forces on top.
 
+mod course;
 mod drawn;
+mod ink;
+mod labels;
 mod legend;
+mod pattern;
 mod pen;
 mod plates;
 mod readout;
@@ -10,25 +14,24 @@ mod shadow;
 mod shapes;
 mod sketch;
 
+pub(super) use pattern::Pattern;
 pub(super) use plates::{Key as PlateKey, PlateDrawing};
 pub(super) use shade::{Key as ShadeKey, Shades};
 pub(super) use shapes::{Filled, Stroke, Window, ellipse};
 
 use super::look::Look;
 use super::text;
-use crate::model::{Model, Pane};
+use crate::model::{Model, Overlay, Pane, Screen};
 use crate::theme::Role;
+use mission::Severity;
 use pen::Pen;
 use ratatui::Frame;
-use ratatui::layout::Rect;
+use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
 use ratatui::widgets::canvas::Canvas;
 
 /// Margin around the tank, as a factor of its size.
 const MARGIN: f64 = 1.04;
-/// Columns and rows from which the map shows a legend.
-const LEGEND: (u16, u16) = (64, 20);
-
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let ui = &look.model.ui;
     let title = title(look.model);
@@ -41,16 +44,25 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     if inner.width < 4 || inner.height < 3 {
         return;
     }
-    let floor = Rect { height: inner.height - 1, ..inner };
-    let below = Rect { y: inner.bottom() - 1, height: 1, ..inner };
-    let robot = readout::robot(look, inner.width);
-    let window = window(look, floor);
-    if let Some(window) = window {
-        draw_floor(look, frame, floor, window);
-        look.cache.borrow_mut().place_map(floor, window);
+    let [floor, alarm, below] = Layout::vertical([
+        Constraint::Fill(1),
+        Constraint::Length(u16::from(critical(look).is_some())),
+        Constraint::Length(1),
+    ])
+    .areas(inner);
+    if look.run.about.is_some() {
+        floor_and_legend(look, frame, floor);
     } else {
         frame.render_widget(Line::from(look.span(Role::Dim, " no tank loaded yet")), floor);
     }
+    if let Some(text) = critical(look) {
+        let columns = usize::from(alarm.width);
+        let text = text::clauses(text, columns.saturating_sub(7));
+        let text = text::column(&format!(" CRIT {text}"), columns);
+        frame.render_widget(Line::from(look.span(Role::Crit, text)), alarm);
+    }
+    let window = look.cache.borrow().places().window();
+    let robot = readout::robot(look, inner.width);
     let left = readout::cursor(look, ui, inner.width)
         .or_else(|| window.map(|window| (Role::Dim, scale(window))))
         .unwrap_or((Role::Dim, String::new()));
@@ -63,9 +75,30 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     if fits || ui.cursor.is_none() {
         frame.render_widget(look.line([robot]).right_aligned(), below);
     }
-    if inner.width >= LEGEND.0 && inner.height >= LEGEND.1 {
-        legend::draw(look, frame, floor);
-    }
+}
+
+/// The text of the worst alarm if it is critical; it has a line of its own under the map of a mission.
+fn critical<'a>(look: &Look<'a>) -> Option<&'a str> {
+    let worst =
+        look.run.alarms.worst().filter(|alarm| alarm.severity == Severity::Crit && alarm.is_active())?;
+    (look.model.ui.screen == Screen::Mission && look.model.ui.overlay != Overlay::WhatIf)
+        .then_some(&worst.text)
+}
+
+/// Draws the floor with its legend. The legend stands where the map is blank; what does not fit there is written in
+/// lines below the floor, which is drawn smaller then.
+fn floor_and_legend(look: &Look, frame: &mut Frame, area: Rect) {
+    let Some(window) = window(look, area) else { return };
+    let entries = legend::entries(look, window);
+    let placed = legend::Placed::new(look, window, &entries);
+    let rows = legend::rows(&placed.left_over, area);
+    let [floor, lines] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(area);
+    let Some(window) = self::window(look, floor) else { return };
+    let placed = if rows > 0 { legend::Placed::new(look, window, &entries) } else { placed };
+    draw_floor(look, frame, floor, window);
+    legend::draw(look, frame, floor, &placed);
+    legend::draw_lines(look, frame, lines, &placed.left_over);
+    look.cache.borrow_mut().place_map(floor, window);
 }
 
 fn title(model: &Model) -> String {
@@ -112,10 +145,9 @@ fn draw_floor(look: &Look, frame: &mut Frame, area: Rect, window: Window) {
         pen.tether(ctx);
         pen.shadow(ctx);
         pen.robot(ctx);
-        ctx.layer();
-        pen.labels(ctx);
     });
     frame.render_widget(canvas, area);
+    labels::draw(look, window, area, frame.buffer_mut());
     shade::paint(look, window, area, frame.buffer_mut());
 }
 

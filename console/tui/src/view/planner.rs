@@ -96,8 +96,11 @@ fn cross_track(run: &Run, room: usize) -> String {
 
 /// The estimated speed and heading.
 fn motion(run: &Run, room: usize) -> String {
-    let speed = run.position.speed_m_per_s().map_or_else(|| "-".into(), |speed| text::number(speed, 2));
     let heading = run.position.pose.map_or_else(|| "-".into(), |pose| text::degrees(pose.heading_rad));
+    if run.has_ended() {
+        return text::wording([format!("standing, heading {heading}° CCW from E"), "standing".into()], room);
+    }
+    let speed = run.speed_m_per_s().map_or_else(|| "-".into(), |speed| text::number(speed, 2));
     text::wording(
         [
             format!("{speed} m/s, heading {heading}° CCW from E"),
@@ -146,14 +149,20 @@ fn plan(run: &Run) -> String {
 }
 
 fn scalars(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>> {
-    let shown = look.run.planning.scalars.iter().take(rows);
+    // A count that is zero says nothing.
+    let says = |scalar: &&(String, f64, String)| !(scalar.1 == 0.0 && scalar.2.is_empty());
+    let shown = look.run.planning.scalars.iter().filter(says).take(rows);
     shown
         .map(|(name, value, unit)| {
-            let unit = if unit.is_empty() { "[-]" } else { unit.as_str() };
             let label = text::column(&format!(" {name}"), 13.min(columns / 2));
-            let value =
-                text::fit(&format!("{} {unit}", text::number(*value, 3)), columns - label.len().min(columns));
+            let value = text::fit(&figure(*value, unit), columns - label.len().min(columns));
             look.line([(Role::Dim, label), (Role::Text, value)])
         })
         .collect()
+}
+
+/// A figure of the planner; a count has no decimals.
+fn figure(value: f64, unit: &str) -> String {
+    let decimals = if unit.is_empty() && value.fract() == 0.0 { 0 } else { 3 };
+    format!("{} {unit}", text::number(value, decimals)).trim_end().to_owned()
 }

@@ -29,17 +29,26 @@ fn wide_lines(look: &Look, inner: Rect) -> Vec<(u8, Line<'static>)> {
     let columns = usize::from(inner.width);
     let run = look.run;
     let row = |label: &str, value: (Role, String)| look.line([(Role::Dim, format!(" {label:<11}")), value]);
-    let heard = marked(is_ranging_stale(look), (Role::Text, format!("{} stations", heard(run, " of "))));
+    let heard = marked(is_ranging_stale(look), (Role::Text, heard(run, " of ")));
     let rms = marked(is_fix_stale(look), (Role::Text, residual(run)));
+    let (role, age) = fix(look);
+    let fix = (role, text::wording([format!("{age}, {}", source(look)), age], columns.saturating_sub(12)));
     let mut lines = vec![
         (0, row("95 % error", error(look))),
-        (1, row("fix", fix(look))),
-        (2, row("heard", heard)),
-        (3, row("residual", rms)),
+        (1, row("fix", fix)),
+        (
+            2,
+            look.line([
+                (Role::Dim, format!(" {:<11}", "heard")),
+                heard,
+                (Role::Dim, ", residual ".into()),
+                rms,
+            ]),
+        ),
         (4, curve(look, columns)),
     ];
-    let rows = usize::from(inner.height).saturating_sub(lines.len());
-    lines.extend(station_lines(look, columns, rows).into_iter().map(|line| (5, line)));
+    let rows = usize::from(inner.height).saturating_sub(lines.len()).max(1);
+    lines.extend(station_lines(look, columns, rows).into_iter().map(|line| (3, line)));
     lines
 }
 
@@ -114,6 +123,13 @@ fn curve(look: &Look, columns: usize) -> Line<'static> {
     look.line([(Role::Text, " ".into()), (Role::Watch, curve), (Role::Dim, note)])
 }
 
+/// What the estimated position is based on.
+fn source(look: &Look) -> &'static str {
+    let position = &look.run.position;
+    let has_fix = position.fix.is_some() && position.failure.is_none();
+    if has_fix && !position.is_fix_stale(look.run.clock.t_s) { "AE and odometry" } else { "odometry only" }
+}
+
 /// The state and age of the last fix.
 fn fix(look: &Look) -> (Role, String) {
     let run = look.run;
@@ -137,7 +153,8 @@ fn state(run: &Run) -> (Role, &'static str) {
     }
 }
 
-/// A few words per station: its residual, or why it was rejected. Rejected stations come first.
+/// A few words per station: its residual, or why it was rejected. Rejected stations come first; if not all stations fit,
+/// their number comes last.
 fn station_lines(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>> {
     let mut words = Parts::new();
     if let Some(fix) = &look.run.position.fix {
@@ -148,20 +165,29 @@ fn station_lines(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>>
             (Role::Text, format!("{} ok {sign}{residual_mm} mm", look.run.station_name(residual.station)))
         }));
     }
+    let all = words.len();
+    let fitting = (0..=all).rev().map(|n| (n, laid_out(&words[..n], all - n, columns)));
+    let fits = fitting.into_iter().find(|(_, lines)| lines.len() <= rows);
+    fits.map_or_else(Vec::new, |(_, lines)| lines.into_iter().map(|line| look.line(line)).collect())
+}
+
+/// Words in lines, and at the end how many more there are.
+fn laid_out(words: &[(Role, String)], more: usize, columns: usize) -> Vec<Parts> {
     let mut lines: Vec<Parts> = Vec::new();
     let mut used = columns;
-    for (role, word) in words {
+    let more = (more > 0).then(|| (Role::Dim, format!("+{more}")));
+    for (role, word) in words.iter().chain(&more) {
         let word = text::fit(&format!(" {word} "), columns);
-        if used + text::width(&word) > columns {
+        if used + text::width(word.trim_end()) > columns {
             lines.push(Vec::new());
             used = 0;
         }
         used += text::width(&word);
         if let Some(line) = lines.last_mut() {
-            line.push((role, word));
+            line.push((*role, word));
         }
     }
-    lines.into_iter().take(rows).map(|line| look.line(line)).collect()
+    lines
 }
 
 /// A station that is not used in the fix, and the reason.

@@ -3,6 +3,7 @@
 use super::look::{Look, Parts, fill, marked};
 use super::{position, text};
 use crate::model::Pane;
+use crate::model::history::{HISTORY_S, SLOT_S};
 use crate::theme::Role;
 use positioning::Exclusion;
 use ratatui::Frame;
@@ -25,7 +26,11 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let columns = usize::from(block.inner(area).width);
     let stations = look.run.about.as_ref().map_or(&[][..], |about| &about.world.stations);
     let head = vec![(Role::Dim, format!(" {}", laid_out(TABLE.map(|(head, ..)| head.to_owned()), columns)))];
-    let rows = stations.iter().map(|station| row(look, station, columns));
+    let has_history = usize::from(block.inner(area).height) > 2 * stations.len();
+    let rows = stations.iter().flat_map(|station| {
+        let history = has_history.then(|| history(look, station.id, columns));
+        std::iter::once(row(look, station, columns)).chain(history)
+    });
     fill(frame, area, block, std::iter::once(head).chain(rows).map(|parts| look.line(parts)).collect());
 }
 
@@ -49,6 +54,17 @@ fn row(look: &Look, station: &Station, columns: usize) -> Parts {
     ];
     let (role, words) = marked(position::is_fix_stale(look), (role, laid_out(cells, columns)));
     vec![(role, if words.starts_with('◌') { words } else { format!(" {words}") })]
+}
+
+/// The curve of a station's residuals over the last minutes, up to its largest value.
+fn history(look: &Look, station: StationId, columns: usize) -> Parts {
+    let history = look.run.position.station_history_mm.get(&station);
+    let Some(history) = history else { return vec![(Role::Dim, " no residual yet".into())] };
+    let largest = history.last(HISTORY_S).fold(0.0, f64::max);
+    let note = format!(" {} min, 0-{} mm", HISTORY_S / 60, text::number(largest, 0));
+    let room = columns.saturating_sub(text::width(&note) + 2);
+    let curve = text::sparkline(history.last(HISTORY_S), largest, room, HISTORY_S / SLOT_S);
+    vec![(Role::Watch, format!(" {curve}")), (Role::Dim, note)]
 }
 
 /// The cells of a row that fit; words are left-aligned, figures right-aligned.

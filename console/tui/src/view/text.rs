@@ -146,6 +146,21 @@ pub(crate) fn wrap(sentence: &str, columns: usize) -> Vec<String> {
     lines
 }
 
+/// Items in lines of a maximum width, with a gap between the items of a line; a longer item is cut at its end.
+pub(crate) fn wrap_items(items: &[String], columns: usize, gap: &str) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for item in items.iter().map(|item| fit(item, columns)) {
+        match lines.last_mut() {
+            Some(line) if width(line) + width(gap) + width(&item) <= columns => {
+                line.push_str(gap);
+                line.push_str(&item);
+            }
+            _ => lines.push(item),
+        }
+    }
+    lines
+}
+
 /// A bar, filled to a share.
 pub(crate) fn bar(share: f64, columns: usize) -> String {
     let full = if share.is_finite() { (share.clamp(0.0, 1.0) * columns as f64).round() as usize } else { 0 };
@@ -223,6 +238,13 @@ mod tests {
     fn a_curve_keeps_the_largest_value_of_each_column() {
         let curve = sparkline([0.0, 0.0, 1.0, 0.0].into_iter(), 1.0, 4, 8);
         assert_eq!(curve, "  ▁█");
+    }
+
+    #[test]
+    fn items_are_not_divided_between_lines() {
+        let items = ["a 1", "bb 22", "c 3"].map(str::to_owned);
+        assert_eq!(wrap_items(&items, 11, "  "), ["a 1  bb 22", "c 3"]);
+        assert_eq!(wrap_items(&items, 4, "  "), ["a 1", "bb …", "c 3"]);
     }
 
     #[test]

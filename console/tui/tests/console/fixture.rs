@@ -236,6 +236,12 @@ impl ScriptedMission {
         Self { path, grid: CoverageGrid::new(run.floor), tick: 0, at: 0, length_m, sigma_m: 0.02 }
     }
 
+    /// Before the first tick, with a path to drive.
+    pub(crate) fn along(path: Vec<Point>) -> Self {
+        let length_m = world::polyline::length_m(&path);
+        Self { path, length_m, ..Self::new() }
+    }
+
     /// An event of now.
     pub(crate) fn now(&self, kind: EventKind) -> Event {
         Event { tick: self.tick, t_s: self.tick as f64 * TICK_S, kind }

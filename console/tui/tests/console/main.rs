@@ -9,6 +9,7 @@ mod fixture;
 mod held_keys;
 mod laws;
 mod look_only;
+mod maps;
 mod mouse;
 mod notices;
 mod overviews;

@@ -21,16 +21,16 @@ impl Run {
                 self.seat(choice, info);
             }
             EventKind::ParametersChanged { choice, .. } => self.planning.choice = Some(choice.clone()),
-            EventKind::Planned { ask, path, length_m, complete, .. } => {
+            EventKind::Planned { ask, path, length_m, complete, legs, .. } => {
                 // The planner is a candidate: its plan runs once it takes over.
                 self.planning.proposed = ask.is_some_and(|ask| self.planning.candidate == Some(ask.worker));
                 if self.planning.proposed {
                     return;
                 }
-                let path = Trail::thinned(path);
-                let plan =
-                    PlanShown { ask: *ask, path, length_m: *length_m, complete: *complete, t_s: event.t_s };
-                self.planning.plan = Some(plan);
+                let thin = Trail::thinned(path);
+                let lanes = PlanShown::lanes_of(path, &thin, legs, self.least_lane_m());
+                let (ask, path, length_m, complete) = (*ask, thin, *length_m, *complete);
+                self.planning.plan = Some(PlanShown { ask, path, lanes, length_m, complete, t_s: event.t_s });
                 self.planner_works();
             }
             EventKind::Commanded { command, .. } => self.command(event.t_s, *command),
@@ -61,7 +61,8 @@ impl Run {
                         .about
                         .as_ref()
                         .is_some_and(|about| about.mission.better_plan == BetterPlan::Take);
-                    let offer = Offer { flown, better, scans, begins, is_taken };
+                    let path = Trail::thinned(path);
+                    let offer = Offer { flown, better, scans, begins, path, is_taken };
                     let next = if is_taken { "Taken where it begins" } else { "<take-plan>: take" };
                     change.say(Severity::Watch, format!("{}. {next}", offer.sentence()));
                     self.planning.offer = Some(offer);
@@ -87,6 +88,11 @@ impl Run {
             }
             _ => {}
         }
+    }
+
+    /// The minimum length of a straight stretch that counts as a lane, metres: three passes of the tool.
+    fn least_lane_m(&self) -> f64 {
+        self.about.as_ref().map_or(0.0, |about| 3.0 * about.mission.swath_m)
     }
 
     /// Makes a different planner active.

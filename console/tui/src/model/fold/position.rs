@@ -11,8 +11,7 @@ impl Run {
         match &event.kind {
             EventKind::Ranged { ranges } => self.position.ranged(event.t_s, ranges),
             EventKind::Fixed { fix } => {
-                (self.position.fix, self.position.fix_t_s) = (Some(fix.clone()), event.t_s);
-                self.position.failure = None;
+                self.position.fixed(event.t_s, fix);
                 self.clear(&Cause::NoFix);
             }
             EventKind::FixFailed { error, .. } => {

@@ -1,6 +1,6 @@
 //! The planner's drawings on the map.
 
-use crate::model::ui::MapLayer;
+use crate::model::{Screen, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
 use planner_api::{Drawing, Layer};
@@ -16,6 +16,8 @@ pub(super) const KINDS: [(Role, &str); 3] =
 pub(super) fn shown<'a>(look: &Look<'a>) -> &'a [Drawing] {
     let planning = &look.run.planning;
     let old = look.run.clock.tick.saturating_sub(planning.drawings_tick) > SHOWN_TICKS;
+    // The plan screen shows what is planned, not what is steered.
+    let old = old || look.model.ui.screen == Screen::Plan;
     if old || !look.model.ui.layers.shows(MapLayer::Drawings) { &[] } else { &planning.drawings }
 }
 

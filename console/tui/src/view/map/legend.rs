@@ -1,94 +1,293 @@
-//! The legend of the map: the floor on the left, lines and marks on the right.
+//! The legend of the map: every mark that is on the map now, beside the floor or in lines below it.
 
-use super::drawn;
+use super::ink::{self, Ink};
+use super::pattern::braille;
 use super::shade::{Shade, compared};
-use crate::model::{Raster, ui::MapLayer};
+use super::shapes::Window;
+use super::{course, drawn, labels, plates};
+use crate::model::{Raster, Screen, ui::MapLayer};
 use crate::theme::Role;
-use crate::view::look::Look;
+use crate::view::look::{Look, Parts};
+use crate::view::text;
 use account::Shares;
 use ratatui::Frame;
 use ratatui::layout::Rect;
-use ratatui::style::Style;
-use ratatui::text::{Line, Span};
-use ratatui::widgets::Clear;
-use world::FloorClass;
+use ratatui::text::Line;
+use world::{Boundary, FloorClass, Point, ZoneKind};
 
-/// Width of the right side in columns, and its maximum number of rows.
-const SIZE: (u16, u16) = (12, 10);
+/// Width of a mark, columns.
+const MARK: usize = 3;
+/// Columns kept free beside the wall: west of it, and east of it, where the names of stations end.
+const BESIDE: (f64, f64) = (1.0, 3.0);
+/// Rows of the map for each line of the legend below the floor.
+const ROWS_PER_LINE: u16 = 8;
+/// Blanks between entries in a line.
+const GAP: &str = "  ";
 
-/// A legend entry: role, mark and text.
-type Entry = (Role, String, &'static str);
-
-/// Draws the legend in the upper corners of an area.
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
-    let right = Rect { x: area.right().saturating_sub(SIZE.0), ..area };
-    draw_side(look, frame, area, &floor(look));
-    draw_side(look, frame, right, &marks(look));
+/// A legend entry.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Entry {
+    role: Role,
+    mark: String,
+    word: &'static str,
 }
 
-fn draw_side(look: &Look, frame: &mut Frame, area: Rect, entries: &[Entry]) {
-    for ((role, mark, word), row) in entries.iter().take(usize::from(SIZE.1)).zip(area.rows()) {
-        let color = Style::new().fg(look.theme.color(*role));
-        let line =
-            Line::from(vec![Span::styled(mark.as_str(), color), look.span(Role::Dim, format!(" {word} "))]);
-        let row = Rect { width: (line.width() as u16).min(row.width), ..row };
-        frame.render_widget(Clear, row);
-        frame.render_widget(line, row);
+impl Entry {
+    fn width(&self) -> usize {
+        MARK + 1 + text::width(self.word)
     }
+
+    fn parts(&self) -> Parts {
+        vec![(self.role, text::column(&self.mark, MARK)), (Role::Dim, format!(" {}", self.word))]
+    }
+}
+
+/// The places of the entries beside the floor: column, row and index; and the entries for which there is none.
+pub(super) struct Placed {
+    beside: Vec<(u16, u16, Entry)>,
+    /// The entries that do not fit beside the floor.
+    pub left_over: Vec<Entry>,
+}
+
+impl Placed {
+    /// Places the classes of floor in the west and the marks in the east, from the north, where the map is blank.
+    pub(super) fn new(look: &Look, window: Window, (floor, marks): &(Vec<Entry>, Vec<Entry>)) -> Self {
+        let blanks: Vec<(u16, u16)> = look.run.about.as_ref().map_or_else(Vec::new, |about| {
+            (0..window.size.1).map(|row| blank(&about.world.boundary, window, row)).collect()
+        });
+        let mut next = [0, 0];
+        let (mut beside, mut left_over) = (Vec::new(), Vec::new());
+        let wanted = floor.iter().map(|entry| (0, entry)).chain(marks.iter().map(|entry| (1, entry)));
+        for (side, entry) in wanted {
+            let room =
+                |side: usize, row: usize| usize::from(if side == 0 { blanks[row].0 } else { blanks[row].1 });
+            let place = [side, 1 - side].into_iter().find_map(|side| {
+                let row = (next[side]..blanks.len()).find(|row| room(side, *row) >= entry.width())?;
+                Some((side, row))
+            });
+            let Some((side, row)) = place else {
+                left_over.push(entry.clone());
+                continue;
+            };
+            next[side] = row + 1;
+            let column = if side == 0 { 0 } else { window.size.0 - entry.width() as u16 };
+            beside.push((column, row as u16, entry.clone()));
+        }
+        // The marks in the east begin in the same column.
+        let east = beside.iter().filter(|(column, ..)| *column > 0).map(|(column, ..)| *column).min();
+        for (column, row, entry) in beside.iter_mut().filter(|(column, ..)| *column > 0) {
+            let first = window.size.0 - blanks[usize::from(*row)].1;
+            *column = east.unwrap_or(*column).max(first).min(window.size.0 - entry.width() as u16);
+        }
+        Self { beside, left_over }
+    }
+}
+
+/// The columns west and east of the wall in which a row of the map is blank.
+fn blank(boundary: &Boundary, window: Window, row: u16) -> (u16, u16) {
+    let north = window.y[1] - 2.0 * window.column_m * f64::from(row);
+    let south = north - 2.0 * window.column_m;
+    let (low, high) = boundary.bounds();
+    let span = match boundary {
+        Boundary::Circle { radius_m } => {
+            let off_m = if south <= 0.0 && north >= 0.0 { 0.0 } else { south.abs().min(north.abs()) };
+            let half_m = (radius_m * radius_m - off_m * off_m).max(0.0).sqrt();
+            (off_m < *radius_m).then_some((-half_m, half_m))
+        }
+        Boundary::Polygon { .. } => (north >= low.y && south <= high.y).then_some((low.x, high.x)),
+    };
+    let Some((west, east)) = span else { return (window.size.0 / 2, window.size.0 / 2) };
+    let columns =
+        |m: f64, beside: f64| (m / window.column_m - beside).clamp(0.0, f64::from(window.size.0)) as u16;
+    (columns(west - window.x[0], BESIDE.0), columns(window.x[1] - east, BESIDE.1))
+}
+
+/// The number of lines below the floor for entries that do not fit beside it.
+pub(super) fn rows(left_over: &[Entry], area: Rect) -> u16 {
+    (lines(left_over, usize::from(area.width)).len() as u16).min(area.height / ROWS_PER_LINE)
+}
+
+/// The entries in lines of a width.
+fn lines(entries: &[Entry], columns: usize) -> Vec<Vec<&Entry>> {
+    let mut lines: Vec<(usize, Vec<&Entry>)> = Vec::new();
+    for entry in entries {
+        let width = entry.width() + GAP.len();
+        match lines.last_mut() {
+            Some((used, line)) if *used + width <= columns => {
+                *used += width;
+                line.push(entry);
+            }
+            _ => lines.push((width, vec![entry])),
+        }
+    }
+    lines.into_iter().map(|(_, line)| line).collect()
+}
+
+/// Draws the entries beside the floor.
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, placed: &Placed) {
+    for (column, row, entry) in &placed.beside {
+        let place = Rect { x: area.x + column, y: area.y + row, width: area.width - column, height: 1 };
+        frame.render_widget(look.line(entry.parts()), place);
+    }
+}
+
+/// Draws the entries below the floor.
+pub(super) fn draw_lines(look: &Look, frame: &mut Frame, area: Rect, left_over: &[Entry]) {
+    for (entries, place) in lines(left_over, usize::from(area.width)).into_iter().zip(area.rows()) {
+        let gap = || (Role::Text, GAP.to_owned());
+        let parts = entries.into_iter().flat_map(|entry| entry.parts().into_iter().chain([gap()]));
+        frame.render_widget(Line::from(look.line(parts)), place);
+    }
+}
+
+/// The entries for what the map shows now: the classes of floor; and lines and marks.
+pub(super) fn entries(look: &Look, window: Window) -> (Vec<Entry>, Vec<Entry>) {
+    let marks = lines_shown(look, window).into_iter().chain(marks(look, window)).collect();
+    (floor(look), marks)
 }
 
 /// The classes of floor that occur.
 fn floor(look: &Look) -> Vec<Entry> {
     let (run, layers) = (look.run, look.model.ui.layers);
-    let scanned = layers.shows(MapLayer::Scanned);
-    let division = run.coverage.as_ref().map(Raster::whole);
-    let some = |share: fn(&Shares) -> f64| {
-        scanned && division.as_ref().is_some_and(|division| share(division) > 0.0)
+    let entry = |(shade, word): (Shade, &'static str)| Entry {
+        role: shade.role(),
+        mark: shade.glyph().to_string().repeat(2),
+        word,
     };
-    let again = run.coverage.as_ref().and_then(Raster::overlap).is_some_and(|share| share > 0.0);
     if compared(look).is_some() {
         let shades =
             [(Shade::OnlyA, "only A"), (Shade::OnlyB, "only B"), (Shade::Floor(FloorClass::Partial), "both")];
-        return shades.map(|(shade, word)| (shade.role(), shade.glyph().to_string().repeat(2), word)).into();
+        return shades.map(entry).into();
     }
+    let raster = run.coverage.as_ref().filter(|_| layers.shows(MapLayer::Scanned));
+    let division = raster.map(Raster::whole);
+    let some = |share: fn(&Shares) -> f64| division.as_ref().is_some_and(|division| share(division) > 0.0);
+    let again = raster.and_then(Raster::overlap).is_some_and(|share| share > 0.0);
+    let scanned = some(|division| division.scanned);
+    let accuracy = layers.shows(MapLayer::Accuracy);
+    let not_reached = run.has_missed() && run.is_cut_short();
     let entries = [
         (scanned, Shade::Floor(FloorClass::Scanned), "scanned"),
         (scanned && again, Shade::Floor(FloorClass::Again), "overlap"),
         (scanned, Shade::Floor(FloorClass::Partial), "partial"),
         (run.has_missed() && some(|division| division.missed), Shade::Floor(FloorClass::Missed), "missed"),
+        (not_reached, Shade::NotReached, "not reached"),
         (some(|division| division.unreachable), Shade::Floor(FloorClass::Unreachable), "unreachable"),
         (some(|division| division.margin), Shade::Floor(FloorClass::Margin), "margin"),
-        (layers.shows(MapLayer::Accuracy), Shade::PoorFix, "poor fix"),
-        (layers.shows(MapLayer::Accuracy), Shade::WeakFix, "weak fix"),
+        (accuracy, Shade::PoorFix, "poor fix"),
+        (accuracy, Shade::WeakFix, "weak fix"),
     ];
-    let shown = entries.into_iter().filter(|(shown, ..)| *shown);
-    shown.map(|(_, shade, word)| (shade.role(), shade.glyph().to_string().repeat(2), word)).collect()
+    entries.into_iter().filter(|(shown, ..)| *shown).map(|(_, shade, word)| entry((shade, word))).collect()
 }
 
-fn marks(look: &Look) -> Vec<Entry> {
-    let layers = look.model.ui.layers;
-    let has_dots = look.caps.glyphs.has_dots();
-    let line = |dots: &'static str, letters: &'static str| if has_dots { dots } else { letters };
-    let found = look.run.about.iter().flat_map(|run| &run.world.obstacles).any(|obstacle| !obstacle.known);
-    let has_other = look.model.live.replay.as_ref().is_some_and(|replay| replay.other.is_some());
-    let drawings = drawn::shown(look);
-    let drawn = drawn::KINDS.map(|(role, word)| {
-        let shown = drawings.iter().any(|drawing| drawn::role(drawing) == role);
-        (shown, role, line("⠤⠤", "''"), word)
-    });
+/// The lines that are drawn.
+fn lines_shown(look: &Look, window: Window) -> Vec<Entry> {
+    let run = look.run;
+    let on_plan = look.model.ui.screen == Screen::Plan;
+    let course = course::course(look);
+    let some = |part: fn(&course::Course) -> usize| course.as_ref().is_some_and(|course| part(course) > 1);
+    let other_run = look.model.live.replay.as_ref().is_some_and(|replay| replay.other.is_some());
     let lines = [
-        (layers.shows(MapLayer::Trail), Role::Trail, line("⠤⠤", ".."), "trail"),
-        (has_other, Role::Ghost, line("⠤⠤", ";;"), "run B"),
-        (layers.shows(MapLayer::Plan), Role::Plan, line("⠄⠠", ",,"), "plan"),
-        (look.run.shadow.is_some(), Role::Ghost, line("⠤⠤", ";;"), "shadow"),
-        (look.run.tether.is_some(), Role::Tether, line("⠤⠤", "~~"), "tether"),
+        (course::shows_trail(look), ink::TRAIL, "trail"),
+        (on_plan && some(|course| course.driven.len()), ink::DRIVEN, "driven"),
+        (some(|course| course.leg.len()), ink::LEG, "this leg"),
+        (some(|course| course.ahead.len()), course::plan_ink(look, window), "plan"),
+        (course::offer(look).is_some(), ink::OFFER, "better plan"),
+        (course::compared(look).is_some(), ink::OTHER, "compared"),
+        (other_run && look.model.ui.screen == Screen::Mission, ink::OTHER, "run B"),
+        (run.shadow.is_some() && run.is_running(), ink::SHADOW, "shadow"),
+        (run.tether.as_ref().is_some_and(|tether| tether.line.len() > 1), ink::TETHER, "tether"),
     ];
+    let drawings = drawn::shown(look);
+    let drawn = drawn::KINDS.into_iter().filter_map(|(role, word)| {
+        let shown = drawings.iter().any(|drawing| drawn::role(drawing) == role);
+        shown.then(|| (Ink { role, pattern: ink::DRAWING, letter: '\'' }, word))
+    });
+    let lines = lines.into_iter().filter(|(shown, ..)| *shown).map(|(_, ink, word)| (ink, word));
+    let has_dots = look.caps.glyphs.has_dots();
+    let mark =
+        |ink: Ink| if has_dots { ink.pattern.sample(MARK as u16) } else { ink.letter.to_string().repeat(2) };
+    lines.chain(drawn).map(|(ink, word)| Entry { role: ink.role, mark: mark(ink), word }).collect()
+}
+
+/// The marks that are drawn.
+fn marks(look: &Look, window: Window) -> Vec<Entry> {
+    let (run, ui) = (look.run, &look.model.ui);
+    let Some(about) = &run.about else { return Vec::new() };
+    let seen = |at: Point| window.cell_of(at).is_some();
+    let has_dots = look.caps.glyphs.has_dots();
+    let obstacle = |known: bool| {
+        about.world.obstacles.iter().any(|obstacle| obstacle.known == known && seen(obstacle.shape.center()))
+    };
+    let no_go = about.world.zones.iter().any(|zone| zone.kind == ZoneKind::NoGo && seen(zone.shape.center()));
+    let hatched = if has_dots { braille(2, |x, y| (x + y).is_multiple_of(4)) } else { "xx".into() };
+    let outline = if has_dots { braille(3, |x, y| y == 2 && x.is_multiple_of(2)) } else { "``".into() };
+    let station = ui.layers.shows(MapLayer::Stations)
+        && about.world.stations.iter().any(|station| seen(station.position));
+    let target = run.progress.as_ref().is_some_and(|progress| !run.has_ended() && seen(progress.target));
     let marks = [
-        (true, Role::Obstacle, "# ", "obstacle"),
-        (found, Role::Found, "? ", "found"),
-        (layers.shows(MapLayer::Stations), Role::Station, "S ", "station"),
-        (true, Role::Target, "× ", "target"),
+        (obstacle(true), Role::Obstacle, "#".to_owned(), "obstacle"),
+        (obstacle(false), Role::Found, "?".into(), "found"),
+        (no_go, Role::NoGo, hatched, "no-go zone"),
+        (plates::plates(look, window).is_some(), Role::Plate, outline, "plate"),
+        (station, Role::Station, stations(look), "station"),
+        (target, Role::Target, "×".into(), "target"),
     ];
-    let shown = lines.into_iter().chain(drawn).chain(marks).filter(|(shown, ..)| *shown);
-    shown.map(|(_, role, mark, word)| (role, mark.to_owned(), word)).collect()
+    let marks = marks.into_iter().filter(|(shown, ..)| *shown);
+    let marks = marks.map(|(_, role, mark, word)| Entry { role, mark, word });
+    marks.chain(places(look, window)).collect()
+}
+
+/// The first and the last name of the stations.
+fn stations(look: &Look) -> String {
+    let names: Vec<&str> = look.run.stations().iter().map(|station| station.name.as_str()).collect();
+    match names.as_slice() {
+        [first, .., last] if text::width(first) == 1 && text::width(last) == 1 => format!("{first}-{last}"),
+        [first, ..] if text::width(first) <= MARK => (*first).to_owned(),
+        _ => "S".into(),
+    }
+}
+
+/// The places of the estimate, on the plan screen.
+fn places(look: &Look, window: Window) -> Vec<Entry> {
+    let on_plan = look.model.ui.screen == Screen::Plan;
+    let places = look.model.live.promised().into_iter().filter(|_| on_plan).flat_map(labels::worst_places);
+    let seen = places.filter(|(_, at)| window.cell_of(*at).is_some());
+    let word = |letter: &str| match letter {
+        "t" => "longest tether",
+        "c" => "smallest gap",
+        "e" => "AE error",
+        _ => "wrap",
+    };
+    let entries =
+        seen.map(|(letter, _)| Entry { role: Role::Watch, mark: letter.into(), word: word(letter) });
+    let left_out = look.model.left_out_at().filter(|_| on_plan).map(|_| Entry {
+        role: Role::Selected,
+        mark: "◎".into(),
+        word: "left out",
+    });
+    entries.chain(left_out).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_round_tank_leaves_room_in_the_corners() {
+        let window = Window::new(Point::origin(), 0.5, (60, 20));
+        let tank = Boundary::Circle { radius_m: 9.0 };
+        assert_eq!(blank(&tank, window, 0), (30, 30), "the first row is beyond the wall");
+        let (west, east) = blank(&tank, window, 9);
+        assert_eq!((west, east), (11, 9));
+        assert!(blank(&tank, window, 2).0 > west);
+    }
+
+    #[test]
+    fn entries_fill_lines_and_none_is_cut() {
+        let entry = |word| Entry { role: Role::Dim, mark: "▒▒".into(), word };
+        let entries = ["scanned", "partial", "missed"].map(entry);
+        let columns: Vec<usize> = lines(&entries, 30).iter().map(Vec::len).collect();
+        assert_eq!(columns, [2, 1]);
+    }
 }

@@ -14,6 +14,8 @@ use world::{FloorClass, Point};
 pub(crate) enum Shade {
     /// The shade of a floor class; never [`FloorClass::ToDo`].
     Floor(FloorClass),
+    /// Floor to which the rest of the plan led when the mission ended.
+    NotReached,
     /// Forecast: the error of a fix exceeds the limit here, or no fix is possible.
     PoorFix,
     /// Forecast: the error of a fix exceeds half the limit here.
@@ -40,6 +42,7 @@ impl Shade {
             Self::Floor(FloorClass::Missed) => ('▓', Role::Missed),
             Self::Floor(FloorClass::Unreachable) => ('/', Role::Unreachable),
             Self::Floor(FloorClass::Margin) => ('-', Role::Margin),
+            Self::NotReached => ('·', Role::Dim),
             Self::PoorFix => ('%', Role::Crit),
             Self::WeakFix => (':', Role::Warn),
             Self::OnlyA => ('A', Role::Good),
@@ -55,6 +58,18 @@ impl Shade {
     /// The role.
     pub(super) fn role(self) -> Role {
         self.look().1
+    }
+
+    /// This shade at a point, where missed floor counts as not reached if the rest of the plan led there.
+    fn when(self, not_reached: &[bool], raster: &Raster, at: Point) -> Self {
+        let is_ahead =
+            || raster.floor().cell_at(at).and_then(|cell| not_reached.get(cell)).is_some_and(|is| *is);
+        if self == Self::Floor(FloorClass::Missed) && is_ahead() { Self::NotReached } else { self }
+    }
+
+    /// Whether a character is drawn instead of a filled half of a cell.
+    fn is_drawn(self) -> bool {
+        self == Self::NotReached
     }
 
     /// The role for the background on which lines are drawn.
@@ -90,9 +105,9 @@ pub(super) fn paint(look: &Look, window: Window, area: Rect, buffer: &mut Buffer
 /// Paints one character; if its two halves differ, each gets its own colour.
 fn paint_cell(look: &Look, upper: Option<Shade>, lower: Option<Shade>, cell: &mut ratatui::buffer::Cell) {
     let color = |shade: Shade| look.theme.color(shade.role());
+    let filled = |shade: Option<Shade>| shade.filter(|shade| !shade.is_drawn());
     if cell.symbol() == " " {
-        match (upper, lower) {
-            (None, None) => {}
+        match (filled(upper), filled(lower)) {
             (Some(one), Some(other)) if one != other && !look.is_plain() => {
                 cell.set_char('▀').set_fg(color(one)).set_bg(color(other));
                 return;
@@ -105,12 +120,16 @@ fn paint_cell(look: &Look, upper: Option<Shade>, lower: Option<Shade>, cell: &mu
                 cell.set_char('▄').set_fg(color(other));
                 return;
             }
-            (Some(one), _) => {
-                cell.set_char(one.glyph()).set_fg(color(one));
+            (one, _) => {
+                if let Some(one) = one.or(upper).or(lower) {
+                    cell.set_char(one.glyph()).set_fg(color(one));
+                }
             }
         }
     }
-    if let Some(ground) = upper.or(lower).and_then(Shade::ground).filter(|_| !look.is_plain()) {
+    // A background fills the whole character, so that it would spill over the wall if one half were beyond it.
+    let ground = upper.filter(|_| lower.is_some()).and_then(Shade::ground).filter(|_| !look.is_plain());
+    if let Some(ground) = ground {
         cell.set_bg(look.theme.color(ground));
     }
 }
@@ -130,10 +149,16 @@ fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
     let other = compared(look);
     let key = Key(raster.stamp(), window, rows_per_row, run.has_missed(), other.map(Raster::stamp));
     look.cache.borrow_mut().shades(key, || {
+        let not_reached = run.not_reached();
         let shade = |(at, edge_m)| match other {
             Some(other) => Scans::in_square(raster, other, at, edge_m).and_then(difference),
-            None => floor(raster, at, edge_m, run.has_missed()),
+            None => {
+                floor(raster, at, edge_m, run.has_missed()).map(|shade| shade.when(&not_reached, raster, at))
+            }
         };
+        // Half a character that is partly beyond the wall stays blank; a whole one is the wall's.
+        let is_inside = |at, edge_m| rows_per_row == 1 || is_floor(raster, at, edge_m);
+        let shade = |(at, edge_m)| shade((at, edge_m)).filter(|_| is_inside(at, edge_m));
         window.dots(rows_per_row).map(shade).collect()
     })
 }
@@ -142,6 +167,17 @@ fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
 pub(super) fn compared<'a>(look: &Look<'a>) -> Option<&'a Raster> {
     let replay = look.model.live.replay.as_ref().filter(|replay| replay.shows_difference)?;
     replay.other.as_ref()?.run.coverage.as_ref()
+}
+
+/// Whether a square is floor up to its corners.
+fn is_floor(raster: &Raster, center: Point, edge_m: f64) -> bool {
+    let floor = raster.floor();
+    // A little less than half of the edge, so that rounding does not reach the next square.
+    let half_m = 0.45 * edge_m;
+    [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].into_iter().all(|(right, up)| {
+        let corner = Point::new(center.x + right * half_m, center.y + up * half_m);
+        floor.cell_at(corner).is_some_and(|cell| floor.is_floor(cell))
+    })
 }
 
 fn difference(scans: Scans) -> Option<Shade> {

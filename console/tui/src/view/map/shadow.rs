@@ -1,9 +1,10 @@
 //! The planner in shadow on the map: its plan, and the ghost of the robot under its command.
 
+use super::ink::{self, Ink};
+use super::pattern::Pattern;
 use super::pen::{Pen, within};
 use super::shapes::ellipse;
 use crate::model::ui::MapLayer;
-use crate::theme::Role;
 use ratatui::widgets::canvas::Context;
 use world::Point;
 
@@ -15,18 +16,17 @@ impl Pen<'_> {
     pub(super) fn shadow(&self, ctx: &mut Context<'_>) {
         let run = self.look.run;
         let Some(shadow) = run.shadow.as_ref().filter(|_| run.is_running()) else { return };
-        self.take_up(ctx, ';');
         if self.look.model.ui.layers.shows(MapLayer::Plan) {
             let robot = run.position.pose.as_ref().map(|pose| pose.position);
             let from = robot.map_or(0, |robot| super::pen::nearest(&shadow.path, robot));
             let ahead: &[Point] = shadow.path.get(from..).unwrap_or_default();
-            self.stroke(ctx, within(ahead, AHEAD_M), Role::Ghost, true);
+            self.draw(ctx, within(ahead, AHEAD_M), ink::SHADOW);
         }
         let Some(ghost) = run.ghost() else { return };
-        self.stroke(ctx, &ghost, Role::Ghost, false);
+        self.draw(ctx, &ghost, Ink { pattern: Pattern::Solid, ..ink::SHADOW });
         let radius_m = run.about.as_ref().map_or(0.0, |about| about.mission.limits.radius_m);
         if let Some(end) = ghost.last().filter(|_| radius_m > self.window.column_m) {
-            self.stroke(ctx, &ellipse(*end, (radius_m, radius_m), 0.0, 48), Role::Ghost, true);
+            self.draw(ctx, &ellipse(*end, (radius_m, radius_m), 0.0, 48), ink::SHADOW);
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Shapes that the map draws dot by dot.
 
+use super::pattern::Pattern;
+use super::pen::DOTS;
 use ratatui::style::Color;
 use ratatui::widgets::canvas::{Painter, Shape};
 use world::{Point, Vector};
@@ -50,6 +52,15 @@ impl Window {
         })
     }
 
+    /// The character cell at a point, counted from the north-west; `None` outside the window.
+    pub(super) fn cell_of(&self, at: Point) -> Option<(u16, u16)> {
+        let column = ((at.x - self.x[0]) / self.column_m).floor();
+        let row = ((self.y[1] - at.y) / (2.0 * self.column_m)).floor();
+        let is_inside =
+            (0.0..f64::from(self.size.0)).contains(&column) && (0.0..f64::from(self.size.1)).contains(&row);
+        is_inside.then_some((column as u16, row as u16))
+    }
+
     /// The part of a segment inside the window.
     fn clipped(&self, from: Point, to: Point) -> Option<(Point, Point)> {
         let way = to - from;
@@ -74,11 +85,11 @@ impl Window {
     }
 }
 
-/// A line through points, solid or dotted.
+/// A line through points.
 pub(in crate::view) struct Stroke<'a> {
     pub points: &'a [Point],
     pub window: Window,
-    pub dotted: bool,
+    pub pattern: Pattern,
     pub color: Color,
 }
 
@@ -93,12 +104,18 @@ impl Shape for Stroke<'_> {
             };
             let (dx, dy) = (b.0 as f64 - a.0 as f64, b.1 as f64 - a.1 as f64);
             let steps = dx.abs().max(dy.abs());
+            let is_flat = dx.abs() >= dy.abs();
             for step in 0..=(steps as usize) {
                 let share = if steps > 0.0 { step as f64 / steps } else { 0.0 };
-                if !self.dotted || (walked + step).is_multiple_of(3) {
-                    let x = (a.0 as f64 + dx * share).round();
-                    let y = (a.1 as f64 + dy * share).round();
-                    painter.paint(x as usize, y as usize, self.color);
+                if self.pattern.is_on(walked + step) {
+                    let x = (a.0 as f64 + dx * share).round() as usize;
+                    let y = (a.1 as f64 + dy * share).round() as usize;
+                    self.pattern.dots((x, y), is_flat, |x, y| {
+                        // A dot beyond the edge would appear in the next row.
+                        if x < usize::from(DOTS.0 * self.window.size.0) {
+                            painter.paint(x, y, self.color);
+                        }
+                    });
                 }
             }
             walked += steps as usize;

@@ -1,0 +1,287 @@
+//! The letters on the map: names, marks, numbers of lanes. A label that is less important gives way.
+
+use super::course;
+use super::shapes::Window;
+use crate::caps::Glyphs;
+use crate::model::{Screen, ui::MapLayer};
+use crate::theme::Role;
+use crate::view::look::Look;
+use crate::view::text;
+use account::Estimate;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Modifier;
+use world::{Obstacle, Point, Vector};
+
+/// The maximum number of missed areas that are numbered on the map: first when the whole tank is shown, then when only
+/// a part of it is.
+const MISSED: (usize, usize) = (9, 99);
+/// The longest name that is written on the map, columns.
+const NAME: usize = 4;
+/// The minimum length of a lane that gets an arrow, columns.
+const LANE_COLUMNS: f64 = 8.0;
+/// The distance between the arrows of a path without lanes, columns.
+const ARROW_COLUMNS: f64 = 30.0;
+
+/// The labels of a map that is drawn in `area` of `buffer`.
+struct Board<'a, 'b> {
+    look: Look<'a>,
+    window: Window,
+    area: Rect,
+    buffer: &'b mut Buffer,
+    /// The columns that labels occupy: row, first column, column after the last one.
+    taken: Vec<(u16, u16, u16)>,
+}
+
+/// Writes the labels, the most important first.
+pub(super) fn draw(look: &Look, window: Window, area: Rect, buffer: &mut Buffer) {
+    let mut board = Board { look: *look, window, area, buffer, taken: Vec::new() };
+    board.robots();
+    board.solids();
+    board.places();
+    board.stations();
+    board.missed();
+    board.targets();
+    board.lanes();
+}
+
+impl Board<'_, '_> {
+    /// The cursor and the robots, which nothing covers.
+    fn robots(&mut self) {
+        let look = self.look;
+        if let Some(cursor) = look.model.ui.cursor {
+            self.always(cursor, Role::Selected, "┼");
+        }
+        let Some(about) = &look.run.about else { return };
+        let position = &look.run.position;
+        let estimated = position.pose.as_ref().map(|pose| (pose.position, pose.heading_rad));
+        let (at, heading_rad) =
+            estimated.unwrap_or((about.mission.start.position, about.mission.start.heading_rad));
+        self.halo(at);
+        let role = if position.lost { Role::Crit } else { Role::Robot };
+        self.always(at, role, robot(look.caps.glyphs, heading_rad));
+        let other = look.model.live.replay.as_ref().and_then(|replay| replay.other.as_ref());
+        if let Some(pose) = other.and_then(|other| other.run.position.pose.as_ref()) {
+            self.always(pose.position, Role::Ghost, "B");
+        }
+    }
+
+    /// Frees the robot from the lines beside it.
+    fn halo(&mut self, at: Point) {
+        let Some((column, row)) = self.window.cell_of(at) else { return };
+        for column in [column.checked_sub(1), column.checked_add(1)].into_iter().flatten() {
+            if column < self.area.width {
+                self.buffer[(self.area.x + column, self.area.y + row)].reset();
+            }
+        }
+    }
+
+    fn solids(&mut self) {
+        let look = self.look;
+        for obstacle in look.run.about.iter().flat_map(|about| &about.world.obstacles) {
+            let (role, mark) = if obstacle.known { (Role::Obstacle, "#") } else { (Role::Found, "?") };
+            let center = obstacle.shape.center();
+            let named = format!("{mark}{}", obstacle.name);
+            if !(is_named(obstacle) && self.if_free(center, role, &named, 0)) {
+                self.if_free(center, role, mark, 0);
+            }
+        }
+    }
+
+    /// The places of the figures in the estimate, on the plan screen, and the start once the robot has left it.
+    fn places(&mut self) {
+        let look = self.look;
+        if look.model.ui.screen != Screen::Plan {
+            return;
+        }
+        if let Some(at) = look.model.left_out_at() {
+            self.always(at, Role::Selected, "◎");
+        }
+        for (letter, at) in look.model.live.promised().into_iter().flat_map(worst_places) {
+            self.beside(at, Role::Watch, letter);
+        }
+    }
+
+    fn stations(&mut self) {
+        let look = self.look;
+        let shown = look.model.ui.layers.shows(MapLayer::Stations);
+        for station in look.run.about.iter().filter(|_| shown).flat_map(|about| &about.world.stations) {
+            let name = if text::width(&station.name) <= NAME { station.name.as_str() } else { "S" };
+            self.beside(station.position, Role::Station, name);
+        }
+    }
+
+    fn missed(&mut self) {
+        let (model, ui) = (self.look.model, &self.look.model.ui);
+        if ui.screen == Screen::Result {
+            let most = if ui.map.zoom > 0 { MISSED.1 } else { MISSED.0 };
+            for (index, area) in model.live.missed().iter().enumerate().take(most) {
+                let role = if index == ui.missed { Role::Selected } else { Role::Missed };
+                self.always(area.at, role, &(index + 1).to_string());
+            }
+        }
+    }
+
+    fn targets(&mut self) {
+        let run = self.look.run;
+        if let Some(progress) = run.progress.as_ref().filter(|_| !run.has_ended()) {
+            self.if_free(progress.target, Role::Target, "×", 0);
+        }
+    }
+
+    /// The order and the direction of the lanes ahead.
+    fn lanes(&mut self) {
+        let look = self.look;
+        let Some(course) = course::course(&look).filter(|_| !look.run.has_ended()) else { return };
+        let plan = course.plan;
+        if plan.lanes.is_empty() {
+            let every_m = ARROW_COLUMNS * self.window.column_m;
+            return self.arrows(course.ahead, every_m);
+        }
+        let least_m = LANE_COLUMNS * self.window.column_m;
+        let ahead = plan.lanes.iter().enumerate().filter(|(_, lane)| lane.0 >= course.from);
+        for (index, (first, last)) in ahead {
+            let lane = &plan.path[*first..=*last];
+            let length_m = world::polyline::length_m(lane);
+            if length_m < least_m {
+                continue;
+            }
+            if let Some((at, _)) = along(lane, 0.25 * length_m) {
+                self.if_free(at, Role::Title, &(index + 1).to_string(), 1);
+            }
+            self.arrow(along(lane, 0.5 * length_m));
+        }
+    }
+
+    fn arrows(&mut self, path: &[Point], every_m: f64) {
+        let mut walked_m = 0.0;
+        for pair in path.windows(2) {
+            walked_m += (pair[1] - pair[0]).norm();
+            if walked_m >= every_m {
+                walked_m = 0.0;
+                self.arrow(Some((pair[1], pair[1] - pair[0])));
+            }
+        }
+    }
+
+    fn arrow(&mut self, place: Option<(Point, Vector)>) {
+        if let Some((at, way)) = place {
+            self.if_free(at, Role::Plan, direction(self.look.caps.glyphs, way.y.atan2(way.x)), 1);
+        }
+    }
+
+    /// Writes a label whatever is there.
+    fn always(&mut self, at: Point, role: Role, label: &str) {
+        if let Some(cell) = self.window.cell_of(at) {
+            self.write(cell, role, label);
+        }
+    }
+
+    /// Writes a label that begins at a point, if it fits and `margin` columns on both sides are free; returns whether
+    /// it was written.
+    fn if_free(&mut self, at: Point, role: Role, label: &str, margin: u16) -> bool {
+        let cell = self.window.cell_of(at).filter(|cell| self.is_free(*cell, label, margin));
+        cell.inspect(|cell| self.write(*cell, role, label)).is_some()
+    }
+
+    /// Writes a label at a point or, if something is there, next to it.
+    fn beside(&mut self, at: Point, role: Role, label: &str) {
+        let Some((column, row)) = self.window.cell_of(at) else { return };
+        let left = column.checked_sub(text::width(label) as u16);
+        let places = [
+            Some((column, row)),
+            Some((column + 1, row)),
+            left.map(|left| (left, row)),
+            row.checked_sub(1).map(|above| (column, above)),
+            Some((column, row + 1)),
+        ];
+        if let Some(cell) = places.into_iter().flatten().find(|cell| self.is_free(*cell, label, 0)) {
+            self.write(cell, role, label);
+        }
+    }
+
+    fn is_free(&self, (column, row): (u16, u16), label: &str, margin: u16) -> bool {
+        let (first, end) = (column.saturating_sub(margin), column + text::width(label) as u16 + margin);
+        let fits = end - margin <= self.area.width && row < self.area.height;
+        fits && !self.taken.iter().any(|(other, from, to)| *other == row && *from < end && first < *to)
+    }
+
+    fn write(&mut self, (column, row): (u16, u16), role: Role, label: &str) {
+        let style = self.look.theme.style(role).add_modifier(Modifier::BOLD);
+        let room = usize::from(self.area.width - column);
+        let (end, _) = self.buffer.set_stringn(self.area.x + column, self.area.y + row, label, room, style);
+        self.taken.push((row, column, end - self.area.x));
+    }
+}
+
+/// Whether the name of an obstacle is written on the map.
+fn is_named(obstacle: &Obstacle) -> bool {
+    obstacle.known && (1..=NAME).contains(&text::width(&obstacle.name))
+}
+
+/// The letters of the figures that have a place: c smallest gap, t longest tether, w largest wrap, e largest error.
+pub(super) fn worst_places(estimate: &Estimate) -> Vec<(&'static str, Point)> {
+    let tether = estimate.tether.as_ref();
+    let wrapped = tether.filter(|tether| tether.wrap_max.value > 0.0);
+    let places = [
+        ("t", tether.map(|tether| tether.length_max)),
+        ("c", estimate.clearance_min),
+        ("e", estimate.accuracy_worst),
+        ("w", wrapped.map(|tether| tether.wrap_max)),
+    ];
+    places.into_iter().filter_map(|(letter, worst)| Some((letter, worst?.at))).collect()
+}
+
+/// The point at a distance along a path, and the direction of the path there.
+fn along(path: &[Point], at_m: f64) -> Option<(Point, Vector)> {
+    let mut left_m = at_m;
+    for pair in path.windows(2) {
+        let way = pair[1] - pair[0];
+        let length_m = way.norm();
+        if length_m > 0.0 && left_m <= length_m {
+            return Some((pair[0] + way * (left_m / length_m), way));
+        }
+        left_m -= length_m;
+    }
+    None
+}
+
+/// The robot, which points along its heading.
+fn robot(glyphs: Glyphs, heading_rad: f64) -> &'static str {
+    const ROBOT: [&str; 8] = ["▶", "◥", "▲", "◤", "◀", "◣", "▼", "◢"];
+    if glyphs == Glyphs::Ascii || !heading_rad.is_finite() { "@" } else { ROBOT[eighth(heading_rad)] }
+}
+
+/// An arrow along a path.
+fn direction(glyphs: Glyphs, heading_rad: f64) -> &'static str {
+    const ARROWS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
+    const LETTERS: [&str; 8] = [">", "^", "^", "^", "<", "v", "v", "v"];
+    let arrows = if glyphs == Glyphs::Ascii { LETTERS } else { ARROWS };
+    arrows[eighth(heading_rad)]
+}
+
+fn eighth(heading_rad: f64) -> usize {
+    let eighth = (heading_rad / std::f64::consts::FRAC_PI_4).round().rem_euclid(8.0);
+    (eighth as usize) % 8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_along_a_path_is_found_with_its_direction() {
+        let path = [Point::origin(), Point::new(2.0, 0.0), Point::new(2.0, 0.0), Point::new(2.0, 3.0)];
+        let (at, way) = along(&path, 3.0).unwrap_or_default();
+        assert_eq!((at, way.normalize()), (Point::new(2.0, 1.0), Vector::y()));
+        assert_eq!(along(&path, 5.1), None);
+    }
+
+    #[test]
+    fn directions_are_the_nearest_of_eight() {
+        let at = |degrees: f64| direction(Glyphs::Braille, degrees.to_radians());
+        assert_eq!([at(0.0), at(40.0), at(-91.0), at(359.0)], ["→", "↗", "↓", "→"]);
+        assert_eq!(direction(Glyphs::Ascii, -2.0), "v");
+        assert_eq!(robot(Glyphs::Braille, std::f64::consts::FRAC_PI_2), "▲");
+    }
+}

@@ -1,0 +1,96 @@
+//! The patterns that tell lines apart without colours.
+
+use super::pen::DOTS;
+
+/// How the dots of a line are set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::view) enum Pattern {
+    /// Every dot.
+    Solid,
+    /// Long dashes.
+    Dashed,
+    /// Every third dot.
+    Dotted,
+    /// A dash and a dot in turn.
+    DashDot,
+    /// Every fifth dot.
+    Sparse,
+    /// Two lines side by side.
+    Double,
+}
+
+impl Pattern {
+    /// Whether the dot at a distance along the line is set.
+    pub(super) fn is_on(self, step: usize) -> bool {
+        match self {
+            Self::Solid | Self::Double => true,
+            Self::Dashed => step % 7 < 4,
+            Self::Dotted => step.is_multiple_of(3),
+            Self::DashDot => matches!(step % 8, 0..=3 | 5),
+            Self::Sparse => step.is_multiple_of(5),
+        }
+    }
+
+    /// The dots that stand for one dot of the line.
+    pub(super) fn dots(self, (x, y): (usize, usize), is_flat: bool, mut set: impl FnMut(usize, usize)) {
+        match (self, is_flat) {
+            (Self::Double, true) => {
+                set(x, y.saturating_sub(1));
+                set(x, y + 1);
+            }
+            (Self::Double, false) => {
+                set(x.saturating_sub(1), y);
+                set(x + 1, y);
+            }
+            _ => set(x, y),
+        }
+    }
+
+    /// A horizontal piece of the line, in a number of characters.
+    pub(super) fn sample(self, columns: u16) -> String {
+        let mut set = std::collections::BTreeSet::new();
+        for x in (0..usize::from(columns * DOTS.0)).filter(|x| self.is_on(*x)) {
+            self.dots((x, 2), true, |x, y| {
+                set.insert((x, y));
+            });
+        }
+        braille(columns, |x, y| set.contains(&(x, y)))
+    }
+}
+
+/// A row of braille characters and blanks, with the dots for which a predicate holds.
+pub(super) fn braille(columns: u16, is_set: impl Fn(usize, usize) -> bool) -> String {
+    /// The bits of the dots of a character, row by row.
+    const BITS: [[u32; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
+    let cell = |column: usize| {
+        let dots = BITS
+            .iter()
+            .enumerate()
+            .flat_map(|(y, bits)| bits.iter().enumerate().map(move |(x, bit)| (x, y, bit)));
+        let set = dots.filter(|(x, y, _)| is_set(2 * column + x, *y));
+        match set.map(|(.., bit)| bit).sum::<u32>() {
+            0 => ' ',
+            bits => char::from_u32(0x2800 + bits).unwrap_or(' '),
+        }
+    };
+    (0..usize::from(columns)).map(cell).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_pattern_has_its_own_sample() {
+        let all = [
+            Pattern::Solid,
+            Pattern::Dashed,
+            Pattern::Dotted,
+            Pattern::DashDot,
+            Pattern::Sparse,
+            Pattern::Double,
+        ];
+        let samples = all.map(|pattern| pattern.sample(4));
+        assert_eq!(samples, ["⠤⠤⠤⠤", "⠤⠤ ⠠", "⠄⠠ ⠄", "⠤⠤⠠ ", "⠄ ⠠ ", "⣒⣒⣒⣒"].map(str::to_owned));
+    }
+}

@@ -1,0 +1,63 @@
+//! The pre-flight checks in brief: what blocks the start and what warns, then what passed.
+
+use crate::model::Pane;
+use crate::theme::Role;
+use crate::view::look::{Look, fill};
+use crate::view::text;
+use mission::{Check, CheckOutcome};
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
+    let checks = look.model.checks();
+    let keys = if area.width >= 44 { look.keys("<preflight> all") } else { look.keys("<preflight>") };
+    let block = look.pane(Pane::Checks, &title(&checks, look.model.n_by_hand()), &keys);
+    let columns = usize::from(block.inner(area).width).saturating_sub(1);
+    let rows = usize::from(block.inner(area).height);
+    let (bad, good): (Vec<&Check>, Vec<&Check>) = checks.iter().partition(|check| is_bad(check));
+    let mut lines: Vec<Line> = bad.into_iter().map(|check| bad_line(look, check, columns)).collect();
+    let passed = good.iter().map(|check| {
+        if has_figure(check) { format!("{} {}", check.what, check.found) } else { check.what.clone() }
+    });
+    let passed: Vec<String> = passed.collect();
+    let full = text::wrap_items(&passed, columns, "   ");
+    // If the findings do not fit, the names do.
+    let names: Vec<String> = good.iter().map(|check| check.what.clone()).collect();
+    let fits = lines.len() + full.len() <= rows;
+    let passed = if fits { full } else { text::wrap_items(&names, columns.saturating_sub(4), ", ") };
+    let first = |index: usize| if index == 0 && !fits { "ok: " } else { "" };
+    let passed =
+        passed.into_iter().enumerate().map(|(index, line)| (Role::Good, format!(" {}{line}", first(index))));
+    lines.extend(passed.map(|part| look.line([part])));
+    fill(frame, area, block, lines);
+}
+
+fn title(checks: &[Check], by_hand: usize) -> String {
+    let count = |outcome: CheckOutcome| checks.iter().filter(|check| check.outcome == outcome).count();
+    let ok = count(CheckOutcome::Passed) + count(CheckOutcome::Ticked);
+    let (failed, warned) = (count(CheckOutcome::Failed), count(CheckOutcome::Warning));
+    let failed = if failed > 0 { format!(", {failed} FAIL") } else { String::new() };
+    let warned = if warned > 0 { format!(", {warned} WARN") } else { String::new() };
+    let by_hand = if by_hand > 0 { format!(", {by_hand} by hand") } else { String::new() };
+    format!("Pre-flight  {ok} ok{failed}{warned}{by_hand}")
+}
+
+fn is_bad(check: &Check) -> bool {
+    matches!(check.outcome, CheckOutcome::Failed | CheckOutcome::Warning)
+}
+
+/// Whether the finding is short enough to stand in a summary.
+fn has_figure(check: &Check) -> bool {
+    check.outcome == CheckOutcome::Passed && text::width(&check.found) <= 24
+}
+
+fn bad_line(look: &Look, check: &Check, columns: usize) -> Line<'static> {
+    let (role, word) = match check.outcome {
+        CheckOutcome::Failed => (Role::Crit, "FAIL"),
+        _ => (Role::Warn, "WARN"),
+    };
+    let what = format!(" {}: ", check.what);
+    let found = text::clauses(&check.found, columns.saturating_sub(5 + text::width(&what)));
+    look.line([(Role::Text, " ".into()), (role, word.into()), (Role::Text, format!("{what}{found}"))])
+}

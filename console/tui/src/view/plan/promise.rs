@@ -1,0 +1,290 @@
+//! What a plan promises, beside the limits of the mission; beside it what a second plan promises or, during a mission,
+//! what holds now.
+
+use crate::model::{Pane, Run};
+use crate::theme::Role;
+use crate::view::look::{Look, Parts, fill};
+use crate::view::text;
+use account::{Estimate, estimate::Worst};
+use mission::{MissionConfig, Phase};
+use ratatui::Frame;
+use ratatui::layout::Rect;
+
+/// Width of a label, of a figure and of a limit, columns.
+const LABEL: usize = 10;
+const VALUE: usize = 11;
+const LIMIT: usize = 8;
+/// Width from which limits stand beside two columns of figures, columns.
+const WITH_LIMIT: usize = 42;
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
+    let second = second(look);
+    let columns = usize::from(look.pane(Pane::Promise, "", "").inner(area).width);
+    let widths = Widths::new(columns, second.is_some());
+    let note = if widths.limit > 0 { "limit" } else { "" };
+    let block = look.pane(Pane::Promise, "What it promises", note);
+    let Some(mission) = look.run.about.as_ref().map(|about| &about.mission) else {
+        return fill(frame, area, block, Vec::new());
+    };
+    let mut rows: Vec<Parts> =
+        second.as_ref().map(|second| head(look, second, &widths)).into_iter().collect();
+    let cell = |figure: Figure, estimate: Option<&Estimate>, (role, room): (Role, usize)| {
+        let limit = (figure.limit)(mission);
+        estimate.and_then(figure.promised).map_or((role, "-".into()), |found| {
+            let role = if found.is_beyond(figure, limit) { Role::Warn } else { role };
+            (role, found.words(figure, limit, room))
+        })
+    };
+    for figure in FIGURES {
+        let mut mine = cell(figure, look.model.live.promised(), (Role::Text, widths.first));
+        let lanes = look.run.planning.plan.as_ref().map_or(0, |plan| plan.lanes.len());
+        if figure.label == "path" && lanes > 0 {
+            mine.1 = text::wording([format!("{}, {lanes} lanes", mine.1), mine.1], widths.first);
+        }
+        let second = second.as_ref().map(|second| match second {
+            Second::Now => (
+                Role::Text,
+                (figure.now)(look.run).map_or_else(|| "-".into(), |now| text::wording(now, widths.second)),
+            ),
+            Second::Compared(_, estimate) => cell(figure, Some(estimate), (Role::Ghost, widths.second)),
+        });
+        let limit = (figure.limit)(mission).map_or_else(String::new, |limit| figure.said(limit));
+        rows.push(row(figure.label, mine, second, &limit, &widths));
+    }
+    fill(frame, area, block, rows.into_iter().map(|parts| look.line(parts)).collect());
+}
+
+/// What stands beside the promise.
+enum Second<'a> {
+    /// What holds now, once the mission has started.
+    Now,
+    /// What the plan of a different planner promises.
+    Compared(&'a str, &'a Estimate),
+}
+
+fn second<'a>(look: &Look<'a>) -> Option<Second<'a>> {
+    if *look.run.phase() != Phase::Waiting {
+        return Some(Second::Now);
+    }
+    let ghost = look.model.live.plans.ghost.as_ref()?;
+    let plan = ghost.made.as_ref()?.as_ref().ok()?;
+    Some(Second::Compared(&ghost.choice.id, &plan.estimate))
+}
+
+/// The figures that fit into a line: those beyond their limits, then the others in table order.
+pub(super) fn in_a_line(look: &Look, columns: usize) -> String {
+    let Some(estimate) = look.model.live.promised() else { return "Estimate not known yet.".into() };
+    let mission = look.run.about.as_ref().map(|about| &about.mission);
+    let mut figures: Vec<(bool, String)> = Vec::new();
+    for figure in FIGURES {
+        let Some(found) = (figure.promised)(estimate) else { continue };
+        let limit = mission.and_then(figure.limit);
+        let is_beyond = found.is_beyond(figure, limit);
+        let over = limit
+            .filter(|_| is_beyond)
+            .map_or_else(String::new, |limit| format!(" > {}", figure.said(limit)));
+        figures.push((is_beyond, format!("{} {}{over}", figure.label, figure.said(found.value))));
+    }
+    figures.sort_by_key(|(is_beyond, _)| !is_beyond);
+    let mut line = String::new();
+    for (_, words) in figures {
+        let gap = if line.is_empty() { "" } else { "  " };
+        if text::width(&line) + gap.len() + text::width(&words) <= columns {
+            line = line + gap + &words;
+        }
+    }
+    line
+}
+
+/// A cell in the table: role and text.
+type Cell = (Role, String);
+
+/// The widths of the columns after the label, without the blanks between them; 0 for a column that is left out.
+struct Widths {
+    first: usize,
+    second: usize,
+    limit: usize,
+}
+
+impl Widths {
+    fn new(columns: usize, has_second: bool) -> Self {
+        // A second column takes precedence over the limits: a figure beyond its limit is marked.
+        let limit = if has_second && columns < WITH_LIMIT { 0 } else { LIMIT };
+        let room = columns.saturating_sub(1 + LABEL + limit + usize::from(limit > 0));
+        let second = if has_second { room / 2 } else { 0 };
+        Self { first: room.saturating_sub(second + 1), second: second.saturating_sub(1), limit }
+    }
+}
+
+/// The heads of the columns. A name that is too long is replaced; the pane above names the planners.
+fn head(look: &Look, second: &Second, widths: &Widths) -> Parts {
+    let fits = |name: &str, word: &str, width| text::wording([name.to_owned(), word.to_owned()], width);
+    let (mine, second) = match second {
+        Second::Now => ("promised".into(), (Role::Title, "now".into())),
+        Second::Compared(id, _) => (
+            fits(look.run.planner_id().unwrap_or("-"), "active", widths.first),
+            (Role::Ghost, fits(id, "compared", widths.second)),
+        ),
+    };
+    row("", (Role::Title, mine), Some(second), "", widths)
+}
+
+fn row(label: &str, mine: Cell, second: Option<Cell>, limit: &str, widths: &Widths) -> Parts {
+    let mut parts = vec![
+        (Role::Dim, format!(" {}", text::column(label, LABEL))),
+        (mine.0, format!("{} ", text::column(&mine.1, widths.first))),
+    ];
+    parts.extend(second.map(|(role, words)| (role, format!("{} ", text::column(&words, widths.second)))));
+    if widths.limit > 0 {
+        parts.push((Role::Dim, format!("{limit:>width$}", width = widths.limit)));
+    }
+    parts
+}
+
+/// A figure of the estimate.
+#[derive(Clone, Copy)]
+struct Figure {
+    label: &'static str,
+    /// The letter of its place on the map; empty if it has no place.
+    letter: &'static str,
+    /// The text in front of the value, and the unit behind it.
+    around: (&'static str, &'static str),
+    decimals: usize,
+    promised: fn(&Estimate) -> Option<Found>,
+    limit: fn(&MissionConfig) -> Option<f64>,
+    /// Whether the figure must not be below its limit, instead of above it.
+    is_least: bool,
+    /// What holds during the mission, in a longer and a shorter wording.
+    now: fn(&Run) -> Option<[String; 2]>,
+}
+
+/// A promised value: where it is reached, or what it is about.
+struct Found {
+    value: f64,
+    at: Option<world::Point>,
+    note: String,
+}
+
+impl Found {
+    fn of(value: f64) -> Self {
+        Self { value, at: None, note: String::new() }
+    }
+
+    fn worst(worst: Worst) -> Self {
+        Self { value: worst.value, at: Some(worst.at), note: String::new() }
+    }
+
+    fn is_beyond(&self, figure: Figure, limit: Option<f64>) -> bool {
+        // The planner keeps to the limit exactly, so that rounding must not turn it into a fault.
+        let slack = 0.5 * 10.0_f64.powi(-(figure.decimals as i32));
+        limit.is_some_and(|limit| {
+            let by = if figure.is_least { limit - self.value } else { self.value - limit };
+            by > slack
+        })
+    }
+
+    /// The value, with its place or its note if there is room.
+    fn words(&self, figure: Figure, limit: Option<f64>, room: usize) -> String {
+        let mark = if self.is_beyond(figure, limit) { "!" } else { "" };
+        let value = format!("{}{mark}", figure.said(self.value));
+        let padded = text::column(&value, VALUE.max(text::width(&value) + 1));
+        let place = self.at.map(|at| format!("{padded}{} {}", figure.letter, text::place(at)));
+        let noted = format!("{value}{}", self.note);
+        let lettered = self.at.map(|_| format!("{padded}{}", figure.letter));
+        text::wording([place.unwrap_or(noted), lettered.unwrap_or_else(|| value.clone()), value], room)
+    }
+}
+
+impl Figure {
+    /// A value with its unit.
+    fn said(self, value: f64) -> String {
+        let (before, unit) = self.around;
+        match unit {
+            "clock" => text::clock(value),
+            "%" => format!("{before}{} %", text::percent(value)),
+            unit => format!("{before}{}{unit}", text::number(value, self.decimals)),
+        }
+    }
+}
+
+const fn figure(label: &'static str, letter: &'static str, unit: &'static str, decimals: usize) -> Figure {
+    Figure {
+        label,
+        letter,
+        around: ("", unit),
+        decimals,
+        promised: |_| None,
+        limit: |_| None,
+        is_least: false,
+        now: |_| None,
+    }
+}
+
+/// The figures in table order.
+const FIGURES: [Figure; 8] = [
+    Figure {
+        promised: |e| Some(Found::of(e.time_s)),
+        limit: |m| Some(m.time_limit_s),
+        now: |run| Some(left(text::clock(run.left_s()?))),
+        ..figure("time", "", "clock", 0)
+    },
+    Figure {
+        promised: |e| Some(Found::of(e.length_m)),
+        now: |run| {
+            let plan = run.planning.plan.as_ref()?;
+            Some(left(format!("{} m", text::number(plan.rest_m(run.progress.as_ref()?.target), 1))))
+        },
+        ..figure("path", "", " m", 1)
+    },
+    Figure {
+        promised: |e| Some(Found { note: " of reachable".into(), ..Found::of(e.reachable?) }),
+        now: |run| Some(alike(format!("{} %", text::percent(run.progress.as_ref()?.covered_reachable)))),
+        ..figure("scanned", "", "%", 1)
+    },
+    Figure {
+        promised: |e| Some(Found::worst(e.clearance_min?)),
+        limit: |m| Some(m.clearance_m),
+        is_least: true,
+        ..figure("gap", "c", " m", 2)
+    },
+    Figure {
+        promised: |e| Some(Found::worst(e.tether.as_ref()?.length_max)),
+        limit: |m| Some(m.tether.as_ref()?.limits.reel_length_m),
+        now: |run| Some(alike(format!("{} m", text::number(run.tether.as_ref()?.length_m, 1)))),
+        ..figure("tether", "t", " m", 1)
+    },
+    Figure {
+        promised: |e| {
+            let tether = e.tether.as_ref()?;
+            let on =
+                if tether.wrapped.is_empty() { String::new() } else { format!(" on {}", tether.wrapped) };
+            Some(Found { note: on, ..Found::of(tether.wrap_max.value.to_degrees()) })
+        },
+        limit: |m| Some(m.tether.as_ref()?.limits.wrap_max_rad.to_degrees()),
+        now: |run| {
+            let most = run.tether.as_ref()?.largest().map_or(0.0, |contact| contact.wrap_rad.abs());
+            Some(alike(format!("{}°", text::number(most.to_degrees(), 0))))
+        },
+        ..figure("wrap", "w", "°", 0)
+    },
+    Figure {
+        around: ("±", " m"),
+        promised: |e| Some(Found::worst(e.accuracy_worst?)),
+        limit: |m| Some(m.position_limit_m),
+        now: |run| Some(alike(format!("±{} m", text::number(run.position.error_m()?, 2)))),
+        ..figure("AE error", "e", " m", 2)
+    },
+    Figure {
+        promised: |e| Some(Found { note: " of path".into(), ..Found::of(e.without_fix_m) }),
+        ..figure("no fix on", "", " m", 1)
+    },
+];
+
+/// What is left of a figure.
+fn left(value: String) -> [String; 2] {
+    [format!("{value} left"), value]
+}
+
+fn alike(value: String) -> [String; 2] {
+    [value.clone(), value]
+}

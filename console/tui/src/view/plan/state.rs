@@ -1,0 +1,130 @@
+//! The planner, its progress, how much of the task its plan achieves, and the objections to the plan.
+
+use crate::model::{Cause, Pane};
+use crate::theme::Role;
+use crate::view::look::{Look, Parts, fill};
+use crate::view::text;
+use mission::Phase;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+
+/// Maximum number of rows for objections to a plan.
+const REASONS: usize = 6;
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
+    let keys = ["<planner> planner  <compare> compare", "<planner> <compare>"];
+    let keys = keys.map(|keys| look.keys(keys));
+    let room = usize::from(area.width).saturating_sub(12);
+    let block = look.pane(Pane::Plan, "Plan", &text::wording(keys, room));
+    let columns = usize::from(block.inner(area).width).saturating_sub(1);
+    let mut rows = wrapped(progress(look), columns);
+    rows.extend(certificate(look, columns).map(one));
+    rows.push(one((Role::Text, text::wording(planner(look), columns))));
+    let ghost = ghost(look, columns);
+    let room = usize::from(block.inner(area).height).saturating_sub(rows.len() + ghost.len()).min(REASONS);
+    let why = objections(look).into_iter().flat_map(|why| text::wrap(&why, columns)).collect();
+    rows.extend(text::first_lines(why, room, columns).into_iter().map(|line| one((Role::Warn, line))));
+    rows.extend(ghost);
+    fill(frame, area, block, rows.into_iter().map(|parts| look.line(parts)).collect());
+}
+
+/// The state of the plan, and whether it is certified, in one line.
+pub(super) fn in_a_line(look: &Look, columns: usize) -> (Role, String) {
+    let (role, state) = progress(look);
+    let certificate = certificate(look, columns).map_or_else(String::new, |(_, words)| format!(" {words}."));
+    (role, text::wording([format!("{state}{certificate}"), text::clauses(&state, columns)], columns))
+}
+
+fn one((role, words): (Role, String)) -> Parts {
+    vec![(role, format!(" {words}"))]
+}
+
+fn wrapped((role, words): (Role, String), columns: usize) -> Vec<Parts> {
+    text::wrap(&words, columns).into_iter().map(|line| one((role, line))).collect()
+}
+
+/// The planner, and when the plan was made, from the longest wording to the shortest.
+fn planner(look: &Look) -> [String; 3] {
+    let name = match (look.model.planner(), look.run.planner_id()) {
+        (Some(info), _) => format!("{} {}", info.id, info.version),
+        (None, id) => id.unwrap_or("-").to_owned(),
+    };
+    let plan = look.run.planning.plan.as_ref();
+    let made = plan.map_or_else(String::new, |plan| format!(", plan made T+{}", text::clock(plan.t_s)));
+    [format!("planner {name}{made}"), format!("planner {name}"), name]
+}
+
+fn progress(look: &Look) -> (Role, String) {
+    let planning = &look.run.planning;
+    if let Some(fault) = &planning.fault {
+        return (Role::Crit, format!("FAILED: {}", fault.message));
+    }
+    match (&look.model.live.busy, &planning.plan) {
+        (Some(busy), _) => {
+            let what = busy.at.as_ref().map_or_else(String::new, |(_, what)| format!(", {what}"));
+            (Role::Watch, format!("{}{what}", busy.how_far()))
+        }
+        (None, Some(plan)) => ready(look, plan.complete),
+        (None, None) => (Role::Dim, "No plan.".into()),
+    }
+}
+
+/// How much of the task the plan achieves. The base is the floor that was requested.
+fn ready(look: &Look, is_complete: bool) -> (Role, String) {
+    let state = if *look.run.phase() == Phase::Waiting { "Ready." } else { "Started." };
+    let role = if is_complete { Role::Good } else { Role::Warn };
+    let words = match look.model.live.left_out() {
+        Some(left_out) => {
+            let scanned = text::percent(left_out.scanned());
+            let areas = match left_out.areas.len() {
+                0 => String::new(),
+                1 => "; 1 area left out".into(),
+                n => format!("; {n} areas left out"),
+            };
+            format!("{state} Scans {scanned} % of the requested floor{areas}.")
+        }
+        None if is_complete => format!("{state} The plan achieves the whole task."),
+        None => format!("{state} PARTIAL: the plan achieves only part of the task."),
+    };
+    (role, words)
+}
+
+fn certificate(look: &Look, columns: usize) -> Option<(Role, String)> {
+    look.run.about.as_ref()?.mission.tether.as_ref()?;
+    Some(match look.run.tether.as_ref().and_then(|tether| tether.certified) {
+        Some(true) => {
+            let words = ["tether certified: can always be reeled in", "tether certified"].map(str::to_owned);
+            (Role::Good, text::wording(words, columns))
+        }
+        Some(false) => (Role::Crit, "tether NOT certified".into()),
+        None => (Role::Dim, "tether not certified yet".into()),
+    })
+}
+
+/// The objections to the plan.
+fn objections(look: &Look) -> Vec<String> {
+    let alarms = look.run.alarms.list().iter();
+    alarms
+        .filter(|alarm| matches!(alarm.cause, Cause::Certificate | Cause::Planner))
+        .map(|alarm| match alarm.text.split_once(": ") {
+            // The line above already states that the plan is not certified.
+            Some((_, why)) if alarm.cause == Cause::Certificate => text::capitalized(why),
+            _ => alarm.text.clone(),
+        })
+        .collect()
+}
+
+/// The progress of the plan for comparison.
+fn ghost(look: &Look, columns: usize) -> Vec<Parts> {
+    let Some(ghost) = &look.model.live.plans.ghost else { return Vec::new() };
+    let id = &ghost.choice.id;
+    let words = match (&ghost.made, &ghost.at) {
+        (Some(Err(why)), _) => (Role::Warn, format!("{id}: {why}")),
+        (Some(Ok(_)), _) => (Role::Ghost, look.keys(&format!("compared with {id} (<cancel-plan>: remove)"))),
+        (None, Some((share, _))) => {
+            (Role::Watch, format!("Planning ({id}) {} %", (100.0 * share).floor().clamp(0.0, 99.0)))
+        }
+        (None, None) => (Role::Watch, format!("Planning ({id})")),
+    };
+    wrapped(words, columns)
+}

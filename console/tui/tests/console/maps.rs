@@ -1,0 +1,260 @@
+//! The plan and the mission screen of a scan on a tether: lanes, marks, legend, what is promised and what is left out.
+
+use crate::fixture::{ASCII, PLAIN, RICH, Screen, ScriptedMission, tether};
+use crate::screens::{drawn, roles, text};
+use account::estimate::{TetherEstimate, Worst};
+use account::{Estimate, LeftOut};
+use mission::{
+    AskId, CheckOutcome, Event, EventKind, HoldReason, Order, Outcome, Resumes, TaskConfig, WorkerId,
+};
+use planner_api::{Leg, LegTag, Reason};
+use tui::{Key, Msg, RunMsg};
+use world::Point;
+
+const SIZES: [(u16, u16); 4] = [(200, 60), (120, 36), (80, 24), (60, 16)];
+/// Distance between lanes, metres.
+const LANE_M: f64 = 1.2;
+
+/// Lanes from south to north and back through a round tank, each resampled, with their legs.
+fn lanes() -> (Vec<Point>, Vec<Leg>) {
+    let (mut path, mut legs) = (Vec::new(), Vec::new());
+    for lane in 0..16 {
+        let x = 9.0 - LANE_M * f64::from(lane);
+        let half_m = (9.4_f64.powi(2) - x * x).max(0.0).sqrt();
+        let north_m = if lane % 2 == 0 { half_m } else { -half_m };
+        let ends = [Point::new(x, -north_m), Point::new(x, north_m)];
+        let first = path.len();
+        if first > 0 {
+            legs.push(Leg { tag: LegTag::Connector, first: first - 1, last: first });
+        }
+        path.extend(world::polyline::resampled(&ends, 0.1));
+        legs.push(Leg { tag: LegTag::Swath, first, last: path.len() - 1 });
+    }
+    (path, legs)
+}
+
+fn estimate(length_m: f64) -> Estimate {
+    let worst = |value, x, y| Worst { value, at: Point::new(x, y) };
+    Estimate {
+        length_m,
+        time_s: length_m / 0.3,
+        complete: true,
+        reachable: Some(0.981),
+        clearance_min: Some(worst(0.11, 4.2, -1.0)),
+        tether: Some(TetherEstimate {
+            length_max: worst(19.7, -8.6, 3.0),
+            wrap_max: worst(0.87, -3.0, 6.0),
+            wrapped: "C2".into(),
+            wrap_total_max_rad: 1.2,
+            end_length_m: 18.0,
+        }),
+        accuracy_worst: Some(worst(0.17, 7.8, 4.0)),
+        without_fix_m: 0.0,
+    }
+}
+
+fn left_out() -> LeftOut {
+    let area = |x: f64, y: f64, m2: f64, reason: &str| {
+        serde_json::json!({
+            "at": [x, y], "low": [x, y], "high": [x, y], "area_m2": m2, "plate": null, "reason": reason, "causes": []
+        })
+    };
+    let areas = [
+        area(5.5, 0.4, 2.41, "clearance"),
+        area(-4.6, 3.1, 1.98, "clearance"),
+        area(-9.3, 0.2, 0.74, "narrow"),
+    ];
+    serde_json::from_value(serde_json::json!({
+        "requested_m2": 290.0, "is_part": false, "areas": areas, "slivers": { "count": 4, "area_m2": 0.03 }
+    }))
+    .unwrap()
+}
+
+/// A scan on a tether that waits for its start, with its plan certified and estimated.
+fn planned() -> Screen {
+    let (path, legs) = lanes();
+    let mut screen = Screen::idle();
+    screen.mission = ScriptedMission::along(path.clone());
+    if let Some(about) = &mut screen.model.live.run.about {
+        about.mission.tether = Some(tether());
+        about.mission.task =
+            TaskConfig::Cover { anchor: Point::new(9.4, 0.0), regions: Vec::new(), tolerance_m: 0.2 };
+        about.preset_m = None;
+    }
+    let ask = Some(AskId { worker: WorkerId(0), n: 2 });
+    let length_m = world::polyline::length_m(&path);
+    let planned = EventKind::Planned {
+        ask,
+        return_path: 0,
+        planner: "rpf".into(),
+        reason: Reason::Start,
+        path,
+        length_m,
+        complete: true,
+        legs,
+        cuts: vec![],
+    };
+    let events = vec![screen.mission.now(planned), screen.mission.certified(&[])];
+    screen.hear(RunMsg::Events(events));
+    screen.hear(RunMsg::Estimated(ask, Box::new(estimate(length_m))));
+    screen.hear(RunMsg::LeftOut(ask, Box::new(left_out())));
+    let check = |what: &str, found: &str| mission::Check {
+        what: what.into(),
+        outcome: CheckOutcome::Passed,
+        found: found.into(),
+    };
+    let checks = [check("disk", "77 GB free, 98 MB needed"), check("stop", "answers in 0.4 ms")];
+    screen.hear(RunMsg::Checked(checks.into()));
+    screen.type_text("2");
+    screen
+}
+
+/// The same mission under way.
+fn under_way() -> Screen {
+    let mut screen = planned();
+    let mut events = vec![screen.mission.now(EventKind::Ordered { order: Order::Start })];
+    events.extend(screen.mission.drive(720));
+    events.push(screen.mission.cable());
+    screen.hear(RunMsg::Events(events));
+    screen.type_text("3");
+    screen
+}
+
+fn store(name: &str, screen: &mut Screen) {
+    for (width, height) in SIZES {
+        screen.send(Msg::Resize { width, height });
+        let shown = text(&drawn(&screen.model, RICH, (width, height)));
+        let roles = roles(&screen.model, RICH, (width, height));
+        insta::assert_snapshot!(format!("{name}_{width}x{height}"), format!("{shown}\n{roles}"));
+        let plain = text(&drawn(&screen.model, PLAIN, (width, height)));
+        insta::assert_snapshot!(format!("{name}_{width}x{height}_no_colour"), plain);
+    }
+}
+
+#[test]
+fn the_plan_before_the_start() {
+    store("plan_of_lanes", &mut planned());
+}
+
+#[test]
+fn the_plan_beside_what_is_now() {
+    let mut screen = under_way();
+    screen.type_text("2");
+    store("plan_under_way", &mut screen);
+}
+
+#[test]
+fn the_mission_on_lanes() {
+    store("mission_on_lanes", &mut under_way());
+}
+
+#[test]
+fn nothing_on_either_screen_is_cut() {
+    let mut screens = [("plan", planned()), ("mission", under_way())];
+    for (name, screen) in &mut screens {
+        for (width, height) in [(200, 60), (160, 45), (120, 36), (100, 30), (80, 24), (60, 16)] {
+            screen.send(Msg::Resize { width, height });
+            for _ in 0..5 {
+                let shown = text(&drawn(&screen.model, RICH, (width, height)));
+                let cut = shown.split(['│', '\n']).find(|part| part.contains('…') && !part.contains("T+00:"));
+                assert_eq!(cut, None, "{name} at {width}x{height}:\n{shown}");
+                screen.press([Key::Tab]);
+            }
+        }
+    }
+}
+
+#[test]
+fn what_the_plan_leaves_out_is_shown_on_the_map() {
+    let mut screen = planned();
+    screen.send(Msg::Resize { width: 120, height: 36 });
+    screen.press([Key::Tab, Key::Char('j')]);
+    let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+    assert!(shown.contains(">  1.98 m²") && shown.contains('◎'), "{shown}");
+    screen.press([Key::Enter]);
+    assert_eq!(screen.model.ui.cursor, Some(Point::new(-4.6, 3.1)));
+    assert_eq!(screen.model.ui.screen, tui::model::Screen::Plan);
+}
+
+#[test]
+fn a_promise_does_not_outlive_its_plan_before_the_start() {
+    let mut screen = planned();
+    assert!(screen.model.live.promised().is_some() && screen.model.live.left_out().is_some());
+    let again = screen.mission.now(EventKind::Ordered { order: Order::Plan });
+    screen.hear(RunMsg::Events(vec![again]));
+    assert_eq!((screen.model.live.promised(), screen.model.live.left_out()), (None, None));
+    let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+    assert!(!shown.contains("tether certified"), "{shown}");
+}
+
+#[test]
+fn what_was_promised_stays_when_the_rest_is_planned_again() {
+    let mut screen = under_way();
+    let replanned = screen.mission.planned(Some(AskId { worker: WorkerId(0), n: 9 }));
+    let events: Vec<Event> = vec![screen.mission.now(replanned)];
+    screen.hear(RunMsg::Events(events));
+    assert!(screen.model.live.estimate().is_none(), "the estimate is not that of the rest");
+    assert!(screen.model.live.promised().is_some());
+}
+
+#[test]
+fn floor_that_was_not_reached_differs_from_missed_floor() {
+    let mut screen = under_way();
+    let ended = screen.mission.ended(Outcome::Aborted, "aborted by the operator");
+    screen.hear(RunMsg::Events(vec![ended]));
+    screen.send(Msg::Resize { width: 120, height: 36 });
+    let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+    assert!(shown.contains("not reached") && shown.contains('·') && shown.contains("missed"), "{shown}");
+    let ahead = screen.model.live.run.not_reached();
+    assert!(ahead.iter().any(|is| *is) && ahead.iter().any(|is| !*is));
+    assert!(shown.contains("standing"), "an ended robot has no speed: {shown}");
+}
+
+#[test]
+fn a_critical_alarm_has_its_line_under_the_map() {
+    let mut screen = under_way();
+    let lost = EventKind::PositionLost { error_m: 0.49, limit_m: 0.15 };
+    let events = vec![
+        screen.mission.now(lost),
+        screen.mission.held_until(HoldReason::PositionLost, Resumes::WhenCleared),
+    ];
+    screen.hear(RunMsg::Events(events));
+    for (width, height) in SIZES {
+        screen.send(Msg::Resize { width, height });
+        let shown = text(&drawn(&screen.model, PLAIN, (width, height)));
+        assert!(shown.contains("│ CRIT position lost"), "{shown}");
+    }
+}
+
+#[test]
+fn the_fill_of_scanned_floor_stays_within_the_wall() {
+    let mut screen = under_way();
+    screen.send(Msg::Resize { width: 120, height: 36 });
+    let buffer = drawn(&screen.model, RICH, (120, 36));
+    let area = buffer.area;
+    for y in 0..area.height {
+        // From the frame inwards, the map is unfilled up to the wall.
+        let row: Vec<_> = (1..69).map(|x| &buffer[(x, y)]).collect();
+        let wall = row.iter().position(|cell| {
+            ('\u{2801}'..='\u{28ff}').contains(&cell.symbol().chars().next().unwrap_or(' '))
+        });
+        let ground = tui_default();
+        let filled = row[..wall.unwrap_or(0)].iter().filter(|cell| cell.bg != ground && cell.symbol() == " ");
+        assert_eq!(filled.count(), 0, "row {y}");
+    }
+}
+
+fn tui_default() -> ratatui::style::Color {
+    ratatui::style::Color::Reset
+}
+
+#[test]
+fn a_legend_of_letters_has_the_letters_of_the_map() {
+    let mut screen = under_way();
+    screen.send(Msg::Resize { width: 80, height: 24 });
+    let shown = text(&drawn(&screen.model, ASCII, (80, 24)));
+    assert!(
+        shown.contains("~~  tether") && shown.contains(".. trail") || shown.contains("..  trail"),
+        "{shown}"
+    );
+}
