@@ -143,7 +143,8 @@ fn draw_chart(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
         _ => 0,
     };
     let series = Series { title: detail::figure(&alarm.cause), values: &alarm.history, limit, decimals };
-    let block = look.block(Role::Border, series.title, &charts::note(&series));
+    let room = usize::from(area.width).saturating_sub(text::width(series.title) + 8);
+    let block = look.block(Role::Border, series.title, &charts::note(&series, room));
     charts::framed(look, frame, area, block, &series);
 }
 

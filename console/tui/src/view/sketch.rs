@@ -2,7 +2,7 @@
 //! places.
 
 use super::look::Look;
-use super::map::{Filled, Stroke, Window, ellipse};
+use super::map::{Filled, Pattern, Stroke, Window, ellipse};
 use crate::caps::Glyphs;
 use crate::model::{Raster, Run};
 use crate::theme::Role;
@@ -90,13 +90,13 @@ fn lines(look: &Look, ctx: &mut Context<'_>, window: Window, sketch: &Sketch) {
         ctx.draw(&Filled { shape: &zone.shape, window, hatched: true, color: color(Role::NoGo) });
     }
     take_up(ctx, '.');
-    ctx.draw(&Stroke { points: sketch.trail, window, dotted: false, color: color(Role::Trail) });
+    ctx.draw(&Stroke { points: sketch.trail, window, pattern: Pattern::Solid, color: color(Role::Trail) });
     take_up(ctx, 'o');
     let wall = match &sketch.world.boundary {
         Boundary::Circle { radius_m } => ellipse(Point::origin(), (*radius_m, *radius_m), 0.0, WALL_PIECES),
         Boundary::Polygon { vertices } => vertices.iter().chain(vertices.first()).copied().collect(),
     };
-    ctx.draw(&Stroke { points: &wall, window, dotted: false, color: color(Role::Wall) });
+    ctx.draw(&Stroke { points: &wall, window, pattern: Pattern::Solid, color: color(Role::Wall) });
     take_up(ctx, '#');
     for obstacle in &sketch.world.obstacles {
         let role = if obstacle.known { Role::Obstacle } else { Role::Found };

@@ -4,7 +4,7 @@
 use super::entry::Entry;
 use super::filter::Filter;
 use super::lines::Log;
-use mission::EventKind;
+use mission::{EventKind, Severity};
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 

@@ -1,5 +1,6 @@
 //! The no-go zone that the operator is drawing or is asked about.
 
+use super::pattern::Pattern;
 use super::pen::Pen;
 use crate::theme::Role;
 use crate::update::zones;
@@ -12,6 +13,6 @@ impl Pen<'_> {
         let Some(corners) = zones::drawn(self.look.model) else { return };
         self.take_up(ctx, 'x');
         let ring: Vec<Point> = corners.iter().chain(corners.first()).copied().collect();
-        self.stroke(ctx, &ring, Role::NoGo, false);
+        self.stroke(ctx, &ring, Role::NoGo, Pattern::Solid);
     }
 }

@@ -97,7 +97,8 @@ impl Term {
 
     /// Whether the term asks for the messages of planners about their own work.
     pub(super) fn is_debug(&self) -> bool {
-        matches!(self.test, Test::Severity(Compare::AtLeast | Compare::Equal, Severity::Debug)) && !self.negated
+        matches!(self.test, Test::Severity(Compare::AtLeast | Compare::Equal, Severity::Debug))
+            && !self.negated
     }
 }
 
