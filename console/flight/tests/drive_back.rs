@@ -5,8 +5,8 @@
 
 use flight::{Flight, answers::Answers};
 use mission::{
-    Answer, Ask, Event, EventKind, Given, Home, Mission, Order, Outcome, Phase, PlannerInfo, Said, What,
-    ask::PlanAsk, event::RecordedAnswers,
+    Answer, Ask, Event, EventKind, Given, Home, Mission, Note, Noted, Order, Outcome, Phase, PlannerInfo,
+    Said, What, ask::PlanAsk, event::RecordedAnswers,
 };
 use planner_api::{Command, Plan, Status};
 use proptest::prelude::*;
@@ -126,17 +126,17 @@ fn scenario(columns: &[Column], seed: u64, has_tether: bool) -> Scenario {
     scenario
 }
 
-/// A flight with the orders of each tick, and its events.
+/// A flight and its events.
 struct Flown {
     flight: Flight,
     planner: Wanderer,
-    orders: Vec<Vec<Order>>,
+    n_ticks: u64,
     events: Vec<Event>,
 }
 
 impl Flown {
     fn tick(&mut self, orders: &[Order]) {
-        self.orders.push(orders.to_vec());
+        self.n_ticks += 1;
         self.events.extend(self.flight.tick(orders, &mut self.planner));
     }
 
@@ -188,6 +188,23 @@ fn columns() -> impl Strategy<Value = Vec<Column>> {
     })
 }
 
+/// The order that an event reports.
+fn ordered(event: &Event) -> Option<Order> {
+    match &event.kind {
+        EventKind::Ordered { order } | EventKind::OrderRefused { order, .. } => Some(order.clone()),
+        _ => None,
+    }
+}
+
+/// What an operator notes, with a text that is not plain.
+fn notes() -> [Order; 2] {
+    let (alarm, text) = ("no_fix".to_owned(), "no fix".to_owned());
+    let shelved =
+        Noted::Shelved { alarm: alarm.clone(), text: text.clone(), for_s: 60.0, reason: "wet\u{7}\n".into() };
+    let note = |what| Order::Note(Note { what, by: Some("Zoe".into()) });
+    [note(Noted::Acknowledged { alarm, text }), note(shelved)]
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -204,7 +221,7 @@ proptest! {
         let flight = Flight::prepare(&scenario, true);
         let places = places.into_iter().map(|(x, y)| Point::new(x, y)).filter(|at| at.coords.norm() < 4.0).collect();
         let planner = Wanderer { open: VecDeque::new(), places };
-        let mut flown = Flown { flight, planner, orders: Vec::new(), events: Vec::new() };
+        let mut flown = Flown { flight, planner, n_ticks: 0, events: Vec::new() };
         flown.tick(&[Order::Start]);
         for _ in 0..until {
             if !matches!(flown.flight.phase(), Phase::Running(_)) {
@@ -218,6 +235,7 @@ proptest! {
         let way = flown.flight.mission().way_back().unwrap();
         prop_assert_eq!(way.to, if has_tether { Home::Anchor } else { Home::Start });
         prop_assert!(way.clearance_m > -0.05, "{:?}", way);
+        flown.tick(&notes());
         flown.tick(&[Order::DriveBack]);
         if let Some(ticks) = stops {
             flown.fly(ticks);
@@ -245,11 +263,12 @@ proptest! {
 
         let mut again = Flight::prepare(&scenario, true);
         let mut answers = Recorded(RecordedAnswers::default());
-        for (tick, orders) in flown.orders.iter().enumerate() {
+        for tick in 0..flown.n_ticks {
             let before = |tick: u64| flown.events.partition_point(|event| event.tick < tick);
-            let events = &flown.events[before(tick as u64)..before(tick as u64 + 1)];
+            let events = &flown.events[before(tick)..before(tick + 1)];
             answers.0.begin_tick(events.iter().map(|event| &event.kind));
-            prop_assert_eq!(again.tick(orders, &mut answers), events);
+            let orders: Vec<Order> = events.iter().filter_map(ordered).collect();
+            prop_assert_eq!(again.tick(&orders, &mut answers), events);
         }
     }
 }
