@@ -277,19 +277,3 @@ fn a_round_zone_is_accepted_and_one_that_is_dented_or_crosses_itself_is_refused(
     });
     assert!(area_m2.is_some_and(|area_m2| (0.78..0.80).contains(&area_m2)), "{area_m2:?} {events:?}");
 }
-
-#[test]
-fn tmp_time() {
-    for (radius_m, cell_m) in [(20.0, 0.05), (10.0, 0.05), (6.0, 0.05)] {
-        let mut world = drawing();
-        world.boundary = Boundary::Circle { radius_m };
-        let config = MissionConfig { cell_m, ..covering() };
-        let floor =
-            Floor::new(&world, config.cell_m, config.limits.radius_m, config.swath_m, config.start.position);
-        let mission = Mission::new(config, world, floor, 1);
-        let corners = crate::outline::round(Point::new(1.0, 1.0), 0.7);
-        let began = std::time::Instant::now();
-        let cost = mission.zone_cost(&corners);
-        eprintln!("TIME {radius_m} {cell_m} {:?} {cost:?}", began.elapsed());
-    }
-}
