@@ -331,3 +331,64 @@ fn speed(drive: &Drive) -> f64 {
         Drive::Velocity(velocity) => velocity.norm(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::{estimated, event, opened, truth};
+    use serde_json::{Value, json};
+
+    fn table(events: &[(u64, Value)]) -> Figures {
+        let mut figures = Figures::new();
+        events.iter().for_each(|(tick, kind)| figures.apply(&event(*tick, kind)));
+        figures
+    }
+
+    #[test]
+    fn a_run_has_the_rows_of_its_robot_with_their_limits() {
+        assert!(Figures::new().rows().is_empty());
+        let figures = table(&[(0, opened())]);
+        assert!(figures.rows().iter().all(|row| !row.id.is_of_tether() && row.value.is_none()));
+        let limit = |id| figures.get(id).and_then(|row| row.limit);
+        assert_eq!(limit(FigureId::PositionError), Some(Limit::Most(0.5)));
+        assert_eq!(limit(FigureId::SpeedSent), Some(Limit::Most(1.0)));
+        assert_eq!(limit(FigureId::Covered), None);
+        assert!(Limit::Most(0.5).holds(0.5) && !Limit::Least(0.5).holds(0.4));
+    }
+
+    #[test]
+    fn the_worst_value_keeps_its_time_and_place_and_the_last_value_goes_on() {
+        let figures = table(&[
+            (0, opened()),
+            (1, truth(-1.0, 0.0, 0.9, false)),
+            (1, estimated(-1.0, 0.1, 0.1)),
+            (2, truth(0.0, 0.0, 0.4, false)),
+            (2, estimated(0.5, 0.0, 0.3)),
+            (3, truth(1.0, 0.0, 0.8, false)),
+            (3, estimated(1.0, 0.2, 0.1)),
+        ]);
+        let worst = |id| figures.get(id).and_then(|row| row.worst);
+        let error = worst(FigureId::PositionError).unwrap();
+        assert_eq!((error.t_s, error.at), (1.0, Point::new(0.5, 0.0)));
+        let now_m = figures.get(FigureId::PositionError).and_then(|row| row.value).unwrap();
+        assert!((error.value - 3.0 * now_m).abs() < 1e-6, "{error:?}, {now_m} m now");
+        let nearest = worst(FigureId::TrueClearance).unwrap();
+        assert_eq!((nearest.value, nearest.t_s, nearest.at), (0.4, 1.0, Point::new(0.0, 0.0)));
+        let by_chart = worst(FigureId::Clearance).unwrap();
+        assert!((by_chart.value - 1.0).abs() < 1e-9 && by_chart.t_s == 0.5, "{by_chart:?}");
+        let true_error = worst(FigureId::TrueError).unwrap();
+        assert!((true_error.value - 0.5).abs() < 1e-9, "{true_error:?}");
+        assert_eq!(figures.get(FigureId::TrueSpeed).and_then(|row| row.value), Some(2.0));
+    }
+
+    #[test]
+    fn an_obstacle_that_is_found_counts_from_then_on() {
+        let found = json!({ "event": "obstacle_found", "obstacle": {
+            "id": 7, "name": "found 1", "known": false, "shape": { "disc": { "center": [0.0, 0.5], "radius_m": 0.2 } },
+        } });
+        let figures =
+            table(&[(0, opened()), (1, estimated(0.0, 0.0, 0.1)), (2, found), (3, estimated(0.0, 0.0, 0.1))]);
+        let nearest = figures.get(FigureId::Clearance).and_then(|row| row.worst).unwrap();
+        assert!((nearest.value - 0.3).abs() < 1e-9 && nearest.t_s == 1.5, "{nearest:?}");
+    }
+}

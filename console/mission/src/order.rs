@@ -128,6 +128,36 @@ pub enum Noted {
 }
 
 impl Order {
+    /// The order with every text that a person may have typed on one line and without hidden characters. Readers of
+    /// journals replace such characters, so only a plain order is the same when a run is verified.
+    #[must_use]
+    pub(crate) fn plain(mut self) -> Self {
+        let plain = |text: &mut String| *text = foreign::plain(text).into_owned();
+        match &mut self {
+            Self::Note(Note { what, by }) => {
+                by.iter_mut().for_each(plain);
+                match what {
+                    Noted::Acknowledged { alarm, text } | Noted::Unshelved { alarm, text } => {
+                        [alarm, text].into_iter().for_each(plain);
+                    }
+                    Noted::Shelved { alarm, text, reason, .. } => {
+                        [alarm, text, reason].into_iter().for_each(plain);
+                    }
+                    Noted::PresetTaken { preset, planner } => [preset, planner].into_iter().for_each(plain),
+                }
+            }
+            Self::UseStation { by, .. } | Self::Inject(Injection { by, .. }) => by.iter_mut().for_each(plain),
+            Self::NoteChecks(checks) => {
+                checks.iter_mut().flat_map(|check| [&mut check.what, &mut check.found]).for_each(plain);
+            }
+            Self::NoteOutlooks(outlooks) => {
+                outlooks.iter_mut().map(|outlook| &mut outlook.reason).for_each(plain);
+            }
+            _ => {}
+        }
+        self
+    }
+
     /// Whether the order begins the mission.
     pub fn is_start(&self) -> bool {
         matches!(self, Self::Start | Self::StartPlan(_))
@@ -205,4 +235,25 @@ pub struct Outlook {
     pub tether_length_max_m: Option<f64>,
     /// Largest wrap on one obstacle, radians; absent without a tether.
     pub wrap_max_rad: Option<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_people_typed_is_plain_and_a_plain_order_stays_as_it_is() {
+        let what = Noted::Shelved {
+            alarm: "no_fix".into(),
+            text: "no fix".into(),
+            for_s: 600.0,
+            reason: "pump\n\u{1b}[31mon".into(),
+        };
+        let plain = Order::Note(Note { what, by: Some("Z\u{202e}oe".into()) }).plain();
+        let Order::Note(Note { what: Noted::Shelved { reason, .. }, by }) = &plain else {
+            panic!("{plain:?}")
+        };
+        assert_eq!((reason.as_str(), by.as_deref()), ("pump \u{fffd}[31mon", Some("Z\u{fffd}oe")));
+        assert_eq!(plain.clone().plain(), plain);
+    }
 }

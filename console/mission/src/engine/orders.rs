@@ -16,6 +16,7 @@ use planner_api::Reason;
 
 impl Mission {
     pub(super) fn obey(&mut self, order: &Order) {
+        let order = &order.clone().plain();
         // The order precedes its effects in the journal.
         let allowed = self.standing().allows(order).map_err(|why| why.to_string());
         if let Err(why) = allowed.and_then(|()| self.known.check_place(order)) {

@@ -150,7 +150,9 @@ impl Known {
         let room_m = self.config.room_m();
         let pieces = polyline::resampled(plan, PIECE_M);
         let is_closed = |pair: &&[Point]| shape.distance_m(nalgebra::center(&pair[0], &pair[1])) < room_m;
-        let path_m = pieces.windows(2).filter(is_closed).map(|pair| (pair[1] - pair[0]).norm()).sum();
+        let path_m: f64 = pieces.windows(2).filter(is_closed).map(|pair| (pair[1] - pair[0]).norm()).sum();
+        // An empty sum is -0.0.
+        let path_m = path_m + 0.0;
         let mut after = self.floor.clone();
         after.forbid(&self.config, &self.chart, &shape);
         let left = |coverage| self.task.floor_left(coverage).len();

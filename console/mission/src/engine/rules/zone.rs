@@ -9,11 +9,11 @@ pub(in crate::engine) struct ZoneRule;
 impl ZoneRule {
     /// Processes one tick: holds a robot whose hull has just entered a zone; an unattended mission ends.
     pub(crate) fn update(seen: &Seen<'_>) -> Option<Verdict> {
-        let by = HoldReason::ZoneBreached { zone: seen.breached?.to_owned() };
+        let zone = seen.breached?.to_owned();
         Some(if seen.config.attended {
-            Verdict::Hold(Hold { by, resumes: Resumes::Never })
+            Verdict::Hold(Hold { by: HoldReason::ZoneBreached { zone }, resumes: Resumes::Never })
         } else {
-            Verdict::End(Outcome::Aborted, format!("unattended: {by}"))
+            Verdict::End(Outcome::Aborted, format!("unattended hold: hull in zone {zone}"))
         })
     }
 }

@@ -229,6 +229,10 @@ fn a_tether_alarm_holds_a_robot_that_drives_back() {
             .any(|event| matches!(&event.kind, EventKind::TetherAlarmRaised { alarm, .. } if is_snag(alarm)))
     );
     assert!(matches!(flight.held_by(), Some(HoldReason::Tether { .. })), "{:?}", flight.mission.phase());
+    let here = flight.pose.position;
+    assert_eq!(refusal(&flight.tick(&[Order::DriveBack])), None, "by a way that frees the tether first");
+    flight.fly(20);
+    assert!((flight.pose.position - here).norm() > 0.1);
 }
 
 #[test]
