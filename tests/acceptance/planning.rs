@@ -235,7 +235,8 @@ fn a_mission_with_long_ticks_that_runs_slowly_starts() {
         "start\nkey enter\nwait until phase running within 2m\nend\nkey enter\nwait until phase aborted\n",
     );
     let goto = scenario("goto-single-obstacle.toml");
-    let words = ["console", goto.to_str().unwrap(), "--set", "mission.tick_s=0.5", "--speed", "0.25", "--script"];
+    let words =
+        ["console", goto.to_str().unwrap(), "--set", "mission.tick_s=0.5", "--speed", "0.25", "--script"];
     let ended = bench.tankops(&[&words[..], &[script.to_str().unwrap()]].concat());
     assert_eq!(ended.code, Some(0), "{ended:?}");
     bench.prove(&bench.runs()[0]);
