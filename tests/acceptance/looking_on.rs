@@ -61,7 +61,7 @@ fn view(bench: &Bench, run: &Path) -> Console {
 fn an_onlooker_sees_a_run_under_way_and_its_end_and_cannot_stop_it() {
     let bench = Bench::new();
     let mut pilot = Console::open(bench.command(), &["--speed", "4"]);
-    pilot.hear("Press S to start");
+    pilot.hear("Enter `start` to start");
     pilot.order("start\nyes\n");
     pilot.hear("Mission running");
     let run = bench.runs().remove(0);
@@ -86,7 +86,7 @@ fn an_onlooker_sees_a_run_under_way_and_its_end_and_cannot_stop_it() {
 fn an_onlooker_is_informed_that_the_console_of_the_run_was_killed() {
     let bench = Bench::new();
     let mut pilot = Console::open(bench.command(), &["--speed", "4"]);
-    pilot.hear("Press S to start");
+    pilot.hear("Enter `start` to start");
     pilot.order("start\nyes\n");
     pilot.hear("Mission running");
     let onlooker = view(&bench, &bench.runs().remove(0));

@@ -148,11 +148,19 @@ fn plain_sentences_tell_the_mission_and_commands_come_from_stdin() {
     let bench = Bench::new();
     let mut console = Console::open(bench.command(), &["--speed", "max"]);
     console.hear("Screen 2: Plan.");
-    console.hear("Press S to start");
+    console.hear("Enter `start` to start");
     // The end of stdin closes the console; the commands before it are carried out.
-    console.order("speeed 2\ngoto home\ngoto plan\nstart\nno\n");
+    console.order("speeed 2\nyes\ngoto home\ngoto plan\nstatus\nstart\nno\n");
     console.close();
-    for line in ["Refused: unknown command `speeed`.", "Screen 1: Home.", "Enter: start, Esc: cancel."] {
+    for line in [
+        "Refused: unknown command `speeed`.",
+        "No question is open: `yes` and `no` have no effect.",
+        "Screen 1: Home.",
+        "Enter `start` to start",
+        "demo, planner rpf, T+00:00:00, speed ×max.",
+        "No alarms.",
+        "`yes`: start, `no`: cancel.",
+    ] {
         console.hear(line);
     }
     assert_eq!(console.leave(), Some(0));

@@ -55,7 +55,7 @@ impl Disk {
         attention.extend(self.tools.config.attention.clone());
         attention.extend(unreadable.map(|why| point(Severity::Crit, "LOGS", why)));
         attention.push(match runs::check_logs(logs) {
-            Ok(()) => point(Severity::Info, "ok", format!("runs will be kept in {}", logs.display())),
+            Ok(()) => point(Severity::Info, "ok", format!("logs folder writable: {}", logs.display())),
             Err(error) => point(Severity::Crit, "LOGS", error.to_string()),
         });
         attention.sort_by_key(|point| std::cmp::Reverse(point.severity));

@@ -213,6 +213,11 @@ impl Runner {
         self.hear_until(Duration::ZERO, |_| false)?;
         self.session.model.console.notice = None;
         self.answers = Answers::default();
+        let given = match &msg {
+            Msg::Line(line) => line.clone(),
+            Msg::Key(press) => format!("key {}", press.key.name()),
+            other => format!("{other:?}"),
+        };
         self.take(msg)?;
         self.accepted()?;
         if self.session.model.live.preflight.is_starting {
@@ -221,7 +226,8 @@ impl Runner {
         }
         let end = Instant::now() + ANSWERING;
         while self.answers.is_waiting() && !self.is_left {
-            let next = self.session.next(Some(end)).ok_or("the mission did not answer the order")?;
+            let next = self.session.next(Some(end));
+            let next = next.ok_or_else(|| format!("timed out: the mission did not acknowledge `{given}`"))?;
             self.session.update_time();
             self.take(next)?;
         }

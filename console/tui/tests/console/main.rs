@@ -6,6 +6,7 @@ mod better_plan;
 mod commands;
 mod events;
 mod fixture;
+mod handover;
 mod held_keys;
 mod laws;
 mod look_only;

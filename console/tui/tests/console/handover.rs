@@ -1,0 +1,73 @@
+//! The page for the next operator, and the answer to `status`.
+
+use crate::fixture::Screen;
+use mission::EventKind;
+use tui::{Effect, Key, RunMsg, handover::page, plain};
+
+/// A held mission with a zone, an alarm that is shelved and one that is acknowledged.
+fn held() -> Screen {
+    let mut screen = Screen::held();
+    screen.model.console.preferences.operator = Some("lk".into());
+    let event = screen.mission.zone_drawn();
+    screen.hear(RunMsg::Events(vec![event]));
+    screen.type_text(":shelve 15m \"pump <b>noise\" alarm=\"station S4 rejected\"");
+    screen.press([Key::Enter]);
+    screen.type_text(":acknowledge-all");
+    screen.press([Key::Enter]);
+    screen
+}
+
+#[test]
+fn the_page_tells_what_goes_on_why_and_who_decided_what() {
+    insta::assert_snapshot!(page(&held().model));
+}
+
+#[test]
+fn the_page_is_asked_for_by_a_command_and_replaced_only_on_demand() {
+    let mut screen = held();
+    let page = page(&screen.model);
+    for (line, overwrite) in [(":handover shift.md", false), (":handover shift.md overwrite", true)] {
+        screen.type_text(line);
+        let written = Effect::HandOver { file: "shift.md".into(), page: page.clone(), overwrite };
+        assert_eq!(screen.press([Key::Enter]), [written]);
+    }
+    screen.type_text(":handover shift.md please");
+    assert_eq!(screen.press([Key::Enter]), []);
+    let said = screen.model.notice().unwrap().text.clone();
+    assert!(said.contains("write overwrite after the file"), "{said}");
+}
+
+#[test]
+fn no_name_breaks_out_of_its_line() {
+    let mut screen = held();
+    let name = "# x\n<script>\u{1b}[31m".to_owned();
+    screen.model.live.run.about.as_mut().unwrap().scenario = name;
+    let page = page(&screen.model);
+    assert!(!page.contains("\n<script>") && !page.contains('\u{1b}'), "{page}");
+    assert!(page.contains("\\<script\\>"), "{page}");
+}
+
+#[test]
+fn status_tells_state_alarms_and_the_open_question_with_commands() {
+    let mut screen = held();
+    screen.model.console.keys.spells_commands = true;
+    screen.press([Key::Char(' ')]);
+    let lines = plain::status(&screen.model);
+    assert!(lines[0].starts_with("HELD by operator. `resume`: resume."), "{lines:#?}");
+    assert!(lines[1].starts_with("tank-07, planner rpf, T+00:16:07, speed ×1."), "{lines:#?}");
+    assert!(lines.iter().any(|line| line.starts_with("WATCH: new obstacle")), "{lines:#?}");
+    assert!(lines.last().unwrap().starts_with("Resume? `yes`: resume, `no`: stay held."), "{lines:#?}");
+    assert_eq!(plain::no_question(&screen.model), None);
+    assert!(plain::no_question(&Screen::running().model).is_some());
+}
+
+#[test]
+fn a_mission_without_alarms_says_so() {
+    let screen = Screen::idle();
+    assert!(plain::status(&screen.model).contains(&"No alarms.".to_owned()));
+    let mut ended = Screen::running();
+    let event = ended.mission.ended(mission::Outcome::Aborted, "ended by operator");
+    assert!(matches!(event.kind, EventKind::Ended { .. }));
+    ended.hear(RunMsg::Events(vec![event]));
+    assert!(page(&ended.model).contains("ended by operator"));
+}
