@@ -113,7 +113,7 @@ fn the_question_names_length_time_and_certificate_at_every_size() {
         screen.press([Key::Char('S')]);
         let shown = text(&drawn(&screen.model, PLAIN, (width, height)));
         let flat = shown.split_whitespace().collect::<Vec<_>>().join(" ");
-        for said in ["Start (rpf, ×1)? Enter: start, Esc: cancel.", "Robot will move.", "Plan: 4"] {
+        for said in ["Start (rpf, ×1)? Enter: start, Esc: cancel.", "The robot will move: 4"] {
             assert!(flat.contains(said) || width < 60, "{said}\n{shown}");
         }
         assert!(flat.contains("certified for the tether") || width < 60, "{shown}");
