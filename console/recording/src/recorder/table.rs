@@ -9,31 +9,37 @@ use super::{
     tick::Tick,
 };
 use crate::{error::RecordingError, rr};
+use account::FigureId;
 use mission::event::RunOpened;
 use std::collections::BTreeMap;
 
 type Done = Result<(), RecordingError>;
 
-/// A figure: its entity path, its name and colour in the plots, and its value in a tick.
-type Figure = (&'static str, &'static str, [u8; 4], fn(&Tick) -> Option<f64>);
+/// A figure of the account's table, which gives it its name: its entity path, its colour in the plots, and its value in a
+/// tick.
+type Figure = (&'static str, FigureId, [u8; 4], fn(&Tick) -> Option<f64>);
 
 const FIGURES: [Figure; 7] = [
-    (paths::ERROR, "error", style::ESTIMATE, Tick::error_m),
-    (paths::ERROR_95, "95 % bound", style::FIGURE, |tick| Some(tick.estimate?.ellipse_95.0)),
-    (paths::COVERED, "reachable floor", style::PLAN, |tick| Some(100.0 * tick.covered?)),
-    (paths::SPEED, "speed", style::TRUE, Tick::speed_m_per_s),
-    (paths::SPEED_SENT, "speed sent", style::FIGURE, Tick::speed_sent_m_per_s),
-    (paths::CLEARANCE, "clearance", style::WARNING, |tick| Some(tick.truth?.clearance_m)),
-    (paths::CROSS_TRACK, "cross-track", style::ESTIMATE, |tick| tick.cross_track_m),
+    (paths::ERROR, FigureId::TrueError, style::ESTIMATE, Tick::error_m),
+    (paths::ERROR_95, FigureId::PositionError, style::FIGURE, |tick| Some(tick.estimate?.ellipse_95.0)),
+    (paths::COVERED, FigureId::Covered, style::PLAN, |tick| Some(100.0 * tick.covered?)),
+    (paths::SPEED, FigureId::TrueSpeed, style::TRUE, Tick::speed_m_per_s),
+    (paths::SPEED_SENT, FigureId::SpeedSent, style::FIGURE, Tick::speed_sent_m_per_s),
+    (paths::CLEARANCE, FigureId::TrueClearance, style::WARNING, |tick| Some(tick.truth?.clearance_m)),
+    (paths::CROSS_TRACK, FigureId::CrossTrack, style::ESTIMATE, |tick| tick.cross_track_m),
 ];
 
 const TETHER_FIGURES: [Figure; 5] = [
-    (paths::TETHER_OUT, "tether out", style::ESTIMATE, |tick| Some(tick.tether.as_ref()?.length_m)),
-    (paths::TETHER_OUT_TRUE, "tether out (true)", style::TRUE, |tick| tick.true_tether_m),
+    (paths::TETHER_OUT, FigureId::TetherOut, style::ESTIMATE, |tick| Some(tick.tether.as_ref()?.length_m)),
+    (paths::TETHER_OUT_TRUE, FigureId::TrueTetherOut, style::TRUE, |tick| tick.true_tether_m),
     // A gap in the curve: there is no return path.
-    (paths::TETHER_HOME, "return path", style::FIGURE, |tick| tick.tether.as_ref()?.return_length_m),
-    (paths::TETHER_WRAP, "largest wrap", style::WARNING, |tick| Some(tick.tether.as_ref()?.wrap_max_deg)),
-    (paths::TETHER_SUM, "total wrap", style::FIGURE, |tick| Some(tick.tether.as_ref()?.wrap_total_deg)),
+    (paths::TETHER_HOME, FigureId::ReturnPath, style::FIGURE, |tick| tick.tether.as_ref()?.return_length_m),
+    (paths::TETHER_WRAP, FigureId::WrapLargest, style::WARNING, |tick| {
+        Some(tick.tether.as_ref()?.wrap_max_deg)
+    }),
+    (paths::TETHER_SUM, FigureId::WrapTotal, style::FIGURE, |tick| {
+        Some(tick.tether.as_ref()?.wrap_total_deg)
+    }),
 ];
 
 /// The moving entities of the map.
@@ -79,8 +85,8 @@ impl Table {
             series.extend(tether());
             figures.extend(TETHER_FIGURES);
         }
-        for (path, name, color, value) in figures {
-            stream.always(path, &curve(name, color))?;
+        for (path, id, color, value) in figures {
+            stream.always(path, &curve(id.name(), color))?;
             series.push(changes(path, value));
         }
         Ok(Self { series, reported: BTreeMap::new() })

@@ -113,6 +113,8 @@ fn sort(kind: &EventKind) -> Option<(&'static str, Option<String>, Option<String
         EventKind::RangesConsistent => ("", None, key("ranges")),
         EventKind::TetherAlarmRaised { alarm, .. } => ("alarm", key(alarm.word()), None),
         EventKind::TetherAlarmCleared { alarm } => ("", None, key(alarm.word())),
+        EventKind::ZoneBreached { zone, .. } => ("alarm", key(&format!("zone {zone}")), None),
+        EventKind::ZoneLeft { zone } => ("", None, key(&format!("zone {zone}"))),
         EventKind::Truth { collided: true, .. } => ("alarm", None, None),
         EventKind::PlannerFailed { fault, .. } if fault.is_no_way() => ("plan", None, None),
         EventKind::PlannerFailed { .. } => ("fault", None, None),
@@ -121,7 +123,9 @@ fn sort(kind: &EventKind) -> Option<(&'static str, Option<String>, Option<String
         }
         EventKind::ObstacleFound { .. } => ("obstacle", None, None),
         EventKind::ZoneDrawn { .. } => ("zone", None, None),
-        EventKind::Planned { .. } | EventKind::Certified { .. } => ("plan", None, None),
+        EventKind::Planned { .. } | EventKind::Certified { .. } | EventKind::ReturnBegan { .. } => {
+            ("plan", None, None)
+        }
         EventKind::StationRejected { station, .. } => {
             ("station", key(&format!("station {}", station.0)), None)
         }

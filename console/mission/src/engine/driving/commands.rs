@@ -42,7 +42,7 @@ impl Driving {
         let ticks = known.tick - asked.tick;
         let late_ticks = self.late.arrived(ticks).then_some(ticks);
         let arrived = Arrived { ask: asked.id, command, said, late_ticks };
-        let is_fresh = LatePlannerRule::is_fresh(ticks as f64 * known.config.tick_s);
+        let is_fresh = LatePlannerRule::is_fresh(ticks, known.config.tick_s);
         if !(usable && known.follows_planner() && is_fresh) {
             return self.discard(arrived, happened);
         }

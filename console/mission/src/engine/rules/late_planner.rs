@@ -3,7 +3,7 @@
 use super::seen::{PlannerSeen, Verdict};
 use crate::phase::{Hold, HoldReason, Resumes};
 
-/// A command older than this is not sent, seconds.
+/// A command older than this, and older than a tick, is not sent, seconds.
 const STALE_S: f64 = 0.2;
 /// If a planner has not answered for this long, the robot is held until the planner answers, seconds.
 const SILENT_S: f64 = 2.0;
@@ -23,10 +23,11 @@ impl LatePlannerRule {
         begins
     }
 
-    /// Whether a command of this age, in seconds, may still be sent.
-    pub(crate) fn is_fresh(age_s: f64) -> bool {
+    /// Whether a command that arrived some ticks, of `tick_s` seconds each, after it was requested may still be sent. In
+    /// long ticks, a planner has until the next tick.
+    pub(crate) fn is_fresh(ticks: u64, tick_s: f64) -> bool {
         // Ages are multiples of the tick and contain floating-point errors.
-        age_s <= STALE_S + 1e-9
+        ticks <= 1 || ticks as f64 * tick_s <= STALE_S + 1e-9
     }
 
     /// Processes one tick of a running robot: holds the robot if its planner has owed an answer for too long.
@@ -52,7 +53,8 @@ mod tests {
 
     #[test]
     fn a_command_two_ticks_old_may_be_sent_and_a_silent_planner_holds_after_twenty() {
-        assert!(LatePlannerRule::is_fresh(2.0 * 0.1) && !LatePlannerRule::is_fresh(3.0 * 0.1));
+        assert!(LatePlannerRule::is_fresh(2, 0.1) && !LatePlannerRule::is_fresh(3, 0.1));
+        assert!(LatePlannerRule::is_fresh(1, 0.5) && !LatePlannerRule::is_fresh(2, 0.5));
         let silent = |owed_s| {
             let owed_s = Some(owed_s);
             LatePlannerRule::update(&PlannerSeen { id: "apf", is_waited_for: false, owes: true, owed_s })

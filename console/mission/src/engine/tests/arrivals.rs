@@ -306,3 +306,14 @@ proptest! {
         prop_assert_eq!(again.len(), flight.events.len());
     }
 }
+
+#[test]
+fn with_long_ticks_a_planner_that_always_answers_in_the_next_tick_drives() {
+    let limits = Limits { tick_s: 0.5, ..config().limits };
+    let mut flight = Flight::new(MissionConfig { tick_s: 0.5, limits, ..config() });
+    flight.delay = Box::new(|ask, _| if matches!(ask.what, What::Open { .. }) { 40 } else { 1 });
+    flight.tick(&[Order::Start]);
+    flight.fly(60);
+    assert_eq!(flight.held_by(), None, "it may take its time to open");
+    assert!(flight.pose.position.x > -2.5, "{}", flight.pose.position);
+}

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     AskId, FoldedStanding, WorkerId,
-    event::{Effort, OfferStage},
+    event::{Effort, JOURNAL_VERSION, OfferEnd, OfferStage, RunOpened},
 };
 use planner_api::Reason;
 use proptest::prelude::*;
@@ -73,6 +73,24 @@ fn folded(flight: &Flight) -> FoldedStanding {
     let mut folded = FoldedStanding::default();
     flight.events.iter().for_each(|event| folded.apply(&event.kind));
     folded
+}
+
+fn opened(config: &MissionConfig) -> EventKind {
+    let world = drawing();
+    let floor = Floor::new(&world, config.cell_m, config.room_m(), config.swath_m, config.start.position);
+    EventKind::RunOpened(Box::new(RunOpened {
+        journal_version: JOURNAL_VERSION,
+        tankops_version: String::new(),
+        scenario: String::new(),
+        scenario_toml: String::new(),
+        seed: 1,
+        world,
+        mission: config.clone(),
+        floor,
+        plates: None,
+        checklist: vec![],
+        measured: None,
+    }))
 }
 
 /// What was said of better plans, each with its tick.
@@ -242,9 +260,10 @@ fn orders_that_change_the_plan_drop_it() {
     let corners = world::shape::rectangle(Point::new(2.0, 2.0), Point::new(3.0, 3.0));
     let gain = Order::SetParameter { key: "gain".into(), value: ParamValue::Float(2.0) };
     for (order, why) in [
-        (swap_to("other"), "a different planner was chosen"),
-        (gain, "a parameter was changed"),
-        (Order::DrawZone(corners), "a no-go zone was drawn"),
+        (swap_to("other"), OfferEnd::OtherPlannerChosen),
+        (gain, OfferEnd::ParameterChanged),
+        (Order::DrawZone(corners), OfferEnd::ZoneDrawn),
+        (Order::DriveBack, OfferEnd::DrivingBack),
     ] {
         let mut flight = with_offer();
         flight.tick(&[Order::Hold]);
@@ -252,9 +271,43 @@ fn orders_that_change_the_plan_drop_it() {
         flight.tick(&[order]);
         assert_eq!((flight.mission.standing().offer, folded(&flight).standing().offer), (None, None));
         assert_eq!(texts(&flight)[1], format!("offer ended: {why}"));
+        let (stage, reason) = (Some(OfferStage::Offered), Some(why));
+        assert_eq!(
+            count(
+                &flight,
+                |kind| matches!(kind, EventKind::BetterPlanDropped { stage: s, reason: r, .. } if (s, r) == (&stage, &reason))
+            ),
+            1
+        );
         assert_eq!(flight.closed[0], WorkerId(2));
         assert!(flight.mission.preparing.is_none());
     }
+}
+
+#[test]
+fn a_zone_that_drops_an_accepted_plan_says_so() {
+    let mut flight = with_offer();
+    flight.tick(&[Order::TakePlan]);
+    assert_eq!(folded(&flight).standing().offer, Some(OfferStage::Accepted));
+    let why = refusal(&flight.tick(&[Order::TakePlan])).map(ToOwned::to_owned);
+    assert!(why.is_some_and(|why| why.contains("has been accepted")));
+    let corners = crate::outline::boxed(Point::new(2.0, 2.0), Point::new(3.0, 3.0));
+    assert!(flight.mission.zone_cost(&corners).is_ok_and(|cost| cost.drops_offer));
+    flight.tick(&[Order::DrawZone(corners)]);
+    let [.., last] = &texts(&flight)[..] else { panic!() };
+    assert_eq!(last, "accepted better plan dropped: a no-go zone was drawn");
+}
+
+#[test]
+fn an_offer_says_how_much_floor_both_plans_scan() {
+    let flight = with_offer();
+    let scans = flight.events.iter().find_map(|event| match &event.kind {
+        EventKind::BetterPlanned { scans, .. } => *scans,
+        _ => None,
+    });
+    let scans = scans.unwrap();
+    assert!(scans.better.left_m2 < scans.flown.left_m2 + 0.1, "{scans:?}");
+    assert!(scans.better.covered_reachable > 0.92 && scans.flown.covered_reachable > 0.92, "{scans:?}");
 }
 
 #[test]
@@ -273,7 +326,7 @@ fn a_fault_of_the_planner_that_drives_drops_it() {
     let mut flight = with_offer();
     flight.planner.fail_at_tick = Some(flight.mission.known.tick);
     flight.tick(&[]);
-    assert_eq!(texts(&flight)[1], "better plan of straight dropped: the active planner failed");
+    assert_eq!(texts(&flight)[1], "offer ended: the active planner failed");
     flight.tick(&[Order::Resume]);
     fly_past(&mut flight, &[COLUMN], 40_000);
     assert_eq!(flight.ended(), Some(Outcome::Complete));
@@ -324,6 +377,7 @@ proptest! {
             _ => 0,
         });
         let mut standing = FoldedStanding::default();
+        standing.apply(&opened(&config));
         flight.events.iter().for_each(|event| standing.apply(&event.kind));
         for tick in 1..3000 {
             let due = orders.iter().filter(|(at, _)| *at == tick).map(|(_, n)| match n {
