@@ -23,8 +23,11 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     // last ones to be left out are the state, what comes next, the keys and the alarm.
     let is_asked = asks(look.model);
     let mut lines = Vec::new();
-    let mut add =
-        |rank: u8, more: Vec<Line<'static>>| lines.extend(more.into_iter().map(|line| (rank, line)));
+    // Of several lines with one rank, the first ones stay.
+    let mut add = |rank: u8, more: Vec<Line<'static>>| {
+        let ranks = (0..).map(|index| 16 * rank + u8::min(index, 15));
+        lines.extend(ranks.zip(more));
+    };
     let said = notice::lines(look.model, columns).into_iter();
     let said = said.flat_map(|(role, said)| said.into_iter().map(move |line| (role, format!(" {line}"))));
     if is_asked {
