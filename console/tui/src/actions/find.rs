@@ -112,7 +112,7 @@ mod tests {
             ("zoom-in", "xyzzy", None),
             // What moves the robot or ends the mission is not found by its description or by a part of its name.
             ("start", "mission", None),
-            ("run-uncertified", "ru", None),
+            ("run-uncertified", "plan", None),
             ("run-uncertified", "certified", None),
             ("end", "mission", None),
             ("end", "abo", Some(Match::Synonym)),

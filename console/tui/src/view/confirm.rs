@@ -30,10 +30,14 @@ pub(super) fn rows(look: &Look, columns: u16) -> u16 {
 /// The open question in as many lines as it needs. If space is short, clauses of a question about nothing that could
 /// be overlooked are left out.
 fn question_lines(model: &Model, columns: u16) -> Vec<String> {
-    let Some(clauses) = asked(model) else { return Vec::new() };
+    // The ways to end the mission are in a list.
+    let is_list = matches!(model.ui.overlay, Overlay::Finish { .. });
+    let Some(clauses) = asked(model).filter(|_| !is_list) else { return Vec::new() };
     let columns = usize::from(columns).saturating_sub(2);
-    let is_whole =
-        matches!(model.ui.overlay, Overlay::Confirm(Ask::Start(_) | Ask::DriveBack | Ask::DrawZone(_)));
+    let is_whole = matches!(
+        model.ui.overlay,
+        Overlay::Confirm(Ask::Start(_) | Ask::DriveBack | Ask::DrawZone(_) | Ask::TakePlan)
+    );
     if !is_whole {
         return vec![next::joined(&clauses, columns)];
     }
@@ -136,7 +140,11 @@ fn asked(model: &Model) -> Option<Vec<String>> {
             };
             vec![question, "No motion yet.".into()]
         }
-        Overlay::Confirm(Ask::DriveBack) => {
+        Overlay::Finish { selected: 0 } => {
+            let scanned = format!("{} % of reachable floor scanned.", coverage::shares(&model.live.run).0);
+            vec!["End the mission here? <accept>: end, <cancel>: stay held.".into(), scanned]
+        }
+        Overlay::Finish { .. } | Overlay::Confirm(Ask::DriveBack) => {
             let way = match &model.live.way_back {
                 Some(Ok(way)) => format!("{}. The mission ends there.", finish_way(way)),
                 _ => "Looking for the way...".into(),

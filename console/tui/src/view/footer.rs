@@ -161,6 +161,11 @@ fn is_pointless(id: ActionId, model: &Model) -> bool {
     match id {
         // The checks would refuse the start.
         ActionId::Start => model.start_is_blocked().is_some(),
+        // There is nothing left to scan.
+        ActionId::Rescan => {
+            let is_known = model.ui.screen == Screen::Result && model.live.floor().is_some();
+            is_known && model.live.missed().is_empty()
+        }
         // Nothing on the home screen moves.
         ActionId::Slower | ActionId::Faster => model.ui.screen == Screen::Home,
         _ => false,

@@ -18,6 +18,7 @@ pub(super) fn clauses(model: &Model) -> Clauses {
     // While a question is open, other keys do not do what they usually do.
     if model.ui.overlay.is_question() || matches!(model.ui.overlay, Overlay::Sketch(_)) {
         clauses.retain(|clause| !clause.contains(['<', '>']));
+        clauses.truncate(1);
     }
     // No console gives orders to a run whose console is gone.
     if model.live.is_look_only() && !model.live.is_cut_off {
@@ -131,34 +132,35 @@ fn work(model: &Model, busy: &Busy) -> Vec<String> {
 
 /// As many clauses as fit into a given width; the first one is cut if necessary.
 pub(super) fn joined(clauses: &[String], columns: usize) -> String {
-    counted(clauses, columns).0
+    fitting(clauses, columns).join(" ")
 }
 
-/// The clauses that fit, and how many of them do.
-fn counted(clauses: &[String], columns: usize) -> (String, usize) {
-    let mut line = clauses.first().map_or_else(String::new, |first| text::fit(first, columns));
-    let mut count = usize::from(clauses.first().is_some_and(|first| text::width(first) <= columns));
+/// The clauses that fit; the first one is cut if necessary.
+fn fitting(clauses: &[String], columns: usize) -> Vec<String> {
+    let mut kept: Vec<String> = clauses.first().map(|first| text::fit(first, columns)).into_iter().collect();
+    let mut used = kept.first().map_or(0, |first| text::width(first));
     for clause in clauses.iter().skip(1) {
-        if text::width(&line) + 1 + text::width(clause) <= columns {
-            line.push(' ');
-            line.push_str(clause);
-            count += 1;
+        let more = 1 + text::width(clause);
+        if used + more <= columns {
+            kept.push(clause.clone());
+            used += more;
         }
     }
-    (line, count)
+    kept
 }
 
 /// The line in a given width. While the robot is held, its first clause also says where and how far the mission is, if
 /// no other clause is lost for that.
 pub(super) fn line(model: &Model, clauses: &[String], columns: usize) -> String {
-    let (short, count) = counted(clauses, columns);
-    let longer = held::whereabouts(model).into_iter().filter_map(|where_to| {
-        let mut clauses = clauses.to_vec();
+    let short = fitting(clauses, columns);
+    let whereabouts = held::whereabouts(model).into_iter();
+    let longer = whereabouts.filter_map(|whereabouts| {
+        let mut clauses = short.clone();
         let first = clauses.first_mut()?;
-        *first = format!("{}{where_to}.", first.strip_suffix('.')?);
-        Some(counted(&clauses, columns)).filter(|(_, other)| *other >= count).map(|(line, _)| line)
+        *first = format!("{}{whereabouts}.", first.strip_suffix('.')?);
+        Some(clauses.join(" ")).filter(|line| text::width(line) <= columns)
     });
-    longer.into_iter().next().unwrap_or(short)
+    longer.into_iter().next().unwrap_or_else(|| short.join(" "))
 }
 
 fn idle(model: &Model) -> Clauses {
@@ -189,7 +191,7 @@ fn idle(model: &Model) -> Clauses {
         return (Role::Warn, vec![what, why, preflight.into()]);
     }
     let plan = format!("{}.", text::capitalized(&confirm::promised(model)));
-    (Role::Title, vec!["Ready.".into(), "<start> starts this mission.".into(), plan, preflight.into()])
+    (Role::Title, vec!["Press <start> to start.".into(), plan, preflight.into()])
 }
 
 fn running(model: &Model) -> Clauses {

@@ -1,6 +1,6 @@
 //! The control strip, for a terminal too small for a map: state, alarm, position, and the most important keys.
 
-use super::look::Look;
+use super::look::{Look, ranked};
 use super::next::Clauses;
 use super::{confirm, coverage, footer, next, notice, text, top};
 use crate::model::{Model, Overlay};
@@ -19,25 +19,59 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         frame.render_widget(block, area);
     }
     let columns = usize::from(inner.width);
-    // A question comes first, so that at this size nothing can push it off the screen.
+    // A question comes first, so that at this size nothing can push it off the screen. The other lines are ranked: the
+    // last ones to be left out are the state, what comes next, the keys and the alarm.
+    let is_asked = asks(look.model);
     let mut lines = Vec::new();
-    if asks(look.model) {
-        lines.extend(wrapped(look, &confirm::clauses(look.model), columns));
+    // Of several lines with one rank, the first ones stay.
+    let mut add = |rank: u8, more: Vec<Line<'static>>| {
+        let ranks = (0..).map(|index| 16 * rank + u8::min(index, 15));
+        lines.extend(ranks.zip(more));
+    };
+    let said = notice::lines(look.model, columns).into_iter();
+    let said = said.flat_map(|(role, said)| said.into_iter().map(move |line| (role, format!(" {line}"))));
+    if is_asked {
+        add(0, wrapped(look, &confirm::clauses(look.model), columns));
     }
-    lines.push(state(look));
-    lines.extend(alarm(look, columns));
-    if !asks(look.model) {
-        lines.extend(wrapped(look, &next::clauses(look.model), columns));
+    add(1, vec![state(look)]);
+    add(3, alarm(look, columns));
+    if !is_asked {
+        add(1, wrapped(look, &next::clauses(look.model), columns));
     }
-    if let Some((role, said)) = notice::lines(look.model, columns) {
-        lines.extend(said.iter().map(|line| look.line([(role, format!(" {line}"))])));
-    }
-    lines.push(Line::from(look.span(Role::Text, text::fit(&position(look), columns))));
-    lines.push(footer::line(look, columns));
-    lines.push(Line::from(
-        look.span(Role::Dim, text::fit(" Map requires 60x16. Controls work here.", columns)),
-    ));
-    frame.render_widget(Paragraph::new(lines), inner);
+    add(2, said.map(|part| look.line([part])).collect());
+    add(4, vec![plain(look, &position(look), columns)]);
+    add(5, tether(look).map(|tether| plain(look, &tether, columns)).into_iter().collect());
+    add(6, way(look).map(|way| plain(look, &way, columns)).into_iter().collect());
+    add(2, vec![footer::line(look, columns)]);
+    add(
+        7,
+        vec![Line::from(
+            look.span(Role::Dim, text::fit(" Map requires 60x16. Controls work here.", columns)),
+        )],
+    );
+    frame.render_widget(Paragraph::new(ranked(lines, usize::from(inner.height))), inner);
+}
+
+fn plain(look: &Look, words: &str, columns: usize) -> Line<'static> {
+    Line::from(look.span(Role::Text, text::fit(words, columns)))
+}
+
+/// The tether: length out, reel, and largest wrap.
+fn tether(look: &Look) -> Option<String> {
+    let tether = look.run.tether.as_ref()?;
+    let reel = look.run.about.as_ref()?.mission.tether.as_ref()?.limits.reel_length_m;
+    let [out, reel] = [tether.length_m, reel].map(|length_m| text::number(length_m, 1));
+    let wrap = tether.largest().map_or_else(String::new, |contact| {
+        format!(", wrap {}° on {}", text::number(contact.wrap_rad.abs().to_degrees(), 0), contact.on)
+    });
+    let snag = if tether.is_snagged { " SNAGGED" } else { "" };
+    Some(format!(" tether {out} of {reel} m{wrap}{snag}"))
+}
+
+/// The path driven, and the planner.
+fn way(look: &Look) -> Option<String> {
+    let done = text::percent(look.run.progress.as_ref()?.done);
+    Some(format!(" path {done} % done, planner {}", look.run.planner_id().unwrap_or("-")))
 }
 
 fn state(look: &Look) -> Line<'static> {
@@ -48,13 +82,17 @@ fn state(look: &Look) -> Line<'static> {
     look.line(parts)
 }
 
-fn alarm(look: &Look, columns: usize) -> Option<Line<'static>> {
-    let alarm = look.run.alarms.worst()?;
-    let mut parts = vec![(Role::Text, " ".to_owned())];
-    parts.extend(top::alarms(look.model, false));
-    let used: usize = parts.iter().map(|(_, text)| text::width(text)).sum();
-    parts.push((Role::Text, text::fit(&format!(" {}", alarm.text), columns.saturating_sub(used))));
-    Some(look.line(parts))
+/// The worst alarm in full, after the counts.
+fn alarm(look: &Look, columns: usize) -> Vec<Line<'static>> {
+    let Some(alarm) = look.run.alarms.worst() else { return Vec::new() };
+    let mut counts = vec![(Role::Text, " ".to_owned())];
+    counts.extend(top::alarms(look.model, false));
+    let used: usize = counts.iter().map(|(_, text)| text::width(text)).sum();
+    let mut words = text::wrap(&alarm.text, columns.saturating_sub(used + 1)).into_iter();
+    counts.push((Role::Text, format!(" {}", words.next().unwrap_or_default())));
+    let indent = " ".repeat(used + 1);
+    let more = words.map(|words| look.line([(Role::Text, format!("{indent}{words}"))]));
+    std::iter::once(look.line(counts)).chain(more).collect()
 }
 
 fn position(look: &Look) -> String {
@@ -74,5 +112,5 @@ fn wrapped(look: &Look, (role, clauses): &Clauses, columns: usize) -> Vec<Line<'
 
 /// Whether a question about moving or about quitting is open.
 fn asks(model: &Model) -> bool {
-    matches!(model.ui.overlay, Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping)
+    model.ui.overlay.is_question() || matches!(model.ui.overlay, Overlay::Sketch(_))
 }

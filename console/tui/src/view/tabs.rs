@@ -66,7 +66,10 @@ fn tab(model: &Model, screen: Screen, form: Form) -> Tab {
     let (role, text) = match form {
         _ if screen == model.ui.screen => (Role::Title, format!("[{name}]")),
         Form::Names => (Role::Text, format!(" {name} ")),
-        Form::Digits | Form::Current => (Role::Text, format!(" {} ", screen.digit())),
+        Form::Digits | Form::Current if screen < model.ui.screen => {
+            (Role::Text, format!("{} ", screen.digit()))
+        }
+        Form::Digits | Form::Current => (Role::Text, format!(" {}", screen.digit())),
     };
     let role = if offered(model, id).is_ok() { role } else { Role::Dim };
     Tab { id, role, text }

@@ -179,7 +179,7 @@ fn what_is_critical_or_over_cannot_be_shelved() {
     assert_eq!(notice(&screen), "a CRIT alarm cannot be shelved");
     screen.press([Key::Down]);
     screen.type_text("d");
-    assert_eq!(notice(&screen), "the alarm has cleared; a: acknowledge");
+    assert_eq!(notice(&screen), "cleared alarms are acknowledged (a), not shelved");
     assert_eq!(screen.model.ui.overlay, Overlay::None);
 }
 
@@ -234,7 +234,7 @@ fn keeping_the_robot_held_holds_and_never_asks_to_resume() {
     assert_eq!((notice(&screen), &screen.model.ui.overlay), ("already held", &Overlay::None));
     screen.press(ENTER);
     screen.type_text("1");
-    assert!(notice(&screen).starts_with("no command for this action: Wait"));
+    assert!(notice(&screen).starts_with("advice, not an action: Wait"));
 }
 
 #[test]

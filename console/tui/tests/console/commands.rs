@@ -125,7 +125,7 @@ fn commands_take_values() {
     assert_eq!(run(&mut Screen::running(), "speed max"), [Effect::Speed(Speed::Max)]);
     let key = "rpf_gain".to_owned();
     let set = Effect::Order(Order::SetParameter { key, value: ParamValue::Float(1.5) });
-    assert_eq!(run(&mut Screen::running(), "set rpf_gain=1.5"), [set]);
+    assert_eq!(run(&mut Screen::held(), "set rpf_gain=1.5"), [set]);
     let open = |planner| {
         vec![Effect::Open {
             id: RunId(2),
@@ -254,6 +254,17 @@ fn a_no_go_zone_is_a_box_between_two_corners() {
     let corners = [(-1.5, 0.5), (2.0, 0.5), (2.0, 3.0), (-1.5, 3.0)].map(|(x, y)| Point::new(x, y));
     let drawn = run(&mut screen, "no-go 2,0.5 -1.5,3");
     assert_eq!(drawn, [Effect::Order(Order::DrawZone(corners.to_vec()))]);
+}
+
+#[test]
+fn a_value_for_a_moving_robot_is_shown_beside_the_old_one_and_asked_for() {
+    let mut screen = Screen::running();
+    assert_eq!(run(&mut screen, "set rpf_gain=1.5"), []);
+    let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+    let asked = "Set rpf_gain 1.2 → 1.5 m3/s? Enter: set, Esc: cancel. It takes effect now.";
+    assert!(shown.contains(asked), "{shown}");
+    let order = Order::SetParameter { key: "rpf_gain".into(), value: ParamValue::Float(1.5) };
+    assert_eq!(screen.press([Key::Enter]), [Effect::Order(order)]);
 }
 
 #[test]

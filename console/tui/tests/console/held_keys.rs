@@ -109,7 +109,7 @@ fn a_held_enter_does_not_answer_the_question_that_it_has_opened() {
                 moves(&effects).into_iter().all(|order| *order == Order::Hold),
                 "{line} after {first_ms} ms: {effects:?}"
             );
-            assert!(matches!(screen.model.ui.overlay, Overlay::Confirm(_)), "{line}: it is still asked");
+            assert!(screen.model.ui.overlay.is_question(), "{line}: it is still asked");
             assert!(!screen.model.live.preflight.is_starting);
         }
     }

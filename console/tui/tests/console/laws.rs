@@ -393,8 +393,6 @@ fn nothing_but_style_is_lost_without_colour() {
             for word in words {
                 let wide = size.0 >= 120;
                 let word = match *word {
-                    "2w" if wide => "2 watch",
-                    "1C*" if wide => "1 crit(unack)",
                     "found" if !wide => "?",
                     word => word,
                 };

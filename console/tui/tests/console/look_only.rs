@@ -56,7 +56,7 @@ fn what_would_act_says_who_may() {
         screen.type_text(&format!(":{line}"));
         screen.press([Key::Enter]);
         let said = screen.model.notice().map(|notice| notice.text.clone()).unwrap_or_default();
-        assert!(said.starts_with("VIEW: this console is view-only"), "{line}: {said}");
+        assert!(said.starts_with("VIEW only: give orders on the console"), "{line}: {said}");
     }
 }
 

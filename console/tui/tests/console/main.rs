@@ -4,8 +4,11 @@
 mod alarms;
 mod better_plan;
 mod commands;
+mod drawing;
+mod ending;
 mod events;
 mod fixture;
+mod frame;
 mod handover;
 mod held_keys;
 mod laws;

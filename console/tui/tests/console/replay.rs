@@ -250,11 +250,11 @@ fn a_replay_gives_no_order_whatever_is_done_and_is_left_without_a_question() {
     let mut screen = replaying(false);
     screen.type_text("S");
     let said = screen.model.notice().map(|notice| notice.text.clone()).unwrap_or_default();
-    assert!(said.contains("not assigned"), "{said}");
+    assert!(said.contains("S does nothing here"), "{said}");
     screen.type_text(":start");
     screen.press([Key::Enter]);
     let said = screen.model.notice().map(|notice| notice.text.clone()).unwrap_or_default();
-    assert!(said.starts_with("REPLAY: a past run takes no orders"), "{said}");
+    assert!(said.starts_with("replay, no robot connected"), "{said}");
     screen.type_text("1");
     assert_eq!(screen.type_text("q"), [Effect::Quit { signal: None }]);
 }

@@ -46,7 +46,12 @@ pub(crate) fn roles(model: &Model, caps: Caps, size: (u16, u16)) -> String {
 }
 
 fn store(name: &str, screen: &mut Screen) {
-    for size in SIZES {
+    store_at(name, screen, &SIZES);
+}
+
+/// Stores a screen at some sizes, and at 80x24 without colours.
+pub(crate) fn store_at(name: &str, screen: &mut Screen, sizes: &[(u16, u16)]) {
+    for size in sizes.iter().copied() {
         screen.send(Msg::Resize { width: size.0, height: size.1 });
         let text = text(&drawn(&screen.model, RICH, size));
         let roles = roles(&screen.model, RICH, size);

@@ -188,9 +188,6 @@ fn screen_in(phase: &Phase) -> Screen {
             [mission.obeyed(Order::Hold), mission.obeyed(Order::DriveBack)].concat()
         }
         Phase::Running(Gait::OneTick) => [mission.obeyed(Order::Hold), mission.obeyed(Order::Step)].concat(),
-        Phase::Running(Gait::Back) => {
-            [mission.obeyed(Order::Hold), mission.obeyed(Order::DriveBack)].concat()
-        }
         Phase::Running(Gait::To(to)) => {
             [mission.obeyed(Order::Hold), mission.obeyed(Order::StepTo(*to))].concat()
         }

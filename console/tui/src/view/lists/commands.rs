@@ -168,6 +168,7 @@ fn rules(keys: &Keymap, columns: usize) -> Vec<Row> {
     };
     let (up, down, accept) = (of(ActionId::Up), of(ActionId::Down), of(ActionId::Accept));
     let lists = format!("{up} {down}: select, {accept}: run, <cancel>: close, -: not available.");
+    let few = if columns < 60 { 1 } else { 4 };
     [
         lists.as_str(),
         "HOLD never asks first; commands marked MOVES or ENDS do.",
@@ -175,6 +176,7 @@ fn rules(keys: &Keymap, columns: usize) -> Vec<Row> {
         "Alarms: C crit, W warn, w watch, * not acknowledged.",
     ]
     .into_iter()
+    .take(few)
     .flat_map(|rule| paragraph(Role::Dim, &keys.spelled(rule), columns))
     .collect()
 }

@@ -22,7 +22,11 @@ pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
     let rows: Vec<Vec<Row>> = checks.iter().map(|(check, item)| entry(check, item.is_some(), room)).collect();
     let first = rows.iter().take(selected).map(Vec::len).sum();
     let selected_rows = rows.get(selected).map_or(1, Vec::len);
-    let chosen = checks.get(selected).map(|(check, _)| format!("{}: {}", check.what, check.found));
+    // Every other check is already shown in full.
+    let chosen = checks.get(selected).filter(|(check, item)| {
+        item.is_some() || matches!(check.outcome, CheckOutcome::Passed | CheckOutcome::Ticked)
+    });
+    let chosen = chosen.map(|(check, _)| format!("{}: {}", check.what, check.found));
     let mut below: Vec<Row> = chosen.iter().flat_map(|words| paragraph(Role::Dim, words, room)).collect();
     let verdict = match (model.live.preflight.is_checking, blocks.sentence()) {
         (true, _) => (Role::Watch, " Checking...".to_owned()),

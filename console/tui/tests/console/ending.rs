@@ -1,0 +1,134 @@
+//! The ways to end a mission: here, or after a drive back to the anchor.
+
+use crate::fixture::{RICH, Screen};
+use crate::screens::{drawn, text};
+use mission::{EventKind, HoldReason, Home, Order, WayBack};
+use tui::model::{Overlay, ui::Ask};
+use tui::{Effect, Key, Mouse, Msg, Query, RunMsg, Target};
+use world::Point;
+
+fn way() -> WayBack {
+    let path = [(-0.78, 7.4), (4.0, 6.0), (9.4, 0.0)].map(|(x, y)| Point::new(x, y)).to_vec();
+    WayBack { to: Home::Anchor, path, length_m: 13.1, clearance_m: 0.12 }
+}
+
+/// A mission whose end has been asked for, and whose way back is known.
+pub(crate) fn ending() -> Screen {
+    let mut screen = Screen::tethered();
+    assert_eq!(screen.type_text("X"), [Effect::Order(Order::Hold), Effect::Ask(Query::WayBack)]);
+    let held = screen.mission.obeyed(Order::Hold);
+    screen.hear(RunMsg::Events(held));
+    screen.hear(RunMsg::WayBack(Ok(way())));
+    screen
+}
+
+/// A robot that drives back.
+pub(crate) fn driving_back() -> Screen {
+    let mut screen = ending();
+    screen.press([Key::Down, Key::Enter]);
+    let mut events = screen.mission.obeyed(Order::DriveBack);
+    events.push(screen.mission.now(EventKind::ReturnBegan { way: way() }));
+    screen.hear(RunMsg::Events(events));
+    screen
+}
+
+fn shown(screen: &Screen, size: (u16, u16)) -> String {
+    text(&drawn(&screen.model, RICH, size))
+}
+
+#[test]
+fn a_mission_is_ended_here_or_after_a_drive_back() {
+    assert_eq!(ending().press([Key::Enter]), [Effect::Order(Order::Abort)]);
+    assert_eq!(ending().press([Key::Down, Key::Enter]), [Effect::Order(Order::DriveBack)]);
+    for size in [(120, 36), (80, 24), (60, 16), (44, 10)] {
+        let mut screen = ending();
+        let here = shown(&screen, size);
+        assert!(here.contains("End here") && here.contains("To the anchor"), "{here}");
+        screen.press([Key::Down]);
+        let back = shown(&screen, size);
+        assert!(back.contains("13.1 m, clearance 0.12 m") || size.0 < 60, "{back}");
+    }
+}
+
+#[test]
+fn whatever_is_no_answer_closes_the_question_and_a_later_enter_does_nothing() {
+    for key in [Key::Esc, Key::Char('q'), Key::Char('b'), Key::Char('7'), Key::Char(' ')] {
+        let mut screen = ending();
+        screen.press([Key::Down, key]);
+        assert_eq!(screen.model.ui.overlay, Overlay::None, "{key}");
+        assert_eq!(screen.press([Key::Enter]), [], "{key}");
+    }
+    for key in [Key::Char('b'), Key::Char('z'), Key::Char('3')] {
+        let mut screen = Screen::held();
+        screen.press([Key::Char(' '), key]);
+        assert_eq!(screen.press([Key::Enter]), [], "{key}");
+    }
+}
+
+#[test]
+fn a_click_neither_answers_nor_leaves_the_screen_under_a_question_or_a_list() {
+    use tui::actions::ActionId;
+    for open in ["X", "P", ":", "L"] {
+        let mut screen = Screen::held();
+        screen.model.ui.mouse = true;
+        screen.type_text(open);
+        let before = screen.model.ui.clone();
+        for id in [ActionId::Go(tui::model::Screen::Alarms), ActionId::DriveBack, ActionId::Back] {
+            assert_eq!(screen.send(Msg::Mouse(Mouse::Click(Target::Key(id)))), []);
+        }
+        assert_eq!(screen.model.ui, before, "{open}");
+    }
+}
+
+#[test]
+fn without_a_way_back_only_the_end_here_is_possible() {
+    let mut screen = ending();
+    screen.hear(RunMsg::WayBack(Err("the hull does not fit through".into())));
+    assert_eq!(screen.press([Key::Down, Key::Enter]), []);
+    let said = screen.model.notice().map(|notice| notice.text.clone());
+    assert_eq!(said.as_deref(), Some("no way back: the hull does not fit through"));
+    assert_eq!(screen.press([Key::Up, Key::Enter]), [Effect::Order(Order::Abort)]);
+}
+
+#[test]
+fn return_asks_with_length_and_clearance() {
+    let mut screen = Screen::held();
+    screen.type_text(":return");
+    assert_eq!(screen.press([Key::Enter]), [Effect::Ask(Query::WayBack)]);
+    assert_eq!(screen.model.ui.overlay, Overlay::Confirm(Ask::DriveBack));
+    screen.hear(RunMsg::WayBack(Ok(way())));
+    let asked = shown(&screen, (80, 24)).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(asked.contains("To the anchor, 13.1 m, clearance 0.12 m."), "{asked}");
+    assert_eq!(screen.press([Key::Enter]), [Effect::Order(Order::DriveBack)]);
+    // Without a way, the question is closed.
+    let mut screen = Screen::held();
+    screen.type_text(":return");
+    screen.press([Key::Enter]);
+    screen.hear(RunMsg::WayBack(Err("blocked".into())));
+    assert_eq!(screen.model.ui.overlay, Overlay::None);
+    // While the robot moves, HOLD comes first.
+    let why = tui::update::offered(&Screen::running().model, tui::actions::ActionId::DriveBack).unwrap_err();
+    assert!(why.contains("HOLD"), "{why}");
+}
+
+#[test]
+fn a_drive_back_says_how_far_it_is_and_hold_stops_it() {
+    let mut screen = driving_back();
+    let text = shown(&screen, (120, 36));
+    let line = text.lines().find(|line| line.contains("Driving back to the anchor: 13.")).unwrap_or_default();
+    assert!(line.contains(" m left. space: HOLD. Clearance 0.12 m."), "{text}");
+    assert_eq!(screen.press([Key::Char(' ')]), [Effect::Order(Order::Hold)]);
+}
+
+#[test]
+fn a_breach_of_a_zone_is_a_critical_alarm_and_says_why_the_robot_is_held() {
+    let mut screen = Screen::running();
+    let breached = screen.mission.now(EventKind::ZoneBreached { zone: "no-go 1".into(), depth_m: 0.08 });
+    let held = screen.mission.held(HoldReason::ZoneBreached { zone: "no-go 1".into() });
+    screen.hear(RunMsg::Events(vec![breached, held]));
+    let text = shown(&screen, (120, 36));
+    assert!(text.contains("HELD: hull in a no-go zone") && text.contains("! 1C*"), "{text}");
+    screen.type_text("4");
+    let alarms = shown(&screen, (120, 36));
+    assert!(alarms.contains("hull in zone no-go 1"), "{alarms}");
+}
