@@ -178,7 +178,7 @@ fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
 fn resize(model: &mut Model, width: u16, height: u16) {
     (model.ui.width, model.ui.height) = (width, height);
     let whole = matches!(model.ui.arrangement(), Arrangement::Wide | Arrangement::Narrow);
-    if whole && !model.ui.panes().contains(&model.ui.pane) {
+    if whole && !model.ui.panes().is_empty() && !model.ui.panes().contains(&model.ui.pane) {
         model.ui.pane = Pane::Map;
     }
 }

@@ -140,5 +140,7 @@ fn draw_pane(look: &Look, frame: &mut Frame, area: Rect, pane: Pane) {
         Pane::Stations => stations::draw(look, frame, area),
         Pane::Missed => missed::draw(look, frame, area),
         Pane::Chart(chart) => charts::draw(look, frame, area, chart),
+        // Only on the result screen.
+        Pane::Figures => {}
     }
 }

@@ -94,11 +94,17 @@ pub enum Pane {
     Missed,
     /// A chart of a quantity over recent minutes.
     Chart(Chart),
+    /// The result screen: the achieved figures.
+    Figures,
 }
 
 impl Pane {
     /// The panes that are shown one at a time on a small terminal, in Tab order.
     pub const PAGES: [Self; 5] = [Self::Map, Self::Coverage, Self::Position, Self::Planner, Self::Events];
+    /// The panes of the result screen that are shown one at a time on a small terminal, in Tab order.
+    pub const RESULT_PAGES: [Self; 4] = [Self::Figures, Self::Coverage, Self::Missed, Self::Map];
+    /// The panes of the result screen that share a place on a narrow terminal, in Tab order.
+    pub const RESULT_PARTS: [Self; 2] = [Self::Figures, Self::Map];
 }
 
 /// The quantity of a chart.
@@ -362,6 +368,11 @@ impl Ui {
             self.back.push(self.screen);
         }
         self.screen = screen;
+        if screen == Screen::Result {
+            self.pane = Pane::Figures;
+        } else if !self.panes().is_empty() && !self.panes().contains(&self.pane) {
+            self.pane = Pane::Map;
+        }
         if screen == Screen::Mission {
             // The pane beside the map shows the newest events, whatever was selected on the events screen.
             self.events.at = None;
@@ -370,6 +381,9 @@ impl Ui {
 
     /// Whether a pane is visible.
     pub fn shows(&self, pane: Pane) -> bool {
+        if self.screen == Screen::Result && !self.panes().is_empty() {
+            return self.pane == pane;
+        }
         if self.screen != Screen::Mission {
             return pane == Pane::Map && self.has_map();
         }
@@ -387,8 +401,11 @@ impl Ui {
 
     /// The panes through which Tab cycles.
     pub fn panes(&self) -> &'static [Pane] {
-        if self.screen != Screen::Mission {
-            return &[];
+        match (self.screen, self.arrangement()) {
+            (Screen::Result, Arrangement::Narrow) => return &Pane::RESULT_PARTS,
+            (Screen::Result, Arrangement::Paged) => return &Pane::RESULT_PAGES,
+            (Screen::Mission, _) => {}
+            _ => return &[],
         }
         match self.arrangement() {
             Arrangement::Wide | Arrangement::Narrow => &[Pane::Map, Pane::Events],

@@ -10,7 +10,6 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::symbols::Marker;
 use ratatui::text::Line;
-use ratatui::widgets::Block;
 use ratatui::widgets::canvas::Canvas;
 use world::Point;
 
@@ -23,7 +22,7 @@ const HEADROOM: f64 = 1.15;
 
 /// The contents of a chart.
 pub(super) struct Series<'a> {
-    pub title: &'a str,
+    pub title: &'static str,
     pub values: &'a History,
     pub limit: Option<f64>,
     pub decimals: usize,
@@ -31,18 +30,21 @@ pub(super) struct Series<'a> {
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, chart: Chart) {
     let Some(series) = series(look, chart) else { return };
-    let block = look.pane(Pane::Chart(chart), series.title, &note(&series));
-    framed(look, frame, area, block, &series);
-}
-
-/// The time that a chart covers, and its limit.
-pub(super) fn note(series: &Series) -> String {
     let limit = series.limit.map(|limit| format!(", limit {}", text::number(limit, series.decimals)));
-    format!("{} min{}", HISTORY_S / 60, limit.unwrap_or_default())
+    let note = format!("{} min{}", HISTORY_S / 60, limit.unwrap_or_default());
+    let block = look.pane(Pane::Chart(chart), series.title, &note);
+    let inner = block.inner(area);
+    frame.render_widget(block, area);
+    if inner.width > LABELS && inner.height >= 2 {
+        plot(look, frame, inner, &series);
+    }
 }
 
-/// Draws a chart in a pane.
-pub(super) fn framed(look: &Look, frame: &mut Frame, area: Rect, block: Block<'_>, series: &Series) {
+/// Draws a chart of a figure that no pane of the mission screen shows.
+pub(super) fn figure(look: &Look, frame: &mut Frame, area: Rect, series: &Series) {
+    let said = |value: f64| text::number(value, series.decimals);
+    let limit = series.limit.map_or_else(String::new, |limit| format!(", limit {}", said(limit)));
+    let block = look.block(Role::Border, series.title, &format!("{} min{limit}", HISTORY_S / 60));
     let inner = block.inner(area);
     frame.render_widget(block, area);
     if inner.width > LABELS && inner.height >= 2 {

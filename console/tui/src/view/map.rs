@@ -11,7 +11,7 @@ mod shapes;
 
 pub(super) use plates::{Key as PlateKey, PlateDrawing};
 pub(super) use shade::{Key as ShadeKey, Shades};
-pub(super) use shapes::{Filled, Stroke, Window, ellipse};
+pub(super) use shapes::{Stroke, Window};
 
 use super::look::Look;
 use super::text;

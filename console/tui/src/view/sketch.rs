@@ -2,16 +2,16 @@
 //! places.
 
 use super::look::Look;
-use super::map::{Filled, Stroke, Window, ellipse};
 use crate::caps::Glyphs;
 use crate::model::{Raster, Run};
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
+use ratatui::style::Color;
 use ratatui::symbols::Marker;
 use ratatui::text::Line;
-use ratatui::widgets::canvas::{Canvas, Context};
-use world::{Boundary, FloorClass, Point, World, ZoneKind};
+use ratatui::widgets::canvas::{Canvas, Context, Line as Segment, Points};
+use world::{Boundary, FloorClass, Point, Shape, Vector, World, ZoneKind};
 
 /// Margin around the tank, as a factor of its size.
 const MARGIN: f64 = 1.06;
@@ -19,6 +19,25 @@ const MARGIN: f64 = 1.06;
 const WALL_PIECES: u32 = 128;
 /// The smallest area in which a tank can be recognised, columns and rows.
 const LEAST: (u16, u16) = (16, 6);
+
+/// The visible part of the floor.
+#[derive(Debug, Clone, Copy)]
+struct Window {
+    /// The west and east edges, metres.
+    x: [f64; 2],
+    /// The south and north edges, metres.
+    y: [f64; 2],
+    /// The width of a column, metres; a row is twice as high.
+    column_m: f64,
+}
+
+impl Window {
+    /// The centre of a cell; cells are counted from the north-west.
+    fn middle_of(self, (column, row): (u16, u16)) -> Point {
+        let x = self.x[0] + (f64::from(column) + 0.5) * self.column_m;
+        Point::new(x, self.y[1] - (2.0 * f64::from(row) + 1.0) * self.column_m)
+    }
+}
 
 /// The contents of a small map.
 pub(super) struct Sketch<'a> {
@@ -68,12 +87,16 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, sketch: &Sketch) 
 
 fn window(world: &World, area: Rect) -> Option<Window> {
     let (low, high) = world.boundary.bounds();
-    let span = high - low;
+    let (center, span) = (nalgebra::center(&low, &high), high - low);
     let column_m = (span.x / f64::from(area.width)).max(span.y / (2.0 * f64::from(area.height))) * MARGIN;
+    let half = Vector::new(column_m * f64::from(area.width) / 2.0, column_m * f64::from(area.height));
     let fits = area.width >= LEAST.0 && area.height >= LEAST.1;
-    let is_sound = column_m.is_finite() && column_m > 0.0 && low.x.is_finite() && low.y.is_finite();
-    (fits && is_sound)
-        .then(|| Window::new(nalgebra::center(&low, &high), column_m, (area.width, area.height)))
+    let is_sound = column_m.is_finite() && column_m > 0.0 && center.x.is_finite() && center.y.is_finite();
+    (fits && is_sound).then(|| Window {
+        x: [center.x - half.x, center.x + half.x],
+        y: [center.y - half.y, center.y + half.y],
+        column_m,
+    })
 }
 
 fn lines(look: &Look, ctx: &mut Context<'_>, window: Window, sketch: &Sketch) {
@@ -85,23 +108,59 @@ fn lines(look: &Look, ctx: &mut Context<'_>, window: Window, sketch: &Sketch) {
         }
     };
     let color = |role| look.theme.color(role);
+    let shape = |shape: &Shape, role: Role| {
+        let coords = dots(shape, window);
+        (coords, color(role))
+    };
     take_up(ctx, 'x');
     for zone in sketch.world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo) {
-        ctx.draw(&Filled { shape: &zone.shape, window, hatched: true, color: color(Role::NoGo) });
+        let (coords, color) = shape(&zone.shape, Role::NoGo);
+        ctx.draw(&Points { coords: &coords, color });
     }
     take_up(ctx, '.');
-    ctx.draw(&Stroke { points: sketch.trail, window, dotted: false, color: color(Role::Trail) });
+    stroke(ctx, sketch.trail, color(Role::Trail));
     take_up(ctx, 'o');
-    let wall = match &sketch.world.boundary {
-        Boundary::Circle { radius_m } => ellipse(Point::origin(), (*radius_m, *radius_m), 0.0, WALL_PIECES),
-        Boundary::Polygon { vertices } => vertices.iter().chain(vertices.first()).copied().collect(),
-    };
-    ctx.draw(&Stroke { points: &wall, window, dotted: false, color: color(Role::Wall) });
+    stroke(ctx, &wall(&sketch.world.boundary), color(Role::Wall));
     take_up(ctx, '#');
     for obstacle in &sketch.world.obstacles {
         let role = if obstacle.known { Role::Obstacle } else { Role::Found };
-        ctx.draw(&Filled { shape: &obstacle.shape, window, hatched: false, color: color(role) });
+        let (coords, color) = shape(&obstacle.shape, role);
+        ctx.draw(&Points { coords: &coords, color });
     }
+}
+
+fn stroke(ctx: &mut Context<'_>, points: &[Point], color: Color) {
+    for pair in points.windows(2) {
+        ctx.draw(&Segment { x1: pair[0].x, y1: pair[0].y, x2: pair[1].x, y2: pair[1].y, color });
+    }
+}
+
+fn wall(boundary: &Boundary) -> Vec<Point> {
+    match boundary {
+        Boundary::Circle { radius_m } => (0..=WALL_PIECES)
+            .map(|piece| {
+                let (sin, cos) =
+                    (std::f64::consts::TAU * f64::from(piece) / f64::from(WALL_PIECES)).sin_cos();
+                Point::new(radius_m * cos, radius_m * sin)
+            })
+            .collect(),
+        Boundary::Polygon { vertices } => vertices.iter().chain(vertices.first()).copied().collect(),
+    }
+}
+
+/// The places inside a shape, about one for each dot; at least its centre.
+fn dots(shape: &Shape, window: Window) -> Vec<(f64, f64)> {
+    let step_m = window.column_m / 2.0;
+    let (low, high) = shape.bounds();
+    let clamped =
+        |low: f64, high: f64, [least, most]: [f64; 2]| (low.clamp(least, most), high.clamp(least, most));
+    let ((west, east), (south, north)) = (clamped(low.x, high.x, window.x), clamped(low.y, high.y, window.y));
+    let steps =
+        |from: f64, to: f64| (0..=((to - from) / step_m) as u32).map(move |n| from + f64::from(n) * step_m);
+    let center = shape.center();
+    let inside = steps(west, east).flat_map(|x| steps(south, north).map(move |y| (x, y)));
+    let inside = inside.filter(|(x, y)| shape.distance_m(Point::new(*x, *y)) <= 0.0);
+    inside.chain([(center.x, center.y)]).collect()
 }
 
 fn signs(look: &Look, ctx: &mut Context<'_>, sketch: &Sketch) {
@@ -125,7 +184,7 @@ fn shade(look: &Look, frame: &mut Frame, area: Rect, (window, raster, has_ended)
         if cell.symbol() != " " {
             continue;
         }
-        let class = raster.class_in(window.middle_of(column, row), 1.5 * window.column_m, has_ended);
+        let class = raster.class_in(window.middle_of((column, row)), 1.5 * window.column_m, has_ended);
         let (sign, role) = match class {
             Some(FloorClass::Scanned | FloorClass::Again) => ('▒', Role::Scanned),
             Some(FloorClass::Partial) => ('░', Role::Partly),

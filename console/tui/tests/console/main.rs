@@ -21,5 +21,6 @@ mod scanned;
 mod screens;
 mod scripts;
 mod shadow;
+mod sizes;
 mod start;
 mod stopping;

@@ -35,7 +35,7 @@ fn rows(buffer: &Buffer, show: impl Fn(&ratatui::buffer::Cell) -> String) -> Str
 }
 
 /// One letter for what each cell stands for; `_` for blank ones.
-fn roles(model: &Model, caps: Caps, size: (u16, u16)) -> String {
+pub(crate) fn roles(model: &Model, caps: Caps, size: (u16, u16)) -> String {
     let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).unwrap();
     terminal.draw(|frame| view_with(model, &caps, &Theme::labelled(), frame)).unwrap();
     rows(terminal.backend().buffer(), |cell| {
