@@ -66,7 +66,10 @@ pub struct Miss {
 impl fmt::Display for Miss {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let found = self.found.as_deref().unwrap_or("no value");
-        write!(f, "{}: expected {}, actual {found}", self.key, self.bound)
+        match self.key {
+            "outcome" => write!(f, "expected {}, actual {found}", self.bound),
+            key => write!(f, "expected {key} = {}, actual {found}", self.bound),
+        }
     }
 }
 
@@ -195,7 +198,7 @@ mod tests {
         let misses: Vec<String> = expect.check(&run).iter().map(ToString::to_string).collect();
         assert_eq!(
             misses,
-            ["outcome: expected complete, actual stuck", "path_length_max_m: expected 70, actual 70.12345"]
+            ["expected complete, actual stuck", "expected path_length_max_m = 70, actual 70.12345"]
         );
     }
 
@@ -203,6 +206,6 @@ mod tests {
     fn a_figure_that_is_absent_keeps_no_bound() {
         let expect = Expect { recall_min: Some(0.0), ..Expect::default() };
         let misses = expect.check(&Summary::default());
-        assert_eq!(misses[0].to_string(), "recall_min: expected 0, actual no value");
+        assert_eq!(misses[0].to_string(), "expected recall_min = 0, actual no value");
     }
 }

@@ -132,6 +132,10 @@ pub struct PlateAccount {
     /// metres; absent if none of the plate was scanned.
     #[serde(default)]
     pub error_p95_m: Option<f64>,
+    /// The largest 95 % position error of the scanned cells, taking the best pass over each cell, metres; absent if none of
+    /// the plate was scanned, and from older reports.
+    #[serde(default)]
+    pub error_max_m: Option<f64>,
     /// The division of the plate's floor.
     #[serde(flatten)]
     pub shares: Shares,
@@ -261,6 +265,7 @@ fn plate_accounts(
             name: plate.name.clone(),
             kind: plate.kind,
             error_p95_m: nearest_rank(&errors_mm, 0.95).map(|mm| f64::from(mm) / 1000.0),
+            error_max_m: errors_mm.last().map(|mm| f64::from(*mm) / 1000.0),
             shares: tally.shares(scanned.believed().floor().cell_m2()),
         }
     };

@@ -73,6 +73,7 @@ struct Ahead {
     path: Vec<Point>,
     from_s: Option<f64>,
     done: f64,
+    certified: Option<bool>,
 }
 
 impl Ahead {
@@ -88,7 +89,7 @@ impl Ahead {
             tether_length_max_m: None,
             wrap_max_rad: None,
         };
-        Self { outlook, path: Vec::new(), from_s: None, done: 0.0 }
+        Self { outlook, path: Vec::new(), from_s: None, done: 0.0, certified: None }
     }
 
     fn take(&mut self, event: &Event) {
@@ -112,6 +113,9 @@ impl Ahead {
             EventKind::Ended { outcome, reason } => {
                 outlook.outcome = Some(*outcome);
                 outlook.reason.clone_from(reason);
+            }
+            EventKind::Certified { certificate, .. } => {
+                self.certified = Some(self.certified.unwrap_or(true) && certificate.certified);
             }
             EventKind::Held { by, .. } => outlook.reason = by.to_string(),
             _ => {}
@@ -152,7 +156,7 @@ fn fly(
             screen.send(RunMsg::ForecastAt(choice.clone(), ahead.done));
         }
     }
-    Ok(Forecast { path: Trail::thinned(&ahead.path), outlook: ahead.outlook })
+    Ok(Forecast { path: Trail::thinned(&ahead.path), outlook: ahead.outlook, certified: ahead.certified })
 }
 
 /// The reason why the mission refuses to continue.

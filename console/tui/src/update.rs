@@ -197,7 +197,7 @@ fn resize(model: &mut Model, width: u16, height: u16) {
     (model.ui.width, model.ui.height) = (width, height);
     let whole = matches!(model.ui.arrangement(), Arrangement::Wide | Arrangement::Narrow);
     let turns = whole || model.ui.screen == Screen::Plan;
-    if turns && !model.ui.panes().contains(&model.ui.pane) {
+    if turns && !model.ui.panes().is_empty() && !model.ui.panes().contains(&model.ui.pane) {
         model.ui.pane = Pane::Map;
     }
 }

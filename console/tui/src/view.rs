@@ -147,7 +147,7 @@ fn draw_pane(look: &Look, frame: &mut Frame, area: Rect, pane: Pane) {
         Pane::Stations => stations::draw(look, frame, area),
         Pane::Missed => missed::draw(look, frame, area),
         Pane::Chart(chart) => charts::draw(look, frame, area, chart),
-        // Panes of the plan screen.
-        Pane::Plan | Pane::Promise | Pane::LeftOut | Pane::Parameters | Pane::Checks => {}
+        // Panes of the plan and result screens.
+        Pane::Plan | Pane::Promise | Pane::LeftOut | Pane::Parameters | Pane::Checks | Pane::Figures => {}
     }
 }

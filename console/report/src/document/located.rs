@@ -28,7 +28,7 @@ pub(super) fn without_task(floor: Account, tool_is_known: bool) -> Account {
         critical_zone.arcs.clear();
         critical_zone.plates.clear();
         for plate in &mut plates {
-            plate.error_p95_m = None;
+            (plate.error_p95_m, plate.error_max_m) = (None, None);
         }
     }
     Account {

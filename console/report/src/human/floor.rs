@@ -34,7 +34,8 @@ pub(crate) fn lines(account: &Account) -> Vec<(&'static str, String)> {
 fn plates(plates: &[PlateAccount]) -> Vec<String> {
     let line = |plate: &PlateAccount| {
         let error = plate.error_p95_m.map(|m| format!(", 95 % error {m:.3} m p95")).unwrap_or_default();
-        format!("{} {}{error}", plate.name, shares(&plate.shares))
+        let worst = plate.error_max_m.map(|m| format!(", {m:.3} m worst")).unwrap_or_default();
+        format!("{} {}{error}{worst}", plate.name, shares(&plate.shares))
     };
     if plates.len() <= MOST_PLATES {
         return plates.iter().map(line).collect();
@@ -161,6 +162,7 @@ mod tests {
                 name: format!("R-{k:02}"),
                 kind: PlateKind::Rectangular,
                 error_p95_m: None,
+                error_max_m: None,
                 shares,
             }
         };

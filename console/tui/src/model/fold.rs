@@ -126,6 +126,7 @@ impl Run {
             | EventKind::PlannerLogged { .. }
             | EventKind::Uncounted { .. } => {}
         }
+        self.read_peaks(&event.kind);
         self.read_figures(&event.kind);
         if let (Some(number), Some(cause)) = (line, Cause::of(&event.kind)) {
             let place = self.log.get(number).and_then(|entry| self.place_of(&entry.what));

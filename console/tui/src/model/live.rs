@@ -169,9 +169,24 @@ impl Live {
         (is_current || *self.run.phase() != Phase::Waiting).then_some(left_out)
     }
 
-    /// Reachable floor that was requested but missed by the run, largest area first.
+    /// Reachable floor that was requested but not scanned, largest area first; areas that were not reached because the
+    /// mission ended come last.
     pub fn missed(&self) -> Vec<&Area<MissReason>> {
-        self.areas().filter(|area| area.reason != MissReason::NotAsked).collect()
+        let asked = || self.areas().filter(|area| area.reason != MissReason::NotAsked);
+        let is_missed = |area: &&Area<MissReason>| area.reason != MissReason::NotReached;
+        asked().filter(is_missed).chain(asked().filter(|area| !is_missed(area))).collect()
+    }
+
+    /// The requested part of the reachable floor: its area in square metres and its scanned share. `None` if all of it was
+    /// requested, or if the account is not known.
+    ///
+    /// Floor that was scanned without being requested counts as requested.
+    pub fn requested(&self) -> Option<(f64, f64)> {
+        let not_asked_m2 = self.not_requested_m2();
+        let reachable = self.floor().filter(|_| not_asked_m2 > 0.0)?.reachable;
+        let requested_m2 = reachable.area_m2 - not_asked_m2;
+        let scanned_m2 = reachable.area_m2 * reachable.scanned;
+        (requested_m2 > 0.0).then(|| (requested_m2, (scanned_m2 / requested_m2).min(1.0)))
     }
 
     /// Reachable floor that was neither requested nor scanned, square metres.

@@ -108,6 +108,8 @@ pub enum Pane {
     Parameters,
     /// The plan screen: the pre-flight checks.
     Checks,
+    /// The result screen: the achieved figures.
+    Figures,
 }
 
 impl Pane {
@@ -118,6 +120,10 @@ impl Pane {
         [Self::Map, Self::Promise, Self::LeftOut, Self::Checks, Self::Parameters];
     /// The panes beside the map of the plan screen that are shown one at a time on a narrow terminal, in Tab order.
     pub const PLAN_PARTS: [Self; 4] = [Self::Map, Self::LeftOut, Self::Checks, Self::Parameters];
+    /// The panes of the result screen that are shown one at a time on a small terminal, in Tab order.
+    pub const RESULT_PAGES: [Self; 4] = [Self::Figures, Self::Coverage, Self::Missed, Self::Map];
+    /// The panes of the result screen that share a place on a narrow terminal, in Tab order.
+    pub const RESULT_PARTS: [Self; 2] = [Self::Figures, Self::Map];
 }
 
 /// The quantity of a chart.
@@ -416,7 +422,9 @@ impl Ui {
             self.back.push(self.screen);
         }
         self.screen = screen;
-        if !self.panes().is_empty() && !self.panes().contains(&self.pane) {
+        if screen == Screen::Result {
+            self.pane = Pane::Figures;
+        } else if !self.panes().is_empty() && !self.panes().contains(&self.pane) {
             self.pane = Pane::Map;
         }
         if screen == Screen::Mission {
@@ -427,6 +435,9 @@ impl Ui {
 
     /// Whether a pane is visible.
     pub fn shows(&self, pane: Pane) -> bool {
+        if self.screen == Screen::Result && !self.panes().is_empty() {
+            return self.pane == pane;
+        }
         if self.screen != Screen::Mission {
             let is_paged = self.screen == Screen::Plan && self.arrangement() == Arrangement::Paged;
             return pane == Pane::Map
@@ -451,6 +462,8 @@ impl Ui {
             (Screen::Plan, Arrangement::Wide) => return &[Pane::Map, Pane::LeftOut],
             (Screen::Plan, Arrangement::Narrow) => return &Pane::PLAN_PARTS,
             (Screen::Plan, Arrangement::Paged) => return &Pane::PLAN_PAGES,
+            (Screen::Result, Arrangement::Narrow) => return &Pane::RESULT_PARTS,
+            (Screen::Result, Arrangement::Paged) => return &Pane::RESULT_PAGES,
             (Screen::Mission, _) => {}
             _ => return &[],
         }

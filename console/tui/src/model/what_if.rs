@@ -40,6 +40,9 @@ pub struct Forecast {
     pub outlook: Outlook,
     /// The path driven.
     pub path: Vec<Point>,
+    /// Whether every plan of the forecast is certified for the tether; `None` if none was checked.
+    #[serde(default)]
+    pub certified: Option<bool>,
 }
 
 impl WhatIf {

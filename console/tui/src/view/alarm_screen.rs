@@ -11,6 +11,7 @@ use super::charts::{self, Series};
 use super::look::{Look, fill};
 use super::sketch::{self, Sketch};
 use super::{events, text};
+use crate::model::history::HISTORY_S;
 use crate::model::ui::Arrangement;
 use crate::model::{Alarm, Model, Overlay, Screen};
 use crate::theme::Role;
@@ -124,7 +125,7 @@ fn actions_block<'t>(look: &Look, alarm: &Alarm, title: &str) -> ratatui::widget
 
 /// Whether the figure of an alarm can be drawn as a curve.
 fn is_charted(alarm: &Alarm) -> bool {
-    alarm.history.last(crate::model::history::HISTORY_S).len() > 1
+    alarm.history.last(HISTORY_S).len() > 1
 }
 
 /// The figure of an alarm over the last minutes, with the limit of the alarm.
@@ -132,20 +133,16 @@ fn draw_chart(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
     if area.height < CHART.0 || !is_charted(alarm) {
         return;
     }
-    let numbers = |reading: &Option<crate::model::alarms::Reading>| {
-        reading.as_ref().and_then(|reading| reading.numbers.as_ref()?.1)
-    };
-    let limit = numbers(&alarm.reading).or_else(|| numbers(&alarm.peak));
-    let largest = alarm.history.last(crate::model::history::HISTORY_S).fold(0.0, f64::max);
+    let readings = [&alarm.reading, &alarm.peak].into_iter().flatten();
+    let limit = readings.filter_map(|reading| reading.numbers?.1).next();
+    let largest = alarm.history.last(HISTORY_S).fold(0.0, f64::max);
     let decimals = match largest.max(limit.unwrap_or(0.0)) {
         most if most < 10.0 => 2,
         most if most < 100.0 => 1,
         _ => 0,
     };
     let series = Series { title: detail::figure(&alarm.cause), values: &alarm.history, limit, decimals };
-    let room = usize::from(area.width).saturating_sub(text::width(series.title) + 8);
-    let block = look.block(Role::Border, series.title, &charts::note(&series, room));
-    charts::framed(look, frame, area, block, &series);
+    charts::figure(look, frame, area, &series);
 }
 
 /// The place of an alarm on a small map.

@@ -10,7 +10,6 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::symbols::Marker;
 use ratatui::text::Line;
-use ratatui::widgets::Block;
 use ratatui::widgets::canvas::Canvas;
 use world::Point;
 
@@ -23,7 +22,7 @@ const HEADROOM: f64 = 1.15;
 
 /// The contents of a chart.
 pub(super) struct Series<'a> {
-    pub title: &'a str,
+    pub title: &'static str,
     pub values: &'a History,
     pub limit: Option<f64>,
     pub decimals: usize,
@@ -31,13 +30,13 @@ pub(super) struct Series<'a> {
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, chart: Chart) {
     let Some(series) = series(look, chart) else { return };
-    let room = usize::from(area.width).saturating_sub(text::width(series.title) + 8);
-    let block = look.pane(Pane::Chart(chart), series.title, &note(&series, room));
+    let block = look.pane(Pane::Chart(chart), series.title, &note(&series, area));
     framed(look, frame, area, block, &series);
 }
 
-/// The value now, the limit and the time that a chart covers, as far as they fit into `room` columns.
-pub(super) fn note(series: &Series, room: usize) -> String {
+/// The value now, the limit and the time that a chart covers, as far as they fit above the chart.
+fn note(series: &Series, area: Rect) -> String {
+    let room = usize::from(area.width).saturating_sub(text::width(series.title) + 8);
     let said = |value: f64| text::number(value, series.decimals);
     let now =
         series.values.last(SLOT_S).last().map_or_else(String::new, |now| format!("now {}, ", said(now)));
@@ -46,8 +45,13 @@ pub(super) fn note(series: &Series, room: usize) -> String {
     text::wording([format!("{now}{limit}{minutes}"), format!("{limit}{minutes}"), minutes], room)
 }
 
-/// Draws a chart in a pane.
-pub(super) fn framed(look: &Look, frame: &mut Frame, area: Rect, block: Block<'_>, series: &Series) {
+/// Draws a chart of a figure that no pane of the mission screen shows.
+pub(super) fn figure(look: &Look, frame: &mut Frame, area: Rect, series: &Series) {
+    let block = look.block(Role::Border, series.title, &note(series, area));
+    framed(look, frame, area, block, series);
+}
+
+fn framed(look: &Look, frame: &mut Frame, area: Rect, block: Block<'_>, series: &Series) {
     let inner = block.inner(area);
     frame.render_widget(block, area);
     if inner.width > LABELS && inner.height >= 2 {

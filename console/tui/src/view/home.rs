@@ -101,14 +101,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_list_is_visible_and_the_focused_one_is_the_largest() {
+    fn every_list_is_visible_and_the_focused_one_comes_first() {
         for focus in HomeList::ALL {
             for rows in 19..60 {
-                let given = shares(rows, focus, [24, 33, 24]);
+                let wanted = [24, 33, 24];
+                let given = shares(rows, focus, wanted);
                 assert_eq!(given.iter().sum::<u16>(), rows, "{given:?}");
                 assert!(given.iter().all(|rows| *rows >= 4), "{given:?}");
+                let (has, wants) = (given[focus as usize], wanted[focus as usize]);
                 let most = given.iter().max().copied();
-                assert_eq!(Some(given[focus as usize]), most, "{focus:?} of {rows}: {given:?}");
+                assert!(has == wants || Some(has) == most, "{focus:?} of {rows}: {given:?}");
             }
         }
         assert_eq!(

@@ -4,57 +4,91 @@
 mod figures;
 mod floor;
 mod missed;
+mod plates;
 
 use super::look::{Look, fill};
 use super::map;
-use crate::model::{RunResult, ui::Arrangement};
+use crate::model::{Pane, RunResult, ui::Arrangement};
 use crate::theme::Role;
 use mission::Outcome;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 
-/// Width of the side panes on a wide and on a narrow screen, columns.
-const SIDE: (u16, u16) = (62, 42);
+/// Width of the side panes on a narrow, a wide and a large screen, columns.
+const SIDE: [u16; 3] = [42, 62, 88];
+/// Columns from which a screen is large.
+const LARGE: u16 = 170;
 /// Minimum rows for the floor shares, including the frame.
 const FLOOR: u16 = 6;
-/// Rows of the list of missed areas, including the frame.
-const MISSED: u16 = 10;
+/// Rows of the list of missed areas, including the frame, on a narrow, a wide and a large screen.
+const MISSED: [u16; 3] = [6, 10, 18];
 
 pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     let Some(result) = &look.model.live.result else {
         let block = look.block(Role::Border, "Result", "");
         return fill(frame, area, block, vec![look.line([(Role::Dim, " No run has ended yet.".into())])]);
     };
-    let wide = arrangement == Arrangement::Wide;
-    let missed_rows = if look.model.live.missed().is_empty() {
-        3
-    } else if wide {
-        MISSED
-    } else {
-        MISSED / 2 + 1
+    let size = match arrangement {
+        Arrangement::Paged | Arrangement::Strip => return page(look, frame, area, result),
+        Arrangement::Narrow => 0,
+        Arrangement::Wide if area.width < LARGE => 1,
+        Arrangement::Wide => 2,
     };
+    let missed_rows = missed::rows(look).min(MISSED[size]).max(3);
     let [above, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(missed_rows)]).areas(area);
-    let side = if wide { SIDE.0 } else { SIDE.1 };
-    let side = if arrangement == Arrangement::Paged { area.width } else { side };
-    let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(side)]).areas(above);
+    let [left, right] =
+        Layout::horizontal([Constraint::Fill(1), Constraint::Length(SIDE[size])]).areas(above);
     let rows = figures::rows(look, result, right.width.saturating_sub(2)) + 2;
-    let [achieved, floor] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(right);
-    // If there is no room for both, the shares matter more than the map, which is one key away.
-    let floor = if left.width > 0 && floor.height < FLOOR { left } else { floor };
-    if left.width > 0 && floor != left {
+    let [achieved, rest] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(right);
+    figures::draw(look, frame, achieved, result);
+    if size == 0 && look.model.ui.pane != Pane::Map {
+        floor::draw(look, frame, left, result);
+    } else {
         map::draw(look, frame, left);
+        side(look, frame, rest, (result, size));
     }
-    let title = format!("Result  {}", ending(result));
-    figures::draw(look, frame, achieved, &title, result);
-    floor::draw(look, frame, floor, result);
     missed::draw(look, frame, below, result);
 }
 
-fn ending(result: &RunResult) -> String {
-    result.summary.outcome.map_or_else(|| "CUT OFF".into(), |outcome| outcome.word().to_uppercase())
+/// What fits below the figures: the floor shares and, on a large screen, the plates.
+fn side(look: &Look, frame: &mut Frame, area: Rect, (result, size): (&RunResult, usize)) {
+    if area.height < FLOOR {
+        return;
+    }
+    let columns = area.width.saturating_sub(2);
+    let wanted = floor::rows(look, result, columns) + 2;
+    let has_plates = size == 2 && look.model.live.floor().is_some_and(|floor| !floor.plates.is_empty());
+    let shares = if has_plates { wanted.min(area.height) } else { area.height };
+    let [floor, plates] = Layout::vertical([Constraint::Length(shares), Constraint::Fill(1)]).areas(area);
+    floor::draw(look, frame, floor, result);
+    if has_plates && plates.height > 3 {
+        plates::draw(look, frame, plates);
+    }
+}
+
+/// One pane at a time.
+fn page(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
+    match look.model.ui.pane {
+        Pane::Map => map::draw(look, frame, area),
+        Pane::Coverage => floor::draw(look, frame, area, result),
+        Pane::Missed => missed::draw(look, frame, area, result),
+        _ => figures::draw(look, frame, area, result),
+    }
+}
+
+/// The title of the figures.
+fn title(result: &RunResult) -> String {
+    let ending =
+        result.summary.outcome.map_or_else(|| "CUT OFF".into(), |outcome| outcome.word().to_uppercase());
+    format!("Result  {ending}")
 }
 
 /// The role of the result's title.
 fn role(result: &RunResult) -> Role {
     if result.summary.outcome == Some(Outcome::Complete) { Role::Good } else { Role::Warn }
+}
+
+/// The next page of a small screen, as a note in a title.
+fn next_page(look: &Look) -> String {
+    if look.model.ui.panes().is_empty() { String::new() } else { look.keys("<next-pane> next") }
 }

@@ -3,43 +3,59 @@
 mod compare;
 
 use super::look::{Look, Parts, fill};
-use super::{table, text};
+use super::{past_run, table, text};
+use crate::model::replay::Other;
 use crate::model::ui::Arrangement;
 use crate::model::{PastRun, Replay};
 use crate::theme::Role;
 use crate::update::Rows;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
-use ratatui::text::Line;
 
 /// Rows of the panes below the list, including frames.
 const BELOW: (u16, u16) = (18, 10);
 /// Width of the selected run's details when the comparison is shown, columns.
 const ABOUT: u16 = 56;
+/// Columns from which the selected run is beside the list, and the width of its pane.
+const LARGE: u16 = 170;
+const DETAIL: u16 = 88;
 
 pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
-    let wide = arrangement == Arrangement::Wide;
-    let is_compared = look.model.live.replay.as_ref().is_some_and(|replay| replay.other.is_some());
+    if arrangement == Arrangement::Wide && area.width >= LARGE {
+        let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(DETAIL)]).areas(area);
+        let rows = if compared(look).is_some() { BELOW.0 } else { 0 };
+        let [list, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(left);
+        runs(look, frame, list);
+        if let Some(compared) = compared(look) {
+            compare::draw(look, frame, below, compared);
+        }
+        return about(look, frame, right);
+    }
     let rows = match arrangement {
         Arrangement::Wide => BELOW.0,
-        _ if is_compared => BELOW.0.min(area.height.saturating_sub(6)),
-        Arrangement::Paged => 0,
-        _ => BELOW.1,
+        _ if compared(look).is_some() => BELOW.0.min(area.height.saturating_sub(6)),
+        Arrangement::Narrow => BELOW.1,
+        Arrangement::Paged | Arrangement::Strip => 0,
     };
     let [list, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(area);
     runs(look, frame, list);
-    let compared = look.model.live.replay.as_ref().and_then(|replay| Some((replay, replay.other.as_ref()?)));
-    match compared {
-        Some((replay, other)) if wide => {
+    match compared(look) {
+        Some(compared) if arrangement == Arrangement::Wide => {
             let [left, right] =
                 Layout::horizontal([Constraint::Length(ABOUT), Constraint::Fill(1)]).areas(below);
             about(look, frame, left);
-            compare::draw(look, frame, right, (replay, other));
+            compare::draw(look, frame, right, compared);
         }
-        Some((replay, other)) => compare::draw(look, frame, below, (replay, other)),
+        Some(compared) => compare::draw(look, frame, below, compared),
         None if rows > 0 => about(look, frame, below),
         None => {}
     }
+}
+
+/// The replayed run and the one with which it is compared.
+fn compared<'a>(look: &Look<'a>) -> Option<(&'a Replay, &'a Other)> {
+    let replay = look.model.live.replay.as_ref()?;
+    Some((replay, replay.other.as_ref()?))
 }
 
 fn runs(look: &Look, frame: &mut Frame, area: Rect) {
@@ -51,21 +67,21 @@ fn runs(look: &Look, frame: &mut Frame, area: Rect) {
         format!("`{}`", text::fit(&review.filter, 20))
     };
     let note = format!("{filter}  {} {}", look.keys("<sort> sort:"), review.sort.word());
-    let block = look.block(Role::Focus, &format!("Runs  {}", listed.len()), &note);
-    let inner = block.inner(area);
+    let inner = look.block(Role::Focus, "", "").inner(area);
     let (columns, height) = (usize::from(inner.width), usize::from(inner.height).saturating_sub(1));
     let widths = widths(&listed, columns);
     let rows: Vec<Parts> =
         listed.iter().map(|run| row(run, mark(model.live.replay.as_deref(), run), widths)).collect();
     let selected = review.selected.min(rows.len().saturating_sub(1));
     let shown = table::window(selected, rows.len(), height);
+    let block = look.block(Role::Focus, &format!("Runs  {}", table::counted(&shown, rows.len())), &note);
     table::place(
         look,
         Rect { y: inner.y + 1, height: inner.height.saturating_sub(1), ..inner },
         Rows::Past,
         shown,
     );
-    let mut lines = vec![look.line(head(widths))];
+    let mut lines: Vec<ratatui::text::Line> = vec![look.line(head(widths))];
     lines.extend(table::rows(look, rows, Some(selected), (columns, height)));
     if listed.is_empty() {
         let words = match &model.home.found {
@@ -101,7 +117,9 @@ struct Widths {
 /// Width for how a run ended, including one blank, columns.
 const END: usize = 10;
 /// Width of mark, date, outcome and coverage, columns.
-const FIXED: usize = 3 + 12 + END + 7;
+const FIXED: usize = 3 + BEGAN + END + 7;
+/// Width for when a run began, including one blank, columns.
+const BEGAN: usize = 13;
 
 /// The column widths; if space is short, the time is dropped first, then the planner.
 fn widths(listed: &[&PastRun], columns: usize) -> Widths {
@@ -117,7 +135,7 @@ fn widths(listed: &[&PastRun], columns: usize) -> Widths {
 
 fn head(widths: Widths) -> Parts {
     let words = [
-        text::column("   began UTC", 15),
+        text::column("   began UTC", 3 + BEGAN),
         text::column("scenario", widths.scenario),
         text::column(if widths.planner > 0 { "planner" } else { "" }, widths.planner),
         text::column("end", END),
@@ -133,10 +151,10 @@ fn row(run: &PastRun, mark: &str, widths: Widths) -> Parts {
     let reach = run.reachable.map_or_else(|| "-".into(), text::percent);
     let is_sound = matches!(run.end.as_str(), "complete" | "aborted");
     let role = if is_sound { Role::Text } else { Role::Warn };
-    let name = if run.scenario.is_empty() { &run.name } else { &run.scenario };
+    let name = past_run::name(run);
     vec![
         (Role::Title, format!("{mark} ")),
-        (Role::Dim, text::column(&run.began, 12)),
+        (Role::Dim, text::column(&run.began, BEGAN)),
         (Role::Text, text::column(name, widths.scenario)),
         (Role::Dim, text::column(&run.planner, widths.planner)),
         (role, text::column(&text::fit(&run.end, END - 1), END)),
@@ -146,43 +164,21 @@ fn row(run: &PastRun, mark: &str, widths: Widths) -> Parts {
     ]
 }
 
-/// Remarks, bookmarks and problems, shortest first.
+/// The mark of a verified run, bookmarks, the remark, and the mark of a problem, shortest first.
 fn notes(run: &PastRun) -> String {
+    let verified = run.verified.as_ref().map(|_| "✓v".to_owned());
     let bookmarks = (run.bookmarks > 0).then(|| format!("●{}", run.bookmarks));
-    let all =
-        bookmarks.into_iter().chain(run.remark.clone()).chain(run.note.as_ref().map(|_| "*".to_owned()));
+    let problem = run.note.as_ref().map(|_| "*".to_owned());
+    let all = verified.into_iter().chain(bookmarks).chain(run.remark.clone()).chain(problem);
     all.collect::<Vec<_>>().join(" ")
 }
 
 fn about(look: &Look, frame: &mut Frame, area: Rect) {
-    let block = look.block(Role::Border, "Selected run", "");
-    let columns = usize::from(block.inner(area).width).saturating_sub(2);
-    let Some(run) = look.model.review.run(&look.model.home) else {
-        return fill(frame, area, block, vec![look.line([(Role::Dim, " No run is selected.".into())])]);
-    };
-    let mut lines = wrapped(look, Role::Text, &run.name, columns);
-    let end = format!("{} after {}", run.end, run.mission_time_s.map_or_else(|| "-".into(), text::clock));
-    lines.extend(wrapped(look, Role::Text, &end, columns));
-    if let Some(note) = &run.note {
-        lines.extend(wrapped(look, Role::Warn, &format!("* {note}"), columns));
+    match look.model.review.run(&look.model.home) {
+        Some(run) => past_run::draw(look, frame, area, run),
+        None => {
+            let lines = vec![look.line([(Role::Dim, " No run is selected.".into())])];
+            fill(frame, area, look.block(Role::Border, "Selected run", ""), lines);
+        }
     }
-    if let Some(remark) = &run.remark {
-        lines.extend(wrapped(look, Role::Title, &format!("Remark: {remark}"), columns));
-    }
-    let replay = look.model.live.replay.as_ref().filter(|replay| replay.name == run.name);
-    for bookmark in replay.iter().flat_map(|replay| &replay.notes.bookmarks) {
-        let words = format!("● T+{} {}", text::clock(bookmark.t_s), bookmark.text);
-        lines.extend(wrapped(look, Role::Text, &words, columns));
-    }
-    if replay.is_none() && run.bookmarks > 0 {
-        let plural = if run.bookmarks == 1 { "" } else { "s" };
-        let words = format!("● {} bookmark{plural}", run.bookmarks);
-        lines.extend(wrapped(look, Role::Dim, &words, columns));
-    }
-    fill(frame, area, block, lines);
-}
-
-fn wrapped(look: &Look, role: Role, words: &str, columns: usize) -> Vec<Line<'static>> {
-    let lines = text::wrap(words, columns).into_iter();
-    lines.map(|line| look.line([(role, format!(" {}", text::fit(&line, columns)))])).collect()
 }

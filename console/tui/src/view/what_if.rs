@@ -6,19 +6,24 @@ use super::{map, text};
 use crate::model::ui::Arrangement;
 use crate::model::{Candidate, Forecast, WhatIf};
 use crate::theme::Role;
-use mission::Outlook;
+use mission::{MissionConfig, Outlook};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 
 /// Width of a label, columns.
-const LABEL: usize = 11;
-/// Width of the table on a wide screen, columns.
-const TABLE: u16 = 66;
+const LABEL: usize = 12;
+/// Width of the table on a wide and on a large screen, columns.
+const TABLE: (u16, u16) = (66, 100);
+/// Columns from which a screen is large.
+const LARGE: u16 = 170;
+/// Width of a candidate's column from which the difference to the first candidate is beside its value.
+const DIFFERENCE: usize = 17;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     let Some(what_if) = &look.model.live.what_if else { return };
     let table_area = if arrangement == Arrangement::Wide {
-        let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(TABLE)]).areas(area);
+        let table = if area.width >= LARGE { TABLE.1 } else { TABLE.0 };
+        let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(table)]).areas(area);
         map::draw(look, frame, left);
         right
     } else {
@@ -27,19 +32,22 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     let title = format!("What if, from T+{}", text::clock(what_if.t_s));
     let note = format!("{} of {} computed", what_if.n_done(), what_if.candidates.len());
     let block = look.block(Role::Focus, &title, &note);
-    let columns = usize::from(block.inner(table_area).width);
-    let mut rows = table(what_if, columns);
-    rows.push(Parts::new());
-    rows.extend(remarks(what_if, columns));
+    let inner = block.inner(table_area);
+    let mut rows = table(look, what_if, usize::from(inner.width));
+    if usize::from(inner.height) > rows.len() + 4 {
+        rows.push(Parts::new());
+    }
+    rows.extend(remarks(what_if, usize::from(inner.width)));
     fill(frame, table_area, block, rows.into_iter().map(|parts| look.line(parts)).collect());
 }
 
-fn table(what_if: &WhatIf, columns: usize) -> Vec<Parts> {
+fn table(look: &Look, what_if: &WhatIf, columns: usize) -> Vec<Parts> {
     let width = columns.saturating_sub(LABEL + 1) / what_if.candidates.len().max(1);
-    let row = |label: &str, value: &dyn Fn(usize, &Candidate) -> String| -> Parts {
+    let row = |label: &str, value: &dyn Fn(usize, &Candidate) -> (Role, String)| -> Parts {
         let cells = what_if.candidates.iter().enumerate().map(|(index, candidate)| {
-            let role = if index == what_if.selected { Role::Title } else { Role::Text };
-            (role, format!("{:>width$}", text::fit(&value(index, candidate), width.saturating_sub(1))))
+            let (role, words) = value(index, candidate);
+            let role = if role == Role::Text && index == what_if.selected { Role::Title } else { role };
+            (role, format!("{:>width$}", text::fit(&words, width.saturating_sub(1))))
         });
         std::iter::once((Role::Dim, format!(" {label:<LABEL$}"))).chain(cells).collect()
     };
@@ -47,19 +55,42 @@ fn table(what_if: &WhatIf, columns: usize) -> Vec<Parts> {
         row("", &|index, _| {
             let mark = if index == what_if.selected { ">" } else { "" };
             let letter = char::from(b'A' + index as u8);
-            format!("{mark}{letter}{}", if index == 0 { " current" } else { "" })
+            (Role::Text, format!("{mark}{letter}{}", if index == 0 { " current" } else { "" }))
         }),
-        row("planner", &|_, candidate| candidate.choice.id.clone()),
+        row("planner", &|_, candidate| (Role::Text, candidate.choice.id.clone())),
+        row("end", &|_, candidate| end(candidate)),
+        row("tether", &|_, candidate| certificate(candidate)),
     ];
-    for (label, figure) in FIGURES {
-        rows.push(row(label, &|_, candidate| match &candidate.made {
-            Some(Ok(Forecast { outlook, .. })) => figure(outlook),
-            Some(Err(_)) => "-".into(),
-            None if label == FIGURES[0].0 => progress(candidate),
-            None => String::new(),
+    let mission = look.run.about.as_ref().map(|about| &about.mission);
+    let first = what_if.candidates.first().and_then(outlook);
+    for figure in FIGURES {
+        rows.push(row(figure.label, &|index, candidate| {
+            let Some(outlook) = outlook(candidate) else { return (Role::Dim, "-".into()) };
+            let beside = (index > 0 && width >= DIFFERENCE).then_some(first).flatten();
+            figure.cell(outlook, beside, mission)
         }));
     }
+    rows.push(row("parameters", &|_, candidate| match candidate.choice.parameters.len() {
+        0 => (Role::Text, "defaults".into()),
+        n => (Role::Text, format!("{n} changed")),
+    }));
     rows
+}
+
+fn outlook(candidate: &Candidate) -> Option<&Outlook> {
+    candidate.made.as_ref()?.as_ref().ok().map(|forecast| &forecast.outlook)
+}
+
+/// How a forecast ends, or its progress.
+fn end(candidate: &Candidate) -> (Role, String) {
+    match &candidate.made {
+        Some(Ok(Forecast { outlook, .. })) => match outlook.outcome {
+            Some(outcome) => (Role::Text, outcome.word().to_uppercase()),
+            None => (Role::Hold, "! HELD".into()),
+        },
+        Some(Err(_)) => (Role::Warn, "! none".into()),
+        None => (Role::Watch, progress(candidate)),
+    }
 }
 
 fn progress(candidate: &Candidate) -> String {
@@ -68,39 +99,106 @@ fn progress(candidate: &Candidate) -> String {
         .map_or_else(|| "waiting".into(), |share| format!("{} %", text::number((100.0 * share).floor(), 0)))
 }
 
-type Figure = fn(&Outlook) -> String;
+/// Whether every plan of the forecast is certified for the tether.
+fn certificate(candidate: &Candidate) -> (Role, String) {
+    match candidate.made.as_ref().and_then(|made| made.as_ref().ok()).map(|forecast| forecast.certified) {
+        Some(Some(true)) => (Role::Good, "certified".into()),
+        Some(Some(false)) => (Role::Warn, "! NOT cert.".into()),
+        Some(None) | None => (Role::Dim, "-".into()),
+    }
+}
 
-const FIGURES: [(&str, Figure); 8] = [
-    ("end", |outlook| outlook.outcome.map_or_else(|| "HELD".into(), |outcome| outcome.word().to_uppercase())),
-    ("after", |outlook| text::clock(outlook.after_s)),
-    ("path", |outlook| format!("{} m", text::number(outlook.length_m, 1))),
-    ("reachable", |outlook| format!("{} %", text::percent(outlook.reachable))),
-    ("clearance", |outlook| format!("{} m", text::number(outlook.clearance_min_m, 2))),
-    ("tether out", |outlook| {
-        outlook.tether_length_max_m.map_or_else(|| "-".into(), |m| format!("{} m", text::number(m, 1)))
-    }),
-    ("wrap", |outlook| {
-        outlook
-            .wrap_max_rad
-            .map_or_else(|| "-".into(), |rad| format!("{}°", text::number(rad.to_degrees(), 0)))
-    }),
-    ("parameters", |outlook| match outlook.choice.parameters.len() {
-        0 => "defaults".into(),
-        n => format!("{n} changed"),
-    }),
+/// A figure of a forecast.
+#[derive(Clone, Copy)]
+struct Figure {
+    label: &'static str,
+    unit: &'static str,
+    decimals: usize,
+    value: fn(&Outlook) -> Option<f64>,
+    /// The limit of the mission, and whether the value must not fall below it.
+    limit: fn(&MissionConfig) -> Option<(f64, bool)>,
+}
+
+const fn figure(
+    label: &'static str,
+    unit: &'static str,
+    decimals: usize,
+    value: fn(&Outlook) -> Option<f64>,
+    limit: fn(&MissionConfig) -> Option<(f64, bool)>,
+) -> Figure {
+    Figure { label, unit, decimals, value, limit }
+}
+
+const FIGURES: [Figure; 6] = [
+    figure("after, min", "", 1, |o| Some(o.after_s / 60.0), |_| None),
+    figure("path", " m", 1, |o| Some(o.length_m), |_| None),
+    figure("reachable", " %", 1, |o| Some(world::coverage::percent(o.reachable)), |_| None),
+    figure("clearance", " m", 2, |o| Some(o.clearance_min_m), |m| Some((m.clearance_m, true))),
+    figure(
+        "tether out",
+        " m",
+        1,
+        |o| o.tether_length_max_m,
+        |m| Some((m.tether.as_ref()?.limits.reel_length_m, false)),
+    ),
+    figure(
+        "wrap",
+        "°",
+        0,
+        |o| o.wrap_max_rad.map(f64::to_degrees),
+        |m| Some((m.tether.as_ref()?.limits.wrap_max_rad.to_degrees(), false)),
+    ),
 ];
 
-/// How the selected forecast ends, and what the forecasts are based on.
+impl Figure {
+    /// The value with its unit, marked if it is beyond its limit, and its difference to the first candidate.
+    fn cell(
+        &self,
+        outlook: &Outlook,
+        first: Option<&Outlook>,
+        mission: Option<&MissionConfig>,
+    ) -> (Role, String) {
+        let Some(value) = (self.value)(outlook) else { return (Role::Dim, "-".into()) };
+        let scale = 10_f64.powi(self.decimals as i32);
+        // Values that print the same are treated as equal.
+        let shown = |value: f64| (value * scale).round();
+        let is_beyond = mission.and_then(self.limit).is_some_and(|(limit, is_least)| {
+            let (value, limit) = (shown(value), shown(limit));
+            if is_least { value < limit } else { value > limit }
+        });
+        let difference = first.and_then(self.value).map(|first| (shown(value) - shown(first)) / scale);
+        let difference = difference.filter(|by| by.is_finite()).map_or_else(String::new, |by| {
+            let sign = if by >= 0.0 { "+" } else { "" };
+            format!(" ({sign}{})", text::number(by, self.decimals))
+        });
+        let mark = if is_beyond { "! " } else { "" };
+        let words = format!("{mark}{}{}{difference}", text::number(value, self.decimals), self.unit);
+        (if is_beyond { Role::Warn } else { Role::Text }, words)
+    }
+}
+
+/// How the forecasts that do not complete the task end, how the selected one ends, and what the forecasts are based on.
 fn remarks(what_if: &WhatIf, columns: usize) -> Vec<Parts> {
-    let selected = what_if.candidate().map(|candidate| match &candidate.made {
-        Some(Ok(forecast)) => (Role::Text, format!("{}: {}.", candidate.choice.id, forecast.outlook.reason)),
-        Some(Err(why)) => (Role::Warn, format!("{}: {why}.", candidate.choice.id)),
-        None => (Role::Watch, format!("{}: being computed.", candidate.choice.id)),
-    });
+    let reason = |(index, candidate): (usize, &Candidate)| {
+        let is_selected = index == what_if.selected;
+        let letter = char::from(b'A' + index as u8);
+        let (role, why) = match &candidate.made {
+            Some(Ok(Forecast { outlook, .. })) if outlook.outcome.is_none() => {
+                (Role::Hold, format!("held: {}", outlook.reason))
+            }
+            Some(Ok(Forecast { outlook, .. })) if is_selected => (Role::Text, outlook.reason.clone()),
+            Some(Err(why)) => (Role::Warn, why.clone()),
+            None if is_selected => (Role::Watch, "being computed".to_owned()),
+            Some(Ok(_)) | None => return None,
+        };
+        Some((role, format!("{letter} {}: {why}.", candidate.choice.id)))
+    };
+    let reasons = what_if.candidates.iter().enumerate().filter_map(reason);
     let basis = (
         Role::Dim,
-        "Based on the current estimate and map: obstacles not found yet are not included. The mission and \
-        its recording are not affected; choosing another planner asks first and does not move the robot."
+        "Figures in brackets: difference to A. Based on the current estimate and map: obstacles not found yet \
+        are not included. The mission and its recording are not affected; choosing another planner asks first \
+        and does not move the robot."
             .to_owned(),
     );
     let set = what_if.candidate().filter(|candidate| !candidate.choice.parameters.is_empty());
@@ -108,7 +206,7 @@ fn remarks(what_if: &WhatIf, columns: usize) -> Vec<Parts> {
         let values = candidate.choice.parameters.iter().map(|(key, value)| format!("{key} = {value}"));
         (Role::Text, format!("{} with {}.", candidate.choice.id, values.collect::<Vec<_>>().join(", ")))
     });
-    let words = set.into_iter().chain(selected).chain([basis]);
+    let words = reasons.chain(set).chain([basis]);
     words
         .flat_map(|(role, words)| {
             text::wrap(&words, columns.saturating_sub(2))

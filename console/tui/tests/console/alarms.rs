@@ -2,6 +2,7 @@
 
 use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};
+use crate::sizes;
 use mission::event::TetherAlarm;
 use mission::{EventKind, HoldReason, Note, Noted, Order, Resumes, Severity};
 use tui::actions::keymap::{Binding, Keymap};
@@ -55,14 +56,9 @@ fn troubled() -> Screen {
 #[test]
 fn alarms() {
     let mut screen = troubled();
-    for size in [(120, 36), (80, 24), (60, 16)] {
-        screen.send(Msg::Resize { width: size.0, height: size.1 });
-        if size.0 == 60 {
-            screen.press(ENTER);
-        }
-        let text = text(&drawn(&screen.model, RICH, size));
-        insta::assert_snapshot!(format!("alarms_{}x{}", size.0, size.1), text);
-    }
+    sizes::store("alarms", &mut screen, sizes::is_log);
+    screen.press(ENTER);
+    sizes::store("alarm_actions", &mut screen, sizes::is_log);
 }
 
 #[test]
@@ -226,15 +222,52 @@ fn the_actions_of_an_alarm_stand_beside_the_keys_that_run_them() {
 fn keeping_the_robot_held_holds_and_never_asks_to_resume() {
     let mut screen = troubled();
     screen.press(ENTER);
-    assert_eq!(screen.type_text("2"), [Effect::Order(Order::Hold)]);
+    assert_eq!(screen.type_text("1"), [Effect::Order(Order::Hold)]);
     let events = screen.mission.obeyed(Order::Hold);
     screen.hear(RunMsg::Events(events));
     screen.press(ENTER);
-    assert_eq!(screen.type_text("2"), []);
+    assert_eq!(screen.type_text("1"), []);
     assert_eq!((notice(&screen), &screen.model.ui.overlay), ("already held", &Overlay::None));
     screen.press(ENTER);
-    screen.type_text("1");
-    assert!(notice(&screen).starts_with("advice, not an action: Wait"));
+    let shown = text(&drawn(&screen.model, RICH, (80, 24)));
+    assert!(shown.contains("· Wait: the mission resumes automatically"), "advice has no number\n{shown}");
+}
+
+#[test]
+fn a_station_is_excluded_and_an_alarm_acknowledged_from_the_list_of_actions() {
+    let mut screen = Screen::running();
+    screen.type_text("4");
+    let station = Cause::Station(world::StationId(4));
+    screen.model.ui.alarm = Some(station.clone());
+    screen.press(ENTER);
+    let excluded = Order::UseStation { station: world::StationId(4), used: false, by: None };
+    assert_eq!(screen.type_text("3"), [Effect::Order(excluded)]);
+    screen.model.console.preferences.operator = Some("lk".into());
+    screen.press(ENTER);
+    screen.type_text("4");
+    let alarm = screen.model.live.run.alarms.get(&station).unwrap();
+    assert_eq!(alarm.state, State::Acknowledged);
+    let by = alarm.acknowledged.as_ref().and_then(|seen| seen.by.as_deref());
+    assert_eq!(by, Some("lk"));
+    screen.send(Msg::Resize { width: 120, height: 36 });
+    let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+    assert!(shown.contains("at T+00:16:07, by lk") && shown.contains("ACTIVE, ack lk"), "{shown}");
+}
+
+#[test]
+fn an_alarm_that_has_cleared_shows_its_peak_and_no_stale_value() {
+    let mut screen = Screen::tethered();
+    let near = |out_m| TetherAlarm::Reel { out_m, reel_length_m: 30.0 };
+    hear(&mut screen, EventKind::TetherAlarmRaised { alarm: near(25.3), reached: false });
+    hear(&mut screen, EventKind::TetherAlarmCleared { alarm: near(25.3) });
+    screen.type_text("4");
+    screen.model.ui.alarm = Some(Cause::Tether("reel".into()));
+    let size = (120, 36);
+    screen.send(Msg::Resize { width: size.0, height: size.1 });
+    let shown = text(&drawn(&screen.model, RICH, size));
+    let row = shown.lines().find(|line| line.contains("reel nearly out") && line.contains('>')).unwrap();
+    let figures: Vec<&str> = row.split("reel nearly out").nth(1).unwrap().split_whitespace().collect();
+    assert_eq!(figures, ["ok", "25.3", "m", "24.0", "m", "│"], "the limit is that of the alarm\n{shown}");
 }
 
 #[test]

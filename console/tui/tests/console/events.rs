@@ -2,6 +2,7 @@
 
 use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};
+use crate::sizes;
 use mission::{EventKind, HoldReason, Order, Severity};
 use positioning::Exclusion;
 use tui::model::Overlay;
@@ -47,10 +48,31 @@ fn events() {
     let mut screen = with_events();
     screen.type_text("/source=ae \"station\"");
     screen.press([Key::Enter, Key::Down, Key::Down, Key::Enter]);
-    for size in [(120, 36), (80, 24), (60, 16)] {
-        screen.send(Msg::Resize { width: size.0, height: size.1 });
-        insta::assert_snapshot!(format!("events_{}x{}", size.0, size.1), shown(&screen, size));
-    }
+    sizes::store("events", &mut screen, sizes::is_log);
+}
+
+#[test]
+fn planner_messages_are_hidden_until_they_are_asked_for_and_then_listed_as_one() {
+    let mut screen = with_events();
+    let said = |screen: &mut Screen, n: u32| {
+        let (planner, level) = ("rpf".to_owned(), planner_api::LogLevel::Info);
+        let message = format!("candidate {n} is longer");
+        let event = screen.mission.now(EventKind::PlannerLogged { planner, level, message });
+        screen.hear(RunMsg::Events(vec![event]));
+    };
+    (0..4).for_each(|n| said(&mut screen, n));
+    let size = (80, 24);
+    screen.send(Msg::Resize { width: size.0, height: size.1 });
+    let before = shown(&screen, size);
+    assert!(!before.contains("candidate") && before.contains("planner messages hidden"), "{before}");
+    screen.type_text("d");
+    let after = shown(&screen, size);
+    assert!(after.contains("rpf: candidate 3 is longer (+3 more)"), "{after}");
+    screen.press([Key::Enter]);
+    let detail = shown(&screen, size);
+    assert!(detail.contains("Rpf: candidate 0 is longer"), "{detail}");
+    screen.type_text("d");
+    assert!(!shown(&screen, size).contains("candidate 3"));
 }
 
 #[test]

@@ -26,6 +26,7 @@ mod scanned;
 mod screens;
 mod scripts;
 mod shadow;
+mod sizes;
 mod start;
 mod stopping;
 mod unseen;

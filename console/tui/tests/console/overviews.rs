@@ -3,6 +3,7 @@
 use crate::fixture::{RICH, Screen, choice};
 use crate::panes::missed_summary;
 use crate::screens::{drawn, text};
+use crate::sizes;
 use account::{Estimate, Fold, Summary, estimate::Worst};
 use mission::{AskId, EventKind, Order, Outcome, Outlook, Severity, WorkerId};
 use tui::model::home::{Attention, Found};
@@ -31,7 +32,7 @@ fn scenario(name: &str, task: &str, planner: &str) -> ScenarioEntry {
         planner: planner.into(),
         expected: "complete, no collision".into(),
         problem: None,
-        world: None,
+        world: Screen::idle().model.live.run.about.map(|about| Box::new(about.world)),
     }
 }
 
@@ -52,26 +53,49 @@ fn past(name: &str, end: &str, reachable: Option<f64>) -> PastRun {
     }
 }
 
+/// The time at which the fixtures look at their runs: 40 minutes after the first one began.
+const BEGAN_UNIX_S: f64 = 1_795_264_000.0 - 2400.0;
+
 fn found() -> Found {
     let invalid = ScenarioEntry {
         problem: Some("scenarios/depot.toml:14:1: unknown key `radus_m`, did you mean `radius_m`?".into()),
+        world: None,
         ..scenario("depot", "", "")
     };
-    let scenarios = vec![
+    let demo =
+        ScenarioEntry { source: Source::Demo, tank: "Ø20 m".into(), ..scenario("demo", "follow", "rpf") };
+    let mut scenarios = vec![
         scenario("corridor", "goto", "navfn"),
         scenario("cover-circle", "cover", "tether-safe"),
+        scenario("cover-unknown-columns", "cover", "tether-safe"),
+        demo,
         invalid,
         scenario("goto-single-obstacle", "goto", "apf"),
     ];
+    scenarios.extend((1..=8).map(|n| scenario(&format!("shift-{n}"), "cover", "hull-partition")));
     let point =
         |severity, kind: &str, text: &str| Attention { severity, kind: kind.into(), text: text.into() };
+    let mut runs = vec![
+        PastRun {
+            verified: Some("2026-11-22 04:21".into()),
+            ..past("cover-circle", "complete", Some(0.997))
+        },
+        PastRun {
+            note: Some("killed; the journal holds everything up to T+401.0 s".into()),
+            ..past("corridor", "CRASHED", None)
+        },
+        past("goto-single-obstacle", "RECORDING FAILED", None),
+        PastRun {
+            remark: Some("second pass".into()),
+            ..past("cover-unknown-columns", "aborted", Some(0.225))
+        },
+    ];
+    for (index, run) in runs.iter_mut().enumerate() {
+        run.began_unix_s = Some(BEGAN_UNIX_S - 50_000.0 * index as f64);
+    }
     Found {
         scenarios,
-        runs: vec![
-            past("cover-circle", "complete", Some(0.997)),
-            past("corridor", "CRASHED", None),
-            past("goto-single-obstacle", "RECORDING FAILED", None),
-        ],
+        runs,
         logs: "logs".into(),
         free_bytes: Some(71_000_000_000),
         attention: vec![
@@ -80,10 +104,22 @@ fn found() -> Found {
                 "CRASHED",
                 "run corridor: killed; the journal holds everything up to T+401.0 s",
             ),
-            point(Severity::Watch, "INVALID", "depot: scenarios/depot.toml:14:1: unknown key `radus_m`"),
-            point(Severity::Info, "ok", "runs can be kept in logs"),
+            point(
+                Severity::Watch,
+                "INVALID",
+                "depot: scenarios/depot.toml:14:1: unknown key `radus_m`\n  help: did you mean `radius_m`?",
+            ),
+            point(Severity::Info, "ok", "runs will be kept in logs"),
         ],
     }
+}
+
+/// What is known about the first run in the list.
+fn glimpse(screen: &Screen) -> tui::model::Glimpse {
+    let run = tui::model::Run { log: tui::model::Log::default(), ..screen.model.live.run.clone() };
+    let (_, result) = ended();
+    let summary = Summary { holds: 2, obstacles_found: 1, ..*result.summary };
+    tui::model::Glimpse { run, summary: Some(Box::new(summary)) }
 }
 
 #[test]
@@ -91,7 +127,51 @@ fn home() {
     let mut screen = Screen::idle();
     screen.send(Msg::Found(Box::new(found())));
     screen.type_text("1jj");
-    store("home", &mut screen);
+    sizes::store("home", &mut screen, |_| false);
+    screen.type_text("jj");
+    let refused = screen.press([tui::Key::Enter]);
+    assert_eq!(refused, []);
+    let said = screen.model.notice().map(|notice| notice.text.clone()).unwrap_or_default();
+    assert!(said.starts_with("depot cannot be opened: line 14: unknown key"), "{said}");
+}
+
+#[test]
+fn past_runs_at_home() {
+    let mut screen = Screen::running();
+    screen.send(Msg::Found(Box::new(found())));
+    let held = screen.mission.obeyed(Order::Hold);
+    screen.hear(RunMsg::Events(held));
+    screen.type_text("1");
+    let offered =
+        |screen: &Screen| tui::update::offered(&screen.model, tui::actions::ActionId::Verify).is_ok();
+    assert!(!offered(&screen), "no run is selected while the scenarios have the focus");
+    screen.send(Msg::Resize { width: 120, height: 36 });
+    let asked = screen.press([tui::Key::Tab]);
+    let key = ("20261122T040049Z-cover-circle".to_owned(), "complete".to_owned());
+    assert_eq!(asked, [Effect::Glimpse(key.clone())]);
+    assert!(offered(&screen));
+    let known = glimpse(&screen);
+    screen.send(Msg::Glimpsed(key.clone(), Ok(Box::new(known))));
+    sizes::store("home_runs", &mut screen, |_| false);
+    let effects = screen.type_text("v");
+    assert_eq!(effects, [Effect::Do(tui::Job::Verify(key.0))]);
+    let said = screen.model.notice().map(|notice| notice.text.clone()).unwrap_or_default();
+    assert_eq!(said, "verifying 20261122T040049Z-cover-circle...");
+}
+
+#[test]
+fn attention_is_read_in_full() {
+    let mut screen = Screen::idle();
+    screen.send(Msg::Found(Box::new(found())));
+    screen.type_text("1");
+    screen.press([tui::Key::BackTab, tui::Key::Down, tui::Key::Enter]);
+    sizes::store("home_attention", &mut screen, |_| false);
+    screen.send(Msg::Resize { width: 80, height: 24 });
+    let shown = text(&drawn(&screen.model, RICH, (80, 24)));
+    assert!(shown.contains("help: did you mean `radius_m`?"), "{shown}");
+    screen.press([tui::Key::Esc]);
+    let shown = text(&drawn(&screen.model, RICH, (80, 24)));
+    assert!(!shown.contains("help: did you mean"), "{shown}");
 }
 
 fn estimate(length_m: f64) -> Estimate {
@@ -145,7 +225,45 @@ fn preflight() {
 
 #[test]
 fn result() {
-    store("result", &mut ended().0);
+    let mut screen = ended().0;
+    sizes::store("result", &mut screen, sizes::is_log);
+    screen.send(Msg::Resize { width: 60, height: 16 });
+    let pages = ["Coverage", "Missed:", "Map", "Result"];
+    for page in pages {
+        screen.press([tui::Key::Tab]);
+        let shown = text(&drawn(&screen.model, RICH, (60, 16)));
+        assert!(shown.contains(&format!("─ {page}")), "{page}\n{shown}");
+    }
+}
+
+#[test]
+fn result_of_an_aborted_mission() {
+    let (mut screen, closed) = ended();
+    let mut summary = missed_summary();
+    let floor = summary.floor.as_mut().unwrap();
+    let ahead =
+        account::Area { reason: account::MissReason::NotReached, area_m2: 40.2, ..floor.missed[0].clone() };
+    floor.missed.insert(0, ahead);
+    floor.plates = serde_json::from_value(serde_json::json!([
+        { "name": "R-03-05", "kind": "rectangular", "error_p95_m": 0.11, "error_max_m": 0.19, "area_m2": 6.4,
+          "scanned": 0.9, "missed": 0.1, "unreachable": 0.0, "margin": 0.0,
+          "percent": { "scanned": 90.0, "missed": 10.0, "unreachable": 0.0, "margin": 0.0 } },
+        { "name": "A-01", "kind": "annular", "error_p95_m": 0.04, "error_max_m": 0.06, "area_m2": 2.4,
+          "scanned": 1.0, "missed": 0.0, "unreachable": 0.0, "margin": 0.0,
+          "percent": { "scanned": 100.0, "missed": 0.0, "unreachable": 0.0, "margin": 0.0 } },
+    ]))
+    .unwrap();
+    let summary = Summary {
+        outcome: Some(Outcome::Aborted),
+        reason: Some("ended by the operator".into()),
+        violations: Some(vec!["expected complete, actual aborted".into()]),
+        ..summary
+    };
+    screen.hear(RunMsg::Closed(Box::new(RunResult { summary: Box::new(summary), ..closed })));
+    sizes::store("result_aborted", &mut screen, sizes::is_log);
+    let shown = text(&drawn(&screen.model, RICH, (200, 60)));
+    assert!(shown.contains("Missed: 1 area, 0.75 m²; not reached: 1 area, 40.20 m²"), "{shown}");
+    assert!(shown.contains("Expected complete, actual aborted"), "{shown}");
 }
 
 #[test]
@@ -165,7 +283,7 @@ fn result_of_a_rescan() {
     all.missed.truncate(0);
     screen.hear(RunMsg::Combined(Ok(Box::new(all))));
     screen.model.live.run.planning.info.iter_mut().for_each(|planner| planner.covers = true);
-    store("result_rescan", &mut screen);
+    sizes::store("result_rescan", &mut screen, sizes::is_log);
     let effects = screen.type_text("r");
     assert!(
         matches!(&effects[..], [Effect::Open { source: Source::Rescan(again), .. }] if *again == runs),
@@ -214,7 +332,10 @@ fn forecast() -> Screen {
         wrap_max_rad: None,
     };
     let path = vec![Point::new(-0.8, 7.4), Point::new(0.0, 0.0)];
-    screen.hear(RunMsg::Forecast(choice("rpf"), Ok(Box::new(Forecast { outlook, path }))));
+    screen.hear(RunMsg::Forecast(
+        choice("rpf"),
+        Ok(Box::new(Forecast { outlook, path, certified: Some(true) })),
+    ));
     screen
 }
 
@@ -240,7 +361,7 @@ fn what_if() {
     screen.type_text("+");
     screen.press([tui::Key::Enter]);
     screen.hear(RunMsg::ForecastAt(choice("spiral-tangent"), 0.42));
-    store("what_if", &mut screen);
+    sizes::store("what_if", &mut screen, |_| false);
 }
 
 #[test]
@@ -285,7 +406,7 @@ fn plugins() {
     screen.type_text("8");
     let changes = screen.model.console.reloaded.clone().unwrap();
     assert_eq!(changes, ["rpf: rebuilt, parameters -improved", "navfn: new, from spiral.so"]);
-    store("plugins", &mut screen);
+    sizes::store("plugins", &mut screen, |_| false);
     assert_eq!(screen.type_text("r"), [], "not while the robot moves");
     let mut screen = Screen::held();
     assert_eq!(screen.type_text("8r"), [Effect::Survey]);

@@ -2,6 +2,7 @@
 
 use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};
+use crate::sizes;
 use account::{Coverage, Fold, Notes, Summary};
 use mission::{Event, Severity};
 use std::sync::OnceLock;
@@ -127,7 +128,7 @@ fn the_list_of_runs() {
     let mut screen = Screen::idle();
     screen.send(Msg::Found(Box::new(found())));
     screen.type_text("6");
-    store("review", &mut screen);
+    sizes::store("review", &mut screen, |part| part.contains('●'));
 }
 
 #[test]
@@ -142,7 +143,7 @@ fn two_runs_are_compared() {
     screen.type_text("D");
     store("difference", &mut screen);
     screen.type_text("6");
-    store("compare", &mut screen);
+    sizes::store("compare", &mut screen, |part| part.contains('●'));
 }
 
 #[test]

@@ -546,7 +546,7 @@ fn another_mission_is_opened_only_when_none_is_in_progress() {
     screen.send(found);
     screen.type_text("1j");
     assert_eq!(screen.press([Key::Enter]), []);
-    assert_eq!(notice(&screen), "two.toml:3:1: unknown key");
+    assert_eq!(notice(&screen), "two cannot be opened: line 3: unknown key");
     screen.type_text("k");
     let source = Source::File("one.toml".into());
     screen.model.live.speed = Speed::Times(4.0);

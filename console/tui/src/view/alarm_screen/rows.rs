@@ -111,7 +111,7 @@ fn single(look: &Look, alarm: &Alarm, at: &Columns, wide: bool) -> Parts {
     };
     let count = if is_first && !wide { "1st".into() } else { alarm.count.to_string() };
     let word = if wide { severity_word(alarm.severity) } else { "" };
-    let name = text::column(&text::fit(&what(look, alarm), at.name.saturating_sub(1)), at.name);
+    let name = text::column(&text::wording(what(look, alarm), at.name), at.name);
     vec![
         (role(alarm), text::column(&format!("{} {word}", sign(alarm)), at.front - 1)),
         (Role::Text, text::column(&state(alarm, wide), at.state)),
@@ -131,7 +131,7 @@ fn double(look: &Look, alarm: &Alarm, room: usize) -> Vec<Parts> {
     let name = room.saturating_sub(5 + text::width(&state) + 1);
     let first = vec![
         (role(alarm), format!("{} ", sign(alarm))),
-        (Role::Text, text::column(&text::fit(&what(look, alarm), name), name + 1)),
+        (Role::Text, text::column(&text::wording(what(look, alarm), name), name + 1)),
         (Role::Text, state),
     ];
     let times = if alarm.count > 1 { format!(" {}×", alarm.count) } else { String::new() };
@@ -219,10 +219,11 @@ fn acknowledged(alarm: &Alarm) -> String {
     }
 }
 
-fn what(look: &Look, alarm: &Alarm) -> String {
+/// The name of an alarm: with the reason why it is shelved, and without it.
+fn what(look: &Look, alarm: &Alarm) -> [String; 2] {
     let name = guide::name(&alarm.cause, look.run);
     match &alarm.state {
-        State::Shelved(shelf) => format!("{name} ({})", shelf.reason),
-        _ => name,
+        State::Shelved(shelf) => [format!("{name} ({})", shelf.reason), name],
+        _ => [name.clone(), name],
     }
 }

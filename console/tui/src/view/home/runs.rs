@@ -14,13 +14,34 @@ use ratatui::layout::Rect;
 
 /// Width of the columns, each with a blank.
 const BEGAN: usize = 13;
-const PLANNER: usize = 13;
 const END: usize = 11;
-const TIME: usize = 9;
 const REACH: usize = 8;
 const VERIFIED: usize = 4;
-/// Width from which the planner is shown, columns.
-const WIDE: usize = 76;
+/// Width of a duration with and without hours, columns.
+const TIME: (usize, usize) = (9, 6);
+/// Maximum width of a planner, columns.
+const PLANNER: usize = 17;
+
+/// The widths of the columns that depend on the runs; 0 for a column that does not fit.
+#[derive(Clone, Copy)]
+struct Columns {
+    name: usize,
+    planner: usize,
+    time: usize,
+}
+
+/// The columns that fit; if the names would be cut, the planner is left out.
+fn columns(listed: &[&PastRun], room: usize) -> Columns {
+    let is_long = listed.iter().any(|run| run.mission_time_s.is_some_and(|s| s >= 3600.0));
+    let time = if is_long { TIME.0 } else { TIME.1 };
+    let widest = |name: fn(&PastRun) -> &str| {
+        listed.iter().map(|run| text::width(name(run))).max().unwrap_or(0).max(8) + 1
+    };
+    let left = room.saturating_sub(1 + BEGAN + END + time + REACH + VERIFIED);
+    let planner = widest(|run| &run.planner).min(PLANNER);
+    let planner = if left.saturating_sub(planner) >= widest(name) { planner } else { 0 };
+    Columns { name: left - planner, planner, time }
+}
 
 /// The mark of a verified run.
 pub(in crate::view) fn verified(run: &PastRun) -> &'static str {
@@ -31,8 +52,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, about: bool) {
     let home = &look.model.home;
     let listed = home.runs();
     let room = usize::from(area.width).saturating_sub(2);
-    let planner = if room >= WIDE { PLANNER } else { 0 };
-    let names = room.saturating_sub(1 + BEGAN + planner + END + TIME + REACH + VERIFIED);
+    let at = columns(&listed, room);
     let is_focused = home.list == HomeList::Runs;
     let selected = home.selected_run().filter(|_| about);
     let verified_too = if listed.iter().any(|run| run.verified.is_some()) { "✓v verified" } else { "" };
@@ -44,8 +64,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, about: bool) {
         } else {
             note(look, HomeList::Runs)
         },
-        heads: Some(heads(names, planner)),
-        rows: listed.iter().map(|run| row(run, names, planner)).collect(),
+        heads: Some(heads(at)),
+        rows: listed.iter().map(|run| row(run, at)).collect(),
         selected: is_focused.then_some(home.run),
         list: Rows::Runs,
         empty: if home.filter.is_empty() { " No runs yet.".into() } else { " No run matches.".into() },
@@ -54,27 +74,28 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, about: bool) {
     pane.draw(look, frame, area);
 }
 
-fn heads(names: usize, planner: usize) -> String {
-    let planner = if planner > 0 { text::column("planner", planner) } else { String::new() };
+fn heads(at: Columns) -> String {
+    let planner = if at.planner > 0 { text::column("planner", at.planner) } else { String::new() };
     format!(
         " {}{}{planner}{}{}{:>REACH$}",
         text::column("began", BEGAN),
-        text::column("scenario", names),
+        text::column("scenario", at.name),
         text::column("end", END),
-        text::column("T+", TIME),
+        text::column("T+", at.time),
         "reach"
     )
 }
 
-fn row(run: &PastRun, names: usize, planner: usize) -> Parts {
+fn row(run: &PastRun, at: Columns) -> Parts {
     let took = run.mission_time_s.map_or_else(|| "-".into(), text::clock);
+    let took = if at.time < TIME.0 { took.trim_start_matches("00:") } else { &took };
     let reach = run.reachable.map_or_else(|| "-".into(), |share| format!("{} %", text::percent(share)));
     vec![
         (Role::Dim, text::column(if run.began.is_empty() { "-" } else { &run.began }, BEGAN)),
-        (Role::Text, text::column(&text::fit(name(run), names.saturating_sub(1)), names)),
-        (Role::Dim, text::column(&text::fit(&run.planner, planner.saturating_sub(1)), planner)),
+        (Role::Text, text::column(&text::fit(name(run), at.name.saturating_sub(1)), at.name)),
+        (Role::Dim, text::column(&text::fit(&run.planner, at.planner.saturating_sub(1)), at.planner)),
         (role(run), text::column(end_word(run), END)),
-        (Role::Dim, text::column(&took, TIME)),
+        (Role::Dim, text::column(took, at.time)),
         (Role::Text, format!("{reach:>REACH$}")),
         (Role::Good, text::column(verified(run), VERIFIED)),
     ]

@@ -24,19 +24,27 @@ struct Columns {
     age: usize,
 }
 
-const FULL: Columns = Columns { name: 0, task: 7, tank: 9, planner: 13, end: 13, reach: 8, age: 7 };
+/// Maximum width of a tank and of a planner, columns.
+const TANK: usize = 10;
+const PLANNER: usize = 17;
 
 /// The columns that fit beside the names. If space is short, the tank is dropped first, then the planner.
 fn columns(listed: &[&ScenarioEntry], room: usize) -> Columns {
-    let widest = listed.iter().map(|entry| text::width(&entry.name)).max().unwrap_or(0).max(8) + 1;
+    let widest_of = |name: fn(&ScenarioEntry) -> &str| {
+        listed.iter().map(|entry| text::width(name(entry))).max().unwrap_or(0).max(8) + 1
+    };
+    let widest = widest_of(|entry| &entry.name);
+    let (tank, planner) = (widest_of(|entry| &entry.tank), widest_of(|entry| &entry.planner));
+    let (tank, planner) = (tank.min(TANK), planner.min(PLANNER));
+    let full = Columns { name: 0, task: 7, tank, planner, end: 12, reach: 8, age: 7 };
     let of = |columns: Columns| {
         let Columns { task, tank, planner, end, reach, age, .. } = columns;
         let name = room.saturating_sub(1 + task + tank + planner + end + reach + age);
         Columns { name, ..columns }
     };
-    let short = Columns { tank: 0, ..FULL };
+    let short = Columns { tank: 0, ..full };
     let least = Columns { planner: 0, ..short };
-    let all = [of(FULL), of(short), of(least)];
+    let all = [of(full), of(short), of(least)];
     let fitting = all.into_iter().find(|columns| columns.name >= widest.min(22)).unwrap_or(all[2]);
     // What is left over goes to the end, where it tells more.
     Columns {
@@ -100,7 +108,7 @@ fn row(look: &Look, entry: &ScenarioEntry, at: Columns, room: usize) -> Parts {
         name,
         (Role::Dim, text::column(&entry.task, at.task)),
         (Role::Dim, text::column(&entry.tank, at.tank)),
-        (Role::Dim, text::column(&entry.planner, at.planner)),
+        (Role::Dim, text::column(&text::fit(&entry.planner, at.planner.saturating_sub(1)), at.planner)),
         (role, text::column(&end, at.end)),
         (Role::Text, format!("{reach:>width$}", width = at.reach)),
         (Role::Dim, format!("{:>width$}", age(look, last), width = at.age)),

@@ -1,13 +1,16 @@
 //! The achieved figures alongside the plan's estimate.
 
-use super::role;
-use crate::model::RunResult;
+use super::{next_page, role, title};
+use crate::model::{Peak, Peaks, RunResult};
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
 use crate::view::text;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
+
+/// Width from which the worst values are shown with time and place, columns.
+const WORST: usize = 52;
 
 /// A figure: its name, the estimate, the achieved value, the limit, and whether the limit was exceeded.
 struct Figure {
@@ -17,23 +20,29 @@ struct Figure {
 
 /// The rows that the table needs.
 pub(super) fn rows(look: &Look, result: &RunResult, columns: u16) -> u16 {
-    let words = reason(result, columns.into()).len() + trouble(look, result, columns.into()).len();
-    1 + (words + figures(look, result).len()) as u16
+    lines(look, result, columns.into()).len() as u16
 }
 
-/// Why the mission ended, in lines.
-fn reason(result: &RunResult, columns: usize) -> Vec<String> {
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
+    let block = look.block(role(result), &title(result), &next_page(look));
+    let inner = block.inner(area);
+    let mut lines = lines(look, result, usize::from(inner.width));
+    lines.truncate(usize::from(inner.height));
+    fill(frame, area, block, lines);
+}
+
+/// Why the mission ended, what was expected, and the figures; most important first.
+fn lines(look: &Look, result: &RunResult, columns: usize) -> Vec<Line<'static>> {
+    let wrapped = |role: Role, words: &str| {
+        let lines = text::wrap(&text::capitalized(words), columns.saturating_sub(1)).into_iter();
+        lines.map(|line| look.line([(role, format!(" {line}"))])).collect::<Vec<Line>>()
+    };
     let reason = result.summary.reason.as_deref().unwrap_or("cut off");
-    text::wrap(&text::capitalized(reason), columns.saturating_sub(1))
-}
-
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, title: &str, result: &RunResult) {
-    let block = look.block(role(result), title, "");
-    let columns = usize::from(block.inner(area).width);
-    let label = 11.min(columns / 3);
-    let width = columns.saturating_sub(label + 2) / 3;
-    let why = reason(result, columns).into_iter();
-    let mut lines: Vec<Line> = why.map(|line| look.line([(role(result), format!(" {line}"))])).collect();
+    let mut lines = wrapped(role(result), reason);
+    for violation in result.summary.violations.iter().flatten() {
+        lines.extend(wrapped(Role::Warn, &format!("! {violation}")));
+    }
+    let (label, width) = widths(columns);
     let head = ["", "predicted", "actual", "limit"].map(str::to_owned);
     let table = std::iter::once((Role::Dim, head)).chain(figures(look, result).into_iter().map(|row| {
         let role = if row.is_beyond { Role::Warn } else { Role::Text };
@@ -46,11 +55,41 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, title: &str, resu
             (Role::Dim, format!(" {}", text::column(&what, label))),
             (Role::Dim, format!("{predicted:>width$}")),
             (role, format!("{actual:>width$}{mark}")),
-            (Role::Dim, format!("{limit:>0$}", width.saturating_sub(1))),
+            (Role::Dim, format!("{limit:>width$}", width = width.saturating_sub(1))),
         ])
     }));
+    lines.extend(worst(look, columns).into_iter().map(|parts| look.line(parts)));
     lines.extend(trouble(look, result, columns).into_iter().map(|parts| look.line(parts)));
-    fill(frame, area, block, lines);
+    lines
+}
+
+/// The widths of a label and of a value.
+fn widths(columns: usize) -> (usize, usize) {
+    let label = 11.min(columns / 3);
+    (label, columns.saturating_sub(label + 2) / 3)
+}
+
+/// When and where the worst values occurred, if there is room for it.
+fn worst(look: &Look, columns: usize) -> Vec<Parts> {
+    if columns < WORST {
+        return Vec::new();
+    }
+    let Peaks { error_m, tether_m, wrap_deg } = look.run.peaks;
+    let figures =
+        [("95 % error", error_m, "m", 2), ("tether out", tether_m, "m", 1), ("wrap", wrap_deg, "°", 0)];
+    let row = |(name, peak, unit, decimals): (&str, Option<Peak>, &str, usize)| -> Option<Parts> {
+        let peak = peak?;
+        let blank = if unit == "°" { "" } else { " " };
+        let value = format!("{}{blank}{unit}", text::number(peak.value, decimals));
+        let at = peak.at.map_or_else(String::new, |at| format!(" at {}", text::place(at)));
+        let when = text::clock(peak.t_s);
+        Some(vec![
+            (Role::Dim, format!(" worst {}", text::column(name, 11))),
+            (Role::Text, format!("{value:>9}")),
+            (Role::Dim, format!("  T+{when}{at}")),
+        ])
+    };
+    figures.into_iter().filter_map(row).collect()
 }
 
 fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {

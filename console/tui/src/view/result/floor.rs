@@ -1,10 +1,11 @@
 //! The floor shares, relative to the whole and to the reachable floor, and the critical zone along the shell.
 
+use super::next_page;
 use crate::model::{RunResult, Source};
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
 use crate::view::text;
-use account::Shares;
+use account::{Percent, Shares};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -12,22 +13,19 @@ use ratatui::text::Line;
 /// The maximum missed share at which a plate counts as scanned except for slivers, per cent.
 const MISSED_PERCENT: f64 = 1.0;
 
+/// The rows that the pane needs.
+pub(super) fn rows(look: &Look, result: &RunResult, columns: u16) -> u16 {
+    let columns = usize::from(columns).saturating_sub(1);
+    let notes: usize = notes(look, result, columns).iter().map(Vec::len).sum();
+    (bases(look, result, columns).len() + notes) as u16
+}
+
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
-    let block = look.block(Role::Border, "Coverage", "% by estimated position");
+    let note = next_page(look);
+    let note = if note.is_empty() { "% by estimated position" } else { &note };
+    let block = look.block(Role::Border, "Coverage", note);
     let columns = usize::from(block.inner(area).width).saturating_sub(1);
-    let mut rows: Vec<Parts> = Vec::new();
-    match &result.summary.floor {
-        None => rows.push(vec![(Role::Dim, " Scanning was not part of this mission.".into())]),
-        Some(account) => {
-            rows.push(vec![(Role::Dim, head(columns))]);
-            rows.push(vec![(Role::Text, shares("whole floor", &account.whole, columns))]);
-            rows.push(vec![(Role::Text, shares("reachable floor", &account.reachable, columns))]);
-            if let Some(Ok(all)) = &look.model.live.combined {
-                rows.push(vec![(Role::Text, shares("whole, all runs", &all.whole, columns))]);
-                rows.push(vec![(Role::Text, shares("reach., all runs", &all.reachable, columns))]);
-            }
-        }
-    }
+    let mut rows = bases(look, result, columns);
     // A note that does not fit would end in mid-sentence; all notes are in the report.
     for note in notes(look, result, columns) {
         if rows.len() + note.len() <= usize::from(block.inner(area).height) {
@@ -38,33 +36,85 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResul
     fill(frame, area, block, lines);
 }
 
-/// Whether the areas and the unreachable floor fit.
-fn is_wide(columns: usize) -> bool {
-    columns >= 59
-}
-
-fn head(columns: usize) -> String {
-    if is_wide(columns) {
-        format!(" {:<16}{:>10}{:>8}{:>8}{:>8}{:>8}", "% of", "area", "scanned", "missed", "unrch.", "margin")
-    } else {
-        format!(" {:<17}{:>10}{:>8}", "% of", "scanned", "missed")
+/// The shares of each floor of which shares are stated, as bars.
+fn bases(look: &Look, result: &RunResult, columns: usize) -> Vec<Parts> {
+    let Some(account) = &result.summary.floor else {
+        return vec![vec![(Role::Dim, " Not a scanning mission.".into())]];
+    };
+    let at = Columns::of(columns);
+    let mut rows = vec![vec![(Role::Dim, at.head())]];
+    rows.push(at.row("reachable", &account.reachable));
+    rows.push(at.row("whole floor", &account.whole));
+    if let Some((area_m2, scanned)) = look.model.live.requested() {
+        let scanned = (1000.0 * scanned).round() / 10.0;
+        let percent = Percent { scanned, missed: 100.0 - scanned, ..Percent::default() };
+        rows.push(at.row("requested", &Shares { area_m2, percent, ..Shares::default() }));
     }
+    if let Some(Ok(all)) = &look.model.live.combined {
+        rows.push(at.row("all, reach.", &all.reachable));
+        rows.push(at.row("all, whole", &all.whole));
+    }
+    rows
 }
 
-fn shares(label: &str, shares: &Shares, columns: usize) -> String {
-    let percent = |value: f64| text::number(value, 1);
-    let Shares { area_m2, percent: p, .. } = shares;
-    if is_wide(columns) {
-        format!(
-            " {label:<16}{:>10}{:>8}{:>8}{:>8}{:>8}",
-            format!("{} m²", text::number(*area_m2, 1)),
-            percent(p.scanned),
-            percent(p.missed),
-            percent(p.unreachable),
-            percent(p.margin)
-        )
-    } else {
-        format!(" {label:<17}{:>10}{:>8}", percent(p.scanned), percent(p.missed))
+/// The widths of the columns; 0 for a column that does not fit.
+struct Columns {
+    bar: usize,
+    area: usize,
+    others: usize,
+}
+
+/// Width of the name of a floor, of a share, and of a share that is shown only if there is room.
+const NAME: usize = 12;
+const SHARE: usize = 8;
+const OTHER: usize = 7;
+/// Width of an area.
+const AREA: usize = 11;
+/// Minimum and maximum width of a bar.
+const BAR: (usize, usize) = (6, 24);
+
+impl Columns {
+    fn of(room: usize) -> Self {
+        let left = room.saturating_sub(1 + NAME + 2 * SHARE);
+        let others = if left >= 2 * OTHER + AREA + BAR.0 { OTHER } else { 0 };
+        let area = if left >= 2 * others + AREA + BAR.0 { AREA } else { 0 };
+        Self { bar: left.saturating_sub(2 * others + area).min(BAR.1), area, others }
+    }
+
+    fn head(&self) -> String {
+        let right =
+            |word: &str, width: usize| if width > 0 { format!("{word:>width$}") } else { String::new() };
+        [
+            format!(" {}", text::column("% of", NAME + self.bar)),
+            right("scanned", SHARE),
+            right("missed", SHARE),
+            right("unrch.", self.others),
+            right("margin", self.others),
+            right("area", self.area),
+        ]
+        .concat()
+    }
+
+    fn row(&self, name: &str, shares: &Shares) -> Parts {
+        let percent = &shares.percent;
+        let number = |value: f64, width: usize| match width {
+            0 => String::new(),
+            width => format!("{:>width$}", text::number(value, 1)),
+        };
+        let area = format!("{} m²", text::number(shares.area_m2, 1));
+        let area = if self.area > 0 { format!("{area:>width$}", width = self.area) } else { String::new() };
+        let rest = [
+            number(percent.scanned, SHARE),
+            number(percent.missed, SHARE),
+            number(percent.unreachable, self.others),
+            number(percent.margin, self.others),
+            area,
+        ];
+        vec![
+            (Role::Text, format!(" {}", text::column(name, NAME))),
+            (Role::Good, text::bar(percent.scanned / 100.0, self.bar)),
+            (Role::Text, rest.concat()),
+        ]
     }
 }
 
@@ -116,12 +166,15 @@ fn notes(look: &Look, result: &RunResult, columns: usize) -> Vec<Vec<String>> {
             format!("Critical zone, {width_mm} mm along the shell: NOT done, full width on {done_m} of {length_m} m.")
         }
     });
-    let broken = summary.violations.iter().flatten().map(|violation| format!("Not met: {violation}."));
     let plates = look.model.live.floor().filter(|floor| !floor.plates.is_empty()).map(|floor| {
         let all = floor.plates.iter().filter(|plate| plate.shares.percent.missed <= MISSED_PERCENT).count();
-        format!("Plates: {all} of {} with at most {MISSED_PERCENT} % missed.", floor.plates.len())
+        let worst = floor.plates.iter().filter_map(|plate| Some((plate.error_max_m?, &plate.name)));
+        let worst =
+            worst.max_by(|one, other| one.0.total_cmp(&other.0)).map_or_else(String::new, |(m, name)| {
+                format!(" Worst 95 % error {} m, on plate {name}.", text::number(m, 2))
+            });
+        format!("Plates: {all} of {} with at most {MISSED_PERCENT} % missed.{worst}", floor.plates.len())
     });
-    let notes =
-        of_all_runs(look).into_iter().chain(zone).chain(plates).chain(again).chain(truth).chain(broken);
+    let notes = of_all_runs(look).into_iter().chain(zone).chain(plates).chain(again).chain(truth);
     notes.map(|note| text::wrap(&note, columns)).collect()
 }

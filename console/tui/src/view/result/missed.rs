@@ -1,54 +1,83 @@
 //! The missed areas: the position and a short reason for each one, and all reasons for the selected one.
 
+use super::next_page;
 use crate::model::RunResult;
 use crate::theme::Role;
 use crate::update::Rows;
 use crate::view::look::{Look, Parts, fill};
 use crate::view::missed::brief;
 use crate::view::{table, text};
-use account::{Area, MissReason};
+use account::{Area, Cause, MissReason};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
+/// Width of the areas and shares in the table of reasons, columns.
+const AREA: usize = 12;
+const SHARE: usize = 8;
+
+/// The rows that the pane would fill, including the frame.
+pub(super) fn rows(look: &Look) -> u16 {
+    let listed = look.model.live.missed();
+    let causes = listed.iter().map(|area| area.causes.len()).max().unwrap_or(0);
+    (listed.len() + causes + 4).min(usize::from(u16::MAX)) as u16
+}
+
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
     let listed = &look.model.live.missed()[..];
-    let note = if listed.is_empty() { "" } else { "<next-missed> <previous-missed> walk" };
-    let block = look.block(Role::Focus, &title(look, listed), &look.keys(note));
-    let inner = block.inner(area);
+    let inner = look.block(Role::Border, "", "").inner(area);
     let (columns, height) = (usize::from(inner.width), usize::from(inner.height).saturating_sub(1));
-    let why = listed.get(look.model.ui.missed).map_or_else(Vec::new, |area| {
-        whole_reason(area, columns.saturating_sub(3), height.saturating_sub(1))
-    });
+    let selected = look.model.ui.missed.min(listed.len().saturating_sub(1));
+    // The list keeps at least half of the rows.
+    let why = listed.get(selected).map_or_else(Vec::new, |area| reasons(area, columns, height / 2));
     let rows: Vec<Parts> = listed.iter().enumerate().map(|(index, area)| row(index, area, columns)).collect();
     let height = height - why.len();
-    table::place(look, inner, Rows::Missed, table::window(look.model.ui.missed, rows.len(), height));
-    let mut lines = table::rows(look, rows, Some(look.model.ui.missed), (columns, height));
-    lines.extend(why.into_iter().map(|line| look.line([(Role::Text, format!("   {line}"))])));
+    let shown = table::window(selected, rows.len(), height);
+    table::place(look, inner, Rows::Missed, shown.clone());
+    let is_cut = shown.len() < rows.len();
+    let place = if is_cut { format!("{}  ", table::counted(&shown, rows.len())) } else { String::new() };
+    let walk =
+        if listed.is_empty() { String::new() } else { look.keys("<next-missed> <previous-missed> walk") };
+    let next = next_page(look);
+    let notes =
+        [format!("{place}{walk}  {next}"), format!("{place}{next}"), place.trim().to_owned(), String::new()];
+    let title =
+        text::wording([title(look, listed, true), title(look, listed, false)], columns.saturating_sub(4));
+    let room = columns.saturating_sub(text::width(&title) + 8);
+    let block = look.block(Role::Focus, &title, text::wording(notes, room).trim());
+    let mut lines = table::rows(look, rows, Some(selected), (columns, height));
+    lines.extend(why.into_iter().map(|parts| look.line(parts)));
     let kept_role = if result.is_kept { Role::Dim } else { Role::Crit };
     let kept = text::fit(&format!(" {}", text::capitalized(&result.kept)), columns);
     lines.push(look.line([(kept_role, kept)]));
     fill(frame, area, block, lines);
 }
 
-fn title(look: &Look, listed: &[&Area<MissReason>]) -> String {
+/// The missed areas and, apart from them, those that were not reached because the mission ended.
+fn title(look: &Look, listed: &[&Area<MissReason>], full: bool) -> String {
+    let is_ahead = |area: &&&Area<MissReason>| area.reason == MissReason::NotReached;
+    let missed: Vec<_> = listed.iter().filter(|area| !is_ahead(area)).collect();
+    let ahead: Vec<_> = listed.iter().filter(is_ahead).collect();
+    let sum = |areas: &[&&Area<MissReason>]| {
+        let total_m2: f64 = areas.iter().map(|area| area.area_m2).sum();
+        let plural = if areas.len() == 1 { "" } else { "s" };
+        format!("{} area{plural}, {} m²", areas.len(), text::number(total_m2, 2))
+    };
+    let slivers = look.model.live.floor().map(|floor| &floor.slivers);
+    let small = slivers.filter(|slivers| slivers.count > 0 && full).map_or_else(String::new, |slivers| {
+        format!(" (+ {} under 0.01 m², {} m²)", slivers.count, text::number(slivers.area_m2, 2))
+    });
+    let missed = if missed.is_empty() { "no area".to_owned() } else { sum(&missed) };
+    let ahead = if ahead.is_empty() { String::new() } else { format!("; not reached: {}", sum(&ahead)) };
     let others_m2 = look.model.live.not_requested_m2();
-    let others = if others_m2 > 0.0 {
-        format!("; {} m² not requested", text::number(others_m2, 2))
+    let others = if others_m2 > 0.0 && full {
+        format!("; not requested: {} m²", text::number(others_m2, 2))
     } else {
         String::new()
     };
-    if listed.is_empty() {
-        return format!("Missed  no area{others}");
-    }
-    let total_m2: f64 = listed.iter().map(|area| area.area_m2).sum();
-    let slivers = look.model.live.floor().map(|floor| &floor.slivers);
-    let small = slivers.filter(|slivers| slivers.count > 0).map_or_else(String::new, |slivers| {
-        format!(", {} smaller, {} m²", slivers.count, text::number(slivers.area_m2, 2))
-    });
-    let areas = if listed.len() == 1 { "area" } else { "areas" };
-    format!("Missed  {} {areas}, {} m²{small}{others}", listed.len(), text::number(total_m2, 2))
+    format!("Missed: {missed}{small}{ahead}{others}")
 }
 
+/// An area; one that was not reached because the mission ended is dim, because nothing went wrong there.
 fn row(index: usize, area: &Area<MissReason>, columns: usize) -> Parts {
     let plate = area.plate.as_deref().unwrap_or("-");
     let place = format!(
@@ -60,26 +89,54 @@ fn row(index: usize, area: &Area<MissReason>, columns: usize) -> Parts {
     );
     // The mark of the selected row takes one column.
     let room = columns.saturating_sub(text::width(&place) + 1);
-    vec![(Role::Text, place + &text::wording([area.why(), brief(area)], room))]
+    let role = if area.reason == MissReason::NotReached { Role::Dim } else { Role::Text };
+    vec![(role, place + &text::wording([area.why(), brief(area)], room))]
 }
 
-/// All causes of an area, in a limited number of rows; the number of causes that do not fit is shown instead.
-fn whole_reason(area: &Area<MissReason>, columns: usize, rows: usize) -> Vec<String> {
-    let whole = text::wrap(&area.why(), columns);
-    if whole.len() <= rows {
-        return whole;
+/// The reasons for an area as a table of areas and shares, largest first. If the rows do not suffice, the last one says
+/// how many reasons are left out.
+fn reasons(area: &Area<MissReason>, columns: usize, rows: usize) -> Vec<Parts> {
+    // A single reason that fits is in the row of the area.
+    if rows == 0 || area.causes.is_empty() {
+        return Vec::new();
     }
-    let mut lines: Vec<String> = Vec::new();
+    let room = columns.saturating_sub(AREA + SHARE + 4);
+    let mut lines: Vec<Parts> = Vec::new();
     for (index, cause) in area.causes.iter().enumerate() {
-        let next = text::wrap(&cause.text, columns);
-        let rest = &area.causes[index..];
-        if lines.len() + next.len() + usize::from(rest.len() > 1) > rows {
-            let rest_m2: f64 = rest.iter().map(|cause| cause.area_m2).sum();
-            lines.push(format!("{} more causes, {} m²", rest.len(), text::number(rest_m2, 3)));
+        let words = reason(cause, area.area_m2, room);
+        let rest = &area.causes[index + 1..];
+        if lines.len() + words.len() + usize::from(!rest.is_empty()) > rows {
+            let left = &area.causes[index..];
+            let left_m2: f64 = left.iter().map(|cause| cause.area_m2).sum();
+            let plural = if left.len() == 1 { "" } else { "s" };
+            lines.push(vec![(
+                Role::Dim,
+                format!("   {:>AREA$}  {} more reason{plural}", square_metres(left_m2), left.len()),
+            )]);
             break;
         }
-        lines.extend(next);
+        lines.extend(words);
     }
     lines.truncate(rows);
     lines
+}
+
+fn reason(cause: &Cause<MissReason>, of_m2: f64, room: usize) -> Vec<Parts> {
+    let share = if of_m2 > 0.0 { 100.0 * cause.area_m2 / of_m2 } else { 0.0 };
+    let front = format!(
+        "   {:>AREA$}{:>SHARE$}  ",
+        square_metres(cause.area_m2),
+        format!("{} %", text::number(share, 0))
+    );
+    let wrapped = text::wrap(&text::capitalized(&cause.text), room.max(8)).into_iter().enumerate();
+    wrapped
+        .map(|(line, words)| {
+            let front = if line == 0 { front.clone() } else { " ".repeat(text::width(&front)) };
+            vec![(Role::Dim, front), (Role::Text, words)]
+        })
+        .collect()
+}
+
+fn square_metres(m2: f64) -> String {
+    format!("{} m²", text::number(m2, 3))
 }
