@@ -18,11 +18,15 @@ use ratatui::layout::Rect;
 
 /// Maximum width of a list, columns.
 const WIDTH: u16 = 78;
+/// Maximum width of the list of parameters, columns.
+const WIDE: u16 = 116;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     // The keys, and the line above them, stay visible.
     let rows = area.height.saturating_sub(if area.height >= 10 { 3 } else { 0 });
-    let columns = area.width.min(WIDTH);
+    // The words of a parameter may be long.
+    let is_wide = matches!(look.model.ui.overlay, Overlay::Parameters { .. });
+    let columns = area.width.min(if is_wide { WIDE } else { WIDTH });
     let list = match &look.model.ui.overlay {
         Overlay::Commands(palette) => commands::list(look, palette, columns),
         Overlay::Planners { purpose, selected } => planners::list(look, *purpose, *selected, columns),

@@ -20,7 +20,7 @@ const MARK: usize = 3;
 /// Columns kept free beside the wall: west of it, and east of it, where the names of stations end.
 const BESIDE: (f64, f64) = (1.0, 3.0);
 /// Rows of the map for each line of the legend below the floor.
-const ROWS_PER_LINE: u16 = 8;
+const ROWS_PER_LINE: u16 = 5;
 /// Blanks between entries in a line.
 const GAP: &str = "  ";
 

@@ -35,8 +35,11 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
             (role, found.words(figure, limit, room))
         })
     };
-    for figure in FIGURES {
-        let mut mine = cell(figure, look.model.live.promised(), (Role::Text, widths.first));
+    let estimate = look.model.live.promised();
+    // A figure that the estimate of this mission cannot have, such as a tether's, has no row.
+    let has = |figure: &Figure| estimate.is_none_or(|estimate| (figure.promised)(estimate).is_some());
+    for figure in FIGURES.into_iter().filter(has) {
+        let mut mine = cell(figure, estimate, (Role::Text, widths.first));
         let lanes = look.run.planning.plan.as_ref().map_or(0, |plan| plan.lanes.len());
         if figure.label == "path" && lanes > 0 {
             mine.1 = text::wording([format!("{}, {lanes} lanes", mine.1), mine.1], widths.first);
