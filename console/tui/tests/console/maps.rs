@@ -234,14 +234,13 @@ fn the_fill_of_scanned_floor_stays_within_the_wall() {
     let buffer = drawn(&screen.model, RICH, (120, 36));
     let area = buffer.area;
     for y in 0..area.height {
-        // From the frame inwards, the map is unfilled up to the wall.
+        // From the frame inwards, the map is unfilled up to the wall and under it.
         let row: Vec<_> = (1..69).map(|x| &buffer[(x, y)]).collect();
         let wall = row.iter().position(|cell| {
             ('\u{2801}'..='\u{28ff}').contains(&cell.symbol().chars().next().unwrap_or(' '))
         });
-        let filled = row[..wall.unwrap_or(0)]
-            .iter()
-            .filter(|cell| cell.bg != Color::Reset || "▀▄▒".contains(cell.symbol()));
+        let outside = &row[..wall.map_or(0, |wall| wall + 1)];
+        let filled = outside.iter().filter(|cell| cell.bg != Color::Reset || "▀▄".contains(cell.symbol()));
         assert_eq!(filled.count(), 0, "row {y}");
     }
 }
