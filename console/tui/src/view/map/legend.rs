@@ -12,7 +12,6 @@ use crate::view::text;
 use account::Shares;
 use ratatui::Frame;
 use ratatui::layout::Rect;
-use ratatui::text::Line;
 use world::{Boundary, FloorClass, Point, ZoneKind};
 
 /// Width of a mark, columns.
@@ -136,7 +135,7 @@ pub(super) fn draw_lines(look: &Look, frame: &mut Frame, area: Rect, left_over: 
     for (entries, place) in lines(left_over, usize::from(area.width)).into_iter().zip(area.rows()) {
         let gap = || (Role::Text, GAP.to_owned());
         let parts = entries.into_iter().flat_map(|entry| entry.parts().into_iter().chain([gap()]));
-        frame.render_widget(Line::from(look.line(parts)), place);
+        frame.render_widget(look.line(parts), place);
     }
 }
 
@@ -201,7 +200,7 @@ fn lines_shown(look: &Look, window: Window) -> Vec<Entry> {
     let drawings = drawn::shown(look);
     let drawn = drawn::KINDS.into_iter().filter_map(|(role, word)| {
         let shown = drawings.iter().any(|drawing| drawn::role(drawing) == role);
-        shown.then(|| (Ink { role, pattern: ink::DRAWING, letter: '\'' }, word))
+        shown.then_some((Ink { role, pattern: ink::DRAWING, letter: '\'' }, word))
     });
     let lines = lines.into_iter().filter(|(shown, ..)| *shown).map(|(_, ink, word)| (ink, word));
     let has_dots = look.caps.glyphs.has_dots();

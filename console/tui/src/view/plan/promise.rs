@@ -52,7 +52,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
             Second::Compared(_, estimate) => cell(figure, Some(estimate), (Role::Ghost, widths.second)),
         });
         let limit = (figure.limit)(mission).map_or_else(String::new, |limit| figure.said(limit));
-        rows.push(row(figure.label, mine, second, &limit, &widths));
+        rows.push(row(figure.label, &mine, second, &limit, &widths));
     }
     fill(frame, area, block, rows.into_iter().map(|parts| look.line(parts)).collect());
 }
@@ -129,10 +129,10 @@ fn head(look: &Look, second: &Second, widths: &Widths) -> Parts {
             (Role::Ghost, fits(id, "compared", widths.second)),
         ),
     };
-    row("", (Role::Title, mine), Some(second), "", widths)
+    row("", &(Role::Title, mine), Some(second), "", widths)
 }
 
-fn row(label: &str, mine: Cell, second: Option<Cell>, limit: &str, widths: &Widths) -> Parts {
+fn row(label: &str, mine: &Cell, second: Option<Cell>, limit: &str, widths: &Widths) -> Parts {
     let mut parts = vec![
         (Role::Dim, format!(" {}", text::column(label, LABEL))),
         (mine.0, format!("{} ", text::column(&mine.1, widths.first))),
