@@ -195,7 +195,11 @@ fn lines_shown(look: &Look, window: Window) -> Vec<Entry> {
         (course::compared(look).is_some(), ink::OTHER, "compared"),
         (other_run && look.model.ui.screen == Screen::Mission, ink::OTHER, "run B"),
         (run.shadow.is_some() && run.is_running(), ink::SHADOW, "shadow"),
-        (run.tether.as_ref().is_some_and(|tether| tether.line.len() > 1), ink::TETHER, "tether"),
+        (
+            run.tether.as_ref().is_some_and(|tether| tether.line.windows(2).any(|pair| pair[0] != pair[1])),
+            ink::TETHER,
+            "tether",
+        ),
     ];
     let drawings = drawn::shown(look);
     let drawn = drawn::KINDS.into_iter().filter_map(|(role, word)| {
