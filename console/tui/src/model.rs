@@ -145,7 +145,7 @@ impl Model {
         run.planning.info.as_ref().or_else(listed)
     }
 
-    /// The selected area that the plan leaves out, while the plan screen shows their list or the cursor is on it.
+    /// The place of the selected area that the plan leaves out, while the list on the plan screen responds to keys.
     pub fn left_out_at(&self) -> Option<world::Point> {
         let is_listed = self.ui.screen == Screen::Plan && self.ui.pane == Pane::LeftOut;
         let areas = &self.live.left_out().filter(|_| is_listed)?.areas;

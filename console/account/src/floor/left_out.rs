@@ -27,10 +27,14 @@ impl LeftOut {
         let TaskConfig::Cover { .. } = run.mission.task else { return None };
         let (mut evidence, mut grid) = (Evidence::new(run), CoverageGrid::new(run.floor.clone()));
         evidence.plan(path, cuts, is_whole);
+        let mut before: Option<Pose> = None;
         for pair in path.windows(2).filter(|pair| pair[0] != pair[1]) {
             let way = pair[1] - pair[0];
             let at = |position| Pose { position, heading_rad: way.y.atan2(way.x) };
+            // At a corner, the robot turns on the spot, and the tool with it.
+            grid.mark(run.mission.tool(), before.unwrap_or(at(pair[0])), at(pair[0]));
             grid.mark(run.mission.tool(), at(pair[0]), at(pair[1]));
+            before = Some(at(pair[1]));
         }
         let floor = &run.floor;
         let is_requested = |cell: usize| floor.is_reachable(cell) && evidence.is_asked(cell);

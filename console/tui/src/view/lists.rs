@@ -24,6 +24,8 @@ use ratatui::layout::Rect;
 
 /// Maximum width of a list, columns.
 const WIDTH: u16 = 78;
+/// Maximum width of the list of parameters, columns.
+const WIDE: u16 = 116;
 /// Width of the map beside the side panes on a wide terminal, columns.
 const MAP: u16 = 70;
 
@@ -32,9 +34,14 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let top = u16::from(tabs::has_row(area));
     let rows = area.height.saturating_sub(if area.height >= 10 { 3 + top } else { 0 });
     let wide = Arrangement::of(area.width, area.height) == Arrangement::Wide;
-    let is_left = wide && matches!(look.model.ui.overlay, Overlay::Preflight { .. });
-    // The checks leave the estimate beside the map visible.
-    let columns = area.width.min(if is_left { MAP } else { WIDTH });
+    let widest = match &look.model.ui.overlay {
+        // The checks leave the estimate beside the map visible.
+        Overlay::Preflight { .. } if wide => MAP,
+        // The words of a parameter may be long.
+        Overlay::Parameters { .. } => WIDE,
+        _ => WIDTH,
+    };
+    let columns = area.width.min(widest);
     let list = match &look.model.ui.overlay {
         Overlay::Commands(palette) => commands::list(look, palette, columns),
         Overlay::Planners { purpose, selected } => planners::list(look, *purpose, *selected, columns),

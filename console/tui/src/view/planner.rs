@@ -11,6 +11,8 @@ use ratatui::text::Line;
 
 /// Maximum number of rows for a fault.
 const FAULT_ROWS: usize = 2;
+/// Width of the name of a planner's figure, columns.
+const SCALAR: usize = 22;
 /// Minimum width, in columns, at which labels are written out in full.
 const WIDE: usize = 40;
 
@@ -154,9 +156,12 @@ fn scalars(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>> {
     let shown = look.run.planning.scalars.iter().filter(says).take(rows);
     shown
         .map(|(name, value, unit)| {
-            let label = text::column(&format!(" {name}"), 13.min(columns / 2));
-            let value = text::fit(&figure(*value, unit), columns - label.len().min(columns));
-            look.line([(Role::Dim, label), (Role::Text, value)])
+            let label = text::column(&format!(" {name}"), SCALAR.min(columns / 2 + 2));
+            let room = columns.saturating_sub(text::width(&label) + 1);
+            look.line([
+                (Role::Dim, format!("{label} ")),
+                (Role::Text, text::fit(&figure(*value, unit), room)),
+            ])
         })
         .collect()
 }

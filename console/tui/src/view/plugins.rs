@@ -2,6 +2,7 @@
 
 use super::look::{Look, Parts, fill};
 use super::{table, text};
+use crate::model::parameter;
 use crate::model::plugins::{Plugin, PluginState, plugins};
 use crate::model::ui::Arrangement;
 use crate::theme::Role;
@@ -10,6 +11,9 @@ use mission::{ParamInfo, PlannerInfo, Sandbox};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 
+/// Width of the key of a parameter, and of what it allows, columns.
+const KEY: usize = 20;
+const ALLOWED: usize = 26;
 /// The number of digits shown of a hash.
 const HASH: usize = 12;
 
@@ -83,22 +87,33 @@ fn detail(look: &Look, frame: &mut Frame, area: Rect, plugin: &Plugin<'_>) {
     let wrapped = |role: Role, words: &str| -> Vec<Parts> {
         text::wrap(words, columns).into_iter().map(|line| vec![(role, format!(" {line}"))]).collect()
     };
-    let mut rows = wrapped(role(plugin.state), &look.keys(state_words(plugin.state)));
-    if !plugin.reason.is_empty() {
-        rows.extend(wrapped(Role::Warn, plugin.reason));
-    }
-    for info in &plugin.planners {
-        rows.push(vec![
-            (Role::Title, format!(" {} {}", info.id, info.version)),
-            (Role::Dim, format!("  {}", abilities(info))),
-        ]);
-        if let Some(sandbox) = &info.sandbox {
-            let role = if *sandbox == Sandbox::Full { Role::Dim } else { Role::Warn };
-            rows.extend(wrapped(role, &format!("sandbox: {sandbox}")));
+    let about = |as_table: bool| {
+        let mut rows = wrapped(role(plugin.state), &look.keys(state_words(plugin.state)));
+        if !plugin.reason.is_empty() {
+            rows.extend(wrapped(Role::Warn, plugin.reason));
         }
-        rows.extend(wrapped(Role::Text, &info.about));
-        rows.extend(wrapped(Role::Dim, &parameters(&info.parameters)));
-    }
+        for info in &plugin.planners {
+            rows.push(vec![
+                (Role::Title, format!(" {} {}", info.id, info.version)),
+                (Role::Dim, format!("  {}", abilities(info))),
+            ]);
+            if let Some(sandbox) = &info.sandbox {
+                let role = if *sandbox == Sandbox::Full { Role::Dim } else { Role::Warn };
+                rows.extend(wrapped(role, &format!("sandbox: {sandbox}")));
+            }
+            rows.extend(wrapped(Role::Text, &info.about));
+            if as_table {
+                rows.extend(info.parameters.iter().map(|info| parameter_row(info, columns)));
+            } else {
+                rows.extend(wrapped(Role::Dim, &parameters(&info.parameters)));
+            }
+        }
+        rows
+    };
+    // A large screen has room for a line about each parameter.
+    let table = about(true);
+    let fits = table.len() <= usize::from(block.inner(area).height);
+    let rows = if fits { table } else { about(false) };
     fill(frame, area, block, rows.into_iter().map(|parts| look.line(parts)).collect());
 }
 
@@ -119,6 +134,16 @@ fn abilities(info: &PlannerInfo) -> String {
 fn parameters(infos: &[ParamInfo]) -> String {
     let keys: Vec<&str> = infos.iter().map(|info| info.key.as_str()).collect();
     if keys.is_empty() { "no parameters".into() } else { format!("parameters: {}", keys.join(", ")) }
+}
+
+/// A parameter: its key, what is allowed, and its meaning if there is room.
+fn parameter_row(info: &ParamInfo, columns: usize) -> Parts {
+    let key = text::column(&info.key, KEY);
+    let allowed = text::column(&parameter::range(info), ALLOWED);
+    let room = columns.saturating_sub(KEY + ALLOWED + 5);
+    let label = text::wording([info.label.clone(), String::new()], room);
+    let allowed = text::fit(&format!(" {allowed}  {label}"), columns.saturating_sub(KEY + 2));
+    vec![(Role::Text, format!("   {key}")), (Role::Dim, allowed)]
 }
 
 fn changes(look: &Look, frame: &mut Frame, area: Rect) {

@@ -8,6 +8,7 @@ use mission::{
     AskId, CheckOutcome, Event, EventKind, HoldReason, Order, Outcome, Resumes, TaskConfig, WorkerId,
 };
 use planner_api::{Leg, LegTag, Reason};
+use ratatui::style::Color;
 use tui::{Key, Msg, RunMsg};
 use world::Point;
 
@@ -170,7 +171,7 @@ fn what_the_plan_leaves_out_is_shown_on_the_map() {
     screen.send(Msg::Resize { width: 120, height: 36 });
     screen.press([Key::Tab, Key::Char('j')]);
     let shown = text(&drawn(&screen.model, RICH, (120, 36)));
-    assert!(shown.contains(">  1.98 m²") && shown.contains('◎'), "{shown}");
+    assert!(shown.contains("> 1.98 m²") && shown.contains('◎'), "{shown}");
     screen.press([Key::Enter]);
     assert_eq!(screen.model.ui.cursor, Some(Point::new(-4.6, 3.1)));
     assert_eq!(screen.model.ui.screen, tui::model::Screen::Plan);
@@ -233,19 +234,15 @@ fn the_fill_of_scanned_floor_stays_within_the_wall() {
     let buffer = drawn(&screen.model, RICH, (120, 36));
     let area = buffer.area;
     for y in 0..area.height {
-        // From the frame inwards, the map is unfilled up to the wall.
+        // From the frame inwards, the map is unfilled up to the wall and under it.
         let row: Vec<_> = (1..69).map(|x| &buffer[(x, y)]).collect();
         let wall = row.iter().position(|cell| {
             ('\u{2801}'..='\u{28ff}').contains(&cell.symbol().chars().next().unwrap_or(' '))
         });
-        let ground = tui_default();
-        let filled = row[..wall.unwrap_or(0)].iter().filter(|cell| cell.bg != ground && cell.symbol() == " ");
+        let outside = &row[..wall.map_or(0, |wall| wall + 1)];
+        let filled = outside.iter().filter(|cell| cell.bg != Color::Reset || "▀▄".contains(cell.symbol()));
         assert_eq!(filled.count(), 0, "row {y}");
     }
-}
-
-fn tui_default() -> ratatui::style::Color {
-    ratatui::style::Color::Reset
 }
 
 #[test]

@@ -14,18 +14,19 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
     let room = usize::from(columns).saturating_sub(3);
     // A narrow list omits the defaults.
     let (name, value, default, unit) = match columns {
-        74.. => (20, 13, 15, 10),
-        56.. => (16, 9, 11, 8),
+        100.. => (24, 26, 27, 12),
+        74.. => (20, 13, 16, 10),
+        56.. => (16, 9, 12, 8),
         _ => (14, 9, 0, 8),
     };
     let rows = planner.parameters.iter().map(|info| {
         let (now, unset) = (parameter::value(choice, info), parameter::default(&info.kind));
         let changed = if now == unset { " " } else { "*" };
         vec![
-            (Role::Text, text::column(&info.key, name)),
+            (Role::Text, spaced(&info.key, name)),
             (Role::Title, format!("{}{changed} ", text::column(&now.to_string(), value))),
-            (Role::Dim, text::column(&unset.to_string(), default)),
-            (Role::Dim, text::column(parameter::unit(info), unit)),
+            (Role::Dim, spaced(&unset.to_string(), default)),
+            (Role::Dim, spaced(parameter::unit(info), unit)),
             (Role::Dim, if info.live { "any time" } else { "held" }.into()),
         ]
     });
@@ -68,6 +69,11 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
         cursor,
         ..List::default()
     }
+}
+
+/// A cell that does not touch the next one.
+fn spaced(cell: &str, columns: usize) -> String {
+    text::column(&text::fit(cell, columns.saturating_sub(1)), columns)
 }
 
 /// The input line for the value with its error, if there is one, and the column of the cursor.

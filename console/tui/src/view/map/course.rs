@@ -2,12 +2,11 @@
 
 use super::ink::{self, Ink};
 use super::pen::{Pen, within};
+use super::shapes::Window;
 use crate::model::{Overlay, PlanShown, Screen, WhatIf, ui::MapLayer};
 use crate::view::look::Look;
 use ratatui::widgets::canvas::Context;
 use world::Point;
-
-use super::shapes::Window;
 
 /// All passes of the trail are drawn if a pass of the tool is at least this many columns wide.
 const PASS_COLUMNS: f64 = 2.0;

@@ -88,7 +88,7 @@ impl Board<'_, '_> {
         }
     }
 
-    /// The places of the figures in the estimate, on the plan screen, and the start once the robot has left it.
+    /// On the plan screen: the selected area that the plan leaves out, and the places of the figures in the estimate.
     fn places(&mut self) {
         let look = self.look;
         if look.model.ui.screen != Screen::Plan {

@@ -12,7 +12,6 @@ use crate::view::text;
 use account::Shares;
 use ratatui::Frame;
 use ratatui::layout::Rect;
-use ratatui::text::Line;
 use world::{Boundary, FloorClass, Point, ZoneKind};
 
 /// Width of a mark, columns.
@@ -20,7 +19,7 @@ const MARK: usize = 3;
 /// Columns kept free beside the wall: west of it, and east of it, where the names of stations end.
 const BESIDE: (f64, f64) = (1.0, 3.0);
 /// Rows of the map for each line of the legend below the floor.
-const ROWS_PER_LINE: u16 = 8;
+const ROWS_PER_LINE: u16 = 5;
 /// Blanks between entries in a line.
 const GAP: &str = "  ";
 
@@ -136,7 +135,7 @@ pub(super) fn draw_lines(look: &Look, frame: &mut Frame, area: Rect, left_over: 
     for (entries, place) in lines(left_over, usize::from(area.width)).into_iter().zip(area.rows()) {
         let gap = || (Role::Text, GAP.to_owned());
         let parts = entries.into_iter().flat_map(|entry| entry.parts().into_iter().chain([gap()]));
-        frame.render_widget(Line::from(look.line(parts)), place);
+        frame.render_widget(look.line(parts), place);
     }
 }
 
@@ -196,12 +195,16 @@ fn lines_shown(look: &Look, window: Window) -> Vec<Entry> {
         (course::compared(look).is_some(), ink::OTHER, "compared"),
         (other_run && look.model.ui.screen == Screen::Mission, ink::OTHER, "run B"),
         (run.shadow.is_some() && run.is_running(), ink::SHADOW, "shadow"),
-        (run.tether.as_ref().is_some_and(|tether| tether.line.len() > 1), ink::TETHER, "tether"),
+        (
+            run.tether.as_ref().is_some_and(|tether| tether.line.windows(2).any(|pair| pair[0] != pair[1])),
+            ink::TETHER,
+            "tether",
+        ),
     ];
     let drawings = drawn::shown(look);
     let drawn = drawn::KINDS.into_iter().filter_map(|(role, word)| {
         let shown = drawings.iter().any(|drawing| drawn::role(drawing) == role);
-        shown.then(|| (Ink { role, pattern: ink::DRAWING, letter: '\'' }, word))
+        shown.then_some((Ink { role, pattern: ink::DRAWING, letter: '\'' }, word))
     });
     let lines = lines.into_iter().filter(|(shown, ..)| *shown).map(|(_, ink, word)| (ink, word));
     let has_dots = look.caps.glyphs.has_dots();

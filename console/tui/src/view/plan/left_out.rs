@@ -9,9 +9,8 @@ use account::{Area, LeftOut, MissReason};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
-/// Width of an area and of a place, columns.
+/// Width of an area, columns.
 const AREA: usize = 8;
-const PLACE: usize = 14;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let left_out = look.model.live.left_out();
@@ -26,7 +25,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         };
         return fill(frame, area, block, vec![look.line([(Role::Dim, format!(" {words}"))])]);
     };
-    let mut rows: Vec<Parts> = left_out.areas.iter().map(|area| row(area, size.0)).collect();
+    let place = left_out.areas.iter().map(|area| text::width(&text::place(area.at))).max().unwrap_or(0);
+    let mut rows: Vec<Parts> = left_out.areas.iter().map(|area| row(area, place, size.0)).collect();
     let n_areas = rows.len();
     rows.extend(smaller(left_out, size.0));
     if rows.is_empty() {
@@ -52,11 +52,12 @@ fn keys(look: &Look, columns: usize) -> String {
     }
 }
 
-fn row(area: &Area<MissReason>, columns: usize) -> Parts {
+/// An area, its place in a column of a width, and the reason.
+fn row(area: &Area<MissReason>, place: usize, columns: usize) -> Parts {
     let room = columns.saturating_sub(AREA + 2);
-    let place = text::column(&text::place(area.at), PLACE);
+    let place = text::column(&text::place(area.at), place);
     let [whole, brief, word] = [area.reason.plainly(), area.reason.briefly(), in_a_word(area.reason)];
-    let words = [whole, brief, word].map(|reason| format!("{place}{reason}"));
+    let words = [whole, brief, word].map(|reason| format!("{place} {reason}"));
     let [whole, brief, short] = words;
     let words = text::wording([whole, brief, short, word.to_owned()], room);
     vec![(Role::Text, format!("{:>AREA$} ", square_metres(area.area_m2))), (Role::Text, words)]

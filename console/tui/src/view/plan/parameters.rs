@@ -31,7 +31,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let rows = usize::from(block.inner(area).height);
     let mut lines = written(look, Role::Title, &changed, columns);
     lines.extend(written(look, Role::Text, &others, columns));
-    if lines.len() < n && n <= rows {
+    if lines.len() < n && n <= rows && columns > KEY + VALUE + 4 {
         lines = one_each(look, columns);
     }
     if n == 0 {

@@ -35,8 +35,11 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
             (role, found.words(figure, limit, room))
         })
     };
-    for figure in FIGURES {
-        let mut mine = cell(figure, look.model.live.promised(), (Role::Text, widths.first));
+    let estimate = look.model.live.promised();
+    // A figure that the estimate of this mission cannot have, such as a tether's, has no row.
+    let has = |figure: &Figure| estimate.is_none_or(|estimate| (figure.promised)(estimate).is_some());
+    for figure in FIGURES.into_iter().filter(has) {
+        let mut mine = cell(figure, estimate, (Role::Text, widths.first));
         let lanes = look.run.planning.plan.as_ref().map_or(0, |plan| plan.lanes.len());
         if figure.label == "path" && lanes > 0 {
             mine.1 = text::wording([format!("{}, {lanes} lanes", mine.1), mine.1], widths.first);
@@ -49,7 +52,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
             Second::Compared(_, estimate) => cell(figure, Some(estimate), (Role::Ghost, widths.second)),
         });
         let limit = (figure.limit)(mission).map_or_else(String::new, |limit| figure.said(limit));
-        rows.push(row(figure.label, mine, second, &limit, &widths));
+        rows.push(row(figure.label, &mine, second, &limit, &widths));
     }
     fill(frame, area, block, rows.into_iter().map(|parts| look.line(parts)).collect());
 }
@@ -126,10 +129,10 @@ fn head(look: &Look, second: &Second, widths: &Widths) -> Parts {
             (Role::Ghost, fits(id, "compared", widths.second)),
         ),
     };
-    row("", (Role::Title, mine), Some(second), "", widths)
+    row("", &(Role::Title, mine), Some(second), "", widths)
 }
 
-fn row(label: &str, mine: Cell, second: Option<Cell>, limit: &str, widths: &Widths) -> Parts {
+fn row(label: &str, mine: &Cell, second: Option<Cell>, limit: &str, widths: &Widths) -> Parts {
     let mut parts = vec![
         (Role::Dim, format!(" {}", text::column(label, LABEL))),
         (mine.0, format!("{} ", text::column(&mine.1, widths.first))),

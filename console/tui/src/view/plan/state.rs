@@ -17,6 +17,10 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let room = usize::from(area.width).saturating_sub(12);
     let block = look.pane(Pane::Plan, "Plan", &text::wording(keys, room));
     let columns = usize::from(block.inner(area).width).saturating_sub(1);
+    if block.inner(area).height <= 1 {
+        let line = look.line(one(in_a_line(look, columns)));
+        return fill(frame, area, block, vec![line]);
+    }
     let mut rows = wrapped(progress(look), columns);
     rows.extend(certificate(look, columns).map(one));
     rows.push(one((Role::Text, text::wording(planner(look), columns))));
