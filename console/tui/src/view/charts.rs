@@ -10,6 +10,7 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::symbols::Marker;
 use ratatui::text::Line;
+use ratatui::widgets::Block;
 use ratatui::widgets::canvas::Canvas;
 use world::Point;
 

@@ -58,6 +58,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     };
     let wanted = list.above.len() + list.rows.len() + list.below.len() + 2;
     let height = rows.min(wanted as u16).max(3).min(area.height);
+    let is_left = wide && matches!(look.model.ui.overlay, Overlay::Preflight { .. });
     let x = if is_left { area.x } else { area.x + (area.width - columns) / 2 };
     let y = area.y + (1 + top).min(area.height - height);
     list.draw(look, frame, Rect { x, y, width: columns, height });

@@ -17,7 +17,7 @@ mod sketch;
 pub(super) use pattern::Pattern;
 pub(super) use plates::{Key as PlateKey, PlateDrawing};
 pub(super) use shade::{Key as ShadeKey, Shades};
-pub(super) use shapes::{Stroke, Window};
+pub(super) use shapes::{Filled, Stroke, Window, ellipse};
 
 use super::look::Look;
 use super::text;

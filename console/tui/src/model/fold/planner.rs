@@ -3,7 +3,7 @@
 use crate::model::{Cause, Change, Offer, PlanShown, Run, Trail, Withdrawn};
 use mission::{
     BetterPlan, During, Event, EventKind, Phase, PlannerChoice, PlannerInfo, Severity,
-    event::{Effort, late_text},
+    event::{late_text},
 };
 use planner_api::{Command, Drawing};
 
@@ -126,15 +126,4 @@ impl Run {
         self.planning.fault = None;
         self.clear(&Cause::Planner);
     }
-}
-
-/// By how much a better plan is shorter, compared from the place where it begins.
-fn shorter(better: &Effort, flown: &Effort) -> String {
-    let minutes = |s: f64| s / 60.0;
-    format!(
-        "better plan: {:.1} min shorter (of {:.1} from there), {:.0} m less",
-        minutes(flown.time_s - better.time_s),
-        minutes(flown.time_s),
-        flown.length_m - better.length_m
-    )
 }

@@ -21,7 +21,7 @@ pub(crate) struct Window {
 
 impl Window {
     /// Creates a window around a point.
-    pub(super) fn new(center: Point, column_m: f64, size: (u16, u16)) -> Self {
+    pub(in crate::view) fn new(center: Point, column_m: f64, size: (u16, u16)) -> Self {
         let half_x = f64::from(size.0) * column_m / 2.0;
         let half_y = f64::from(size.1) * column_m;
         Self {
@@ -124,7 +124,7 @@ impl Shape for Stroke<'_> {
 }
 
 /// The inside of an outline, solid or hatched.
-pub(super) struct Filled<'a> {
+pub(in crate::view) struct Filled<'a> {
     pub shape: &'a world::Shape,
     pub window: Window,
     pub hatched: bool,
@@ -161,7 +161,7 @@ impl Shape for Filled<'_> {
 }
 
 /// The points of a closed ellipse around a centre.
-pub(super) fn ellipse(center: Point, half_m: (f64, f64), turned_rad: f64, pieces: u32) -> Vec<Point> {
+pub(in crate::view) fn ellipse(center: Point, half_m: (f64, f64), turned_rad: f64, pieces: u32) -> Vec<Point> {
     let (sin, cos) = turned_rad.sin_cos();
     (0..=pieces)
         .map(|piece| {
