@@ -1,0 +1,1 @@
+//! The messages between the console and an adapter: one JSON object a line.
