@@ -27,6 +27,7 @@ pub mod summary;
 mod tethered;
 mod tracking;
 mod turning;
+mod vehicle;
 
 pub use clock::clock;
 pub use drawn::DrawnZone;
@@ -47,6 +48,7 @@ pub use summary::{
     Accuracy, Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, REPORT_VERSION, Stops, Summary,
     Tether, Tracking,
 };
+pub use vehicle::VehicleRecord;
 
 #[cfg(test)]
 extern crate self as account;

@@ -49,7 +49,7 @@ pub use preflight::Preflight;
 pub use preset::Preset;
 pub use replay::Replay;
 pub use review::Review;
-pub use run::{About, Clock, Progress, Run};
+pub use run::{About, Clock, Progress, Run, VehicleSeen};
 pub use shadow::Shadow;
 pub use tether::Tether;
 pub use trail::Trail;

@@ -5,4 +5,5 @@
 //! `console/docs/vehicle-protocol.md` describes the wire for the authors of adapters.
 
 pub mod link;
+pub mod port;
 pub mod wire;

@@ -34,6 +34,8 @@ pub(super) struct Known {
     pub governor: Governor,
     /// The command at the end of the last tick.
     pub last_drive: Drive,
+    /// Why the vehicle must not be driven in this tick, as a clause.
+    pub trouble: Option<String>,
 }
 
 impl Known {
@@ -52,6 +54,7 @@ impl Known {
             floor: ScannedFloor::new(floor),
             trail: vec![start],
             last_drive: Drive::STILL,
+            trouble: None,
             config,
         }
     }

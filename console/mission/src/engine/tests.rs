@@ -247,6 +247,7 @@ fn config() -> MissionConfig {
         fallback: None,
         attended: true,
         start_names_plan: false,
+        live: false,
         better_plan: BetterPlan::Offer,
     }
 }
@@ -330,7 +331,7 @@ impl Flight {
             paid_out_m: self.reel.as_ref().map(|cable| cable.length_m() + self.caught_m),
             pressure_pa: self.pressure_pa,
         };
-        self.mission.sense(&Input { readings: &readings, orders });
+        self.mission.sense(&Input { readings: &readings, orders, trouble: None });
         self.inputs.push((readings, orders.to_vec()));
         self.serve();
         let step = self.mission.act();

@@ -38,6 +38,11 @@ pub enum HoldReason {
         /// The reason, as a sentence.
         message: String,
     },
+    /// The vehicle cannot be driven: the link is lost, someone drives by hand, or the vehicle reports a fault.
+    Vehicle {
+        /// The reason, as a clause.
+        message: String,
+    },
     /// A single step is complete.
     Stepped,
     /// The planner that caused the hold was replaced; the operator decides when the robot moves again.
@@ -58,6 +63,7 @@ impl HoldReason {
             Self::Stuck { message: message() },
             Self::Tether { message: message() },
             Self::PlanRefused { message: message() },
+            Self::Vehicle { message: message() },
             Self::Stepped,
             Self::PlannerReplaced,
         ];
@@ -72,6 +78,7 @@ impl HoldReason {
                 | Self::Stuck { .. }
                 | Self::Tether { .. }
                 | Self::PlanRefused { .. }
+                | Self::Vehicle { .. }
                 | Self::Stepped
                 | Self::PlannerReplaced => {}
             }
@@ -94,7 +101,8 @@ impl fmt::Display for HoldReason {
             Self::PlannerFault { message }
             | Self::PlannerSilent { message }
             | Self::Tether { message }
-            | Self::PlanRefused { message } => write!(f, "held: {message}"),
+            | Self::PlanRefused { message }
+            | Self::Vehicle { message } => write!(f, "held: {message}"),
             Self::Stuck { message } => write!(f, "held: robot stuck, {message}"),
             Self::Stepped => f.write_str("held after single step"),
             Self::PlannerReplaced => f.write_str("held: planner replaced"),

@@ -35,13 +35,22 @@ pub struct FoldedStanding {
     /// The plan with which a start would begin the mission, and its planner.
     #[serde(default)]
     ready: Ready,
+    /// Why the vehicle must not be driven, as a clause.
+    #[serde(default)]
+    trouble: Option<String>,
+    /// Whether the robot is a real vehicle.
+    #[serde(default)]
+    is_live: bool,
 }
 
 impl FoldedStanding {
     /// Processes one event; the events must be passed in the order of the journal.
     pub fn apply(&mut self, event: &EventKind) {
         match event {
-            EventKind::RunOpened(run) => *self = Self { ready: Ready::of(run), ..Self::default() },
+            EventKind::RunOpened(run) => {
+                *self = Self { ready: Ready::of(run), is_live: run.mission.live, ..Self::default() };
+            }
+            EventKind::Link(link) => self.trouble = link.trouble(),
             EventKind::Ordered { order } if order.is_start() => self.phase = Phase::Running(Gait::Steady),
             EventKind::Ordered { order } => {
                 if matches!(order, Order::Shadow(_)) {
@@ -101,6 +110,8 @@ impl FoldedStanding {
             shadow: self.shadow,
             has_offer: self.has_offer,
             readiness: self.ready.readiness(),
+            trouble: self.trouble.as_deref(),
+            is_live: self.is_live,
         }
     }
 }

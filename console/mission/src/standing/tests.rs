@@ -57,6 +57,8 @@ fn standing(phase: &Phase, position: PositionTrust) -> Standing<'_> {
         shadow: Some(shadow),
         has_offer: true,
         readiness: Readiness::Unseen,
+        trouble: None,
+        is_live: false,
     }
 }
 

@@ -23,6 +23,7 @@ const HELD_FAULT: &str = "held, planner fault";
 const HELD_STUCK: &str = "held, stuck";
 const HELD_TETHER: &str = "held, tether";
 const HELD_REFUSED: &str = "held, plan refused";
+const HELD_VEHICLE: &str = "held, vehicle";
 const KNOWN: &str = "known";
 const LOST: &str = "lost";
 
@@ -50,6 +51,7 @@ impl States {
             (HELD_STUCK, "stuck", red),
             (HELD_TETHER, "tether", red),
             (HELD_REFUSED, "refused", red),
+            (HELD_VEHICLE, "vehicle", red),
             outcome(Outcome::Complete, style::rgb(60, 120, 200)),
             outcome(Outcome::Stuck, amber),
             outcome(Outcome::Collision, red),
@@ -110,6 +112,7 @@ fn held(by: &HoldReason) -> &'static str {
         HoldReason::Stuck { .. } => HELD_STUCK,
         HoldReason::Tether { .. } => HELD_TETHER,
         HoldReason::PlanRefused { .. } => HELD_REFUSED,
+        HoldReason::Vehicle { .. } => HELD_VEHICLE,
     }
 }
 

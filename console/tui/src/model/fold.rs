@@ -2,6 +2,7 @@
 
 mod figures;
 mod line;
+mod link;
 mod planner;
 mod position;
 mod shadow;
@@ -121,7 +122,9 @@ impl Run {
             | EventKind::MediumAwaited
             | EventKind::MediumKnown { .. }
             | EventKind::PlannerLogged { .. }
-            | EventKind::Uncounted { .. } => {}
+            | EventKind::Uncounted { .. }
+            | EventKind::Sensed { .. } => {}
+            EventKind::Link(_) | EventKind::Stood { .. } | EventKind::Sent { .. } => self.linked(event),
         }
         self.read_figures(&event.kind);
         if let (Some(number), Some(cause)) = (line, Cause::of(&event.kind)) {

@@ -4,6 +4,7 @@ use super::{Alarms, History, Log, Planning, Position, Raster, Shadow, Tether, Tr
 use mission::{FoldedStanding, MissionConfig, Phase, PlannerInfo, TaskConfig};
 use positioning::AccuracyMap;
 use serde::{Deserialize, Serialize};
+use vehicle::port::LinkSeen;
 use world::{PlateLayout, Point, Station, StationId, World};
 
 /// A run reconstructed from its events.
@@ -32,6 +33,9 @@ pub struct Run {
     /// The tether; `None` without a tether.
     #[serde(default)]
     pub tether: Option<Tether>,
+    /// The real vehicle; `None` in a simulation.
+    #[serde(default)]
+    pub vehicle: Option<VehicleSeen>,
     /// The planner and its latest output.
     pub planning: Planning,
     /// The planner in shadow; `None` without one.
@@ -62,6 +66,15 @@ pub struct About {
     /// The layout of the floor plates, if the drawing shows them.
     #[serde(default)]
     pub plates: Option<PlateLayout>,
+}
+
+/// A real vehicle as its events describe it.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct VehicleSeen {
+    /// The link.
+    pub link: LinkSeen,
+    /// Whether the odometry shows that the vehicle stands as commanded; `None` while that is not decided.
+    pub stands: Option<bool>,
 }
 
 /// Mission time, taken from the events.
@@ -98,6 +111,11 @@ pub struct Progress {
 }
 
 impl Run {
+    /// Whether the robot is a real vehicle.
+    pub fn is_live(&self) -> bool {
+        self.about.as_ref().is_some_and(|about| about.mission.live)
+    }
+
     /// The phase of the mission.
     pub fn phase(&self) -> &Phase {
         &self.standing.phase

@@ -239,6 +239,7 @@ fn held_for_good(by: &HoldReason) -> Vec<String> {
         HoldReason::Tether { .. } => (state(by), &[RESUME, "<end>: end mission."]),
         HoldReason::PlanRefused { .. } => (state(by), &[PLANNER, ":fly-uncertified runs it."]),
         HoldReason::PlannerFault { .. } | HoldReason::Stuck { .. } => (state(by), &[PLANNER, RETRY]),
+        HoldReason::Vehicle { .. } => (state(by), &[RESUME, "<end>: end mission."]),
     };
     std::iter::once(format!("{state}.")).chain(remedies.iter().map(|remedy| (*remedy).to_owned())).collect()
 }
@@ -256,6 +257,7 @@ fn state(by: &HoldReason) -> &'static str {
         HoldReason::PlanRefused { .. } => "HELD: plan refused",
         HoldReason::PlannerSilent { .. } => "HELD: planner silent",
         HoldReason::PlannerFault { .. } => "HELD: planner failed",
+        HoldReason::Vehicle { .. } => "HELD: vehicle",
     }
 }
 
@@ -266,7 +268,8 @@ fn message(by: &HoldReason) -> Option<String> {
         | HoldReason::PlannerSilent { message }
         | HoldReason::Stuck { message }
         | HoldReason::Tether { message }
-        | HoldReason::PlanRefused { message } => Some(format!("{}.", text::capitalized(message))),
+        | HoldReason::PlanRefused { message }
+        | HoldReason::Vehicle { message } => Some(format!("{}.", text::capitalized(message))),
         _ => None,
     }
 }

@@ -2,7 +2,9 @@
 
 use super::{
     PROTOCOL,
-    message::{Ae, Channel, Drive, Hello, Limits, Odometry, Pong, Pose, Readings, Scan, State, Tether},
+    message::{
+        Ae, Channel, Drive, Hello, Limits, Odometry, Outline, Pong, Pose, Readings, Scan, State, Tether,
+    },
 };
 use std::{fmt, ops::RangeInclusive};
 
@@ -13,6 +15,8 @@ const TEXT_MAX: usize = 200;
 const ENTRIES_MAX: usize = 64;
 const RANGES_MAX: usize = 1000;
 const RAYS_MAX: usize = 4096;
+const OUTLINES_MAX: usize = 1000;
+const POINTS_MAX: usize = 1000;
 
 /// A field with a value that cannot be right.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -107,6 +111,8 @@ impl Readings {
         self.scan.as_ref().map_or(Ok(()), Scan::check)?;
         self.tether.as_ref().map_or(Ok(()), Tether::check)?;
         self.pressure_pa.map_or(Ok(()), |pascals| within("readings.pressure_pa", pascals, -1e8..=1e8))?;
+        at_most("readings.outlines", self.outlines.len(), OUTLINES_MAX)?;
+        self.outlines.iter().enumerate().try_for_each(|(at, outline)| outline.check(at))?;
         at_most("readings.channels", self.channels.len(), ENTRIES_MAX)?;
         self.channels.iter().enumerate().try_for_each(|(at, channel)| channel.check(at))
     }
@@ -179,6 +185,26 @@ impl Tether {
     fn check(&self) -> Checked {
         within("readings.tether.paid_out_m", self.paid_out_m, 0.0..=1e4)?;
         self.pull_n.map_or(Ok(()), |newtons| within("readings.tether.pull_n", newtons, 0.0..=1e6))
+    }
+}
+
+impl Outline {
+    fn check(&self, at: usize) -> Checked {
+        let field = |part: &str| format!("readings.outlines[{at}].{part}");
+        at_most(&field("points_m"), self.points_m.len(), POINTS_MAX)?;
+        let least = if self.closed { 3 } else { 1 };
+        if self.points_m.len() < least {
+            return misfit(
+                field("points_m"),
+                format!("{} points, at least {least} are needed", self.points_m.len()),
+            );
+        }
+        for (k, point) in self.points_m.iter().enumerate() {
+            for value in point {
+                within(&field(&format!("points_m[{k}]")), *value, -1000.0..=1000.0)?;
+            }
+        }
+        within(&field("radius_m"), self.radius_m, 0.0..=1000.0)
     }
 }
 

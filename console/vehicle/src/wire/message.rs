@@ -133,6 +133,9 @@ pub struct Readings {
     /// Gauge pressure at the hull, pascals.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure_pa: Option<f64>,
+    /// Outlines of obstacles, for a vehicle with a tracker of its own: at most 1000.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outlines: Vec<Outline>,
     /// Channels of an instrument: at most 64.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub channels: Vec<Channel>,
@@ -230,6 +233,22 @@ pub struct Tether {
     /// Pull at the reel, newtons: 0 to 1,000,000.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pull_n: Option<f64>,
+}
+
+/// The outline of an obstacle within sensing range, in the robot frame.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Outline {
+    /// Number of the obstacle; the tracker gives the same number to the same obstacle.
+    pub id: u32,
+    /// Points, metres, x ahead and y left, each at most 1000 from 0: one for a disc, two or more for a chain, three or
+    /// more for a convex polygon, counter-clockwise. At most 1000 points.
+    pub points_m: Vec<[f64; 2]>,
+    /// Radius of a disc, or half the thickness of a chain, metres: 0 to 1000.
+    #[serde(default)]
+    pub radius_m: f64,
+    /// Whether the points are a polygon and not a chain.
+    #[serde(default)]
+    pub closed: bool,
 }
 
 /// A value of an instrument.

@@ -6,8 +6,8 @@ use super::{
     fields::fields_of,
     lines::{Lines, Piece},
     message::{
-        Ae, Arrival, Bye, Channel, Difference, Drive, FromVehicle, Has, Hello, Limits, Odometry, Ping, Pong,
-        Pose, Readings, Scan, State, StationRanges, Stop, Tether, ToVehicle,
+        Ae, Arrival, Bye, Channel, Difference, Drive, FromVehicle, Has, Hello, Limits, Odometry, Outline,
+        Ping, Pong, Pose, Readings, Scan, State, StationRanges, Stop, Tether, ToVehicle,
     },
     path::{field_at, keys},
     session::{FromSession, ToSession},
@@ -271,6 +271,7 @@ impl Incoming for FromVehicle {
             fields_of::<Difference>(),
             fields_of::<Scan>(),
             fields_of::<Tether>(),
+            fields_of::<Outline>(),
             fields_of::<Channel>(),
         ];
         vec![

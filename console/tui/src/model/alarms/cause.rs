@@ -2,6 +2,7 @@
 
 use mission::{EventKind, HoldReason};
 use serde::{Deserialize, Serialize};
+use vehicle::port::LinkState;
 
 /// The cause of an alarm; there is at most one alarm per cause.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,6 +21,12 @@ pub enum Cause {
     Tether(String),
     /// The last plan could not be certified for the tether.
     Certificate,
+    /// The link to the vehicle is lost or faulty.
+    Link,
+    /// The vehicle cannot be driven: by hand, emergency stop or fault.
+    Vehicle,
+    /// The vehicle moves although it should stand.
+    StopNotConfirmed,
     /// The planner failed.
     Planner,
     /// The robot makes no progress.
@@ -57,6 +64,11 @@ impl Cause {
             EventKind::TetherAlarmRaised { alarm, .. } | EventKind::TetherAlarmCleared { alarm } => {
                 Self::Tether(alarm.word().to_owned())
             }
+            EventKind::Link(link) if link.state.is_heard() && link.state != LinkState::Faulty => {
+                Self::Vehicle
+            }
+            EventKind::Link(_) => Self::Link,
+            EventKind::Stood { .. } => Self::StopNotConfirmed,
             EventKind::Certified { .. } => Self::Certificate,
             EventKind::PlannerFailed { .. } | EventKind::PlannerChosen { .. } => Self::Planner,
             EventKind::Ended { .. } => Self::Ended,
@@ -75,6 +87,9 @@ impl Cause {
             Self::Map => "map".into(),
             Self::Tether(word) => format!("tether {word}"),
             Self::Certificate => "certificate".into(),
+            Self::Link => "link".into(),
+            Self::Vehicle => "vehicle".into(),
+            Self::StopNotConfirmed => "stop_not_confirmed".into(),
             Self::Planner => "planner".into(),
             Self::Stuck => "stuck".into(),
             Self::Ended => "ended".into(),
@@ -96,6 +111,7 @@ impl Cause {
             HoldReason::Stuck { .. } => Some(Self::Stuck),
             HoldReason::PlanRefused { .. } => Some(Self::Certificate),
             HoldReason::Tether { .. }
+            | HoldReason::Vehicle { .. }
             | HoldReason::Operator
             | HoldReason::Stepped
             | HoldReason::PlannerReplaced => None,
@@ -113,6 +129,9 @@ impl Cause {
             Self::Station(world::StationId(1)),
             Self::Map,
             Self::Certificate,
+            Self::Link,
+            Self::Vehicle,
+            Self::StopNotConfirmed,
             Self::Planner,
             Self::Stuck,
             Self::Ended,
@@ -137,6 +156,9 @@ impl Cause {
                 | Self::Map
                 | Self::Tether(_)
                 | Self::Certificate
+                | Self::Link
+                | Self::Vehicle
+                | Self::StopNotConfirmed
                 | Self::Planner
                 | Self::Stuck
                 | Self::Ended
