@@ -145,6 +145,11 @@ impl Flight {
         self.watch.is_some()
     }
 
+    /// Whether it is open whether a real vehicle stands as commanded.
+    pub fn awaits_stop(&self) -> bool {
+        self.watch.as_ref().is_some_and(LiveWatch::awaits_stop)
+    }
+
     /// A handle that makes a real vehicle stand at once; `None` in a simulation.
     pub fn brake(&self) -> Option<Brake> {
         self.vehicle.brake()

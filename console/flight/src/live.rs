@@ -49,6 +49,11 @@ impl LiveWatch {
         self.link.trouble()
     }
 
+    /// Whether it is open whether the vehicle stands as commanded.
+    pub(crate) fn awaits_stop(&self) -> bool {
+        matches!(self.stop, Stop::Awaited { .. })
+    }
+
     /// Takes the readings of a tick; returns its events.
     pub(crate) fn sensed(&mut self, readings: &Readings, live: &Live) -> Vec<EventKind> {
         let mut events = Vec::new();

@@ -159,10 +159,11 @@ impl EngineThread {
         }
     }
 
-    /// Whether ticks pass without orders: the mission is under way, or a planner is being prepared.
+    /// Whether ticks pass without orders: the mission is under way, a planner is being prepared, or a real vehicle has not
+    /// shown yet that it stands.
     fn is_under_way(&self) -> bool {
         match self.flight.phase() {
-            Phase::Waiting => self.flight.mission().awaits() != Awaits::Nothing,
+            Phase::Waiting => self.flight.mission().awaits() != Awaits::Nothing || self.flight.awaits_stop(),
             Phase::Running(_) | Phase::Held(_) => true,
             Phase::Ended(_) => false,
         }

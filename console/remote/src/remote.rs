@@ -205,7 +205,7 @@ fn read_all(mut read: Box<dyn Read + Send>, shared: &Shared) {
             return;
         }
         match read.read(&mut chunk) {
-            Ok(0) => break "the adapter has closed the link".to_owned(),
+            Ok(0) => break "the adapter has ended the connection".to_owned(),
             Ok(n) => {
                 let heard = reader.read(&chunk[..n]);
                 let now_s = shared.now_s();

@@ -216,15 +216,18 @@ fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
     }
     if findings.is_live {
         lines.push(
-            "note: live run: the readings of the vehicle were taken from the journal; every decision was computed again"
+            "note: live run: the readings of the vehicle were taken from the journal; every decision was recomputed from them"
                 .into(),
         );
     }
     if findings.is_run_equal() {
         // A report counts the ticks after the first one, which has the number 0.
-        let how = if planners.is_some() { "" } else { " from the recorded answers" };
-        let how =
-            if findings.is_live { format!("{how} and the readings in the journal") } else { how.to_owned() };
+        let how = match (planners.is_some(), findings.is_live) {
+            (true, false) => "",
+            (true, true) => " from the recorded readings",
+            (false, false) => " from the recorded answers",
+            (false, true) => " from the recorded readings and answers",
+        };
         lines.push(format!(
             "equal: {events} events recomputed{how}, byte for byte, from tick 0 to tick {last_tick}; {}",
             proven(planners.as_ref())

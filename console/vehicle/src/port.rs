@@ -136,18 +136,20 @@ impl LinkSeen {
     pub fn trouble(&self) -> Option<String> {
         let what = match self.state {
             LinkState::Up => return None,
-            LinkState::Lost => {
-                "the link to the vehicle is lost; the vehicle stops by its lease, which is not confirmed"
-            }
-            LinkState::Closed => {
-                "the link to the vehicle is closed; the vehicle stops by its lease, which is not confirmed"
-            }
+            LinkState::Lost => "the link to the vehicle is lost",
+            LinkState::Closed => "the link to the vehicle is closed",
             LinkState::Faulty => "the vehicle sends faulty messages",
             LinkState::Manual => "someone drives the vehicle by hand",
             LinkState::EmergencyStop => "the emergency stop of the vehicle is pressed",
             LinkState::VehicleFault => "the vehicle reports a fault",
         };
-        Some(if self.why.is_empty() { what.to_owned() } else { format!("{what}: {}", self.why) })
+        let why = if self.why.is_empty() { String::new() } else { format!(": {}", self.why) };
+        let unknown = if self.state.is_heard() {
+            ""
+        } else {
+            "; the vehicle stops by its lease, which is not confirmed"
+        };
+        Some(format!("{what}{why}{unknown}"))
     }
 }
 

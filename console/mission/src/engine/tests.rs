@@ -10,6 +10,7 @@ mod start;
 mod stopping;
 mod tethered;
 mod under_way;
+mod vehicle;
 mod zones;
 
 use super::*;
@@ -281,6 +282,8 @@ struct Flight {
     /// Asks without an answer, with the tick in which they get one.
     open: Vec<(u64, Ask)>,
     closed: Vec<crate::WorkerId>,
+    /// Why the vehicle cannot be driven.
+    trouble: Option<&'static str>,
     /// What entered each tick.
     inputs: Vec<(Readings, Vec<Order>)>,
 }
@@ -308,6 +311,7 @@ impl Flight {
             delay: Box::new(|_, _| 0),
             open: vec![],
             closed: vec![],
+            trouble: None,
             inputs: vec![],
         }
     }
@@ -331,7 +335,7 @@ impl Flight {
             paid_out_m: self.reel.as_ref().map(|cable| cable.length_m() + self.caught_m),
             pressure_pa: self.pressure_pa,
         };
-        self.mission.sense(&Input { readings: &readings, orders, trouble: None });
+        self.mission.sense(&Input { readings: &readings, orders, trouble: self.trouble });
         self.inputs.push((readings, orders.to_vec()));
         self.serve();
         let step = self.mission.act();
