@@ -160,10 +160,22 @@ fn fly_to_end(
             flight.tick(&orders, &mut Watched::new(&mut answers, &mut watch))
         };
         orders.clear();
+        if let Some(why) = events.iter().find_map(refused_start) {
+            warn_line(&format!("the mission cannot start: {why}"));
+            orders.push(Order::Terminate);
+        }
         orders.extend(shadowing.as_mut().and_then(|shadowing| shadowing.next(&events)));
         take(events, Some(answers.host()));
     }
     answers.into_host()
+}
+
+/// Why a start was refused: a real vehicle may not be ready to be driven.
+fn refused_start(event: &Event) -> Option<&str> {
+    match &event.kind {
+        EventKind::OrderRefused { order, why } if order.is_start() => Some(why),
+        _ => None,
+    }
 }
 
 /// The clock of a real vehicle: one tick of the mission per tick of time. Lost time is not made up.

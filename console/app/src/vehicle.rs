@@ -29,6 +29,7 @@ pub(crate) fn simulate(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
     let stop = stop_signal::listen();
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
     let vehicle = Behind::new(&scenario);
+    let vehicle = if args.lockstep { vehicle } else { vehicle.with_pose() };
     let FromVehicle::Hello(hello) = vehicle.hello() else {
         anyhow::bail!("a vehicle without an introduction")
     };

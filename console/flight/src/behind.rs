@@ -25,11 +25,14 @@ pub struct Behind {
     last_seq: Option<u64>,
     /// Number of the last readings.
     seq: u64,
+    /// The dead-reckoned pose in the vehicle's own frame; `None` for a vehicle that sends odometry alone.
+    reckoned: Option<message::Pose>,
     tick_s: f64,
 }
 
 impl Behind {
-    /// Creates a vehicle at rest at the start of a scenario.
+    /// Creates a vehicle at rest at the start of a scenario, which sends odometry alone: a mission that loses no message
+    /// then makes the same decisions as with the simulator inside the console.
     pub fn new(scenario: &Scenario) -> Self {
         let world = &scenario.sim.world;
         Self {
@@ -39,8 +42,17 @@ impl Behind {
             driven: None,
             last_seq: None,
             seq: 0,
+            reckoned: None,
             tick_s: scenario.mission.tick_s,
         }
+    }
+
+    /// The same vehicle, which also sends its dead-reckoned pose, so that lost messages lose no motion.
+    #[must_use]
+    pub fn with_pose(mut self) -> Self {
+        self.hello.has.pose = true;
+        self.reckoned = Some(message::Pose { x_m: 0.0, y_m: 0.0, heading_rad: 0.0 });
+        self
     }
 
     /// The introduction of the vehicle.
@@ -121,9 +133,13 @@ impl Behind {
     fn readings(&mut self, now_s: f64) -> FromVehicle {
         let readings = self.simulator.sense();
         self.seq += 1;
+        if let Some(pose) = &mut self.reckoned {
+            *pose = reckoned(*pose, readings.odometry);
+        }
         FromVehicle::Readings(Box::new(message::Readings {
             seq: self.seq,
             stamp_s: now_s,
+            pose: self.reckoned,
             ..told(&readings, &self.stations, self.tick_s)
         }))
     }
@@ -144,6 +160,16 @@ fn told(readings: &Readings, stations: &[Station], tick_s: f64) -> message::Read
         pressure_pa: readings.pressure_pa,
         outlines: readings.sightings.iter().map(outline).collect(),
         ..message::Readings::default()
+    }
+}
+
+/// The pose after a motion.
+fn reckoned(pose: message::Pose, moved: world::Odometry) -> message::Pose {
+    let (sin, cos) = pose.heading_rad.sin_cos();
+    message::Pose {
+        x_m: pose.x_m + moved.forward_m * cos - moved.sideways_m * sin,
+        y_m: pose.y_m + moved.forward_m * sin + moved.sideways_m * cos,
+        heading_rad: pose.heading_rad + moved.turn_rad,
     }
 }
 

@@ -1,23 +1,21 @@
 //! The messages of a vehicle, folded into what a tick needs. It holds one tick of readings, however many arrive.
 
-mod figures;
-mod motion;
+mod ages;
 
-use figures::{Ages, ClockOffset};
-use motion::Motion;
+use ages::Ages;
 use std::collections::BTreeMap;
 use vehicle::{
+    link::{Link, Motions, Sequence, State as Reached},
     port::{LinkSeen, LinkState, Live, Sensed, Stamps},
     wire::{
-        FromVehicle, Heard, Misfit,
-        message::{Commander, Hello, Mode, Outline, Readings, State},
+        FromVehicle, Heard, ToVehicle,
+        message::{Commander, Hello, Mode, Odometry, Outline, Readings, State},
     },
 };
 use world::{ObstacleId, RangeSet, Sighting, StationId};
 
-/// The link counts as lost after this many periods of the readings without one, but not before [`LOST_LEAST_S`].
-const LOST_PERIODS: f64 = 5.0;
-const LOST_LEAST_S: f64 = 0.5;
+/// How long a vehicle may take to its first readings, seconds.
+const FIRST_WITHIN_S: f64 = 2.0;
 /// Ranges that are older than this are dropped: the robot has moved on since then.
 const RANGES_MAX_AGE_S: f64 = 0.5;
 /// The figures of the link are reported at this interval, seconds.
@@ -30,21 +28,15 @@ pub(crate) struct Inbox {
     stations: BTreeMap<String, StationId>,
     hello: Option<Box<Hello>>,
     state: Option<State>,
-    motion: Motion,
+    link: Link,
+    motions: Motions,
+    sequence: Sequence,
     /// The readings since the last tick, and their stamps.
     readings: world::Readings,
     stamps: Option<Stamps>,
-    last_seq: Option<u64>,
-    /// When the last readings arrived, seconds of the console's clock.
-    heard_s: Option<f64>,
-    heard: u64,
-    missed: u64,
     faulty: u64,
-    /// The last faults in a row.
-    faults_in_row: u32,
     fault: String,
     closed: Option<String>,
-    offset: ClockOffset,
     ages: Ages,
     /// What was reported last, and when.
     told: Option<(LinkState, String, f64)>,
@@ -56,18 +48,14 @@ impl Inbox {
             stations,
             hello: None,
             state: None,
-            motion: Motion::default(),
+            link: Link::default(),
+            motions: Motions::default(),
+            sequence: Sequence::default(),
             readings: world::Readings::default(),
             stamps: None,
-            last_seq: None,
-            heard_s: None,
-            heard: 0,
-            missed: 0,
             faulty: 0,
-            faults_in_row: 0,
             fault: String::new(),
             closed: None,
-            offset: ClockOffset::default(),
             ages: Ages::default(),
             told: None,
         }
@@ -90,52 +78,61 @@ impl Inbox {
 
     /// The number of readings so far.
     pub(crate) fn heard(&self) -> u64 {
-        self.heard
+        self.sequence.counts().received
     }
 
     pub(crate) fn close(&mut self, why: String) {
         self.closed.get_or_insert(why);
+        self.link.closed();
+    }
+
+    /// A command was sent.
+    pub(crate) fn sent(&mut self, message: &ToVehicle) {
+        match message {
+            ToVehicle::Drive(drive) => self.link.drove(drive),
+            ToVehicle::Stop(stop) => self.link.stopped(stop),
+            ToVehicle::Ping(_) | ToVehicle::Bye(_) => {}
+        }
     }
 
     pub(crate) fn take(&mut self, heard: Heard<FromVehicle>, now_s: f64) {
+        self.link.heard(&heard, now_s);
         match heard {
-            Heard::Message(message) => {
-                self.faults_in_row = 0;
-                match message {
-                    FromVehicle::Hello(hello) => self.hello = Some(hello),
-                    FromVehicle::Readings(readings) => self.read(&readings, now_s),
-                    FromVehicle::State(state) => self.state = Some(state),
-                    FromVehicle::Pong(pong) => self.offset.pong(pong, now_s),
-                }
+            Heard::Message(FromVehicle::Hello(hello)) => self.greet(hello),
+            Heard::Message(FromVehicle::Readings(readings)) => self.read(&readings, now_s),
+            Heard::Message(FromVehicle::State(state)) => self.state = Some(state),
+            Heard::Message(FromVehicle::Pong(_)) => {}
+            Heard::Malformed(misfit) => {
+                self.faulty += 1;
+                self.fault = foreign::plain(&misfit.to_string()).into_owned();
             }
-            Heard::Malformed(misfit) => self.misfit(&misfit),
             // Keys and messages of newer protocols have no effect.
             Heard::Unknown(_) => {}
         }
     }
 
-    fn misfit(&mut self, misfit: &Misfit) {
-        self.faulty += 1;
-        self.faults_in_row = self.faults_in_row.saturating_add(1);
-        self.fault = foreign::plain(&misfit.to_string()).into_owned();
+    /// A vehicle that introduces itself again has started again; its poses are in a new frame. Over datagrams, the same
+    /// introduction arrives several times.
+    fn greet(&mut self, hello: Box<Hello>) {
+        if self.hello.as_ref() != Some(&hello) {
+            self.motions = Motions::default();
+        }
+        self.hello = Some(hello);
     }
 
     /// Adds readings. Readings that arrive twice, or after later ones, are left out: their motion would count twice.
     fn read(&mut self, readings: &Readings, now_s: f64) {
-        self.heard_s = Some(now_s);
-        let is_late = self.last_seq.is_some_and(|last| readings.seq <= last);
-        if is_late {
+        if !self.sequence.add(readings.seq) {
             return;
         }
-        let gap = self.last_seq.map_or(0, |last| readings.seq - last - 1);
-        self.last_seq = Some(readings.seq);
-        self.heard += 1;
-        self.missed += gap;
         let source_t_s = readings.stamp_s;
         self.stamps = Some(Stamps { source_t_s, arrival_t_s: now_s });
-        let age_s = self.offset.age_s(source_t_s, now_s);
+        let offset = self.link.clock().at(now_s);
+        let age_s = offset.map(|offset| (now_s - (source_t_s - offset.offset_s)).max(0.0));
         self.ages.add(age_s.unwrap_or(0.0));
-        self.motion.add(&mut self.readings.odometry, readings);
+        if let Some(moved) = self.motions.take(readings) {
+            add(&mut self.readings.odometry, moved);
+        }
         self.readings.contact |= readings.contact.unwrap_or(false);
         if let Some(tether) = readings.tether {
             self.readings.paid_out_m = Some(tether.paid_out_m);
@@ -175,32 +172,38 @@ impl Inbox {
 
     /// The state of the link now.
     pub(crate) fn link(&self, now_s: f64) -> LinkSeen {
-        let age_s = self.heard_s.map(|heard_s| now_s - heard_s);
-        let (state, why) = self.state(age_s);
+        let (state, why) = self.state(now_s);
+        let (counts, offset) = (self.sequence.counts(), self.link.clock().at(now_s));
         LinkSeen {
             state,
             why,
-            age_s: age_s.map(rounded),
-            offset_s: self.offset.offset_s().map(rounded),
-            offset_bound_s: self.offset.bound_s().map(rounded),
+            age_s: self.link.age_s(now_s).map(rounded),
+            offset_s: offset.map(|offset| rounded(offset.offset_s)),
+            offset_bound_s: offset.map(|offset| rounded(offset.bound_s)),
             age_p99_s: self.ages.p99_s().map(rounded),
-            heard: self.heard,
-            missed: self.missed,
+            heard: counts.received,
+            missed: counts.lost,
             faulty: self.faulty,
         }
     }
 
-    fn state(&self, age_s: Option<f64>) -> (LinkState, String) {
+    fn state(&self, now_s: f64) -> (LinkState, String) {
         if let Some(why) = &self.closed {
             return (LinkState::Closed, why.clone());
         }
-        let period_s = self.hello.as_ref().map_or(0.0, |hello| hello.period_s);
-        let lost_s = (LOST_PERIODS * period_s).max(LOST_LEAST_S);
-        if age_s.is_some_and(|age_s| age_s > lost_s) {
-            return (LinkState::Lost, format!("no readings for {lost_s:.1} s"));
+        match self.link.state(now_s) {
+            Reached::Lost => return (LinkState::Lost, "its readings stopped".into()),
+            Reached::Connecting if now_s > FIRST_WITHIN_S => {
+                return (LinkState::Lost, "it has sent no readings yet".into());
+            }
+            Reached::Fault => {
+                let fault = self.link.fault().unwrap_or_default();
+                return (LinkState::Faulty, foreign::plain(fault).into_owned());
+            }
+            Reached::Connecting | Reached::Late | Reached::Alive => {}
         }
-        if self.faults_in_row >= vehicle::wire::FAULT_AFTER {
-            return (LinkState::Faulty, self.fault.clone());
+        if let Some(finding) = self.link.finding() {
+            return (LinkState::Faulty, finding.to_string());
         }
         let Some(state) = &self.state else { return (LinkState::Up, String::new()) };
         let text = foreign::plain(state.text.as_deref().unwrap_or_default()).into_owned();
@@ -217,6 +220,21 @@ impl Inbox {
             (Mode::Fault, _) => (LinkState::VehicleFault, text),
         }
     }
+}
+
+/// Adds a motion to those before it in the same tick.
+fn add(sum: &mut world::Odometry, moved: Odometry) {
+    let Odometry { forward_m, sideways_m, turn_rad, .. } = moved;
+    if *sum == world::Odometry::default() {
+        *sum = world::Odometry { forward_m, sideways_m, turn_rad };
+        return;
+    }
+    let (sin, cos) = sum.turn_rad.sin_cos();
+    *sum = world::Odometry {
+        forward_m: sum.forward_m + forward_m * cos - sideways_m * sin,
+        sideways_m: sum.sideways_m + forward_m * sin + sideways_m * cos,
+        turn_rad: sum.turn_rad + turn_rad,
+    };
 }
 
 fn rounded(s: f64) -> f64 {

@@ -75,6 +75,7 @@ impl Loopback {
         let (mut line, now_s) = (Vec::new(), self.now_s());
         let message = self.outbox.next(|| now_s, &mut now_s.clone());
         self.to_vehicle.0.write(&message, &mut line)?;
+        self.inbox.sent(&message);
         for heard in self.to_vehicle.1.read(&line) {
             if let vehicle::wire::Heard::Message(message) = heard {
                 self.behind.take(&message, now_s);

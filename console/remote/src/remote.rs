@@ -233,6 +233,7 @@ fn write_all(mut write: Box<dyn Write + Send>, session: ToSession, shared: &Shar
             shared.outbox.command(None, true);
             continue;
         }
+        shared.inbox().sent(&message);
         let is_last = matches!(message, ToVehicle::Bye(_));
         if let Err(error) = write.write_all(&line).and_then(|()| write.flush()) {
             shared.inbox().close(format!("the link failed: {error}"));

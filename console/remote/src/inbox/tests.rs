@@ -1,7 +1,10 @@
 //! Messages in, readings and link out.
 
 use super::*;
-use vehicle::wire::message::{Ae, Has, Limits, MotionKind, Odometry, Pong, Pose, StationRanges, Tether};
+use vehicle::wire::{
+    Misfit,
+    message::{Ae, Has, Limits, MotionKind, Pong, Pose, StationRanges, Tether},
+};
 
 fn inbox() -> Inbox {
     let mut inbox = Inbox::new([("A".to_owned(), StationId(1))].into());
@@ -102,8 +105,8 @@ fn each_trouble_is_a_state_of_the_link_with_its_reason() {
         let link = inbox.link(now_s);
         (link.state, link.why)
     };
-    assert_eq!(seen(&inbox, 1.4).0, LinkState::Up);
-    assert_eq!(seen(&inbox, 1.6), (LinkState::Lost, "no readings for 0.5 s".into()));
+    assert_eq!(seen(&inbox, 1.7).0, LinkState::Up);
+    assert_eq!(seen(&inbox, 1.9), (LinkState::Lost, "its readings stopped".into()));
     for (heard, word, why) in [
         (state(Mode::Manual, Commander::You), LinkState::Manual, "left track"),
         (state(Mode::EmergencyStop, Commander::You), LinkState::EmergencyStop, "left track"),
@@ -124,7 +127,8 @@ fn each_trouble_is_a_state_of_the_link_with_its_reason() {
         assert_eq!(seen(&inbox, 1.0).0, LinkState::Up);
         inbox.take(Heard::Malformed(misfit()), 1.0);
     }
-    assert_eq!(seen(&inbox, 1.0), (LinkState::Faulty, misfit().to_string()));
+    let (state, why) = seen(&inbox, 1.0);
+    assert!(state == LinkState::Faulty && why.ends_with(&misfit().to_string()), "{why}");
     inbox.close("the adapter has closed the link".into());
     assert_eq!(seen(&inbox, 1.0).0, LinkState::Closed);
 }
@@ -142,5 +146,5 @@ fn the_link_is_reported_when_it_changes_and_every_ten_seconds() {
             reports.push((tick, link.state.word()));
         }
     }
-    assert_eq!(reports, [(0, "up"), (100, "up"), (155, "lost"), (170, "up")]);
+    assert_eq!(reports, [(0, "up"), (100, "up"), (158, "lost"), (170, "up")]);
 }

@@ -27,7 +27,8 @@ fn attended() -> MissionConfig {
 fn a_vehicle_that_cannot_be_driven_is_held_until_an_order() {
     let mut flight = lost(attended());
     let events = flight.tick(&[]);
-    let held = EventKind::Held { by: HoldReason::Vehicle { message: WHY.into() }, resumes: crate::Resumes::Never };
+    let held =
+        EventKind::Held { by: HoldReason::Vehicle { message: WHY.into() }, resumes: crate::Resumes::Never };
     assert!(events.contains(&held), "{events:?}");
     flight.fly(2);
     let place = flight.pose;
@@ -70,7 +71,9 @@ fn a_real_vehicle_is_neither_stepped_by_ticks_nor_given_faults() {
     flight.trouble = None;
     flight.tick(&[Order::Hold]);
     let fault = Injection { station: StationId(1), fault: RangeFault::Dead, for_s: 1.0, by: None };
-    for (order, why) in [(Order::Step, "cannot be stepped by ticks"), (Order::Inject(fault), "only into a simulation")] {
+    for (order, why) in
+        [(Order::Step, "cannot be stepped by ticks"), (Order::Inject(fault), "only into a simulation")]
+    {
         assert!(refusal(&flight.tick(&[order])).is_some_and(|refused| refused.contains(why)), "{why}");
     }
 }

@@ -23,7 +23,9 @@ impl Model {
         };
         let stop = match vehicle.stands {
             Some(true) => (CheckOutcome::Passed, "the vehicle stands, confirmed by its odometry"),
-            Some(false) => (CheckOutcome::Failed, "STOP NOT CONFIRMED: the vehicle moves, or its odometry is missing"),
+            Some(false) => {
+                (CheckOutcome::Failed, "STOP NOT CONFIRMED: the vehicle moves, or its odometry is missing")
+            }
             None => (CheckOutcome::Failed, "its odometry has not confirmed yet that it stands; check again"),
         };
         vec![link, check("stand", stop.0, stop.1.into())]
