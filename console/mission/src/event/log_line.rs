@@ -126,7 +126,9 @@ impl Event {
             EventKind::Stood { confirmed: false, after_s } => line(
                 Severity::Crit,
                 "vehicle",
-                format!("STOP NOT CONFIRMED: still moves {after_s:.2} s after the command to stand"),
+                format!(
+                    "STOP NOT CONFIRMED: odometry does not show that it stands, {after_s:.2} s after the command"
+                ),
             ),
             EventKind::Resumed => line(Severity::Info, "mission", "resumed".into()),
             EventKind::Ended { outcome, reason } => {
