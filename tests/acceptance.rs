@@ -81,3 +81,6 @@ mod stopping;
 #[cfg(unix)]
 #[path = "acceptance/terminal.rs"]
 mod terminal;
+#[cfg(target_os = "linux")]
+#[path = "acceptance/vehicle.rs"]
+mod vehicle;

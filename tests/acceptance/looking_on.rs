@@ -42,6 +42,11 @@ impl Console {
         panic!("no {words:?} in {heard:#?}");
     }
 
+    /// The id of its process.
+    pub(crate) fn pid(&self) -> u32 {
+        self.child.id()
+    }
+
     /// Closes its stdin: the console carries out the remaining commands and exits.
     pub(crate) fn close(&mut self) {
         drop(self.child.stdin.take());

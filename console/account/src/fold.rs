@@ -11,6 +11,7 @@ use crate::{
     tethered::Tethered,
     tracking::Tracker,
     turning::Turning,
+    vehicle::VehicleRecord,
 };
 use mission::{
     Cause, Event, EventKind, FoldedStanding, Order, ParamKind, ParamValue, Parameters, Passage,
@@ -68,6 +69,7 @@ impl Fold {
         self.known.mission_time_s = Some(event.t_s);
         self.standing.apply(&event.kind);
         self.figures.apply(event);
+        self.known.vehicle.iter_mut().for_each(|vehicle| vehicle.apply(&event.kind));
         match &event.kind {
             EventKind::RunOpened(run) => self.open(run),
             EventKind::Truth { pose, clearance_m, collided } => {
@@ -301,6 +303,7 @@ impl Fold {
         self.run = Some(Box::new(run.clone()));
         self.known.scenario = Some(run.scenario.clone());
         self.known.seed = Some(run.seed);
+        self.known.vehicle = run.vehicle.as_deref().map(VehicleRecord::new);
         self.known.planner = Some(run.mission.planner.id.clone());
         self.known.parameters = Some(run.mission.planner.parameters.clone());
         self.evidence = (!self.leaves_out_floor).then(|| Evidence::new(run));

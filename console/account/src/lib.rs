@@ -29,6 +29,7 @@ pub mod summary;
 mod tethered;
 mod tracking;
 mod turning;
+mod vehicle;
 
 pub use clock::clock;
 pub use drawn::DrawnZone;
@@ -51,6 +52,7 @@ pub use summary::{
     Accuracy, Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, REPORT_VERSION, Stops, Summary,
     Tether, Tracking,
 };
+pub use vehicle::VehicleRecord;
 
 #[cfg(test)]
 extern crate self as account;

@@ -1,6 +1,6 @@
 //! The figures of one run, as `run --json` prints them.
 
-use crate::{Account, Figure, drawn::DrawnZone};
+use crate::{Account, Figure, VehicleRecord, drawn::DrawnZone};
 use mission::{Check, Outcome, Parameters, Sandbox};
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +19,9 @@ pub struct Summary {
     /// Name of the file with the located readings; absent for a mission.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub located: Option<String>,
+    /// The real vehicle that was driven; absent for a simulation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vehicle: Option<VehicleRecord>,
     /// Id of the first active planner.
     pub planner: Option<String>,
     /// Version of that planner's plugin.

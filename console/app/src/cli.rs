@@ -8,6 +8,7 @@ mod files;
 mod flight;
 mod logs;
 mod past;
+mod vehicle;
 
 pub(crate) use author::{Lang, NewPlannerArgs, ReplayWorkerArgs};
 pub(crate) use campaign::{CampaignCommand, CompareArgs, Engine, OutArgs, RunCampaignArgs, WorkArgs};
@@ -17,6 +18,7 @@ pub(crate) use files::{FindArg, ImportArgs, LocateArgs, MapArgs};
 pub(crate) use flight::{AccuracyArgs, PlanArgs, RunArgs, ShadowArgs};
 pub(crate) use logs::LogsArg;
 pub(crate) use past::{EventsArgs, ExportArgs, ReportArgs, RescanArgs};
+pub(crate) use vehicle::{SimulateArgs, VehicleArgs, VehicleCommand};
 
 use clap::{Parser, Subcommand};
 use command::arguments::{PluginArgs, ReproduceArgs, TuneArgs};
@@ -42,6 +44,9 @@ pub(crate) enum Command {
     Run(RunArgs),
     /// Plan a mission on the drawing without running it.
     Plan(PlanArgs),
+    /// Offer a vehicle to a console.
+    #[command(subcommand)]
+    Vehicle(VehicleCommand),
     /// Forecast how accurately the stations will locate the robot, and advise where to place them.
     Accuracy(AccuracyArgs),
     /// Show how an occupancy map is interpreted: the floor, its outlines and convex pieces.

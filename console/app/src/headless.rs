@@ -21,10 +21,16 @@ use indicatif::{ProgressBar, ProgressStyle};
 use mission::{Event, EventKind, Order, Phase};
 use planner_api::LogLevel;
 use planner_host::{Host, PluginDirs};
+use remote::Wanted;
 use report::print::{say, say_line, warn_line};
 use runs::{CLOSE_TIMEOUT, Closed, RunLog};
 use scenario::Scenario;
-use std::{io::IsTerminal, process::ExitCode};
+use std::{
+    io::IsTerminal,
+    process::ExitCode,
+    thread,
+    time::{Duration, Instant},
+};
 use world::{Station, coverage::percent_text};
 
 /// The options of a headless run.
@@ -44,7 +50,7 @@ pub(crate) fn run(args: &RunArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCo
     let (json, record, live_deadlines) = (args.json, !args.no_record, args.live_deadlines);
     let shadowing = Shadowing::read(&args.shadow, &args.scenario, &scenario, plugins)?;
     let options = RunOptions { json, record, live_deadlines };
-    fly_beside(&scenario, plugins, &args.logs, options, shadowing)
+    fly_beside(&scenario, plugins, &args.logs, options, shadowing, args.vehicle.wanted().as_ref())
 }
 
 /// Runs a scenario to its end and prints the result.
@@ -54,7 +60,7 @@ pub(crate) fn fly(
     logs: &LogsArg,
     options: RunOptions,
 ) -> anyhow::Result<ExitCode> {
-    fly_beside(scenario, plugins, logs, options, None)
+    fly_beside(scenario, plugins, logs, options, None, None)
 }
 
 /// Runs a scenario to its end, optionally with a planner in shadow, and prints the result.
@@ -64,12 +70,13 @@ fn fly_beside(
     logs: &LogsArg,
     options: RunOptions,
     shadowing: Option<Shadowing>,
+    vehicle: Option<&Wanted>,
 ) -> anyhow::Result<ExitCode> {
     let stop = stop_signal::listen();
     planners::check_installed(scenario, plugins)?;
     warn_of_shadowed(scenario, plugins);
     warn_of_positions(scenario);
-    let flight = Flight::prepare(scenario, false);
+    let flight = remote::connected(Flight::prepare(scenario, false), scenario, vehicle)?;
     let mut log = if options.record {
         RunLog::create(&logs.folder(), &scenario.name, &scenario.mission.planner.id, scenario.seed)?
     } else {
@@ -118,7 +125,8 @@ fn report_trouble(reported: &mut Option<String>, trouble: Option<String>) {
     *reported = trouble;
 }
 
-/// Runs to the end. Every ask is answered before time advances, unless the console's answer windows apply.
+/// Runs to the end. Every ask is answered before time advances, unless the console's answer windows apply. With a real
+/// vehicle, ticks follow the clock, and these windows apply.
 fn fly_to_end(
     (mut flight, mut shadowing): (Flight, Option<Shadowing>),
     host: Host,
@@ -133,11 +141,16 @@ fn fly_to_end(
     let mut watch = PlanWatch::new(answers.host().plan_budget(), Some(on_work));
     let mut orders: Vec<Order> =
         std::iter::once(Order::Start).chain(shadowing.as_ref().map(Shadowing::begin)).collect();
+    let mut clock = flight.brake().map(|_| Clock::starting(flight.tick_length()));
     while !matches!(flight.phase(), Phase::Ended(_)) {
+        clock.iter_mut().for_each(Clock::wait_for_tick);
         if stop.requested() {
             orders.push(Order::Terminate);
         }
-        let events = if live_deadlines {
+        let events = if clock.is_some() {
+            let mut windowed = Windowed::new(answers.host(), Window::real_time(flight.tick_length()));
+            flight.tick(&orders, &mut Watched::new(&mut windowed, &mut watch))
+        } else if live_deadlines {
             // No clock paces the ticks here, so the planner in shadow gets the time that it would have in the console.
             let tick = flight.tick_length();
             let window = Window { shadow: tick, ..Window::real_time(tick) };
@@ -147,10 +160,40 @@ fn fly_to_end(
             flight.tick(&orders, &mut Watched::new(&mut answers, &mut watch))
         };
         orders.clear();
+        if let Some(why) = events.iter().find_map(refused_start) {
+            warn_line(&format!("the mission cannot start: {why}"));
+            orders.push(Order::Terminate);
+        }
         orders.extend(shadowing.as_mut().and_then(|shadowing| shadowing.next(&events)));
         take(events, Some(answers.host()));
     }
     answers.into_host()
+}
+
+/// Why a start was refused: a real vehicle may not be ready to be driven.
+fn refused_start(event: &Event) -> Option<&str> {
+    match &event.kind {
+        EventKind::OrderRefused { order, why } if order.is_start() => Some(why),
+        _ => None,
+    }
+}
+
+/// The clock of a real vehicle: one tick of the mission per tick of time. Lost time is not made up.
+struct Clock {
+    due: Instant,
+    tick: Duration,
+}
+
+impl Clock {
+    fn starting(tick: Duration) -> Self {
+        Self { due: Instant::now(), tick }
+    }
+
+    fn wait_for_tick(&mut self) {
+        let now = Instant::now();
+        thread::sleep(self.due.saturating_duration_since(now));
+        self.due = self.due.max(now) + self.tick;
+    }
 }
 
 fn progress_bar(scenario: &Scenario, options: RunOptions) -> ProgressBar {

@@ -26,10 +26,11 @@ mod signing;
 mod stop_signal;
 mod threads;
 mod trial;
+mod vehicle;
 mod waiting;
 
 use clap::Parser;
-use cli::{Cli, Command, ConsoleArgs, LogsArg};
+use cli::{Cli, Command, ConsoleArgs, LogsArg, VehicleCommand};
 use command::{
     machine,
     start::{close_memory, fail, survive_file_size_limit},
@@ -81,6 +82,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Console(args)) => interactive::open(&args.into(), &plugins),
         Some(Command::Run(args)) => headless::run(&args, &plugins),
         Some(Command::Plan(args)) => plan::plan(&args, &plugins),
+        Some(Command::Vehicle(VehicleCommand::Simulate(args))) => vehicle::simulate(&args),
         Some(Command::Accuracy(args)) => accuracy::accuracy(&args),
         Some(Command::Map(args)) => map::map(&args),
         Some(Command::Import(args)) => import::import(&args, &plugins),

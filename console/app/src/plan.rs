@@ -15,7 +15,7 @@ use planner_api::{Code, LogLevel, Plan};
 use planner_host::{BlockingHost, PluginDirs, Reply};
 use report::{
     plan::{Made, Planned},
-    print::say,
+    print::{say, warn_line},
 };
 use scenario::Scenario;
 use serde::Serialize;
@@ -24,6 +24,10 @@ use std::{path::Path, process::ExitCode, sync::Arc, time::Instant};
 /// Runs `tankops plan`.
 pub(crate) fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
+    if let Some(vehicle) = args.vehicle.wanted() {
+        let info = remote::fitting(&scenario, &vehicle)?;
+        warn_line(&format!("vehicle   {} at {}: fits the scenario", info.name, info.at));
+    }
     let format = args.output.as_deref().map(format_of).transpose()?;
     for file in [&args.output, &args.svg].into_iter().flatten() {
         check_free(file, Some(args.force), &[&args.scenario])?;

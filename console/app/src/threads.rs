@@ -19,6 +19,8 @@ mod each {
     pub(super) const RUN: usize = RECORDING + JOURNAL;
     /// Recomputing a run: its journal and planners and, at the same time, its files.
     pub(super) const VERIFY: usize = 3 + PAST_RUN + PLANNER;
+    /// Consoles connected to a vehicle that this program offers.
+    pub(super) const CONNECTIONS: usize = 17;
     /// The console: signals, keys, plugins, and background work.
     pub(super) const CONSOLE: usize = 5;
 }
@@ -27,6 +29,8 @@ mod each {
 pub(crate) fn needed(command: Option<&Command>) -> usize {
     match command {
         None | Some(Command::Console(_) | Command::Replay(_)) => each::CONSOLE + each::PLANNER + each::RUN,
+        // Connections: each has two threads.
+        Some(Command::Vehicle(_)) => each::SIGNAL + each::CONNECTIONS,
         Some(Command::Run(args)) if args.no_record => each::PLANNER + each::JOURNAL + each::SIGNAL,
         // A coverage planner plans with one thread per core; these must not use up the threads that the recording
         // needs.

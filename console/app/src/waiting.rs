@@ -1,6 +1,6 @@
 //! Waiting for a scenario from a pipe: its writer may be slow, so the user is told what the program waits for.
 
-use crate::cli::Command;
+use crate::cli::{Command, VehicleCommand};
 use interactive::config;
 use report::print::warn_line;
 use rustix::{
@@ -25,6 +25,7 @@ pub(crate) fn for_pipes(command: Option<&Command>) -> Vec<File> {
 fn files(command: Option<&Command>) -> Vec<PathBuf> {
     match command {
         Some(Command::Run(args)) => vec![args.scenario.clone()],
+        Some(Command::Vehicle(VehicleCommand::Simulate(args))) => vec![args.scenario.clone()],
         Some(Command::Plan(args)) => vec![args.scenario.clone()],
         Some(Command::Accuracy(args)) => vec![args.scenario.clone()],
         Some(Command::Locate(args)) => vec![args.scenario.clone()],

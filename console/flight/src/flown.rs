@@ -1,20 +1,26 @@
-//! One flight: simulator and mission, tick by tick.
+//! One flight: vehicle and mission, tick by tick.
 
-use crate::answers::Answers;
+use crate::{
+    answers::Answers,
+    live::{LiveWatch, before_end},
+    simulated::Simulated,
+};
+use geometry::Drive;
 use mission::{
     Event, EventKind, Fork, Injection, Input, Mission, MissionConfig, Order, Phase, RangeFault, RunOpened,
     event::JOURNAL_VERSION,
 };
-
 use scenario::Scenario;
 use sim::{AeConfig, Disturbances, SimConfig, Simulator};
 use std::time::Duration;
+use vehicle::port::{Brake, Command, Live, Sensed, StationFault, Vehicle, VehicleInfo};
 use world::{Floor, Readings};
 
 /// A scenario in flight.
-#[derive(Clone)]
 pub struct Flight {
-    simulator: Simulator,
+    vehicle: Box<dyn Vehicle>,
+    /// The state of a real vehicle; `None` in a simulation.
+    watch: Option<LiveWatch>,
     mission: Mission,
     tick: u64,
     tick_s: f64,
@@ -22,22 +28,60 @@ pub struct Flight {
     readings: Readings,
 }
 
+/// A copy of a mission in its current state, from which forecasts begin.
+#[derive(Clone)]
+pub struct Forked {
+    fork: Fork,
+    opened: RunOpened,
+    tick_s: f64,
+}
+
+impl Forked {
+    /// Creates a forecast of how the flight would continue. Its tank contains only what the mission knows, and no faults
+    /// are injected. The first order to the forecast must choose a planner.
+    pub fn flight(&self, scenario: &Scenario) -> Flight {
+        let Fork { mission, world, pose, cable } = self.fork.clone();
+        let ae = scenario.sim.ae.clone().map(|ae| {
+            let disturbances = Disturbances { faults: Vec::new(), ..ae.disturbances };
+            AeConfig { outages_s: Vec::new(), disturbances, ..ae }
+        });
+        let config = SimConfig { world, ae, movers: Vec::new(), ..scenario.sim.clone() };
+        Flight {
+            vehicle: Box::new(Simulated::new(Simulator::resumed(config, scenario.seed, pose, cable))),
+            watch: None,
+            mission,
+            tick: 0,
+            tick_s: self.tick_s,
+            opened: self.opened.clone(),
+            readings: Readings::default(),
+        }
+    }
+}
+
 impl Flight {
     /// Creates a flight that waits for its start; `attended` tells whether an operator is present.
     pub fn prepare(scenario: &Scenario, attended: bool) -> Self {
-        Self::of(scenario, MissionConfig { attended, ..scenario.mission.clone() })
+        Self::of(scenario, MissionConfig { attended, ..scenario.mission.clone() }, None)
     }
 
     /// Creates a flight for the operator at a console, who sees the plan before the start.
     pub fn for_operator(scenario: &Scenario) -> Self {
         let mission = scenario.mission.clone();
-        Self::of(scenario, MissionConfig { attended: true, start_names_plan: true, ..mission })
+        Self::of(scenario, MissionConfig { attended: true, start_names_plan: true, ..mission }, None)
     }
 
-    fn of(scenario: &Scenario, config: MissionConfig) -> Self {
+    /// The same flight, before its first tick, with a real vehicle in place of the simulator.
+    #[must_use]
+    pub fn with_vehicle(self, scenario: &Scenario, vehicle: Box<dyn Vehicle>, info: VehicleInfo) -> Self {
+        let config = MissionConfig { live: true, ..self.opened.mission };
+        Self::of(scenario, config, Some((vehicle, info)))
+    }
+
+    fn of(scenario: &Scenario, config: MissionConfig, real: Option<(Box<dyn Vehicle>, VehicleInfo)>) -> Self {
         let drawing = scenario.sim.world.as_drawn();
         let floor =
             Floor::new(&drawing, config.cell_m, config.room_m(), config.swath_m, config.start.position);
+        let (vehicle, info) = real.unzip();
         let opened = RunOpened {
             journal_version: JOURNAL_VERSION,
             tankops_version: env!("CARGO_PKG_VERSION").into(),
@@ -50,9 +94,14 @@ impl Flight {
             plates: scenario.plates.clone(),
             checklist: scenario.checklist.clone(),
             measured: None,
+            vehicle: info.clone().map(Box::new),
+        };
+        let simulated = || -> Box<dyn Vehicle> {
+            Box::new(Simulated::new(Simulator::new(scenario.sim.clone(), scenario.seed)))
         };
         Self {
-            simulator: Simulator::new(scenario.sim.clone(), scenario.seed),
+            vehicle: vehicle.unwrap_or_else(simulated),
+            watch: info.map(|info| LiveWatch::new(&info, config.tick_s)),
             tick: 0,
             tick_s: config.tick_s,
             mission: Mission::new(config, drawing, floor, scenario.seed),
@@ -61,24 +110,9 @@ impl Flight {
         }
     }
 
-    /// Creates a forecast of how the flight would continue. Its tank contains only what the mission knows, and no faults
-    /// are injected. The first order to the forecast must choose a planner.
-    #[must_use]
-    pub fn forked(&self, scenario: &Scenario) -> Self {
-        let Fork { mission, world, pose, cable } = self.mission.fork();
-        let ae = scenario.sim.ae.clone().map(|ae| {
-            let disturbances = Disturbances { faults: Vec::new(), ..ae.disturbances };
-            AeConfig { outages_s: Vec::new(), disturbances, ..ae }
-        });
-        let config = SimConfig { world, ae, movers: Vec::new(), ..scenario.sim.clone() };
-        Self {
-            simulator: Simulator::resumed(config, scenario.seed, pose, cable),
-            mission,
-            tick: 0,
-            tick_s: self.tick_s,
-            opened: self.opened.clone(),
-            readings: Readings::default(),
-        }
+    /// Copies the mission in its current state, for forecasts.
+    pub fn forked(&self) -> Forked {
+        Forked { fork: self.mission.fork(), opened: self.opened.clone(), tick_s: self.tick_s }
     }
 
     /// The first event of the run.
@@ -106,12 +140,30 @@ impl Flight {
         Duration::from_secs_f64(self.tick_s)
     }
 
+    /// Whether the robot is a real vehicle.
+    pub fn is_live(&self) -> bool {
+        self.watch.is_some()
+    }
+
+    /// Whether it is open whether a real vehicle stands as commanded.
+    pub fn awaits_stop(&self) -> bool {
+        self.watch.as_ref().is_some_and(LiveWatch::awaits_stop)
+    }
+
+    /// A handle that makes a real vehicle stand at once; `None` in a simulation.
+    pub fn brake(&self) -> Option<Brake> {
+        self.vehicle.brake()
+    }
+
     /// Runs one tick: sense, ask planners and process their answers, act. The true state is written to the events first,
     /// and is used nowhere else.
     pub fn tick(&mut self, orders: &[Order], answers: &mut impl Answers) -> Vec<Event> {
-        self.readings = self.simulator.sense();
-        let truth = self.truth();
-        self.mission.sense(&Input { readings: &self.readings, orders });
+        let Sensed { readings, live } = self.vehicle.sense();
+        self.readings = readings;
+        let mut first = self.truth();
+        first.extend(self.watched(&live.unwrap_or_default()));
+        let trouble = self.watch.as_ref().and_then(LiveWatch::trouble);
+        self.mission.sense(&Input { readings: &self.readings, orders, trouble: trouble.as_deref() });
         loop {
             while let Some(ask) = self.mission.poll_ask() {
                 answers.submit(ask);
@@ -119,11 +171,34 @@ impl Flight {
             let Some(answer) = answers.next(&self.mission) else { break };
             self.mission.answer(answer);
         }
-        let step = self.mission.act();
-        self.simulator.act(step.drive);
+        let mut step = self.mission.act();
+        self.act(step.drive, orders, &mut step.events);
         self.inject_faults(&step.events);
         self.tick += 1;
-        truth.chain(step.events).map(Event::rounded).collect()
+        first.into_iter().chain(step.events).map(Event::rounded).collect()
+    }
+
+    /// Sends the command of this tick to the vehicle. A robot that must not move is commanded to stand, not to drive at
+    /// no speed: a real vehicle then needs no further command to stay there.
+    fn act(&mut self, drive: Drive, orders: &[Order], events: &mut Vec<Event>) {
+        let may_drive = matches!(self.mission.phase(), Phase::Running(_)) || drive != Drive::STILL;
+        let drive = may_drive.then_some(drive);
+        if let Some(sent) = self.watch.as_mut().and_then(|watch| watch.sent(drive)) {
+            before_end(events, self.event(sent));
+        }
+        let has_held =
+            orders.iter().any(|order| matches!(order, Order::Hold | Order::Abort | Order::Terminate));
+        self.vehicle.act(Command { drive, heading_rad: self.mission.heading_rad(), has_held });
+    }
+
+    fn event(&self, kind: EventKind) -> Event {
+        Event { tick: self.tick, t_s: self.tick as f64 * self.tick_s, kind }
+    }
+
+    /// The events of this tick about a real vehicle.
+    fn watched(&mut self, live: &Live) -> Vec<Event> {
+        let kinds = self.watch.as_mut().map(|watch| watch.sensed(&self.readings, live)).unwrap_or_default();
+        kinds.into_iter().map(|kind| self.event(kind)).collect()
     }
 
     /// Starts the injected station faults that the mission accepted; they take effect with the next tick.
@@ -136,15 +211,16 @@ impl Flight {
                     RangeFault::Dead => None,
                     RangeFault::Offset(metres) => Some(*metres),
                 };
-                self.simulator.inject(*station, *for_s, excess_range_m);
+                // The mission accepts this order only in a simulation.
+                let _ =
+                    self.vehicle.inject(StationFault { station: *station, for_s: *for_s, excess_range_m });
             }
         }
     }
 
     /// Events of this tick that only the simulator can report.
-    fn truth(&self) -> impl Iterator<Item = Event> + use<> {
-        let truth = self.simulator.truth();
-        let (tick, t_s) = (self.tick, self.tick as f64 * self.tick_s);
+    fn truth(&self) -> Vec<Event> {
+        let Some(truth) = self.vehicle.truth() else { return Vec::new() };
         let (pose, clearance_m, collided) = (truth.pose, truth.clearance_m, truth.collided);
         let of_tether = truth.tether.map(|tether| EventKind::TetherTruth {
             length_m: tether.length_m,
@@ -153,6 +229,6 @@ impl Flight {
             detour_m: tether.detour_m,
         });
         let kinds = std::iter::once(EventKind::Truth { pose, clearance_m, collided }).chain(of_tether);
-        kinds.map(move |kind| Event { tick, t_s, kind })
+        kinds.map(|kind| self.event(kind)).collect()
     }
 }

@@ -105,6 +105,8 @@ pub(super) struct Tools {
     pub planners: Known,
     pub outbox: Outbox,
     pub config: Arc<Config>,
+    /// The real vehicle that missions drive; `None` for the simulator.
+    pub vehicle: Option<remote::Wanted>,
 }
 
 /// The desk's thread.
@@ -171,14 +173,16 @@ impl Desk {
     /// Opens a scenario that has already been read, with the flight prepared for it.
     ///
     /// # Errors
-    /// A planner is not available or does not accept its parameters, or the thread cannot be started.
+    /// A planner is not available or does not accept its parameters, the vehicle is refused, or the thread cannot be
+    /// started.
     pub(super) fn open(&mut self, id: RunId, scenario: &Scenario, flight: Flight) -> anyhow::Result<()> {
         check_choices(scenario, &self.tools.planners.get())?;
         self.launch(id, scenario, flight)
     }
 
     fn launch(&mut self, id: RunId, scenario: &Scenario, flight: Flight) -> anyhow::Result<()> {
-        let Tools { logs, plugins, outbox, .. } = &self.tools;
+        let Tools { logs, plugins, outbox, vehicle, .. } = &self.tools;
+        let flight = remote::connected(flight, scenario, vehicle.as_ref())?;
         let screen = RunOutbox { run: id, outbox: outbox.clone() };
         let screen = (&self.current, screen);
         let started = Engine::start((scenario, flight), (logs, plugins), screen, self.speed, self.drill);

@@ -55,7 +55,9 @@ impl Engine {
         drill: Option<Drill>,
     ) -> anyhow::Result<Self> {
         let mut host = host(scenario, plugins);
-        let (handle, asked) = line(host.waker());
+        let (handle, asked) = line(host.waker(), flight.brake());
+        // The time of a real vehicle cannot be sped up.
+        let speed = if flight.is_live() { Speed::Times(1.0) } else { speed };
         let (progress, reported) = mpsc::channel();
         host.set_on_progress(Arc::new(move |ask, at| {
             // The receiver lives as long as the host.
@@ -157,10 +159,11 @@ impl EngineThread {
         }
     }
 
-    /// Whether ticks pass without orders: the mission is under way, or a planner is being prepared.
+    /// Whether ticks pass without orders: the mission is under way, a planner is being prepared, or a real vehicle has not
+    /// shown yet that it stands.
     fn is_under_way(&self) -> bool {
         match self.flight.phase() {
-            Phase::Waiting => self.flight.mission().awaits() != Awaits::Nothing,
+            Phase::Waiting => self.flight.mission().awaits() != Awaits::Nothing || self.flight.awaits_stop(),
             Phase::Running(_) | Phase::Held(_) => true,
             Phase::Ended(_) => false,
         }
@@ -175,7 +178,10 @@ impl EngineThread {
 
     /// Whether only an order can change what the robot does, and no planner owes an answer.
     fn rests(&self) -> bool {
-        self.is_held_for_good() && !self.flight.mission().is_preparing() && self.watch.current().is_none()
+        !self.flight.is_live()
+            && self.is_held_for_good()
+            && !self.flight.mission().is_preparing()
+            && self.watch.current().is_none()
     }
 
     fn is_held_for_good(&self) -> bool {

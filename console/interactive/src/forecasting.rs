@@ -51,10 +51,12 @@ impl Forecasting {
         let given_up: Arc<AtomicBool> = Arc::default();
         let forecasting = Self { given_up: Arc::clone(&given_up) };
         thread::Builder::new().name("forecast".into()).spawn(move || {
-            let flight = engine.fork(PATIENCE);
+            let forked = engine.fork(PATIENCE);
             for choice in choices {
-                let forecast = match &flight {
-                    Some(flight) => fly(flight.clone(), &choice, &scenario, &plugins, (&screen, &given_up)),
+                let forecast = match &forked {
+                    Some(forked) => {
+                        fly(forked.flight(&scenario), &choice, &scenario, &plugins, (&screen, &given_up))
+                    }
                     None => Err("the engine did not provide a copy of the mission".to_owned()),
                 };
                 if given_up.load(Ordering::SeqCst) {

@@ -73,6 +73,8 @@ pub struct Options {
     pub colours: Option<Colours>,
     /// The character set of the map and the charts.
     pub glyphs: Option<Glyphs>,
+    /// The real vehicle to drive; `None` for the simulator.
+    pub vehicle: Option<remote::Wanted>,
     /// How the console is operated.
     pub by: By,
     /// A run to watch instead of opening a scenario. The run is given by its folder, or by its name in `logs`.
@@ -148,6 +150,7 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
         planners: Known::default(),
         outbox: outbox.clone(),
         config: Arc::clone(&config),
+        vehicle: options.vehicle.clone(),
     };
     tools.planners.set(found.clone());
     let mut desk = Desk::new(tools, settings.clone(), speed, *drill);

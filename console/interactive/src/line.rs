@@ -1,6 +1,6 @@
 //! The request channel to the engine's thread, used by every thread that may have to stop the robot.
 
-use flight::Flight;
+use flight::Forked;
 use mission::Order;
 use planner_host::Waker;
 use std::{
@@ -12,6 +12,7 @@ use std::{
     time::{Duration, Instant},
 };
 use tui::{Query, Speed};
+use vehicle::port::Brake;
 
 /// A request to the engine's thread.
 pub(super) enum Request {
@@ -23,8 +24,8 @@ pub(super) enum Request {
     Speed(Speed),
     /// Answer immediately, to measure how long an order waits.
     Answer(Sender<()>),
-    /// Return a copy of the flight in its current state, for forecasts.
-    Fork(Sender<Flight>),
+    /// Return a copy of the mission in its current state, for forecasts.
+    Fork(Sender<Forked>),
     /// End the run, close everything and stop.
     Close {
         /// Whether a signal has asked the process to exit; if so, the time limit is shorter.
@@ -37,6 +38,8 @@ pub(super) enum Request {
 pub(super) struct EngineHandle {
     requests: Sender<Request>,
     waker: Waker,
+    /// Makes a real vehicle stand before the mission has processed the order; `None` for the simulator.
+    brake: Option<Brake>,
     /// Whether the robot moves or may start to move, as last reported by the screen.
     may_move: Arc<AtomicBool>,
     /// Whether the operator is typing text, as last reported by the screen.
@@ -44,9 +47,9 @@ pub(super) struct EngineHandle {
 }
 
 /// Creates a channel to an engine; `waker` interrupts its waits for planners.
-pub(super) fn line(waker: Waker) -> (EngineHandle, Receiver<Request>) {
+pub(super) fn line(waker: Waker, brake: Option<Brake>) -> (EngineHandle, Receiver<Request>) {
     let (requests, asked) = mpsc::channel();
-    (EngineHandle { requests, waker, may_move: Arc::default(), is_typing: Arc::default() }, asked)
+    (EngineHandle { requests, waker, brake, may_move: Arc::default(), is_typing: Arc::default() }, asked)
 }
 
 impl EngineHandle {
@@ -54,6 +57,9 @@ impl EngineHandle {
     /// tick immediately.
     pub(super) fn order(&self, order: Order) {
         let is_urgent = matches!(order, Order::Hold | Order::Abort);
+        if is_urgent {
+            self.brake.iter().for_each(Brake::pull);
+        }
         self.request(Request::Order(order, Instant::now()), is_urgent);
     }
 
@@ -92,7 +98,7 @@ impl EngineHandle {
     }
 
     /// Copies the flight in its current state, for forecasts; `None` if the engine does not answer within `patience`.
-    pub(super) fn fork(&self, patience: Duration) -> Option<Flight> {
+    pub(super) fn fork(&self, patience: Duration) -> Option<Forked> {
         let (answer, answered) = mpsc::channel();
         self.request(Request::Fork(answer), false);
         answered.recv_timeout(patience).ok()

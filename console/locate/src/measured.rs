@@ -26,11 +26,13 @@ impl<W: Write> MeasuredWriter<W> {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn write(&mut self, t_s: f64, readings: &Readings, truth: Pose) -> io::Result<()> {
+    pub fn write(&mut self, t_s: f64, readings: &Readings, truth: Option<Pose>) -> io::Result<()> {
         let Odometry { forward_m, sideways_m, turn_rad } = readings.odometry;
-        let Pose { position, heading_rad } = truth;
-        let (x, y) = (position.x, position.y);
-        writeln!(self.out, "{t_s},,,{forward_m},{sideways_m},{turn_rad},{x},{y},{heading_rad}")?;
+        let truth = truth.map_or_else(
+            || ",,".to_owned(),
+            |Pose { position, heading_rad }| format!("{},{},{heading_rad}", position.x, position.y),
+        );
+        writeln!(self.out, "{t_s},,,{forward_m},{sideways_m},{turn_rad},{truth}")?;
         for RangeSet { station, ranges_m } in &readings.ranges {
             let name = self.stations.iter().find(|s| s.id == *station).map_or("", |s| s.name.as_str());
             let name = quoted(&cell(name));

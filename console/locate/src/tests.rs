@@ -259,7 +259,7 @@ fn what_is_written_is_read_again() {
             ..Readings::default()
         };
         let truth = Pose { position: place(k), heading_rad: 1.57 + 0.05 * f64::from(k) };
-        writer.write(f64::from(k) * 0.1, &readings, truth).unwrap();
+        writer.write(f64::from(k) * 0.1, &readings, Some(truth)).unwrap();
     }
     let (scenario, file) = (scenario(), Readable::new("r.csv", writer.into_inner()));
     let task = file.task(&scenario);

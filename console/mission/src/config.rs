@@ -217,6 +217,9 @@ pub struct MissionConfig {
     /// one.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub start_names_plan: bool,
+    /// Whether the robot is a real vehicle and not the simulator: time cannot be stepped, and faults cannot be injected.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub live: bool,
     /// What to do about a plan that is better than a repaired one.
     #[serde(default, skip_serializing_if = "BetterPlan::is_off")]
     pub better_plan: BetterPlan,

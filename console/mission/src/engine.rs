@@ -62,6 +62,8 @@ pub struct Input<'a> {
     pub readings: &'a Readings,
     /// Orders from the operator since the last tick, oldest first.
     pub orders: &'a [Order],
+    /// Why a real vehicle must not be driven now, as a clause; `None` if it may be, and for a simulation.
+    pub trouble: Option<&'a str>,
 }
 
 /// The outputs at the end of a tick.
@@ -120,6 +122,11 @@ impl Mission {
         &self.known.phase
     }
 
+    /// The estimated heading of the robot, radians.
+    pub fn heading_rad(&self) -> f64 {
+        self.known.locator.pose().heading_rad
+    }
+
     /// The active planner or, before there is one, the planner that will be active first.
     pub fn planner_id(&self) -> &str {
         self.driving.id()
@@ -139,12 +146,15 @@ impl Mission {
             shadow: self.shadow.as_ref().map(|shadow| shadow.tally),
             offer: self.offer_stage(),
             readiness: self.driving.readiness(&self.known),
+            trouble: self.known.trouble.as_deref(),
+            is_live: self.known.config.live,
         }
     }
 
     /// Begins a tick: carries out the orders, processes the sensor readings, and applies the rules. Call it once per
     /// tick, first.
     pub fn sense(&mut self, input: &Input<'_>) {
+        self.known.trouble = input.trouble.map(ToOwned::to_owned);
         for order in input.orders {
             self.obey(order);
         }
@@ -196,6 +206,9 @@ impl Mission {
         if matches!(self.known.phase, Phase::Waiting | Phase::Ended(_)) {
             return;
         }
+        if !readings.contact && self.hold_in_trouble() {
+            return;
+        }
         let here = self.known.position();
         let back = self.known.back.as_ref().filter(|_| self.known.phase.is_return());
         let plan = self.driving.course.follower.as_ref();
@@ -229,7 +242,10 @@ impl Mission {
             // While the robot waits for its planner, the time limit for reaching a corner must not run.
             Phase::Running(_) if self.robot_waits() => {}
             Phase::Running(_) => self.known.task.wait(self.known.config.tick_s * self.known.briskness()),
-            Phase::Held(hold) if hold.by.blames_planner() || matches!(hold.by, HoldReason::Stuck { .. }) => {
+            Phase::Held(hold)
+                if hold.by.blames_planner()
+                    || matches!(hold.by, HoldReason::Stuck { .. } | HoldReason::Vehicle { .. }) =>
+            {
                 self.replace_failed_planner();
             }
             Phase::Waiting | Phase::Held(_) | Phase::Ended(_) => {}

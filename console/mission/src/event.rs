@@ -31,11 +31,12 @@ use crate::{
     planner::{Fault, PlannerChoice, PlannerInfo},
     way_back::WayBack,
 };
-use planner_api::{Command, Drawing, Leg, LegTag, LogLevel, PoseEstimate, Reason};
+use planner_api::{Command, Drawing, Drive, Leg, LegTag, LogLevel, PoseEstimate, Reason};
 use positioning::{Exclusion, Fix, FixError, Ranging};
 use serde::{Deserialize, Serialize};
+use vehicle::port::{LinkSeen, VehicleInfo};
 use world::tether::Certificate;
-use world::{CellRun, KindRun, Medium, Obstacle, ObstacleId, Point, Pose, StationId, World, Zone};
+use world::{CellRun, KindRun, Medium, Obstacle, ObstacleId, Point, Pose, Readings, StationId, World, Zone};
 
 /// Version of the journal format; raised when older readers can no longer read new journals.
 pub const JOURNAL_VERSION: u32 = 5;
@@ -503,6 +504,33 @@ pub enum EventKind {
         #[serde(default, skip_serializing_if = "Resumes::is_never")]
         resumes: Resumes,
     },
+    /// Readings of a real vehicle arrived; a tick without this event had none. Only in live runs, because a simulation
+    /// computes its readings again.
+    Sensed {
+        /// The vehicle's own clock when it took the last of the readings, seconds.
+        source_t_s: f64,
+        /// The console's clock when the last of the readings arrived, seconds since the vehicle was connected.
+        arrival_t_s: f64,
+        /// The readings, as the mission used them.
+        readings: Box<Readings>,
+    },
+    /// The state of the link to a real vehicle changed, or its figures are due.
+    Link(LinkSeen),
+    /// A command was sent to a real vehicle; of several commands to stand in a row, only the first is reported.
+    Sent {
+        /// The motion; absent for a command to stand.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        drive: Option<Drive>,
+        /// How long the vehicle may carry out the motion without a further command, seconds.
+        lease_s: f64,
+    },
+    /// The odometry of a real vehicle shows whether it stands as commanded.
+    Stood {
+        /// Whether it stands; if not, it still moves although it should stand by now.
+        confirmed: bool,
+        /// Time since the command to stand, seconds.
+        after_s: f64,
+    },
     /// The robot may move again.
     Resumed,
     /// The last event of every run that ended normally or by order.
@@ -547,4 +575,7 @@ pub struct RunOpened {
     /// Measurements by another system, located afterwards; absent for a run that was flown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub measured: Option<Measured>,
+    /// The real vehicle that was driven; absent for a simulation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vehicle: Option<Box<VehicleInfo>>,
 }

@@ -62,6 +62,10 @@ pub struct Standing<'a> {
     pub offer: Option<OfferStage>,
     /// The plan with which a start would begin the mission.
     pub readiness: Readiness<'a>,
+    /// Why a real vehicle must not be driven now, as a clause; `None` if it may be, and for a simulation.
+    pub trouble: Option<&'a str>,
+    /// Whether the robot is a real vehicle.
+    pub is_live: bool,
 }
 
 /// Why an order is refused.
@@ -111,6 +115,15 @@ pub enum Refusal {
     },
     /// The ranges contradict each other.
     RangesInconsistent,
+    /// The vehicle cannot be driven.
+    Vehicle {
+        /// The reason, as a clause.
+        why: String,
+    },
+    /// A real vehicle cannot be stepped by ticks.
+    StepOfVehicle,
+    /// Faults can be injected only into a simulation.
+    FaultOfVehicle,
     /// No plan has been refused because of the tether.
     NoPlanRefused,
     /// No better plan is offered.
@@ -158,6 +171,12 @@ impl fmt::Display for Refusal {
             Self::RangesInconsistent => {
                 f.write_str("the ranges contradict each other; resuming requires a consistent fix")
             }
+            Self::Vehicle { why } => write!(f, "the vehicle cannot be driven: {why}"),
+            Self::StepOfVehicle => f.write_str(
+                "a real vehicle cannot be stepped by ticks, because its time does not stop; step to the end of the lane \
+                 or to the next event",
+            ),
+            Self::FaultOfVehicle => f.write_str("faults can be injected only into a simulation"),
             Self::NoPlanRefused => f.write_str("no plan has been refused because of the tether"),
             Self::NoOffer => f.write_str("no better plan is offered"),
             Self::OfferAccepted => {
@@ -182,6 +201,8 @@ impl Standing<'_> {
     pub fn allows(&self, order: &Order) -> Result<(), Refusal> {
         match (order, self.phase) {
             (_, Phase::Ended(outcome)) => Err(Refusal::Ended(*outcome)),
+            (Order::Step, _) if self.is_live => Err(Refusal::StepOfVehicle),
+            (Order::Inject(_), _) if self.is_live => Err(Refusal::FaultOfVehicle),
             (
                 Order::Abort
                 | Order::Terminate
@@ -252,6 +273,7 @@ impl Standing<'_> {
 
     /// Checks that a start order names the plan that is ready.
     fn can_start(&self, seen: Option<PlanId>) -> Result<(), Refusal> {
+        self.can_drive()?;
         match self.readiness {
             Readiness::Unseen => Ok(()),
             Readiness::NoPlan => Err(Refusal::NoPlan),
@@ -262,7 +284,12 @@ impl Standing<'_> {
         }
     }
 
+    fn can_drive(&self) -> Result<(), Refusal> {
+        self.trouble.map_or(Ok(()), |why| Err(Refusal::Vehicle { why: why.to_owned() }))
+    }
+
     fn can_move(&self) -> Result<(), Refusal> {
+        self.can_drive()?;
         match self.position {
             PositionTrust::Good => Ok(()),
             PositionTrust::Lost { limit_m } => Err(Refusal::PositionLost { limit_m }),

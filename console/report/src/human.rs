@@ -3,6 +3,7 @@
 pub(crate) mod floor;
 mod short;
 pub(crate) mod text;
+mod vehicle;
 
 pub use short::short;
 
@@ -28,6 +29,7 @@ pub fn human(run: &Summary) -> String {
     text.some("pre-flight", pre_flight(&run.checks));
     text.some("mission time", mission_time(run));
     text.some("path", path(run));
+    text.lines(run.vehicle.iter().flat_map(vehicle::lines));
     text.lines(run.coverage.iter().flat_map(coverage).map(|line| ("coverage", line)));
     text.lines(run.floor.iter().flat_map(floor::lines));
     text.lines(run.tracking.iter().flat_map(tracking).map(|line| ("tracking", line)));
@@ -68,6 +70,10 @@ fn title(run: &Summary) -> String {
     if let Some(file) = &run.located {
         return format!("{}, located from the readings in {file}", or_unknown(&run.scenario));
     }
+    if let Some(vehicle) = &run.vehicle {
+        let (scenario, planner) = (or_unknown(&run.scenario), or_unknown(&run.planner));
+        return format!("LIVE: {}, {scenario}, planner {planner}", vehicle.name);
+    }
     let seed = run.seed.map_or_else(|| "unknown".to_owned(), |seed| seed.to_string());
     let version = run.planner_version.as_ref().map(|version| format!(" {version}")).unwrap_or_default();
     format!("{}, planner {}{version}, seed {seed}", or_unknown(&run.scenario), or_unknown(&run.planner))
@@ -92,6 +98,9 @@ fn warnings(run: &Summary) -> Vec<String> {
     found.extend(run.floor.as_ref().and_then(beyond_reel));
     if let Some(n @ 1..) = run.collisions {
         found.push(counted(n, "collision"));
+    }
+    if let Some(n @ 1..) = run.vehicle.as_ref().map(|vehicle| vehicle.stops_not_confirmed) {
+        found.push(format!("STOP NOT CONFIRMED {}", counted(n, "time")));
     }
     if let n @ 1.. = run.planner_faults {
         found.push(counted(n, "planner fault"));

@@ -1,5 +1,6 @@
 //! Operations on past runs: read, report, verify, and re-scan missed floor.
 
+mod flown;
 mod past;
 mod readings;
 mod register;

@@ -8,14 +8,15 @@ use recording::{Ticks, journal_of};
 use std::{io, path::Path};
 use world::{Pose, Readings};
 
-/// Writes the sensor readings tick by tick, each with its time, seconds, and the true pose of the robot.
+/// Writes the sensor readings tick by tick, each with its time, seconds, and the true pose of the robot, which a live
+/// run does not have.
 ///
 /// # Errors
 /// The journal of the run in the folder cannot be read, this build recomputes a different run from it, or the
 /// readings cannot be written.
 pub fn readings(
     folder: &Path,
-    mut take: impl FnMut(f64, &Readings, Pose) -> io::Result<()>,
+    mut take: impl FnMut(f64, &Readings, Option<Pose>) -> io::Result<()>,
 ) -> anyhow::Result<()> {
     let path = journal_of(folder);
     let mut ticks = Ticks::open(&path)?;
@@ -25,7 +26,7 @@ pub fn readings(
     while let Some(recorded) = ticks.next_tick()? {
         replayed.begin_tick(&recorded);
         let mut computed = std::mem::take(&mut head);
-        computed.extend(flight.tick(&recorded.orders(), &mut replayed));
+        computed.extend(flight.tick(&recorded, &mut replayed));
         if recorded.difference(&computed).context("writing an event as JSON")?.is_some() {
             return Err(bad_input(format!(
                 "from tick {} on, this version of tankops computes a different run, so its readings would not be \
@@ -35,11 +36,11 @@ pub fn readings(
             )));
         }
         let truth = computed.iter().find_map(|event| match event.kind {
-            EventKind::Truth { pose, .. } => Some((event.t_s, pose)),
+            EventKind::Truth { pose, .. } => Some(pose),
             _ => None,
         });
-        if let Some((t_s, truth)) = truth {
-            take(t_s, flight.readings(), truth).context("writing the readings")?;
+        if let Some(first) = computed.first() {
+            take(first.t_s, flight.readings(), truth).context("writing the readings")?;
         }
     }
     Ok(())

@@ -11,7 +11,7 @@
 
 pub(crate) mod planners;
 
-use crate::register;
+use crate::{flown::Flown, register};
 use anyhow::Context;
 use flight::{Flight, failure::bad_input, hosts::host, planners::found};
 use mission::{PlannerInfo, event::Measured};
@@ -62,6 +62,8 @@ struct Findings {
     builds: BTreeMap<String, PlannerInfo>,
     events: usize,
     last_tick: u64,
+    /// Whether the readings came from the journal.
+    is_live: bool,
 }
 
 /// The result of a verification.
@@ -220,9 +222,20 @@ fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
     if difference.is_some() || findings.other_answer().is_some() {
         lines.extend(planner_changes(&findings.builds, plugins).iter().map(|note| format!("note: {note}")));
     }
+    if findings.is_live {
+        lines.push(
+            "note: live run: the readings of the vehicle were taken from the journal; every decision was recomputed from them"
+                .into(),
+        );
+    }
     if findings.is_run_equal() {
         // A report counts the ticks after the first one, which has the number 0.
-        let how = if planners.is_some() { "" } else { " from the recorded answers" };
+        let how = match (planners.is_some(), findings.is_live) {
+            (true, false) => "",
+            (true, true) => " from the recorded readings",
+            (false, false) => " from the recorded answers",
+            (false, true) => " from the recorded readings and answers",
+        };
         lines.push(format!(
             "equal: all {events} events identical when recomputed{how}, from tick 0 to tick {last_tick}; {}",
             proven(planners.as_ref())
@@ -252,7 +265,7 @@ fn proven(planners: Option<&Asked>) -> String {
 }
 
 /// The run in a journal, ready to be recomputed.
-pub(crate) fn prepared(path: &Path, ticks: &mut Ticks) -> anyhow::Result<(Scenario, Flight)> {
+pub(crate) fn prepared(path: &Path, ticks: &mut Ticks) -> anyhow::Result<(Scenario, Flown)> {
     let opened = ticks.opened()?.clone();
     if let Some(Measured { file, .. }) = &opened.measured {
         return Err(bad_input(format!(
@@ -265,7 +278,8 @@ pub(crate) fn prepared(path: &Path, ticks: &mut Ticks) -> anyhow::Result<(Scenar
     // Only an operator at the console sees the plan before the start.
     scenario.mission.start_names_plan = opened.mission.start_names_plan;
     let flight = Flight::prepare(&scenario, opened.mission.attended);
-    Ok((scenario, flight))
+    let flown = Flown::of(flight, &scenario, opened.vehicle.as_deref());
+    Ok((scenario, flown))
 }
 
 fn compare(path: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings> {
@@ -307,18 +321,18 @@ fn read_ahead(mut ticks: Ticks, giver: &Giver<Vec<Result<RecordedTick, JournalEr
 
 /// Recomputes the mission alongside its journal, up to the first difference.
 fn recompute(
-    mut flight: Flight,
+    mut flight: Flown,
     mut replayed: Replayed,
     read: impl Iterator<Item = Result<RecordedTick, JournalError>>,
 ) -> anyhow::Result<Findings> {
-    let mut findings = Findings::default();
+    let mut findings = Findings { is_live: flight.is_live(), ..Findings::default() };
     let mut head = vec![flight.opened()];
     for recorded in read {
         let recorded = recorded?;
         replayed.begin_tick(&recorded);
         findings.builds.extend(recorded.opened_planners().map(|info| (info.id.clone(), info.clone())));
         let mut computed = std::mem::take(&mut head);
-        computed.extend(flight.tick(&recorded.orders(), &mut replayed));
+        computed.extend(flight.tick(&recorded, &mut replayed));
         findings.difference = recorded.difference(&computed).context("writing an event as JSON")?;
         findings.events += recorded.n_compared();
         findings.last_tick = recorded.tick;

@@ -10,7 +10,7 @@ use super::{
     schema,
     section::Section,
     source::Source,
-    task, tether,
+    task, tether, vehicle,
 };
 use mission::{BetterPlan, Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
 use planner_api::Limits;
@@ -90,6 +90,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let plates = if root.has("plates") { floor::plates(root, floor.boundary.as_ref()) } else { None };
     let checklist =
         if root.has("checklist") { root.table("checklist")?.texts("items") } else { Some(Vec::new()) };
+    let vehicle = vehicle::vehicle(root);
     let expect = expect::expect(root);
     let inspection = inspection::section(root);
     let rest = Rest::read(&sections, &floor);
@@ -123,6 +124,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         // Whether an operator attends depends on the caller, not on the scenario.
         attended: false,
         start_names_plan: false,
+        live: false,
         better_plan: rest.better_plan,
     };
     let tether_anchor = mission.tether.as_ref().map(|tether| tether.anchor);
@@ -151,6 +153,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         sim,
         mission,
         plates,
+        vehicle: vehicle?,
         checklist: checklist?,
         expect: expect?,
         inspection: inspection?,

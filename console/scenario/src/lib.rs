@@ -27,11 +27,13 @@ mod source;
 mod suggest;
 mod task;
 mod tether;
+mod vehicle;
 
 pub use inspection::inspection;
 pub use problem::{Complaint, Problem, ScenarioErrors};
 pub use rescan::{Continued, rescan};
 pub use settings::Settings;
+pub use vehicle::VehicleNeeds;
 
 use account::{Expect, Inspection};
 use mission::MissionConfig;
@@ -63,6 +65,8 @@ pub struct Scenario {
     pub mission: MissionConfig,
     /// The layout of the floor plates, if the drawing specifies it.
     pub plates: Option<PlateLayout>,
+    /// What the mission needs from a real vehicle.
+    pub vehicle: VehicleNeeds,
     /// Items that the operator ticks by hand before the start.
     pub checklist: Vec<String>,
     /// Bounds on the run's results.

@@ -193,6 +193,7 @@ pub(crate) static ROOT: &[Key] = &[
     key("tether", "", Kind::Table(TETHER)).or_none("none"),
     key("mission", "", Kind::Table(MISSION)),
     key("planner", "", Kind::Table(PLANNER)),
+    key("vehicle", "", Kind::Table(VEHICLE)).or_none("simulated"),
     key("checklist", "", Kind::Table(CHECKLIST)).or_none("nothing to tick"),
     key("expect", "", Kind::Table(EXPECT)).or_none("no bounds"),
     key("inspection", "", Kind::Table(INSPECTION)).or_none("no facts"),
@@ -411,6 +412,14 @@ static PLANNER: &[Key] = &[
 
 static FALLBACK: &[Key] =
     &[key("id", "", Kind::Slug), key("parameters", "", Kind::Free).or_none("planner's defaults")];
+
+static VEHICLE: &[Key] = &[
+    key("at", "", Kind::Text).or_none("command line"),
+    number("stop_max_s", "s", above(0.0).up_to(60.0)).or(1.5),
+    key("without_contact", "", Kind::Flag).or_flag(false),
+    key("without_reel", "", Kind::Flag).or_flag(false),
+    key("without_ranges", "", Kind::Flag).or_flag(false),
+];
 
 const NO_BOUND: &str = "no bound";
 

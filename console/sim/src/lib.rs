@@ -15,7 +15,7 @@ mod sweep;
 
 pub use config::{
     AeConfig, BehindColumns, Disturbances, Mover, NoiseModel, RobotConfig, SimConfig, StationFault,
-    TetherTruth, TimingErrors, Track, Truth,
+    TimingErrors, Track,
 };
 pub use ranging::Sounder;
 pub use simulator::Simulator;

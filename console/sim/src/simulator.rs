@@ -1,7 +1,7 @@
 //! The simulator, with its calls `sense` and `act`.
 
 use crate::{
-    config::{RobotConfig, SimConfig, StationFault, TetherTruth, Truth},
+    config::{RobotConfig, SimConfig, StationFault},
     motion::{Arc, Tracks, bounded},
     movers::Movers,
     random::{RandomStreams, normal},
@@ -10,7 +10,9 @@ use crate::{
     sweep::sweep,
 };
 use geometry::Drive;
-use world::{Medium, Mode, ObstacleMap, Odometry, Point, Pose, Readings, StationId, tether::Cable};
+use world::{
+    Medium, Mode, ObstacleMap, Odometry, Point, Pose, Readings, StationId, TetherTruth, Truth, tether::Cable,
+};
 
 /// A contact of the hull ends only once the gap is wider than this, metres.
 const CONTACT_GAP_M: f64 = 1e-3;

@@ -4,6 +4,7 @@ mod console;
 mod position;
 mod remedy;
 mod tether;
+mod vehicle;
 
 pub use remedy::{Guide, Remedy};
 
@@ -26,6 +27,9 @@ pub fn name(cause: &Cause, of: &Run) -> String {
         Cause::Tether(word) => tether::name(word),
         Cause::Certificate => "plan not certified for tether".into(),
         Cause::Zone(zone) => format!("hull in zone {}", text::fit(zone, 18)),
+        Cause::Link => "link to vehicle lost".into(),
+        Cause::Vehicle => "vehicle cannot be driven".into(),
+        Cause::StopNotConfirmed => "STOP NOT CONFIRMED".into(),
         Cause::Planner => "planner failed".into(),
         Cause::Stuck => "robot stuck".into(),
         Cause::Ended => "mission ended early".into(),
@@ -60,6 +64,9 @@ pub fn guide(cause: &Cause) -> Guide {
             remedies: const { &[SHOW, wait("Check what it is: nozzle, sump, debris."), HOLD] },
         },
         Cause::Tether(word) => tether::guide(word),
+        Cause::Link => vehicle::LINK,
+        Cause::Vehicle => vehicle::VEHICLE,
+        Cause::StopNotConfirmed => vehicle::STOP_NOT_CONFIRMED,
         Cause::Certificate => Guide {
             cause: "If run to its end, the plan would exceed a tether limit, touch something, or finish \
             with the tether still out.",

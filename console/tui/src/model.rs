@@ -54,7 +54,7 @@ pub use preflight::Preflight;
 pub use preset::Preset;
 pub use replay::Replay;
 pub use review::Review;
-pub use run::{About, Clock, Progress, Run};
+pub use run::{About, Clock, Progress, Run, VehicleSeen};
 pub use shadow::Shadow;
 pub use sketch::Sketch;
 pub use tether::Tether;

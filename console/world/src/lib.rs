@@ -16,6 +16,7 @@ pub mod tank;
 pub mod tether;
 mod tiles;
 mod total;
+mod truth;
 
 pub use coverage::{
     Cell, CellRun, Counts, CoverageGrid, Floor, FloorClass, FloorMaker, KindRun, ShellFigures, ShellStretch,
@@ -29,3 +30,4 @@ pub use plates::{DrawnPlate, NO_PLATE, Plate, PlateKind, PlateLayout, PlateMap, 
 pub use readings::{Odometry, RangeSet, Readings, Sighting};
 pub use tank::{Obstacle, ObstacleId, Station, StationId, World, Zone, ZoneKind};
 pub use tiles::Tiles;
+pub use truth::{TetherTruth, Truth};

@@ -9,7 +9,7 @@ use std::{
 };
 
 /// The crates with the written types.
-const CRATES: [(&str, &str); 9] = [
+const CRATES: [(&str, &str); 10] = [
     ("geometry", "console/geometry/src"),
     ("world", "console/world/src"),
     ("positioning", "console/positioning/src"),
@@ -19,6 +19,7 @@ const CRATES: [(&str, &str); 9] = [
     ("account", "console/account/src"),
     ("report", "console/report/src"),
     ("runs", "console/runs/src"),
+    ("vehicle", "console/vehicle/src"),
 ];
 
 fn project() -> PathBuf {
@@ -86,4 +87,26 @@ fn the_schema_of_events_is_that_of_the_types() {
     let roots = [Root { of_crate: "mission", name: "Event", about }];
     let id = format!("urn:tankops:events:{version}");
     is_committed("events-schema.json", &Document::of(&sources(), "Events of tankops", &id, &roots));
+}
+
+#[test]
+fn the_schema_of_the_vehicle_protocol_is_that_of_the_types() {
+    let version = version("console/vehicle/src/wire.rs", "PROTOCOL");
+    let roots = [
+        Root {
+            of_crate: "vehicle",
+            name: "FromVehicle",
+            about: "One line from the vehicle. Keys that are not named here are ignored.",
+        },
+        Root {
+            of_crate: "vehicle",
+            name: "ToVehicle",
+            about: "One line to the vehicle. Keys that are not named here are ignored.",
+        },
+    ];
+    let id = format!("urn:tankops:vehicle:{version}");
+    is_committed(
+        "vehicle-schema.json",
+        &Document::of(&sources(), "Vehicle protocol of tankops", &id, &roots),
+    );
 }

@@ -1,6 +1,6 @@
 //! Options of the console and of the replay.
 
-use super::{Changes, LogsArg};
+use super::{Changes, LogsArg, VehicleArgs};
 use clap::Args;
 use interactive::{By, Drill, Options, Replay};
 use std::path::PathBuf;
@@ -37,9 +37,11 @@ pub(crate) struct ConsoleArgs {
     pub speed: Option<tui::Speed>,
     #[command(flatten)]
     pub screen: ScreenArgs,
+    #[command(flatten)]
+    pub vehicle: VehicleArgs,
     /// Watch a run that is open in another console, or view a past run, given by its folder or its name in the logs
     /// folder. No orders can be given.
-    #[arg(long, value_name = "RUN", conflicts_with_all = ["scenario", "Changes", "speed", "script", "drill"])]
+    #[arg(long, value_name = "RUN", conflicts_with_all = ["scenario", "Changes", "speed", "script", "drill", "vehicle"])]
     pub view: Option<PathBuf>,
     /// Make a part of the console fail while the robot moves, to test that the run and the terminal survive.
     #[arg(long, value_name = "PART", hide = true)]
@@ -109,6 +111,7 @@ impl From<ConsoleArgs> for Options {
             colours: args.screen.colour,
             glyphs: args.screen.glyphs.map(Into::into),
             by,
+            vehicle: args.vehicle.wanted(),
             view: args.view,
             replay: None,
             drill: args.drill.map(Into::into),

@@ -1,6 +1,6 @@
 //! Options for running a mission, planning it, and forecasting its position accuracy.
 
-use super::{Changes, LogsArg};
+use super::{Changes, LogsArg, VehicleArgs};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -21,6 +21,8 @@ pub(crate) struct RunArgs {
     pub live_deadlines: bool,
     #[command(flatten)]
     pub shadow: ShadowArgs,
+    #[command(flatten)]
+    pub vehicle: VehicleArgs,
     /// Print the report as JSON on stdout, and nothing else.
     #[arg(long)]
     pub json: bool,
@@ -46,6 +48,8 @@ pub(crate) struct PlanArgs {
     pub scenario: PathBuf,
     #[command(flatten)]
     pub changes: Changes,
+    #[command(flatten)]
+    pub vehicle: VehicleArgs,
     /// Print the plan as JSON on stdout.
     #[arg(long)]
     pub json: bool,

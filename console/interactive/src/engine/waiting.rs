@@ -60,10 +60,11 @@ impl EngineThread {
                     return (orders, None);
                 }
                 Ok(Request::Order(order, _)) => orders.push(order),
+                Ok(Request::Speed(_)) if self.flight.is_live() => {}
                 Ok(Request::Speed(speed)) => self.speed = speed,
                 Ok(Request::Ask(query)) => self.send(answer(self.flight.mission(), query)),
                 Ok(Request::Fork(answer)) => {
-                    let _ = answer.send(self.flight.forked(&self.scenario));
+                    let _ = answer.send(self.flight.forked());
                 }
                 Ok(Request::Answer(answer)) => {
                     // The requester may have stopped waiting.

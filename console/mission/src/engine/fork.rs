@@ -25,7 +25,8 @@ impl Mission {
     pub fn fork(&self) -> Fork {
         let mut mission = self.clone();
         (mission.preparing, mission.shadow) = (None, None);
-        // In the forecast the robot starts at rest.
+        // In the forecast the robot is simulated, and starts at rest.
+        mission.known.config.live = false;
         mission.known.governor.stand();
         // No operator is present to take a better plan.
         if mission.known.config.better_plan == BetterPlan::Offer {

@@ -27,6 +27,17 @@ impl Mission {
         }
     }
 
+    /// Holds a robot that may move while its vehicle cannot be driven; only an order ends that hold. Returns whether the
+    /// vehicle cannot be driven: then no rule ends the mission, because nothing is known about the robot.
+    pub(super) fn hold_in_trouble(&mut self) -> bool {
+        let Some(why) = self.known.trouble.clone() else { return false };
+        if self.known.phase.may_move() {
+            self.hold(Hold { by: HoldReason::Vehicle { message: why }, resumes: Resumes::Never });
+        }
+        self.go_on_or_help();
+        true
+    }
+
     /// After a fault, or if the planner finds no path, the fallback planner takes over if there is one. If there is none
     /// and the mission is unattended, the mission ends.
     pub(super) fn replace_failed_planner(&mut self) {
@@ -44,7 +55,8 @@ impl Mission {
                 HoldReason::Stuck { message } => (Outcome::Stuck, message),
                 HoldReason::PlannerFault { message }
                 | HoldReason::PlanRefused { message }
-                | HoldReason::PlannerSilent { message } => (Outcome::Aborted, message),
+                | HoldReason::PlannerSilent { message }
+                | HoldReason::Vehicle { message } => (Outcome::Aborted, message),
                 _ => return,
             };
             let reason = format!("unattended hold: {message}");

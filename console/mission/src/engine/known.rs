@@ -38,6 +38,8 @@ pub(super) struct Known {
     pub back: Option<Back>,
     /// The no-go zones that the hull is in.
     pub breached: Vec<String>,
+    /// Why the vehicle must not be driven in this tick, as a clause.
+    pub trouble: Option<String>,
 }
 
 impl Known {
@@ -58,6 +60,7 @@ impl Known {
             last_drive: Drive::STILL,
             back: None,
             breached: Vec::new(),
+            trouble: None,
             config,
         }
     }

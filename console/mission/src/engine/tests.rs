@@ -11,6 +11,7 @@ mod start;
 mod stopping;
 mod tethered;
 mod under_way;
+mod vehicle;
 mod zones;
 
 use super::*;
@@ -248,6 +249,7 @@ fn config() -> MissionConfig {
         fallback: None,
         attended: true,
         start_names_plan: false,
+        live: false,
         better_plan: BetterPlan::Offer,
     }
 }
@@ -281,6 +283,8 @@ struct Flight {
     /// Asks without an answer, with the tick in which they get one.
     open: Vec<(u64, Ask)>,
     closed: Vec<crate::WorkerId>,
+    /// Why the vehicle cannot be driven.
+    trouble: Option<&'static str>,
     /// What entered each tick.
     inputs: Vec<(Readings, Vec<Order>)>,
 }
@@ -308,6 +312,7 @@ impl Flight {
             delay: Box::new(|_, _| 0),
             open: vec![],
             closed: vec![],
+            trouble: None,
             inputs: vec![],
         }
     }
@@ -331,7 +336,7 @@ impl Flight {
             paid_out_m: self.reel.as_ref().map(|cable| cable.length_m() + self.caught_m),
             pressure_pa: self.pressure_pa,
         };
-        self.mission.sense(&Input { readings: &readings, orders });
+        self.mission.sense(&Input { readings: &readings, orders, trouble: self.trouble });
         self.inputs.push((readings, orders.to_vec()));
         self.serve();
         let step = self.mission.act();

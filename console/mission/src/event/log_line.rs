@@ -10,6 +10,7 @@ use crate::{
 };
 use planner_api::LogLevel;
 use positioning::Exclusion;
+use vehicle::port::LinkSeen;
 use world::{Station, StationId, tether::Certificate};
 
 /// A line of the event log: its severity, its source and its text.
@@ -125,6 +126,17 @@ impl Event {
                 "robot",
                 format!("floor {}: pressure {:.0} Pa", medium.word(), pressure_pa),
             ),
+            EventKind::Link(link) => of_link(link),
+            EventKind::Stood { confirmed: true, after_s } => {
+                line(Severity::Info, "vehicle", format!("stands, confirmed by odometry after {after_s:.2} s"))
+            }
+            EventKind::Stood { confirmed: false, after_s } => line(
+                Severity::Crit,
+                "vehicle",
+                format!(
+                    "STOP NOT CONFIRMED: odometry does not show that it stands, {after_s:.2} s after the command"
+                ),
+            ),
             EventKind::Resumed => line(Severity::Info, "mission", "resumed".into()),
             EventKind::Ended { outcome, reason } => {
                 let severity = if *outcome == Outcome::Complete { Severity::Info } else { Severity::Warn };
@@ -149,6 +161,8 @@ impl Event {
             | EventKind::Covered { .. }
             | EventKind::Uncounted { .. }
             | EventKind::FloorChanged { .. }
+            | EventKind::Sensed { .. }
+            | EventKind::Sent { .. }
             | EventKind::Progressed { .. } => return None,
         })
     }
@@ -156,6 +170,16 @@ impl Event {
 
 fn line(severity: Severity, source: &'static str, text: String) -> LogLine {
     LogLine { severity, source, text }
+}
+
+fn of_link(link: &LinkSeen) -> LogLine {
+    let LinkSeen { heard, missed, faulty, .. } = link;
+    let figures = format!("{heard} readings arrived, {missed} missing, {faulty} faulty");
+    match (link.trouble(), link.state.is_heard()) {
+        (None, _) => line(Severity::Info, "vehicle", format!("link up: {figures}")),
+        (Some(why), true) => line(Severity::Warn, "vehicle", format!("{why} ({figures})")),
+        (Some(why), false) => line(Severity::Crit, "vehicle", format!("{why} ({figures})")),
+    }
 }
 
 fn of_planner(kind: &EventKind) -> Option<LogLine> {

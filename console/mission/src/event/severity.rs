@@ -47,6 +47,7 @@ pub(super) fn of_hold(by: &HoldReason) -> Severity {
         | HoldReason::PlanRefused { .. }
         | HoldReason::Tether { .. }
         | HoldReason::Stuck { .. } => Severity::Warn,
+        HoldReason::Vehicle { .. } => Severity::Crit,
     }
 }
 

@@ -43,6 +43,11 @@ pub enum HoldReason {
         /// Name of the zone.
         zone: String,
     },
+    /// The vehicle cannot be driven: the link is lost, someone drives by hand, or the vehicle reports a fault.
+    Vehicle {
+        /// The reason, as a clause.
+        message: String,
+    },
     /// A single step is complete.
     Stepped,
     /// The planner that caused the hold was replaced; the operator decides when the robot moves again.
@@ -64,6 +69,7 @@ impl HoldReason {
             Self::Tether { message: message() },
             Self::PlanRefused { message: message() },
             Self::ZoneBreached { zone: message() },
+            Self::Vehicle { message: message() },
             Self::Stepped,
             Self::PlannerReplaced,
         ];
@@ -79,6 +85,7 @@ impl HoldReason {
                 | Self::Tether { .. }
                 | Self::PlanRefused { .. }
                 | Self::ZoneBreached { .. }
+                | Self::Vehicle { .. }
                 | Self::Stepped
                 | Self::PlannerReplaced => {}
             }
@@ -101,7 +108,8 @@ impl fmt::Display for HoldReason {
             Self::PlannerFault { message }
             | Self::PlannerSilent { message }
             | Self::Tether { message }
-            | Self::PlanRefused { message } => write!(f, "held: {message}"),
+            | Self::PlanRefused { message }
+            | Self::Vehicle { message } => write!(f, "held: {message}"),
             Self::Stuck { message } => write!(f, "held: robot stuck, {message}"),
             Self::ZoneBreached { zone } => write!(f, "held: hull in zone {zone}"),
             Self::Stepped => f.write_str("held after single step"),

@@ -39,6 +39,12 @@ pub struct FoldedStanding {
     /// The plan with which a start would begin the mission, and its planner.
     #[serde(default)]
     ready: Ready,
+    /// Why the vehicle must not be driven, as a clause.
+    #[serde(default)]
+    trouble: Option<String>,
+    /// Whether the robot is a real vehicle.
+    #[serde(default)]
+    is_live: bool,
 }
 
 impl FoldedStanding {
@@ -47,8 +53,10 @@ impl FoldedStanding {
         match event {
             EventKind::RunOpened(run) => {
                 let takes_offers = run.mission.better_plan == BetterPlan::Take;
-                *self = Self { ready: Ready::of(run), takes_offers, ..Self::default() };
+                let is_live = run.mission.live;
+                *self = Self { ready: Ready::of(run), takes_offers, is_live, ..Self::default() };
             }
+            EventKind::Link(link) => self.trouble = link.trouble(),
             EventKind::Ordered { order } if order.is_start() => self.phase = Phase::Running(Gait::Steady),
             EventKind::Ordered { order } => {
                 if matches!(order, Order::Shadow(_)) {
@@ -112,6 +120,8 @@ impl FoldedStanding {
             shadow: self.shadow,
             offer: self.offer,
             readiness: self.ready.readiness(),
+            trouble: self.trouble.as_deref(),
+            is_live: self.is_live,
         }
     }
 }

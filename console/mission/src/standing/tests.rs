@@ -59,6 +59,8 @@ fn standing(phase: &Phase, position: PositionTrust) -> Standing<'_> {
         shadow: Some(shadow),
         offer: Some(OfferStage::Offered),
         readiness: Readiness::Unseen,
+        trouble: None,
+        is_live: false,
     }
 }
 

@@ -8,10 +8,10 @@ use mission::{
     AskId, Event, EventKind,
     event::{Effort, PlanScans, TetherContact},
 };
-use planner_api::{Command, Leg, LegTag, PoseEstimate, Reason};
+use planner_api::{Command, Drive, Leg, LegTag, PoseEstimate, Reason};
 use positioning::{Fix, Ranging};
 use serde::Deserialize;
-use world::{CellRun, Point, Pose};
+use world::{CellRun, Point, Pose, Readings};
 
 /// Reads a line with the fields of an event; those after `;` are optional.
 macro_rules! read {
@@ -39,6 +39,8 @@ pub(super) fn event(line: &[u8]) -> Option<Event> {
         b"truth" => read!(line, Truth { pose: Pose, clearance_m: f64, collided: bool; }),
         b"covered" => read!(line, Covered { runs: Vec<CellRun>; }),
         b"uncounted" => read!(line, Uncounted { runs: Vec<CellRun>; }),
+        b"sensed" => read!(line, Sensed { source_t_s: f64, arrival_t_s: f64, readings: Box<Readings>; }),
+        b"sent" => read!(line, Sent { lease_s: f64; drive: Option<Drive> }),
         b"ranged" => read!(line, Ranged { ranges: Vec<Ranging>; }),
         b"fixed" => read!(line, Fixed { fix: Fix; }),
         b"commanded" => {
@@ -108,6 +110,11 @@ mod tests {
             "excluded": [[4, { "residual": { "residual_m": 0.6, "gate_m": 0.2 } }]], "degrees_of_freedom": 1,
             "chi2": 1.5, "gdop": 1.2, "conditioning": 1.4, "mirror": null, "protection_level_m": 0.3, "integrity": "ok",
         });
+        let readings = json!({
+            "ranges": [{ "station": 1, "ranges_m": [4.25, 4.1] }], "ranging_cycle": true,
+            "odometry": { "forward_m": 0.04, "sideways_m": 0.0, "turn_rad": -0.001 }, "sightings": [], "contact": false,
+            "paid_out_m": 3.5,
+        });
         let drive =
             json!({ "drive": { "twist": { "v_m_per_s": 0.4, "w_rad_per_s": 0.1 } }, "status": "moving" });
         let plan = json!({ "event": "planned", "ask": [1, 3], "planner": "navfn", "reason": "start", "path": [[0.0, 1.0], [2.0, 0.1]],
@@ -123,6 +130,9 @@ mod tests {
             json!({ "event": "uncounted", "runs": [] }),
             json!({ "event": "commanded", "ask": [1, 28], "command": drive }),
             json!({ "event": "commanded", "command": drive }),
+            json!({ "event": "sensed", "source_t_s": 12.5, "arrival_t_s": 1.25, "readings": readings }),
+            json!({ "event": "sent", "drive": { "twist": { "v_m_per_s": 0.4, "w_rad_per_s": 0.1 } }, "lease_s": 0.25 }),
+            json!({ "event": "sent", "lease_s": 0.25 }),
             json!({ "event": "tether_truth", "length_m": 1.0, "wrap_max_rad": 0.2, "wrap_total_rad": -0.0, "detour_m": 0.5 }),
             json!({ "event": "progressed", "done": 0.5, "along_m": null, "cross_track_m": 0.1, "target": [1.0, 2.0],
                     "covered_reachable": 0.25, "covered_whole": 0.2, "leg": "swath" }),

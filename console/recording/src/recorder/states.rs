@@ -25,6 +25,7 @@ const HELD_TETHER: &str = "held, tether";
 const HELD_REFUSED: &str = "held, plan refused";
 const HELD_ZONE: &str = "held, hull in a no-go zone";
 const RETURNING: &str = "driving back";
+const HELD_VEHICLE: &str = "held, vehicle";
 const KNOWN: &str = "known";
 const LOST: &str = "lost";
 
@@ -54,6 +55,7 @@ impl States {
             (HELD_REFUSED, "refused", red),
             (HELD_ZONE, "zone", red),
             (RETURNING, "back", green),
+            (HELD_VEHICLE, "vehicle", red),
             outcome(Outcome::Complete, style::rgb(60, 120, 200)),
             outcome(Outcome::Stuck, amber),
             outcome(Outcome::Collision, red),
@@ -118,6 +120,7 @@ fn held(by: &HoldReason) -> &'static str {
         HoldReason::Tether { .. } => HELD_TETHER,
         HoldReason::PlanRefused { .. } => HELD_REFUSED,
         HoldReason::ZoneBreached { .. } => HELD_ZONE,
+        HoldReason::Vehicle { .. } => HELD_VEHICLE,
     }
 }
 

@@ -343,6 +343,7 @@ fn opened() -> RunOpened {
         plates: None,
         checklist: Vec::new(),
         measured: None,
+        vehicle: None,
         scenario_toml: "[tank]\nradius_m = 8.0\n".into(),
         seed: 42,
         floor: Floor::new(&world, 0.1, limits.radius_m, 0.6, start.position),
@@ -373,6 +374,7 @@ fn opened() -> RunOpened {
             fallback: None,
             attended: false,
             start_names_plan: false,
+            live: false,
             better_plan: mission::BetterPlan::Off,
         },
     }

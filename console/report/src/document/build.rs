@@ -105,6 +105,7 @@ impl Document {
             revisions: context.revisions,
             made_by: format!("tankops {}", context.version),
             is_simulation: located.is_none() && runs.iter().any(|run| run.positioning.is_some()),
+            live: past.iter().find_map(|past| past.summary.vehicle.clone()),
             located,
             inspection: context.inspection,
             contradiction,

@@ -29,6 +29,9 @@ pub struct Document {
     pub made_by: String,
     /// Whether the runs were simulated; if so, no floor was inspected.
     pub is_simulation: bool,
+    /// The real vehicle that was driven; absent for simulations and located readings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub live: Option<account::VehicleRecord>,
     /// The located readings on which the report is made; absent for missions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub located: Option<Located>,

@@ -2,6 +2,7 @@
 
 mod figures;
 mod line;
+mod link;
 mod planner;
 mod position;
 mod shadow;
@@ -124,7 +125,9 @@ impl Run {
             | EventKind::MediumAwaited
             | EventKind::MediumKnown { .. }
             | EventKind::PlannerLogged { .. }
-            | EventKind::Uncounted { .. } => {}
+            | EventKind::Uncounted { .. }
+            | EventKind::Sensed { .. } => {}
+            EventKind::Link(_) | EventKind::Stood { .. } | EventKind::Sent { .. } => self.linked(event),
         }
         self.read_peaks(&event.kind);
         self.read_figures(&event.kind);

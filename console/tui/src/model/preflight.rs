@@ -1,5 +1,7 @@
 //! The pre-flight check: automatic checks, and those that the operator ticks by hand.
 
+mod vehicle;
+
 use super::{Model, ui::Arrangement};
 use mission::{Check, CheckOutcome, PlanId, Readiness};
 use serde::{Deserialize, Serialize};
@@ -93,6 +95,7 @@ impl Model {
     fn own_checks(&self) -> Vec<Check> {
         let mut checks = vec![self.planner_check(), self.plan_check()];
         checks.extend(self.tether_check());
+        checks.extend(self.vehicle_checks());
         checks.extend([self.station_check(), self.terminal_check()]);
         checks
     }

@@ -4,6 +4,7 @@ use super::{Alarms, History, Log, Peaks, Planning, Position, Raster, Shadow, Tet
 use mission::{FoldedStanding, MissionConfig, Phase, PlannerInfo, TaskConfig, WayBack};
 use positioning::AccuracyMap;
 use serde::{Deserialize, Serialize};
+use vehicle::port::LinkSeen;
 use world::{PlateLayout, Point, Pose, Station, StationId, World};
 
 /// The time under way before which the average pace says nothing about the rest, seconds.
@@ -38,6 +39,9 @@ pub struct Run {
     /// The tether; `None` without a tether.
     #[serde(default)]
     pub tether: Option<Tether>,
+    /// The real vehicle; `None` in a simulation.
+    #[serde(default)]
+    pub vehicle: Option<VehicleSeen>,
     /// The planner and its latest output.
     pub planning: Planning,
     /// The planner in shadow; `None` without one.
@@ -71,6 +75,15 @@ pub struct About {
     /// The layout of the floor plates, if the drawing shows them.
     #[serde(default)]
     pub plates: Option<PlateLayout>,
+}
+
+/// A real vehicle as its events describe it.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct VehicleSeen {
+    /// The link.
+    pub link: LinkSeen,
+    /// Whether the odometry shows that the vehicle stands as commanded; `None` while that is not decided.
+    pub stands: Option<bool>,
 }
 
 /// Mission time, taken from the events.
@@ -107,6 +120,11 @@ pub struct Progress {
 }
 
 impl Run {
+    /// Whether the robot is a real vehicle.
+    pub fn is_live(&self) -> bool {
+        self.about.as_ref().is_some_and(|about| about.mission.live)
+    }
+
     /// The phase of the mission.
     pub fn phase(&self) -> &Phase {
         &self.standing.phase

@@ -168,7 +168,8 @@ pub(crate) fn simulating(model: &Model) -> Result<(), String> {
     if model.live.is_replay() {
         return Ok(());
     }
-    demand(model.live.run.about.is_some() && !model.live.run.has_ended(), "no mission is open")
+    demand(model.live.run.about.is_some() && !model.live.run.has_ended(), "no mission is open")?;
+    demand(!model.live.run.is_live(), "a real vehicle runs in real time; its speed is always 1")
 }
 
 /// Checks that no mission is in progress: only one is allowed at a time.
@@ -212,6 +213,9 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         | Refusal::RangesInconsistent
         | Refusal::NoPlanRefused
         | Refusal::NoOffer
+        | Refusal::Vehicle { .. }
+        | Refusal::StepOfVehicle
+        | Refusal::FaultOfVehicle
         | Refusal::ShadowNotReady { .. } => None,
     }
 }

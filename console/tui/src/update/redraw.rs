@@ -56,5 +56,7 @@ fn is_telemetry(kind: &EventKind) -> bool {
             | EventKind::Truth { .. }
             | EventKind::TetherTruth { .. }
             | EventKind::Uncounted { .. }
+            | EventKind::Sensed { .. }
+            | EventKind::Sent { .. }
     )
 }

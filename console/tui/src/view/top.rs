@@ -102,6 +102,7 @@ pub(super) fn state(model: &Model) -> Parts {
         Phase::Running(Gait::Steady) => ("AUTO", Role::Run, "▶ RUN"),
         Phase::Running(Gait::OneTick | Gait::To(_)) => ("OPER", Role::Run, "▶ STEP"),
         Phase::Running(Gait::Back) => ("OPER", Role::Run, "▶ BACK"),
+        Phase::Held(_) if model.live.run.is_live() => ("LIVE", held_role(model), held_word(model)),
         Phase::Held(Hold {
             by: HoldReason::Operator | HoldReason::Stepped | HoldReason::PlannerReplaced,
             ..
@@ -111,8 +112,26 @@ pub(super) fn state(model: &Model) -> Parts {
         Phase::Ended(_) => ("OPER", Role::Warn, "■ ENDED"),
     };
     let (role, word) = if model.live.is_cut_off { (Role::Crit, "■ CUT OFF") } else { (role, word) };
+    let who = if model.live.run.is_live() { "LIVE" } else { who };
     let who = if model.live.is_look_only() { "VIEW" } else { who };
     vec![(Role::Title, format!("{who} ")), (role, word.into())]
+}
+
+/// Whether a held vehicle really stands.
+fn stands(model: &Model) -> Option<bool> {
+    model.live.run.vehicle.as_ref().and_then(|vehicle| vehicle.stands)
+}
+
+fn held_role(model: &Model) -> Role {
+    if stands(model) == Some(false) { Role::Crit } else { Role::Hold }
+}
+
+fn held_word(model: &Model) -> &'static str {
+    match stands(model) {
+        Some(true) => "‖ HELD",
+        Some(false) => "‖ STOP NOT CONFIRMED",
+        None => "‖ STOPPING",
+    }
 }
 
 /// The mission time, speed and recording.

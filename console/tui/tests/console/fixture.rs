@@ -104,6 +104,7 @@ pub(crate) fn config() -> MissionConfig {
         fallback: None,
         attended: true,
         start_names_plan: true,
+        live: false,
         better_plan: mission::BetterPlan::Offer,
     }
 }
@@ -212,6 +213,7 @@ pub(crate) fn opened() -> EventKind {
         plates: None,
         checklist: Vec::new(),
         measured: None,
+        vehicle: None,
     }))
 }
 

@@ -136,6 +136,7 @@ fn opened(config: &MissionConfig) -> EventKind {
         plates: None,
         checklist: vec![],
         measured: None,
+        vehicle: None,
     }))
 }
 

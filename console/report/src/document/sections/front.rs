@@ -12,7 +12,7 @@ use super::{
     task,
 };
 use crate::human::text::counted;
-use account::Shares;
+use account::{Shares, VehicleRecord};
 use mission::Outcome;
 
 /// Builds the page without its sections.
@@ -33,14 +33,14 @@ pub(super) fn page(document: &Document, sections: Vec<Section>) -> Page {
     let css = |text: String| foreign::markup(&text).replace(is_end, " ");
     Page {
         heading: "Tank floor inspection: coverage and position record",
-        banner: String::new(),
+        banner: document.live.as_ref().map_or_else(String::new, banner),
         title: format!("Inspection report {tank} revision {}", document.revision),
         css: "",
         head: css(format!(
             "Tank {tank}   |   Document {}   |   Revision {} ({state})",
             document.number, document.revision
         )),
-        mark: if document.is_simulation { "SIMULATION" } else { "" },
+        mark: mark(document),
         foot: css(format!("{hash}{}", document.made_by)),
         is_simulation: document.is_simulation,
         is_signed: document.signature.is_some(),
@@ -57,6 +57,32 @@ pub(super) fn page(document: &Document, sections: Vec<Section>) -> Page {
         todo: todo(document),
         sections,
     }
+}
+
+/// The word at the head of every sheet.
+fn mark(document: &Document) -> &'static str {
+    match (document.is_simulation, &document.live) {
+        (true, _) => "SIMULATION",
+        (false, Some(_)) => "LIVE",
+        (false, None) => "",
+    }
+}
+
+/// The vehicle and its link, for a live run.
+fn banner(vehicle: &VehicleRecord) -> String {
+    let VehicleRecord { name, at, heard, missed, faulty, lost, stops, stops_not_confirmed, .. } = vehicle;
+    let age = vehicle.age_p99_s.map(|s| format!(", p99 age {:.0} ms", 1e3 * s)).unwrap_or_default();
+    let most = vehicle.stop_max_s.map(|s| format!(" within {s:.2} s")).unwrap_or_default();
+    let not = match stops_not_confirmed {
+        0 => String::new(),
+        n => format!(", STOP NOT CONFIRMED {}", counted(*n, "time")),
+    };
+    format!(
+        "Vehicle {name} at {at}: {heard} readings, {missed} missing, {faulty} faulty{age}; link lost {}; {} \
+         confirmed by odometry{most}{not}. No figure of this report was compared with a true position.",
+        counted(*lost, "time"),
+        counted(*stops, "stop"),
+    )
 }
 
 fn fields(document: &Document) -> Vec<Field> {

@@ -23,9 +23,9 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::Step, "step", "Move for one more tick", &[Key::Char('.')], &[Context::Stepping]).label("step").risk(Risk::Moves)
         .when(|m| accepted(m, &Order::Step)).does(|m| act::step(m, Order::Step)),
     action(ActionId::StepLane, "step-lane", "Move to the end of the lane", &[Key::Char('}')], &[Context::Stepping]).label("lane").risk(Risk::Moves)
-        .when(|m| accepted(m, &Order::Step)).does(|m| act::step(m, Order::StepTo(StepTo::LaneEnd))),
+        .when(|m| accepted(m, &Order::StepTo(StepTo::LaneEnd))).does(|m| act::step(m, Order::StepTo(StepTo::LaneEnd))),
     action(ActionId::StepEvent, "step-event", "Move to the next event", &[Key::Char(']')], &[Context::Stepping]).label("event").risk(Risk::Moves)
-        .when(|m| accepted(m, &Order::Step)).does(|m| act::step(m, Order::StepTo(StepTo::Event))),
+        .when(|m| accepted(m, &Order::StepTo(StepTo::Event))).does(|m| act::step(m, Order::StepTo(StepTo::Event))),
     action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc], &[Context::Text, Context::Stepping, Context::Cursor]).label("cancel").does(act::cancel),
     action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc, Key::Char('q')], &[Context::List, Context::Confirm, Context::WhatIf, Context::Drawing]).label("cancel").does(act::cancel),
     action(ActionId::Up, "up", "Select the line above", &[Key::Up, Key::Char('k')], &[Context::Rows]).repeats().looks(|m| select(m, -1)),

@@ -2,6 +2,7 @@
 
 use mission::{EventKind, HoldReason};
 use serde::{Deserialize, Serialize};
+use vehicle::port::LinkState;
 
 /// The cause of an alarm; there is at most one alarm per cause.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -22,6 +23,12 @@ pub enum Cause {
     Certificate,
     /// The hull is in this no-go zone.
     Zone(String),
+    /// The link to the vehicle is lost or faulty.
+    Link,
+    /// The vehicle cannot be driven: by hand, emergency stop or fault.
+    Vehicle,
+    /// The vehicle moves although it should stand.
+    StopNotConfirmed,
     /// The planner failed.
     Planner,
     /// The robot makes no progress.
@@ -59,6 +66,11 @@ impl Cause {
             EventKind::TetherAlarmRaised { alarm, .. } | EventKind::TetherAlarmCleared { alarm } => {
                 Self::Tether(alarm.word().to_owned())
             }
+            EventKind::Link(link) if link.state.is_heard() && link.state != LinkState::Faulty => {
+                Self::Vehicle
+            }
+            EventKind::Link(_) => Self::Link,
+            EventKind::Stood { .. } => Self::StopNotConfirmed,
             EventKind::Certified { .. } => Self::Certificate,
             EventKind::ZoneBreached { zone, .. } | EventKind::ZoneLeft { zone } => Self::Zone(zone.clone()),
             EventKind::PlannerFailed { .. } | EventKind::PlannerChosen { .. } => Self::Planner,
@@ -79,6 +91,9 @@ impl Cause {
             Self::Tether(word) => format!("tether {word}"),
             Self::Certificate => "certificate".into(),
             Self::Zone(zone) => format!("zone {zone}"),
+            Self::Link => "link".into(),
+            Self::Vehicle => "vehicle".into(),
+            Self::StopNotConfirmed => "stop_not_confirmed".into(),
             Self::Planner => "planner".into(),
             Self::Stuck => "stuck".into(),
             Self::Ended => "ended".into(),
@@ -101,6 +116,7 @@ impl Cause {
             HoldReason::PlanRefused { .. } => Some(Self::Certificate),
             HoldReason::ZoneBreached { zone } => Some(Self::Zone(zone.clone())),
             HoldReason::Tether { .. }
+            | HoldReason::Vehicle { .. }
             | HoldReason::Operator
             | HoldReason::Stepped
             | HoldReason::PlannerReplaced => None,
@@ -119,6 +135,9 @@ impl Cause {
             Self::Map,
             Self::Certificate,
             Self::Zone("no-go 1".into()),
+            Self::Link,
+            Self::Vehicle,
+            Self::StopNotConfirmed,
             Self::Planner,
             Self::Stuck,
             Self::Ended,
@@ -144,6 +163,9 @@ impl Cause {
                 | Self::Tether(_)
                 | Self::Certificate
                 | Self::Zone(_)
+                | Self::Link
+                | Self::Vehicle
+                | Self::StopNotConfirmed
                 | Self::Planner
                 | Self::Stuck
                 | Self::Ended

@@ -10,6 +10,7 @@ use mission::{
 };
 use planner_api::Reason;
 use positioning::{Exclusion, FixError, Ranging};
+use vehicle::port::LinkSeen;
 use world::{Obstacle, Shape, StationId, tether::Certificate};
 
 /// The kind of an event.
@@ -56,6 +57,9 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::TetherAlarmRaised { .. } => "tether alarm",
         EventKind::TetherAlarmCleared { .. } => "tether back within limit",
         EventKind::Certified { .. } => "certificate",
+        EventKind::Link(_) => "link to the vehicle",
+        EventKind::Stood { confirmed: true, .. } => "vehicle stands",
+        EventKind::Stood { .. } => "stop not confirmed",
         _ => "event",
     }
 }
@@ -111,11 +115,21 @@ fn of_event(run: &Run, event: &Occurrence) -> Vec<Field> {
         EventKind::Ended { outcome, reason } => {
             vec![("outcome", outcome.word().into()), ("reason", reason.clone())]
         }
+        EventKind::Link(link) => linked(link),
+        EventKind::Stood { after_s, .. } => vec![("after", format!("{} s", text::number(*after_s, 2)))],
         EventKind::TetherAlarmRaised { alarm, reached } => tether(alarm, Some(*reached)),
         EventKind::TetherAlarmCleared { alarm } => tether(alarm, None),
         EventKind::Certified { planner, refused, certificate } => certified(planner, *refused, certificate),
         other => of_planner(other),
     }
+}
+
+fn linked(link: &LinkSeen) -> Vec<Field> {
+    let seconds = |s: f64| format!("{} s", text::number(s, 3));
+    let known = [("age", link.age_s), ("p99 age", link.age_p99_s), ("clock offset", link.offset_s)];
+    let known = known.into_iter().filter_map(|(what, s)| Some((what, seconds(s?))));
+    let counts = format!("{} arrived, {} missing, {} faulty", link.heard, link.missed, link.faulty);
+    [("state", link.state.word().to_owned()), ("readings", counts)].into_iter().chain(known).collect()
 }
 
 fn effort(effort: &Effort) -> String {

@@ -51,8 +51,8 @@ fn held_without_position(by: &HoldReason, (trouble, needs): (&str, &str)) -> Vec
 
 /// A hold that only an order can end.
 fn held_for_good(by: &HoldReason) -> Vec<String> {
-    const RESUME: &str = "<hold>: resume.";
-    const RETRY: &str = "<hold>: retry.";
+    const RESUME: &str = "<resume>: resume.";
+    const RETRY: &str = "<resume>: retry.";
     const PLANNER: &str = "<planner>: change planner.";
     let (state, remedies): (&str, &[&str]) = match by {
         // The reason for the hold is gone.
@@ -62,7 +62,7 @@ fn held_for_good(by: &HoldReason) -> Vec<String> {
         HoldReason::Operator | HoldReason::PlannerReplaced | HoldReason::PlannerSilent { .. } => {
             (state(by), &[RESUME, PLANNER])
         }
-        HoldReason::Tether { .. } | HoldReason::ZoneBreached { .. } => {
+        HoldReason::Tether { .. } | HoldReason::ZoneBreached { .. } | HoldReason::Vehicle { .. } => {
             (state(by), &[RESUME, "<end>: end mission."])
         }
         HoldReason::PlanRefused { .. } => (state(by), &[PLANNER, "<run-uncertified>: run it."]),
@@ -83,6 +83,7 @@ fn state(by: &HoldReason) -> &'static str {
         HoldReason::Tether { .. } => "HELD: tether alarm",
         HoldReason::PlanRefused { .. } => "HELD: plan refused",
         HoldReason::ZoneBreached { .. } => "HELD: hull in a no-go zone",
+        HoldReason::Vehicle { .. } => "HELD: vehicle",
         HoldReason::PlannerSilent { .. } => "HELD: planner silent",
         HoldReason::PlannerFault { .. } => "HELD: planner failed",
     }
@@ -95,7 +96,8 @@ fn message(by: &HoldReason) -> Option<String> {
         | HoldReason::PlannerSilent { message }
         | HoldReason::Stuck { message }
         | HoldReason::Tether { message }
-        | HoldReason::PlanRefused { message } => Some(format!("{}.", text::capitalized(message))),
+        | HoldReason::PlanRefused { message }
+        | HoldReason::Vehicle { message } => Some(format!("{}.", text::capitalized(message))),
         _ => None,
     }
 }

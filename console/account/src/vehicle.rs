@@ -1,0 +1,56 @@
+//! The record of a real vehicle: its link and its stops.
+
+use ::vehicle::port::{LinkSeen, LinkState, VehicleInfo};
+use mission::EventKind;
+use serde::{Deserialize, Serialize};
+
+/// The record of a real vehicle in a run.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct VehicleRecord {
+    /// Name of the vehicle.
+    pub name: String,
+    /// Where its adapter was reached.
+    pub at: String,
+    /// Number of readings that arrived.
+    pub heard: u64,
+    /// Number of readings that are missing by their sequence numbers.
+    pub missed: u64,
+    /// Number of faulty messages.
+    pub faulty: u64,
+    /// Age that 99 % of the readings did not exceed on arrival, seconds.
+    pub age_p99_s: Option<f64>,
+    /// Number of times that the link was lost or closed.
+    pub lost: u64,
+    /// Number of stops that the odometry confirmed.
+    pub stops: u64,
+    /// Longest time from the command to stand until the odometry confirmed it, seconds; absent without stops.
+    pub stop_max_s: Option<f64>,
+    /// Number of times that the vehicle moved although it should have stood.
+    pub stops_not_confirmed: u64,
+    #[serde(skip)]
+    is_heard: bool,
+}
+
+impl VehicleRecord {
+    pub(crate) fn new(info: &VehicleInfo) -> Self {
+        Self { name: info.name.clone(), at: info.at.clone(), is_heard: true, ..Self::default() }
+    }
+
+    pub(crate) fn apply(&mut self, event: &EventKind) {
+        match event {
+            EventKind::Link(LinkSeen { state, age_p99_s, heard, missed, faulty, .. }) => {
+                (self.heard, self.missed, self.faulty) = (*heard, *missed, *faulty);
+                self.age_p99_s = age_p99_s.or(self.age_p99_s);
+                let is_lost = matches!(state, LinkState::Lost | LinkState::Closed);
+                self.lost += u64::from(is_lost && self.is_heard);
+                self.is_heard = !is_lost;
+            }
+            EventKind::Stood { confirmed: true, after_s } => {
+                self.stops += 1;
+                self.stop_max_s = Some(self.stop_max_s.map_or(*after_s, |most| most.max(*after_s)));
+            }
+            EventKind::Stood { confirmed: false, .. } => self.stops_not_confirmed += 1,
+            _ => {}
+        }
+    }
+}

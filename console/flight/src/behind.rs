@@ -1,0 +1,221 @@
+//! The simulator behind the wire: messages in, messages out. It has no clock; its caller passes the time.
+
+use geometry::{Drive, Vector};
+use mission::MissionConfig;
+use planner_api::Motion;
+use scenario::Scenario;
+use sim::Simulator;
+use vehicle::wire::{
+    PROTOCOL,
+    message::{
+        self, Ae, Commander, FromVehicle, Has, Hello, Limits, Mode, MotionKind, Odometry, Outline, Pong,
+        State, StationRanges, Tether, ToVehicle,
+    },
+};
+use world::{Point, Readings, Shape, Sighting, Station};
+
+/// A simulated vehicle that speaks the protocol. Its time passes with [`Behind::step`].
+pub struct Behind {
+    simulator: Simulator,
+    stations: Vec<Station>,
+    hello: Hello,
+    /// The motion that it was told, and when its lease lapses, seconds of the caller's clock.
+    driven: Option<(message::Drive, f64)>,
+    /// Number of the last command.
+    last_seq: Option<u64>,
+    /// Number of the last readings.
+    seq: u64,
+    /// The dead-reckoned pose in the vehicle's own frame; `None` for a vehicle that sends odometry alone.
+    reckoned: Option<message::Pose>,
+    tick_s: f64,
+}
+
+impl Behind {
+    /// Creates a vehicle at rest at the start of a scenario, which sends odometry alone: a mission that loses no message
+    /// then makes the same decisions as with the simulator inside the console.
+    pub fn new(scenario: &Scenario) -> Self {
+        let world = &scenario.sim.world;
+        Self {
+            simulator: Simulator::new(scenario.sim.clone(), scenario.seed),
+            stations: world.stations.clone(),
+            hello: hello(scenario),
+            driven: None,
+            last_seq: None,
+            seq: 0,
+            reckoned: None,
+            tick_s: scenario.mission.tick_s,
+        }
+    }
+
+    /// The same vehicle, which also sends its dead-reckoned pose, so that lost messages lose no motion.
+    #[must_use]
+    pub fn with_pose(mut self) -> Self {
+        self.hello.has.pose = true;
+        self.reckoned = Some(message::Pose { x_m: 0.0, y_m: 0.0, heading_rad: 0.0 });
+        self
+    }
+
+    /// The introduction of the vehicle.
+    pub fn hello(&self) -> FromVehicle {
+        FromVehicle::Hello(Box::new(self.hello.clone()))
+    }
+
+    /// The state of the vehicle, for its commander or for another console.
+    pub fn state(&self, now_s: f64, commander: Commander) -> FromVehicle {
+        FromVehicle::State(State { stamp_s: now_s, mode: Mode::Ready, text: None, battery: None, commander })
+    }
+
+    /// Length of a tick, seconds.
+    pub fn tick_s(&self) -> f64 {
+        self.tick_s
+    }
+
+    /// Forgets the commander; the vehicle stands.
+    pub fn leave(&mut self) {
+        (self.driven, self.last_seq) = (None, None);
+    }
+
+    /// Stands still until the next command.
+    pub fn halt(&mut self) {
+        self.driven = None;
+    }
+
+    /// Takes a message; returns its answer, if it has one.
+    pub fn take(&mut self, message: &ToVehicle, now_s: f64) -> Option<FromVehicle> {
+        match message {
+            ToVehicle::Drive(drive) if self.is_new(drive.seq) => {
+                self.driven = Some((*drive, now_s + drive.lease_s.min(self.hello.lease_max_s)));
+            }
+            ToVehicle::Stop(stop) if self.is_new(stop.seq) => self.driven = None,
+            ToVehicle::Drive(_) | ToVehicle::Stop(_) => {}
+            ToVehicle::Ping(ping) => {
+                return Some(FromVehicle::Pong(Pong { echo_s: ping.stamp_s, stamp_s: now_s }));
+            }
+            ToVehicle::Bye(_) => self.leave(),
+        }
+        None
+    }
+
+    fn is_new(&mut self, seq: u64) -> bool {
+        let is_new = self.last_seq.is_none_or(|last| seq > last);
+        if is_new {
+            self.last_seq = Some(seq);
+        }
+        is_new
+    }
+
+    /// The first readings, before any motion.
+    pub fn first(&mut self, now_s: f64) -> FromVehicle {
+        self.readings(now_s)
+    }
+
+    /// Moves for one tick, unless the lease has lapsed, and returns the readings after it.
+    pub fn step(&mut self, now_s: f64) -> FromVehicle {
+        let driven = self.driven.filter(|(_, until_s)| now_s <= *until_s).map(|(drive, _)| drive);
+        self.simulator.act(driven.map_or(Drive::STILL, |drive| self.drive(&drive)));
+        self.readings(now_s)
+    }
+
+    /// A motion in the robot frame as a drive of the simulator.
+    fn drive(&self, drive: &message::Drive) -> Drive {
+        match self.hello.motion {
+            MotionKind::Unicycle => {
+                Drive::Twist { v_m_per_s: drive.forward_m_per_s, w_rad_per_s: drive.turn_rad_per_s }
+            }
+            MotionKind::Omni => {
+                let heading_rad = self.simulator.truth().pose.heading_rad;
+                let in_robot = Vector::new(drive.forward_m_per_s, drive.sideways_m_per_s);
+                Drive::Velocity(nalgebra::Rotation2::new(heading_rad) * in_robot)
+            }
+        }
+    }
+
+    fn readings(&mut self, now_s: f64) -> FromVehicle {
+        let readings = self.simulator.sense();
+        self.seq += 1;
+        if let Some(pose) = &mut self.reckoned {
+            *pose = reckoned(*pose, readings.odometry);
+        }
+        FromVehicle::Readings(Box::new(message::Readings {
+            seq: self.seq,
+            stamp_s: now_s,
+            pose: self.reckoned,
+            ..told(&readings, &self.stations, self.tick_s)
+        }))
+    }
+}
+
+/// The readings of a simulator as a message, without number and stamp.
+fn told(readings: &Readings, stations: &[Station], tick_s: f64) -> message::Readings {
+    let name = |id| stations.iter().find(|station| station.id == id).map(|station| station.name.clone());
+    let ranges = readings.ranges.iter().filter_map(|set| {
+        Some(StationRanges { station: name(set.station)?, ranges_m: set.ranges_m.clone() })
+    });
+    let world::Odometry { forward_m, sideways_m, turn_rad } = readings.odometry;
+    message::Readings {
+        odometry: Some(Odometry { over_s: tick_s, forward_m, sideways_m, turn_rad }),
+        ae: readings.ranging_cycle.then(|| Ae { ranges: ranges.collect(), ..Ae::default() }),
+        contact: Some(readings.contact),
+        tether: readings.paid_out_m.map(|paid_out_m| Tether { paid_out_m, pull_n: None }),
+        pressure_pa: readings.pressure_pa,
+        outlines: readings.sightings.iter().map(outline).collect(),
+        ..message::Readings::default()
+    }
+}
+
+/// The pose after a motion.
+fn reckoned(pose: message::Pose, moved: world::Odometry) -> message::Pose {
+    let (sin, cos) = pose.heading_rad.sin_cos();
+    message::Pose {
+        x_m: pose.x_m + moved.forward_m * cos - moved.sideways_m * sin,
+        y_m: pose.y_m + moved.forward_m * sin + moved.sideways_m * cos,
+        heading_rad: pose.heading_rad + moved.turn_rad,
+    }
+}
+
+fn outline(sighting: &Sighting) -> Outline {
+    let id = sighting.id.0;
+    let points = |points: &[Point]| points.iter().map(|point| [point.x, point.y]).collect();
+    match &sighting.shape_in_robot {
+        Shape::Disc { center, radius_m } => {
+            Outline { id, points_m: points(&[*center]), radius_m: *radius_m, closed: false }
+        }
+        Shape::Polygon { vertices } => {
+            Outline { id, points_m: points(vertices), radius_m: 0.0, closed: true }
+        }
+        Shape::Polyline { points: line, half_width_m } => {
+            Outline { id, points_m: points(line), radius_m: *half_width_m, closed: false }
+        }
+    }
+}
+
+fn hello(scenario: &Scenario) -> Hello {
+    let MissionConfig { limits, tick_s, .. } = &scenario.mission;
+    let motion = match limits.motion {
+        Motion::Unicycle => MotionKind::Unicycle,
+        Motion::Point => MotionKind::Omni,
+    };
+    let acceleration_m_per_s2 = limits.acceleration_m_per_s2.clamp(f64::MIN_POSITIVE, 50.0);
+    Hello {
+        protocol: PROTOCOL,
+        name: format!("simulator of {}", scenario.name),
+        motion,
+        limits: Limits {
+            speed_m_per_s: limits.v_max_m_per_s,
+            turn_rad_per_s: limits.w_max_rad_per_s,
+            acceleration_m_per_s2,
+            radius_m: limits.radius_m,
+        },
+        has: Has {
+            odometry: true,
+            contact: true,
+            tether: scenario.mission.tether.is_some(),
+            ae: scenario.sim.ae.is_some(),
+            pressure: scenario.mission.pressure.is_some(),
+            ..Has::default()
+        },
+        period_s: *tick_s,
+        stop_time_s: (limits.v_max_m_per_s / acceleration_m_per_s2).min(60.0) + tick_s,
+        lease_max_s: 1.0,
+    }
+}

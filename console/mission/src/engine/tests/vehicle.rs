@@ -1,0 +1,79 @@
+//! A real vehicle that cannot be driven.
+
+use super::{Flight, config, refusal};
+use crate::{
+    MissionConfig,
+    event::EventKind,
+    order::{Injection, Order, RangeFault},
+    phase::{HoldReason, Outcome, Phase},
+};
+use world::StationId;
+
+const WHY: &str = "the link to the vehicle is lost";
+
+fn lost(config: MissionConfig) -> Flight {
+    let mut flight = Flight::new(config);
+    flight.tick(&[Order::Start]);
+    flight.fly(10);
+    flight.trouble = Some(WHY);
+    flight
+}
+
+fn attended() -> MissionConfig {
+    MissionConfig { attended: true, live: true, ..config() }
+}
+
+#[test]
+fn a_vehicle_that_cannot_be_driven_is_held_until_an_order() {
+    let mut flight = lost(attended());
+    let events = flight.tick(&[]);
+    let held =
+        EventKind::Held { by: HoldReason::Vehicle { message: WHY.into() }, resumes: crate::Resumes::Never };
+    assert!(events.contains(&held), "{events:?}");
+    flight.fly(2);
+    let place = flight.pose;
+    for order in [Order::Resume, Order::StepTo(crate::StepTo::LaneEnd)] {
+        let why = refusal(&flight.tick(&[order])).map(ToOwned::to_owned);
+        assert_eq!(why.as_deref(), Some("the vehicle cannot be driven: the link to the vehicle is lost"));
+    }
+    flight.trouble = None;
+    flight.fly(50);
+    assert_eq!(flight.pose, place, "nothing moves without an order");
+    flight.tick(&[Order::Resume]);
+    flight.fly(10);
+    assert_ne!(flight.pose, place);
+}
+
+#[test]
+fn a_lost_link_neither_completes_nor_fails_a_mission() {
+    let mut flight = lost(MissionConfig { time_limit_s: 2.0, stuck_s: 0.5, ..attended() });
+    flight.fly(200);
+    assert!(matches!(flight.mission.phase(), Phase::Held(_)), "{:?}", flight.mission.phase());
+}
+
+#[test]
+fn an_unattended_run_ends_when_its_vehicle_cannot_be_driven() {
+    let mut flight = lost(MissionConfig { live: true, ..config() });
+    flight.fly(3);
+    assert_eq!(flight.ended(), Some(Outcome::Aborted));
+}
+
+#[test]
+fn a_mission_does_not_start_with_a_vehicle_that_cannot_be_driven() {
+    let mut flight = Flight::new(attended());
+    flight.trouble = Some(WHY);
+    assert!(refusal(&flight.tick(&[Order::Start])).is_some_and(|why| why.ends_with(WHY)));
+}
+
+#[test]
+fn a_real_vehicle_is_neither_stepped_by_ticks_nor_given_faults() {
+    let mut flight = lost(attended());
+    flight.trouble = None;
+    flight.tick(&[Order::Hold]);
+    let fault = Injection { station: StationId(1), fault: RangeFault::Dead, for_s: 1.0, by: None };
+    for (order, why) in
+        [(Order::Step, "cannot be stepped by ticks"), (Order::Inject(fault), "only into a simulation")]
+    {
+        assert!(refusal(&flight.tick(&[order])).is_some_and(|refused| refused.contains(why)), "{why}");
+    }
+}

@@ -1,0 +1,256 @@
+//! The messages of a vehicle, folded into what a tick needs. It holds one tick of readings, however many arrive.
+
+mod ages;
+
+use ages::Ages;
+use std::collections::BTreeMap;
+use vehicle::{
+    link::{Link, Motions, Sequence, State as Reached},
+    port::{LinkSeen, LinkState, Live, Sensed, Stamps},
+    wire::{
+        FromVehicle, Heard, ToVehicle,
+        message::{Commander, Hello, Mode, Odometry, Outline, Readings, State},
+    },
+};
+use world::{ObstacleId, RangeSet, Sighting, StationId};
+
+/// How long a vehicle may take to its first readings, seconds.
+const FIRST_WITHIN_S: f64 = 2.0;
+/// Ranges that are older than this are dropped: the robot has moved on since then.
+const RANGES_MAX_AGE_S: f64 = 0.5;
+/// The figures of the link are reported at this interval, seconds.
+const FIGURES_EVERY_S: f64 = 10.0;
+/// Stamps are rounded to this many steps a second.
+const STAMP_STEPS: f64 = 1e4;
+
+/// What arrived.
+pub(crate) struct Inbox {
+    stations: BTreeMap<String, StationId>,
+    hello: Option<Box<Hello>>,
+    state: Option<State>,
+    link: Link,
+    motions: Motions,
+    sequence: Sequence,
+    /// The readings since the last tick, and their stamps.
+    readings: world::Readings,
+    stamps: Option<Stamps>,
+    faulty: u64,
+    fault: String,
+    closed: Option<String>,
+    ages: Ages,
+    /// What was reported last, and when.
+    told: Option<(LinkState, String, f64)>,
+}
+
+impl Inbox {
+    pub(crate) fn new(stations: BTreeMap<String, StationId>) -> Self {
+        Self {
+            stations,
+            hello: None,
+            state: None,
+            link: Link::default(),
+            motions: Motions::default(),
+            sequence: Sequence::default(),
+            readings: world::Readings::default(),
+            stamps: None,
+            faulty: 0,
+            fault: String::new(),
+            closed: None,
+            ages: Ages::default(),
+            told: None,
+        }
+    }
+
+    /// The introduction of the vehicle, once it has arrived.
+    pub(crate) fn hello(&self) -> Option<&Hello> {
+        self.hello.as_deref()
+    }
+
+    /// Why the stream ended, if it did.
+    pub(crate) fn closed(&self) -> Option<&str> {
+        self.closed.as_deref()
+    }
+
+    /// The last faulty line; empty without one.
+    pub(crate) fn fault(&self) -> &str {
+        &self.fault
+    }
+
+    /// The number of readings so far.
+    pub(crate) fn heard(&self) -> u64 {
+        self.sequence.counts().received
+    }
+
+    pub(crate) fn close(&mut self, why: String) {
+        self.closed.get_or_insert(why);
+        self.link.closed();
+    }
+
+    /// A command was sent.
+    pub(crate) fn sent(&mut self, message: &ToVehicle) {
+        match message {
+            ToVehicle::Drive(drive) => self.link.drove(drive),
+            ToVehicle::Stop(stop) => self.link.stopped(stop),
+            ToVehicle::Ping(_) | ToVehicle::Bye(_) => {}
+        }
+    }
+
+    pub(crate) fn take(&mut self, heard: Heard<FromVehicle>, now_s: f64) {
+        self.link.heard(&heard, now_s);
+        match heard {
+            Heard::Message(FromVehicle::Hello(hello)) => self.greet(hello),
+            Heard::Message(FromVehicle::Readings(readings)) => self.read(&readings, now_s),
+            Heard::Message(FromVehicle::State(state)) => self.state = Some(state),
+            Heard::Message(FromVehicle::Pong(_)) => {}
+            Heard::Malformed(misfit) => {
+                self.faulty += 1;
+                self.fault = foreign::plain(&misfit.to_string()).into_owned();
+            }
+            // Keys and messages of newer protocols have no effect.
+            Heard::Unknown(_) => {}
+        }
+    }
+
+    /// A vehicle that introduces itself again has started again; its poses are in a new frame. Over datagrams, the same
+    /// introduction arrives several times.
+    fn greet(&mut self, hello: Box<Hello>) {
+        if self.hello.as_ref() != Some(&hello) {
+            self.motions = Motions::default();
+        }
+        self.hello = Some(hello);
+    }
+
+    /// Adds readings. Readings that arrive twice, or after later ones, are left out: their motion would count twice.
+    fn read(&mut self, readings: &Readings, now_s: f64) {
+        if !self.sequence.add(readings.seq) {
+            return;
+        }
+        let source_t_s = readings.stamp_s;
+        self.stamps = Some(Stamps { source_t_s, arrival_t_s: now_s });
+        let offset = self.link.clock().at(now_s);
+        let age_s = offset.map(|offset| (now_s - (source_t_s - offset.offset_s)).max(0.0));
+        self.ages.add(age_s.unwrap_or(0.0));
+        if let Some(moved) = self.motions.take(readings) {
+            add(&mut self.readings.odometry, moved);
+        }
+        self.readings.contact |= readings.contact.unwrap_or(false);
+        if let Some(tether) = readings.tether {
+            self.readings.paid_out_m = Some(tether.paid_out_m);
+        }
+        self.readings.pressure_pa = readings.pressure_pa.or(self.readings.pressure_pa);
+        self.readings.sightings = readings.outlines.iter().map(sighting).collect();
+        if let Some(ae) = readings.ae.as_ref().filter(|_| age_s.is_none_or(|age_s| age_s <= RANGES_MAX_AGE_S))
+        {
+            self.readings.ranging_cycle = true;
+            let heard = ae.ranges.iter().filter_map(|of| {
+                Some(RangeSet { station: *self.stations.get(&of.station)?, ranges_m: of.ranges_m.clone() })
+            });
+            self.readings.ranges = heard.filter(|set| !set.ranges_m.is_empty()).collect();
+        }
+    }
+
+    /// Hands over what has arrived since the last tick.
+    pub(crate) fn sense(&mut self, now_s: f64) -> Sensed {
+        let stamps = self.stamps.take().map(|Stamps { source_t_s, arrival_t_s }| Stamps {
+            source_t_s: rounded(source_t_s),
+            arrival_t_s: rounded(arrival_t_s),
+        });
+        let readings = std::mem::take(&mut self.readings);
+        Sensed { readings, live: Some(Live { stamps, link: self.due_link(now_s) }) }
+    }
+
+    fn due_link(&mut self, now_s: f64) -> Option<LinkSeen> {
+        let link = self.link(now_s);
+        let is_due = self.told.as_ref().is_none_or(|(state, why, told_s)| {
+            (*state, why) != (link.state, &link.why) || now_s - told_s >= FIGURES_EVERY_S
+        });
+        if is_due {
+            self.told = Some((link.state, link.why.clone(), now_s));
+        }
+        is_due.then_some(link)
+    }
+
+    /// The state of the link now.
+    pub(crate) fn link(&self, now_s: f64) -> LinkSeen {
+        let (state, why) = self.state(now_s);
+        let (counts, offset) = (self.sequence.counts(), self.link.clock().at(now_s));
+        LinkSeen {
+            state,
+            why,
+            age_s: self.link.age_s(now_s).map(rounded),
+            offset_s: offset.map(|offset| rounded(offset.offset_s)),
+            offset_bound_s: offset.map(|offset| rounded(offset.bound_s)),
+            age_p99_s: self.ages.p99_s().map(rounded),
+            heard: counts.received,
+            missed: counts.lost,
+            faulty: self.faulty,
+        }
+    }
+
+    fn state(&self, now_s: f64) -> (LinkState, String) {
+        if let Some(why) = &self.closed {
+            return (LinkState::Closed, why.clone());
+        }
+        match self.link.state(now_s) {
+            Reached::Lost => return (LinkState::Lost, "its readings stopped".into()),
+            Reached::Connecting if now_s > FIRST_WITHIN_S => {
+                return (LinkState::Lost, "it has sent no readings yet".into());
+            }
+            Reached::Fault => {
+                let fault = self.link.fault().unwrap_or_default();
+                return (LinkState::Faulty, foreign::plain(fault).into_owned());
+            }
+            Reached::Connecting | Reached::Late | Reached::Alive => {}
+        }
+        if let Some(finding) = self.link.finding() {
+            return (LinkState::Faulty, finding.to_string());
+        }
+        let Some(state) = &self.state else { return (LinkState::Up, String::new()) };
+        let text = foreign::plain(state.text.as_deref().unwrap_or_default()).into_owned();
+        match (state.mode, state.commander) {
+            (Mode::Ready, Commander::You) => (LinkState::Up, String::new()),
+            (Mode::Ready, Commander::OtherConsole) => {
+                (LinkState::VehicleFault, "it obeys another console; this one only looks on".into())
+            }
+            (Mode::Ready, Commander::OtherProgram) => {
+                (LinkState::VehicleFault, "another program sends commands to it".into())
+            }
+            (Mode::Manual, _) => (LinkState::Manual, text),
+            (Mode::EmergencyStop, _) => (LinkState::EmergencyStop, text),
+            (Mode::Fault, _) => (LinkState::VehicleFault, text),
+        }
+    }
+}
+
+/// Adds a motion to those before it in the same tick.
+fn add(sum: &mut world::Odometry, moved: Odometry) {
+    let Odometry { forward_m, sideways_m, turn_rad, .. } = moved;
+    if *sum == world::Odometry::default() {
+        *sum = world::Odometry { forward_m, sideways_m, turn_rad };
+        return;
+    }
+    let (sin, cos) = sum.turn_rad.sin_cos();
+    *sum = world::Odometry {
+        forward_m: sum.forward_m + forward_m * cos - sideways_m * sin,
+        sideways_m: sum.sideways_m + forward_m * sin + sideways_m * cos,
+        turn_rad: sum.turn_rad + turn_rad,
+    };
+}
+
+fn rounded(s: f64) -> f64 {
+    (s * STAMP_STEPS).round() / STAMP_STEPS + 0.0
+}
+
+fn sighting(outline: &Outline) -> Sighting {
+    let Outline { id, points_m, radius_m, closed } = outline;
+    let points: Vec<world::Point> = points_m.iter().map(|[x, y]| world::Point::new(*x, *y)).collect();
+    let shape_in_robot = match (points.as_slice(), closed) {
+        ([center], _) => world::Shape::Disc { center: *center, radius_m: *radius_m },
+        (_, true) => world::Shape::Polygon { vertices: points },
+        (_, false) => world::Shape::Polyline { points, half_width_m: *radius_m },
+    };
+    Sighting { id: ObstacleId(*id), shape_in_robot }
+}
+
+#[cfg(test)]
+mod tests;

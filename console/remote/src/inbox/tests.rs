@@ -1,0 +1,150 @@
+//! Messages in, readings and link out.
+
+use super::*;
+use vehicle::wire::{
+    Misfit,
+    message::{Ae, Has, Limits, MotionKind, Pong, Pose, StationRanges, Tether},
+};
+
+fn inbox() -> Inbox {
+    let mut inbox = Inbox::new([("A".to_owned(), StationId(1))].into());
+    let limits =
+        Limits { speed_m_per_s: 0.5, turn_rad_per_s: 1.0, acceleration_m_per_s2: 1.0, radius_m: 0.2 };
+    let hello = Hello {
+        protocol: 1,
+        name: "robot".into(),
+        motion: MotionKind::Unicycle,
+        limits,
+        has: Has::default(),
+        period_s: 0.05,
+        stop_time_s: 0.3,
+        lease_max_s: 0.5,
+    };
+    inbox.take(Heard::Message(FromVehicle::Hello(Box::new(hello))), 0.0);
+    inbox
+}
+
+fn moved(seq: u64, forward_m: f64, turn_rad: f64) -> Readings {
+    let odometry = Some(Odometry { over_s: 0.05, forward_m, sideways_m: 0.0, turn_rad });
+    Readings { seq, stamp_s: 100.0 + 0.05 * seq as f64, odometry, ..Readings::default() }
+}
+
+fn say(inbox: &mut Inbox, readings: Readings, now_s: f64) {
+    inbox.take(Heard::Message(FromVehicle::Readings(Box::new(readings))), now_s);
+}
+
+fn state(mode: Mode, commander: Commander) -> Heard<FromVehicle> {
+    let text = Some("left track".to_owned());
+    Heard::Message(FromVehicle::State(State { stamp_s: 0.0, mode, text, battery: None, commander }))
+}
+
+#[test]
+fn motion_of_several_messages_is_added_up_and_duplicates_do_not_count() {
+    let mut inbox = inbox();
+    let quarter = std::f64::consts::FRAC_PI_2;
+    for (seq, forward_m, turn_rad) in [(1, 1.0, quarter), (2, 2.0, 0.0), (2, 2.0, 0.0), (1, 1.0, quarter)] {
+        say(&mut inbox, moved(seq, forward_m, turn_rad), 0.1);
+    }
+    let odometry = inbox.sense(0.1).readings.odometry;
+    assert!(
+        (odometry.forward_m - 1.0).abs() < 1e-12 && (odometry.sideways_m - 2.0).abs() < 1e-12,
+        "{odometry:?}"
+    );
+    assert_eq!((inbox.sense(0.2).readings.odometry, inbox.link(0.2).heard), (world::Odometry::default(), 2));
+}
+
+#[test]
+fn a_pose_makes_up_for_lost_messages() {
+    let mut inbox = inbox();
+    let at = |seq, x_m, y_m| Readings {
+        pose: Some(Pose { x_m, y_m, heading_rad: std::f64::consts::FRAC_PI_2 }),
+        ..moved(seq, 9.0, 9.0)
+    };
+    say(&mut inbox, at(1, 5.0, 5.0), 0.0);
+    say(&mut inbox, at(4, 5.0, 5.3), 0.1);
+    let sensed = inbox.sense(0.1);
+    assert!((sensed.readings.odometry.forward_m - 0.3).abs() < 1e-12, "{:?}", sensed.readings.odometry);
+    assert_eq!(inbox.link(0.1).missed, 2);
+}
+
+#[test]
+fn readings_keep_the_last_cycle_the_contact_and_the_tether() {
+    let mut inbox = inbox();
+    let ranges = |station: &str| StationRanges { station: station.into(), ranges_m: vec![4.2] };
+    let ae = Some(Ae { ranges: vec![ranges("A"), ranges("unknown")], ..Ae::default() });
+    let tether = Some(Tether { paid_out_m: 3.5, pull_n: None });
+    say(&mut inbox, Readings { ae, contact: Some(true), tether, ..moved(1, 0.0, 0.0) }, 0.1);
+    say(&mut inbox, moved(2, 0.0, 0.0), 0.15);
+    let sensed = inbox.sense(0.2).readings;
+    assert_eq!(
+        (sensed.ranges.len(), sensed.ranges[0].station, sensed.ranging_cycle),
+        (1, StationId(1), true)
+    );
+    assert_eq!((sensed.contact, sensed.paid_out_m), (true, Some(3.5)));
+    assert!(!inbox.sense(0.3).readings.contact);
+}
+
+#[test]
+fn ranges_that_arrive_too_late_are_dropped() {
+    let mut inbox = inbox();
+    inbox.take(Heard::Message(FromVehicle::Pong(Pong { echo_s: 0.0, stamp_s: 100.01 })), 0.02);
+    assert_eq!(inbox.link(0.02).offset_s, Some(100.0));
+    assert_eq!(inbox.link(0.02).offset_bound_s, Some(0.01));
+    let late = Readings { ae: Some(Ae::default()), stamp_s: 100.1, ..moved(1, 0.2, 0.0) };
+    say(&mut inbox, late, 0.9);
+    let sensed = inbox.sense(0.9).readings;
+    assert_eq!((sensed.ranging_cycle, sensed.odometry.forward_m), (false, 0.2));
+    assert_eq!(inbox.link(0.9).age_p99_s, Some(0.8));
+}
+
+#[test]
+fn each_trouble_is_a_state_of_the_link_with_its_reason() {
+    let mut inbox = inbox();
+    say(&mut inbox, moved(1, 0.0, 0.0), 1.0);
+    let seen = |inbox: &Inbox, now_s| {
+        let link = inbox.link(now_s);
+        (link.state, link.why)
+    };
+    assert_eq!(seen(&inbox, 1.7).0, LinkState::Up);
+    assert_eq!(seen(&inbox, 1.9), (LinkState::Lost, "its readings stopped".into()));
+    for (heard, word, why) in [
+        (state(Mode::Manual, Commander::You), LinkState::Manual, "left track"),
+        (state(Mode::EmergencyStop, Commander::You), LinkState::EmergencyStop, "left track"),
+        (state(Mode::Fault, Commander::You), LinkState::VehicleFault, "left track"),
+        (
+            state(Mode::Ready, Commander::OtherProgram),
+            LinkState::VehicleFault,
+            "another program sends commands to it",
+        ),
+        (state(Mode::Ready, Commander::You), LinkState::Up, ""),
+    ] {
+        inbox.take(heard, 1.0);
+        assert_eq!(seen(&inbox, 1.0), (word, why.to_owned()));
+    }
+    let misfit =
+        || Misfit { field: "readings.odometry.forward_m".into(), what: "NaN is not a finite number".into() };
+    for _ in 0..3 {
+        assert_eq!(seen(&inbox, 1.0).0, LinkState::Up);
+        inbox.take(Heard::Malformed(misfit()), 1.0);
+    }
+    let (state, why) = seen(&inbox, 1.0);
+    assert!(state == LinkState::Faulty && why.ends_with(&misfit().to_string()), "{why}");
+    inbox.close("the adapter has closed the link".into());
+    assert_eq!(seen(&inbox, 1.0).0, LinkState::Closed);
+}
+
+#[test]
+fn the_link_is_reported_when_it_changes_and_every_ten_seconds() {
+    let mut inbox = inbox();
+    let mut reports = Vec::new();
+    for tick in 0..250_u32 {
+        let now_s = 0.1 * f64::from(tick);
+        if !(150..170).contains(&tick) {
+            say(&mut inbox, moved(u64::from(tick) + 1, 0.0, 0.0), now_s);
+        }
+        if let Some(link) = inbox.sense(now_s).live.and_then(|live| live.link) {
+            reports.push((tick, link.state.word()));
+        }
+    }
+    assert_eq!(reports, [(0, "up"), (100, "up"), (158, "lost"), (170, "up")]);
+}

@@ -1,0 +1,20 @@
+//! A vehicle behind an adapter process.
+//!
+//! [`Remote`] is the port to such a vehicle ([`vehicle::port::Vehicle`]). One thread reads the adapter's stream and folds
+//! its messages into an [`inbox`], another writes the newest command from an [`outbox`]. Neither call of the port waits:
+//! a tick takes what has arrived. Nothing here grows with the number of messages or with the length of a line.
+//!
+//! [`server`] is the other end, for programs that offer a vehicle.
+
+pub mod address;
+mod inbox;
+mod loopback;
+mod outbox;
+mod remote;
+pub mod server;
+mod stream;
+mod taking;
+
+pub use address::Address;
+pub use remote::{ConnectError, Remote};
+pub use taking::{Wanted, connected, fitting};

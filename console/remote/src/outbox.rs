@@ -1,0 +1,136 @@
+//! The newest command that has not been written yet. A stream that takes no bytes holds back one command, not a queue.
+
+use std::{
+    sync::{Condvar, Mutex, PoisonError},
+    time::Duration,
+};
+use vehicle::{
+    port::LEASE_S,
+    wire::message::{Bye, Drive, Ping, Stop, ToVehicle},
+};
+
+/// Time between two pings.
+const PING_EVERY: Duration = Duration::from_millis(500);
+
+/// The messages to write next.
+#[derive(Debug, Default)]
+pub(crate) struct Outbox {
+    waiting: Mutex<Waiting>,
+    changed: Condvar,
+}
+
+#[derive(Debug, Default)]
+struct Waiting {
+    motion: Option<Motion>,
+    /// Whether the operator has stopped the vehicle between two ticks; until a tick takes this over, no motion is sent.
+    is_braked: bool,
+    is_closed: bool,
+    /// Number of commands so far.
+    seq: u64,
+}
+
+/// A motion in the robot frame: metres per second ahead and to the left, radians per second. `None`: stand.
+type Motion = Option<[f64; 3]>;
+
+impl Outbox {
+    /// Replaces the command that waits. `has_held`: the mission has carried out a stop, so the brake is released.
+    pub(crate) fn command(&self, motion: Motion, has_held: bool) {
+        let mut waiting = self.lock();
+        if motion.is_none() || has_held {
+            waiting.is_braked = false;
+        }
+        let motion = if waiting.is_braked { None } else { motion };
+        waiting.motion = Some(motion);
+        self.changed.notify_all();
+    }
+
+    /// Stops the vehicle between two ticks.
+    pub(crate) fn brake(&self) {
+        let mut waiting = self.lock();
+        waiting.is_braked = true;
+        waiting.motion = Some(None);
+        self.changed.notify_all();
+    }
+
+    pub(crate) fn close(&self) {
+        self.lock().is_closed = true;
+        self.changed.notify_all();
+    }
+
+    /// Waits for the next message; a ping is due if there is no command for some time, `Bye` once the outbox is closed.
+    pub(crate) fn next(&self, now_s: impl Fn() -> f64, last_ping_s: &mut f64) -> ToVehicle {
+        let mut waiting = self.lock();
+        loop {
+            let now_s = now_s();
+            if let Some(motion) = waiting.motion.take() {
+                waiting.seq += 1;
+                return message(motion, waiting.seq, now_s);
+            }
+            if waiting.is_closed {
+                return ToVehicle::Bye(Bye::default());
+            }
+            let due_s = *last_ping_s + PING_EVERY.as_secs_f64() - now_s;
+            let Ok(due) = Duration::try_from_secs_f64(due_s) else {
+                *last_ping_s = now_s;
+                return ToVehicle::Ping(Ping { stamp_s: now_s });
+            };
+            let waited = self.changed.wait_timeout(waiting, due);
+            waiting = waited.unwrap_or_else(PoisonError::into_inner).0;
+        }
+    }
+
+    fn lock(&self) -> std::sync::MutexGuard<'_, Waiting> {
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+fn message(motion: Motion, seq: u64, stamp_s: f64) -> ToVehicle {
+    match motion {
+        Some([forward_m_per_s, sideways_m_per_s, turn_rad_per_s]) => ToVehicle::Drive(Drive {
+            seq,
+            stamp_s,
+            lease_s: LEASE_S,
+            forward_m_per_s,
+            sideways_m_per_s,
+            turn_rad_per_s,
+        }),
+        None => ToVehicle::Stop(Stop { seq, stamp_s }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn next(outbox: &Outbox) -> ToVehicle {
+        outbox.next(|| 0.0, &mut 0.0)
+    }
+
+    #[test]
+    fn only_the_newest_command_waits() {
+        let outbox = Outbox::default();
+        for speed in [0.1, 0.2, 0.3] {
+            outbox.command(Some([speed, 0.0, 0.0]), false);
+        }
+        assert!(
+            matches!(next(&outbox), ToVehicle::Drive(Drive { seq: 1, forward_m_per_s, .. }) if forward_m_per_s == 0.3)
+        );
+        outbox.close();
+        assert!(matches!(next(&outbox), ToVehicle::Bye(_)));
+    }
+
+    #[test]
+    fn after_the_brake_no_motion_is_sent_until_the_mission_has_held() {
+        let outbox = Outbox::default();
+        let drive = Some([0.3, 0.0, 0.0]);
+        outbox.command(drive, false);
+        outbox.brake();
+        assert!(matches!(next(&outbox), ToVehicle::Stop(Stop { seq: 1, .. })));
+        outbox.command(drive, false);
+        assert!(matches!(next(&outbox), ToVehicle::Stop(_)), "a tick that had begun before the brake");
+        outbox.command(None, true);
+        assert!(matches!(next(&outbox), ToVehicle::Stop(_)));
+        outbox.command(drive, false);
+        assert!(matches!(next(&outbox), ToVehicle::Drive(Drive { seq: 4, .. })));
+    }
+}

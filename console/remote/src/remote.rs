@@ -1,0 +1,247 @@
+//! The port to a vehicle behind an adapter.
+
+use crate::{
+    address::Address,
+    inbox::Inbox,
+    outbox::Outbox,
+    stream::{End, Stream},
+};
+use geometry::Drive;
+use std::{
+    fmt,
+    io::{self, Read, Write},
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+use vehicle::{
+    port::{Brake, CannotInject, Command, Sensed, StationFault, Vehicle},
+    wire::{FromSession, FromVehicle, Reader, ToSession, ToVehicle, Writer, message::Hello, message::Ping},
+};
+use world::{Station, Truth};
+
+/// How long an adapter may take to introduce the vehicle.
+const HELLO_WITHIN: Duration = Duration::from_secs(10);
+/// How often the introduction is looked for and, over datagrams, asked for.
+const LOOK_AGAIN: Duration = Duration::from_millis(50);
+/// How long the last commands may take to leave.
+const LEAVE_WITHIN: Duration = Duration::from_millis(300);
+/// Bytes that are read together.
+const CHUNK_BYTES: usize = 1 << 16;
+
+/// A vehicle behind an adapter process.
+pub struct Remote {
+    shared: Arc<Shared>,
+    is_omni: bool,
+    /// Ends the stream and, with it, both threads.
+    _end: End,
+}
+
+struct Shared {
+    inbox: Mutex<Inbox>,
+    outbox: Outbox,
+    began: Instant,
+    is_closing: AtomicBool,
+    has_left: AtomicBool,
+}
+
+/// Why an adapter cannot be reached.
+#[derive(Debug)]
+pub struct ConnectError(String);
+
+impl fmt::Display for ConnectError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for ConnectError {}
+
+impl Shared {
+    fn now_s(&self) -> f64 {
+        self.began.elapsed().as_secs_f64()
+    }
+
+    fn inbox(&self) -> MutexGuard<'_, Inbox> {
+        self.inbox.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Remote {
+    /// Connects to an adapter, and waits for the introduction of its vehicle.
+    ///
+    /// # Errors
+    /// The adapter cannot be reached, or does not introduce a vehicle that speaks this version of the protocol.
+    pub fn connect(
+        address: &Address,
+        network: bool,
+        stations: &[Station],
+    ) -> Result<(Self, Hello), ConnectError> {
+        let failed =
+            |why: &dyn fmt::Display| ConnectError(format!("cannot drive the vehicle at {address}: {why}"));
+        let Stream { read, write, end } = Stream::open(address, network).map_err(|error| failed(&error))?;
+        let stations = stations.iter().map(|station| (station.name.clone(), station.id)).collect();
+        let shared = Arc::new(Shared {
+            inbox: Mutex::new(Inbox::new(stations)),
+            outbox: Outbox::default(),
+            began: Instant::now(),
+            is_closing: AtomicBool::new(false),
+            has_left: AtomicBool::new(false),
+        });
+        let reading = Arc::clone(&shared);
+        let spawned =
+            thread::Builder::new().name("vehicle in".into()).spawn(move || read_all(read, &reading));
+        spawned.map_err(|error| failed(&error))?;
+        let (hello, write) = greeted(&shared, address, write).map_err(|why| failed(&why))?;
+        let (writing, session) = (Arc::clone(&shared), ToSession::of(hello.clone()));
+        let spawned = thread::Builder::new()
+            .name("vehicle out".into())
+            .spawn(move || write_all(write, session, &writing));
+        spawned.map_err(|error| failed(&error))?;
+        let is_omni = hello.motion == vehicle::wire::message::MotionKind::Omni;
+        Ok((Self { shared, is_omni, _end: end }, hello))
+    }
+
+    /// The number of readings that have arrived.
+    pub fn heard(&self) -> u64 {
+        self.shared.inbox().heard()
+    }
+}
+
+/// A drive as speeds in the robot frame: metres per second ahead and to the left, radians per second.
+pub(crate) fn motion(drive: Drive, heading_rad: f64, is_omni: bool) -> [f64; 3] {
+    match drive {
+        Drive::Twist { v_m_per_s, w_rad_per_s } => [v_m_per_s, 0.0, w_rad_per_s],
+        Drive::Velocity(velocity) => {
+            let (sin, cos) = heading_rad.sin_cos();
+            let (ahead, left) = (velocity.x * cos + velocity.y * sin, velocity.y * cos - velocity.x * sin);
+            [ahead, if is_omni { left } else { 0.0 }, 0.0]
+        }
+    }
+}
+
+impl Vehicle for Remote {
+    fn sense(&mut self) -> Sensed {
+        let now_s = self.shared.now_s();
+        self.shared.inbox().sense(now_s)
+    }
+
+    fn act(&mut self, Command { drive, heading_rad, has_held }: Command) {
+        let motion = drive.map(|drive| motion(drive, heading_rad, self.is_omni));
+        self.shared.outbox.command(motion, has_held);
+    }
+
+    fn truth(&self) -> Option<Truth> {
+        None
+    }
+
+    fn inject(&mut self, _: StationFault) -> Result<(), CannotInject> {
+        Err(CannotInject)
+    }
+
+    fn brake(&self) -> Option<Brake> {
+        let shared = Arc::clone(&self.shared);
+        Some(Brake::new(move || shared.outbox.brake()))
+    }
+}
+
+impl Drop for Remote {
+    /// The vehicle stands, and the adapter hears that the console leaves; an adapter that takes no bytes stops the vehicle
+    /// by its lease.
+    fn drop(&mut self) {
+        self.shared.outbox.command(None, true);
+        self.shared.outbox.close();
+        let began = Instant::now();
+        while !self.shared.has_left.load(Ordering::Acquire) && began.elapsed() < LEAVE_WITHIN {
+            thread::sleep(Duration::from_millis(2));
+        }
+        self.shared.is_closing.store(true, Ordering::Release);
+    }
+}
+
+/// Waits for the introduction. Over datagrams, the adapter learns of the console by a ping, which may get lost.
+fn greeted(
+    shared: &Shared,
+    address: &Address,
+    mut write: Box<dyn Write + Send>,
+) -> Result<(Hello, Box<dyn Write + Send>), String> {
+    let began = Instant::now();
+    while began.elapsed() < HELLO_WITHIN {
+        if matches!(address, Address::Udp(_)) {
+            let ping = ToVehicle::Ping(Ping { stamp_s: shared.now_s() });
+            if let Ok(line) = serde_json::to_vec(&ping) {
+                // Before the introduction, nothing is known about the vehicle that a message would have to fit.
+                let _ = write.write_all(&[line, b"\n".to_vec()].concat());
+            }
+        }
+        let inbox = shared.inbox();
+        if let Some(hello) = inbox.hello() {
+            return Ok((hello.clone(), write));
+        }
+        if let Some(why) = inbox.closed() {
+            let fault = inbox.fault();
+            let fault =
+                if fault.is_empty() { String::new() } else { format!("; it sent a faulty line: {fault}") };
+            return Err(format!("{why}, before it introduced the vehicle{fault}"));
+        }
+        drop(inbox);
+        thread::sleep(LOOK_AGAIN);
+    }
+    let inbox = shared.inbox();
+    Err(match inbox.fault() {
+        "" => format!("it did not introduce the vehicle within {} s", HELLO_WITHIN.as_secs()),
+        fault => format!("it did not introduce the vehicle: {fault}"),
+    })
+}
+
+fn read_all(mut read: Box<dyn Read + Send>, shared: &Shared) {
+    let mut reader = Reader::<FromVehicle>::new(FromSession::default());
+    let mut chunk = vec![0; CHUNK_BYTES];
+    let why = loop {
+        if shared.is_closing.load(Ordering::Acquire) {
+            return;
+        }
+        match read.read(&mut chunk) {
+            Ok(0) => break "the adapter has ended the connection".to_owned(),
+            Ok(n) => {
+                let heard = reader.read(&chunk[..n]);
+                let now_s = shared.now_s();
+                let mut inbox = shared.inbox();
+                heard.into_iter().for_each(|heard| inbox.take(heard, now_s));
+            }
+            Err(error) => match error.kind() {
+                io::ErrorKind::Interrupted | io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => {}
+                _ => break format!("the link failed: {error}"),
+            },
+        }
+    };
+    shared.inbox().close(why);
+}
+
+fn write_all(mut write: Box<dyn Write + Send>, session: ToSession, shared: &Shared) {
+    let mut writer = Writer::<ToVehicle>::new(session);
+    let (mut line, mut last_ping_s) = (Vec::new(), f64::NEG_INFINITY);
+    loop {
+        let message = shared.outbox.next(|| shared.now_s(), &mut last_ping_s);
+        line.clear();
+        if let Err(misfit) = writer.write(&message, &mut line) {
+            // A command that does not fit the vehicle must not leave the one before it in effect.
+            shared.inbox().close(format!("a command does not fit the vehicle: {misfit}"));
+            shared.outbox.command(None, true);
+            continue;
+        }
+        shared.inbox().sent(&message);
+        let is_last = matches!(message, ToVehicle::Bye(_));
+        if let Err(error) = write.write_all(&line).and_then(|()| write.flush()) {
+            shared.inbox().close(format!("the link failed: {error}"));
+            break;
+        }
+        if is_last {
+            break;
+        }
+    }
+    shared.has_left.store(true, Ordering::Release);
+}

@@ -1,0 +1,155 @@
+//! The streams to an adapter: two ends of bytes, and what ends them.
+
+use crate::address::{Address, resolved};
+use std::{
+    io::{self, Read, Write},
+    net::{TcpStream, UdpSocket},
+    os::unix::{net::UnixStream, process::CommandExt},
+    process::{Child, Command, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+/// The largest datagram, bytes.
+const DATAGRAM_BYTES: usize = 65_536;
+/// How often a reader of datagrams looks whether it should end.
+const LOOK_AGAIN: Duration = Duration::from_millis(100);
+/// How long an adapter that was started here may take to end by itself.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// A stream to an adapter.
+pub(crate) struct Stream {
+    pub read: Box<dyn Read + Send>,
+    pub write: Box<dyn Write + Send>,
+    pub end: End,
+}
+
+/// What ends a stream; the reader and the writer then fail.
+pub(crate) enum End {
+    Unix(UnixStream),
+    Tcp(TcpStream),
+    Datagrams,
+    Process(Child),
+}
+
+impl Stream {
+    pub(crate) fn open(address: &Address, network: bool) -> io::Result<Self> {
+        match address {
+            Address::Unix(path) => {
+                let stream = UnixStream::connect(path)?;
+                let (read, write) = (stream.try_clone()?, stream.try_clone()?);
+                Ok(Self { read: Box::new(read), write: Box::new(write), end: End::Unix(stream) })
+            }
+            Address::Tcp(at) => {
+                let stream = TcpStream::connect_timeout(&resolved(at, network)?, Duration::from_secs(5))?;
+                stream.set_nodelay(true)?;
+                let (read, write) = (stream.try_clone()?, stream.try_clone()?);
+                Ok(Self { read: Box::new(read), write: Box::new(write), end: End::Tcp(stream) })
+            }
+            Address::Udp(at) => {
+                let peer = resolved(at, network)?;
+                let own = if peer.is_ipv4() { "0.0.0.0:0" } else { "[::]:0" };
+                let socket = UdpSocket::bind(own)?;
+                socket.connect(peer)?;
+                socket.set_read_timeout(Some(LOOK_AGAIN))?;
+                let write = Datagrams::new(socket.try_clone()?);
+                Ok(Self {
+                    read: Box::new(Datagrams::new(socket)),
+                    write: Box::new(write),
+                    end: End::Datagrams,
+                })
+            }
+            Address::Loopback => Err(io::Error::other("the simulator in this process has no stream")),
+            Address::Run(command) => {
+                // A group of its own, so that the keys of the terminal do not reach the adapter.
+                let mut child = Command::new("/bin/sh")
+                    .args(["-c", command])
+                    .stdin(Stdio::piped())
+                    .stdout(Stdio::piped())
+                    .process_group(0)
+                    .spawn()?;
+                let missing = || io::Error::other("the adapter has no stdin or stdout");
+                let write = child.stdin.take().ok_or_else(missing)?;
+                let read = child.stdout.take().ok_or_else(missing)?;
+                Ok(Self { read: Box::new(read), write: Box::new(write), end: End::Process(child) })
+            }
+        }
+    }
+}
+
+impl Drop for End {
+    fn drop(&mut self) {
+        match self {
+            // The other side may have closed the socket already.
+            Self::Unix(stream) => drop(stream.shutdown(std::net::Shutdown::Both)),
+            Self::Tcp(stream) => drop(stream.shutdown(std::net::Shutdown::Both)),
+            Self::Datagrams => {}
+            Self::Process(child) => end_process(child),
+        }
+    }
+}
+
+/// Waits for an adapter to end after its stdin was closed, and ends it by force if it does not.
+fn end_process(child: &mut Child) {
+    let began = Instant::now();
+    while began.elapsed() < PATIENCE {
+        if !matches!(child.try_wait(), Ok(None)) {
+            return;
+        }
+        thread::sleep(Duration::from_millis(10));
+    }
+    if let Some(group) = i32::try_from(child.id()).ok().and_then(rustix::process::Pid::from_raw) {
+        // The group may have ended in the meantime.
+        let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
+    }
+    let _ = child.wait();
+}
+
+/// A socket for datagrams as a stream of lines.
+pub(crate) struct Datagrams {
+    socket: UdpSocket,
+    buffer: Vec<u8>,
+    /// The part of the last datagram that has not been read.
+    left: std::ops::Range<usize>,
+}
+
+impl Datagrams {
+    fn new(socket: UdpSocket) -> Self {
+        Self { socket, buffer: vec![0; DATAGRAM_BYTES + 1], left: 0..0 }
+    }
+}
+
+impl Read for Datagrams {
+    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
+        if self.left.is_empty() {
+            let n = match self.socket.recv(&mut self.buffer[..DATAGRAM_BYTES]) {
+                // The port is closed for now: a datagram was answered by an error.
+                Err(error) if error.kind() == io::ErrorKind::ConnectionRefused => {
+                    thread::sleep(LOOK_AGAIN);
+                    return Err(io::ErrorKind::WouldBlock.into());
+                }
+                received => received?,
+            };
+            self.buffer[n] = b'\n';
+            self.left = 0..n + 1;
+        }
+        let n = self.left.len().min(out.len());
+        out[..n].copy_from_slice(&self.buffer[self.left.start..self.left.start + n]);
+        self.left.start += n;
+        Ok(n)
+    }
+}
+
+impl Write for Datagrams {
+    fn write(&mut self, line: &[u8]) -> io::Result<usize> {
+        match self.socket.send(line) {
+            // As if the datagram had been lost on its way.
+            Err(error) if error.kind() == io::ErrorKind::ConnectionRefused => Ok(line.len()),
+            sent => sent,
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}

@@ -1,0 +1,35 @@
+//! The lines of the summary about a real vehicle.
+
+use super::text::counted;
+use account::VehicleRecord;
+
+/// The vehicle, its link and its stops, as labelled lines.
+pub(super) fn lines(vehicle: &VehicleRecord) -> Vec<(&'static str, String)> {
+    let VehicleRecord { name, at, heard, missed, faulty, age_p99_s, lost, .. } = vehicle;
+    let sent = heard + missed;
+    let loss = if sent == 0 { 0.0 } else { 100.0 * *missed as f64 / sent as f64 };
+    let age = age_p99_s.map(|s| format!(", age on arrival p99 {:.0} ms", 1e3 * s)).unwrap_or_default();
+    let mut lines = vec![
+        (
+            "vehicle",
+            format!("{name} at {at}; figures that need the true position do not exist for a live run"),
+        ),
+        (
+            "link",
+            format!(
+                "{} readings, {missed} missing ({loss:.1} %){age}, {}, lost {}",
+                heard,
+                counted(*faulty, "faulty message"),
+                counted(*lost, "time"),
+            ),
+        ),
+    ];
+    let most = vehicle.stop_max_s.map(|s| format!(", at most {s:.2} s")).unwrap_or_default();
+    let stops = counted(vehicle.stops, "stop");
+    let mut text = format!("{stops} confirmed by odometry{most}");
+    if vehicle.stops_not_confirmed > 0 {
+        text += &format!("; STOP NOT CONFIRMED {}", counted(vehicle.stops_not_confirmed, "time"));
+    }
+    lines.push(("stops", text));
+    lines
+}

@@ -1,0 +1,44 @@
+//! Folds the link to a real vehicle into a run.
+
+use crate::model::{Cause, Run};
+use mission::{Event, EventKind};
+use vehicle::port::LinkState;
+
+impl Run {
+    /// Folds in an event about the link, or about whether the vehicle stands.
+    pub(super) fn linked(&mut self, event: &Event) {
+        match &event.kind {
+            EventKind::Link(link) => {
+                let now = cause(link.state);
+                for cause in
+                    [Cause::Link, Cause::Vehicle].into_iter().filter(|cause| Some(cause) != now.as_ref())
+                {
+                    self.clear(&cause);
+                }
+                if let Some(cause) = now {
+                    self.raise_as_logged(event, cause);
+                }
+                self.vehicle.get_or_insert_default().link = link.clone();
+            }
+            EventKind::Stood { confirmed, .. } => {
+                self.vehicle.get_or_insert_default().stands = Some(*confirmed);
+                if *confirmed {
+                    self.clear(&Cause::StopNotConfirmed);
+                } else {
+                    self.raise_as_logged(event, Cause::StopNotConfirmed);
+                }
+            }
+            // A motion ends what was known about standing; a command to stand begins the wait for it.
+            EventKind::Sent { .. } => self.vehicle.get_or_insert_default().stands = None,
+            _ => {}
+        }
+    }
+}
+
+fn cause(state: LinkState) -> Option<Cause> {
+    match state {
+        LinkState::Up => None,
+        LinkState::Lost | LinkState::Closed | LinkState::Faulty => Some(Cause::Link),
+        LinkState::Manual | LinkState::EmergencyStop | LinkState::VehicleFault => Some(Cause::Vehicle),
+    }
+}

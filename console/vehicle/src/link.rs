@@ -1,0 +1,219 @@
+//! The state of the link to a vehicle, from the stamps of its messages. All times come from outside: `now_s` is the
+//! console's clock, the one that also stamps its commands.
+//!
+//! [`Link`] folds what is heard and what is sent; its parts can also be used alone: [`Clock`] (offset and delay),
+//! [`Sequence`] (loss), [`Motions`] (motion from odometry or poses), [`Stopping`] (whether the vehicle stands),
+//! [`Comparison`] (whether it moves as commanded).
+
+mod clock;
+mod compare;
+mod motion;
+mod sequence;
+mod stopping;
+#[cfg(test)]
+mod tests;
+
+pub use clock::{Clock, Offset};
+pub use compare::{Axis, Comparison, Finding};
+pub use motion::Motions;
+pub use sequence::{Counts, Sequence};
+pub use stopping::{Hold, Stopping};
+
+use crate::wire::{
+    FAULT_AFTER, FromVehicle, Heard,
+    message::{Drive, Hello, Readings, Stop},
+};
+
+/// Readings that are older are late, seconds.
+const LATE_S: f64 = 0.4;
+/// The link is lost when its readings are older, seconds: longer than a tenth of the messages lost and a jitter of 200 ms
+/// can make them, and short enough to be shown within a second.
+const LOST_S: f64 = 0.8;
+/// The same for slow readings, in periods.
+const LATE_PERIODS: f64 = 2.0;
+const LOST_PERIODS: f64 = 3.0;
+/// Messages in a second that are a fault: this many times those of the readings' rate, and some for other messages.
+const FLOOD_FACTOR: f64 = 10.0;
+const FLOOD_SLACK: f64 = 100.0;
+
+/// The state of a link.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum State {
+    /// The vehicle has not introduced itself yet, or has not sent readings.
+    Connecting,
+    /// Readings arrive in time.
+    Alive,
+    /// The last readings are older than they should be.
+    Late,
+    /// The connection has ended, or the last readings are too old. The vehicle stops by its lease.
+    Lost,
+    /// The vehicle cannot be trusted until it connects again.
+    Fault,
+}
+
+/// A link to a vehicle.
+#[derive(Debug, Clone, Default)]
+pub struct Link {
+    hello: Option<Hello>,
+    clock: Clock,
+    sequence: Sequence,
+    motions: Motions,
+    stopping: Stopping,
+    comparison: Comparison,
+    /// Arrival and stamp of the newest readings.
+    newest: Option<(f64, f64)>,
+    last_drive: Option<Drive>,
+    closed: bool,
+    fault: Option<String>,
+    malformed_in_row: u32,
+    /// Start of a second, and the lines heard in it.
+    second: (f64, u32),
+}
+
+impl Link {
+    /// Takes what was heard.
+    pub fn heard(&mut self, heard: &Heard<FromVehicle>, now_s: f64) {
+        self.count(now_s);
+        match heard {
+            Heard::Message(message) => {
+                self.malformed_in_row = 0;
+                self.message(message, now_s);
+            }
+            Heard::Malformed(misfit) => {
+                self.malformed_in_row += 1;
+                if self.malformed_in_row >= FAULT_AFTER {
+                    self.fault
+                        .get_or_insert_with(|| format!("{FAULT_AFTER} malformed lines in a row; {misfit}"));
+                }
+            }
+            Heard::Unknown(_) => {}
+        }
+    }
+
+    fn count(&mut self, now_s: f64) {
+        let (start_s, n) = self.second;
+        self.second = if now_s - start_s < 1.0 { (start_s, n.saturating_add(1)) } else { (now_s, 1) };
+        let Some(hello) = &self.hello else { return };
+        let most = FLOOD_FACTOR / hello.period_s + FLOOD_SLACK;
+        if f64::from(self.second.1) > most {
+            self.fault.get_or_insert_with(|| format!("more than {most:.0} messages in a second"));
+        }
+    }
+
+    fn message(&mut self, message: &FromVehicle, now_s: f64) {
+        match message {
+            FromVehicle::Hello(hello) => {
+                // The vehicle has started again: nothing of before holds, except a fault.
+                *self =
+                    Self { hello: Some(hello.as_ref().clone()), fault: self.fault.take(), ..Self::default() };
+                self.second = (now_s, 1);
+            }
+            FromVehicle::Readings(readings) => self.readings(readings, now_s),
+            FromVehicle::Pong(pong) => {
+                if let Err(misfit) = self.clock.pong(pong, now_s) {
+                    self.fault.get_or_insert_with(|| misfit.to_string());
+                }
+            }
+            FromVehicle::State(_) => {}
+        }
+    }
+
+    fn readings(&mut self, readings: &Readings, now_s: f64) {
+        if !self.sequence.add(readings.seq) {
+            // Late or doubled: its motion is in the readings after it, or cannot be placed.
+            return;
+        }
+        self.newest = Some((now_s, readings.stamp_s));
+        let Some(motion) = self.motions.take(readings) else { return };
+        let taken_s = self.clock.at(now_s).map(|offset| readings.stamp_s - offset.offset_s + offset.bound_s);
+        let taken_s = taken_s.unwrap_or(now_s).min(now_s);
+        if self.may_move_until_s(now_s).is_none_or(|until_s| taken_s > until_s) {
+            self.comparison.command(None);
+        }
+        self.stopping.moved(&motion, taken_s);
+        if let Some(hello) = &self.hello {
+            self.comparison.moved(&motion, &hello.limits);
+        }
+    }
+
+    /// A drive was sent.
+    pub fn drove(&mut self, drive: &Drive) {
+        self.last_drive = Some(*drive);
+        self.stopping.release();
+        self.comparison.command(Some(drive));
+    }
+
+    /// A stop was sent, again or for the first time.
+    pub fn stopped(&mut self, stop: &Stop) {
+        self.stopping.ask(stop.stamp_s);
+        self.comparison.command(None);
+    }
+
+    /// The connection has ended.
+    pub fn closed(&mut self) {
+        self.closed = true;
+    }
+
+    /// The state of the link.
+    pub fn state(&self, now_s: f64) -> State {
+        if self.closed {
+            return State::Lost;
+        }
+        if self.fault.is_some() {
+            return State::Fault;
+        }
+        let (Some(hello), Some(age_s)) = (&self.hello, self.age_s(now_s)) else { return State::Connecting };
+        if age_s > LOST_S.max(LOST_PERIODS * hello.period_s) {
+            State::Lost
+        } else if age_s > LATE_S.max(LATE_PERIODS * hello.period_s) {
+            State::Late
+        } else {
+            State::Alive
+        }
+    }
+
+    /// Why the link is a fault; the first reason counts.
+    pub fn fault(&self) -> Option<&str> {
+        self.fault.as_deref()
+    }
+
+    /// Age of the newest readings, seconds: since their arrival or, if the offset of the clocks is known and it is more,
+    /// since their measurement at the latest.
+    pub fn age_s(&self, now_s: f64) -> Option<f64> {
+        let (arrival_s, stamp_s) = self.newest?;
+        let measured =
+            self.clock.at(now_s).map(|offset| now_s - (stamp_s - offset.offset_s) - offset.bound_s);
+        Some(measured.unwrap_or(0.0).max(now_s - arrival_s))
+    }
+
+    /// Until when the vehicle may carry out the last drive, seconds of the console's clock: sending, the way there by the
+    /// quickest round trip, and the lease. After that and its stop time, a vehicle that keeps its lease stands, but only
+    /// readings can confirm it.
+    pub fn may_move_until_s(&self, now_s: f64) -> Option<f64> {
+        let drive = self.last_drive?;
+        let way_s = self.clock.at(now_s).map_or(0.0, |offset| 2.0 * offset.bound_s);
+        Some(drive.stamp_s + way_s + drive.lease_s)
+    }
+
+    /// Whether the vehicle stands after a stop.
+    pub fn hold(&self, now_s: f64) -> Hold {
+        let Some(hello) = &self.hello else { return Hold::NotAsked };
+        let trip_s = self.clock.at(now_s).map_or(0.0, |offset| 2.0 * offset.bound_s);
+        self.stopping.state(now_s, Stopping::limit_s(hello, trip_s))
+    }
+
+    /// What does not fit between commands and motion.
+    pub fn finding(&self) -> Option<Finding> {
+        self.comparison.finding()
+    }
+
+    /// Offset and delay.
+    pub fn clock(&self) -> &Clock {
+        &self.clock
+    }
+
+    /// Lost, doubled and reordered readings.
+    pub fn counts(&self) -> Counts {
+        self.sequence.counts()
+    }
+}

@@ -1,0 +1,124 @@
+//! Offset and delay of a vehicle's clock, from the quickest round trip of the last seconds.
+
+use crate::wire::{Misfit, message::Pong};
+use std::collections::VecDeque;
+
+/// Round trips are kept this long, seconds.
+const WINDOW_S: f64 = 10.0;
+/// Difference in rate between two clocks, at most.
+const DRIFT: f64 = 1e-4;
+/// Round trips that are kept. Only ones that can still become the quickest are.
+const KEPT_MAX: usize = 64;
+/// How much earlier than its ping a pong may seem to come: rounding of the echo, seconds.
+const ROUNDING_S: f64 = 1e-3;
+
+/// A round trip: its end, its length and the offset of the vehicle's clock, seconds.
+#[derive(Debug, Clone, Copy)]
+struct Trip {
+    at_s: f64,
+    took_s: f64,
+    offset: f64,
+}
+
+/// The offset of the vehicle's clock.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Offset {
+    /// The vehicle's clock minus the console's, seconds.
+    pub offset_s: f64,
+    /// The greatest error of `offset_s`, seconds: half the round trip, plus the drift since then.
+    pub bound_s: f64,
+}
+
+/// The clock of a vehicle.
+#[derive(Debug, Clone, Default)]
+pub struct Clock {
+    /// The first is the quickest; each further one is slower and later.
+    trips: VecDeque<Trip>,
+}
+
+impl Clock {
+    /// Takes the answer to a ping.
+    ///
+    /// # Errors
+    /// If the vehicle answers a ping that cannot have been sent.
+    pub fn pong(&mut self, pong: &Pong, now_s: f64) -> Result<(), Misfit> {
+        let trip_s = now_s - pong.echo_s;
+        if trip_s < -ROUNDING_S {
+            let what = format!("answers a ping of {}, but it is only {now_s}", pong.echo_s);
+            return Err(Misfit { field: "pong.echo_s".into(), what });
+        }
+        if trip_s > WINDOW_S {
+            return Ok(());
+        }
+        let trip_s = trip_s.max(0.0);
+        self.trips.retain(|trip| now_s - trip.at_s <= WINDOW_S);
+        while self.trips.back().is_some_and(|last| last.took_s >= trip_s) {
+            self.trips.pop_back();
+        }
+        if self.trips.len() < KEPT_MAX {
+            let offset = pong.stamp_s - (now_s - trip_s / 2.0);
+            self.trips.push_back(Trip { at_s: now_s, took_s: trip_s, offset });
+        }
+        Ok(())
+    }
+
+    /// The offset now. It stays known after the last answer, with a growing bound.
+    pub fn at(&self, now_s: f64) -> Option<Offset> {
+        let recent = self.trips.iter().find(|trip| now_s - trip.at_s <= WINDOW_S);
+        let trip = recent.or(self.trips.back())?;
+        // The vehicle read its clock some time during the trip.
+        let since_s = (now_s - trip.at_s + trip.took_s).max(0.0);
+        Some(Offset { offset_s: trip.offset, bound_s: trip.took_s / 2.0 + DRIFT * since_s })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Delays of any kind on both ways, and a clock that drifts.
+        #[test]
+        fn the_offset_is_within_its_bound(
+            delays in prop::collection::vec((0.0..0.25_f64, 0.0..0.25_f64), 1..300),
+            offset_s in -1e6..1e6_f64,
+            drift in -DRIFT..DRIFT,
+        ) {
+            let theirs = |t: f64| t * (1.0 + drift) + offset_s;
+            let mut clock = Clock::default();
+            for (n, (there_s, back_s)) in delays.iter().enumerate() {
+                let sent_s = n as f64 * 0.1;
+                let (at_vehicle_s, now_s) = (sent_s + there_s, sent_s + there_s + back_s);
+                let pong = Pong { echo_s: sent_s, stamp_s: theirs(at_vehicle_s) };
+                clock.pong(&pong, now_s).expect("it was sent");
+                let Offset { offset_s, bound_s } = clock.at(now_s).expect("an answer");
+                let error_s = offset_s - (theirs(now_s) - now_s);
+                prop_assert!(error_s.abs() <= bound_s + 1e-9, "{} {}", error_s, bound_s);
+                prop_assert!(clock.trips.len() <= KEPT_MAX);
+            }
+        }
+    }
+
+    #[test]
+    fn the_quickest_answer_of_ten_seconds_counts() {
+        let mut clock = Clock::default();
+        let mut pong = |sent_s: f64, now_s: f64| {
+            clock.pong(&Pong { echo_s: sent_s, stamp_s: 100.0 + sent_s }, now_s).expect("sent");
+            clock.at(now_s).expect("an answer")
+        };
+        assert!((pong(0.0, 0.02).offset_s - 99.99).abs() < 1e-9);
+        assert!((pong(1.0, 1.2).offset_s - 99.99).abs() < 1e-9);
+        let later = pong(11.0, 11.1);
+        assert!((later.offset_s - 99.95).abs() < 1e-9 && later.bound_s < 0.051, "{later:?}");
+    }
+
+    #[test]
+    fn an_answer_from_the_future_is_named() {
+        let answer = Clock::default().pong(&Pong { echo_s: 9.0, stamp_s: 0.0 }, 5.0);
+        assert_eq!(
+            answer.expect_err("a lie").to_string(),
+            "pong.echo_s: answers a ping of 9, but it is only 5"
+        );
+    }
+}

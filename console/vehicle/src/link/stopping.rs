@@ -1,0 +1,132 @@
+//! Whether the vehicle stands after a stop: only its measured motion can confirm it.
+
+use crate::wire::message::{Hello, Odometry};
+
+/// Below these rates a vehicle stands, metres and radians per second.
+const STILL_M_PER_S: f64 = 0.02;
+const STILL_RAD_PER_S: f64 = 0.05;
+/// Readings in a row without motion that confirm it.
+const STILL_READINGS: u32 = 3;
+/// The vehicle may take this many times its stop time.
+const STOP_TIMES: f64 = 2.0;
+
+/// The effect of a stop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Hold {
+    /// The vehicle may drive.
+    NotAsked,
+    /// The vehicle has been asked to stand, and has time to.
+    Stopping,
+    /// The vehicle stands: its readings say so.
+    Held {
+        /// Time from the stop to the first of the readings without motion, seconds.
+        after_s: f64,
+    },
+    /// The vehicle does not stand, or it is not known whether it does, or it moved after it stood.
+    NotConfirmed,
+}
+
+/// Watches a stop.
+#[derive(Debug, Clone, Default)]
+pub struct Stopping {
+    asked_s: Option<f64>,
+    /// Readings in a row without motion, and the time of the first.
+    still: u32,
+    still_since_s: f64,
+    /// When the vehicle stood, after the stop.
+    held_after_s: Option<f64>,
+}
+
+impl Stopping {
+    /// A stop was sent; only the first one begins.
+    pub fn ask(&mut self, now_s: f64) {
+        if self.asked_s.is_none() {
+            *self = Self { asked_s: Some(now_s), ..Self::default() };
+        }
+    }
+
+    /// A drive was sent.
+    pub fn release(&mut self) {
+        *self = Self::default();
+    }
+
+    /// A motion was measured, at a time of the console's clock.
+    pub fn moved(&mut self, motion: &Odometry, taken_s: f64) {
+        let Some(asked_s) = self.asked_s.filter(|asked_s| taken_s >= *asked_s) else { return };
+        if !stands(motion) {
+            self.still = 0;
+            return;
+        }
+        if self.still == 0 {
+            self.still_since_s = taken_s;
+        }
+        self.still = self.still.saturating_add(1);
+        if self.still >= STILL_READINGS && self.held_after_s.is_none() {
+            self.held_after_s = Some(self.still_since_s - asked_s);
+        }
+    }
+
+    /// The effect of the stop, if the vehicle is given this time.
+    pub fn state(&self, now_s: f64, limit_s: f64) -> Hold {
+        let Some(asked_s) = self.asked_s else { return Hold::NotAsked };
+        match self.held_after_s {
+            Some(after_s) if self.still > 0 => Hold::Held { after_s },
+            Some(_) => Hold::NotConfirmed,
+            None if now_s - asked_s > limit_s => Hold::NotConfirmed,
+            None => Hold::Stopping,
+        }
+    }
+
+    /// The time that a vehicle is given: twice its measured stop time, and at least the time in which its readings can
+    /// tell, over a link with this round trip.
+    pub fn limit_s(hello: &Hello, trip_s: f64) -> f64 {
+        let told_s = f64::from(STILL_READINGS + 1) * hello.period_s + trip_s;
+        (STOP_TIMES * hello.stop_time_s).max(told_s)
+    }
+}
+
+fn stands(motion: &Odometry) -> bool {
+    motion.forward_m.hypot(motion.sideways_m) < STILL_M_PER_S * motion.over_s
+        && motion.turn_rad.abs() < STILL_RAD_PER_S * motion.over_s
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn motion(m_per_s: f64, rad_per_s: f64) -> Odometry {
+        Odometry { over_s: 0.1, forward_m: 0.1 * m_per_s, sideways_m: 0.0, turn_rad: 0.1 * rad_per_s }
+    }
+
+    #[test]
+    fn three_readings_without_motion_confirm_a_stop() {
+        let mut stopping = Stopping::default();
+        assert_eq!(stopping.state(0.0, 1.0), Hold::NotAsked);
+        stopping.moved(&motion(0.0, 0.0), 0.9);
+        stopping.ask(1.0);
+        stopping.ask(1.1);
+        stopping.moved(&motion(0.0, 0.0), 0.95);
+        for (taken_s, m_per_s) in [(1.1, 0.3), (1.2, 0.0), (1.3, 0.05), (1.4, 0.0), (1.5, 0.01)] {
+            stopping.moved(&motion(m_per_s, 0.0), taken_s);
+        }
+        assert_eq!(stopping.state(1.9, 1.0), Hold::Stopping);
+        assert_eq!(stopping.state(2.1, 1.0), Hold::NotConfirmed);
+        stopping.moved(&motion(0.0, 0.04), 1.6);
+        let Hold::Held { after_s } = stopping.state(9.0, 1.0) else { panic!("it stands") };
+        assert!((after_s - 0.4).abs() < 1e-12);
+        stopping.release();
+        assert_eq!(stopping.state(9.0, 1.0), Hold::NotAsked);
+    }
+
+    #[test]
+    fn turning_on_the_spot_is_not_standing_and_moving_after_a_stop_is_named() {
+        let mut stopping = Stopping::default();
+        stopping.ask(0.0);
+        (1..=9).for_each(|n| stopping.moved(&motion(0.0, 0.2), 0.1 * f64::from(n)));
+        assert_eq!(stopping.state(1.1, 1.0), Hold::NotConfirmed);
+        (1..=3).for_each(|n| stopping.moved(&motion(0.0, 0.0), 1.0 + 0.1 * f64::from(n)));
+        assert!(matches!(stopping.state(1.3, 1.0), Hold::Held { .. }));
+        stopping.moved(&motion(0.1, 0.0), 1.4);
+        assert_eq!(stopping.state(1.4, 1.0), Hold::NotConfirmed);
+    }
+}

@@ -1,0 +1,230 @@
+//! The port: what a flight needs from a vehicle, whether the vehicle is simulated, recorded or real.
+//!
+//! A flight calls [`Vehicle::sense`] once at the start of each tick and [`Vehicle::act`] once at its end. Neither call
+//! waits: a vehicle in another process hands over what has arrived since the last tick.
+
+use geometry::Drive;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use world::{Readings, StationId, Truth};
+
+/// How long a vehicle may carry out a `drive` without a further message, seconds; then it must stand.
+pub const LEASE_S: f64 = 0.25;
+
+/// A vehicle: its sensors in, its commands out.
+pub trait Vehicle: Send {
+    /// The readings since the last tick. Never waits.
+    fn sense(&mut self) -> Sensed;
+
+    /// The command until the next tick. Never waits.
+    fn act(&mut self, command: Command);
+
+    /// The true state at the start of this tick; `None` outside a simulation.
+    fn truth(&self) -> Option<Truth>;
+
+    /// Begins a fault of a station with the next tick.
+    ///
+    /// # Errors
+    /// The vehicle is not a simulation, or does not offer faults.
+    fn inject(&mut self, fault: StationFault) -> Result<(), CannotInject>;
+
+    /// A handle that makes the vehicle stand at once, from any thread, without waiting for the next tick; `None` for
+    /// vehicles whose time passes with the ticks.
+    fn brake(&self) -> Option<Brake> {
+        None
+    }
+}
+
+/// What a vehicle reported since the last tick.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Sensed {
+    /// The readings; of several messages in one tick, the odometry is added up.
+    pub readings: Readings,
+    /// Facts about the link; `None` for a simulation inside the console.
+    pub live: Option<Live>,
+}
+
+/// What only a vehicle in another process has.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Live {
+    /// The stamps of the last reading that arrived; `None` if none arrived in this tick.
+    pub stamps: Option<Stamps>,
+    /// The state of the link, if it changed or is due.
+    pub link: Option<LinkSeen>,
+}
+
+/// When a reading was taken and when it arrived.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Stamps {
+    /// The vehicle's own clock when it took the reading, seconds.
+    pub source_t_s: f64,
+    /// The console's clock when the reading arrived, seconds since the vehicle was connected.
+    pub arrival_t_s: f64,
+}
+
+/// The state of the link and of the vehicle, as far as a mission depends on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LinkState {
+    /// Readings arrive, and the vehicle can be driven.
+    #[default]
+    Up,
+    /// Nothing has arrived for too long.
+    Lost,
+    /// The adapter has closed the link, or its process has ended. Only a new run connects again.
+    Closed,
+    /// Several messages in a row were faulty.
+    Faulty,
+    /// Someone drives the vehicle by hand.
+    Manual,
+    /// The emergency stop of the vehicle is pressed.
+    EmergencyStop,
+    /// The vehicle reports a fault, or that it is not ready.
+    VehicleFault,
+}
+
+impl LinkState {
+    /// Whether messages of the vehicle arrive.
+    pub fn is_heard(self) -> bool {
+        !matches!(self, Self::Lost | Self::Closed)
+    }
+
+    /// The state as a short word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Up => "up",
+            Self::Lost => "lost",
+            Self::Closed => "closed",
+            Self::Faulty => "faulty",
+            Self::Manual => "manual",
+            Self::EmergencyStop => "emergency stop",
+            Self::VehicleFault => "fault",
+        }
+    }
+}
+
+/// The state of the link at one moment, with its figures since the vehicle was connected.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct LinkSeen {
+    /// The state.
+    pub state: LinkState,
+    /// The reason for a state other than [`LinkState::Up`], as a clause; empty otherwise.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub why: String,
+    /// Age of the last reading, seconds; absent before the first one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub age_s: Option<f64>,
+    /// The vehicle's clock minus the console's, seconds; absent until it has been measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub offset_s: Option<f64>,
+    /// Bound on the error of `offset_s`, half the least round trip, seconds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub offset_bound_s: Option<f64>,
+    /// Age that 99 % of the readings do not exceed on arrival, seconds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub age_p99_s: Option<f64>,
+    /// Number of readings that arrived.
+    pub heard: u64,
+    /// Number of readings that are missing by their sequence numbers.
+    pub missed: u64,
+    /// Number of faulty messages.
+    pub faulty: u64,
+}
+
+impl LinkSeen {
+    /// Why the vehicle must not be driven, as a clause; `None` if it may be.
+    pub fn trouble(&self) -> Option<String> {
+        let what = match self.state {
+            LinkState::Up => return None,
+            LinkState::Lost => "the link to the vehicle is lost",
+            LinkState::Closed => "the link to the vehicle is closed",
+            LinkState::Faulty => "the vehicle sends faulty messages",
+            LinkState::Manual => "someone drives the vehicle by hand",
+            LinkState::EmergencyStop => "the emergency stop of the vehicle is pressed",
+            LinkState::VehicleFault => "the vehicle reports a fault",
+        };
+        let why = if self.why.is_empty() { String::new() } else { format!(": {}", self.why) };
+        let unknown = if self.state.is_heard() {
+            ""
+        } else {
+            "; the vehicle stops by its lease, which is not confirmed"
+        };
+        Some(format!("{what}{why}{unknown}"))
+    }
+}
+
+/// A vehicle as it introduced itself; part of the first event of a live run.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct VehicleInfo {
+    /// Name of the vehicle.
+    pub name: String,
+    /// Where its adapter was reached, as written by the user: `unix:PATH`, `tcp:HOST:PORT`, `run:COMMAND`.
+    pub at: String,
+    /// Version of the protocol.
+    pub protocol: u32,
+    /// Lease that the vehicle honours, seconds.
+    pub lease_s: f64,
+    /// Time that the vehicle needs to stop, as it states itself, seconds.
+    pub stop_s: f64,
+    /// Largest speed, metres per second.
+    pub speed_max_m_per_s: f64,
+    /// Largest turn rate, radians per second.
+    pub turn_max_rad_per_s: f64,
+    /// What it has: `odometry`, `ranges`, `scan`, `contact`, `reel`, `pressure`.
+    pub has: Vec<String>,
+}
+
+/// The command of one tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Command {
+    /// The motion; `None` to stand still until the next motion.
+    pub drive: Option<Drive>,
+    /// The estimated heading of the robot, radians, with which a velocity in the tank frame is turned into the robot's
+    /// frame.
+    pub heading_rad: f64,
+    /// Whether the mission has carried out an order to hold or end in this tick, which releases the [`Brake`].
+    pub has_held: bool,
+}
+
+/// A fault of a station.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StationFault {
+    /// The station.
+    pub station: StationId,
+    /// For how long, seconds of mission time.
+    pub for_s: f64,
+    /// By how much its ranges are too long, metres; `None` if it is silent.
+    pub excess_range_m: Option<f64>,
+}
+
+/// A vehicle does not offer faults.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CannotInject;
+
+impl fmt::Display for CannotInject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("faults can be injected only into a simulation")
+    }
+}
+
+/// Makes a vehicle stand at once, from any thread. Until the mission has carried out an order to hold, no motion is sent.
+#[derive(Clone)]
+pub struct Brake(std::sync::Arc<dyn Fn() + Send + Sync>);
+
+impl Brake {
+    /// Creates a brake from its effect.
+    pub fn new(stop: impl Fn() + Send + Sync + 'static) -> Self {
+        Self(std::sync::Arc::new(stop))
+    }
+
+    /// Sends `stop`.
+    pub fn pull(&self) {
+        (self.0)();
+    }
+}
+
+impl fmt::Debug for Brake {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Brake")
+    }
+}

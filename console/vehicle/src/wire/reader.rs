@@ -1,0 +1,323 @@
+//! Bytes to messages and named faults.
+
+use super::{
+    FAULT_AFTER, LINE_MAX,
+    check::{Checked, Misfit, misfit},
+    fields::fields_of,
+    lines::{Lines, Piece},
+    message::{
+        Ae, Arrival, Bye, Channel, Difference, Drive, FromVehicle, Has, Hello, Limits, Odometry, Outline,
+        Ping, Pong, Pose, Readings, Scan, State, StationRanges, Stop, Tether, ToVehicle,
+    },
+    path::{field_at, keys},
+    session::{FromSession, ToSession},
+};
+use serde::{Deserialize, de::DeserializeOwned};
+use std::collections::BTreeSet;
+
+/// Unknown keys and kinds that are remembered and reported; further ones are only counted.
+const UNKNOWN_MAX: usize = 64;
+/// Characters of an unknown key or kind that are kept.
+const UNKNOWN_CHARS: usize = 64;
+
+/// What a line was.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Heard<M> {
+    /// A message.
+    Message(M),
+    /// Something that this version does not know. It was ignored; the same thing is not reported again. A message with an
+    /// unknown key follows.
+    Unknown(Unknown),
+    /// A line that is no message, or a message that cannot be right. It was ignored.
+    Malformed(Misfit),
+}
+
+/// Something that this version of the protocol does not know.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Unknown {
+    /// A kind of message.
+    Kind(String),
+    /// A key in a message.
+    Key {
+        /// The kind of the message.
+        kind: &'static str,
+        /// The key.
+        key: String,
+    },
+}
+
+/// The number of lines of each sort.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counts {
+    /// Messages.
+    pub messages: u64,
+    /// Malformed lines.
+    pub malformed: u64,
+    /// Malformed lines since the last message.
+    pub malformed_in_row: u32,
+    /// Messages of unknown kinds.
+    pub unknown_kinds: u64,
+}
+
+/// A direction of the wire.
+pub trait Incoming: Sized {
+    /// What a message must agree with.
+    type Session;
+    /// The kinds of messages, each with the keys that it may contain at any depth.
+    fn kinds() -> Vec<(&'static str, Vec<&'static str>)>;
+    /// Parses a message of a known kind.
+    ///
+    /// # Errors
+    /// If the line does not have the fields of this kind, or other types of values.
+    fn parse(kind: &str, line: &str) -> serde_json::Result<Self>;
+    /// Checks the values of a message.
+    ///
+    /// # Errors
+    /// The first value that cannot be right.
+    fn check(&self, session: &mut Self::Session) -> Result<(), Misfit>;
+}
+
+/// Reads one direction of the wire, from bytes in any division. Keeps at most [`LINE_MAX`] bytes.
+///
+/// ```
+/// use vehicle::wire::{FromSession, FromVehicle, Heard, Reader};
+///
+/// let mut reader = Reader::<FromVehicle>::new(FromSession::default());
+/// assert!(reader.read(b"{\"type\": \"pong\", \"echo_s\": 1.5, \"sta").is_empty());
+/// let heard = reader.read(b"mp_s\": NaN}\n");
+/// let Heard::Malformed(fault) = &heard[0] else { panic!("NaN is no number of JSON") };
+/// assert_eq!(fault.to_string(), "pong.stamp_s: NaN is not a finite number");
+/// ```
+#[derive(Debug, Clone)]
+pub struct Reader<M: Incoming> {
+    lines: Lines,
+    session: M::Session,
+    kinds: Vec<(&'static str, Vec<&'static str>)>,
+    seen: BTreeSet<Unknown>,
+    counts: Counts,
+}
+
+impl<M: Incoming> Reader<M> {
+    /// A reader for a new connection.
+    pub fn new(session: M::Session) -> Self {
+        Self {
+            lines: Lines::default(),
+            session,
+            kinds: M::kinds(),
+            seen: BTreeSet::new(),
+            counts: Counts::default(),
+        }
+    }
+
+    /// What the messages so far amount to.
+    pub fn session(&self) -> &M::Session {
+        &self.session
+    }
+
+    /// The number of lines of each sort.
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// Whether so many malformed lines came in a row that the link cannot be trusted: [`FAULT_AFTER`].
+    pub fn is_faulty(&self) -> bool {
+        self.counts.malformed_in_row >= FAULT_AFTER
+    }
+
+    /// Takes the next bytes, and returns what the lines were that end in them.
+    pub fn read(&mut self, bytes: &[u8]) -> Vec<Heard<M>> {
+        let mut heard = Vec::new();
+        let mut lines = std::mem::take(&mut self.lines);
+        lines.take(bytes, |piece| match piece {
+            Piece::Line(line) => self.line(line, &mut heard),
+            Piece::Overlong => {
+                let what = format!("the line is longer than {LINE_MAX} bytes");
+                heard.push(self.malformed(Misfit { field: String::new(), what }));
+            }
+        });
+        self.lines = lines;
+        heard
+    }
+
+    /// Ends the stream: a line that was not ended is malformed.
+    pub fn finish(&mut self) -> Option<Heard<M>> {
+        let rest = self.lines.finish()?;
+        let line = String::from_utf8_lossy(&rest);
+        let what = "the line ends here, without a line feed".to_owned();
+        Some(self.malformed(Misfit { field: field_at(&line, line.len()), what }))
+    }
+
+    fn malformed(&mut self, misfit: Misfit) -> Heard<M> {
+        self.counts.malformed += 1;
+        self.counts.malformed_in_row = self.counts.malformed_in_row.saturating_add(1);
+        Heard::Malformed(misfit)
+    }
+
+    fn line(&mut self, line: &[u8], heard: &mut Vec<Heard<M>>) {
+        if line.trim_ascii().is_empty() {
+            return;
+        }
+        match self.message(line, heard) {
+            Ok(Some(message)) => {
+                self.counts.messages += 1;
+                self.counts.malformed_in_row = 0;
+                heard.push(Heard::Message(message));
+            }
+            Ok(None) => self.counts.unknown_kinds += 1,
+            Err(misfit) => {
+                let malformed = self.malformed(misfit);
+                heard.push(malformed);
+            }
+        }
+    }
+
+    fn message(&mut self, line: &[u8], heard: &mut Vec<Heard<M>>) -> Result<Option<M>, Misfit> {
+        let Ok(line) = std::str::from_utf8(line) else { return misfit("", "the line is not in UTF-8") };
+        // serde reads structs from lists, too.
+        if !line.trim_start().starts_with('{') {
+            return misfit("", "the line is not a JSON object");
+        }
+        let head: Head = serde_json::from_str(line).map_err(|error| named("", line, &error))?;
+        let Some((kind, known)) = self.kinds.iter().find(|(kind, _)| *kind == head.kind) else {
+            self.unknown(Unknown::Kind(shortened(&head.kind)), heard);
+            return Ok(None);
+        };
+        let kind = *kind;
+        let unknown: BTreeSet<&str> =
+            keys(line).filter(|key| *key != "type" && !known.contains(key)).collect();
+        let message = M::parse(kind, line).map_err(|error| named(kind, line, &error))?;
+        message.check(&mut self.session)?;
+        for key in unknown {
+            self.unknown(Unknown::Key { kind, key: shortened(key) }, heard);
+        }
+        Ok(Some(message))
+    }
+
+    fn unknown(&mut self, unknown: Unknown, heard: &mut Vec<Heard<M>>) {
+        if self.seen.len() < UNKNOWN_MAX && self.seen.insert(unknown.clone()) {
+            heard.push(Heard::Unknown(unknown));
+        }
+    }
+}
+
+#[derive(Deserialize)]
+struct Head {
+    #[serde(rename = "type")]
+    kind: String,
+}
+
+fn shortened(text: &str) -> String {
+    text.chars().take(UNKNOWN_CHARS).collect()
+}
+
+/// The field and the reason of an error of serde.
+fn named(kind: &str, line: &str, error: &serde_json::Error) -> Misfit {
+    let said = error.to_string();
+    let said = said.split(" at line ").next().unwrap_or_default();
+    // Messages are single lines, so a column is a place in bytes.
+    let at = error.column().min(line.len());
+    let place = if said.starts_with("missing field") || said.starts_with("duplicate field") {
+        said.split('`').nth(1).unwrap_or_default().to_owned()
+    } else {
+        field_at(line, at)
+    };
+    let kind = if kind.is_empty() { kind_of(line) } else { kind.to_owned() };
+    let field = [kind, place].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(".");
+    let what = match not_finite(line, at) {
+        Some(number) if error.is_syntax() => format!("{number} is not a finite number"),
+        _ if said == "number out of range" => "the number is too large".into(),
+        _ if error.is_eof() => "the line ends here, before the object is complete".into(),
+        _ => said.to_owned(),
+    };
+    Misfit { field, what }
+}
+
+/// The kind of a message that cannot be parsed, if it can be seen.
+fn kind_of(line: &str) -> String {
+    let after = line.split("\"type\"").nth(1).unwrap_or_default();
+    let value = after.trim_start().strip_prefix(':').unwrap_or_default().trim_start();
+    let kind = value.strip_prefix('"').and_then(|rest| rest.split('"').next()).unwrap_or_default();
+    let is_word =
+        kind.len() <= UNKNOWN_CHARS && kind.bytes().all(|byte| byte.is_ascii_lowercase() || byte == b'_');
+    if is_word { kind.to_owned() } else { String::new() }
+}
+
+/// A word for a number that is not finite, around a place in a line.
+fn not_finite(line: &str, at: usize) -> Option<&'static str> {
+    let bytes = line.as_bytes();
+    let from = at.saturating_sub(2);
+    let near = &bytes[from.min(bytes.len())..(at + 9).min(bytes.len())];
+    ["-Infinity", "Infinity", "NaN"]
+        .into_iter()
+        .find(|word| near.windows(word.len()).any(|window| window == word.as_bytes()))
+}
+
+fn parsed<T: DeserializeOwned>(line: &str) -> serde_json::Result<T> {
+    serde_json::from_str(line)
+}
+
+impl Incoming for FromVehicle {
+    type Session = FromSession;
+
+    fn kinds() -> Vec<(&'static str, Vec<&'static str>)> {
+        let hello = [fields_of::<Hello>(), fields_of::<Limits>(), fields_of::<Has>()];
+        let readings = [
+            fields_of::<Readings>(),
+            fields_of::<Odometry>(),
+            fields_of::<Pose>(),
+            fields_of::<Ae>(),
+            fields_of::<StationRanges>(),
+            fields_of::<Arrival>(),
+            fields_of::<Difference>(),
+            fields_of::<Scan>(),
+            fields_of::<Tether>(),
+            fields_of::<Outline>(),
+            fields_of::<Channel>(),
+        ];
+        vec![
+            ("hello", hello.concat()),
+            ("readings", readings.concat()),
+            ("state", fields_of::<State>().to_vec()),
+            ("pong", fields_of::<Pong>().to_vec()),
+        ]
+    }
+
+    fn parse(kind: &str, line: &str) -> serde_json::Result<Self> {
+        Ok(match kind {
+            "hello" => Self::Hello(parsed(line)?),
+            "readings" => Self::Readings(parsed(line)?),
+            "state" => Self::State(parsed(line)?),
+            _ => Self::Pong(parsed(line)?),
+        })
+    }
+
+    fn check(&self, session: &mut FromSession) -> Checked {
+        session.check(self)
+    }
+}
+
+impl Incoming for ToVehicle {
+    type Session = ToSession;
+
+    fn kinds() -> Vec<(&'static str, Vec<&'static str>)> {
+        vec![
+            ("drive", fields_of::<Drive>().to_vec()),
+            ("stop", fields_of::<Stop>().to_vec()),
+            ("ping", fields_of::<Ping>().to_vec()),
+            ("bye", fields_of::<Bye>().to_vec()),
+        ]
+    }
+
+    fn parse(kind: &str, line: &str) -> serde_json::Result<Self> {
+        Ok(match kind {
+            "drive" => Self::Drive(parsed(line)?),
+            "stop" => Self::Stop(parsed(line)?),
+            "ping" => Self::Ping(parsed(line)?),
+            _ => Self::Bye(parsed(line)?),
+        })
+    }
+
+    fn check(&self, session: &mut ToSession) -> Checked {
+        session.check(self)
+    }
+}
