@@ -90,6 +90,7 @@ fn opened(config: &MissionConfig) -> EventKind {
         plates: None,
         checklist: vec![],
         measured: None,
+        vehicle: None,
     }))
 }
 

@@ -2,8 +2,7 @@
 
 use crate::model::{Cause, Change, Offer, PlanShown, Run, Trail, Withdrawn};
 use mission::{
-    BetterPlan, During, Event, EventKind, Phase, PlannerChoice, PlannerInfo, Severity,
-    event::{late_text},
+    BetterPlan, During, Event, EventKind, Phase, PlannerChoice, PlannerInfo, Severity, event::late_text,
 };
 use planner_api::{Command, Drawing};
 

@@ -161,7 +161,12 @@ impl Shape for Filled<'_> {
 }
 
 /// The points of a closed ellipse around a centre.
-pub(in crate::view) fn ellipse(center: Point, half_m: (f64, f64), turned_rad: f64, pieces: u32) -> Vec<Point> {
+pub(in crate::view) fn ellipse(
+    center: Point,
+    half_m: (f64, f64),
+    turned_rad: f64,
+    pieces: u32,
+) -> Vec<Point> {
     let (sin, cos) = turned_rad.sin_cos();
     (0..=pieces)
         .map(|piece| {
