@@ -236,8 +236,9 @@ fn held_for_good(by: &HoldReason) -> Vec<String> {
         HoldReason::Operator | HoldReason::PlannerReplaced | HoldReason::PlannerSilent { .. } => {
             (state(by), &[RESUME, PLANNER])
         }
-        HoldReason::Tether { .. } => (state(by), &[RESUME, "<end>: end mission."]),
-        HoldReason::ZoneBreached { .. } => (state(by), &[RESUME, "<end>: end mission."]),
+        HoldReason::Tether { .. } | HoldReason::ZoneBreached { .. } => {
+            (state(by), &[RESUME, "<end>: end mission."])
+        }
         HoldReason::PlanRefused { .. } => (state(by), &[PLANNER, ":fly-uncertified runs it."]),
         HoldReason::PlannerFault { .. } | HoldReason::Stuck { .. } => (state(by), &[PLANNER, RETRY]),
     };
