@@ -140,6 +140,25 @@ impl Flown {
         self.events.extend(self.flight.tick(orders, &mut self.planner));
     }
 
+    /// Orders the robot back; waits for a few fixes if the ranges contradict each other by chance.
+    fn order_back(&mut self) {
+        for _ in 0..5 {
+            self.tick(&[Order::DriveBack]);
+            if self.flight.phase().is_return() || !self.refusal().is_some_and(|why| why.contains("ranges")) {
+                return;
+            }
+            self.fly(10);
+        }
+    }
+
+    /// The last refusal of an order.
+    fn refusal(&self) -> Option<&str> {
+        self.events.iter().rev().find_map(|event| match &event.kind {
+            EventKind::OrderRefused { why, .. } => Some(why.as_str()),
+            _ => None,
+        })
+    }
+
     fn fly(&mut self, ticks: usize) {
         (0..ticks).for_each(|_| self.tick(&[]));
     }
@@ -206,12 +225,12 @@ fn notes() -> [Order; 2] {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 120, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn a_robot_that_drives_back_arrives_without_contact_and_unwinds_its_tether(
         columns in columns(),
-        places in prop::collection::vec((-3.5..3.5_f64, -3.5..3.5_f64), 3..9),
+        places in prop::collection::vec((-3.5..3.5_f64, -3.5..3.5_f64), 8..16),
         seed in 0..1000_u64,
         until in 200..1200_usize,
         has_tether in prop::bool::weighted(0.75),
@@ -232,11 +251,14 @@ proptest! {
         prop_assume!(flown.ended().is_none() && !flown.has_touched());
         flown.tick(&[Order::Hold]);
         flown.fly(20);
-        let way = flown.flight.mission().way_back().unwrap();
+        let way = flown.flight.mission().way_back();
+        // The ranges may contradict each other by chance.
+        prop_assume!(!matches!(&way, Err(why) if why.contains("ranges")));
+        let way = way.unwrap();
         prop_assert_eq!(way.to, if has_tether { Home::Anchor } else { Home::Start });
         prop_assert!(way.clearance_m > -0.05, "{:?}", way);
         flown.tick(&notes());
-        flown.tick(&[Order::DriveBack]);
+        flown.order_back();
         if let Some(ticks) = stops {
             flown.fly(ticks);
             flown.tick(&[Order::Hold]);
@@ -244,7 +266,7 @@ proptest! {
             let here = flown.position();
             flown.fly(5);
             prop_assert_eq!(flown.position(), here, "it stands");
-            flown.tick(&[Order::DriveBack]);
+            flown.order_back();
         }
         // Half the speed on average, and a turn at every decimetre.
         let most_ticks = (way.length_m / 0.02) as usize + 600;
@@ -256,7 +278,10 @@ proptest! {
         }
         let place = way.to.word();
         let expected = format!("ended by operator: robot is back at the {place}");
-        prop_assert_eq!(flown.ended(), Some((Outcome::Aborted, expected.as_str())), "{:?} {:?}", way, flown.flight.phase());
+        prop_assert_eq!(
+            flown.ended(), Some((Outcome::Aborted, expected.as_str())),
+            "{:?} {:?} {:?}", way, flown.flight.phase(), flown.refusal()
+        );
         prop_assert!(!flown.has_touched());
         prop_assert!((flown.position() - ANCHOR).norm() < 0.4, "{}", flown.position());
         prop_assert!(flown.out_m().is_none_or(|out_m| out_m < 0.6), "{:?} m of tether out", flown.out_m());

@@ -213,8 +213,7 @@ impl Standing<'_> {
             )
             | (Order::Plan | Order::NoteChecks(_), Phase::Waiting)
             | (Order::Hold | Order::Inject(_), Phase::Running(_) | Phase::Held(_))
-            | (Order::Shadow(_), Phase::Held(_))
-            | (Order::NoteOutlooks(_), Phase::Held(_))
+            | (Order::Shadow(_) | Order::NoteOutlooks(_), Phase::Held(_))
             | (Order::ChoosePlanner(_) | Order::SetParameter { .. }, Phase::Waiting | Phase::Held(_)) => {
                 Ok(())
             }
@@ -242,16 +241,14 @@ impl Standing<'_> {
                 | Order::TakePlan,
                 Phase::Waiting,
             ) => Err(Refusal::NotStarted),
-            (Order::Resume | Order::Step | Order::StepTo(_) | Order::DriveBack, Phase::Held(_)) => {
+            (Order::Resume | Order::Step | Order::StepTo(_) | Order::DriveBack, Phase::Held(_))
+            | (Order::FlyUncertified, Phase::Held(Hold { by: HoldReason::PlanRefused { .. }, .. })) => {
                 self.can_move()
             }
             (Order::Resume | Order::NoteOutlooks(_), Phase::Running(_)) => Err(Refusal::AlreadyMoving),
             (Order::Step | Order::StepTo(_), Phase::Running(_)) => Err(Refusal::StepNeedsHold),
             (Order::DriveBack, Phase::Running(Gait::Back)) => Err(Refusal::DrivingBack),
             (Order::DriveBack, Phase::Running(_)) => Err(Refusal::BackNeedsHold),
-            (Order::FlyUncertified, Phase::Held(Hold { by: HoldReason::PlanRefused { .. }, .. })) => {
-                self.can_move()
-            }
             (Order::Promote, _) => self.can_promote(),
             (Order::DropShadow, _) => self.shadow.map(|_| ()).ok_or(Refusal::NoShadow),
             (Order::TakePlan, _) => match self.offer {

@@ -42,6 +42,8 @@ struct Opened {
     document: Document,
     /// Whether the previous plan had cuts.
     has_cuts: bool,
+    /// Whether a way back is shown.
+    has_way_back: bool,
 }
 
 impl Fold {
@@ -127,6 +129,7 @@ impl Opened {
             states: States::open(stream, at)?,
             document,
             has_cuts: false,
+            has_way_back: false,
         };
         opened.write_document(stream, at)?;
         Ok(opened)
@@ -145,12 +148,16 @@ impl Opened {
                 };
                 let strips = |lines| rr::LineStrips2D::update_fields().with_strips(lines);
                 stream.once(paths::PLANNED, at, &strips(vec![strip(path)]))?;
+                if std::mem::take(&mut self.has_way_back) {
+                    stream.once(paths::WAY_BACK, at, &strips(Vec::new()))?;
+                }
                 if !cuts.is_empty() || self.has_cuts {
                     self.has_cuts = !cuts.is_empty();
                     stream.once(paths::CUTS, at, &strips(cuts.iter().map(strip).collect()))?;
                 }
             }
             EventKind::ReturnBegan { way } => {
+                self.has_way_back = true;
                 let line = way.path.iter().map(|point| super::lane::flat(*point)).collect();
                 stream.once(paths::WAY_BACK, at, &scene::lines([line], style::PLAN, 2.0))?;
             }

@@ -48,7 +48,7 @@ impl Known {
             let is_caught = tether.is_snagged();
             let home =
                 if is_caught { there.way_out(&fenced, room_m) } else { there.return_path(&fenced, room_m) }?;
-            Some(self.from_here(home))
+            Some(self.led_from_here(home))
         };
         self.widest(along)
             .or_else(|| self.retraced(tether))
@@ -59,7 +59,7 @@ impl Known {
     fn retraced(&self, tether: &Tether) -> Option<Vec<Point>> {
         let room_m = self.config.limits.radius_m;
         let way: Vec<Point> = tether.way_driven().iter().rev().copied().collect();
-        way.iter().all(|at| self.chart.has_room(*at, room_m)).then(|| self.from_here(way))
+        way.iter().all(|at| self.chart.has_room(*at, room_m)).then(|| self.led_from_here(way))
     }
 
     /// The shortest way to a place for a robot without a tether.
@@ -69,7 +69,7 @@ impl Known {
             let start = self.outside(room_m)?;
             let mut steps = 0..MOST_STEPS;
             match self.floor_for(room_m, None).shortest(start, goal, &mut || steps.next().is_some()) {
-                Ok(way) => Some(self.from_here(way.points())),
+                Ok(way) => Some(self.led_from_here(way.points())),
                 Err(no_way) => {
                     why = words(no_way);
                     None
@@ -80,7 +80,7 @@ impl Known {
     }
 
     /// The path, beginning at the robot.
-    fn from_here(&self, mut path: Vec<Point>) -> Vec<Point> {
+    fn led_from_here(&self, mut path: Vec<Point>) -> Vec<Point> {
         path.insert(0, self.position());
         path.dedup_by(|next, before| (*next - *before).norm() < 1e-6);
         path

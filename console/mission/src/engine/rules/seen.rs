@@ -14,6 +14,7 @@ use world::Point;
 pub(super) const SAME_PLACE_M: f64 = 1.0;
 
 /// The inputs of the rules in one tick.
+#[expect(clippy::struct_excessive_bools, reason = "each is an observation of its own")]
 pub(in crate::engine) struct Seen<'a> {
     pub config: &'a MissionConfig,
     /// Mission time at the top of the tick, seconds.

@@ -14,11 +14,11 @@ fn held(config: MissionConfig, ticks: usize) -> Flight {
 }
 
 fn reason(flight: &Flight) -> &str {
-    let reasons = flight.events.iter().filter_map(|event| match &event.kind {
+    let mut reasons = flight.events.iter().filter_map(|event| match &event.kind {
         EventKind::Ended { reason, .. } => Some(reason.as_str()),
         _ => None,
     });
-    reasons.last().unwrap_or_default()
+    reasons.next_back().unwrap_or_default()
 }
 
 fn has(events: &[EventKind], is_kind: impl Fn(&EventKind) -> bool) -> bool {
@@ -187,7 +187,7 @@ fn an_obstacle_found_on_the_way_back_is_gone_round() {
 fn a_robot_that_cannot_go_back_says_why() {
     let mut flight = held(config(), 80);
     let at = flight.pose.position;
-    let wall = vec![Point::new(at.x - 0.6, -6.0), Point::new(at.x - 0.6, 6.0)];
+    let wall = [Point::new(at.x - 0.6, -6.0), Point::new(at.x - 0.6, 6.0)];
     let points = wall.iter().map(|p| Point::from(p - at)).collect();
     flight.sightings =
         vec![Sighting { id: ObstacleId(9), shape_in_robot: Shape::Polyline { points, half_width_m: 0.1 } }];
