@@ -210,7 +210,7 @@ impl Desk {
                 Request::Combine(runs) => self.combine(runs),
                 Request::Do(job) => jobs::begin(job, &self.tools),
                 Request::HandOver { file, page, overwrite } => {
-                    handover::begin(file, page, overwrite, &self.tools.outbox);
+                    handover::begin(&file, page, overwrite, &self.tools.outbox);
                 }
                 Request::Leave { hurry } => {
                     self.close(hurry)?;
