@@ -418,3 +418,22 @@ fn a_planner_that_fails_only_while_it_is_verified_makes_a_run_neither_equal_nor_
     assert!(verified.out.contains(sentence) && !verified.out.contains("different"), "{verified:?}");
     assert!(verified.out.contains("SIGABRT") && !verified.out.contains("equal:"), "{verified:?}");
 }
+
+#[test]
+fn what_is_no_regular_file_is_no_plugin_and_is_not_waited_for() {
+    let bench = Bench::new();
+    for name in ["planner.so", "libplanner_pipe.so"] {
+        let pipe = bench.path().join(name);
+        rustix::fs::mkfifoat(rustix::fs::CWD, &pipe, rustix::fs::Mode::RWXU).unwrap();
+        let checked = bench.tankops(&["check", pipe.to_str().unwrap()]);
+        assert!(checked.code == Some(2) && checked.err.contains("not a regular file"), "{checked:?}");
+    }
+    let listed = bench.tankops(&["--plugin-dir", ".", "planners"]);
+    assert!(
+        listed.out.contains("not a regular file") || listed.err.contains("not a regular file"),
+        "{listed:?}"
+    );
+    // The kernel's log has no end; not every machine lets its user open it.
+    let endless = bench.tankops(&["check", "/proc/kmsg"]);
+    assert_eq!(endless.code, Some(2), "{endless:?}");
+}

@@ -84,6 +84,11 @@ pub(crate) fn check(files: &[PathBuf], plugins: &PluginDirs) -> anyhow::Result<E
     Ok(ExitCode::from(if sound { COMPLETE } else { BAD_INPUT }))
 }
 
+/// Whether a file has the name of a library; only such a file is checked as a plugin.
+pub(crate) fn is_plugin(file: &Path) -> bool {
+    file.extension().is_some_and(|end| ["so", "dylib", "dll"].iter().any(|known| end == *known))
+}
+
 /// A description of the file, or of the problems in it.
 ///
 /// # Errors
@@ -92,9 +97,7 @@ fn check_file(file: &Path, plugins: &PluginDirs) -> anyhow::Result<Result<String
     if let Some(checked) = config::check(file) {
         return Ok(checked);
     }
-    let is_plugin =
-        file.extension().is_some_and(|end| ["so", "dylib", "dll"].iter().any(|known| end == *known));
-    if is_plugin {
+    if is_plugin(file) {
         return check_plugin(file, plugins);
     }
     let scenario = match Scenario::read_with(file, &Settings::default()) {

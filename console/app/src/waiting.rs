@@ -1,6 +1,7 @@
 //! Waiting for a scenario from a pipe: its writer may be slow, so the user is told what the program waits for.
 
 use crate::cli::{Command, VehicleCommand};
+use crate::planners::is_plugin;
 use interactive::config;
 use report::print::warn_line;
 use rustix::{
@@ -30,9 +31,9 @@ fn files(command: Option<&Command>) -> Vec<PathBuf> {
         Some(Command::Accuracy(args)) => vec![args.scenario.clone()],
         Some(Command::Locate(args)) => vec![args.scenario.clone()],
         Some(Command::Console(args)) => args.scenario.iter().cloned().collect(),
-        // A configuration must be a regular file, so no wait is needed.
+        // A configuration and a plugin must be regular files, so no wait is needed.
         Some(Command::Check { files, .. }) => {
-            files.iter().filter(|file| !config::is_one(file)).cloned().collect()
+            files.iter().filter(|file| !config::is_one(file) && !is_plugin(file)).cloned().collect()
         }
         _ => Vec::new(),
     }

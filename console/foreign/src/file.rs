@@ -48,7 +48,12 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
 pub fn open_waiting(path: &Path) -> io::Result<File> {
     let file =
         OpenOptions::new().read(true).custom_flags(OFlags::NONBLOCK.bits().cast_signed()).open(path)?;
-    if file.metadata()?.file_type().is_fifo() {
+    let kind = file.metadata()?.file_type();
+    if kind.is_file() {
+        // A file of the system, such as the kernel's log, might wait for data for ever.
+        return Ok(file);
+    }
+    if kind.is_fifo() {
         while poll(&mut [PollFd::new(&file, PollFlags::IN)], None) == Err(Errno::INTR) {}
     }
     fcntl_setfl(&file, fcntl_getfl(&file)? - OFlags::NONBLOCK)?;

@@ -221,7 +221,7 @@ impl Desk {
                 Request::Glimpse(key) => self.glimpsing.ask(key),
                 Request::Do(job) => jobs::begin(job, &self.tools),
                 Request::HandOver { file, page, overwrite } => {
-                    handover::begin(file, page, overwrite, &self.tools.outbox);
+                    handover::begin(&file, page, overwrite, &self.tools.outbox);
                 }
                 Request::Leave { hurry } => {
                     self.close(hurry)?;

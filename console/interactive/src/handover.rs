@@ -10,7 +10,7 @@ use tui::Msg;
 const MARK: &str = "<!-- tankops handover page -->\n";
 
 /// Writes a page on a separate thread, because a disk can be slow, and tells the operator the result.
-pub(super) fn begin(file: String, page: String, overwrite: bool, outbox: &Outbox) {
+pub(super) fn begin(file: &str, page: String, overwrite: bool, outbox: &Outbox) {
     let (told, fallback) = (outbox.clone(), outbox.clone());
     let tell = |outbox: &Outbox, written: anyhow::Result<()>, file: &str| {
         let (severity, text) = match written {
@@ -20,23 +20,23 @@ pub(super) fn begin(file: String, page: String, overwrite: bool, outbox: &Outbox
         outbox.send(Msg::Notice { severity, text });
     };
     let began = thread::Builder::new().name("handover".into()).spawn({
-        let file = file.clone();
+        let file = file.to_owned();
         move || tell(&told, write(Path::new(&file), &page, overwrite), &file)
     });
     if let Err(error) = began {
-        tell(&fallback, Err(error.into()), &file);
+        tell(&fallback, Err(error.into()), file);
     }
 }
 
 fn write(file: &Path, page: &str, overwrite: bool) -> anyhow::Result<()> {
     let shown = file.display();
     match file.symlink_metadata() {
-        Err(_) => {}
         Ok(_) if !is_page(file) => bail!("{shown} exists and is not a handover page; choose another file"),
         Ok(_) if !overwrite => {
             bail!("{shown} exists; choose another file, or `handover {shown} overwrite` to replace the page")
         }
-        Ok(_) => {}
+        // Either the file is not there, or the operator has said that the page is to be replaced.
+        _ => {}
     }
     let written = format!("{MARK}{page}\nWritten {}.\n", runs::utc_minute(SystemTime::now()));
     runs::write_whole(file, written.as_bytes()).with_context(|| shown.to_string())

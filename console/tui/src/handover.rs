@@ -27,7 +27,7 @@ pub fn page(model: &Model) -> String {
         ("Decisions of the operator", entries(model, is_decision)),
     ];
     for (title, lines) in sections {
-        page += &format!("\n## {title}\n\n");
+        page.extend(["\n## ", title, "\n\n"]);
         let lines = if lines.is_empty() { vec!["None.".into()] } else { lines };
         page.extend(lines.iter().map(|line| format!("- {}\n", plain(line))));
     }
@@ -38,7 +38,7 @@ pub fn page(model: &Model) -> String {
 fn plain(text: &str) -> String {
     let one_line = text.replace(|letter: char| letter.is_control(), " ");
     one_line.chars().fold(String::new(), |mut line, letter| {
-        if matches!(letter, '<' | '>' | '*' | '_' | '`' | '[' | ']' | '\\' | '#') {
+        if matches!(letter, '<' | '>' | '*' | '_' | '[' | ']' | '\\' | '#') {
             line.push('\\');
         }
         line.push(letter);

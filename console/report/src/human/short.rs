@@ -76,7 +76,7 @@ mod tests {
             assert!(words(&text).iter().all(|word| known.contains(word)), "{columns}: {text}");
             let too_long =
                 |line: &&str| line.chars().count() > columns.max(NARROWEST) && line.trim().contains(' ');
-            assert!(!lines.iter().any(|line| too_long(line)), "{columns}: {text}");
+            assert!(!lines.iter().any(too_long), "{columns}: {text}");
         }
     }
 

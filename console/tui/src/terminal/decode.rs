@@ -149,7 +149,6 @@ impl Decoder {
         self.state = match std::mem::take(&mut self.state) {
             State::Ground => ground(byte, inputs),
             State::Character { utf8, is_alt } => character(utf8, is_alt, byte, inputs),
-            State::Escape => escape(byte, inputs),
             State::Ss3 => final_byte(csi::ss3(byte), inputs),
             State::LinuxFunction => final_byte(csi::linux_function(byte), inputs),
             State::OldMouse(0 | 1) => State::Ground,
@@ -157,7 +156,7 @@ impl Decoder {
             State::Csi(csi) => control_sequence(csi, byte, inputs),
             State::String(string) => control_string(string, byte, inputs),
             State::StringEscape(string) if byte == b'\\' => end_string(&string, inputs),
-            State::StringEscape(_) => escape(byte, inputs),
+            State::Escape | State::StringEscape(_) => escape(byte, inputs),
             State::Paste { text, ending } => paste(text, ending, byte, inputs),
         };
     }
