@@ -207,8 +207,6 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         | Refusal::RangesInconsistent
         | Refusal::NoPlanRefused
         | Refusal::NoOffer
-        | Refusal::OfferAccepted
-        | Refusal::DrivingBack
         | Refusal::ShadowNotReady { .. } => None,
     }
 }

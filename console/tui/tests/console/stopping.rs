@@ -56,7 +56,7 @@ fn overlays() -> Vec<Overlay> {
         Overlay::Confirm(Ask::TakePlan),
         Overlay::Confirm(Ask::DriveBack),
         Overlay::Confirm(Ask::DrawZone(Vec::new())),
-        Overlay::Confirm(Ask::Set { key: "order".into(), value: mission::ParamValue::Int(1) }),
+        Overlay::Confirm(Ask::Set { key: "order".into(), value: ParamValue::Int(1) }),
         Overlay::Finish { selected: 0 },
         Overlay::Finish { selected: 1 },
         Overlay::Sketch(tui::model::Sketch::begun(world::Point::origin())),
