@@ -4,6 +4,9 @@ use mission::outline;
 use serde::{Deserialize, Serialize};
 use world::Point;
 
+/// A side or radius that is not longer than this was not drawn yet, metres.
+const LEAST_M: f64 = 1e-6;
+
 /// The form of the zone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Form {
@@ -18,6 +21,7 @@ pub enum Form {
 
 impl Form {
     /// The form after this one.
+    #[must_use]
     pub fn next(self) -> Self {
         match self {
             Self::Box => Self::Circle,
@@ -47,8 +51,12 @@ impl Sketch {
     pub fn corners(&self, cursor: Point) -> Vec<Point> {
         let Some(first) = self.points.first().copied() else { return Vec::new() };
         match self.form {
-            Form::Box if first.x != cursor.x && first.y != cursor.y => outline::boxed(first, cursor),
-            Form::Circle if first != cursor => outline::round(first, (cursor - first).norm()),
+            Form::Box if (cursor - first).iter().all(|side_m| side_m.abs() > LEAST_M) => {
+                outline::boxed(first, cursor)
+            }
+            Form::Circle if (cursor - first).norm() > LEAST_M => {
+                outline::round(first, (cursor - first).norm())
+            }
             Form::Box | Form::Circle => vec![first, cursor],
             Form::Polygon => {
                 let mut corners = self.points.clone();

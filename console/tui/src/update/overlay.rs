@@ -64,10 +64,9 @@ pub(crate) fn accept(model: &mut Model) -> Vec<Effect> {
         Overlay::WhatIf => what_if::choose(model),
         Overlay::Finish { selected } => finish::choose(model, selected),
         Overlay::Sketch(_) => zones::set(model),
-        // The selected message is already shown in full.
-        Overlay::Messages { .. } => open(model, Overlay::None),
         Overlay::Preflight { .. } => preflight::tick(model),
-        Overlay::Filter(_) => open(model, Overlay::None),
+        // The filter is in effect already, and the selected message is shown in full.
+        Overlay::Filter(_) | Overlay::Messages { .. } => open(model, Overlay::None),
         Overlay::Shelve(shelving) => alarms::take_shelving(model, shelving),
         Overlay::Bookmark(line) => replay::take_bookmark(model, &line),
     }

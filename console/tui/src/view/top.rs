@@ -35,8 +35,10 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let form_width = |form| tabs::width(model, form);
     let has_screen = !tabs::has_row(frame.area()) && fits(form_width(Form::Current) + 1);
     let more = form_width(Form::Digits) - form_width(Form::Current);
-    let mut planner =
-        (!names.planner.is_empty()).then(|| format!("{gap}{}", names.planner)).unwrap_or_default();
+    let mut planner = names.planner.clone();
+    if !planner.is_empty() {
+        planner.insert_str(0, gap);
+    }
     if !fits(text::width(&planner)) {
         planner.clear();
     }

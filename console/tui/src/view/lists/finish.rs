@@ -16,8 +16,7 @@ pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
     let (role, way) = match (&look.model.live.way_back, &can) {
         (Some(Ok(way)), Ok(())) => (Role::Text, confirm::finish_way(way)),
         (None, _) => (Role::Dim, "looking for the way...".into()),
-        (_, Err(why)) => (Role::Dim, why.clone()),
-        (Some(Err(why)), Ok(())) => (Role::Dim, why.clone()),
+        (_, Err(why)) | (Some(Err(why)), Ok(())) => (Role::Dim, why.clone()),
     };
     let name = |name: &str| text::column(name, NAME.min(room));
     let short = |words: &str| text::fit(words, room.saturating_sub(NAME));
