@@ -115,7 +115,7 @@ impl MissReason {
             Self::NotPlanned => "not planned",
             Self::NoPlan => "the run had no plan",
             Self::BeyondReel => "not planned (beyond the reel)",
-            Self::NotReached => "the mission ended first",
+            Self::NotReached => "mission ended",
             Self::PassedBeside => "the robot passed to one side",
         }
     }

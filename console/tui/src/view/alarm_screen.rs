@@ -154,7 +154,7 @@ fn draw_place(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
         Some(place) => (sketch.marked(place, Role::Warn, "X"), format!("Place  X {}", text::place(place))),
         None => (sketch, "Tank".to_owned()),
     };
-    let block = look.block(Role::Border, &title, "@ robot");
+    let block = look.block(Role::Border, &format!("{title}, robot @"), "");
     let inner = block.inner(area);
     frame.render_widget(block, area);
     sketch::draw(look, frame, inner, &sketch);

@@ -22,7 +22,7 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::OrderRefused { .. } => "order refused",
         EventKind::FixFailed { .. } => "no position fix",
         EventKind::StationRejected { .. } => "station rejected",
-        EventKind::StationRestored { .. } => "station back in use",
+        EventKind::StationRestored { .. } => "station no longer rejected",
         EventKind::PositionLost { .. } => "position lost",
         EventKind::PositionRegained { .. } => "position recovered",
         EventKind::RangesInconsistent { .. } => "ranges contradict each other",
