@@ -133,8 +133,8 @@ fn draw_chart(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
     if area.height < CHART.0 || !is_charted(alarm) {
         return;
     }
-    let readings = [&alarm.reading, &alarm.peak].into_iter().flatten();
-    let limit = readings.filter_map(|reading| reading.numbers?.1).next();
+    let mut readings = [&alarm.reading, &alarm.peak].into_iter().flatten();
+    let limit = readings.find_map(|reading| reading.numbers?.1);
     let largest = alarm.history.last(HISTORY_S).fold(0.0, f64::max);
     let decimals = match largest.max(limit.unwrap_or(0.0)) {
         most if most < 10.0 => 2,
@@ -154,7 +154,7 @@ fn draw_place(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
         Some(place) => (sketch.marked(place, Role::Warn, "X"), format!("Place  X {}", text::place(place))),
         None => (sketch, "Tank".to_owned()),
     };
-    let block = look.block(Role::Border, &title, "@ robot");
+    let block = look.block(Role::Border, &format!("{title}, robot @"), "");
     let inner = block.inner(area);
     frame.render_widget(block, area);
     sketch::draw(look, frame, inner, &sketch);

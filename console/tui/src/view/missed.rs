@@ -38,11 +38,28 @@ fn row(area: &Area<MissReason>, columns: usize) -> String {
     let Area { at, area_m2, .. } = area;
     let place =
         format!("{} m² at {}, {} m", text::number(*area_m2, 2), text::number(at.x, 1), text::number(at.y, 1));
-    text::wording([area.to_string(), format!("{place}: {}", brief(area)), place], columns)
+    text::wording(
+        [
+            area.to_string(),
+            format!("{place}: {}", brief(area)),
+            format!("{place}: {}", briefest(area)),
+            place,
+        ],
+        columns,
+    )
 }
 
 /// The main reason for a missed area, and the number of further reasons.
 pub(super) fn brief(area: &Area<MissReason>) -> String {
+    match area.causes.len().saturating_sub(1) {
+        0 => area.reason.briefly().to_owned(),
+        1 => format!("{} (+1 reason)", area.reason.briefly()),
+        more => format!("{} (+{more} reasons)", area.reason.briefly()),
+    }
+}
+
+/// The main reason for a missed area, in as few words as possible.
+pub(super) fn briefest(area: &Area<MissReason>) -> String {
     match area.causes.len().saturating_sub(1) {
         0 => area.reason.briefly().to_owned(),
         more => format!("{} +{more}", area.reason.briefly()),

@@ -5,6 +5,7 @@ use super::look::{Look, Parts, fill};
 use super::sketch::{self, Sketch};
 use super::text;
 use crate::guide;
+use crate::model::ui::Arrangement;
 use crate::model::{Glimpse, PastRun, Run};
 use crate::theme::Role;
 use account::{MissReason, Summary};
@@ -14,7 +15,7 @@ use ratatui::text::Line;
 use std::cmp::Reverse;
 
 /// Width of the figure names, columns.
-const NAMES: usize = 10;
+const NAMES: usize = 11;
 /// Width from which the map is beside the figures, columns.
 const BESIDE: u16 = 76;
 /// Width of the figures beside a map, columns.
@@ -58,7 +59,8 @@ pub(super) fn lines(look: &Look, run: &PastRun, columns: usize) -> Vec<Line<'sta
     let found = look.model.home.glimpses.of(&run.name);
     let glimpse = found.and_then(|found| found.as_ref().ok());
     let summary = glimpse.and_then(|glimpse| glimpse.summary.as_deref());
-    let mut lines = fields::lines(look, &outcome(run, summary), NAMES, columns);
+    let room = columns.saturating_sub(NAMES + 3);
+    let mut lines = fields::lines(look, &outcome(run, summary, room), NAMES, columns);
     lines.extend(notes(look, run, columns).into_iter().map(|parts| look.line(parts)));
     if let Some(glimpse) = glimpse {
         let figures = summary.map(figures).unwrap_or_default();
@@ -66,11 +68,15 @@ pub(super) fn lines(look: &Look, run: &PastRun, columns: usize) -> Vec<Line<'sta
         lines.extend(fields::lines(look, &all, NAMES, columns));
     } else if let Some(Err(why)) = found {
         lines.extend(wrapped(Role::Warn, why, columns).map(|parts| look.line(parts)));
+    } else if look.model.ui.arrangement() == Arrangement::Wide {
+        let moves = look.model.live.may_move();
+        let words = if moves { "More is read when the robot stands still." } else { "Reading the run..." };
+        lines.extend(wrapped(Role::Dim, words, columns).map(|parts| look.line(parts)));
     }
     lines
 }
 
-fn outcome(run: &PastRun, summary: Option<&Summary>) -> Vec<Field> {
+fn outcome(run: &PastRun, summary: Option<&Summary>, room: usize) -> Vec<Field> {
     let took = run.mission_time_s.map_or_else(String::new, |s| format!(" after {}", text::clock(s)));
     let reason = summary.and_then(|summary| summary.reason.as_ref());
     let reason = reason.map_or_else(String::new, |reason| format!(": {reason}"));
@@ -80,9 +86,24 @@ fn outcome(run: &PastRun, summary: Option<&Summary>) -> Vec<Field> {
         run.reachable.map(|share| ("scanned", format!("{} % of reachable floor", text::percent(share)))),
     );
     fields.extend((!run.planner.is_empty()).then(|| ("planner", run.planner.clone())));
-    fields.push(("folder", run.name.clone()));
+    fields.push(("folder", broken(&run.name, room)));
     fields.extend(verified);
     fields
+}
+
+/// A name with blanks where it has to be broken to fit into lines; it is broken after hyphens if possible.
+fn broken(name: &str, room: usize) -> String {
+    let (mut lines, mut rest) = (Vec::new(), name);
+    while text::width(rest) >= room.max(8) {
+        let fitting = text::fit(rest, room.max(8) - 1);
+        let most = fitting.trim_end_matches('…').len();
+        let at = rest[..most].rfind('-').map_or(most, |hyphen| hyphen + 1);
+        let (line, after) = rest.split_at(at);
+        lines.push(line);
+        rest = after;
+    }
+    lines.push(rest);
+    lines.join(" ")
 }
 
 /// The problem, the remark and the bookmarks of a run.
@@ -180,4 +201,18 @@ fn sketch(glimpse: &Glimpse) -> Option<Sketch<'_>> {
 fn wrapped(role: Role, words: &str, columns: usize) -> impl Iterator<Item = Parts> + use<> {
     let lines = text::wrap(words, columns.saturating_sub(2)).into_iter();
     lines.map(move |line| vec![(role, format!(" {}", text::fit(&line, columns.saturating_sub(2))))])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_name_is_broken_after_hyphens_and_loses_nothing() {
+        let name = "20261122T040049Z-cover-unknown-columns-tether-safe-42";
+        let lines = broken(name, 26);
+        assert_eq!(lines, "20261122T040049Z-cover- unknown-columns-tether- safe-42");
+        assert_eq!((lines.replace(' ', ""), broken("short", 26)), (name.to_owned(), "short".to_owned()));
+        assert_eq!(broken(&"漢".repeat(20), 10).replace(' ', ""), "漢".repeat(20));
+    }
 }

@@ -21,7 +21,7 @@ const LARGE: u16 = 170;
 /// Minimum rows for the floor shares, including the frame.
 const FLOOR: u16 = 6;
 /// Rows of the list of missed areas, including the frame, on a narrow, a wide and a large screen.
-const MISSED: [u16; 3] = [6, 10, 18];
+const MISSED: [u16; 3] = [8, 12, 20];
 
 pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     let Some(result) = &look.model.live.result else {

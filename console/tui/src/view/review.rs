@@ -174,11 +174,9 @@ fn notes(run: &PastRun) -> String {
 }
 
 fn about(look: &Look, frame: &mut Frame, area: Rect) {
-    match look.model.review.run(&look.model.home) {
-        Some(run) => past_run::draw(look, frame, area, run),
-        None => {
-            let lines = vec![look.line([(Role::Dim, " No run is selected.".into())])];
-            fill(frame, area, look.block(Role::Border, "Selected run", ""), lines);
-        }
+    if let Some(run) = look.model.review.run(&look.model.home) {
+        return past_run::draw(look, frame, area, run);
     }
+    let lines = vec![look.line([(Role::Dim, " No run is selected.".into())])];
+    fill(frame, area, look.block(Role::Border, "Selected run", ""), lines);
 }

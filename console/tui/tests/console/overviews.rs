@@ -263,7 +263,7 @@ fn result_of_an_aborted_mission() {
     sizes::store("result_aborted", &mut screen, sizes::is_log);
     let shown = text(&drawn(&screen.model, RICH, (200, 60)));
     assert!(shown.contains("Missed: 1 area, 0.75 m²; not reached: 1 area, 40.20 m²"), "{shown}");
-    assert!(shown.contains("Expected complete, actual aborted"), "{shown}");
+    assert!(shown.contains("! expected complete, actual aborted"), "{shown}");
 }
 
 #[test]

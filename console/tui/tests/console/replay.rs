@@ -128,6 +128,9 @@ fn the_list_of_runs() {
     let mut screen = Screen::idle();
     screen.send(Msg::Found(Box::new(found())));
     screen.type_text("6");
+    let known =
+        tui::model::Glimpse { run: replaying(false).model.live.run, summary: Some(summary(0.969, 1931.0)) };
+    screen.send(Msg::Glimpsed((A.into(), "complete".into()), Ok(Box::new(known))));
     sizes::store("review", &mut screen, |part| part.contains('●'));
 }
 

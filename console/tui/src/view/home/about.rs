@@ -111,7 +111,7 @@ pub(super) fn plugins(look: &Look, frame: &mut Frame, area: Rect) {
     let block = look.block(Role::Border, "Plugins", &look.keys("<plugins> details"));
     let columns = usize::from(block.inner(area).width);
     let plugins: BTreeSet<&str> = console.planners.iter().map(|info| info.plugin.as_str()).collect();
-    let found = format!(" {} planners in {} plugins", console.planners.len(), plugins.len());
+    let found = format!(" planners {}, plugins {}", console.planners.len(), plugins.len());
     let mut lines = vec![look.line([(Role::Text, found)])];
     lines.extend(console.refused.iter().take(2).map(|refused| {
         let words = format!(" REFUSED {}: {}", refused.plugin, refused.reason);

@@ -5,7 +5,7 @@ use crate::model::RunResult;
 use crate::theme::Role;
 use crate::update::Rows;
 use crate::view::look::{Look, Parts, fill};
-use crate::view::missed::brief;
+use crate::view::missed::{brief, briefest};
 use crate::view::{table, text};
 use account::{Area, Cause, MissReason};
 use ratatui::Frame;
@@ -90,7 +90,7 @@ fn row(index: usize, area: &Area<MissReason>, columns: usize) -> Parts {
     // The mark of the selected row takes one column.
     let room = columns.saturating_sub(text::width(&place) + 1);
     let role = if area.reason == MissReason::NotReached { Role::Dim } else { Role::Text };
-    vec![(role, place + &text::wording([area.why(), brief(area)], room))]
+    vec![(role, place + &text::wording([area.why(), brief(area), briefest(area)], room))]
 }
 
 /// The reasons for an area as a table of areas and shares, largest first. If the rows do not suffice, the last one says

@@ -19,8 +19,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         0 => format!("Plates  {}", plates.len()),
         _ => format!("Plates  {shown} of {}, most missed first", plates.len()),
     };
-    let limit = format!("limit {} m", text::number(floor.position_limit_m, 2));
-    let block = look.block(Role::Border, &title, &limit);
+    let limit = text::number(floor.position_limit_m, 2);
+    let block = look.block(Role::Border, &format!("{title}; limit of the 95 % error {limit} m"), "");
     let head = format!(
         " {:<12}{:>10}{:>10}{:>9}{:>14}{:>14}",
         "plate", "area", "scanned", "missed", "error p95", "error worst"
