@@ -56,7 +56,8 @@ def scenario(path):
 
 
 def hello(world):
-    has = {"odometry": True, "scan": True, "ae": world["ae"] is not None, "tether": world["anchor"] is not None}
+    has = {"odometry": True, "scan": True, "contact": True, "ae": world["ae"] is not None,
+           "tether": world["anchor"] is not None}
     stop_s = world["limits"]["speed_m_per_s"] / world["limits"]["acceleration_m_per_s2"] + 0.1
     return {"type": "hello", "protocol": 1, "name": "ir-sim", "motion": "unicycle", "limits": world["limits"], "has": has,
             "period_s": PERIOD_S, "stop_time_s": stop_s, "lease_max_s": 0.5}
@@ -168,6 +169,7 @@ class Robot:
             "forward_m": v * dt * (1.0 + noise(0.0, ENCODER_SIGMA)),
             "turn_rad": (w * (1.0 + noise(0.0, 0.002)) + GYRO_BIAS_RAD_PER_S) * dt,
         }}
+        readings["contact"] = bool(self.sim.robot.collision)
         if self.tether:
             readings["tether"] = {"paid_out_m": round(self.tether.length(), 4)}
         if self.steps % SCAN_EVERY == 0:
@@ -180,7 +182,8 @@ class Robot:
     def scan(self):
         scan = self.sim.get_lidar_scan()
         ranges = [None if r >= RANGE_MAX_M - 1e-6 else round(max(float(r), 0.0), 3) for r in scan["ranges"]]
-        return {"first_rad": scan["angle_min"], "step_rad": scan["angle_increment"], "range_max_m": RANGE_MAX_M, "ranges_m": ranges}
+        return {"first_rad": scan["angle_min"], "step_rad": scan["angle_increment"], "range_max_m": RANGE_MAX_M,
+                "ranges_m": ranges}
 
     def ranges(self, station):
         """Distances with errors that are uniform within a share of the distance."""
