@@ -146,6 +146,8 @@ class Robot:
         self.tether = Tether(world["anchor"], world["columns"]) if world["anchor"] else None
         self.truth = open(os.environ.get("IRSIM_TRUTH", os.devnull), "w", 1)
         self.steps, self.due_s, self.ranged_s = 0, 0.0, 0.0
+        # The lidar takes most of the time of a step, so it is moved only when a scan is due.
+        self.lidar, self.sim.robot.sensors = self.sim.robot.sensors[0], []
         if self.tether:
             self.tether.move(tuple(self.pose()[:2]))
 
@@ -180,7 +182,8 @@ class Robot:
         return readings
 
     def scan(self):
-        scan = self.sim.get_lidar_scan()
+        self.lidar.step(self.sim.robot.state[0:3])
+        scan = self.lidar.get_scan()
         ranges = [None if r >= RANGE_MAX_M - 1e-6 else round(max(float(r), 0.0), 3) for r in scan["ranges"]]
         return {"first_rad": scan["angle_min"], "step_rad": scan["angle_increment"], "range_max_m": RANGE_MAX_M,
                 "ranges_m": ranges}
