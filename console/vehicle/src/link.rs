@@ -125,7 +125,8 @@ impl Link {
         }
         self.newest = Some((now_s, readings.stamp_s));
         let Some(motion) = self.motions.take(readings) else { return };
-        let taken_s = self.clock.at(now_s).map(|offset| readings.stamp_s - offset.offset_s + offset.bound_s);
+        // The earliest time at which they can have been taken.
+        let taken_s = self.clock.at(now_s).map(|offset| readings.stamp_s - offset.offset_s - offset.bound_s);
         let taken_s = taken_s.unwrap_or(now_s).min(now_s);
         if self.may_move_until_s(now_s).is_none_or(|until_s| taken_s > until_s) {
             self.comparison.command(None);

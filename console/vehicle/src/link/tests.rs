@@ -121,6 +121,20 @@ fn a_stop_is_held_by_odometry_and_a_lost_link_leaves_it_not_confirmed() {
 }
 
 #[test]
+fn readings_from_before_a_stop_do_not_confirm_it() {
+    let mut link = connected();
+    // A round trip of 0.1 s: the offset is 500, give or take 0.05 s.
+    link.heard(&Heard::Message(FromVehicle::Pong(Pong { echo_s: 0.0, stamp_s: 500.05 })), 0.1);
+    link.stopped(&Stop { seq: 1, stamp_s: 0.2 });
+    for seq in 1..=8_u64 {
+        // All arrive after the stop; the last three were certainly taken after it.
+        assert_eq!(link.hold(0.55), Hold::Stopping, "{seq}");
+        link.heard(&readings(seq, 0.0), 0.5);
+    }
+    assert!(matches!(link.hold(0.55), Hold::Held { .. }));
+}
+
+#[test]
 fn readings_that_do_not_follow_the_commands_are_found() {
     let mut link = connected();
     for seq in 1..80_u64 {

@@ -1,0 +1,60 @@
+#!/usr/bin/env python3
+"""A vehicle on one page, with a little robot of its own: `--vehicle "run:python3 adapter.py"`. Replace `Disc` by your robot.
+The robot is a process of its own and keeps the lease, so it stops even if this adapter hangs or dies (vehicle-protocol.md)."""
+import json, os, random, select, subprocess, sys, time
+
+LIMITS = {"speed_m_per_s": 0.4, "turn_rad_per_s": 1.0, "acceleration_m_per_s2": 0.5, "radius_m": 0.2}
+HELLO = {"type": "hello", "protocol": 1, "name": "disc", "motion": "unicycle", "limits": LIMITS, "has": {"odometry": True},
+         "period_s": 0.02, "stop_time_s": 0.9, "lease_max_s": 0.5}
+
+class Disc:
+    def measure(self, v, w, dt):  # move for dt seconds with these speeds; return what the sensors say
+        forward, turn = (speed * dt * random.gauss(1.0, 0.01) for speed in (v, w))
+        return {"odometry": {"over_s": dt, "forward_m": forward, "turn_rad": turn}}
+
+def say(message):
+    try: os.write(1, json.dumps(message, allow_nan=False).encode() + b"\n")
+    except (BlockingIOError, BrokenPipeError): pass  # the adapter does not read now, or is gone
+
+def robot(hello, body):  # lines with speed, turn rate and lease in, readings out
+    os.set_blocking(1, False)
+    v = w = to_v = to_w = until = 0.0
+    seq, has_adapter, before, log = 0, True, time.monotonic(), open(os.environ.get("ROBOT_LOG", os.devnull), "w", 1)
+    while has_adapter or v or w:
+        wait = max(0.0, before + hello["period_s"] - time.monotonic())
+        if select.select([0] if has_adapter else [], [], [], wait)[0]:
+            lines = os.read(0, 65536).splitlines()
+            to_v, to_w, lease = map(float, lines[-1].split()) if lines else (0.0, 0.0, 0.0)
+            has_adapter, until = bool(lines), time.monotonic() + lease
+        now = time.monotonic()
+        if now < before + hello["period_s"]: continue
+        if now > until: to_v = to_w = 0.0  # the lease has lapsed
+        seq, dt, before, change = seq + 1, now - before, now, hello["limits"]["acceleration_m_per_s2"] * (now - before)
+        v += max(-change, min(change, to_v - v))
+        w += max(-4 * change, min(4 * change, to_w - w))
+        say({"type": "readings", "seq": seq, "stamp_s": now, **body.measure(v, w, dt)})
+        print(now, v, w, file=log)
+        if seq % 25 == 0: say({"type": "state", "stamp_s": now, "mode": "ready"})
+
+def command(line, hello, newest):  # the number of a command, and its line for the robot; raises what it cannot do
+    if line["type"] == "ping": say({"type": "pong", "echo_s": line["stamp_s"], "stamp_s": time.monotonic()})
+    if line["type"] not in ("drive", "stop") or line["seq"] <= newest: return newest, "0 0 0\n" * (line["type"] == "bye")
+    if line["type"] == "stop": return int(line["seq"]), "0 0 0\n"
+    v, w, lease = (float(line[key]) for key in ("forward_m_per_s", "turn_rad_per_s", "lease_s"))
+    fits = abs(v) <= hello["limits"]["speed_m_per_s"] + 1e-9 and abs(w) <= hello["limits"]["turn_rad_per_s"] + 1e-9
+    if not fits or line.get("sideways_m_per_s") or not 0 < lease <= hello["lease_max_s"]: raise ValueError("beyond the limits")
+    return int(line["seq"]), f"{v} {w} {lease}\n"
+
+def adapter(hello, program):  # between the console (stdin, stdout) and the robot's process
+    child, newest, rest = subprocess.Popen(program, stdin=-1, stdout=-1, start_new_session=True), -1, b""
+    say(hello)
+    while (ready := select.select([0, child.stdout], [], [])[0]) and (0 not in ready or (data := os.read(0, 65536))):
+        if child.stdout in ready: os.write(1, os.read(child.stdout.fileno(), 65536) or sys.exit("the robot is gone"))
+        *lines, rest = (rest + (data if 0 in ready else b"")).split(b"\n") if len(rest) < 65536 else (b"too long", b"")
+        for line in filter(None, lines):
+            try: newest, order = command(json.loads(line), hello, newest)
+            except Exception as why: order = print("stopped by a bad line:", repr(why)[:200], file=sys.stderr) or "0 0 0\n"
+            os.write(child.stdin.fileno(), order.encode())
+
+if __name__ == "__main__":
+    robot(HELLO, Disc()) if "robot" in sys.argv else adapter(HELLO, [sys.executable, os.path.abspath(__file__), "robot"])
