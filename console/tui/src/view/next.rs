@@ -236,10 +236,11 @@ fn held_for_good(by: &HoldReason) -> Vec<String> {
         HoldReason::Operator | HoldReason::PlannerReplaced | HoldReason::PlannerSilent { .. } => {
             (state(by), &[RESUME, PLANNER])
         }
-        HoldReason::Tether { .. } => (state(by), &[RESUME, "<end>: end mission."]),
+        HoldReason::Tether { .. } | HoldReason::Vehicle { .. } => {
+            (state(by), &[RESUME, "<end>: end mission."])
+        }
         HoldReason::PlanRefused { .. } => (state(by), &[PLANNER, ":fly-uncertified runs it."]),
         HoldReason::PlannerFault { .. } | HoldReason::Stuck { .. } => (state(by), &[PLANNER, RETRY]),
-        HoldReason::Vehicle { .. } => (state(by), &[RESUME, "<end>: end mission."]),
     };
     std::iter::once(format!("{state}.")).chain(remedies.iter().map(|remedy| (*remedy).to_owned())).collect()
 }
