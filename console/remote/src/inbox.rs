@@ -101,13 +101,12 @@ impl Inbox {
             Heard::Message(FromVehicle::Hello(hello)) => self.greet(hello),
             Heard::Message(FromVehicle::Readings(readings)) => self.read(&readings, now_s),
             Heard::Message(FromVehicle::State(state)) => self.state = Some(state),
-            Heard::Message(FromVehicle::Pong(_)) => {}
             Heard::Malformed(misfit) => {
                 self.faulty += 1;
                 self.fault = foreign::plain(&misfit.to_string()).into_owned();
             }
-            // Keys and messages of newer protocols have no effect.
-            Heard::Unknown(_) => {}
+            // The link has taken the answer to a ping; keys and messages of newer protocols have no effect.
+            Heard::Message(FromVehicle::Pong(_)) | Heard::Unknown(_) => {}
         }
     }
 

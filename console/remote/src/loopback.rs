@@ -67,7 +67,9 @@ impl Loopback {
         let mut line = Vec::new();
         self.from_vehicle.0.write(message, &mut line)?;
         let now_s = self.now_s();
-        self.from_vehicle.1.read(&line).into_iter().for_each(|heard| self.inbox.take(heard, now_s));
+        for heard in self.from_vehicle.1.read(&line) {
+            self.inbox.take(heard, now_s);
+        }
         Ok(())
     }
 

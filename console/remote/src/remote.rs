@@ -210,7 +210,9 @@ fn read_all(mut read: Box<dyn Read + Send>, shared: &Shared) {
                 let heard = reader.read(&chunk[..n]);
                 let now_s = shared.now_s();
                 let mut inbox = shared.inbox();
-                heard.into_iter().for_each(|heard| inbox.take(heard, now_s));
+                for heard in heard {
+                    inbox.take(heard, now_s);
+                }
             }
             Err(error) => match error.kind() {
                 io::ErrorKind::Interrupted | io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => {}

@@ -156,6 +156,6 @@ fn info(hello: &Hello, address: &Address) -> VehicleInfo {
         stop_s: hello.stop_time_s,
         speed_max_m_per_s: hello.limits.speed_m_per_s,
         turn_max_rad_per_s: hello.limits.turn_rad_per_s,
-        has: parts.into_iter().filter_map(|(has, part)| has.then(|| part.to_owned())).collect(),
+        has: parts.into_iter().filter(|(has, _)| *has).map(|(_, part)| part.to_owned()).collect(),
     }
 }

@@ -146,5 +146,5 @@ fn the_link_is_reported_when_it_changes_and_every_ten_seconds() {
             reports.push((tick, link.state.word()));
         }
     }
-    assert_eq!(reports, [(0, "up"), (100, "up"), (158, "lost"), (170, "up")]);
+    assert_eq!(reports, [(0, "up"), (100, "up"), (157, "lost"), (170, "up")]);
 }

@@ -25,11 +25,10 @@ pub(super) fn lines(vehicle: &VehicleRecord) -> Vec<(&'static str, String)> {
         ),
     ];
     let most = vehicle.stop_max_s.map(|s| format!(", at most {s:.2} s")).unwrap_or_default();
-    let stops = counted(vehicle.stops, "stop");
-    let mut text = format!("{stops} confirmed by odometry{most}");
-    if vehicle.stops_not_confirmed > 0 {
-        text += &format!("; STOP NOT CONFIRMED {}", counted(vehicle.stops_not_confirmed, "time"));
-    }
-    lines.push(("stops", text));
+    let not = match vehicle.stops_not_confirmed {
+        0 => String::new(),
+        n => format!("; STOP NOT CONFIRMED {}", counted(n, "time")),
+    };
+    lines.push(("stops", format!("{} confirmed by odometry{most}{not}", counted(vehicle.stops, "stop"))));
     lines
 }

@@ -53,7 +53,7 @@ fn a_lost_link_neither_completes_nor_fails_a_mission() {
 
 #[test]
 fn an_unattended_run_ends_when_its_vehicle_cannot_be_driven() {
-    let mut flight = lost(MissionConfig { live: true, ..config() });
+    let mut flight = lost(MissionConfig { attended: false, live: true, ..config() });
     flight.fly(3);
     assert_eq!(flight.ended(), Some(Outcome::Aborted));
 }
