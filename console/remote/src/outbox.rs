@@ -113,7 +113,7 @@ mod tests {
             outbox.command(Some([speed, 0.0, 0.0]), false);
         }
         assert!(
-            matches!(next(&outbox), ToVehicle::Drive(Drive { seq: 1, forward_m_per_s, .. }) if forward_m_per_s == 0.3)
+            matches!(next(&outbox), ToVehicle::Drive(Drive { seq: 1, forward_m_per_s, .. }) if forward_m_per_s.to_bits() == 0.3_f64.to_bits())
         );
         outbox.close();
         assert!(matches!(next(&outbox), ToVehicle::Bye(_)));

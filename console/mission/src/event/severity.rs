@@ -39,7 +39,7 @@ impl Fault {
 pub(super) fn of_hold(by: &HoldReason) -> Severity {
     match by {
         HoldReason::Operator | HoldReason::Stepped | HoldReason::PlannerReplaced => Severity::Info,
-        HoldReason::ZoneBreached { .. } => Severity::Crit,
+        HoldReason::ZoneBreached { .. } | HoldReason::Vehicle { .. } => Severity::Crit,
         HoldReason::PositionLost
         | HoldReason::RangesInconsistent
         | HoldReason::PlannerFault { .. }
@@ -47,7 +47,6 @@ pub(super) fn of_hold(by: &HoldReason) -> Severity {
         | HoldReason::PlanRefused { .. }
         | HoldReason::Tether { .. }
         | HoldReason::Stuck { .. } => Severity::Warn,
-        HoldReason::Vehicle { .. } => Severity::Crit,
     }
 }
 

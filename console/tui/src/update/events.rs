@@ -77,11 +77,10 @@ pub(crate) fn copy(model: &mut Model) -> Vec<Effect> {
 pub(crate) fn next_severity(model: &mut Model) {
     let filter = model.ui.events.matches.filter();
     let next = match filter.least() {
-        Severity::Debug => Severity::Info,
         Severity::Info => Severity::Watch,
         Severity::Watch => Severity::Warn,
         Severity::Warn => Severity::Crit,
-        Severity::Crit => Severity::Info,
+        Severity::Debug | Severity::Crit => Severity::Info,
     };
     set_least(model, next);
 }
