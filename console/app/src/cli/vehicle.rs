@@ -11,6 +11,7 @@ pub(crate) struct VehicleArgs {
     /// Drive a real vehicle instead of the simulator: unix:PATH, tcp:HOST:PORT, udp:HOST:PORT, or run:COMMAND for an
     /// adapter that speaks on its stdin and stdout. Without an address, the one in the scenario's section [vehicle].
     #[arg(long, value_name = "ADDRESS", num_args = 0..=1)]
+    #[allow(clippy::option_option, reason = "the option, and its value")]
     pub vehicle: Option<Option<Address>>,
     /// Allow a vehicle on another machine; the wire is not protected.
     #[arg(long)]

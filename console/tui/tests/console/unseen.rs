@@ -94,7 +94,8 @@ fn what_a_key_was_answered_outlasts_the_hold_that_an_earlier_key_caused() {
 fn a_space_that_is_no_key_holds_a_moving_robot_and_does_nothing_else() {
     let mut screen = Screen::running();
     assert_eq!(screen.send(Msg::Stop), [Effect::Order(Order::Hold)]);
-    for mut screen in [Screen::opened(), Screen::held(), Screen::idle()] {
+    let standing: [fn() -> Screen; 3] = [Screen::opened, Screen::held, Screen::idle];
+    for mut screen in standing.map(|made| Box::new(made())) {
         let before = screen.model.clone();
         assert_eq!(screen.send(Msg::Stop), []);
         assert_eq!(screen.model, before);
