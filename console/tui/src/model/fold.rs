@@ -129,7 +129,6 @@ impl Run {
             | EventKind::Sensed { .. } => {}
             EventKind::Link(_) | EventKind::Stood { .. } | EventKind::Sent { .. } => self.linked(event),
         }
-        self.read_peaks(&event.kind);
         self.read_figures(&event.kind);
         if let (Some(number), Some(cause)) = (line, Cause::of(&event.kind)) {
             let place = self.log.get(number).and_then(|entry| self.place_of(&entry.what));

@@ -1,6 +1,6 @@
 //! A run reconstructed from its events; live runs and replays use the same fold.
 
-use super::{Alarms, History, Log, Peaks, Planning, Position, Raster, Shadow, Tether, Trail, log::What};
+use super::{Alarms, History, Log, Planning, Position, Raster, Shadow, Tether, Trail, log::What};
 use mission::{FoldedStanding, MissionConfig, Phase, PlannerInfo, TaskConfig, WayBack};
 use positioning::AccuracyMap;
 use serde::{Deserialize, Serialize};
@@ -33,9 +33,6 @@ pub struct Run {
     pub progress: Option<Progress>,
     /// The history of the scanned share of the reachable floor, per cent.
     pub scanned_history: History,
-    /// The worst values so far.
-    #[serde(default)]
-    pub peaks: Peaks,
     /// The tether; `None` without a tether.
     #[serde(default)]
     pub tether: Option<Tether>,

@@ -1,27 +1,11 @@
 //! Copies figures from events into alarms whose cause persists.
 
 use crate::model::alarms::Reading;
-use crate::model::{Cause, Peak, Run};
+use crate::model::{Cause, Run};
 use mission::{EventKind, Severity, event::TetherAlarm};
 use positioning::{Exclusion, Fix, FixError};
 
 impl Run {
-    /// Updates the worst values from an event.
-    pub(super) fn read_peaks(&mut self, kind: &EventKind) {
-        let (t_s, at) = (self.clock.t_s, self.position.pose.map(|pose| pose.position));
-        match kind {
-            EventKind::Estimated { .. } => {
-                let error_m = self.position.error_m().unwrap_or(f64::NAN);
-                Peak::take(&mut self.peaks.error_m, error_m, t_s, at);
-            }
-            EventKind::Tethered { length_m, paid_out_m, wrap_max_rad, .. } => {
-                Peak::take(&mut self.peaks.tether_m, paid_out_m.unwrap_or(*length_m), t_s, at);
-                Peak::take(&mut self.peaks.wrap_deg, wrap_max_rad.to_degrees(), t_s, at);
-            }
-            _ => {}
-        }
-    }
-
     /// Updates the figures of the alarms from an event.
     pub(super) fn read_figures(&mut self, kind: &EventKind) {
         match kind {

@@ -1,16 +1,21 @@
 //! The achieved figures alongside the plan's estimate.
 
 use super::{next_page, role, title};
-use crate::model::{Peak, Peaks, RunResult};
+use crate::model::RunResult;
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
 use crate::view::text;
+use account::FigureId;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 /// Width from which the worst values are shown with time and place, columns.
 const WORST: usize = 52;
+/// The figures whose worst values are shown, and the width of their names, columns.
+const SHOWN: [FigureId; 4] =
+    [FigureId::PositionError, FigureId::Clearance, FigureId::TetherOut, FigureId::WrapLargest];
+const NAME: usize = 16;
 
 /// A figure: its name, the estimate, the achieved value, the limit, and whether the limit was exceeded.
 struct Figure {
@@ -58,7 +63,7 @@ fn lines(look: &Look, result: &RunResult, columns: usize) -> Vec<Line<'static>> 
             (Role::Dim, format!("{limit:>width$}", width = width.saturating_sub(1))),
         ])
     }));
-    lines.extend(worst(look, columns).into_iter().map(|parts| look.line(parts)));
+    lines.extend(worst(result, columns).into_iter().map(|parts| look.line(parts)));
     lines.extend(trouble(look, result, columns).into_iter().map(|parts| look.line(parts)));
     lines
 }
@@ -70,26 +75,21 @@ fn widths(columns: usize) -> (usize, usize) {
 }
 
 /// When and where the worst values occurred, if there is room for it.
-fn worst(look: &Look, columns: usize) -> Vec<Parts> {
+fn worst(result: &RunResult, columns: usize) -> Vec<Parts> {
     if columns < WORST {
         return Vec::new();
     }
-    let Peaks { error_m, tether_m, wrap_deg } = look.run.peaks;
-    let figures =
-        [("95 % error", error_m, "m", 2), ("tether out", tether_m, "m", 1), ("wrap", wrap_deg, "°", 0)];
-    let row = |(name, peak, unit, decimals): (&str, Option<Peak>, &str, usize)| -> Option<Parts> {
-        let peak = peak?;
-        let blank = if unit == "°" { "" } else { " " };
-        let value = format!("{}{blank}{unit}", text::number(peak.value, decimals));
-        let at = peak.at.map_or_else(String::new, |at| format!(" at {}", text::place(at)));
-        let when = text::clock(peak.t_s);
+    let row = |figure: &account::Figure| -> Option<Parts> {
+        let (id, worst) = (figure.id, figure.worst?);
+        let blank = if id.unit() == "°" { "" } else { " " };
+        let value = format!("{}{blank}{}", text::number(worst.value, id.decimals()), id.unit());
         Some(vec![
-            (Role::Dim, format!(" worst {}", text::column(name, 11))),
+            (Role::Dim, format!(" worst {}", text::column(id.name(), NAME))),
             (Role::Text, format!("{value:>9}")),
-            (Role::Dim, format!("  T+{when}{at}")),
+            (Role::Dim, format!("  T+{} at {}", text::clock(worst.t_s), text::place(worst.at))),
         ])
     };
-    figures.into_iter().filter_map(row).collect()
+    result.summary.extremes.iter().filter(|figure| SHOWN.contains(&figure.id)).filter_map(row).collect()
 }
 
 fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {
