@@ -22,7 +22,7 @@ pub enum Address {
     Loopback,
 }
 
-/// A text that is no address.
+/// A text that is not an address.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NoAddress(String);
 
@@ -30,7 +30,7 @@ impl fmt::Display for NoAddress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "`{}` is no address of a vehicle; write unix:PATH, tcp:HOST:PORT, udp:HOST:PORT or run:COMMAND",
+            "`{}` is not a vehicle address; write unix:PATH, tcp:HOST:PORT, udp:HOST:PORT or run:COMMAND",
             self.0
         )
     }
@@ -86,7 +86,7 @@ pub(crate) fn resolved(at: &str, network: bool) -> io::Result<SocketAddr> {
     }
     Err(io::Error::new(
         io::ErrorKind::PermissionDenied,
-        "the address is not on this machine, and the wire is not protected; --vehicle-network allows it",
+        "the address is on another machine, and the wire is not protected; `--vehicle-network` allows this",
     ))
 }
 

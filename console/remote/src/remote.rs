@@ -185,7 +185,7 @@ fn greeted(
             let fault = inbox.fault();
             let fault =
                 if fault.is_empty() { String::new() } else { format!("; it sent a faulty line: {fault}") };
-            return Err(format!("{why}, before it introduced the vehicle{fault}"));
+            return Err(format!("{why} before it introduced the vehicle{fault}"));
         }
         drop(inbox);
         thread::sleep(LOOK_AGAIN);
@@ -205,7 +205,7 @@ fn read_all(mut read: Box<dyn Read + Send>, shared: &Shared) {
             return;
         }
         match read.read(&mut chunk) {
-            Ok(0) => break "the adapter has ended the connection".to_owned(),
+            Ok(0) => break "the adapter ended the connection".to_owned(),
             Ok(n) => {
                 let heard = reader.read(&chunk[..n]);
                 let now_s = shared.now_s();

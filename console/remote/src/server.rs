@@ -106,7 +106,7 @@ impl Server {
             Address::Run(_) | Address::Loopback => {
                 return Err(io::Error::new(
                     io::ErrorKind::InvalidInput,
-                    "a vehicle listens at a socket; write unix:PATH, tcp:HOST:PORT or udp:HOST:PORT",
+                    "a vehicle listens on a socket; write unix:PATH, tcp:HOST:PORT or udp:HOST:PORT",
                 ));
             }
         };

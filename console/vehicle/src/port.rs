@@ -139,7 +139,7 @@ impl LinkSeen {
             LinkState::Lost => "the link to the vehicle is lost",
             LinkState::Closed => "the link to the vehicle is closed",
             LinkState::Faulty => "the vehicle sends faulty messages",
-            LinkState::Manual => "someone drives the vehicle by hand",
+            LinkState::Manual => "a person drives the vehicle by hand",
             LinkState::EmergencyStop => "the emergency stop of the vehicle is pressed",
             LinkState::VehicleFault => "the vehicle reports a fault",
         };
@@ -147,7 +147,7 @@ impl LinkSeen {
         let unknown = if self.state.is_heard() {
             ""
         } else {
-            "; the vehicle stops by its lease, which is not confirmed"
+            "; the vehicle stops when its lease lapses, which is not confirmed"
         };
         Some(format!("{what}{why}{unknown}"))
     }

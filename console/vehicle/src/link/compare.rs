@@ -53,8 +53,12 @@ pub enum Finding {
 impl fmt::Display for Finding {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Frozen(Axis::Forward) => out.write_str("odometry stands still while the vehicle is driven"),
-            Self::Frozen(Axis::Turn) => out.write_str("the heading stands still while the vehicle is turned"),
+            Self::Frozen(Axis::Forward) => {
+                out.write_str("odometry shows a standstill while the vehicle is driven")
+            }
+            Self::Frozen(Axis::Turn) => {
+                out.write_str("the heading does not change while the vehicle is turned")
+            }
             Self::Reversed(Axis::Forward) => out.write_str("odometry runs backward: x must be ahead"),
             Self::Reversed(Axis::Turn) => {
                 out.write_str("turns are mirrored: counter-clockwise must be positive")
