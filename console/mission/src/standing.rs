@@ -180,7 +180,7 @@ impl fmt::Display for Refusal {
             Self::NoPlanRefused => f.write_str("no plan has been refused because of the tether"),
             Self::NoOffer => f.write_str("no better plan is offered"),
             Self::OfferAccepted => {
-                f.write_str("the better plan has been accepted; the robot changes over where it begins")
+                f.write_str("the better plan has been accepted; the robot changes over where that plan begins")
             }
             Self::NoShadow => f.write_str("no planner runs in shadow"),
             Self::ShadowNotReady { in_row } => write!(

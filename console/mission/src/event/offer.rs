@@ -56,14 +56,14 @@ impl fmt::Display for OfferEnd {
         f.write_str(match self {
             Self::Passed => "robot passed its start point",
             Self::TooLate => "it arrived after the robot had passed its start point",
-            Self::TooLittleLeft => "too little of the present plan is left",
+            Self::TooLittleLeft => "too little of the current plan is left",
             Self::MapChanged => "the map has changed",
             Self::ZoneDrawn => "a no-go zone was drawn",
             Self::DrivingBack => "the robot drives back",
             Self::OtherPlannerChosen => "a different planner was chosen",
             Self::OtherPlannerActive => "a different planner is active",
             Self::ParameterChanged => "a parameter was changed",
-            Self::OtherPlan => "the present plan has changed",
+            Self::OtherPlan => "the current plan has changed",
             Self::PlannerFailed => "the active planner failed",
             Self::MakerFailed { message } | Self::Unsafe { message } => message,
         })

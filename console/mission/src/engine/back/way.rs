@@ -121,6 +121,6 @@ fn words(no_way: NoWay) -> String {
         NoWay::StartBlocked { .. } => "the hull does not fit where the robot is".into(),
         NoWay::GoalBlocked { by_m, .. } => format!("the start is {by_m:.2} m too close to something solid"),
         NoWay::Unreachable { .. } => "no path leads back to the start".into(),
-        NoWay::Stopped => format!("no path found within {MOST_STEPS} steps of the search"),
+        NoWay::Stopped => format!("no path found within {MOST_STEPS} search steps"),
     }
 }
