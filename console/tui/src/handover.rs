@@ -117,7 +117,7 @@ fn clearance(model: &Model) -> Vec<String> {
     let demanded = model.live.run.about.as_ref().map(|about| about.mission.clearance_m);
     let planned = model.live.estimate().and_then(|estimate| estimate.clearance_min);
     let lines = [
-        demanded.map(|clearance_m| format!("Demanded by the scenario: {clearance_m:.2} m")),
+        demanded.map(|clearance_m| format!("Required by the scenario: {clearance_m:.2} m")),
         planned.map(|least| {
             format!(
                 "Least clearance of the plan: {:.2} m at {:.2}, {:.2} m",

@@ -22,11 +22,11 @@ impl Model {
             (_, Some(why)) => check("link", CheckOutcome::Failed, why),
         };
         let stop = match vehicle.stands {
-            Some(true) => (CheckOutcome::Passed, "the vehicle stands, confirmed by its odometry"),
+            Some(true) => (CheckOutcome::Passed, "the vehicle has stopped, confirmed by odometry"),
             Some(false) => {
-                (CheckOutcome::Failed, "STOP NOT CONFIRMED: the vehicle moves, or its odometry is missing")
+                (CheckOutcome::Failed, "STOP NOT CONFIRMED: the vehicle moves, or odometry is missing")
             }
-            None => (CheckOutcome::Failed, "its odometry has not confirmed yet that it stands; check again"),
+            None => (CheckOutcome::Failed, "odometry has not confirmed the stop yet; check again"),
         };
         vec![link, check("stand", stop.0, stop.1.into())]
     }
