@@ -62,7 +62,7 @@ pub struct Standing<'a> {
     pub offer: Option<OfferStage>,
     /// The plan with which a start would begin the mission.
     pub readiness: Readiness<'a>,
-    /// Why a real vehicle must not be driven now, as a clause; `None` if it may be, and for a simulation.
+    /// The reason why a real vehicle must not be driven now, as a clause; `None` if it may be driven, and in a simulation.
     pub trouble: Option<&'a str>,
     /// Whether the robot is a real vehicle.
     pub is_live: bool,

@@ -14,7 +14,7 @@ use vehicle::{
 };
 use world::{ObstacleId, RangeSet, Sighting, StationId};
 
-/// How long a vehicle may take to its first readings, seconds.
+/// Longest time until the first readings of a vehicle, seconds.
 const FIRST_WITHIN_S: f64 = 2.0;
 /// Ranges that are older than this are dropped: the robot has moved on since then.
 const RANGES_MAX_AGE_S: f64 = 0.5;
@@ -66,7 +66,7 @@ impl Inbox {
         self.hello.as_deref()
     }
 
-    /// Why the stream ended, if it did.
+    /// The reason for the end of the stream, once it has ended.
     pub(crate) fn closed(&self) -> Option<&str> {
         self.closed.as_deref()
     }

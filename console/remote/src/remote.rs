@@ -48,7 +48,7 @@ struct Shared {
     has_left: AtomicBool,
 }
 
-/// Why an adapter cannot be reached.
+/// The reason why an adapter cannot be reached.
 #[derive(Debug)]
 pub struct ConnectError(String);
 
@@ -149,7 +149,7 @@ impl Vehicle for Remote {
 }
 
 impl Drop for Remote {
-    /// The vehicle stands, and the adapter hears that the console leaves; an adapter that takes no bytes stops the vehicle
+    /// Stops the vehicle and tells the adapter that the console leaves; an adapter that takes no bytes stops the vehicle
     /// by its lease.
     fn drop(&mut self) {
         self.shared.outbox.command(None, true);

@@ -60,7 +60,7 @@ impl Client {
     /// Sends a message, unless the console is far behind.
     ///
     /// # Errors
-    /// The message cannot be right.
+    /// A value of the message is out of bounds.
     pub fn send(&mut self, message: &FromVehicle) -> Result<(), Misfit> {
         let mut line = Vec::new();
         self.writer.write(message, &mut line)?;

@@ -67,7 +67,7 @@ fn taken(scenario: &Scenario, wanted: &Wanted) -> anyhow::Result<(Remote, Vehicl
     Ok((remote, info))
 }
 
-/// Why a vehicle does not fit a scenario, with the remedies.
+/// The reasons why a vehicle does not fit a scenario, with the remedies.
 fn misfits(scenario: &Scenario, hello: &Hello) -> Vec<String> {
     let (mission, needs) = (&scenario.mission, &scenario.vehicle);
     let Has { odometry, pose, contact, tether, ae, .. } = hello.has;

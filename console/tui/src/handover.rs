@@ -1,4 +1,4 @@
-//! The page that an operator hands over to the next one: what is going on, why, and what comes next.
+//! The page that an operator hands over to the next one: the state, the reasons and the next steps.
 
 use crate::guide;
 use crate::model::{

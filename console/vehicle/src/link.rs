@@ -1,7 +1,7 @@
 //! The state of the link to a vehicle, from the stamps of its messages. All times come from outside: `now_s` is the
 //! console's clock, the one that also stamps its commands.
 //!
-//! [`Link`] folds what is heard and what is sent; its parts can also be used alone: [`Clock`] (offset and delay),
+//! [`Link`] folds received and sent messages; its parts can also be used alone: [`Clock`] (offset and delay),
 //! [`Sequence`] (loss), [`Motions`] (motion from odometry or poses), [`Stopping`] (whether the vehicle stands),
 //! [`Comparison`] (whether it moves as commanded).
 
@@ -32,7 +32,7 @@ const LOST_S: f64 = 0.8;
 /// The same for slow readings, in periods.
 const LATE_PERIODS: f64 = 2.0;
 const LOST_PERIODS: f64 = 3.0;
-/// Messages in a second that are a fault: this many times those of the readings' rate, and some for other messages.
+/// Messages in a second that are a fault: this multiple of the rate of readings, plus some for other messages.
 const FLOOD_FACTOR: f64 = 10.0;
 const FLOOD_SLACK: f64 = 100.0;
 
@@ -71,7 +71,7 @@ pub struct Link {
 }
 
 impl Link {
-    /// Takes what was heard.
+    /// Takes a received line.
     pub fn heard(&mut self, heard: &Heard<FromVehicle>, now_s: f64) {
         self.count(now_s);
         match heard {
@@ -173,7 +173,7 @@ impl Link {
         }
     }
 
-    /// Why the link is a fault; the first reason counts.
+    /// The reason why the link is faulty; the first one counts.
     pub fn fault(&self) -> Option<&str> {
         self.fault.as_deref()
     }
@@ -203,7 +203,7 @@ impl Link {
         self.stopping.state(now_s, Stopping::limit_s(hello, trip_s))
     }
 
-    /// What does not fit between commands and motion.
+    /// The difference between commands and motion, if any.
     pub fn finding(&self) -> Option<Finding> {
         self.comparison.finding()
     }

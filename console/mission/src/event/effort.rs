@@ -28,7 +28,7 @@ impl Effort {
         Self { length_m, rotation_rad, time_s: length_m / limits.v_max_m_per_s + turning_s }
     }
 
-    /// Describes how much this effort saves compared with the effort of the present plan from the same place on.
+    /// Describes the saving of this effort over the effort of the current plan from the same place on.
     pub fn saving(&self, present: &Self) -> String {
         let (less_s, less_m) = (present.time_s - self.time_s, present.length_m - self.length_m);
         let time = if less_s < 0.0 { "more" } else { "less" };

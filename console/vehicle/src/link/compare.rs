@@ -12,7 +12,7 @@ const DELAY_STEP_S: f64 = 0.1;
 const KEPT_MAX: usize = 64;
 /// Both motions are smoothed over this time, seconds.
 const SMOOTHED_S: f64 = 0.5;
-/// Motion is forgotten after this time, seconds.
+/// Older motion is dropped, seconds.
 const FORGOTTEN_S: f64 = 3.0;
 /// Commanded motion that is needed for a finding.
 const NEEDED_M: f64 = 0.2;

@@ -15,14 +15,14 @@ const STOP_TIMES: f64 = 2.0;
 pub enum Hold {
     /// The vehicle may drive.
     NotAsked,
-    /// The vehicle has been asked to stand, and has time to.
+    /// The vehicle has been commanded to stand still, and its time has not run out.
     Stopping,
     /// The vehicle stands: its readings say so.
     Held {
         /// Time from the stop to the first of the readings without motion, seconds.
         after_s: f64,
     },
-    /// The vehicle does not stand, or it is not known whether it does, or it moved after it stood.
+    /// The vehicle still moves, its motion is unknown, or it moved again after a standstill.
     NotConfirmed,
 }
 

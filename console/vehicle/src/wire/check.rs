@@ -18,7 +18,7 @@ const RAYS_MAX: usize = 4096;
 const OUTLINES_MAX: usize = 1000;
 const POINTS_MAX: usize = 1000;
 
-/// A field with a value that cannot be right.
+/// A field with a value that is out of bounds.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Misfit {
     /// The field, like `readings.scan.ranges_m[3]`; empty if the line as a whole is meant.

@@ -20,7 +20,7 @@ const UNKNOWN_MAX: usize = 64;
 /// Characters of an unknown key or kind that are kept.
 const UNKNOWN_CHARS: usize = 64;
 
-/// What a line was.
+/// The meaning of a line.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Heard<M> {
     /// A message.
@@ -28,7 +28,7 @@ pub enum Heard<M> {
     /// Something that this version does not know. It was ignored; the same thing is not reported again. A message with an
     /// unknown key follows.
     Unknown(Unknown),
-    /// A line that is no message, or a message that cannot be right. It was ignored.
+    /// A line that is not a valid message. It was ignored.
     Malformed(Misfit),
 }
 
@@ -61,7 +61,7 @@ pub struct Counts {
 
 /// A direction of the wire.
 pub trait Incoming: Sized {
-    /// What a message must agree with.
+    /// The earlier messages with which a message must agree.
     type Session;
     /// The kinds of messages, each with the keys that it may contain at any depth.
     fn kinds() -> Vec<(&'static str, Vec<&'static str>)>;
@@ -73,7 +73,7 @@ pub trait Incoming: Sized {
     /// Checks the values of a message.
     ///
     /// # Errors
-    /// The first value that cannot be right.
+    /// The first value that is out of bounds.
     fn check(&self, session: &mut Self::Session) -> Result<(), Misfit>;
 }
 
@@ -85,7 +85,7 @@ pub trait Incoming: Sized {
 /// let mut reader = Reader::<FromVehicle>::new(FromSession::default());
 /// assert!(reader.read(b"{\"type\": \"pong\", \"echo_s\": 1.5, \"sta").is_empty());
 /// let heard = reader.read(b"mp_s\": NaN}\n");
-/// let Heard::Malformed(fault) = &heard[0] else { panic!("NaN is no number of JSON") };
+/// let Heard::Malformed(fault) = &heard[0] else { panic!("NaN is not a JSON number") };
 /// assert_eq!(fault.to_string(), "pong.stamp_s: NaN is not a finite number");
 /// ```
 #[derive(Debug, Clone)]
@@ -109,7 +109,7 @@ impl<M: Incoming> Reader<M> {
         }
     }
 
-    /// What the messages so far amount to.
+    /// The state that follows from the messages so far.
     pub fn session(&self) -> &M::Session {
         &self.session
     }
@@ -119,12 +119,12 @@ impl<M: Incoming> Reader<M> {
         self.counts
     }
 
-    /// Whether so many malformed lines came in a row that the link cannot be trusted: [`FAULT_AFTER`].
+    /// Whether [`FAULT_AFTER`] malformed lines in a row make the link faulty.
     pub fn is_faulty(&self) -> bool {
         self.counts.malformed_in_row >= FAULT_AFTER
     }
 
-    /// Takes the next bytes, and returns what the lines were that end in them.
+    /// Takes the next bytes, and returns the meaning of each line that ends in them.
     pub fn read(&mut self, bytes: &[u8]) -> Vec<Heard<M>> {
         let mut heard = Vec::new();
         let mut lines = std::mem::take(&mut self.lines);
