@@ -1,4 +1,4 @@
-//! Where an adapter is reached: `unix:PATH`, `tcp:HOST:PORT`, `udp:HOST:PORT`, `run:COMMAND`.
+//! The address of an adapter: `unix:PATH`, `tcp:HOST:PORT`, `udp:HOST:PORT`, `run:COMMAND`.
 
 use std::{
     fmt, io,
@@ -7,7 +7,7 @@ use std::{
     str::FromStr,
 };
 
-/// Where an adapter is reached, or where a vehicle is offered.
+/// The address of an adapter, or of a vehicle that is offered.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Address {
     /// A Unix socket.
@@ -18,7 +18,7 @@ pub enum Address {
     Udp(String),
     /// A command, started by the shell, that speaks on its stdin and stdout.
     Run(String),
-    /// The simulator behind the wire in this process, as fast as it can; for tests.
+    /// The simulator behind the wire, in this process and without waiting; for tests.
     Loopback,
 }
 

@@ -32,7 +32,7 @@ const LOOK_AGAIN: Duration = Duration::from_millis(200);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ClientId(u64);
 
-/// What a connection did.
+/// An action of a connection.
 #[derive(Debug)]
 pub enum Did {
     /// It began.

@@ -12,7 +12,7 @@ use vehicle::{
 /// A vehicle that is to be driven.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Wanted {
-    /// Where its adapter is reached; `None` for the address in the scenario.
+    /// The address of its adapter; `None` for the address in the scenario.
     pub at: Option<Address>,
     /// Whether the adapter may be on another machine.
     pub network: bool,

@@ -1,8 +1,8 @@
-//! Reads what a mission needs from a real vehicle: `[vehicle]`. The simulator ignores this section.
+//! Reads the needs of a mission from a real vehicle: `[vehicle]`. The simulator ignores this section.
 
 use super::{problem::Complaint, section::Section};
 
-/// What a mission needs from a real vehicle, and where to find it.
+/// The needs of a mission from a real vehicle, and the address of its adapter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VehicleNeeds {
     /// Where its adapter is reached if the command line does not say so; never a command.

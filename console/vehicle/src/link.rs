@@ -178,7 +178,7 @@ impl Link {
         self.fault.as_deref()
     }
 
-    /// Age of the newest readings, seconds: since their arrival or, if the offset of the clocks is known and it is more,
+    /// Age of the newest readings, seconds: since their arrival or, if that is longer and the clock offset is known,
     /// since their measurement at the latest.
     pub fn age_s(&self, now_s: f64) -> Option<f64> {
         let (arrival_s, stamp_s) = self.newest?;
@@ -187,16 +187,16 @@ impl Link {
         Some(measured.unwrap_or(0.0).max(now_s - arrival_s))
     }
 
-    /// Until when the vehicle may carry out the last drive, seconds of the console's clock: sending, the way there by the
-    /// quickest round trip, and the lease. After that and its stop time, a vehicle that keeps its lease stands, but only
-    /// readings can confirm it.
+    /// The time until which the vehicle may carry out the last drive, seconds of the console's clock: time of sending
+    /// plus quickest round trip plus lease. After that and its stop time, a vehicle that keeps its lease stands still,
+    /// but only readings can confirm this.
     pub fn may_move_until_s(&self, now_s: f64) -> Option<f64> {
         let drive = self.last_drive?;
         let way_s = self.clock.at(now_s).map_or(0.0, |offset| 2.0 * offset.bound_s);
         Some(drive.stamp_s + way_s + drive.lease_s)
     }
 
-    /// Whether the vehicle stands after a stop.
+    /// Whether the vehicle stands still after a stop.
     pub fn hold(&self, now_s: f64) -> Hold {
         let Some(hello) = &self.hello else { return Hold::NotAsked };
         let trip_s = self.clock.at(now_s).map_or(0.0, |offset| 2.0 * offset.bound_s);

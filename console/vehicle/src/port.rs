@@ -1,4 +1,4 @@
-//! The port: what a flight needs from a vehicle, whether the vehicle is simulated, recorded or real.
+//! The port between a flight and a vehicle, which can be simulated, recorded or real.
 //!
 //! A flight calls [`Vehicle::sense`] once at the start of each tick and [`Vehicle::act`] once at its end. Neither call
 //! waits: a vehicle in another process hands over what has arrived since the last tick.

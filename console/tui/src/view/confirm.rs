@@ -1,4 +1,4 @@
-//! The lines above the keys: the state with what comes next, which nothing covers, and below it the open question or
+//! The lines above the keys: the state with the next steps, which nothing covers, and below it the open question or
 //! input line.
 
 use super::field::field;

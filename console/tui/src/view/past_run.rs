@@ -1,4 +1,4 @@
-//! What is known about a past run: figures, holds, alarms, notes and a small map.
+//! The details of a past run: figures, holds, alarms, notes and a small map.
 
 use super::fields::{self, Field};
 use super::look::{Look, Parts, fill};

@@ -40,13 +40,13 @@ pub enum Axis {
 /// A difference between commanded and measured motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Finding {
-    /// The odometry does not move while the vehicle is commanded to.
+    /// The odometry shows no motion while the vehicle is commanded to move.
     Frozen(Axis),
-    /// The odometry moves the other way.
+    /// The odometry moves in the opposite direction.
     Reversed(Axis),
     /// The odometry moves sideways while the vehicle is commanded ahead.
     Swapped,
-    /// The odometry moves by another scale: measured divided by commanded.
+    /// The odometry has a different scale: measured divided by commanded motion.
     Scale(Axis, f64),
 }
 
@@ -152,13 +152,13 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// A command holds from now on; `None` to stand still.
+    /// Takes a command that applies from now on; `None` to stand still.
     pub fn command(&mut self, drive: Option<&Drive>) {
         self.forward_m_per_s = drive.map_or(0.0, |drive| drive.forward_m_per_s);
         self.turn_rad_per_s = drive.map_or(0.0, |drive| drive.turn_rad_per_s);
     }
 
-    /// A motion was measured.
+    /// Takes a measured motion.
     pub fn moved(&mut self, motion: &Odometry, limits: &Limits) {
         let over_s = motion.over_s;
         self.time_s += over_s;

@@ -1,4 +1,4 @@
-//! Bytes to messages and named faults.
+//! Turns bytes into messages and named faults.
 
 use super::{
     FAULT_AFTER, LINE_MAX,
@@ -25,7 +25,7 @@ const UNKNOWN_CHARS: usize = 64;
 pub enum Heard<M> {
     /// A message.
     Message(M),
-    /// Something that this version does not know. It was ignored; the same thing is not reported again. A message with an
+    /// Something unknown to this version. It was ignored; the same thing is reported only once. A message with an
     /// unknown key follows.
     Unknown(Unknown),
     /// A line that is not a valid message. It was ignored.
@@ -68,7 +68,7 @@ pub trait Incoming: Sized {
     /// Parses a message of a known kind.
     ///
     /// # Errors
-    /// If the line does not have the fields of this kind, or other types of values.
+    /// If a field of this kind is missing, or has a value of the wrong type.
     fn parse(kind: &str, line: &str) -> serde_json::Result<Self>;
     /// Checks the values of a message.
     ///
@@ -77,7 +77,7 @@ pub trait Incoming: Sized {
     fn check(&self, session: &mut Self::Session) -> Result<(), Misfit>;
 }
 
-/// Reads one direction of the wire, from bytes in any division. Keeps at most [`LINE_MAX`] bytes.
+/// Reads one direction of the wire, however the bytes are divided. Keeps at most [`LINE_MAX`] bytes.
 ///
 /// ```
 /// use vehicle::wire::{FromSession, FromVehicle, Heard, Reader};

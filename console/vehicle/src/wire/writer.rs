@@ -1,4 +1,4 @@
-//! Messages to bytes.
+//! Turns messages into bytes.
 
 use super::{check::Misfit, reader::Incoming};
 use serde::Serialize;

@@ -16,7 +16,7 @@ impl Model {
         let link = &vehicle.link;
         let link = match (link.state, link.trouble()) {
             (LinkState::Up, _) | (_, None) => {
-                let bound = link.offset_bound_s.map(|s| format!(", clocks to within {:.1} ms", 1e3 * s));
+                let bound = link.offset_bound_s.map(|s| format!(", clock offset ±{:.1} ms", 1e3 * s));
                 check("link", CheckOutcome::Passed, format!("up{}", bound.unwrap_or_default()))
             }
             (_, Some(why)) => check("link", CheckOutcome::Failed, why),
