@@ -17,12 +17,12 @@ pub fn page(model: &Model) -> String {
     let mut page = format!("# Handover: {}, T+{}\n", plain(scenario), clock(run.clock.t_s));
     let sections = [
         ("State", state(model)),
-        ("What comes next", next(model)),
+        ("Next steps", next(model)),
         ("Open alarms", alarms(model, Alarm::is_open)),
         ("Shelved alarms", alarms(model, |alarm| matches!(alarm.state, State::Shelved(_)))),
         ("No-go zones", zones(model)),
         ("Clearance", clearance(model)),
-        ("What was done", done(model)),
+        ("Work done", done(model)),
         ("Starts, holds and ends", entries(model, is_hold)),
         ("Decisions of the operator", entries(model, is_decision)),
     ];

@@ -34,7 +34,7 @@ pub struct PlanShown {
 
 impl PlanShown {
     /// The lanes of a path; `thin` contains evenly picked points of it. Stretches shorter than `least_m`, metres, are
-    /// no lanes.
+    /// not lanes.
     pub fn lanes_of(path: &[Point], thin: &[Point], legs: &[Leg], least_m: f64) -> Vec<Lane> {
         let step = Trail::step(path.len());
         let last = thin.len().saturating_sub(1);

@@ -1,4 +1,4 @@
-//! Whether a vehicle moves as commanded: measured against commanded motion, both smoothed, over the last seconds. The delay
+//! Compares measured with commanded motion, both smoothed, over the last seconds. The delay
 //! of the vehicle is not known, so the commands are compared with several delays; a difference counts only if it exists
 //! with each of them.
 
