@@ -126,7 +126,7 @@ fn an_offer_slows_a_fast_simulation_until_it_ends() {
     let mut screen = fast();
     assert_eq!(hear_effects(&mut screen, better_plan(None)), [Effect::Speed(Speed::Times(1.0))]);
     let said = screen.model.notice().unwrap().text.clone();
-    assert!(said.ends_with("T: take it; simulation slowed to real time"), "{said}");
+    assert!(said.ends_with("T: take; simulation slowed to real time"), "{said}");
     assert_eq!(hear_effects(&mut screen, dropped()), [Effect::Speed(Speed::Times(32.0))]);
     let said = screen.model.notice().unwrap().text.clone();
     assert!(said.contains("withdrawn") && said.ends_with("simulation speed is ×32 again"), "{said}");
