@@ -387,7 +387,7 @@ fn ten_thousand_lines_a_second_leave_the_memory_flat() {
     let address = format!("unix:{}", path.display());
     let console = Console::open(bench.command(), &[short(&bench).to_str().unwrap(), "--vehicle", &address]);
     // It has sent no odometry yet.
-    console.hear("Start blocked: stand.");
+    console.hear("Start blocked: standstill.");
     let memory_kb = || -> u64 {
         let status = std::fs::read_to_string(format!("/proc/{}/status", console.pid())).unwrap();
         let line = status.lines().find(|line| line.starts_with("VmRSS:")).unwrap();

@@ -28,6 +28,6 @@ impl Model {
             }
             None => (CheckOutcome::Failed, "odometry has not confirmed the stop yet; check again"),
         };
-        vec![link, check("stand", stop.0, stop.1.into())]
+        vec![link, check("standstill", stop.0, stop.1.into())]
     }
 }
