@@ -354,7 +354,7 @@ fn the_console_hears_space_whatever_a_planner_does_for_long() {
             session.see("FAILED: pl");
             session.press("S");
             session.see("tart blocked");
-            session.press_until("1", "1 Home");
+            session.press_until("1", "[1 Home]");
             session.press("q");
             assert_eq!(session.back_in_the_shell(), "code=0", "{attack}");
             continue;
@@ -377,7 +377,7 @@ fn the_console_hears_space_whatever_a_planner_does_for_long() {
         assert!(has_the_keyboard(session.console_pid()), "{attack}");
         // Closes any open question on the way.
         session.press("\x1b");
-        session.press_until("1", "1 Home");
+        session.press_until("1", "[1 Home]");
         session.press("q");
         assert_eq!(session.agree_to_leave(), "code=1", "{attack}");
     }

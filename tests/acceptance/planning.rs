@@ -24,9 +24,9 @@ fn replanning(fault: &str) -> Session {
     session
 }
 
-/// The events from the zone that made a new plan necessary.
+/// The events from the zone that made a new plan necessary; none until the zone is in the journal.
 fn since_zone(events: &[Value]) -> &[Value] {
-    &events[first_of(events, "zone_drawn").expect("a zone")..]
+    first_of(events, "zone_drawn").map_or(&[], |at| &events[at..])
 }
 
 /// Leaves a console with a mission held or in progress, and returns the journal and the report.

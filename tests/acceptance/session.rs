@@ -177,10 +177,10 @@ impl Session {
     pub(crate) fn finish(&mut self) {
         self.press(">>>>>>");
         self.see("DONE");
-        self.see("7 Result");
+        self.see("[7 Result]");
         // Goes back, screen by screen, and leaves the console.
         self.press("1");
-        self.see("1 Home");
+        self.see("[1 Home]");
         self.press("q");
         assert_eq!(self.back_in_the_shell(), "code=0");
     }

@@ -39,7 +39,7 @@ impl Vehicle {
         let mut process = command.stdout(Stdio::piped()).spawn().unwrap();
         let mut line = String::new();
         BufReader::new(process.stdout.take().unwrap()).read_line(&mut line).unwrap();
-        assert!(line.contains("listens at"), "{line}");
+        assert!(line.contains("listens on"), "{line}");
         Self { process, at }
     }
 
@@ -290,7 +290,7 @@ fn after_a_lost_link_only_an_order_moves_the_robot_again() {
     console.hear("the vehicle cannot be driven");
     vehicle.signal(Signal::CONT);
     console.hear("link up");
-    console.hear("stands, confirmed by odometry");
+    console.hear("stopped, confirmed by odometry");
     let run = bench.runs().remove(0);
     console.order("resume\nyes\n");
     console.hear("resumed");
@@ -387,7 +387,7 @@ fn ten_thousand_lines_a_second_leave_the_memory_flat() {
     let address = format!("unix:{}", path.display());
     let console = Console::open(bench.command(), &[short(&bench).to_str().unwrap(), "--vehicle", &address]);
     // It has sent no odometry yet.
-    console.hear("Start blocked: stand.");
+    console.hear("Start blocked: standstill.");
     let memory_kb = || -> u64 {
         let status = std::fs::read_to_string(format!("/proc/{}/status", console.pid())).unwrap();
         let line = status.lines().find(|line| line.starts_with("VmRSS:")).unwrap();
@@ -418,7 +418,7 @@ fn a_vehicle_that_does_not_fit_is_refused_with_every_reason() {
     }
     for (vehicle, why) in [
         (&["--vehicle"][..], "`vehicle.at`"),
-        (&["--vehicle", "serial:1"], "is no address of a vehicle"),
+        (&["--vehicle", "serial:1"], "is not a vehicle address"),
         (&["--vehicle", "tcp:192.0.2.1:9"], "--vehicle-network allows it"),
         (&["--vehicle", "unix:nowhere"], "cannot drive the vehicle at unix:nowhere"),
         (&["--vehicle", "run:true"], "before it introduced the vehicle"),

@@ -103,7 +103,7 @@ impl Expect {
     }
 
     /// Returns the bounds that a run did not meet. An absent figure meets no bound, except in a live run, which has no
-    /// figure that needs the truth.
+    /// figure that needs the true position.
     pub fn check(&self, run: &Summary) -> Vec<Miss> {
         use Side::{AtLeast, AtMost};
         let coverage = run.coverage;

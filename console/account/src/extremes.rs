@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use world::Point;
 
-/// Which values of a figure are bad.
+/// The direction in which the values of a figure get worse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Worst {
     /// Large ones.
@@ -12,7 +12,7 @@ pub enum Worst {
     Least,
 }
 
-/// A value, and when and where it occurred.
+/// A value with its time and place.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Extreme {
     /// The value, in the unit of its figure.

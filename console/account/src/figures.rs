@@ -108,7 +108,7 @@ impl FigureId {
         )
     }
 
-    /// Which values are bad; `None` if the worst value says nothing.
+    /// The direction in which values get worse; `None` if the worst value has no meaning.
     pub fn worst(self) -> Option<Worst> {
         match self {
             Self::Clearance | Self::TrueClearance => Some(Worst::Least),
@@ -173,9 +173,9 @@ impl Limit {
 pub struct Figure {
     /// The figure.
     pub id: FigureId,
-    /// The latest value; absent until there is one.
+    /// The latest value; absent before the first one.
     pub value: Option<f64>,
-    /// The limit; absent if there is none.
+    /// The limit; absent for a figure without a limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<Limit>,
     /// The worst value so far; absent for figures without one.
@@ -227,7 +227,7 @@ impl Figures {
         Self::default()
     }
 
-    /// The rows: the figures that a run has. There are none until the run is opened.
+    /// The rows: the figures that a run has; empty until the run is opened.
     pub fn rows(&self) -> &[Figure] {
         &self.rows
     }

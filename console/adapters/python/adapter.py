@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""A vehicle on one page, with a little robot of its own: `--vehicle "run:python3 adapter.py"`. Replace `Disc` by your robot.
-The robot is a process of its own and keeps the lease, so it stops even if this adapter hangs or dies (vehicle-protocol.md)."""
+"""A one-page adapter with a small simulated robot: `--vehicle "run:python3 adapter.py"`. Replace `Disc` with your robot.
+The robot runs in a separate process and keeps the lease, so it stops even if this adapter hangs or dies (vehicle-protocol.md)."""
 import json, os, random, select, subprocess, sys, time
 
 LIMITS = {"speed_m_per_s": 0.4, "turn_rad_per_s": 1.0, "acceleration_m_per_s2": 0.5, "radius_m": 0.2}
@@ -8,13 +8,13 @@ HELLO = {"type": "hello", "protocol": 1, "name": "disc", "motion": "unicycle", "
          "period_s": 0.02, "stop_time_s": 0.9, "lease_max_s": 0.5}
 
 class Disc:
-    def measure(self, v, w, dt):  # move for dt seconds with these speeds; return what the sensors say
+    def measure(self, v, w, dt):  # move for dt seconds with these speeds; return the measurements
         forward, turn = (speed * dt * random.gauss(1.0, 0.01) for speed in (v, w))
         return {"odometry": {"over_s": dt, "forward_m": forward, "turn_rad": turn}}
 
 def say(message):
     try: os.write(1, json.dumps(message, allow_nan=False).encode() + b"\n")
-    except (BlockingIOError, BrokenPipeError): pass  # the adapter does not read now, or is gone
+    except (BlockingIOError, BrokenPipeError): pass  # the adapter is busy or has ended
 
 def robot(hello, body):  # lines with speed, turn rate and lease in, readings out
     os.set_blocking(1, False)
@@ -36,7 +36,7 @@ def robot(hello, body):  # lines with speed, turn rate and lease in, readings ou
         print(now, v, w, file=log)
         if seq % 25 == 0: say({"type": "state", "stamp_s": now, "mode": "ready"})
 
-def command(line, hello, newest):  # the number of a command, and its line for the robot; raises what it cannot do
+def command(line, hello, newest):  # the number of a command, and its line for the robot; raises an error for a bad command
     if line["type"] == "ping": say({"type": "pong", "echo_s": line["stamp_s"], "stamp_s": time.monotonic()})
     if line["type"] not in ("drive", "stop") or line["seq"] <= newest: return newest, "0 0 0\n" * (line["type"] == "bye")
     if line["type"] == "stop": return int(line["seq"]), "0 0 0\n"
@@ -49,7 +49,7 @@ def adapter(hello, program):  # between the console (stdin, stdout) and the robo
     child, newest, rest = subprocess.Popen(program, stdin=-1, stdout=-1, start_new_session=True), -1, b""
     say(hello)
     while (ready := select.select([0, child.stdout], [], [])[0]) and (0 not in ready or (data := os.read(0, 65536))):
-        if child.stdout in ready: os.write(1, os.read(child.stdout.fileno(), 65536) or sys.exit("the robot is gone"))
+        if child.stdout in ready: os.write(1, os.read(child.stdout.fileno(), 65536) or sys.exit("the robot process has ended"))
         *lines, rest = (rest + (data if 0 in ready else b"")).split(b"\n") if len(rest) < 65536 else (b"too long", b"")
         for line in filter(None, lines):
             try: newest, order = command(json.loads(line), hello, newest)

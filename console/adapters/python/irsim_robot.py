@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """A robot in ir-sim (`pip install ir-sim==2.12.0`) behind adapter.py: `--vehicle "run:python3 irsim_robot.py SCENARIO.toml"`.
 
-The tank, the columns, the robot, the stations and the tether come from the scenario; everything else is this program's own: the
-motion of ir-sim with slip, the noise of encoders, gyro and stations, the lidar, and the taut tether. Environment variables:
+The tank, the columns, the robot, the stations and the tether come from the scenario; this program adds the rest: the motion
+of ir-sim with slip, the noise of encoders, gyro and stations, the lidar, and the taut tether. Environment variables:
 IRSIM_TRUTH=FILE writes the true state at each step; IRSIM_SEED=N seeds the noise. `irsim_robot.py --account SCENARIO.toml FILE`
-prints what such a file comes to: coverage and collisions by the truth of ir-sim, as JSON.
+evaluates such a file: it prints coverage, collisions, clearance and tether from the true states, as JSON.
 
-Refused: obstacles other than circles, moving ones, random ones, and tanks other than round ones.
+Only round tanks with fixed round obstacles are supported.
 """
 import json
 import math
@@ -137,7 +137,7 @@ class Tether:
 
 
 class Robot:
-    """Moves in ir-sim, and measures with errors of its own."""
+    """Moves in ir-sim, and adds errors to its measurements."""
 
     def __init__(self, world):
         import numpy
@@ -197,7 +197,7 @@ class Robot:
 
 
 def account(world, path):
-    """What a file of true states comes to. Reachable floor: within half a swath of a place where the hull fits."""
+    """Evaluates a file of true states. Reachable floor: within half a swath of a place where the hull fits."""
     import numpy
     cell, half, tank, hull = 0.05, world["swath_m"] / 2, world["tank_m"], world["radius_m"]
     side = numpy.arange(-tank, tank, cell) + cell / 2

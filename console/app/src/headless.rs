@@ -170,7 +170,7 @@ fn fly_to_end(
     answers.into_host()
 }
 
-/// Why a start was refused: a real vehicle may not be ready to be driven.
+/// The reason for a refused start: a real vehicle may not be ready to be driven.
 fn refused_start(event: &Event) -> Option<&str> {
     match &event.kind {
         EventKind::OrderRefused { order, why } if order.is_start() => Some(why),

@@ -31,11 +31,11 @@ pub(crate) fn simulate(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
     let vehicle = Behind::new(&scenario);
     let vehicle = if args.lockstep { vehicle } else { vehicle.with_pose() };
     let FromVehicle::Hello(hello) = vehicle.hello() else {
-        anyhow::bail!("a vehicle without an introduction")
+        anyhow::bail!("the simulated vehicle has no introduction")
     };
     let server = Server::listen(&args.listen, Hello::clone(&hello), args.vehicle_network)
-        .map_err(|error| bad_input(format!("cannot listen at {}: {error}", args.listen)))?;
-    say_line(&format!("{} listens at {}", hello.name, server.at()))?;
+        .map_err(|error| bad_input(format!("cannot listen on {}: {error}", args.listen)))?;
+    say_line(&format!("{} listens on {}", hello.name, server.at()))?;
     let mut offered = Offered::new(vehicle, args.lockstep);
     while !stop.requested() {
         let until = offered.due.min(Instant::now() + LOOK_AGAIN);

@@ -31,7 +31,7 @@ pub struct Behind {
 }
 
 impl Behind {
-    /// Creates a vehicle at rest at the start of a scenario, which sends odometry alone: a mission that loses no message
+    /// Creates a vehicle at rest at the start of a scenario. It sends odometry alone: a mission that loses no message
     /// then makes the same decisions as with the simulator inside the console.
     pub fn new(scenario: &Scenario) -> Self {
         let world = &scenario.sim.world;

@@ -145,7 +145,7 @@ impl Flight {
         self.watch.is_some()
     }
 
-    /// Whether it is open whether a real vehicle stands as commanded.
+    /// Whether odometry has neither confirmed nor disproved a commanded stop of a real vehicle yet.
     pub fn awaits_stop(&self) -> bool {
         self.watch.as_ref().is_some_and(LiveWatch::awaits_stop)
     }

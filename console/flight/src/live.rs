@@ -1,4 +1,4 @@
-//! What a flight of a real vehicle adds to each tick: the readings and the link as events, and the check that a vehicle
+//! The additions of a real vehicle to each tick: the readings and the link as events, and the check that a vehicle
 //! stands as commanded.
 
 use mission::{Event, EventKind};
@@ -30,7 +30,7 @@ pub(crate) struct LiveWatch {
 enum Stop {
     /// The vehicle may move.
     None,
-    /// The vehicle was commanded to stand, and that is not decided yet.
+    /// The vehicle was commanded to stand; odometry has not yet shown whether it does.
     Awaited { for_s: f64, standing: u32 },
     /// The vehicle moves although it should stand by now.
     Missed { for_s: f64, standing: u32 },
@@ -44,12 +44,12 @@ impl LiveWatch {
         Self { link: LinkSeen::default(), stop: Stop::None, stop_s, tick_s }
     }
 
-    /// Why the vehicle must not be driven now.
+    /// The reason why the vehicle must not be driven now.
     pub(crate) fn trouble(&self) -> Option<String> {
         self.link.trouble()
     }
 
-    /// Whether it is open whether the vehicle stands as commanded.
+    /// Whether odometry has neither confirmed nor disproved a commanded stop yet.
     pub(crate) fn awaits_stop(&self) -> bool {
         matches!(self.stop, Stop::Awaited { .. })
     }

@@ -71,7 +71,7 @@ pub(super) enum Request {
     Survey,
     /// Rescan the scenarios and runs on disk.
     Look,
-    /// Read what is known about a past run.
+    /// Read the details of a past run.
     Glimpse(RunKey),
     /// Run a job on a past run.
     Do(Job),

@@ -79,7 +79,7 @@ impl EngineHandle {
         self.is_typing.store(is_typing, Ordering::Relaxed);
     }
 
-    /// Asks the mission something; the answer goes to the screen.
+    /// Sends a query to the mission; the answer goes to the screen.
     pub(super) fn ask(&self, query: Query) {
         self.request(Request::Ask(query), false);
     }

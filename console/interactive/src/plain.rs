@@ -70,7 +70,7 @@ pub(super) fn speak(mut session: Session, outbox: &Outbox, engine: &Current) -> 
     }
 }
 
-/// The answer to a line that only concerns what is printed; `None` for any other message.
+/// The answer to a line that only concerns the printed text; `None` for any other message.
 fn answered(model: &Model, msg: &Msg) -> Option<Vec<String>> {
     match msg {
         Msg::Line(line) if line == STATUS => Some(status(model)),

@@ -62,7 +62,7 @@ pub struct Input<'a> {
     pub readings: &'a Readings,
     /// Orders from the operator since the last tick, oldest first.
     pub orders: &'a [Order],
-    /// Why a real vehicle must not be driven now, as a clause; `None` if it may be, and for a simulation.
+    /// The reason why a real vehicle must not be driven now, as a clause; `None` if it may be driven, and in a simulation.
     pub trouble: Option<&'a str>,
 }
 

@@ -439,14 +439,14 @@ pub enum EventKind {
         planner: String,
         /// The reason, as a sentence.
         why: String,
-        /// How far the offer had come; absent if the plan was still being made.
+        /// The stage of the offer; absent if the plan was still being made.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         stage: Option<OfferStage>,
         /// The reason; absent in older journals.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         reason: Option<OfferEnd>,
     },
-    /// The robot drives back by order; it does not follow a planner.
+    /// The robot drives back by order, without a planner.
     ReturnBegan {
         /// The way.
         way: WayBack,
@@ -514,19 +514,19 @@ pub enum EventKind {
         /// The readings, as the mission used them.
         readings: Box<Readings>,
     },
-    /// The state of the link to a real vehicle changed, or its figures are due.
+    /// The state of the link to a real vehicle changed, or its periodic figures are due.
     Link(LinkSeen),
     /// A command was sent to a real vehicle; of several commands to stand in a row, only the first is reported.
     Sent {
         /// The motion; absent for a command to stand.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         drive: Option<Drive>,
-        /// How long the vehicle may carry out the motion without a further command, seconds.
+        /// Time for which the vehicle may carry out the motion without a further command, seconds.
         lease_s: f64,
     },
-    /// The odometry of a real vehicle shows whether it stands as commanded.
+    /// Odometry has confirmed a commanded stop of a real vehicle, or has not confirmed it in time.
     Stood {
-        /// Whether it stands; if not, it still moves although it should stand by now.
+        /// Whether the stop is confirmed; if not, the vehicle still moves although it should stand still by now.
         confirmed: bool,
         /// Time since the command to stand, seconds.
         after_s: f64,

@@ -62,7 +62,7 @@ pub struct Standing<'a> {
     pub offer: Option<OfferStage>,
     /// The plan with which a start would begin the mission.
     pub readiness: Readiness<'a>,
-    /// Why a real vehicle must not be driven now, as a clause; `None` if it may be, and for a simulation.
+    /// The reason why a real vehicle must not be driven now, as a clause; `None` if it may be driven, and in a simulation.
     pub trouble: Option<&'a str>,
     /// Whether the robot is a real vehicle.
     pub is_live: bool,
@@ -180,7 +180,7 @@ impl fmt::Display for Refusal {
             Self::NoPlanRefused => f.write_str("no plan has been refused because of the tether"),
             Self::NoOffer => f.write_str("no better plan is offered"),
             Self::OfferAccepted => {
-                f.write_str("the better plan has been accepted; the robot changes over where it begins")
+                f.write_str("the better plan has been accepted; the robot changes over where that plan begins")
             }
             Self::NoShadow => f.write_str("no planner runs in shadow"),
             Self::ShadowNotReady { in_row } => write!(

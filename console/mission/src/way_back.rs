@@ -24,7 +24,7 @@ impl Home {
     }
 }
 
-/// A way back: along the return path of the taut cable or, without a tether, the shortest path.
+/// A way back: along the return path of the taut cable or, without a tether, along the shortest path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WayBack {
     /// Where the way ends.

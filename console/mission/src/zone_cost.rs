@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What a no-go zone would cost.
+/// The cost of a no-go zone.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct ZoneCost {
     /// Length of the present plan that leads through the zone or too close to it, metres.

@@ -1,4 +1,4 @@
-//! Where an adapter is reached: `unix:PATH`, `tcp:HOST:PORT`, `udp:HOST:PORT`, `run:COMMAND`.
+//! The address of an adapter: `unix:PATH`, `tcp:HOST:PORT`, `udp:HOST:PORT`, `run:COMMAND`.
 
 use std::{
     fmt, io,
@@ -7,7 +7,7 @@ use std::{
     str::FromStr,
 };
 
-/// Where an adapter is reached, or where a vehicle is offered.
+/// The address of an adapter, or of a vehicle that is offered.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Address {
     /// A Unix socket.
@@ -18,11 +18,11 @@ pub enum Address {
     Udp(String),
     /// A command, started by the shell, that speaks on its stdin and stdout.
     Run(String),
-    /// The simulator behind the wire in this process, as fast as it can; for tests.
+    /// The simulator behind the wire, in this process and without waiting; for tests.
     Loopback,
 }
 
-/// A text that is no address.
+/// A text that is not an address.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NoAddress(String);
 
@@ -30,7 +30,7 @@ impl fmt::Display for NoAddress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "`{}` is no address of a vehicle; write unix:PATH, tcp:HOST:PORT, udp:HOST:PORT or run:COMMAND",
+            "`{}` is not a vehicle address; write unix:PATH, tcp:HOST:PORT, udp:HOST:PORT or run:COMMAND",
             self.0
         )
     }
@@ -86,7 +86,7 @@ pub(crate) fn resolved(at: &str, network: bool) -> io::Result<SocketAddr> {
     }
     Err(io::Error::new(
         io::ErrorKind::PermissionDenied,
-        "the address is not on this machine, and the wire is not protected; --vehicle-network allows it",
+        "the address is on another machine, and the wire is not protected; `--vehicle-network` allows this",
     ))
 }
 

@@ -1,4 +1,4 @@
-//! The messages of a vehicle, folded into what a tick needs. It holds one tick of readings, however many arrive.
+//! The messages of a vehicle, folded into the input of a tick. It holds one tick of readings, however many arrive.
 
 mod ages;
 
@@ -14,7 +14,7 @@ use vehicle::{
 };
 use world::{ObstacleId, RangeSet, Sighting, StationId};
 
-/// How long a vehicle may take to its first readings, seconds.
+/// Longest time until the first readings of a vehicle, seconds.
 const FIRST_WITHIN_S: f64 = 2.0;
 /// Ranges that are older than this are dropped: the robot has moved on since then.
 const RANGES_MAX_AGE_S: f64 = 0.5;
@@ -23,7 +23,7 @@ const FIGURES_EVERY_S: f64 = 10.0;
 /// Stamps are rounded to this many steps a second.
 const STAMP_STEPS: f64 = 1e4;
 
-/// What arrived.
+/// The messages that arrived.
 pub(crate) struct Inbox {
     stations: BTreeMap<String, StationId>,
     hello: Option<Box<Hello>>,
@@ -38,7 +38,7 @@ pub(crate) struct Inbox {
     fault: String,
     closed: Option<String>,
     ages: Ages,
-    /// What was reported last, and when.
+    /// The last report and its time.
     told: Option<(LinkState, String, f64)>,
 }
 
@@ -66,7 +66,7 @@ impl Inbox {
         self.hello.as_deref()
     }
 
-    /// Why the stream ended, if it did.
+    /// The reason for the end of the stream, once it has ended.
     pub(crate) fn closed(&self) -> Option<&str> {
         self.closed.as_deref()
     }
@@ -148,7 +148,7 @@ impl Inbox {
         }
     }
 
-    /// Hands over what has arrived since the last tick.
+    /// Hands over the messages that have arrived since the last tick.
     pub(crate) fn sense(&mut self, now_s: f64) -> Sensed {
         let stamps = self.stamps.take().map(|Stamps { source_t_s, arrival_t_s }| Stamps {
             source_t_s: rounded(source_t_s),

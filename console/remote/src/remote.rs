@@ -48,7 +48,7 @@ struct Shared {
     has_left: AtomicBool,
 }
 
-/// Why an adapter cannot be reached.
+/// The reason why an adapter cannot be reached.
 #[derive(Debug)]
 pub struct ConnectError(String);
 
@@ -149,7 +149,7 @@ impl Vehicle for Remote {
 }
 
 impl Drop for Remote {
-    /// The vehicle stands, and the adapter hears that the console leaves; an adapter that takes no bytes stops the vehicle
+    /// Stops the vehicle and tells the adapter that the console leaves; an adapter that takes no bytes stops the vehicle
     /// by its lease.
     fn drop(&mut self) {
         self.shared.outbox.command(None, true);
@@ -185,7 +185,7 @@ fn greeted(
             let fault = inbox.fault();
             let fault =
                 if fault.is_empty() { String::new() } else { format!("; it sent a faulty line: {fault}") };
-            return Err(format!("{why}, before it introduced the vehicle{fault}"));
+            return Err(format!("{why} before it introduced the vehicle{fault}"));
         }
         drop(inbox);
         thread::sleep(LOOK_AGAIN);
@@ -205,7 +205,7 @@ fn read_all(mut read: Box<dyn Read + Send>, shared: &Shared) {
             return;
         }
         match read.read(&mut chunk) {
-            Ok(0) => break "the adapter has ended the connection".to_owned(),
+            Ok(0) => break "the adapter ended the connection".to_owned(),
             Ok(n) => {
                 let heard = reader.read(&chunk[..n]);
                 let now_s = shared.now_s();

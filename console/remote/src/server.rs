@@ -32,7 +32,7 @@ const LOOK_AGAIN: Duration = Duration::from_millis(200);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ClientId(u64);
 
-/// What a connection did.
+/// An action of a connection.
 #[derive(Debug)]
 pub enum Did {
     /// It began.
@@ -60,7 +60,7 @@ impl Client {
     /// Sends a message, unless the console is far behind.
     ///
     /// # Errors
-    /// The message cannot be right.
+    /// A value of the message is out of bounds.
     pub fn send(&mut self, message: &FromVehicle) -> Result<(), Misfit> {
         let mut line = Vec::new();
         self.writer.write(message, &mut line)?;
@@ -106,7 +106,7 @@ impl Server {
             Address::Run(_) | Address::Loopback => {
                 return Err(io::Error::new(
                     io::ErrorKind::InvalidInput,
-                    "a vehicle listens at a socket; write unix:PATH, tcp:HOST:PORT or udp:HOST:PORT",
+                    "a vehicle listens on a socket; write unix:PATH, tcp:HOST:PORT or udp:HOST:PORT",
                 ));
             }
         };

@@ -1,4 +1,4 @@
-//! The streams to an adapter: two ends of bytes, and what ends them.
+//! The streams to an adapter: its two byte streams, and the handle that ends them.
 
 use crate::address::{Address, resolved};
 use std::{

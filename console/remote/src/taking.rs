@@ -12,7 +12,7 @@ use vehicle::{
 /// A vehicle that is to be driven.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Wanted {
-    /// Where its adapter is reached; `None` for the address in the scenario.
+    /// The address of its adapter; `None` for the address in the scenario.
     pub at: Option<Address>,
     /// Whether the adapter may be on another machine.
     pub network: bool,
@@ -67,7 +67,7 @@ fn taken(scenario: &Scenario, wanted: &Wanted) -> anyhow::Result<(Remote, Vehicl
     Ok((remote, info))
 }
 
-/// Why a vehicle does not fit a scenario, with the remedies.
+/// The reasons why a vehicle does not fit a scenario, with the remedies.
 fn misfits(scenario: &Scenario, hello: &Hello) -> Vec<String> {
     let (mission, needs) = (&scenario.mission, &scenario.vehicle);
     let Has { odometry, pose, contact, tether, ae, .. } = hello.has;
@@ -77,46 +77,46 @@ fn misfits(scenario: &Scenario, hello: &Hello) -> Vec<String> {
     refuse(
         mission.tick_s > most_tick_s,
         format!(
-            "a tick of {} s is too long for leases of {LEASE_S} s; at most {most_tick_s} s",
+            "a tick of {} s is too long for leases of {LEASE_S} s; at most {most_tick_s} s is allowed",
             mission.tick_s
         ),
     );
     refuse(
         hello.lease_max_s < LEASE_S,
-        format!("it honours leases of at most {} s; {LEASE_S} s are needed", hello.lease_max_s),
+        format!("it honours leases of at most {} s; {LEASE_S} s is needed", hello.lease_max_s),
     );
     let is_unicycle = mission.limits.motion == Motion::Unicycle;
     refuse(
         !is_unicycle && hello.motion == MotionKind::Unicycle,
-        "the robot of the scenario moves in any direction (`robot.motion`), but the vehicle does not".into(),
+        "the robot of the scenario moves in any direction (`robot.motion`), but the vehicle cannot".into(),
     );
     let (speed, turn) = (mission.limits.v_max_m_per_s, mission.limits.w_max_rad_per_s);
     let limits = hello.limits;
     refuse(
         speed > limits.speed_m_per_s,
         format!(
-            "the scenario drives at {speed} m/s (`robot.speed_max_m_per_s`), its limit is {}",
+            "the scenario drives at {speed} m/s (`robot.speed_max_m_per_s`); its limit is {}",
             limits.speed_m_per_s
         ),
     );
     refuse(
         turn > limits.turn_rad_per_s,
         format!(
-            "the scenario turns at {turn:.3} rad/s (`robot.turn_rate_max_deg_per_s`), its limit is {:.3}",
+            "the scenario turns at {turn:.3} rad/s (`robot.turn_rate_max_deg_per_s`); its limit is {:.3}",
             limits.turn_rad_per_s
         ),
     );
     refuse(
         limits.radius_m > mission.limits.radius_m + 1e-9,
         format!(
-            "its hull has a radius of {} m, in the scenario {} m",
+            "its hull has a radius of {} m; the scenario states {} m",
             limits.radius_m, mission.limits.radius_m
         ),
     );
     refuse(
         hello.stop_time_s > needs.stop_max_s,
         format!(
-            "it needs {} s to stop, at most {} s are allowed (`vehicle.stop_max_s`)",
+            "it needs {} s to stop; at most {} s is allowed (`vehicle.stop_max_s`)",
             hello.stop_time_s, needs.stop_max_s
         ),
     );

@@ -77,7 +77,7 @@ pub struct Verified {
     pub lines: Vec<String>,
 }
 
-/// Verifies the run in a folder. With plugins, the planners are asked again, too; a run that is then found equal is marked
+/// Verifies the run in a folder. With plugins, the planners are also asked again; an equal run is then marked
 /// as verified in its folder.
 ///
 /// Takes about as long as computing the mission took, without waiting for the clock.

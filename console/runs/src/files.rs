@@ -15,7 +15,7 @@ pub fn utc(moment: SystemTime) -> String {
     time.strftime("%Y%m%dT%H%M%SZ").to_string()
 }
 
-/// The time with which the name of a run begins; `None` if it begins with none.
+/// The time at the beginning of the name of a run; `None` if the name does not begin with a time.
 pub fn began(run: &str) -> Option<SystemTime> {
     let time = DateTime::strptime("%Y%m%dT%H%M%SZ", run.get(..16)?).ok()?;
     Some(time.to_zoned(TimeZone::UTC).ok()?.timestamp().into())

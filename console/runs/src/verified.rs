@@ -47,7 +47,7 @@ impl Proof {
     }
 }
 
-/// When the run in a folder was verified; `None` if it was not, or if its journal is no longer the verified one.
+/// The time at which the run in a folder was verified; `None` if it was not, or if its journal has changed since.
 pub(crate) fn verified(folder: &Path, budget: &Budget) -> Option<String> {
     let (path, journal) = (folder.join(VERIFIED_FILE), journal_of(folder));
     let proof: Proof = serde_json::from_str(&read_json(&path, MOST_BYTES).ok()?).ok()?;

@@ -65,7 +65,7 @@ pub struct Scenario {
     pub mission: MissionConfig,
     /// The layout of the floor plates, if the drawing specifies it.
     pub plates: Option<PlateLayout>,
-    /// What the mission needs from a real vehicle.
+    /// The requirements for a real vehicle.
     pub vehicle: VehicleNeeds,
     /// Items that the operator ticks by hand before the start.
     pub checklist: Vec<String>,

@@ -1,8 +1,8 @@
-//! Reads what a mission needs from a real vehicle: `[vehicle]`. The simulator ignores this section.
+//! Reads the requirements of a mission for a real vehicle: `[vehicle]`. The simulator ignores this section.
 
 use super::{problem::Complaint, section::Section};
 
-/// What a mission needs from a real vehicle, and where to find it.
+/// The requirements of a mission for a real vehicle, and the address of its adapter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VehicleNeeds {
     /// Where its adapter is reached if the command line does not say so; never a command.
@@ -17,7 +17,7 @@ pub struct VehicleNeeds {
     pub without_ranges: bool,
 }
 
-/// Reads `[vehicle]`; without this section, every need has its default.
+/// Reads `[vehicle]`; without this section, every requirement has its default.
 pub(crate) fn vehicle(root: &Section<'_>) -> Option<VehicleNeeds> {
     let section = root.table_or_empty("vehicle")?;
     let at = if section.has("at") { Some(address(&section)?) } else { None };

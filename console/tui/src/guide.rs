@@ -82,7 +82,7 @@ pub fn guide(cause: &Cause) -> Guide {
             },
         },
         Cause::Zone(_) => Guide {
-            cause: "The hull entered a no-go zone: the zone was drawn around its way, or the position was wrong.",
+            cause: "The hull is in a no-go zone: the zone was drawn across its path, or the position was wrong.",
             effect: "The robot is held until the operator decides.",
             remedies: const {
                 &[

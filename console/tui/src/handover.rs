@@ -1,4 +1,4 @@
-//! The page that an operator hands over to the next one: what is going on, why, and what comes next.
+//! The page that an operator hands over to the next one: the state, the reasons and the next steps.
 
 use crate::guide;
 use crate::model::{
@@ -17,12 +17,12 @@ pub fn page(model: &Model) -> String {
     let mut page = format!("# Handover: {}, T+{}\n", plain(scenario), clock(run.clock.t_s));
     let sections = [
         ("State", state(model)),
-        ("What comes next", next(model)),
+        ("Next steps", next(model)),
         ("Open alarms", alarms(model, Alarm::is_open)),
         ("Shelved alarms", alarms(model, |alarm| matches!(alarm.state, State::Shelved(_)))),
         ("No-go zones", zones(model)),
         ("Clearance", clearance(model)),
-        ("What was done", done(model)),
+        ("Work done", done(model)),
         ("Starts, holds and ends", entries(model, is_hold)),
         ("Decisions of the operator", entries(model, is_decision)),
     ];
@@ -117,7 +117,7 @@ fn clearance(model: &Model) -> Vec<String> {
     let demanded = model.live.run.about.as_ref().map(|about| about.mission.clearance_m);
     let planned = model.live.estimate().and_then(|estimate| estimate.clearance_min);
     let lines = [
-        demanded.map(|clearance_m| format!("Demanded by the scenario: {clearance_m:.2} m")),
+        demanded.map(|clearance_m| format!("Required by the scenario: {clearance_m:.2} m")),
         planned.map(|least| {
             format!(
                 "Least clearance of the plan: {:.2} m at {:.2}, {:.2} m",

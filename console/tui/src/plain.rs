@@ -114,7 +114,7 @@ pub fn status(model: &Model) -> Vec<String> {
     lines
 }
 
-/// What `yes` and `no` are told if no question is open.
+/// The answer to `yes` and `no` if no question is open.
 pub fn no_question(model: &Model) -> Option<&'static str> {
     (model.ui.overlay == Overlay::None).then_some("No question is open: `yes` and `no` have no effect.")
 }

@@ -1,4 +1,4 @@
-//! The port to a vehicle that this project did not write: the messages on the wire between the console and an adapter
+//! The port to a vehicle: the messages on the wire between the console and an adapter
 //! process ([`wire`]), and the state of that link ([`link`]).
 //!
 //! Everything here is pure: bytes and stamps come from outside. This crate uses no clock, thread, file or socket.

@@ -1,7 +1,7 @@
 //! The state of the link to a vehicle, from the stamps of its messages. All times come from outside: `now_s` is the
 //! console's clock, the one that also stamps its commands.
 //!
-//! [`Link`] folds what is heard and what is sent; its parts can also be used alone: [`Clock`] (offset and delay),
+//! [`Link`] folds received and sent messages; its parts can also be used alone: [`Clock`] (offset and delay),
 //! [`Sequence`] (loss), [`Motions`] (motion from odometry or poses), [`Stopping`] (whether the vehicle stands),
 //! [`Comparison`] (whether it moves as commanded).
 
@@ -32,7 +32,7 @@ const LOST_S: f64 = 0.8;
 /// The same for slow readings, in periods.
 const LATE_PERIODS: f64 = 2.0;
 const LOST_PERIODS: f64 = 3.0;
-/// Messages in a second that are a fault: this many times those of the readings' rate, and some for other messages.
+/// Messages in a second that are a fault: this multiple of the rate of readings, plus some for other messages.
 const FLOOD_FACTOR: f64 = 10.0;
 const FLOOD_SLACK: f64 = 100.0;
 
@@ -71,7 +71,7 @@ pub struct Link {
 }
 
 impl Link {
-    /// Takes what was heard.
+    /// Takes a received line.
     pub fn heard(&mut self, heard: &Heard<FromVehicle>, now_s: f64) {
         self.count(now_s);
         match heard {
@@ -173,12 +173,12 @@ impl Link {
         }
     }
 
-    /// Why the link is a fault; the first reason counts.
+    /// The reason why the link is faulty; the first one counts.
     pub fn fault(&self) -> Option<&str> {
         self.fault.as_deref()
     }
 
-    /// Age of the newest readings, seconds: since their arrival or, if the offset of the clocks is known and it is more,
+    /// Age of the newest readings, seconds: since their arrival or, if that is longer and the clock offset is known,
     /// since their measurement at the latest.
     pub fn age_s(&self, now_s: f64) -> Option<f64> {
         let (arrival_s, stamp_s) = self.newest?;
@@ -187,23 +187,23 @@ impl Link {
         Some(measured.unwrap_or(0.0).max(now_s - arrival_s))
     }
 
-    /// Until when the vehicle may carry out the last drive, seconds of the console's clock: sending, the way there by the
-    /// quickest round trip, and the lease. After that and its stop time, a vehicle that keeps its lease stands, but only
-    /// readings can confirm it.
+    /// The time until which the vehicle may carry out the last drive, seconds of the console's clock: time of sending
+    /// plus quickest round trip plus lease. After that and its stop time, a vehicle that keeps its lease stands still,
+    /// but only readings can confirm this.
     pub fn may_move_until_s(&self, now_s: f64) -> Option<f64> {
         let drive = self.last_drive?;
         let way_s = self.clock.at(now_s).map_or(0.0, |offset| 2.0 * offset.bound_s);
         Some(drive.stamp_s + way_s + drive.lease_s)
     }
 
-    /// Whether the vehicle stands after a stop.
+    /// Whether the vehicle stands still after a stop.
     pub fn hold(&self, now_s: f64) -> Hold {
         let Some(hello) = &self.hello else { return Hold::NotAsked };
         let trip_s = self.clock.at(now_s).map_or(0.0, |offset| 2.0 * offset.bound_s);
         self.stopping.state(now_s, Stopping::limit_s(hello, trip_s))
     }
 
-    /// What does not fit between commands and motion.
+    /// The difference between commands and motion, if any.
     pub fn finding(&self) -> Option<Finding> {
         self.comparison.finding()
     }

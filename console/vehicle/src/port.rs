@@ -1,4 +1,4 @@
-//! The port: what a flight needs from a vehicle, whether the vehicle is simulated, recorded or real.
+//! The port between a flight and a vehicle, which can be simulated, recorded or real.
 //!
 //! A flight calls [`Vehicle::sense`] once at the start of each tick and [`Vehicle::act`] once at its end. Neither call
 //! waits: a vehicle in another process hands over what has arrived since the last tick.
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use world::{Readings, StationId, Truth};
 
-/// How long a vehicle may carry out a `drive` without a further message, seconds; then it must stand.
+/// Time for which a vehicle may carry out a `drive` without a further message, seconds; then it must stand still.
 pub const LEASE_S: f64 = 0.25;
 
 /// A vehicle: its sensors in, its commands out.
@@ -35,7 +35,7 @@ pub trait Vehicle: Send {
     }
 }
 
-/// What a vehicle reported since the last tick.
+/// The report of a vehicle since the last tick.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sensed {
     /// The readings; of several messages in one tick, the odometry is added up.
@@ -44,7 +44,7 @@ pub struct Sensed {
     pub live: Option<Live>,
 }
 
-/// What only a vehicle in another process has.
+/// Facts that only a vehicle in another process has.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Live {
     /// The stamps of the last reading that arrived; `None` if none arrived in this tick.
@@ -69,13 +69,13 @@ pub enum LinkState {
     /// Readings arrive, and the vehicle can be driven.
     #[default]
     Up,
-    /// Nothing has arrived for too long.
+    /// No readings have arrived for too long.
     Lost,
-    /// The adapter has closed the link, or its process has ended. Only a new run connects again.
+    /// The adapter has closed the link, or its process has ended. Only a new run can connect again.
     Closed,
     /// Several messages in a row were faulty.
     Faulty,
-    /// Someone drives the vehicle by hand.
+    /// A person drives the vehicle by hand.
     Manual,
     /// The emergency stop of the vehicle is pressed.
     EmergencyStop,
@@ -132,14 +132,14 @@ pub struct LinkSeen {
 }
 
 impl LinkSeen {
-    /// Why the vehicle must not be driven, as a clause; `None` if it may be.
+    /// The reason why the vehicle must not be driven, as a clause; `None` if it may be driven.
     pub fn trouble(&self) -> Option<String> {
         let what = match self.state {
             LinkState::Up => return None,
             LinkState::Lost => "the link to the vehicle is lost",
             LinkState::Closed => "the link to the vehicle is closed",
             LinkState::Faulty => "the vehicle sends faulty messages",
-            LinkState::Manual => "someone drives the vehicle by hand",
+            LinkState::Manual => "a person drives the vehicle by hand",
             LinkState::EmergencyStop => "the emergency stop of the vehicle is pressed",
             LinkState::VehicleFault => "the vehicle reports a fault",
         };
@@ -147,7 +147,7 @@ impl LinkSeen {
         let unknown = if self.state.is_heard() {
             ""
         } else {
-            "; the vehicle stops by its lease, which is not confirmed"
+            "; the vehicle stops when its lease lapses, which is not confirmed"
         };
         Some(format!("{what}{why}{unknown}"))
     }
@@ -164,7 +164,7 @@ pub struct VehicleInfo {
     pub protocol: u32,
     /// Lease that the vehicle honours, seconds.
     pub lease_s: f64,
-    /// Time that the vehicle needs to stop, as it states itself, seconds.
+    /// Stop time that the vehicle states, seconds.
     pub stop_s: f64,
     /// Largest speed, metres per second.
     pub speed_max_m_per_s: f64,

@@ -1,4 +1,4 @@
-//! Requested floor to which a plan does not lead, with the reasons, before anything moves.
+//! Requested floor that a plan does not scan, with the reasons, before anything moves.
 
 use super::{Area, Evidence, MissReason, Slivers, areas, plate_map};
 use mission::{TaskConfig, event::RunOpened};
@@ -19,8 +19,8 @@ pub struct LeftOut {
 }
 
 impl LeftOut {
-    /// What a plan leaves out of the floor of a run; `None` if the task is not to scan the floor. `cuts` are the lines
-    /// that the tethered robot does not cross, `is_whole` tells whether the plan claims to achieve the whole task.
+    /// The floor of a run that a plan leaves out; `None` if the task is not to scan the floor. `cuts` are the lines
+    /// that the tethered robot does not cross; `is_whole` states whether the plan claims to achieve the whole task.
     ///
     /// Visits every cell along the path and every cell of the floor.
     pub fn of(run: &RunOpened, path: &[Point], cuts: &[Vec<Point>], is_whole: bool) -> Option<Self> {

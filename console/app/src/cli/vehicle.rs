@@ -9,7 +9,7 @@ use std::path::PathBuf;
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct VehicleArgs {
     /// Drive a real vehicle instead of the simulator: unix:PATH, tcp:HOST:PORT, udp:HOST:PORT, or run:COMMAND for an
-    /// adapter that speaks on its stdin and stdout. Without an address, the one in the scenario's section [vehicle].
+    /// adapter that uses its stdin and stdout. Without an address, `at` in the scenario's section [vehicle] applies.
     #[arg(long, value_name = "ADDRESS", num_args = 0..=1)]
     #[allow(clippy::option_option, reason = "the option, and its value")]
     pub vehicle: Option<Option<Address>>,
@@ -27,7 +27,7 @@ impl VehicleArgs {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum VehicleCommand {
-    /// Offer the simulator of a scenario as a vehicle, in a process of its own.
+    /// Offer the simulator of a scenario as a vehicle, in a separate process.
     Simulate(SimulateArgs),
 }
 
@@ -40,8 +40,8 @@ pub(crate) struct SimulateArgs {
     /// Where to listen: unix:PATH, tcp:HOST:PORT or udp:HOST:PORT; port 0 takes any free port.
     #[arg(long, value_name = "ADDRESS")]
     pub listen: Address,
-    /// Let the tank's time pass with the commands, one tick each, instead of the clock: then a mission makes the same
-    /// decisions as with the simulator inside the console.
+    /// Advance the simulation by one tick per command instead of by the clock; a mission then makes the same decisions
+    /// as with the simulator inside the console.
     #[arg(long)]
     pub lockstep: bool,
     /// Allow consoles on other machines; the wire is not protected.

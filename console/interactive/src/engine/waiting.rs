@@ -18,7 +18,7 @@ const LOOK_AGAIN: Duration = Duration::from_millis(1);
 /// planner owes an answer.
 const LOOK_AFTER: Duration = Duration::from_millis(20);
 
-/// What the mission answers to a question; nothing changes.
+/// The answer of the mission to a query; nothing changes.
 fn answer(mission: &Mission, query: Query) -> RunMsg {
     match query {
         Query::WayBack => RunMsg::WayBack(mission.way_back()),

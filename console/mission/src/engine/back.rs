@@ -56,19 +56,19 @@ impl Back {
 }
 
 impl Mission {
-    /// The way back from the place where the robot is held, with its length and clearance: what
-    /// [`Order::DriveBack`] would do now.
+    /// The way back from the place where the robot is held, with its length and clearance: the way that
+    /// [`Order::DriveBack`] would take now.
     ///
     /// Cost: a few searches for a path on the map, each bounded.
     ///
     /// # Errors
-    /// Why the order would be refused, as a sentence.
+    /// The reason why the order would be refused, as a sentence.
     pub fn way_back(&self) -> Result<WayBack, String> {
         self.standing().allows(&Order::DriveBack).map_err(|why| why.to_string())?;
         self.known.way_back()
     }
 
-    /// Begins to drive back. The planner's plan is abandoned; what is being prepared is dropped.
+    /// Begins to drive back. The planner's plan and any candidate are dropped.
     pub(super) fn drive_back(&mut self) {
         // The order is accepted only if there is a way.
         let Ok(way) = self.known.way_back() else { return };

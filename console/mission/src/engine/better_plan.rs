@@ -55,7 +55,7 @@ impl Mission {
         }
     }
 
-    /// How far the offer of a better plan has come; `None` if none is offered or accepted.
+    /// The stage of the offer of a better plan; `None` if no plan is offered or accepted.
     pub(super) fn offer_stage(&self) -> Option<OfferStage> {
         self.better()?.stage(self.known.config.better_plan)
     }

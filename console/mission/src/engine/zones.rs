@@ -37,7 +37,7 @@ impl Known {
     /// Refuses an order that the place of the robot, or the map, makes impossible.
     ///
     /// # Errors
-    /// What is wrong, as a sentence.
+    /// The reason, as a sentence.
     pub(super) fn check_place(&self, order: &Order) -> Result<(), String> {
         match order {
             Order::DrawZone(corners) => self.check_zone(corners),
@@ -49,7 +49,7 @@ impl Known {
     /// Refuses an impossible zone: one that contains the robot, or that covers a place where the robot must go.
     ///
     /// # Errors
-    /// What is wrong, as a sentence.
+    /// The reason, as a sentence.
     pub(super) fn check_zone(&self, corners: &[Point]) -> Result<(), String> {
         let is_near = |corner: &Point| corner.x.abs() <= FARTHEST_M && corner.y.abs() <= FARTHEST_M;
         if !corners.iter().all(is_near) {
@@ -140,10 +140,10 @@ impl Known {
         entered
     }
 
-    /// What a zone would cost.
+    /// The cost of a zone.
     ///
     /// # Errors
-    /// Why the zone would be refused, as a sentence.
+    /// The reason why the zone would be refused, as a sentence.
     fn zone_cost(&self, corners: &[Point], plan: &[Point], drops_offer: bool) -> Result<ZoneCost, String> {
         self.check_zone(corners)?;
         let shape = Shape::Polygon { vertices: corners.to_vec() };
@@ -172,12 +172,12 @@ impl Known {
 }
 
 impl Mission {
-    /// What a no-go zone with these corners (metres, tank frame) would cost; nothing changes.
+    /// The cost of a no-go zone with these corners (metres, tank frame); nothing changes.
     ///
     /// Cost: a copy of the coverage grid, and one flood fill of the floor.
     ///
     /// # Errors
-    /// Why [`Order::DrawZone`] would be refused, as a sentence.
+    /// The reason why [`Order::DrawZone`] would be refused, as a sentence.
     pub fn zone_cost(&self, corners: &[Point]) -> Result<ZoneCost, String> {
         let order = Order::DrawZone(Vec::new());
         self.standing().allows(&order).map_err(|why| why.to_string())?;

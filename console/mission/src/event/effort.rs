@@ -28,13 +28,13 @@ impl Effort {
         Self { length_m, rotation_rad, time_s: length_m / limits.v_max_m_per_s + turning_s }
     }
 
-    /// Describes how much this effort saves compared with the effort of the present plan from the same place on.
+    /// Describes the saving of this effort over the effort of the current plan from the same place on.
     pub fn saving(&self, present: &Self) -> String {
         let (less_s, less_m) = (present.time_s - self.time_s, present.length_m - self.length_m);
-        let time = if less_s < 0.0 { "longer" } else { "shorter" };
-        let way = if less_m < 0.0 { "more" } else { "less" };
+        let time = if less_s < 0.0 { "more" } else { "less" };
+        let way = if less_m < 0.0 { "longer" } else { "shorter" };
         let (min, of_min) = (less_s.abs() / 60.0, present.time_s / 60.0);
-        format!("{min:.1} min {time} (of {of_min:.1} from there), {:.0} m {way}", less_m.abs())
+        format!("{min:.1} min {time} (of {of_min:.1} remaining), {:.0} m {way}", less_m.abs())
     }
 }
 
@@ -62,8 +62,8 @@ mod tests {
         assert!((turning.time_s - 20.0 - TAU).abs() < 1e-12);
         let straight = Effort::of(&path, &limits(Motion::Point));
         assert!((straight.time_s - 20.0).abs() < 1e-12);
-        assert_eq!(straight.saving(&turning), "0.1 min shorter (of 0.4 from there), 0 m less");
-        assert_eq!(turning.saving(&straight), "0.1 min longer (of 0.3 from there), 0 m less");
+        assert_eq!(straight.saving(&turning), "0.1 min less (of 0.4 remaining), 0 m shorter");
+        assert_eq!(turning.saving(&straight), "0.1 min more (of 0.3 remaining), 0 m shorter");
         assert_eq!(Effort::of(&[], &limits(Motion::Point)), Effort::default());
     }
 }

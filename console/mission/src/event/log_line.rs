@@ -127,15 +127,15 @@ impl Event {
                 format!("floor {}: pressure {:.0} Pa", medium.word(), pressure_pa),
             ),
             EventKind::Link(link) => of_link(link),
-            EventKind::Stood { confirmed: true, after_s } => {
-                line(Severity::Info, "vehicle", format!("stands, confirmed by odometry after {after_s:.2} s"))
-            }
+            EventKind::Stood { confirmed: true, after_s } => line(
+                Severity::Info,
+                "vehicle",
+                format!("stopped, confirmed by odometry after {after_s:.2} s"),
+            ),
             EventKind::Stood { confirmed: false, after_s } => line(
                 Severity::Crit,
                 "vehicle",
-                format!(
-                    "STOP NOT CONFIRMED: odometry does not show that it stands, {after_s:.2} s after the command"
-                ),
+                format!("STOP NOT CONFIRMED: odometry does not show a stop {after_s:.2} s after the command"),
             ),
             EventKind::Resumed => line(Severity::Info, "mission", "resumed".into()),
             EventKind::Ended { outcome, reason } => {
@@ -225,7 +225,7 @@ fn of_better_plan(kind: &EventKind) -> Option<LogLine> {
             line(Severity::Watch, "plan", text)
         }
         EventKind::BetterPlanned { planner, objection: Some(why), .. } => {
-            line(Severity::Info, "plan", format!("re-planned {planner}: {why}; the present plan is kept"))
+            line(Severity::Info, "plan", format!("{planner} replanned: {why}; the current plan is kept"))
         }
         EventKind::BetterPlanTaken { planner, flown, better } => {
             let text = format!("better plan of {planner} taken: {}", better.saving(flown));

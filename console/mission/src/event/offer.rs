@@ -3,17 +3,17 @@
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// How far the offer of a better plan has come.
+/// The stage of the offer of a better plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OfferStage {
-    /// The plan is offered; the robot keeps to its present plan unless the operator takes the offer.
+    /// The plan is offered; the robot keeps to its current plan unless the operator takes the offer.
     Offered,
     /// The plan was taken, by order or by the scenario; the robot changes over at the place where the plan begins.
     Accepted,
 }
 
-/// Why a better plan was dropped.
+/// The reason for dropping a better plan.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OfferEnd {
@@ -21,7 +21,7 @@ pub enum OfferEnd {
     Passed,
     /// The plan arrived after the robot had passed the place where the plan begins.
     TooLate,
-    /// Too little of the present plan was left.
+    /// Too little of the current plan was left.
     TooLittleLeft,
     /// The map changed.
     MapChanged,
@@ -44,7 +44,7 @@ pub enum OfferEnd {
         /// Message of the fault.
         message: String,
     },
-    /// The plan was no longer safe when the robot reached the place where it begins.
+    /// The plan had become unsafe when the robot reached the place where it begins.
     Unsafe {
         /// The reason, as a sentence.
         message: String,
@@ -56,14 +56,14 @@ impl fmt::Display for OfferEnd {
         f.write_str(match self {
             Self::Passed => "robot passed its start point",
             Self::TooLate => "it arrived after the robot had passed its start point",
-            Self::TooLittleLeft => "too little of the present plan is left",
+            Self::TooLittleLeft => "too little of the current plan is left",
             Self::MapChanged => "the map has changed",
             Self::ZoneDrawn => "a no-go zone was drawn",
             Self::DrivingBack => "the robot drives back",
             Self::OtherPlannerChosen => "a different planner was chosen",
             Self::OtherPlannerActive => "a different planner is active",
             Self::ParameterChanged => "a parameter was changed",
-            Self::OtherPlan => "the present plan has changed",
+            Self::OtherPlan => "the current plan has changed",
             Self::PlannerFailed => "the active planner failed",
             Self::MakerFailed { message } | Self::Unsafe { message } => message,
         })
@@ -82,7 +82,7 @@ pub struct PlanScan {
 /// The floor that two plans scan.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PlanScans {
-    /// The present plan.
+    /// The current plan.
     pub flown: PlanScan,
     /// The better plan.
     pub better: PlanScan,

@@ -10,10 +10,7 @@ pub(super) fn lines(vehicle: &VehicleRecord) -> Vec<(&'static str, String)> {
     let loss = if sent == 0 { 0.0 } else { 100.0 * *missed as f64 / sent as f64 };
     let age = age_p99_s.map(|s| format!(", age on arrival p99 {:.0} ms", 1e3 * s)).unwrap_or_default();
     let mut lines = vec![
-        (
-            "vehicle",
-            format!("{name} at {at}; figures that need the true position do not exist for a live run"),
-        ),
+        ("vehicle", format!("{name} at {at}; a live run has no figures that need the true position")),
         (
             "link",
             format!(
@@ -24,7 +21,7 @@ pub(super) fn lines(vehicle: &VehicleRecord) -> Vec<(&'static str, String)> {
             ),
         ),
     ];
-    let most = vehicle.stop_max_s.map(|s| format!(", at most {s:.2} s")).unwrap_or_default();
+    let most = vehicle.stop_max_s.map(|s| format!(" within {s:.2} s")).unwrap_or_default();
     let not = match vehicle.stops_not_confirmed {
         0 => String::new(),
         n => format!("; STOP NOT CONFIRMED {}", counted(n, "time")),

@@ -36,7 +36,7 @@ pub(super) const CONSOLE: Guide = Guide {
 pub(super) const RESPONSE: Guide = Guide {
     cause: "One key press in a hundred takes longer than 33 ms to appear on the screen: the machine or the \
     terminal is too busy.",
-    effect: "The screen is slow. HOLD is not: it is handled first.",
+    effect: "Only the screen is slow. HOLD is always handled first.",
     remedies: &[SLOWER, wait("Close other programs, or make the terminal smaller.")],
 };
 

@@ -1,4 +1,4 @@
-//! What is known about past runs beyond their lines in a list: read from disk when a run is selected and there is room
+//! Details of past runs, beyond their lines in a list: read from disk when a run is selected and there is room
 //! to show it.
 
 use super::Run;
@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 /// The number of runs that are remembered.
 const MOST: usize = 8;
 
-/// What is known about a past run.
+/// The details of a past run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Glimpse {
     /// The run, folded from its journal, without its log.
@@ -30,7 +30,7 @@ pub struct Glimpses {
 }
 
 impl Glimpses {
-    /// What is known about a run, or why it cannot be read, as a sentence; `None` until it has been read.
+    /// The details of a run, or the reason why it cannot be read, as a sentence; `None` until it has been read.
     pub fn of(&self, run: &str) -> Option<&Result<Box<Glimpse>, String>> {
         self.known.iter().rev().find(|((name, _), _)| name == run).map(|(_, found)| found)
     }
@@ -44,7 +44,7 @@ impl Glimpses {
         true
     }
 
-    /// Records what was found about a run.
+    /// Records the details of a run.
     pub(crate) fn take(&mut self, key: RunKey, found: Result<Box<Glimpse>, String>) {
         self.known.retain(|((name, _), _)| *name != key.0);
         if self.asked.as_ref() == Some(&key) {

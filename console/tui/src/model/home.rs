@@ -31,7 +31,7 @@ pub struct ScenarioEntry {
 }
 
 impl ScenarioEntry {
-    /// Why the scenario cannot be opened, in one line without the path of its file: `line 14: unknown key`.
+    /// The reason why the scenario cannot be opened, in one line without the path of its file: `line 14: unknown key`.
     pub fn briefly(&self) -> Option<String> {
         let problem = self.problem.as_ref()?;
         let line = problem.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or_default();
@@ -151,7 +151,7 @@ pub struct Home {
     pub is_read: bool,
     /// The filter: text that the names in the lists must contain.
     pub filter: String,
-    /// What is known about past runs that were selected.
+    /// Details of the past runs that were selected.
     #[serde(default)]
     pub glimpses: Glimpses,
 }

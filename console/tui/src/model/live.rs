@@ -94,7 +94,7 @@ pub struct Live {
     pub preflight: Preflight,
     /// Forecasts of how the held mission would continue; `None` until they are requested.
     pub what_if: Option<WhatIf>,
-    /// The way back that was asked for before the robot is ordered to take it, or why there is none, as a sentence;
+    /// The way back that was asked for before the robot is ordered to take it, or the reason for its absence, as a sentence;
     /// `None` until it is known.
     #[serde(default)]
     pub way_back: Option<Result<WayBack, String>>,
@@ -155,7 +155,7 @@ impl Live {
         (self.run.planning.plan.as_ref()?.ask == *ask).then_some(estimate)
     }
 
-    /// What was promised for the plan that would run now or, once the mission has started, for the plan with which it
+    /// The figures promised for the plan that would run now or, once the mission has started, for the plan with which it
     /// started; `None` if it is not known.
     pub fn promised(&self) -> Option<&Estimate> {
         let started = *self.run.phase() != Phase::Waiting;

@@ -33,8 +33,8 @@ pub struct PlanShown {
 }
 
 impl PlanShown {
-    /// The lanes of a path of which `thin` contains evenly picked points. Stretches shorter than `least_m`, metres, are
-    /// no lanes.
+    /// The lanes of a path; `thin` contains evenly picked points of it. Stretches shorter than `least_m`, metres, are
+    /// not lanes.
     pub fn lanes_of(path: &[Point], thin: &[Point], legs: &[Leg], least_m: f64) -> Vec<Lane> {
         let step = Trail::step(path.len());
         let last = thin.len().saturating_sub(1);
@@ -122,7 +122,7 @@ pub struct Offer {
 }
 
 impl Offer {
-    /// What the better plan saves, as a sentence without a full stop.
+    /// The saving of the better plan, as a sentence without a full stop.
     pub fn sentence(&self) -> String {
         format!("Better plan: {}", self.better.saving(&self.flown))
     }

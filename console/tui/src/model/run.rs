@@ -79,7 +79,7 @@ pub struct About {
 pub struct VehicleSeen {
     /// The link.
     pub link: LinkSeen,
-    /// Whether the odometry shows that the vehicle stands as commanded; `None` while that is not decided.
+    /// Whether odometry has confirmed a commanded stop; `None` while this is open.
     pub stands: Option<bool>,
 }
 

@@ -41,7 +41,7 @@ impl Trail {
         &self.points
     }
 
-    /// Of how many points of a path [`Self::thinned`] keeps one.
+    /// The number of points of a path from which [`Self::thinned`] keeps one.
     pub fn step(points: usize) -> usize {
         points.div_ceil(MAX_POINTS).max(1)
     }

@@ -19,13 +19,13 @@ pub(super) fn follow(model: &mut Model, was_open: bool) -> Vec<Effect> {
         (false, true) if before.is_fast() && model.console.preferences.slows_for_offers => {
             (model.live.speed, model.live.slowed_from) = (Speed::default(), Some(before));
             let offer = model.notice().map(|notice| format!("{}; ", notice.text)).unwrap_or_default();
-            model.say(Severity::Watch, format!("{offer}simulation at real time meanwhile"));
+            model.say(Severity::Watch, format!("{offer}simulation slowed to real time"));
         }
         (true, false) => {
             let Some(speed) = model.live.slowed_from.take() else { return Vec::new() };
             model.live.speed = speed;
             let end = model.notice().map(|notice| format!("{}; ", notice.text)).unwrap_or_default();
-            model.say(Severity::Info, format!("{end}simulation at {} again", text::speed(speed)));
+            model.say(Severity::Info, format!("{end}simulation speed is {} again", text::speed(speed)));
         }
         _ => return Vec::new(),
     }

@@ -48,7 +48,7 @@ pub enum Msg {
     Run(RunId, RunMsg),
     /// The contents of the disk.
     Found(Box<Found>),
-    /// What was found about a past run, or why it cannot be read, as a sentence.
+    /// The details of a past run, or the reason why it cannot be read, as a sentence.
     Glimpsed(RunKey, Result<Box<Glimpse>, String>),
     /// The saved presets.
     Presets(Vec<Preset>),
@@ -167,9 +167,9 @@ pub enum RunMsg {
     Checked(Vec<Check>),
     /// The estimate for a plan, and the ask that the plan answers.
     Estimated(Option<AskId>, Box<Estimate>),
-    /// The way back of the held robot, or why there is none, as a sentence.
+    /// The way back of the held robot, or the reason for its absence, as a sentence.
     WayBack(Result<WayBack, String>),
-    /// What a no-go zone with these corners would cost, or why it would be refused, as a sentence.
+    /// The cost of a no-go zone with these corners, or the reason why it would be refused, as a sentence.
     ZoneCost(Vec<Point>, Result<ZoneCost, String>),
     /// The floor that a plan leaves out, for the plan that answers the given ask.
     LeftOut(Option<AskId>, Box<LeftOut>),
@@ -267,7 +267,7 @@ pub enum Job {
     ViewAt(String, String),
 }
 
-/// A question to the mission.
+/// A query to the mission.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Query {
     /// The way back from here.
@@ -325,7 +325,7 @@ pub enum Effect {
     Survey,
     /// Rescan the scenarios, past runs and disk space.
     Look,
-    /// Read what is known about a past run; replaces an earlier request that has not been answered.
+    /// Read the details of a past run; replaces an earlier request that has not been answered.
     Glimpse(RunKey),
     /// Start a background job.
     Do(Job),
@@ -338,7 +338,7 @@ pub enum Effect {
         /// Whether a handover page in that file is replaced.
         overwrite: bool,
     },
-    /// Ask the mission something; nothing changes.
+    /// Send a query to the mission; nothing changes.
     Ask(Query),
     /// Give the mission an order.
     Order(Order),

@@ -29,7 +29,7 @@ pub(crate) fn accept(model: &Model) -> Result<(), String> {
 /// Checks that there is another pane to switch to.
 pub(crate) fn other_pane(model: &Model) -> Result<(), String> {
     let turns = model.ui.screen == Screen::Home || !model.ui.panes().is_empty();
-    demand(turns, "this size shows one pane")
+    demand(turns, "only one pane is shown at this size")
 }
 
 /// Checks that a mission is open.

@@ -55,7 +55,7 @@ pub fn group(model: &Model, action: &Action) -> Group {
     if action.works_in(screens::contexts(model)) { Group::Here } else { Group::Topic(action.topic) }
 }
 
-/// The values to choose from for the first argument of a command; empty if there are none.
+/// The values to choose from for the first argument of a command, if any.
 pub fn values(model: &Model, action: &Action) -> Vec<String> {
     command::candidates(model, &format!("{} ", action.name)).unwrap_or_default()
 }

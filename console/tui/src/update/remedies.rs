@@ -1,4 +1,4 @@
-//! What the operator can do about an alarm: the actions of its guide, and those that depend on the state of the alarm.
+//! The actions on an alarm: those of its guide, and those that depend on the state of the alarm.
 
 use super::act::{act, hold_only};
 use super::message::Effect;

@@ -22,7 +22,7 @@ pub(super) fn press(model: &mut Model, key: Key) -> bool {
 /// becomes a command.
 pub(super) fn paste(model: &mut Model, pasted: &str) {
     if edit(model, |line| line.insert(pasted)).is_none() {
-        model.say(Severity::Info, "no text field is open: paste ignored");
+        model.say(Severity::Info, "paste ignored: no text field is open");
     }
 }
 

@@ -1,4 +1,4 @@
-//! The lines above the keys: the state with what comes next, which nothing covers, and below it the open question or
+//! The lines above the keys: the state with the next steps, which nothing covers, and below it the open question or
 //! input line.
 
 use super::field::field;
@@ -147,7 +147,7 @@ fn asked(model: &Model) -> Option<Vec<String>> {
         Overlay::Finish { .. } | Overlay::Confirm(Ask::DriveBack) => {
             let way = match &model.live.way_back {
                 Some(Ok(way)) => format!("{}. The mission ends there.", finish_way(way)),
-                _ => "Looking for the way...".into(),
+                _ => "Looking for a way back...".into(),
             };
             vec![
                 "Drive back? <accept>: drive back, <cancel>: stay held.".into(),
@@ -207,14 +207,14 @@ pub(super) fn finish_way(way: &WayBack) -> String {
 
 /// What the zone in the question costs, as sentences.
 fn zone_cost(model: &Model) -> String {
-    let Some(cost) = model.live.zone_cost else { return "Computing what it costs...".into() };
+    let Some(cost) = model.live.zone_cost else { return "Computing its cost...".into() };
     let path = match text::number(cost.path_m, 1) {
-        zero if zero == "0.0" => "The plan does not pass it.".to_owned(),
-        path_m => format!("The plan passes it for {path_m} m and is made again."),
+        zero if zero == "0.0" => "It blocks none of the plan.".to_owned(),
+        path_m => format!("It blocks {path_m} m of the plan; the robot replans."),
     };
     let [closed, lost] = [cost.closed_m2, cost.lost_m2].map(|area_m2| text::number(area_m2, 2));
     let offer = if cost.drops_offer { " The better plan is dropped." } else { "" };
-    format!("{path} It closes {closed} m² of reachable floor, {lost} m² of it not scanned yet.{offer}")
+    format!("{path} It closes {closed} m² of reachable floor, {lost} m² of which is not scanned yet.{offer}")
 }
 
 /// The next point of a zone that is being drawn, with the keys.

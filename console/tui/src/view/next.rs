@@ -191,7 +191,7 @@ fn idle(model: &Model) -> Clauses {
         return (Role::Warn, vec![what, why, preflight.into()]);
     }
     let plan = format!("{}.", text::capitalized(&confirm::promised(model)));
-    (Role::Title, vec!["Press <start> to start.".into(), plan, preflight.into()])
+    (Role::Title, vec!["<press> <start> to start.".into(), plan, preflight.into()])
 }
 
 fn running(model: &Model) -> Clauses {

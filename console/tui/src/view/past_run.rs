@@ -1,4 +1,4 @@
-//! What is known about a past run: figures, holds, alarms, notes and a small map.
+//! The details of a past run: figures, holds, alarms, notes and a small map.
 
 use super::fields::{self, Field};
 use super::look::{Look, Parts, fill};
@@ -70,7 +70,8 @@ pub(super) fn lines(look: &Look, run: &PastRun, columns: usize) -> Vec<Line<'sta
         lines.extend(wrapped(Role::Warn, why, columns).map(|parts| look.line(parts)));
     } else if look.model.ui.arrangement() == Arrangement::Wide {
         let moves = look.model.live.may_move();
-        let words = if moves { "More is read when the robot stands still." } else { "Reading the run..." };
+        let words =
+            if moves { "Details are read once the robot stands still." } else { "Reading the run..." };
         lines.extend(wrapped(Role::Dim, words, columns).map(|parts| look.line(parts)));
     }
     lines

@@ -171,7 +171,7 @@ fn station_lines(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>>
     fits.map_or_else(Vec::new, |(_, lines)| lines.into_iter().map(|line| look.line(line)).collect())
 }
 
-/// Words in lines, and at the end how many more there are.
+/// Words in lines, and at the end the number of the others.
 fn laid_out(words: &[(Role, String)], more: usize, columns: usize) -> Vec<Parts> {
     let mut lines: Vec<Parts> = Vec::new();
     let mut used = columns;

@@ -17,7 +17,7 @@ use world::{Boundary, FloorClass, Point, World, ZoneKind};
 const MARGIN: f64 = 1.06;
 /// The number of segments in a round wall.
 const WALL_PIECES: u32 = 128;
-/// The smallest area in which a tank can be recognised, columns and rows.
+/// Smallest area in which a tank is recognisable, columns and rows.
 const LEAST: (u16, u16) = (16, 6);
 
 /// The contents of a small map.

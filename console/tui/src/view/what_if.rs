@@ -196,7 +196,7 @@ fn remarks(what_if: &WhatIf, columns: usize) -> Vec<Parts> {
     let reasons = what_if.candidates.iter().enumerate().filter_map(reason);
     let basis = (
         Role::Dim,
-        "Figures in brackets: difference to A. Based on the current estimate and map: obstacles not found yet \
+        "Figures in brackets: difference from A. Based on the current estimate and map: obstacles not found yet \
         are not included. The mission and its recording are not affected; choosing another planner asks first \
         and does not move the robot."
             .to_owned(),

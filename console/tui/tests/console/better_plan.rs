@@ -69,7 +69,7 @@ fn a_better_plan_is_taken_by_its_key_or_by_its_command_after_a_question() {
         let shown = shown_at(&screen, (120, 36));
         assert!(shown.contains("Take the better plan? Enter: take, Esc: cancel."), "{shown}");
         let offer =
-            "Better plan: 3.7 min shorter (of 41.0 from there), 68 m less. It scans 99.5 % (now 99.6 %).";
+            "Better plan: 3.7 min less (of 41.0 remaining), 68 m shorter. It scans 99.5 % (now 99.6 %).";
         let flat = shown.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(flat.contains(offer), "{shown}");
         assert_eq!(screen.press([Key::Enter]), [Effect::Order(Order::TakePlan)]);
@@ -126,10 +126,10 @@ fn an_offer_slows_a_fast_simulation_until_it_ends() {
     let mut screen = fast();
     assert_eq!(hear_effects(&mut screen, better_plan(None)), [Effect::Speed(Speed::Times(1.0))]);
     let said = screen.model.notice().unwrap().text.clone();
-    assert!(said.ends_with("T: take it; simulation at real time meanwhile"), "{said}");
+    assert!(said.ends_with("T: take; simulation slowed to real time"), "{said}");
     assert_eq!(hear_effects(&mut screen, dropped()), [Effect::Speed(Speed::Times(32.0))]);
     let said = screen.model.notice().unwrap().text.clone();
-    assert!(said.contains("withdrawn") && said.ends_with("simulation at ×32 again"), "{said}");
+    assert!(said.contains("withdrawn") && said.ends_with("simulation speed is ×32 again"), "{said}");
     assert_eq!(screen.model.live.speed, Speed::Times(32.0));
 }
 

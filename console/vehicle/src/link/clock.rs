@@ -44,7 +44,7 @@ impl Clock {
     pub fn pong(&mut self, pong: &Pong, now_s: f64) -> Result<(), Misfit> {
         let trip_s = now_s - pong.echo_s;
         if trip_s < -ROUNDING_S {
-            let what = format!("answers a ping of {}, but it is only {now_s}", pong.echo_s);
+            let what = format!("answers a ping sent at {}, but the time is only {now_s}", pong.echo_s);
             return Err(Misfit { field: "pong.echo_s".into(), what });
         }
         if trip_s > WINDOW_S {
@@ -118,7 +118,7 @@ mod tests {
         let answer = Clock::default().pong(&Pong { echo_s: 9.0, stamp_s: 0.0 }, 5.0);
         assert_eq!(
             answer.expect_err("a lie").to_string(),
-            "pong.echo_s: answers a ping of 9, but it is only 5"
+            "pong.echo_s: answers a ping sent at 9, but the time is only 5"
         );
     }
 }

@@ -1,4 +1,4 @@
-//! Whether a vehicle moves as commanded: measured against commanded motion, both smoothed, over the last seconds. The delay
+//! Compares measured with commanded motion, both smoothed, over the last seconds. The delay
 //! of the vehicle is not known, so the commands are compared with several delays; a difference counts only if it exists
 //! with each of them.
 
@@ -12,7 +12,7 @@ const DELAY_STEP_S: f64 = 0.1;
 const KEPT_MAX: usize = 64;
 /// Both motions are smoothed over this time, seconds.
 const SMOOTHED_S: f64 = 0.5;
-/// Motion is forgotten after this time, seconds.
+/// Older motion is dropped, seconds.
 const FORGOTTEN_S: f64 = 3.0;
 /// Commanded motion that is needed for a finding.
 const NEEDED_M: f64 = 0.2;
@@ -40,21 +40,25 @@ pub enum Axis {
 /// A difference between commanded and measured motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Finding {
-    /// The odometry does not move while the vehicle is commanded to.
+    /// The odometry shows no motion while the vehicle is commanded to move.
     Frozen(Axis),
-    /// The odometry moves the other way.
+    /// The odometry moves in the opposite direction.
     Reversed(Axis),
     /// The odometry moves sideways while the vehicle is commanded ahead.
     Swapped,
-    /// The odometry moves by another scale: measured divided by commanded.
+    /// The odometry has a different scale: measured divided by commanded motion.
     Scale(Axis, f64),
 }
 
 impl fmt::Display for Finding {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Frozen(Axis::Forward) => out.write_str("odometry stands still while the vehicle is driven"),
-            Self::Frozen(Axis::Turn) => out.write_str("the heading stands still while the vehicle is turned"),
+            Self::Frozen(Axis::Forward) => {
+                out.write_str("odometry shows a standstill while the vehicle is driven")
+            }
+            Self::Frozen(Axis::Turn) => {
+                out.write_str("the heading does not change while the vehicle is turned")
+            }
             Self::Reversed(Axis::Forward) => out.write_str("odometry runs backward: x must be ahead"),
             Self::Reversed(Axis::Turn) => {
                 out.write_str("turns are mirrored: counter-clockwise must be positive")
@@ -148,13 +152,13 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// A command holds from now on; `None` to stand still.
+    /// Takes a command that applies from now on; `None` to stand still.
     pub fn command(&mut self, drive: Option<&Drive>) {
         self.forward_m_per_s = drive.map_or(0.0, |drive| drive.forward_m_per_s);
         self.turn_rad_per_s = drive.map_or(0.0, |drive| drive.turn_rad_per_s);
     }
 
-    /// A motion was measured.
+    /// Takes a measured motion.
     pub fn moved(&mut self, motion: &Odometry, limits: &Limits) {
         let over_s = motion.over_s;
         self.time_s += over_s;

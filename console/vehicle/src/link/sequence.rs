@@ -1,4 +1,4 @@
-//! Which of the numbered readings arrived.
+//! Counts the numbered readings that arrived, and the missing ones.
 
 /// Numbers behind the highest one that are remembered.
 const WINDOW: u64 = 64;

@@ -1,4 +1,4 @@
-//! Whether the vehicle stands after a stop: only its measured motion can confirm it.
+//! Checks that the vehicle stands still after a stop: only measured motion can confirm this.
 
 use crate::wire::message::{Hello, Odometry};
 
@@ -7,7 +7,7 @@ const STILL_M_PER_S: f64 = 0.02;
 const STILL_RAD_PER_S: f64 = 0.05;
 /// Readings in a row without motion that confirm it.
 const STILL_READINGS: u32 = 3;
-/// The vehicle may take this many times its stop time.
+/// The vehicle may take its stop time multiplied by this factor.
 const STOP_TIMES: f64 = 2.0;
 
 /// The effect of a stop.
@@ -15,14 +15,14 @@ const STOP_TIMES: f64 = 2.0;
 pub enum Hold {
     /// The vehicle may drive.
     NotAsked,
-    /// The vehicle has been asked to stand, and has time to.
+    /// The vehicle has been commanded to stand still, and its time has not run out.
     Stopping,
-    /// The vehicle stands: its readings say so.
+    /// The vehicle stands still, as its readings show.
     Held {
         /// Time from the stop to the first of the readings without motion, seconds.
         after_s: f64,
     },
-    /// The vehicle does not stand, or it is not known whether it does, or it moved after it stood.
+    /// The vehicle still moves, its motion is unknown, or it moved again after a standstill.
     NotConfirmed,
 }
 
@@ -33,7 +33,7 @@ pub struct Stopping {
     /// Readings in a row without motion, and the time of the first.
     still: u32,
     still_since_s: f64,
-    /// When the vehicle stood, after the stop.
+    /// The time of the standstill after the stop.
     held_after_s: Option<f64>,
 }
 
@@ -50,7 +50,7 @@ impl Stopping {
         *self = Self::default();
     }
 
-    /// A motion was measured, at a time of the console's clock.
+    /// Takes a measured motion, at a time of the console's clock.
     pub fn moved(&mut self, motion: &Odometry, taken_s: f64) {
         let Some(asked_s) = self.asked_s.filter(|asked_s| taken_s >= *asked_s) else { return };
         if !stands(motion) {

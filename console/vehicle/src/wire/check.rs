@@ -18,7 +18,7 @@ const RAYS_MAX: usize = 4096;
 const OUTLINES_MAX: usize = 1000;
 const POINTS_MAX: usize = 1000;
 
-/// A field with a value that cannot be right.
+/// A field with a value that is out of bounds.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Misfit {
     /// The field, like `readings.scan.ranges_m[3]`; empty if the line as a whole is meant.
@@ -54,11 +54,11 @@ fn above_zero(field: &str, value: f64, most: f64) -> Checked {
     if value > 0.0 && value <= most {
         return Ok(());
     }
-    misfit(field, format!("{value} is not greater than 0 and at most {most}"))
+    misfit(field, format!("{value} is out of range: greater than 0 and at most {most} is allowed"))
 }
 
 fn at_most(field: &str, n: usize, most: usize) -> Checked {
-    if n <= most { Ok(()) } else { misfit(field, format!("{n} entries, at most {most} are allowed")) }
+    if n <= most { Ok(()) } else { misfit(field, format!("{n} entries; at most {most} are allowed")) }
 }
 
 fn readable(field: &str, text: &str, most: usize) -> Checked {
@@ -67,7 +67,7 @@ fn readable(field: &str, text: &str, most: usize) -> Checked {
     }
     match text.chars().count() {
         n if n <= most => Ok(()),
-        n => misfit(field, format!("{n} characters, at most {most} are allowed")),
+        n => misfit(field, format!("{n} characters; at most {most} are allowed")),
     }
 }
 
@@ -196,7 +196,7 @@ impl Outline {
         if self.points_m.len() < least {
             return misfit(
                 field("points_m"),
-                format!("{} points, at least {least} are needed", self.points_m.len()),
+                format!("{} points; at least {least} are needed", self.points_m.len()),
             );
         }
         for (k, point) in self.points_m.iter().enumerate() {

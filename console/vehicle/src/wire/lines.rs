@@ -1,4 +1,4 @@
-//! Bytes to lines, in any division of the bytes, within a fixed amount of memory.
+//! Splits bytes into lines, however the bytes are divided, within a fixed amount of memory.
 
 use super::LINE_MAX;
 

@@ -286,7 +286,7 @@ pub enum Mode {
     Ready,
     /// A person drives it by hand.
     Manual,
-    /// Its emergency stop is engaged.
+    /// Its emergency stop is pressed.
     EmergencyStop,
     /// It cannot drive; `text` contains the reason.
     Fault,

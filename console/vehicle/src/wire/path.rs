@@ -1,4 +1,4 @@
-//! Places in a line of JSON, found without parsing its values, so that a damaged line can be named, too.
+//! Finds places in a line of JSON without parsing its values, so that the field can be named even in a damaged line.
 
 /// Levels of nesting that are followed; messages have four.
 const DEPTH_MAX: usize = 8;

@@ -1,4 +1,4 @@
-//! Bytes to messages and named faults.
+//! Turns bytes into messages and named faults.
 
 use super::{
     FAULT_AFTER, LINE_MAX,
@@ -20,15 +20,15 @@ const UNKNOWN_MAX: usize = 64;
 /// Characters of an unknown key or kind that are kept.
 const UNKNOWN_CHARS: usize = 64;
 
-/// What a line was.
+/// The meaning of a line.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Heard<M> {
     /// A message.
     Message(M),
-    /// Something that this version does not know. It was ignored; the same thing is not reported again. A message with an
+    /// Something unknown to this version. It was ignored; the same thing is reported only once. A message with an
     /// unknown key follows.
     Unknown(Unknown),
-    /// A line that is no message, or a message that cannot be right. It was ignored.
+    /// A line that is not a valid message. It was ignored.
     Malformed(Misfit),
 }
 
@@ -61,23 +61,23 @@ pub struct Counts {
 
 /// A direction of the wire.
 pub trait Incoming: Sized {
-    /// What a message must agree with.
+    /// The earlier messages with which a message must agree.
     type Session;
     /// The kinds of messages, each with the keys that it may contain at any depth.
     fn kinds() -> Vec<(&'static str, Vec<&'static str>)>;
     /// Parses a message of a known kind.
     ///
     /// # Errors
-    /// If the line does not have the fields of this kind, or other types of values.
+    /// If a field of this kind is missing, or has a value of the wrong type.
     fn parse(kind: &str, line: &str) -> serde_json::Result<Self>;
     /// Checks the values of a message.
     ///
     /// # Errors
-    /// The first value that cannot be right.
+    /// The first value that is out of bounds.
     fn check(&self, session: &mut Self::Session) -> Result<(), Misfit>;
 }
 
-/// Reads one direction of the wire, from bytes in any division. Keeps at most [`LINE_MAX`] bytes.
+/// Reads one direction of the wire, however the bytes are divided. Keeps at most [`LINE_MAX`] bytes.
 ///
 /// ```
 /// use vehicle::wire::{FromSession, FromVehicle, Heard, Reader};
@@ -85,7 +85,7 @@ pub trait Incoming: Sized {
 /// let mut reader = Reader::<FromVehicle>::new(FromSession::default());
 /// assert!(reader.read(b"{\"type\": \"pong\", \"echo_s\": 1.5, \"sta").is_empty());
 /// let heard = reader.read(b"mp_s\": NaN}\n");
-/// let Heard::Malformed(fault) = &heard[0] else { panic!("NaN is no number of JSON") };
+/// let Heard::Malformed(fault) = &heard[0] else { panic!("NaN is not a JSON number") };
 /// assert_eq!(fault.to_string(), "pong.stamp_s: NaN is not a finite number");
 /// ```
 #[derive(Debug, Clone)]
@@ -109,7 +109,7 @@ impl<M: Incoming> Reader<M> {
         }
     }
 
-    /// What the messages so far amount to.
+    /// The state that follows from the messages so far.
     pub fn session(&self) -> &M::Session {
         &self.session
     }
@@ -119,12 +119,12 @@ impl<M: Incoming> Reader<M> {
         self.counts
     }
 
-    /// Whether so many malformed lines came in a row that the link cannot be trusted: [`FAULT_AFTER`].
+    /// Whether [`FAULT_AFTER`] malformed lines in a row make the link faulty.
     pub fn is_faulty(&self) -> bool {
         self.counts.malformed_in_row >= FAULT_AFTER
     }
 
-    /// Takes the next bytes, and returns what the lines were that end in them.
+    /// Takes the next bytes, and returns the meaning of each line that ends in them.
     pub fn read(&mut self, bytes: &[u8]) -> Vec<Heard<M>> {
         let mut heard = Vec::new();
         let mut lines = std::mem::take(&mut self.lines);

@@ -1,4 +1,4 @@
-//! What a message must agree with: the introduction of the vehicle, and the messages before it.
+//! The state with which a message must agree: the introduction of the vehicle, and the messages before it.
 
 use super::{
     check::{Checked, misfit, stamp},

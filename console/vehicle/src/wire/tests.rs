@@ -57,7 +57,7 @@ fn a_wrong_line_is_named_by_its_field() {
         ),
         (
             readings(r#""odometry": {"over_s": 0, "forward_m": 0, "turn_rad": 0}"#),
-            "readings.odometry.over_s: 0 is not greater than 0 and at most 10",
+            "readings.odometry.over_s: 0 is out of range: greater than 0 and at most 10 is allowed",
         ),
         (
             readings(r#""odometry": {"over_s": 1, "forward_m": "far", "turn_rad": 0}"#),
@@ -71,7 +71,7 @@ fn a_wrong_line_is_named_by_its_field() {
         ),
         (
             readings(r#""ae": {"ranges": [{"station": "A", "ranges_m": [1, -2]}]}"#),
-            "readings.ae.ranges[0].ranges_m[1]: -2 is not greater than 0 and at most 1000",
+            "readings.ae.ranges[0].ranges_m[1]: -2 is out of range: greater than 0 and at most 1000 is allowed",
         ),
         (r#"{"type": "readings", "stamp_s": 5}"#.into(), "readings.seq: missing field `seq`"),
         (r#"{"type": "readings", "seq": -1, "stamp_s": 5}"#.into(), "readings.seq: invalid value"),

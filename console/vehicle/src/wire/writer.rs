@@ -1,4 +1,4 @@
-//! Messages to bytes.
+//! Turns messages into bytes.
 
 use super::{check::Misfit, reader::Incoming};
 use serde::Serialize;
@@ -18,7 +18,7 @@ impl<M: Incoming + Serialize> Writer<M> {
     /// Appends the line of a message, with its line feed.
     ///
     /// # Errors
-    /// If a value cannot be right; nothing is appended then.
+    /// If a value is out of bounds; nothing is appended then.
     pub fn write(&mut self, message: &M, line: &mut Vec<u8>) -> Result<(), Misfit> {
         message.check(&mut self.session)?;
         serde_json::to_writer(&mut *line, message).expect("plain structs, into memory");

@@ -17,7 +17,7 @@ impl Known {
     /// The way back from here, with the most room.
     ///
     /// # Errors
-    /// Why there is none, as a sentence.
+    /// The reason why no way was found, as a sentence.
     pub(in crate::engine) fn way_back(&self) -> Result<WayBack, String> {
         let (to, path) = match &self.tether {
             Some(tether) => (Home::Anchor, self.way_along(tether)?),
@@ -55,7 +55,7 @@ impl Known {
             .ok_or_else(|| "the hull does not fit through the return path along the tether".into())
     }
 
-    /// The path driven, backwards; `None` if the hull no longer fits on it.
+    /// The path driven, backwards; `None` if the hull does not fit on all of it.
     fn retraced(&self, tether: &Tether) -> Option<Vec<Point>> {
         let room_m = self.config.limits.radius_m;
         let way: Vec<Point> = tether.way_driven().iter().rev().copied().collect();
@@ -115,12 +115,12 @@ fn fenced(world: &World) -> World {
     World { obstacles: world.obstacles.iter().cloned().chain(solid).collect(), ..world.clone() }
 }
 
-/// Why no path leads back, as a sentence.
+/// The reason why no path leads back, as a sentence.
 fn words(no_way: NoWay) -> String {
     match no_way {
         NoWay::StartBlocked { .. } => "the hull does not fit where the robot is".into(),
         NoWay::GoalBlocked { by_m, .. } => format!("the start is {by_m:.2} m too close to something solid"),
         NoWay::Unreachable { .. } => "no path leads back to the start".into(),
-        NoWay::Stopped => format!("no path found within {MOST_STEPS} steps of the search"),
+        NoWay::Stopped => format!("no path found within {MOST_STEPS} search steps"),
     }
 }

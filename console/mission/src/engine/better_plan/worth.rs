@@ -99,7 +99,7 @@ impl Known {
     }
 }
 
-/// Why a plan saves too little time to justify a change, as a sentence.
+/// The reason why a plan saves too little time to justify a change, as a sentence.
 fn saves_too_little(flown: &Effort, better: &Effort) -> Option<String> {
     let (saves_s, worth_s) = (flown.time_s - better.time_s, CHANGE_S + CHANGE_SHARE * flown.time_s);
     let [flown_min, better_min, saves_min, worth_min] =

@@ -197,7 +197,7 @@ fn a_plan_that_saves_less_than_a_change_costs_is_named_and_not_offered() {
     fly_past(&mut flight, &[COLUMN], 40_000);
     let [said] = &texts(&flight)[..] else { panic!("{:?}", texts(&flight)) };
     assert!(
-        said.starts_with("re-planned straight: ") && said.ends_with("; the present plan is kept"),
+        said.starts_with("straight replanned: ") && said.ends_with("; the current plan is kept"),
         "{said}"
     );
     assert_eq!(flight.closed, [WorkerId(2), WorkerId(1)]);

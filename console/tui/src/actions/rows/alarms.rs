@@ -29,7 +29,7 @@ pub(super) const ROWS: &[Action] = &[
         .when(|m| stations::can(m, ActionId::Inject)),
     action(ActionId::DrawZone, "no-go", "Draw a no-go zone between two corners", &[], &[Context::Screen]).args(&[must("corner", Kind::Corner), must("opposite", Kind::Corner)]).reaches(Reach::Mission)
         .when(zones::can),
-    action(ActionId::Draw, "draw-zone", "Draw a no-go zone from the cursor on", &[Key::Char('d')], &[Context::Cursor]).label("no-go").reaches(Reach::Mission)
+    action(ActionId::Draw, "draw-zone", "Draw a no-go zone from the cursor", &[Key::Char('d')], &[Context::Cursor]).label("no-go").reaches(Reach::Mission)
         .when(zones::can_draw).does(zones::draw),
     action(ActionId::DrawnForm, "drawn-form", "Box, circle or polygon", &[Key::Char('s')], &[Context::Drawing]).label("form").looks(zones::reshape),
     action(ActionId::DrawnUndo, "drawn-undo", "Remove the last corner", &[Key::Backspace], &[Context::Drawing]).label("undo").when(zones::can_undo).looks(zones::undo),

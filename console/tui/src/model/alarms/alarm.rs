@@ -51,7 +51,7 @@ pub struct Reading {
     pub numbers: Option<(f64, Option<f64>)>,
 }
 
-/// Who acknowledged an alarm, and when.
+/// The acknowledgement of an alarm.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Acknowledged {
     /// The person, if known.
@@ -84,7 +84,7 @@ pub struct Alarm {
     pub count: u32,
     /// Mission time at which the cause last disappeared, seconds.
     pub cleared_s: Option<f64>,
-    /// The figure that the alarm is about, if there is one: the last value measured while the cause persisted.
+    /// The figure that the alarm is about, if any: the last value measured while the cause persisted.
     pub reading: Option<Reading>,
     /// The worst value measured while the cause persisted.
     #[serde(default)]
@@ -92,7 +92,7 @@ pub struct Alarm {
     /// The values of the figure without sign, also after the alarm has cleared.
     #[serde(default)]
     pub history: History,
-    /// Who acknowledged the alarm since it was last raised.
+    /// The acknowledgement since the alarm was last raised.
     #[serde(default)]
     pub acknowledged: Option<Acknowledged>,
     /// The position that the alarm is about, metres, tank frame; `None` if it has none.

@@ -63,7 +63,7 @@ impl Run {
                         .is_some_and(|about| about.mission.better_plan == BetterPlan::Take);
                     let path = Trail::thinned(path);
                     let offer = Offer { flown, better, scans, begins, path, is_taken };
-                    let next = if is_taken { "Taken where it begins" } else { "<take-plan>: take" };
+                    let next = if is_taken { "Change-over where it begins" } else { "<take-plan>: take" };
                     change.say(Severity::Watch, format!("{}. {next}", offer.sentence()));
                     self.planning.offer = Some(offer);
                 }

@@ -16,18 +16,18 @@ impl Model {
         let link = &vehicle.link;
         let link = match (link.state, link.trouble()) {
             (LinkState::Up, _) | (_, None) => {
-                let bound = link.offset_bound_s.map(|s| format!(", clocks to within {:.1} ms", 1e3 * s));
+                let bound = link.offset_bound_s.map(|s| format!(", clock offset ±{:.1} ms", 1e3 * s));
                 check("link", CheckOutcome::Passed, format!("up{}", bound.unwrap_or_default()))
             }
             (_, Some(why)) => check("link", CheckOutcome::Failed, why),
         };
         let stop = match vehicle.stands {
-            Some(true) => (CheckOutcome::Passed, "the vehicle stands, confirmed by its odometry"),
+            Some(true) => (CheckOutcome::Passed, "the vehicle has stopped, confirmed by odometry"),
             Some(false) => {
-                (CheckOutcome::Failed, "STOP NOT CONFIRMED: the vehicle moves, or its odometry is missing")
+                (CheckOutcome::Failed, "STOP NOT CONFIRMED: the vehicle moves, or odometry is missing")
             }
-            None => (CheckOutcome::Failed, "its odometry has not confirmed yet that it stands; check again"),
+            None => (CheckOutcome::Failed, "odometry has not confirmed the stop yet; check again"),
         };
-        vec![link, check("stand", stop.0, stop.1.into())]
+        vec![link, check("standstill", stop.0, stop.1.into())]
     }
 }

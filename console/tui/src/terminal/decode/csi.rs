@@ -46,7 +46,7 @@ impl Csi {
     }
 
     /// The meaning of the sequence with its final byte; `None` for an answer, a focus report and other sequences that
-    /// are no keys.
+    /// are not keys.
     pub(super) fn input(&self, last: u8) -> Option<Input> {
         let text = std::str::from_utf8(&self.kept).ok().filter(|_| !self.is_too_long)?;
         if let Some(report) = text.strip_prefix('<') {

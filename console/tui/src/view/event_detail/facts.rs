@@ -58,7 +58,7 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::TetherAlarmCleared { .. } => "tether back within limit",
         EventKind::Certified { .. } => "certificate",
         EventKind::Link(_) => "link to the vehicle",
-        EventKind::Stood { confirmed: true, .. } => "vehicle stands",
+        EventKind::Stood { confirmed: true, .. } => "vehicle stopped",
         EventKind::Stood { .. } => "stop not confirmed",
         _ => "event",
     }

@@ -1,4 +1,4 @@
-//! What the selected line of the home screen is about, beside the lists of a wide screen.
+//! Describes the selected line of the home screen, beside the lists of a wide screen.
 
 use super::{attention, runs, scenarios};
 use crate::model::ScenarioEntry;

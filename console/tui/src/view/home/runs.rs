@@ -101,7 +101,7 @@ fn row(run: &PastRun, at: Columns) -> Parts {
     ]
 }
 
-/// What is wrong with a run, or what people wrote about it.
+/// The problem of a run, or the remark about it.
 fn about_lines(run: &PastRun, columns: usize) -> Vec<Parts> {
     let verified = run.verified.as_ref().map(|at| format!("Verified {at} UTC."));
     match (&run.note, &run.remark) {

@@ -146,7 +146,7 @@ fn about_lines(entry: &ScenarioEntry, columns: usize) -> Vec<Parts> {
     }
 }
 
-/// What a scenario is about, and what is expected of it.
+/// The description of a scenario, and its expected outcome.
 pub(super) fn description(entry: &ScenarioEntry) -> String {
     match (entry.about.is_empty(), entry.expected.is_empty()) {
         (true, true) => "No description.".into(),

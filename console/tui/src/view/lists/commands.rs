@@ -145,7 +145,7 @@ fn below(look: &Look, selected: Option<&Choice>, room: usize) -> Vec<Row> {
     listed.into_iter().chain([hint(&format!(" {}", joined(&clauses, room)))]).collect()
 }
 
-/// As many values as fit, and how many more there are.
+/// As many values as fit, and the number of the others.
 fn listing(values: &[String], room: usize) -> String {
     let mut line = String::new();
     for (index, value) in values.iter().enumerate() {

@@ -15,7 +15,7 @@ pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
     let can = can_drive_back(look.model);
     let (role, way) = match (&look.model.live.way_back, &can) {
         (Some(Ok(way)), Ok(())) => (Role::Text, confirm::finish_way(way)),
-        (None, _) => (Role::Dim, "looking for the way...".into()),
+        (None, _) => (Role::Dim, "looking for a way back...".into()),
         (_, Err(why)) | (Some(Err(why)), Ok(())) => (Role::Dim, why.clone()),
     };
     let name = |name: &str| text::column(name, NAME.min(room));

@@ -1,10 +1,10 @@
-//! Why the robot is held, where, and what ends the hold.
+//! The reason, the place and the end of a hold.
 
 use crate::model::Model;
 use crate::view::text;
 use mission::{Hold, HoldReason, Phase, PositionTrust, Resumes};
 
-/// Why the robot is held, then what ends the hold.
+/// The reason for the hold, then its end.
 pub(super) fn clauses(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String> {
     let position = model.live.run.standing.standing().position;
     let clauses = match trouble(position) {
@@ -15,7 +15,7 @@ pub(super) fn clauses(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String>
     clauses.into_iter().chain(message(by)).collect()
 }
 
-/// What is wrong with the position, and what is needed before the robot may move again.
+/// The problem with the position, and the condition for moving again.
 fn trouble(position: PositionTrust) -> Option<(&'static str, &'static str)> {
     match position {
         PositionTrust::Good => None,
@@ -26,7 +26,7 @@ fn trouble(position: PositionTrust) -> Option<(&'static str, &'static str)> {
     }
 }
 
-/// A hold that ends automatically. The first two clauses fit into 60 columns, so that nobody is surprised by a robot
+/// A hold that ends automatically. The first two clauses fit into 60 columns, so that no operator is surprised by a robot
 /// that starts to move.
 fn held_for_now(by: &HoldReason, resumes: Resumes) -> Vec<String> {
     let when = match (resumes, by) {
@@ -71,7 +71,7 @@ fn held_for_good(by: &HoldReason) -> Vec<String> {
     std::iter::once(format!("{state}.")).chain(remedies.iter().map(|remedy| (*remedy).to_owned())).collect()
 }
 
-/// Why the robot is held, without a closing full stop.
+/// The reason for the hold, without a full stop.
 fn state(by: &HoldReason) -> &'static str {
     match by {
         HoldReason::Operator => "HELD by operator",
@@ -83,7 +83,7 @@ fn state(by: &HoldReason) -> &'static str {
         HoldReason::Tether { .. } => "HELD: tether alarm",
         HoldReason::PlanRefused { .. } => "HELD: plan refused",
         HoldReason::ZoneBreached { .. } => "HELD: hull in a no-go zone",
-        HoldReason::Vehicle { .. } => "HELD: vehicle",
+        HoldReason::Vehicle { .. } => "HELD: vehicle cannot be driven",
         HoldReason::PlannerSilent { .. } => "HELD: planner silent",
         HoldReason::PlannerFault { .. } => "HELD: planner failed",
     }

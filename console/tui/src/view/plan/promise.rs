@@ -22,7 +22,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let columns = usize::from(look.pane(Pane::Promise, "", "").inner(area).width);
     let widths = Widths::new(columns, second.is_some());
     let note = if widths.limit > 0 { "limit" } else { "" };
-    let block = look.pane(Pane::Promise, "What it promises", note);
+    let block = look.pane(Pane::Promise, "Promised figures", note);
     let Some(mission) = look.run.about.as_ref().map(|about| &about.mission) else {
         return fill(frame, area, block, Vec::new());
     };

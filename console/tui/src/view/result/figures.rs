@@ -36,7 +36,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResul
     fill(frame, area, block, lines);
 }
 
-/// Why the mission ended, what was expected, and the figures; most important first.
+/// The reason for the end, unmet expectations, and the figures; most important first.
 fn lines(look: &Look, result: &RunResult, columns: usize) -> Vec<Line<'static>> {
     let wrapped = |role: Role, words: &str| {
         let lines = text::wrap(&text::capitalized(words), columns.saturating_sub(1)).into_iter();
@@ -74,7 +74,7 @@ fn widths(columns: usize) -> (usize, usize) {
     (label, columns.saturating_sub(label + 2) / 3)
 }
 
-/// When and where the worst values occurred, if there is room for it.
+/// The worst values with time and place, if they fit.
 fn worst(result: &RunResult, columns: usize) -> Vec<Parts> {
     if columns < WORST {
         return Vec::new();

@@ -36,7 +36,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResul
     let is_cut = shown.len() < rows.len();
     let place = if is_cut { format!("{}  ", table::counted(&shown, rows.len())) } else { String::new() };
     let walk =
-        if listed.is_empty() { String::new() } else { look.keys("<next-missed> <previous-missed> walk") };
+        if listed.is_empty() { String::new() } else { look.keys("<next-missed> <previous-missed> step") };
     let next = next_page(look);
     let notes =
         [format!("{place}{walk}  {next}"), format!("{place}{next}"), place.trim().to_owned(), String::new()];
