@@ -173,20 +173,24 @@ fn station_lines(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>>
 
 /// Words in lines, and at the end the number of the others.
 fn laid_out(words: &[(Role, String)], more: usize, columns: usize) -> Vec<Parts> {
-    let mut lines: Vec<Parts> = Vec::new();
-    let mut used = columns;
+    let mut lines = vec![Parts::new()];
+    let mut used = 0;
     let more = (more > 0).then(|| (Role::Dim, format!("+{more}")));
     for (role, word) in words.iter().chain(&more) {
-        let word = text::fit(&format!(" {word} "), columns);
-        if used + text::width(word.trim_end()) > columns {
+        // A blank before each word, and one more between two words.
+        let word = text::fit(&format!(" {word}"), columns);
+        let gap = usize::from(used > 0);
+        if used + gap + text::width(&word) > columns {
             lines.push(Vec::new());
             used = 0;
         }
-        used += text::width(&word);
         if let Some(line) = lines.last_mut() {
-            line.push((*role, word));
+            let gap = if used > 0 { " " } else { "" };
+            used += text::width(&word) + gap.len();
+            line.push((*role, format!("{gap}{word}")));
         }
     }
+    lines.retain(|line| !line.is_empty());
     lines
 }
 

@@ -69,6 +69,7 @@ fn in_a_word(reason: MissReason) -> &'static str {
         MissReason::Clearance => "clearance",
         MissReason::Wrap => "tether",
         MissReason::BeyondReel => "beyond the reel",
+        MissReason::Narrow => "outside lanes",
         reason => reason.briefly(),
     }
 }
