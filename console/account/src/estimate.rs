@@ -89,11 +89,16 @@ fn reachable(mission: &MissionConfig, drawing: &World, path: &[Point]) -> Option
     let TaskConfig::Cover { .. } = mission.task else { return None };
     let start = mission.start.position;
     let floor = Floor::new(drawing, mission.cell_m, mission.room_m(), mission.swath_m, start);
+    Some(scanned_along(floor, path, mission.swath_m).fraction_reachable())
+}
+
+/// The floor that is scanned along a path with a swath in metres, before anything moves.
+pub(crate) fn scanned_along(floor: Floor, path: &[Point], swath_m: f64) -> CoverageGrid {
     let mut grid = CoverageGrid::new(floor);
     for pair in path.windows(2) {
-        grid.mark_swath(pair[0], pair[1], mission.swath_m);
+        grid.mark_swath(pair[0], pair[1], swath_m);
     }
-    Some(grid.fraction_reachable())
+    grid
 }
 
 fn clearance(mission: &MissionConfig, map: &ObstacleMap, path: &[Point]) -> Option<Worst> {

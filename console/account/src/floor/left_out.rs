@@ -1,9 +1,10 @@
 //! Requested floor that a plan does not scan, with the reasons, before anything moves.
 
 use super::{Area, Evidence, MissReason, Slivers, areas, plate_map};
+use crate::estimate::scanned_along;
 use mission::{TaskConfig, event::RunOpened};
 use serde::{Deserialize, Serialize};
-use world::{CoverageGrid, Point, Pose};
+use world::Point;
 
 /// The reachable floor that was requested but that a plan leaves out.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -25,17 +26,9 @@ impl LeftOut {
     /// Visits every cell along the path and every cell of the floor.
     pub fn of(run: &RunOpened, path: &[Point], cuts: &[Vec<Point>], is_whole: bool) -> Option<Self> {
         let TaskConfig::Cover { .. } = run.mission.task else { return None };
-        let (mut evidence, mut grid) = (Evidence::new(run), CoverageGrid::new(run.floor.clone()));
+        let mut evidence = Evidence::new(run);
+        let grid = scanned_along(run.floor.clone(), path, run.mission.swath_m);
         evidence.plan(path, cuts, is_whole);
-        let mut before: Option<Pose> = None;
-        for pair in path.windows(2).filter(|pair| pair[0] != pair[1]) {
-            let way = pair[1] - pair[0];
-            let at = |position| Pose { position, heading_rad: way.y.atan2(way.x) };
-            // At a corner, the robot turns on the spot, and the tool with it.
-            grid.mark(run.mission.tool(), before.unwrap_or(at(pair[0])), at(pair[0]));
-            grid.mark(run.mission.tool(), at(pair[0]), at(pair[1]));
-            before = Some(at(pair[1]));
-        }
         let floor = &run.floor;
         let is_requested = |cell: usize| floor.is_reachable(cell) && evidence.is_asked(cell);
         let reasons = evidence.reasons(run);

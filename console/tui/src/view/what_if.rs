@@ -184,7 +184,7 @@ fn remarks(what_if: &WhatIf, columns: usize) -> Vec<Parts> {
         let letter = char::from(b'A' + index as u8);
         let (role, why) = match &candidate.made {
             Some(Ok(Forecast { outlook, .. })) if outlook.outcome.is_none() => {
-                (Role::Hold, format!("held: {}", outlook.reason))
+                (Role::Hold, outlook.reason.clone())
             }
             Some(Ok(Forecast { outlook, .. })) if is_selected => (Role::Text, outlook.reason.clone()),
             Some(Err(why)) => (Role::Warn, why.clone()),

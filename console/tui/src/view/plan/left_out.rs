@@ -41,7 +41,12 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
 fn title(left_out: Option<&LeftOut>) -> String {
     let Some(left_out) = left_out else { return "Left out".into() };
     let share = text::percent(1.0 - left_out.scanned());
-    format!("Left out  {share} %, {} m²", text::number(left_out.area_m2(), 2))
+    let listed = match left_out.areas.len() {
+        0 => String::new(),
+        1 => ", 1 area".to_owned(),
+        n => format!(", {n} areas"),
+    };
+    format!("Left out  {share} %, {} m²{listed}", text::number(left_out.area_m2(), 2))
 }
 
 fn keys(look: &Look, columns: usize) -> String {

@@ -74,7 +74,7 @@ fn widths(columns: usize) -> (usize, usize) {
     (label, columns.saturating_sub(label + 2) / 3)
 }
 
-/// The worst values with time and place, if they fit.
+/// The worst values with time and, as far as it fits, place.
 fn worst(result: &RunResult, columns: usize) -> Vec<Parts> {
     if columns < WORST {
         return Vec::new();
@@ -83,13 +83,20 @@ fn worst(result: &RunResult, columns: usize) -> Vec<Parts> {
         let (id, worst) = (figure.id, figure.worst?);
         let blank = if id.unit() == "°" { "" } else { " " };
         let value = format!("{}{blank}{}", text::number(worst.value, id.decimals()), id.unit());
+        let when = format!("T+{}", text::clock(worst.t_s));
+        let words = [format!("{when} at {}", text::place(worst.at)), when];
         Some(vec![
-            (Role::Dim, format!(" worst {}", text::column(id.name(), NAME))),
+            (Role::Dim, format!(" {}", text::column(id.name(), NAME))),
             (Role::Text, format!("{value:>9}")),
-            (Role::Dim, format!("  T+{} at {}", text::clock(worst.t_s), text::place(worst.at))),
+            (Role::Dim, format!("  {}", text::wording(words, columns.saturating_sub(NAME + 12)))),
         ])
     };
-    result.summary.extremes.iter().filter(|figure| SHOWN.contains(&figure.id)).filter_map(row).collect()
+    let rows = result.summary.extremes.iter().filter(|figure| SHOWN.contains(&figure.id)).filter_map(row);
+    let mut rows: Vec<Parts> = rows.collect();
+    if !rows.is_empty() {
+        rows.insert(0, vec![(Role::Dim, " Worst values, by estimated position:".into())]);
+    }
+    rows
 }
 
 fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {
