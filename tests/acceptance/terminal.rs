@@ -162,11 +162,14 @@ fn keys_typed_ahead_of_a_question_do_not_answer_it() {
     assert!(session.bench.runs().is_empty());
     session.agree();
     session.see("▶ RUN");
+    session.until("the closed notice", |session| !session.text().contains("Question just appeared"));
     session.press("X\r");
     session.see("Question just appeared: press Enter again");
     session.see("‖ HOLD");
+    session.see("End the mission?");
     session.press("\x1b");
-    session.until("the closed question", |session| !session.text().contains("Enter: end"));
+    session.until("the closed question", |session| !session.text().contains("End the mission?"));
+    session.until("the closed notice", |session| !session.text().contains("Question just appeared"));
     session.press(" \r");
     session.see("Question just appeared: press Enter again");
     session.see("Resume?");

@@ -279,7 +279,7 @@ fn after_a_lost_link_only_an_order_moves_the_robot_again() {
     let file = scenario("goto-single-obstacle.toml");
     let vehicle = Vehicle::offer(&bench, &file, &[]);
     let mut console = Console::open(bench.command(), &[file.to_str().unwrap(), "--vehicle", &vehicle.at]);
-    console.hear("Press S to start");
+    console.hear("Enter `start` to start");
     console.order("speed 4\n");
     console.hear("a real vehicle runs in real time");
     console.order("start\nyes\n");
@@ -295,7 +295,7 @@ fn after_a_lost_link_only_an_order_moves_the_robot_again() {
     console.order("resume\nyes\n");
     console.hear("resumed");
     console.order("hold\n");
-    console.hear("held by operator");
+    console.hear("held");
     console.order("end\nyes\n");
     console.hear("Screen 7: Result.");
     assert_eq!(console.leave(), Some(1), "an aborted mission");

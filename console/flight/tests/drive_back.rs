@@ -225,7 +225,7 @@ fn notes() -> [Order; 2] {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 120, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn a_robot_that_drives_back_arrives_without_contact_and_unwinds_its_tether(

@@ -14,8 +14,8 @@ use vehicle::{
 };
 use world::{ObstacleId, RangeSet, Sighting, StationId};
 
-/// Longest time until the first readings of a vehicle, seconds.
-const FIRST_WITHIN_S: f64 = 2.0;
+/// Longest time in which no readings count because their numbers are not new, seconds.
+const UNREAD_S: f64 = 0.8;
 /// Ranges that are older than this are dropped: the robot has moved on since then.
 const RANGES_MAX_AGE_S: f64 = 0.5;
 /// The figures of the link are reported at this interval, seconds.
@@ -31,6 +31,8 @@ pub(crate) struct Inbox {
     link: Link,
     motions: Motions,
     sequence: Sequence,
+    /// Since when the numbers of all readings have not been new, seconds.
+    unread_since_s: Option<f64>,
     /// The readings since the last tick, and their stamps.
     readings: world::Readings,
     stamps: Option<Stamps>,
@@ -51,6 +53,7 @@ impl Inbox {
             link: Link::default(),
             motions: Motions::default(),
             sequence: Sequence::default(),
+            unread_since_s: None,
             readings: world::Readings::default(),
             stamps: None,
             faulty: 0,
@@ -122,8 +125,10 @@ impl Inbox {
     /// Adds readings. Readings that arrive twice, or after later ones, are left out: their motion would count twice.
     fn read(&mut self, readings: &Readings, now_s: f64) {
         if !self.sequence.add(readings.seq) {
+            self.unread_since_s.get_or_insert(now_s);
             return;
         }
+        self.unread_since_s = None;
         let source_t_s = readings.stamp_s;
         self.stamps = Some(Stamps { source_t_s, arrival_t_s: now_s });
         let offset = self.link.clock().at(now_s);
@@ -192,14 +197,17 @@ impl Inbox {
         }
         match self.link.state(now_s) {
             Reached::Lost => return (LinkState::Lost, "its readings stopped".into()),
-            Reached::Connecting if now_s > FIRST_WITHIN_S => {
-                return (LinkState::Lost, "it has sent no readings yet".into());
+            Reached::Connecting => return (LinkState::Lost, "it has not sent readings yet".into()),
+            Reached::Late | Reached::Alive
+                if self.unread_since_s.is_some_and(|since_s| now_s - since_s > UNREAD_S) =>
+            {
+                return (LinkState::Lost, "its readings are numbered like earlier ones".into());
             }
             Reached::Fault => {
                 let fault = self.link.fault().unwrap_or_default();
                 return (LinkState::Faulty, foreign::plain(fault).into_owned());
             }
-            Reached::Connecting | Reached::Late | Reached::Alive => {}
+            Reached::Late | Reached::Alive => {}
         }
         if let Some(finding) = self.link.finding() {
             return (LinkState::Faulty, finding.to_string());

@@ -85,6 +85,10 @@ fn misfits(scenario: &Scenario, hello: &Hello) -> Vec<String> {
         hello.lease_max_s < LEASE_S,
         format!("it honours leases of at most {} s; {LEASE_S} s is needed", hello.lease_max_s),
     );
+    refuse(
+        hello.period_s > LEASE_S,
+        format!("it sends readings every {} s; at most {LEASE_S} s is allowed", hello.period_s),
+    );
     let is_unicycle = mission.limits.motion == Motion::Unicycle;
     refuse(
         !is_unicycle && hello.motion == MotionKind::Unicycle,

@@ -88,10 +88,11 @@ pub fn verify(folder: &Path, plugins: &PluginDirs, from_journal: bool) -> anyhow
     if let Some(measured) = Ticks::open(&journal_of(folder))?.opened()?.measured.clone() {
         return verify_located(folder, &measured);
     }
-    let proof = Proof::begin(folder)?;
+    // A journal that cannot be read fails below, with its place.
+    let proof = (!from_journal).then(|| Proof::begin(folder)).transpose();
     let findings = findings(folder, (!from_journal).then_some(plugins))?;
     let (is_equal, mut lines) = (findings.are_equal(), lines(&findings, plugins));
-    if is_equal && !from_journal {
+    if is_equal && let Some(proof) = proof? {
         let not_kept = proof.keep(folder, SystemTime::now()).err();
         lines.extend(not_kept.map(|error| format!("note: the run could not be marked as verified: {error}")));
     }

@@ -26,6 +26,9 @@ pub(super) fn difference(reported: Summary, computed: &Summary) -> Option<String
 
 /// Leaves out the figures that older reports do not have.
 fn leave_out_new(computed: &mut Summary, reported: &Summary) {
+    if reported.extremes.is_empty() {
+        computed.extremes.clear();
+    }
     let mut plates = reported.floor.iter().flat_map(|floor| &floor.plates);
     let is_older = plates.all(|plate| plate.error_max_m.is_none());
     for plate in computed.floor.iter_mut().flat_map(|floor| &mut floor.plates).filter(|_| is_older) {

@@ -121,7 +121,7 @@ pub struct Settling {
 /// When the open question appeared.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Appeared {
-    /// The time, on the console's own clock, seconds.
+    /// The time at which it was drawn or, until then, at which it was asked, on the console's own clock, seconds.
     pub at_mono_s: f64,
     /// The number of the first frame that shows it; `None` until it is drawn.
     pub frame: Option<u64>,

@@ -183,7 +183,13 @@ fn ground(byte: u8, inputs: &mut Vec<Input>) -> State {
 
 /// A control character of eight bits: one byte instead of Esc and another.
 fn control(byte: u8, inputs: &mut Vec<Input>) -> State {
-    escape(byte - 0x40, inputs)
+    match byte - 0x40 {
+        seven @ (b'[' | b'O' | b']' | b'P' | b'X' | b'^' | b'_') => escape(seven, inputs),
+        _ => {
+            inputs.push(Input::OtherKey);
+            State::Ground
+        }
+    }
 }
 
 /// The byte after Esc.
@@ -202,8 +208,9 @@ fn escape(byte: u8, inputs: &mut Vec<Input>) -> State {
         0xa0.. => {
             return Utf8::begin(byte).map_or(State::Ground, |utf8| State::Character { utf8, is_alt: true });
         }
-        // Alt is not used: over a slow connection it cannot be distinguished from Esc followed by a letter.
-        _ => inputs.push(Input::OtherKey),
+        // Over a slow connection, Alt cannot be distinguished from Esc followed by a letter. Esc closes an open question;
+        // the letter does nothing.
+        _ => inputs.push(Input::Key(Key::Esc.into())),
     }
     State::Ground
 }
@@ -216,7 +223,7 @@ fn character(mut utf8: Utf8, is_alt: bool, byte: u8, inputs: &mut Vec<Input>) ->
     match utf8.take(byte) {
         None => return State::Character { utf8, is_alt },
         Some(Ok(letter @ '\u{80}'..='\u{9f}')) => return control(letter as u8, inputs),
-        Some(Ok(_)) if is_alt => inputs.push(Input::OtherKey),
+        Some(Ok(_)) if is_alt => inputs.push(Input::Key(Key::Esc.into())),
         Some(Ok(letter)) => inputs.push(Input::Key(Key::Char(letter).into())),
         Some(Err(_)) => {}
     }

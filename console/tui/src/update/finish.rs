@@ -4,6 +4,7 @@ use super::message::{Effect, Query};
 use super::offer::{accepted, offered, refuse};
 use super::overlay::{ask, open};
 use super::send::{hold_now, send};
+use super::unseen;
 use crate::actions::ActionId;
 use crate::model::{Model, Overlay, ui::Ask};
 use mission::{Order, WayBack};
@@ -34,6 +35,8 @@ pub(super) fn found(model: &mut Model, way: Result<WayBack, String>) {
         let why = format!("no way back: {why}");
         model.ui.overlay = Overlay::None;
         refuse(model, why);
+    } else if is_asked || matches!(model.ui.overlay, Overlay::Finish { .. }) {
+        unseen::changed(model);
     }
     model.live.way_back = Some(way);
 }

@@ -3,7 +3,7 @@
 use super::act::act;
 use super::alarms;
 use super::message::Effect;
-use super::offer::{accepted, offered, refuse};
+use super::offer::{accepted, demand, offered, refuse};
 use super::preflight;
 use super::preset::take as take_preset;
 use super::replay;
@@ -26,13 +26,20 @@ pub(crate) fn ask(model: &mut Model, ask: Ask) -> Vec<Effect> {
     open(model, Overlay::Confirm(ask))
 }
 
-/// Withdraws a question whose confirmation would move the robot; returns whether such a question was open.
+/// Withdraws a question whose confirmation would move the robot, or whose text a HOLD makes untrue; returns whether such a question was open.
 pub(super) fn withdraw_motion(model: &mut Model) -> bool {
     let moves = matches!(
         model.ui.overlay,
         Overlay::Stepping
             | Overlay::Finish { .. }
-            | Overlay::Confirm(Ask::Start(_) | Ask::Resume | Ask::DriveBack | Ask::FlyUncertified)
+            | Overlay::Confirm(
+                Ask::Start(_)
+                    | Ask::Resume
+                    | Ask::DriveBack
+                    | Ask::FlyUncertified
+                    | Ask::TakePlan
+                    | Ask::Promote
+            )
     );
     if moves {
         model.ui.overlay = Overlay::None;
@@ -117,6 +124,7 @@ fn agree(model: &mut Model, ask: &Ask) -> Vec<Effect> {
     let can = offered(model, id).and_then(|()| match ask {
         Ask::Set { .. } => accepted(model, &ask.order()),
         Ask::DriveBack => finish::can_drive_back(model),
+        Ask::DrawZone(_) => demand(model.live.zone_cost.is_some(), "the cost of the zone is not known yet"),
         _ => Ok(()),
     });
     match (can, ask) {

@@ -12,8 +12,7 @@ const READ_S: f64 = 0.2;
 
 /// The open question, if any.
 pub(super) fn question(model: &Model) -> Option<&Overlay> {
-    let overlay = &model.ui.overlay;
-    matches!(overlay, Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping).then_some(overlay)
+    Some(&model.ui.overlay).filter(|overlay| overlay.is_question())
 }
 
 /// Records when a question appears; `before` is the question that was open before the message.
@@ -22,14 +21,22 @@ pub(super) fn note(model: &mut Model, before: Option<&Overlay>) {
     if now == before {
         return;
     }
-    let at_mono_s = model.console.now.mono_s;
-    model.console.appeared = now.is_some().then_some(Appeared { at_mono_s, frame: None });
+    match now {
+        Some(_) => changed(model),
+        None => model.console.appeared = None,
+    }
+}
+
+/// Records that the text of the open question has changed: it must be read again.
+pub(super) fn changed(model: &mut Model) {
+    model.console.appeared = Some(Appeared { at_mono_s: model.console.now.mono_s, frame: None });
 }
 
 /// Records that the open question is on the screen, from this frame on.
 pub(super) fn drawn(model: &mut Model, frame: u64) {
-    if let Some(appeared) = &mut model.console.appeared {
-        appeared.frame.get_or_insert(frame);
+    let at_mono_s = model.console.now.mono_s;
+    if let Some(appeared) = model.console.appeared.as_mut().filter(|appeared| appeared.frame.is_none()) {
+        *appeared = Appeared { at_mono_s, frame: Some(frame) };
     }
 }
 

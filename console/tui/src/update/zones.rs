@@ -4,6 +4,7 @@ use super::command::Value;
 use super::message::{Effect, Query};
 use super::offer::{accepted, demand, refuse};
 use super::overlay::ask;
+use super::unseen;
 use crate::model::sketch::Form;
 use crate::model::ui::Ask;
 use crate::model::{Model, Overlay, Sketch};
@@ -42,7 +43,10 @@ pub(super) fn priced(model: &mut Model, corners: &[Point], cost: Result<ZoneCost
         matches!(&model.ui.overlay, Overlay::Confirm(Ask::DrawZone(asked)) if asked.as_slice() == corners);
     match cost {
         _ if !is_asked => {}
-        Ok(cost) => model.live.zone_cost = Some(cost),
+        Ok(cost) => {
+            model.live.zone_cost = Some(cost);
+            unseen::changed(model);
+        }
         Err(why) => {
             model.ui.overlay = Overlay::None;
             refuse(model, why);

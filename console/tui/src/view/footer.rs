@@ -18,13 +18,16 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 /// The actions that are dropped first if space is short.
-const DISPENSABLE: [ActionId; 19] = [
+const DISPENSABLE: [ActionId; 22] = [
     ActionId::Difference,
     ActionId::Align,
     ActionId::Jump(Jump::Minute),
     ActionId::Complete,
     ActionId::AcknowledgeAll,
     ActionId::NextPane,
+    ActionId::Copy,
+    ActionId::NextLike,
+    ActionId::PlannerMessages,
     ActionId::Parameters,
     ActionId::Faster,
     ActionId::Bookmark,

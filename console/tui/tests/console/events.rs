@@ -55,7 +55,7 @@ fn events() {
 fn planner_messages_are_hidden_until_they_are_asked_for_and_then_listed_as_one() {
     let mut screen = with_events();
     let said = |screen: &mut Screen, n: u32| {
-        let (planner, level) = ("rpf".to_owned(), planner_api::LogLevel::Info);
+        let (planner, level) = ("rpf".to_owned(), planner_api::LogLevel::Debug);
         let message = format!("candidate {n} is longer");
         let event = screen.mission.now(EventKind::PlannerLogged { planner, level, message });
         screen.hear(RunMsg::Events(vec![event]));

@@ -232,7 +232,10 @@ fn result() {
     for page in pages {
         screen.press([tui::Key::Tab]);
         let shown = text(&drawn(&screen.model, RICH, (60, 16)));
-        assert!(shown.contains(&format!("─ {page}")), "{page}\n{shown}");
+        assert!(
+            shown.contains(&format!("┌─▸ {page}")) || shown.contains(&format!("┌─ {page}")),
+            "{page}\n{shown}"
+        );
     }
 }
 

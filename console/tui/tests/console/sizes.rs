@@ -15,7 +15,9 @@ pub(crate) fn store(name: &str, screen: &mut Screen, is_free: fn(&str) -> bool) 
     for size in SIZES {
         screen.send(Msg::Resize { width: size.0, height: size.1 });
         let shown = text(&drawn(&screen.model, RICH, size));
-        let cut = shown.split(['│', '\n']).filter(|part| part.contains('…') && !is_free(part));
+        // `resume…` is the whole label of an action that asks first.
+        let is_cut = |part: &str| part.replace("resume…", "").contains('…') && !is_free(part);
+        let cut = shown.split(['│', '\n']).filter(|part| is_cut(part));
         cuts.extend(cut.filter(|_| size.0 >= 80).map(|part| format!("{size:?}: {part}")));
         let plain = text(&drawn(&screen.model, PLAIN, size));
         let plain = if plain == shown { String::new() } else { format!("\n{plain}") };

@@ -13,7 +13,8 @@ impl Motions {
     /// The motion that these readings report: since the last pose if they have one, otherwise since the readings before
     /// them. `None` if nothing is known.
     pub fn take(&mut self, readings: &Readings) -> Option<Odometry> {
-        let Some(pose) = readings.pose else { return readings.odometry };
+        // The next pose contains the motion of readings without one.
+        let Some(pose) = readings.pose else { return readings.odometry.filter(|_| self.before.is_none()) };
         let (before_s, before) = self.before.replace((readings.stamp_s, pose))?;
         let over_s = readings.stamp_s - before_s;
         (over_s > 0.0).then(|| between(&before, &pose, over_s))

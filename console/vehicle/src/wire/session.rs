@@ -47,8 +47,14 @@ impl FromSession {
                 Ok(())
             }
             FromVehicle::Readings(readings) => {
-                let limits = self.greeted("readings")?.limits;
+                let Hello { limits, has, .. } = *self.greeted("readings")?;
                 readings.check()?;
+                if (has.odometry || has.pose) && readings.odometry.is_none() && readings.pose.is_none() {
+                    return misfit(
+                        "readings.odometry",
+                        "is missing, and so is `pose`; `hello.has` promises one of them",
+                    );
+                }
                 self.moves(&limits, readings)?;
                 runs_on("readings.stamp_s", &mut self.newest_s, readings.stamp_s)?;
                 self.stands_at(readings);

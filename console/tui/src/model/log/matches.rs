@@ -179,9 +179,9 @@ mod tests {
 
     fn said(planner: &str, n: usize) -> Entry {
         let (planner, message) = (planner.to_owned(), n.to_string());
-        let kind = EventKind::PlannerLogged { planner, level: planner_api::LogLevel::Info, message };
+        let kind = EventKind::PlannerLogged { planner, level: planner_api::LogLevel::Debug, message };
         let what = What::Event(Box::new(super::super::Occurrence { kind, robot: None, range: None }));
-        let (severity, source) = (Severity::Info, "plan".into());
+        let (severity, source) = (Severity::Debug, "plan".into());
         Entry { tick: 0, t_s: 1.0, severity, source, text: n.to_string(), count: 1, what }
     }
 

@@ -108,7 +108,7 @@ fn messages_of_planners_about_their_own_work_pass_only_if_a_term_asks_for_them()
         Entry { what, ..entry(600.0, severity, "plan", "rpf: 11 candidates") }
     };
     let mut log = Log::default();
-    log.push(said(LogLevel::Info, Severity::Info));
+    log.push(said(LogLevel::Debug, Severity::Debug));
     log.push(said(LogLevel::Warn, Severity::Watch));
     let passing = |text: &str| log.passing(&Filter::parse(text), 0).collect::<Vec<u64>>();
     assert_eq!([passing(""), passing("rpf"), passing("sev>=info")], [[1], [1], [1]]);
