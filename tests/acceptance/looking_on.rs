@@ -73,7 +73,7 @@ fn an_onlooker_sees_a_run_under_way_and_its_end_and_cannot_stop_it() {
     let mut onlooker = view(&bench, &run);
     onlooker.hear("Mission running");
     onlooker.order("hold\nend\n");
-    onlooker.hear("VIEW: this console is view-only");
+    onlooker.hear("VIEW only: give orders on the console");
     pilot.order("inject A dead 5s\n");
     onlooker.hear("fault injected: station A dead for 5 s");
     pilot.order("end\nyes\n");
@@ -97,7 +97,7 @@ fn an_onlooker_is_informed_that_the_console_of_the_run_was_killed() {
     let onlooker = view(&bench, &bench.runs().remove(0));
     onlooker.hear("Mission running");
     pilot.child.kill().unwrap();
-    onlooker.hear("the run was not closed: its console has exited");
+    onlooker.hear("CONSOLE LOST: the run was not closed");
     onlooker.leave();
 }
 

@@ -14,6 +14,8 @@ use vehicle::{
 };
 use world::{ObstacleId, RangeSet, Sighting, StationId};
 
+/// Longest time until the first readings of a vehicle, seconds.
+const FIRST_WITHIN_S: f64 = 2.0;
 /// Longest time in which no readings count because their numbers are not new, seconds.
 const UNREAD_S: f64 = 0.8;
 /// Ranges that are older than this are dropped: the robot has moved on since then.
@@ -197,7 +199,9 @@ impl Inbox {
         }
         match self.link.state(now_s) {
             Reached::Lost => return (LinkState::Lost, "its readings stopped".into()),
-            Reached::Connecting => return (LinkState::Lost, "it has not sent readings yet".into()),
+            Reached::Connecting if now_s > FIRST_WITHIN_S => {
+                return (LinkState::Lost, "it has not sent readings yet".into());
+            }
             Reached::Late | Reached::Alive
                 if self.unread_since_s.is_some_and(|since_s| now_s - since_s > UNREAD_S) =>
             {
@@ -207,7 +211,7 @@ impl Inbox {
                 let fault = self.link.fault().unwrap_or_default();
                 return (LinkState::Faulty, foreign::plain(fault).into_owned());
             }
-            Reached::Late | Reached::Alive => {}
+            Reached::Connecting | Reached::Late | Reached::Alive => {}
         }
         if let Some(finding) = self.link.finding() {
             return (LinkState::Faulty, finding.to_string());

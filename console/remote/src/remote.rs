@@ -178,7 +178,7 @@ fn greeted(
             }
         }
         let inbox = shared.inbox();
-        if let Some(hello) = inbox.hello().filter(|_| inbox.heard() > 0) {
+        if let Some(hello) = inbox.hello() {
             return Ok((hello.clone(), write));
         }
         if let Some(why) = inbox.closed() {
