@@ -128,7 +128,7 @@ fn a_live_run_has_no_figure_that_needs_the_truth_and_its_reports_say_live() {
     let name = run.to_str().unwrap();
     let text = bench.tankops(&["report", name]);
     assert!(text.out.starts_with("LIVE: simulator of goto-single-obstacle"), "{text:?}");
-    assert!(text.out.contains("figures that need the true position do not exist"), "{text:?}");
+    assert!(text.out.contains("no figures that need the true position"), "{text:?}");
     let page = bench.tankops(&["report", name, "-o", "report.html"]);
     let html =
         std::fs::read_to_string(bench.path().join("report.html")).unwrap_or_else(|_| panic!("{page:?}"));
@@ -419,7 +419,7 @@ fn a_vehicle_that_does_not_fit_is_refused_with_every_reason() {
     for (vehicle, why) in [
         (&["--vehicle"][..], "`vehicle.at`"),
         (&["--vehicle", "serial:1"], "is not a vehicle address"),
-        (&["--vehicle", "tcp:192.0.2.1:9"], "--vehicle-network allows it"),
+        (&["--vehicle", "tcp:192.0.2.1:9"], "`--vehicle-network` allows this"),
         (&["--vehicle", "unix:nowhere"], "cannot drive the vehicle at unix:nowhere"),
         (&["--vehicle", "run:true"], "before it introduced the vehicle"),
     ] {
