@@ -200,6 +200,10 @@ fn hold_is_heard_behind_whatever_the_terminal_sends() {
         session.send(&[rubbish, b" "].concat());
         session.see("‖ HOLD");
         assert!(!session.text().contains("Resume?"), "{}", rubbish.escape_ascii());
+        if rubbish.starts_with(b"\x1b[200~") {
+            // Spaces belong to a paste until it ends.
+            session.send(b"\x1b[201~");
+        }
         // The sequence has broken off when a space is a key again.
         session.press_until(" ", "Resume?");
         session.agree();

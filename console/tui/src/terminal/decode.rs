@@ -71,6 +71,9 @@ const INTERRUPT: u8 = 0x03;
 const LONE_ESC: Duration = Duration::from_millis(50);
 /// A sequence has broken off if nothing follows within this time.
 const BROKEN_OFF: Duration = Duration::from_millis(300);
+/// A paste has broken off if nothing follows within this time. The rest of a paste counts as keys, so this time is
+/// longer than a connection usually stalls.
+const PASTE_BROKEN_OFF: Duration = Duration::from_secs(5);
 /// The greatest length of a paste in bytes; what follows is dropped.
 const LONGEST_PASTE: usize = 1 << 16;
 /// The end of a paste.
@@ -120,6 +123,7 @@ impl Decoder {
         match self.state {
             State::Ground => None,
             State::Escape | State::StringEscape(_) => Some(LONE_ESC),
+            State::Paste { .. } => Some(PASTE_BROKEN_OFF),
             _ => Some(BROKEN_OFF),
         }
     }
@@ -183,21 +187,28 @@ fn ground(byte: u8, inputs: &mut Vec<Input>) -> State {
 
 /// A control character of eight bits: one byte instead of Esc and another.
 fn control(byte: u8, inputs: &mut Vec<Input>) -> State {
-    match byte - 0x40 {
-        seven @ (b'[' | b'O' | b']' | b'P' | b'X' | b'^' | b'_') => escape(seven, inputs),
-        _ => {
-            inputs.push(Input::OtherKey);
-            State::Ground
-        }
+    introduced(byte - 0x40).unwrap_or_else(|| {
+        inputs.push(Input::OtherKey);
+        State::Ground
+    })
+}
+
+/// The sequence that Esc and this byte begin.
+fn introduced(byte: u8) -> Option<State> {
+    match byte {
+        b'[' => Some(State::Csi(Csi::default())),
+        b'O' => Some(State::Ss3),
+        b']' | b'P' | b'X' | b'^' | b'_' => Some(State::String(ControlString::begin(byte))),
+        _ => None,
     }
 }
 
 /// The byte after Esc.
 fn escape(byte: u8, inputs: &mut Vec<Input>) -> State {
+    if let Some(state) = introduced(byte) {
+        return state;
+    }
     match byte {
-        b'[' => return State::Csi(Csi::default()),
-        b'O' => return State::Ss3,
-        b']' | b'P' | b'X' | b'^' | b'_' => return State::String(ControlString::begin(byte)),
         ESC => {
             inputs.push(Input::Key(Key::Esc.into()));
             return State::Escape;
@@ -208,8 +219,8 @@ fn escape(byte: u8, inputs: &mut Vec<Input>) -> State {
         0xa0.. => {
             return Utf8::begin(byte).map_or(State::Ground, |utf8| State::Character { utf8, is_alt: true });
         }
-        // Over a slow connection, Alt cannot be distinguished from Esc followed by a letter. Esc closes an open question;
-        // the letter does nothing.
+        // Alt and a key cannot be distinguished from Esc followed by a key. The Esc counts, because it moves nothing and
+        // may cancel a question; the key does not count.
         _ => inputs.push(Input::Key(Key::Esc.into())),
     }
     State::Ground

@@ -159,14 +159,16 @@ pub(crate) fn run_at_home(model: &Model) -> Option<String> {
 /// Requests what is known about the selected run, if there is room to show it. While the robot moves, the disk and the
 /// processor are left to the mission.
 pub(super) fn glimpse(model: &mut Model) -> Option<Effect> {
-    let is_shown = model.ui.arrangement() == Arrangement::Wide && !model.live.may_move();
+    if model.ui.arrangement() != Arrangement::Wide || model.live.may_move() {
+        return None;
+    }
     let run = match model.ui.screen {
         Screen::Home if model.home.list == HomeList::Runs => model.home.selected_run(),
         Screen::Review => model.review.run(&model.home),
         _ => None,
     }?;
     let key = (run.name.clone(), run.end.clone());
-    (is_shown && model.home.glimpses.ask(key.clone())).then_some(Effect::Glimpse(key))
+    model.home.glimpses.ask(key.clone()).then_some(Effect::Glimpse(key))
 }
 
 /// The open run, if it is a replay or has ended.

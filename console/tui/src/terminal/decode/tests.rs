@@ -53,13 +53,26 @@ fn every_key_of_common_terminals_is_known() {
 }
 
 #[test]
-fn alt_releases_and_unknown_keys_are_no_keys() {
+fn alt_and_a_key_count_as_esc_alone() {
+    // Esc followed by a key arrives like this over a slow connection, and must cancel an open question.
+    for bytes in ["\x1bS", "\x1bk", "\x1bé", "\x1b\r"] {
+        assert_eq!(decoded(bytes.as_bytes()), keys(&[Key::Esc]), "{bytes:?}");
+    }
+    assert_eq!(decoded(b"\x1bk\r"), keys(&[Key::Esc, Key::Enter]));
+    assert!(stops(&decoded(b"\x1b ")));
+}
+
+#[test]
+fn a_paste_outlasts_a_connection_that_stalls() {
+    let (mut decoder, mut inputs) = (Decoder::default(), Vec::new());
+    decoder.feed(b"\x1b[200~first line", &mut inputs);
+    assert!(decoder.patience() >= Some(Duration::from_secs(2)));
+}
+
+#[test]
+fn releases_and_unknown_keys_are_no_keys() {
     for bytes in ["\x1b[1;3A", "\x1b[97;1:3u", "\x1b[2~", "\x1bOz"] {
         assert_eq!(decoded(bytes.as_bytes()), [Input::OtherKey], "{bytes:?}");
-    }
-    // It may be Esc and another key in one piece: Esc closes a question, the other key does nothing.
-    for bytes in ["\x1bS", "\x1bé", "\x1b\r"] {
-        assert_eq!(decoded(bytes.as_bytes()), keys(&[Key::Esc]), "{bytes:?}");
     }
     let repeat = KeyPress { repeat: true, ..Key::Char('a').into() };
     assert_eq!(decoded(b"\x1b[97;1:2u"), [Input::Key(repeat)]);
