@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn addresses_are_read_as_they_are_written() {
         for text in
-            ["loopback", "unix:/tmp/robot", "tcp:localhost:4710", "udp:127.0.0.1:1", "run:python3 adapter.py"]
+            ["loopback", "unix:robot.sock", "tcp:localhost:4710", "udp:127.0.0.1:1", "run:python3 adapter.py"]
         {
             assert_eq!(text.parse::<Address>().unwrap().to_string(), text);
         }

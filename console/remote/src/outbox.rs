@@ -57,7 +57,8 @@ impl Outbox {
         self.changed.notify_all();
     }
 
-    /// Waits for the next message; a ping is due if there is no command for some time, `Bye` once the outbox is closed.
+    /// Waits for the next message: the newest command, a ping after some time without commands, or `Bye` after the outbox
+    /// was closed.
     pub(crate) fn next(&self, now_s: impl Fn() -> f64, last_ping_s: &mut f64) -> ToVehicle {
         let mut waiting = self.lock();
         loop {

@@ -1,7 +1,7 @@
 //! The port between a flight and a vehicle, which can be simulated, recorded or real.
 //!
 //! A flight calls [`Vehicle::sense`] once at the start of each tick and [`Vehicle::act`] once at its end. Neither call
-//! waits: a vehicle in another process hands over what has arrived since the last tick.
+//! waits: for a vehicle in another process, `sense` returns the readings that have arrived since the last tick.
 
 use geometry::Drive;
 use serde::{Deserialize, Serialize};

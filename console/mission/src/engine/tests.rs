@@ -19,6 +19,7 @@ use crate::{
     ask::{Answer, Ask, Given, PlanAsk, Said, StepAsk, TaskLeft, What},
     chart::Chart,
     config::{BetterPlan, ScanConfig, TaskConfig},
+    event::{JOURNAL_VERSION, RunOpened},
     phase::{Gait, Hold, HoldReason, Outcome},
     planner::{
         Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo,
@@ -211,6 +212,26 @@ fn drawing() -> World {
         stations: at.iter().enumerate().map(station).collect(),
         zones: vec![],
     }
+}
+
+/// The first event of a run.
+fn opened(config: &MissionConfig) -> EventKind {
+    let world = drawing();
+    let floor = Floor::new(&world, config.cell_m, config.room_m(), config.swath_m, config.start.position);
+    EventKind::RunOpened(Box::new(RunOpened {
+        journal_version: JOURNAL_VERSION,
+        tankops_version: String::new(),
+        scenario: String::new(),
+        scenario_toml: String::new(),
+        seed: 1,
+        world,
+        mission: config.clone(),
+        floor,
+        plates: None,
+        checklist: vec![],
+        measured: None,
+        vehicle: None,
+    }))
 }
 
 fn config() -> MissionConfig {

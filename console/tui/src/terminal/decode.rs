@@ -287,7 +287,7 @@ fn paste(mut text: Vec<u8>, ending: usize, byte: u8, inputs: &mut Vec<Input>) ->
         }
         return State::Paste { text, ending: ending + 1 };
     }
-    // Only the first byte of the end is an Esc, so the end can begin anew only with this byte.
+    // The end begins with its only Esc, so after a mismatch it can begin again only with this byte.
     let is_esc = byte == ESC;
     let more = PASTE_END[..ending].iter().copied().chain((!is_esc).then_some(byte));
     let room = LONGEST_PASTE.saturating_sub(text.len());

@@ -27,8 +27,7 @@ pub(super) fn rows(look: &Look, columns: u16) -> u16 {
     1 + u16::from(is_typed) + question_lines(look.model, columns).len() as u16
 }
 
-/// The open question in as many lines as it needs. If space is short, clauses of a question about nothing that could
-/// be overlooked are left out.
+/// The open question in as many lines as it needs. In a small area, a question that needs no figures is shortened.
 fn question_lines(model: &Model, columns: u16) -> Vec<String> {
     // The ways to end the mission are in a list.
     let is_list = matches!(model.ui.overlay, Overlay::Finish { .. });

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     AskId, FoldedStanding, WorkerId,
-    event::{Effort, JOURNAL_VERSION, OfferEnd, OfferStage, RunOpened},
+    event::{Effort, OfferEnd, OfferStage},
 };
 use planner_api::Reason;
 use proptest::prelude::*;
@@ -73,25 +73,6 @@ fn folded(flight: &Flight) -> FoldedStanding {
     let mut folded = FoldedStanding::default();
     flight.events.iter().for_each(|event| folded.apply(&event.kind));
     folded
-}
-
-fn opened(config: &MissionConfig) -> EventKind {
-    let world = drawing();
-    let floor = Floor::new(&world, config.cell_m, config.room_m(), config.swath_m, config.start.position);
-    EventKind::RunOpened(Box::new(RunOpened {
-        journal_version: JOURNAL_VERSION,
-        tankops_version: String::new(),
-        scenario: String::new(),
-        scenario_toml: String::new(),
-        seed: 1,
-        world,
-        mission: config.clone(),
-        floor,
-        plates: None,
-        checklist: vec![],
-        measured: None,
-        vehicle: None,
-    }))
 }
 
 /// What was said of better plans, each with its tick.

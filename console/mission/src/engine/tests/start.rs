@@ -3,7 +3,7 @@
 use super::arrivals::replay;
 use super::covering::covering;
 use super::*;
-use crate::{FoldedStanding, PlanId, Readiness, Refusal, RunOpened, event::JOURNAL_VERSION};
+use crate::{FoldedStanding, PlanId, Readiness, Refusal};
 use proptest::prelude::*;
 use world::tether::Limits as CableLimits;
 
@@ -118,26 +118,6 @@ fn where_nobody_looks_on_a_mission_begins_without_a_plan_that_was_seen() {
     let plan = planned(&mut flight);
     let mut other = Flight::new(config());
     assert_eq!(refusal(&other.tick(&[Order::StartPlan(plan)])), None);
-}
-
-fn opened(config: &MissionConfig) -> EventKind {
-    let world = drawing();
-    let floor =
-        Floor::new(&world, config.cell_m, config.limits.radius_m, config.swath_m, config.start.position);
-    EventKind::RunOpened(Box::new(RunOpened {
-        journal_version: JOURNAL_VERSION,
-        tankops_version: String::new(),
-        scenario: String::new(),
-        scenario_toml: String::new(),
-        seed: 1,
-        world,
-        mission: config.clone(),
-        floor,
-        plates: None,
-        checklist: vec![],
-        measured: None,
-        vehicle: None,
-    }))
 }
 
 /// What an operator orders before the start; a start names the plan that was ready so many ticks ago.

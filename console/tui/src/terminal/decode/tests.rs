@@ -11,7 +11,7 @@ fn keys(keys: &[Key]) -> Vec<Input> {
     keys.iter().map(|key| Input::Key((*key).into())).collect()
 }
 
-/// Whether the robot is stopped by what was decoded.
+/// Whether the decoded inputs stop the robot.
 fn stops(inputs: &[Input]) -> bool {
     let space = Input::Key(Key::Char(' ').into());
     inputs.iter().any(|input| *input == space || *input == Input::Stop)

@@ -24,7 +24,7 @@ pub(super) struct Pane<'a> {
     /// The selected row; `None` if the list does not respond to the arrow keys.
     pub selected: Option<usize>,
     pub list: Rows,
-    /// What is shown if there are no rows.
+    /// The text of a list without rows.
     pub empty: String,
     /// The title and the lines about the selected row.
     pub about: Option<(String, Vec<Parts>)>,

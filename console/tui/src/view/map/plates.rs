@@ -65,7 +65,7 @@ fn drawing(map: &PlateMap, floor: &Floor, window: Window, has_dots: bool) -> Pla
         let Some(here) = plate(x, y) else { continue };
         let (count, sum) = seen.entry(here).or_default();
         (*count, *sum) = (*count + 1, *sum + center(x, y).coords);
-        // Every other dot: the outlines of plates are no paths.
+        // Every other dot distinguishes the outlines of plates from paths.
         let is_on = !has_dots || (x + y).is_multiple_of(2);
         if is_on && [plate(x + 1, y), plate(x, y + 1)].into_iter().flatten().any(|other| other != here) {
             dots.push((x, y));
