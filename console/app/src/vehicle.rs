@@ -31,7 +31,7 @@ pub(crate) fn simulate(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
     let vehicle = Behind::new(&scenario);
     let vehicle = if args.lockstep { vehicle } else { vehicle.with_pose() };
     let FromVehicle::Hello(hello) = vehicle.hello() else {
-        anyhow::bail!("the simulated vehicle has no introduction")
+        anyhow::bail!("the simulated vehicle sent no `hello` message")
     };
     let server = Server::listen(&args.listen, Hello::clone(&hello), args.vehicle_network)
         .map_err(|error| bad_input(format!("cannot listen on {}: {error}", args.listen)))?;

@@ -20,7 +20,7 @@ pub struct Tally {
     pub first_fix_m: Option<Point>,
     /// Mission time of the first fix, seconds.
     pub first_fix_t_s: Option<f64>,
-    /// Longer half axis of the 95 % ellipse of the first fix, metres.
+    /// Longer semi-axis of the 95 % ellipse of the first fix, metres.
     pub first_fix_error_95_m: Option<f64>,
     /// How often each station was rejected for its residual, by station number.
     pub left_out: BTreeMap<u32, u64>,

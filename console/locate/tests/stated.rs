@@ -24,7 +24,7 @@ const ELLIPSE_95: f64 = 5.991_464_547;
 const ENOUGH: u64 = 200;
 /// Fewer fixes than this count as few.
 const FEW: u64 = 200;
-/// Covariances in events have four significant digits: half axes are accurate to this share.
+/// Covariances in events have four significant digits: semi-axes are accurate to this share.
 const ROUNDING: f64 = 5e-4;
 
 /// Counts over sets of one kind.

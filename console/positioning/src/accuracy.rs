@@ -38,7 +38,7 @@ pub struct Forecast {
 /// The forecast for one place.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Accuracy {
-    /// Longer half axis of the 95 % ellipse of a single fix, metres; `None` where the ranges alone give no fix.
+    /// Longer semi-axis of the 95 % ellipse of a single fix, metres; `None` where the ranges alone give no fix.
     pub error_95_m: Option<f64>,
     /// Geometric dilution of precision; `None` where the ranges alone give no fix.
     pub gdop: Option<f64>,

@@ -26,7 +26,7 @@ const THINNEST_M: f64 = 1e-6;
 ///
 /// The covariance is that of the same posterior. The 95 % ellipse contains more than 95 % of the posterior, because no
 /// position outside the set is possible: no point of a convex set is farther than `sqrt(8)` standard deviations from
-/// the mean, which is 1.16 times the longer half axis.
+/// the mean, which is 1.16 times the longer semi-axis.
 ///
 /// Use this solver only if the bound is known to hold: with any other noise the set soon becomes empty, which
 /// [`FixError::EmptySet`] reports.

@@ -132,7 +132,7 @@ impl Ekf {
         self.covariance.fixed_view::<2, 2>(0, 0).into_owned()
     }
 
-    /// Longer half axis of the 95 % ellipse of the position, metres.
+    /// Longer semi-axis of the 95 % ellipse of the position, metres.
     pub fn error_95_m(&self) -> f64 {
         ellipse_95(&self.position_covariance()).0
     }

@@ -147,7 +147,7 @@ pub struct Fix {
 }
 
 impl Fix {
-    /// Returns the half axes of the 95 % ellipse, metres, and the direction of the longer one, radians.
+    /// Returns the semi-axes of the 95 % ellipse, metres, and the direction of the longer one, radians.
     pub fn ellipse_95(&self) -> (f64, f64, f64) {
         ellipse_95(&self.covariance)
     }
@@ -155,7 +155,7 @@ impl Fix {
     /// Checks that the position can lie in the tank.
     ///
     /// # Errors
-    /// [`FixError::OutsideTank`] if the position is farther outside than the longer half axis of its 95 % ellipse.
+    /// [`FixError::OutsideTank`] if the position is farther outside than the longer semi-axis of its 95 % ellipse.
     pub fn check_inside(&self, boundary: &Boundary) -> Result<(), FixError> {
         let by_m = -boundary.wall_distance_m(self.position);
         if by_m > self.ellipse_95().0 { Err(FixError::OutsideTank { by_m }) } else { Ok(()) }
@@ -165,7 +165,7 @@ impl Fix {
 /// The normalised squared distance within which 95 % of a two-dimensional normal distribution lies: -2 ln 0.05.
 pub const ELLIPSE_95: f64 = 5.991_464_547_107_982;
 
-/// Returns the half axes of the 95 % ellipse of a covariance, metres, and the direction of the longer one, radians.
+/// Returns the semi-axes of the 95 % ellipse of a covariance, metres, and the direction of the longer one, radians.
 pub fn ellipse_95(covariance: &Matrix2<f64>) -> (f64, f64, f64) {
     let scale = ELLIPSE_95;
     let (a, b, c) = (covariance[(0, 0)], covariance[(0, 1)], covariance[(1, 1)]);

@@ -41,7 +41,7 @@ pub struct Smoothed {
 }
 
 impl Smoothed {
-    /// Longer half axis of the 95 % ellipse of the position, metres.
+    /// Longer semi-axis of the 95 % ellipse of the position, metres.
     pub fn error_95_m(&self) -> f64 {
         ellipse_95(&self.covariance).0
     }

@@ -274,7 +274,7 @@ impl Positioner {
         Estimate { pose: self.filter.pose(), covariance }
     }
 
-    /// Longer half axis of the 95 % ellipse of the position, metres.
+    /// Longer semi-axis of the 95 % ellipse of the position, metres.
     pub fn error_95_m(&self) -> f64 {
         ellipse_95(&(self.filter.position_covariance() + self.common)).0
     }

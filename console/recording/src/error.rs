@@ -26,7 +26,7 @@ pub enum RecordingError {
     #[error("the clock of this machine is before 1970, which the recording SDK cannot handle: set the clock")]
     Clock,
     /// The first event is not `run_opened`, so there is no world to draw.
-    #[error("a recording must begin with the event run_opened, got {got} first")]
+    #[error("a recording must begin with the event run_opened, but {got} came first")]
     NotOpened {
         /// The event that came first.
         got: String,
@@ -63,8 +63,8 @@ pub enum RecordingError {
     /// The journal failed.
     #[error(transparent)]
     Journal(#[from] JournalError),
-    /// The file for the report of a failure could not be created.
-    #[error("cannot reserve space for the report of a failure ({why}): {}", folder.display())]
+    /// The file for a failure report could not be created.
+    #[error("cannot reserve space for a failure report ({why}): {}", folder.display())]
     Marker {
         /// The error of the system.
         why: String,

@@ -222,8 +222,8 @@ fn no_link(first: &Candidate<'_>, other: &Candidate<'_>) -> String {
             )
         }
         None => format!(
-            "name is {} in {} and {} in {}, and neither run is a re-scan that names the journal of the \
-             other (continues_sha256, which `tankops rescan` writes)",
+            "name is {} in {} and {} in {}, and neither run is a re-scan of the other (`tankops rescan` \
+             writes continues_sha256, which links a re-scan to the journal that it continues)",
             first.scenario, first.name, other.scenario, other.name
         ),
     }

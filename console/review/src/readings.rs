@@ -30,7 +30,7 @@ pub fn readings(
         if recorded.difference(&computed).context("writing an event as JSON")?.is_some() {
             return Err(bad_input(format!(
                 "from tick {} on, this version of tankops computes a different run, so its readings would not be \
-                 those of the run; `tankops verify` shows the difference: {}",
+                 those of the recorded run; `tankops verify` shows the difference: {}",
                 recorded.tick,
                 path.display()
             )));

@@ -148,7 +148,8 @@ fn findings(folder: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findi
     })
 }
 
-/// The signed reports on a run as lines, and all doubts about them or about this run being the signed one.
+/// The signed reports on a run as lines, and all doubts: about these reports, and about whether this run is the one
+/// that was signed.
 fn signed(folder: &Path, now: &[SignedRun]) -> (Vec<String>, Vec<String>) {
     let Signatures { revisions, mut doubts, notes } = signatures(folder, &register());
     doubts.extend(revisions.iter().filter_map(|revision| now.iter().find_map(|run| revision.doubt(run))));
@@ -350,7 +351,7 @@ fn planner_changes(builds: &BTreeMap<String, PlannerInfo>, plugins: &PluginDirs)
     let changed = |(id, then): (&String, &PlannerInfo)| match now.iter().find(|info| info.id == *id) {
         None => Some(format!("planner {id} of the run is not installed; --from-journal does not need it")),
         Some(info) if info.sha256 != then.sha256 => Some(format!(
-            "planner {id} is a different build than in the run ({} then); --from-journal does not need it",
+            "planner {id} is not the build used in the run (version {}); --from-journal does not need it",
             then.version
         )),
         Some(_) => None,

@@ -80,7 +80,7 @@ fn missing(folder: &Path, past: &Past) -> Vec<String> {
         None => "the recording".to_owned(),
     });
     missing.push(BY_THE_CLOCK.to_owned());
-    missing.extend(recorded_failure(folder).map(|why| format!("what could not be written: {why}")));
+    missing.extend(recorded_failure(folder).map(|why| format!("the data that could not be written: {why}")));
     missing
 }
 

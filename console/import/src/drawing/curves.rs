@@ -49,7 +49,7 @@ pub(super) fn chain(vertices: &[(Point, f64)], is_closed: bool) -> Vec<Point> {
     points
 }
 
-/// Points of an elliptic arc, given by its centre, long half axis, ratio of the half axes, and parameters in radians.
+/// Points of an elliptic arc, given by its centre, long semi-axis, ratio of the semi-axes, and parameters in radians.
 /// Also returns whether this is a complete ellipse; if so, the first point is left out.
 pub(super) fn ellipse(center: Point, long: Vector, share: f64, [from, to]: [f64; 2]) -> (Vec<Point>, bool) {
     let short = Vector::new(-long.y, long.x) * share;

@@ -190,8 +190,8 @@ fn outline(entity: &Entity, map: &Affine2<f64>) -> Option<Outline> {
             let angles_deg = [entity.number(50, 0.0), entity.number(51, 360.0)];
             chain_of(arc(at(10, 20)?, entity.number(40, 0.0), angles_deg), &in_plane, false)
         }
-        // In the coordinates of the drawing: the centre, the long half axis as a vector from there, and the ratio of
-        // the half axes.
+        // In the coordinates of the drawing: the centre, the long semi-axis as a vector from there, and the ratio of
+        // the semi-axes.
         "ELLIPSE" => {
             let ends = [entity.number(41, 0.0), entity.number(42, TAU)];
             let (points, is_closed) = ellipse(at(10, 20)?, at(11, 21)?.coords, entity.number(40, 1.0), ends);

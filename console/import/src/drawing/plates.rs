@@ -145,7 +145,7 @@ fn rings(
     }
     if faces.n_loose > 0 {
         notes.push(format!(
-            "PLATES: {} lines end at no other line and divide nothing; draw seams from seam to seam or to the shell",
+            "PLATES: {} lines do not end at another line and divide no floor; draw seams from seam to seam or to the shell",
             faces.n_loose
         ));
     }

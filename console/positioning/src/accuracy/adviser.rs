@@ -24,9 +24,9 @@ const BLIND_SHARE: f64 = 0.25;
 pub struct Advice {
     /// Places on the wall, metres.
     pub places: Vec<Point>,
-    /// Longer half axis of the 95 % ellipse, metres: the mean over all places on the floor where there is a fix.
+    /// Longer semi-axis of the 95 % ellipse, metres: the mean over all places on the floor where there is a fix.
     pub mean_error_95_m: f64,
-    /// Longer half axis of the 95 % ellipse, metres: the largest value at any place where there is a fix.
+    /// Longer semi-axis of the 95 % ellipse, metres: the largest value at any place where there is a fix.
     pub worst_error_95_m: f64,
     /// Share of the floor without a fix.
     pub blind_share: f64,

@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 const BOUNDED: Bounded = Bounded { ratio: 0.05 };
 
-/// Error and longer half axis of the 95 % ellipse of a fix from stations on a ring, metres.
+/// Error and longer semi-axis of the 95 % ellipse of a fix from stations on a ring, metres.
 fn error_and_axis_m(seed: u64, repetitions: usize, n: u32) -> (f64, f64) {
     let (stations, mut draws) = (ring(n, 7.5), Draws::new(0.05, repetitions, seed));
     let truth = draws.on_disc();
@@ -24,7 +24,7 @@ proptest! {
     ) {
         let (error_m, long_m) = error_and_axis_m(seed, repetitions, n);
         // Seen from any side, a convex set is spread by a concave density, and of those a triangle's reaches furthest from
-        // its mean: sqrt(8) standard deviations, 1.16 of the longer half axis. Bent sets and sets of two pieces may reach
+        // its mean: sqrt(8) standard deviations, 1.16 of the longer semi-axis. Bent sets and sets of two pieces may reach
         // further, but a truth so far off is as rare as the small piece in which it must lie.
         prop_assert!(error_m < 3.0 * long_m, "{error_m} {long_m}");
     }

@@ -84,7 +84,7 @@ impl Ekf {
     /// Widens the estimate for an unmeasured motion of at most `most_m` metres in any direction and at most
     /// `most_rad` radians.
     ///
-    /// Every place in the 95 % ellipse, moved by up to `most_m`, lies in the new ellipse; its longer half axis is
+    /// Every place in the 95 % ellipse, moved by up to `most_m`, lies in the new ellipse; its longer semi-axis is
     /// longer by exactly `most_m`. Of all ellipses that contain the sum of an ellipse and a disc (Kurzhanski), this one
     /// has the shortest longer axis. Several short motions give the same result as one long motion. Here the covariance
     /// is a bound, not a probability: a robot that drives straight at its top speed is at the rim.

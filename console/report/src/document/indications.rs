@@ -162,7 +162,7 @@ impl Row<'_> {
         for (name, offset_m) in [("left_m", self.left_m), ("ahead_m", self.ahead_m)] {
             if offset_m.abs() > run.reach_m + ROUNDING_M {
                 let what = format!(
-                    "{offset_m} is beyond the tool, which extends {} m from its centre, half the swath",
+                    "{offset_m} is beyond the tool, which extends {} m (half the swath) from its centre",
                     run.reach_m
                 );
                 return Err(self.fault(name, what));

@@ -82,9 +82,9 @@ impl StudyFolder {
 /// Describes the difference between the stored request and the current one.
 fn difference(there: &Value, now: &Value) -> Option<&'static str> {
     if there["asked"] != now["asked"] {
-        Some("of different arguments")
+        Some("computed with different arguments")
     } else if there["program"] != now["program"] {
-        Some("of a different tankops or different plugins")
+        Some("computed by a different tankops or with different plugins")
     } else {
         None
     }

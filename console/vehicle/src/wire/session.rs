@@ -155,7 +155,7 @@ fn faster(field: &str, value: f64, limit: f64, unit: &str) -> Checked {
 fn runs_on(field: &str, newest_s: &mut Option<f64>, stamp_s: f64) -> Checked {
     let newest = newest_s.unwrap_or(stamp_s);
     if newest - stamp_s > BACK_MAX_S {
-        return misfit(field, format!("runs back by {:.3} s, from {newest} to {stamp_s}", newest - stamp_s));
+        return misfit(field, format!("goes back by {:.3} s, from {newest} to {stamp_s}", newest - stamp_s));
     }
     *newest_s = Some(newest.max(stamp_s));
     Ok(())

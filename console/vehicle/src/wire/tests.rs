@@ -106,7 +106,7 @@ fn stamps_and_poses_must_fit_the_messages_before() {
         after([at(9.0, 0.0), at(9.1, 5.0)]),
         "readings.pose.x_m: jumps by 5.000 m in 0.100 s, but the vehicle's limit is 0.4 m/s"
     );
-    assert_eq!(after([at(9.0, 0.0), at(7.9, 0.0)]), "readings.stamp_s: runs back by 1.100 s, from 9 to 7.9");
+    assert_eq!(after([at(9.0, 0.0), at(7.9, 0.0)]), "readings.stamp_s: goes back by 1.100 s, from 9 to 7.9");
     assert!(after([at(9.0, 0.0), at(8.1, 0.0)]).starts_with("Some(Message"), "reordered on its way");
     assert!(after([at(9.0, 0.0), at(29.0, 5.0)]).starts_with("Some(Message"), "in 20 s it can go there");
 }

@@ -80,8 +80,8 @@ fn times_of_day_and_coordinates_place_as_well() {
 fn what_lies_beyond_the_tool_outside_the_tank_or_in_a_column_is_refused_all_of_it_at_once() {
     let all = refused("t_s,ahead_m,left_m\n1,40,0\n2,0,0.9\n3,0,0.25\n5,0,0.25\n99,0,0\nsoon,0,0\n");
     let expected = [
-        "found.csv: line 2, ahead_m: 40 is beyond the tool, which extends 0.3 m from its centre, half the swath",
-        "found.csv: line 3, left_m: 0.9 is beyond the tool, which extends 0.3 m from its centre, half the swath",
+        "found.csv: line 2, ahead_m: 40 is beyond the tool, which extends 0.3 m (half the swath) from its centre",
+        "found.csv: line 3, left_m: 0.9 is beyond the tool, which extends 0.3 m (half the swath) from its centre",
         "found.csv: line 5, t_s: 5.000, 0.250 m is 0.300 m inside column C1, where no floor can be scanned",
         "found.csv: line 6, t_s: 99: the run covers 0 to 9.0 s",
         "found.csv: line 7, t_s: `soon` is not a number; write 12.5 or 12,5, without thousands separators or units",

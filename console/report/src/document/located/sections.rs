@@ -79,7 +79,7 @@ fn under_tool(document: &Document, located: &Located) -> Vec<Block> {
     let whole = &document.floor.whole;
     vec![Block::Text(format!(
         "The tool was on for {} of {}. During that time, while the position was known, it passed over \
-         {:.2} of {:.2} m² of floor ({:.1} %). No scan of the rest was planned, so no floor counts as missed and no \
+         {:.2} of {:.2} m² of floor ({:.1} %). No scan of the remaining floor was planned, so no floor counts as missed and no \
          reasons are given.",
         clock(on_s),
         clock(located.time_s),
