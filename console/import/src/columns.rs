@@ -14,7 +14,7 @@ use marks::Marks;
 use std::collections::HashSet;
 use world::{Boundary, Point, Shape};
 
-/// The number of notes after which overlapping columns are no longer listed individually.
+/// The largest number of overlaps that are listed individually in the notes.
 const MOST_NOTES: usize = 20;
 
 /// Reads a list of round columns in a round tank of the given radius, in metres.

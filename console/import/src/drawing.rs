@@ -35,7 +35,7 @@ pub const PIPE_WIDTH_M: f64 = 0.1;
 /// The range of tank sizes in metres. A shell outside this range suggests that the unit is wrong.
 const ACROSS_M: std::ops::RangeInclusive<f64> = 1.0..=1000.0;
 
-/// Values for what a drawing does not state or states wrongly.
+/// Values that a drawing does not state, or states wrongly.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assumed {
     /// The size of the drawing's unit in metres; overrides the header.

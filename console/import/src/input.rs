@@ -61,7 +61,7 @@ impl Input {
         Err(ImportError::of_input(&input, wrong))
     }
 
-    /// The kind of the input, determined from the file name or, if the name does not tell, from the beginning of the
+    /// The kind of the input, determined from the file name or, if the name does not show it, from the beginning of the
     /// content. A drawing begins with the number of a code alone on a line.
     pub fn kind(&self) -> InputKind {
         let is_code = |line: &str| line.trim().parse::<u16>().is_ok();

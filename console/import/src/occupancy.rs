@@ -28,7 +28,7 @@ pub struct OccupancyMap {
     pub cell_m: f64,
     /// The transformation from lattice points, in metres, to the tank frame.
     pub tank_from_map: Isometry2<f64>,
-    /// Unseen cells that `free_thresh` would make floor; they are not free.
+    /// Unseen cells that count as solid although `free_thresh` would make them floor.
     pub unseen: Option<Unseen>,
 }
 

@@ -12,11 +12,13 @@ use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
 use world::{ObstacleMap, Point, Station, World};
 
-/// Shorter distances to a station are raised to this, metres: the direction is undefined so close to the station.
+/// Least distance to a station that is used in the computation, metres: closer to the station, the direction is
+/// undefined.
 const NEAREST_M: f64 = 0.05;
 /// The largest number of cells along the longer side of a map.
 const MOST_CELLS: usize = 400;
-/// A ray that ends this close to a station has reached it, metres: stations may be mounted on a column.
+/// A ray that comes within this distance of a station counts as having reached it, metres: a station may be mounted on
+/// a column.
 const REACHED_M: f64 = 1e-3;
 
 /// The inputs of a forecast.
@@ -44,8 +46,8 @@ pub struct Accuracy {
     pub gdop: Option<f64>,
     /// The number of stations heard.
     pub heard: u32,
-    /// The mirror image of the place if the stations are nearly on a line, metres; the ranges from both are practically
-    /// the same.
+    /// If the stations are nearly on a line: the mirror image of the place, metres, which has practically the same
+    /// ranges.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mirror: Option<Point>,
 }

@@ -32,7 +32,7 @@ pub enum Aggregation {
     /// The root mean square of the ranges.
     ///
     /// The linear solution is linear in the squared ranges. This method therefore gives exactly the mean of the
-    /// positions of the single repetitions, which is what Wang et al. 2023 average.
+    /// positions computed from the single repetitions, as in Wang et al. 2023.
     RootMeanSquare,
     /// The midpoint between the shortest and the longest range: far better than the mean if the noise really is
     /// uniform, and worse for any other noise.

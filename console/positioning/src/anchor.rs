@@ -8,7 +8,8 @@ use nalgebra::Rotation2;
 use std::f64::consts::TAU;
 use world::{Point, Station, StationId, Vector};
 
-/// Shorter distances are raised to this, metres: the direction is undefined so close to a station.
+/// Least distance to a station that is used in the computation, metres: closer to the station, the direction is
+/// undefined.
 const NEAREST_M: f64 = 1e-3;
 /// A range is short if it is less than this share of the longest one.
 const SHORT_RANGE: f64 = 0.2;

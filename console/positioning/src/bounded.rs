@@ -54,7 +54,7 @@ impl PositionSolver for Bounded {
             })
             .collect();
         let near = match solve_anchors(&middles, prior) {
-            // A fit that does not converge shows no mirror image, but the set may still exist.
+            // If the fit does not converge, a mirror image cannot be found, but the set may still exist.
             Err(FixError::NotConverged { .. }) => None,
             fit => Some(fit?),
         };

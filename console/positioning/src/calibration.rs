@@ -200,8 +200,8 @@ impl Calibration {
         }
         let mut right = nalgebra::Vector2::zeros();
         for (row, by_unknown) in cycle.rows.iter().zip(&rows) {
-            // Expressed relative to unknowns that are all zero, so that cycles linearised at different estimates can be
-            // summed.
+            // The error is expressed relative to unknowns that are all zero, so that cycles linearised at different
+            // estimates can be summed.
             let error = row.error + by_unknown.dot(&self.estimate);
             self.information += by_unknown * by_unknown.transpose() * row.weight;
             self.weighted += by_unknown * (row.weight * error);
@@ -271,7 +271,8 @@ struct Cycle {
 }
 
 impl Cycle {
-    /// Fits the cycle with the common errors given; `None` if it contradicts itself even with those free.
+    /// Fits the cycle with the given common errors; `None` if the cycle contradicts itself even when these errors are
+    /// free.
     fn fitted(
         anchors: &[Anchor],
         common: Common,

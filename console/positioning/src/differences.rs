@@ -54,7 +54,7 @@ impl PositionSolver for Differences {
     }
 }
 
-/// Returns the length by which all ranges behind a fix of [`Differences`] are too long, metres.
+/// Returns the length by which all ranges of a fix by [`Differences`] are too long, metres.
 pub(crate) fn common_excess_m(fix: &Fix, ranges: &[Ranging], stations: &[Station]) -> Option<f64> {
     let residual = fix.residuals.first()?;
     let range = ranges.iter().find(|range| range.station == residual.station)?;

@@ -269,8 +269,7 @@ pub type Prior = (Point, Matrix2<f64>);
 
 /// A method that computes a fix from ranges.
 pub trait PositionSolver {
-    /// Returns the length by which all ranges behind a fix are too long, metres; 0 for solvers that do not estimate
-    /// it.
+    /// Returns the length by which all ranges of a fix are too long, metres; 0 for solvers that do not estimate it.
     fn excess_m(&self, _fix: &Fix, _ranges: &[Ranging], _stations: &[Station]) -> f64 {
         0.0
     }

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 /// Degrees of freedom of [`RangeNoise::HeavyTailed`].
 pub(crate) const TAIL_FREEDOM: f64 = 3.0;
 
-/// The number of harmonics of the rounding error that are summed; the rest is at most a fortieth of the whole.
+/// The number of harmonics of the rounding error that are summed; the others amount to at most a fortieth of the whole
+/// error.
 const HARMONICS: u32 = 24;
 /// The number of standard deviations that a normal error practically never exceeds.
 const NORMAL_EXTREME: f64 = 6.0;
@@ -72,11 +73,11 @@ impl RangeNoise {
     pub fn midrange_sigma_ratio(&self, n: f64) -> f64 {
         match *self {
             Self::Uniform { ratio } => ratio * (2.0 / ((n + 1.0) * (n + 2.0))).sqrt(),
-            // The extremes of many triangular errors: (1 - pi/4) / n of the squared bound.
+            // For many triangular errors, the variance is (1 - pi/4) / n of the squared bound.
             Self::Triangular { ratio } => {
                 (ratio * (0.2146 / n).sqrt()).min(self.sigma_ratio() / n.min(2.0).sqrt())
             }
-            // Half the variance of one extreme of many normal errors.
+            // For many normal errors, the variance is half that of one extreme.
             Self::Gaussian { sigma_ratio } => {
                 sigma_ratio
                     * (1.0 / n.min(2.0).sqrt()).min(std::f64::consts::PI / (24.0 * n.ln().max(0.1)).sqrt())

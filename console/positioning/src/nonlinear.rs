@@ -104,8 +104,8 @@ fn choose_side(anchors: &[Anchor], found: Minimum, prior: Option<Prior>) -> (Min
     }
 }
 
-/// Returns the mirror image of a place that fits, if the mirror image fits nearly as well; `None` if there is no such
-/// place, or the two are the same within their errors.
+/// Returns the mirror image of a place that fits, if the mirror image fits nearly as well; `None` if it does not, or if
+/// the two places are the same within their errors.
 pub(crate) fn mirror_of(anchors: &[Anchor], at: Point) -> Option<Point> {
     let cost = Slope::at(anchors, at).cost;
     let other = descend(anchors, reflected(anchors, at)).ok()?;
@@ -183,7 +183,8 @@ pub(crate) struct Slope {
     pub gradient: Vector,
     /// The second derivatives in the Gauss-Newton approximation.
     pub curvature: Matrix2<f64>,
-    /// The rest of the second derivatives: the curvature of the range circles, which matters close to a station.
+    /// The remaining part of the second derivatives: the curvature of the range circles, which matters close to a
+    /// station.
     bend: Matrix2<f64>,
 }
 

@@ -18,7 +18,7 @@ const TOO_FEW: f64 = 0.02;
 const JITTER: f64 = 0.25;
 /// The number of attempts to place a new guess within the bounds.
 const TRIES: u32 = 20;
-/// Odometry beyond this in one tick is not the motion of a robot, metres or radians.
+/// The largest plausible motion in one tick, metres or radians; larger odometry is refused.
 const MOTION_LIMIT: f64 = 1e3;
 
 /// The configuration of a particle filter.

@@ -12,7 +12,7 @@ const SUSPECT_Z: f64 = 2.326_347_874;
 /// Normal quantile beyond which residuals raise an alarm: one correct fix in 1000.
 pub(crate) const ALARM_Z: f64 = 3.090_232_306;
 
-/// Normal quantile beyond which the scatter of readings exceeds their noise: one correct set in 10 000.
+/// Normal quantile beyond which the scatter of readings exceeds their noise: one correct set in 10,000.
 const SCATTER_Z: f64 = 3.719_016_485;
 
 /// The number of standard deviations that a protection level allows for chance: one position in 3000 lies farther off.
@@ -116,7 +116,7 @@ pub(crate) fn integrity_of(chi2: f64, degrees_of_freedom: u32) -> Integrity {
 }
 
 /// Returns the sum of squared normalised differences beyond which the scatter of readings exceeds their noise: one
-/// correct sum in 10 000.
+/// correct sum in 10,000.
 pub fn scatter_limit(degrees_of_freedom: u32) -> f64 {
     chi_squared_quantile(SCATTER_Z, degrees_of_freedom)
 }

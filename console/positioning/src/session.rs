@@ -95,7 +95,7 @@ impl CommonError {
 pub struct Verdict {
     /// The number of fixes evaluated.
     pub fixes: u64,
-    /// The share by which all ranges are too long; `None` if it cannot be seen.
+    /// The share by which all ranges are too long; `None` if the data do not show it.
     pub scale: Option<Wrong>,
     /// The length by which all ranges are too long, metres; `None` if it cannot be seen, for example without emission
     /// times.

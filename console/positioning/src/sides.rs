@@ -10,7 +10,7 @@ use crate::{
 use nalgebra::Matrix2;
 use world::{Boundary, Point, Station};
 
-/// The normalised squared distance beyond which a position contradicts the estimate: one correct position in 10 000.
+/// The normalised squared distance beyond which a position contradicts the estimate: one correct position in 10,000.
 const CONTRADICTS: f64 = 18.42;
 /// The difference in normalised squared distance that decides between the two positions: one wrong choice in 1000.
 const DECIDES: f64 = 13.82;

@@ -51,7 +51,7 @@ pub fn sha256_of(bytes: &[u8]) -> String {
 /// The difference between a file on disk and the file that was opened and written.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FileChange {
-    /// There is no file at the path any more.
+    /// The file was deleted from its path.
     #[error("the file was deleted: {}", path.display())]
     Deleted {
         /// The file.

@@ -15,7 +15,7 @@ use world::{
     tether::{Cable, Certificate},
 };
 
-/// Time, milliseconds, below which mostly the round trip to the planner's process is measured.
+/// A measured time below this consists mostly of the round trip to the planner's process, milliseconds.
 const RESOLVED_MS: f64 = 0.05;
 
 /// A plan for scripts.
@@ -36,8 +36,8 @@ pub struct Planned {
     pub(crate) complete: bool,
     /// The reason why the plan is not complete.
     reason: Option<String>,
-    /// Warnings from the planner: which floor it omits and why, and what it does where the published method defines
-    /// nothing.
+    /// Warnings from the planner: which floor it omits and why, and how it handles cases that the published method does
+    /// not define.
     warnings: Vec<String>,
     /// The reachable floor as the reports define it; absent for missions without a scan.
     floor: Option<PlannedFloor>,
@@ -70,8 +70,8 @@ pub struct Made {
     pub plan_time_ms: f64,
     /// The reason why the plan is not complete.
     pub reason: Option<String>,
-    /// Warnings from the planner: which floor it omits and why, and what it does where the published method defines
-    /// nothing.
+    /// Warnings from the planner: which floor it omits and why, and how it handles cases that the published method does
+    /// not define.
     pub warnings: Vec<String>,
 }
 

@@ -13,7 +13,7 @@ use world::{Floor, ObstacleId, Point, Zone, coverage::regions};
 /// Distance, as a share of the swath, below which missed areas are merged.
 const TOGETHER_SWATHS: f64 = 0.5;
 /// Width of the floor around a missed area that is re-scanned with it, as a share of the swath: a robot cannot steer
-/// more precisely.
+/// more precisely than this.
 const AROUND_SWATHS: f64 = 0.25;
 /// Width of the blocks that make up the boxes, as a share of the swath.
 const BLOCK_SWATHS: f64 = 0.2;
@@ -40,9 +40,10 @@ pub struct Rescan {
 
 /// Finds the floor to re-scan.
 ///
-/// Missed floor that no lane reaches is listed separately. In the rest, neighbouring areas are merged; merged areas
-/// smaller than `min_area_m2` are omitted. The others are grown by a margin, because a robot cannot steer more
-/// precisely. There are at most `most` boxes; the smaller that number, the coarser the boxes.
+/// Missed floor that no lane reaches is listed separately. In the remaining missed floor, neighbouring areas are
+/// merged, and merged areas smaller than `min_area_m2` are omitted. The areas that are kept are enlarged by a margin,
+/// because a robot cannot steer more precisely than that. There are at most `most` boxes; the smaller that number, the
+/// coarser the boxes.
 ///
 /// # Errors
 /// See [`crate::merged()`].

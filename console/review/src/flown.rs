@@ -1,4 +1,5 @@
-//! A past run that is flown again: a simulation computes its readings again, and a live run takes them from its journal.
+//! Repeats a past run. The readings of a simulated run are computed again; those of a live run are taken from its
+//! journal.
 
 use flight::{
     Flight,
@@ -14,7 +15,7 @@ use world::Readings;
 /// A flight that repeats a journal.
 pub(crate) struct Flown {
     flight: Flight,
-    /// Where the readings of a live run go; `None` for a simulation.
+    /// Receives the recorded readings of a live run; `None` for a simulation.
     feed: Option<Feed>,
 }
 

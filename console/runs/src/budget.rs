@@ -42,8 +42,7 @@ impl Budget {
     /// Computes [`recording::events_sha256`].
     ///
     /// # Errors
-    /// As for that function; also [`io::ErrorKind::QuotaExceeded`] if the file is too long for what is left of the
-    /// budget.
+    /// As for that function; also [`io::ErrorKind::QuotaExceeded`] if the file is too long for the remaining budget.
     pub(crate) fn events_sha256(&self, path: &Path) -> io::Result<String> {
         self.digest(|goes_on| events_sha256_while(path, goes_on))
     }

@@ -18,7 +18,7 @@ pub struct RunLog {
     folder: Option<RunFolder>,
     beside: Option<Beside>,
     recorder: RunRecorder,
-    /// Message about a run if its recorder does not finish in time.
+    /// The summary to return if the recorder does not finish in time.
     least: Summary,
     began: Instant,
 }

@@ -9,9 +9,9 @@ use recording::{JournalError, recorded_failure, remove_reserve};
 use report::document::Recovered;
 use std::{path::Path, time::SystemTime};
 
-/// What the killed process would have added at the end.
+/// The figures that the killed process would have added at the end.
 const BY_THE_CLOCK: &str = "wall-clock figures: computing time, planner calls, stops";
-/// What is missing from a recording that was not closed.
+/// The parts that are missing from a recording that was not closed.
 const OF_RECORDING: &str = "the index of the recording, and up to 5 s of data that had not been written yet";
 
 /// Closes the run in a folder if its writer was killed.
@@ -67,7 +67,7 @@ fn explained(error: RunError, folder: &Path) -> RunError {
     }
 }
 
-/// What is missing from a run.
+/// The parts that are missing from a run.
 fn missing(folder: &Path, past: &Past) -> Vec<String> {
     let run = &past.run;
     let mut missing = Vec::new();

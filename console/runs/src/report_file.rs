@@ -64,7 +64,7 @@ fn digest_of_lines(text: &str) -> String {
     sha256_of(lines.collect::<String>().as_bytes())
 }
 
-/// What a report states about the files from which it was made.
+/// The digests and lengths that a report states for the files from which it was made, and related facts.
 #[derive(Deserialize)]
 struct Source {
     #[serde(default)]

@@ -18,9 +18,9 @@ use sim::{AeConfig, Mover, NoiseModel, RobotConfig, SimConfig};
 use toml::de::DeTable;
 use world::{Boundary, Obstacle, Point, Pose, Station, World};
 
-/// The smallest clearance used when ranges scatter, in metres. With 0.05, one of 1,293 robots in random scenarios
-/// touched the shell, which a robot locates only from its own estimated position: its 95 % error was 0.047 m, but its
-/// actual error 0.063 m.
+/// The smallest clearance used when ranges scatter, in metres. A robot locates the shell only from its own estimated
+/// position. With 0.05, one of 1,293 robots in random scenarios therefore touched the shell: its 95 % error was 0.047
+/// m, but its actual error was 0.063 m.
 const LEAST_CLEARANCE_M: f64 = 0.08;
 
 /// A start within this distance of the first path point, in metres, counts as being at that point.

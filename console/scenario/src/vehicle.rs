@@ -5,7 +5,7 @@ use super::{problem::Complaint, section::Section};
 /// The requirements of a mission for a real vehicle, and the address of its adapter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VehicleNeeds {
-    /// Where its adapter is reached if the command line does not say so; never a command.
+    /// The address of its adapter, used if the command line does not give one; never a command.
     pub at: Option<String>,
     /// Longest time that the vehicle may take to stop, seconds.
     pub stop_max_s: f64,

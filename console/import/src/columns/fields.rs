@@ -3,7 +3,7 @@
 use super::marks::Marks;
 use csv::StringRecord;
 
-/// The largest number of characters of a field name that messages repeat.
+/// The maximum number of characters of a field name that a message quotes.
 const LONGEST_NAME: usize = 40;
 /// Units of length, with their sizes in metres.
 const UNITS: [(&str, f64); 7] = [

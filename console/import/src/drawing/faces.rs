@@ -9,8 +9,8 @@ use world::{
     shape::{bounds_of, ring_area_m2},
 };
 
-/// Points closer together than this, in metres, are merged: in drawings, seams end up to this far short of other seams,
-/// or beyond them.
+/// Points closer together than this, in metres, are merged: in a drawing, a seam may end up to this far short of
+/// another seam, or beyond it.
 const SAME_M: f64 = 5e-3;
 /// The largest number of straight pieces that are compared with each other.
 const MOST_PIECES: usize = 20_000;
@@ -25,7 +25,7 @@ type Piece = [Point; 2];
 pub(super) struct Faces {
     /// Counter-clockwise outlines. If a face has an island, its outline ignores the hole.
     pub rings: Vec<Vec<Point>>,
-    /// The number of straight pieces that end at no other line and so divide nothing.
+    /// The number of straight pieces that do not end at another line, and so divide no floor.
     pub n_loose: usize,
 }
 

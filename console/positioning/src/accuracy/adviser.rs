@@ -8,11 +8,11 @@ use world::{Boundary, ObstacleMap, Point, Vector, World};
 
 /// The number of candidate places along the wall.
 const CANDIDATES: usize = 72;
-/// The error is computed in a grid of cells with this many along the longer side of the floor.
+/// The number of cells along the longer side of the floor in the grid on which the error is computed.
 const CELLS: f64 = 28.0;
 /// The largest number of rounds; each round moves every station once.
 const ROUNDS: usize = 12;
-/// The number of initial layouts: even rings, each rotated by a different part of the spacing.
+/// The number of initial layouts: even rings, each rotated by a different fraction of the spacing.
 const STARTS: usize = 4;
 /// The numbers of stations for which advice is available.
 const COUNTS: std::ops::RangeInclusive<usize> = 3..=32;
@@ -41,7 +41,7 @@ pub enum AdviceError {
         /// The number of stations requested.
         asked: usize,
     },
-    /// There is no floor on which to locate anything.
+    /// The tank has no free floor.
     #[error("the tank has no free floor")]
     NoFloor,
 }

@@ -5,7 +5,7 @@ use crate::fix::ELLIPSE_95;
 use nalgebra::{Matrix2, Vector2};
 use world::Odometry;
 
-/// Odometry beyond this in one tick is not the motion of a robot, metres or radians.
+/// The largest plausible motion in one tick, metres or radians; larger odometry is refused.
 const MOTION_LIMIT: f64 = 1e3;
 /// The part of the odometry error that is independent from metre to metre, as a share of the persistent part.
 const FRESH_SHARE: f64 = 0.3;
@@ -55,7 +55,7 @@ impl Ekf {
     }
 
     /// Removes most of the independent variance across the path: tracks err along the path, and the heading error
-    /// covers the rest.
+    /// accounts for the remaining error.
     fn narrow_across(&mut self, step: Vector2<f64>, gained_m2: f64) {
         if let Some(along) = step.try_normalize(1e-9) {
             let across = Vector2::new(-along.y, along.x);

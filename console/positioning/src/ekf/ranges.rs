@@ -10,7 +10,7 @@ use crate::{
 use nalgebra::{Matrix2, Vector2};
 use world::{Point, Station};
 
-/// Normal quantile beyond which ranges are refused: one correct cycle in 10 000.
+/// Normal quantile beyond which ranges are refused: one correct cycle in 10,000.
 const GATE_Z: f64 = 3.719;
 /// The largest number of steps in an iterated update; three are usual.
 const UPDATE_STEPS: usize = 12;
@@ -84,7 +84,7 @@ impl Ekf {
         Self { state, covariance, ..self.clone() }
     }
 
-    /// Returns the estimate after a correction of its position; the rest follows from the correlation.
+    /// Returns the estimate after a correction of its position; the other values follow from their correlation with it.
     fn with_position(&self, position: Point, covariance: &Matrix2<f64>, belief: &Matrix2<f64>) -> Self {
         let gain = self.covariance.fixed_view::<5, 2>(0, 0) * belief;
         let lost = self.position_covariance() - covariance;

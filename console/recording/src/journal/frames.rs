@@ -9,8 +9,8 @@ use std::{
 };
 
 const MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
-/// Magic number, frame header descriptor and window descriptor of the frames that we write: of unknown length and
-/// without a dictionary.
+/// Length of the magic number, the frame header descriptor and the window descriptor, bytes. The frames that we write
+/// state no content length and use no dictionary.
 const HEADER_BYTES: u64 = 6;
 const CHECKSUM_BYTES: i64 = 4;
 const BLOCK_HEADER_BYTES: u64 = 3;

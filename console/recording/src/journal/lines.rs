@@ -33,7 +33,7 @@ impl Lines {
         }
     }
 
-    /// The file offset from which to read in order to reach a place, given the number of bytes of lines before that
+    /// The file offset at which to start reading to reach a place, given the number of bytes of lines before that
     /// place.
     pub(super) fn frame_before(&self, bytes: u64) -> FrameStart {
         match self {

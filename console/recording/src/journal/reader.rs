@@ -34,7 +34,7 @@ pub struct JournalPlace {
     pub bytes: u64,
     /// Number of lines before it.
     lines: usize,
-    /// File offset from which to read in order to reach it.
+    /// File offset at which to start reading to reach this place.
     frame: FrameStart,
 }
 

@@ -51,7 +51,7 @@ impl Accounting {
     }
 }
 
-/// Missed areas; during the mission, those to which no plan leads any more.
+/// Missed areas. During the mission, areas that the plan has yet to reach are left out.
 pub(crate) fn missed(areas: &[Area<MissReason>], is_over: bool) -> Vec<&Area<MissReason>> {
     areas.iter().filter(|area| is_over || area.reason != MissReason::NotReached).collect()
 }

@@ -15,8 +15,8 @@ use std::collections::BTreeMap;
 
 type Done = Result<(), RecordingError>;
 
-/// A figure of the account's table, which gives it its name: its entity path, its colour in the plots, and its value in a
-/// tick.
+/// A figure of the account's table: its entity path, its id, its colour in the plots, and its value in a tick. The
+/// table provides the name.
 type Figure = (&'static str, FigureId, [u8; 4], fn(&Tick) -> Option<f64>);
 
 const FIGURES: [Figure; 7] = [

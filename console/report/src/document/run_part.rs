@@ -10,7 +10,7 @@ use mission::Outcome;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// The recovery of a run whose recording process was killed. Digests pin down the files of the run.
+/// The recovery of a run whose recording process was killed. The digests in the report identify the files of the run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Recovered {
     /// The person who recovered the run.

@@ -9,7 +9,7 @@ use world::{Point, Station, Vector, World};
 const DECIDES_SIGMAS: f64 = 3.72;
 /// The 95 % error of a two-dimensional normal distribution, in standard deviations.
 const SIGMAS_95: f64 = 2.448;
-/// If a smaller share of the floor has a mirror image, it is not reported.
+/// Share of the floor that must have a mirror image before a report mentions it.
 const WORTH_A_WORD: f64 = 0.005;
 /// Maximum number of station names in a message.
 const MOST_NAMES: usize = 6;
@@ -51,7 +51,7 @@ impl Mirrored {
         let fix_sigma_m = cell.and_then(|cell| cell.error_95_m).unwrap_or_default() / SIGMAS_95;
         let apart_m = match cell.map(|cell| image(start.position, cell)) {
             Some(Some(image)) => (image - start.position).norm(),
-            // The ranges decide without help.
+            // The ranges alone decide.
             Some(None) if start_to_line_m > 0.0 => f64::INFINITY,
             _ => 2.0 * start_to_line_m,
         };

@@ -1,4 +1,4 @@
-//! Replays recorded answers, and repeats the asks to the planners.
+//! Answers the mission's asks from the journal, and puts the same asks to the planners again.
 //!
 //! The mission uses the recorded answers alone, so the planners are asked in a separate thread and may lag some ticks
 //! behind.
@@ -14,10 +14,10 @@ use std::{
     sync::mpsc::{Receiver, SyncSender},
 };
 
-/// Maximum number of asks and answers by which the planners may lag behind.
+/// Length of the queue of asks and answers for the planners; when the queue is full, the mission waits.
 pub(super) const BEHIND: usize = 512;
 
-/// Answers asks from the journal, and sends both to the thread in which the planners answer the asks, too.
+/// Answers asks from the journal, and sends asks and answers to the thread that puts the asks to the planners again.
 pub(crate) struct Replayed {
     recorded: RecordedAnswers,
     /// `None` if the planners are not asked.
@@ -63,7 +63,8 @@ impl Replayed {
 
     fn send(&self, update: impl FnOnce() -> Update) {
         if let Some(again) = &self.again {
-            // If the receiver is gone, it has panicked, which the caller that waits for its findings notices.
+            // The receiver is gone only if its thread has panicked. The caller notices this when it waits for the
+            // findings.
             let _ = again.send(update());
         }
     }
@@ -96,7 +97,7 @@ pub(crate) struct Asked {
     pub external: BTreeMap<String, usize>,
     /// Number of answers that cannot be compared because their worker failed earlier than in the journal.
     pub too_early: usize,
-    /// A worker had an external or timing fault that is not in the journal; the sentence states which and how.
+    /// The place and the fault, as a clause, if a worker had an external or timing fault that is not in the journal.
     pub unproven: Option<String>,
     /// The first answer that differs.
     pub difference: Option<String>,
