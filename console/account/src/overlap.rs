@@ -1,9 +1,10 @@
-//! Floor that the tool scanned again, computed from the estimated track: the events name a cell only the first time.
+//! Floor that the tool scanned again, computed from the estimated track, because the events name a cell only when it is
+//! first scanned.
 
 use serde::{Deserialize, Serialize};
 use world::{CellRun, Tiles};
 
-/// Distance is counted in steps of half a swath: 65 535 steps are 19 km for a swath of 0.6 m.
+/// Distance is counted in steps of half a swath: 65,535 steps are 19 km for a swath of 0.6 m.
 const STEPS_PER_SWATH: f64 = 2.0;
 /// A return to a cell counts as a second scan after more than this many steps (two swaths).
 const AGAIN_STEPS: u16 = 4;

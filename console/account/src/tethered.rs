@@ -44,7 +44,7 @@ impl Tethered {
         });
     }
 
-    /// Adds that the mission found the cable snagged on an unmapped object, or free again.
+    /// Records that the mission found the cable snagged on an unmapped object, or free again.
     pub(crate) fn snag(&mut self, snagged: bool) {
         self.snags += u64::from(snagged);
         self.snagged = snagged;

@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize};
 pub struct VehicleRecord {
     /// Name of the vehicle.
     pub name: String,
-    /// Where its adapter was reached.
+    /// The address at which the console reached its adapter.
     pub at: String,
     /// Number of readings that arrived.
     pub heard: u64,
-    /// Number of readings that are missing by their sequence numbers.
+    /// Number of readings that are missing according to the sequence numbers.
     pub missed: u64,
     /// Number of faulty messages.
     pub faulty: u64,
@@ -23,9 +23,9 @@ pub struct VehicleRecord {
     pub lost: u64,
     /// Number of stops that the odometry confirmed.
     pub stops: u64,
-    /// Longest time from the command to stand until the odometry confirmed it, seconds; absent without stops.
+    /// Longest time from a command to stand still until the odometry confirmed the stop, seconds; absent without stops.
     pub stop_max_s: Option<f64>,
-    /// Number of times that the vehicle moved although it should have stood.
+    /// Number of times that the odometry did not confirm a stop in time.
     pub stops_not_confirmed: u64,
     #[serde(skip)]
     is_heard: bool,

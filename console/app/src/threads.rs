@@ -4,8 +4,8 @@ use crate::cli::{CampaignCommand, Command};
 use command::threads::{cores, missions};
 
 /// Numbers of simultaneous threads and processes besides the first thread, as counted by `prlimit --nproc`. Additional
-/// threads of a planner are counted only if they could use up what something else needs; the planners of tankops work
-/// without them.
+/// threads of a planner are counted only if they could use up threads that another part of the command needs; the
+/// planners of tankops work without them.
 mod each {
     pub(super) use command::threads::{PLANNER, SIGNAL};
 
@@ -19,7 +19,7 @@ mod each {
     pub(super) const RUN: usize = RECORDING + JOURNAL;
     /// Recomputing a run: its journal and planners and, at the same time, its files.
     pub(super) const VERIFY: usize = 3 + PAST_RUN + PLANNER;
-    /// Consoles connected to a vehicle that this program offers.
+    /// Threads for the consoles that are connected to a vehicle that this program offers.
     pub(super) const CONNECTIONS: usize = 17;
     /// The console: signals, keys, plugins, and background work.
     pub(super) const CONSOLE: usize = 5;

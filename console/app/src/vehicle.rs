@@ -21,7 +21,7 @@ use vehicle::wire::{
 
 /// Time between two reports of the state.
 const STATE_EVERY: Duration = Duration::from_millis(500);
-/// How often the loop looks for a signal to end.
+/// Interval at which the loop checks for a signal that ends the command.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
 
 /// Runs `tankops vehicle simulate SCENARIO`, until a signal ends it.
@@ -51,7 +51,7 @@ pub(crate) fn simulate(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
 struct Offered {
     vehicle: Behind,
     clients: BTreeMap<ClientId, Client>,
-    /// The console that is obeyed: the first one of those that are connected.
+    /// The console that the vehicle obeys: the one that has been connected longest.
     commander: Option<ClientId>,
     began: Instant,
     /// When the next tick is due.
@@ -123,7 +123,7 @@ impl Offered {
         self.state_due = Instant::now();
     }
 
-    /// Does what is due by the clock.
+    /// Sends the state and computes the next tick when they are due.
     fn pass_time(&mut self) -> anyhow::Result<()> {
         let now = Instant::now();
         if now >= self.state_due {
@@ -132,7 +132,7 @@ impl Offered {
         }
         if now >= self.due {
             let tick = Duration::from_secs_f64(self.vehicle.tick_s());
-            // A tank that was stopped for long does not make up for it.
+            // After a long interruption, the simulation does not make up for lost ticks.
             self.due = if now > self.due + tick { now } else { self.due } + tick;
             if !self.lockstep {
                 self.step()?;

@@ -118,7 +118,7 @@ impl Campaign {
         hex::encode(Sha256::digest(serde_json::to_vec(self).unwrap_or_default()))
     }
 
-    /// Why this program cannot have frozen the campaign; `None` if it can have.
+    /// A sign that the frozen campaign was changed or damaged, as a clause; `None` if there is none.
     fn damage(&self) -> Option<String> {
         let Design { points, keys, seeds, .. } = &self.design;
         let changed = self.scenarios.iter().find(|s| hex::encode(Sha256::digest(&s.text)) != s.sha256);

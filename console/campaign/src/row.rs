@@ -26,7 +26,7 @@ impl Status {
     }
 }
 
-/// The result of a mission. Equal missions have equal results, no matter which worker ran them and when.
+/// The result of a mission. Equal missions have equal results, whichever worker ran them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     /// Number of the mission.

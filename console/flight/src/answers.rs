@@ -108,7 +108,7 @@ impl Answers for Windowed<'_> {
             Awaits::Step => self.step.map(|window| self.began + window),
             Awaits::Work => Some(self.began + self.work),
             Awaits::Shadow => Some(self.began + self.shadow),
-            // Answers that have already arrived are used; nothing waits for the others.
+            // Answers that have already arrived are used; the tick does not wait for any others.
             Awaits::Candidate | Awaits::Nothing => Some(self.began),
         };
         self.host.next(until)

@@ -19,7 +19,7 @@ pub struct Behind {
     simulator: Simulator,
     stations: Vec<Station>,
     hello: Hello,
-    /// The motion that it was told, and when its lease lapses, seconds of the caller's clock.
+    /// The last commanded motion, and the time at which its lease lapses, seconds of the caller's clock.
     driven: Option<(message::Drive, f64)>,
     /// Number of the last command.
     last_seq: Option<u64>,
@@ -55,7 +55,7 @@ impl Behind {
         self
     }
 
-    /// The introduction of the vehicle.
+    /// The `hello` message of the vehicle.
     pub fn hello(&self) -> FromVehicle {
         FromVehicle::Hello(Box::new(self.hello.clone()))
     }
@@ -70,7 +70,7 @@ impl Behind {
         self.tick_s
     }
 
-    /// Forgets the commander; the vehicle stands.
+    /// Forgets the commander; the vehicle stands still.
     pub fn leave(&mut self) {
         (self.driven, self.last_seq) = (None, None);
     }

@@ -10,7 +10,7 @@ use std::fmt;
 pub const COMPLETE: u8 = 0;
 /// The mission ran, but ended incomplete or did not meet a bound. Also used for a verification that found a difference.
 pub const ENDED_OTHERWISE: u8 = 1;
-/// Wrong usage or wrong input.
+/// Incorrect usage or invalid input.
 pub const BAD_INPUT: u8 = 2;
 /// A fault in the program or the machine.
 pub const INTERNAL: u8 = 3;

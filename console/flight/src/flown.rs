@@ -178,8 +178,8 @@ impl Flight {
         first.into_iter().chain(step.events).map(Event::rounded).collect()
     }
 
-    /// Sends the command of this tick to the vehicle. A robot that must not move is commanded to stand, not to drive at
-    /// no speed: a real vehicle then needs no further command to stay there.
+    /// Sends the command of this tick to the vehicle. A robot that must not move gets a command to stand, not a drive
+    /// at speed 0: a real vehicle then stands still without further commands.
     fn act(&mut self, drive: Drive, orders: &[Order], events: &mut Vec<Event>) {
         let may_drive = matches!(self.mission.phase(), Phase::Running(_)) || drive != Drive::STILL;
         let drive = may_drive.then_some(drive);

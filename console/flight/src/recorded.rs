@@ -32,7 +32,7 @@ impl Feed {
                 _ => {}
             }
         }
-        // If the flight has ended, nothing senses any more.
+        // The receiver is gone once the flight has ended.
         let _ = self.0.send(sensed);
     }
 }

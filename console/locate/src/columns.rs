@@ -295,7 +295,7 @@ impl Columns {
             return Ok(Some(seconds));
         }
         let parsed = if self.has_commas { text.replace(',', ".").parse::<f64>() } else { text.parse() };
-        // What an instrument writes for "no range" is treated as an impossible range, not as a bad row.
+        // A word that an instrument writes for "no range" is treated as an impossible range, not as a bad row.
         let is_word = [RANGE, ARRIVAL, DIFFERENCE].contains(&column) && (column != ARRIVAL || self.has(T));
         let number = parsed.ok().filter(|number| number.is_finite() || is_word);
         let number = number.ok_or_else(|| self.problem(line, column, format!("`{text}` is not a number")))?;

@@ -144,9 +144,9 @@ impl Repeats {
         self.degrees > 0 && self.sum < limit * degrees
     }
 
-    /// Returns the likely error of a position from an emission with several readings of a station, for when nothing is
-    /// proven; a standard deviation, metres. It is the excess of the scatter over the noise, less one standard
-    /// deviation to allow for chance.
+    /// Returns the likely error of a position from an emission with several readings of a station, as a standard
+    /// deviation, metres. It applies if the scatter does not prove an error, and is the excess of the scatter over the
+    /// noise, less one standard deviation to allow for chance.
     pub(crate) fn likely_m(&self, moment: &Moment, scatter: &Scatter) -> f64 {
         let is_repeated = |set: &&world::RangeSet| {
             moment.heard.iter().filter(|heard| heard.station == set.station).count() > 1

@@ -159,8 +159,8 @@ impl<'a> Surroundings<'a> {
         Self { solids: solids.iter().map(to).collect() }
     }
 
-    /// Distance by which a position of the hull's centre exceeds what is required, metres; negative where the centre must
-    /// not be.
+    /// Smallest margin between a position of the hull's centre and the solids, metres: the distance minus the required
+    /// distance; negative where the centre must not be.
     fn spare_m(&self, at: Point) -> f64 {
         self.solids
             .iter()

@@ -106,7 +106,7 @@ pub enum Noted {
         alarm: String,
         /// Text of the alarm.
         text: String,
-        /// For how long, seconds of mission time.
+        /// Duration, seconds of mission time.
         for_s: f64,
         /// The reason, in the operator's words.
         reason: String,

@@ -24,15 +24,16 @@ use crate::wire::{
     message::{Drive, Hello, Readings, Stop},
 };
 
-/// Readings that are older are late, seconds.
+/// Age above which readings are late, seconds.
 const LATE_S: f64 = 0.4;
-/// The link is lost when its readings are older, seconds: longer than a tenth of the messages lost and a jitter of 200 ms
-/// can make them, and short enough to be shown within a second.
+/// Age of the newest readings above which the link is lost, seconds. The loss of a tenth of the messages, with a jitter
+/// of 200 ms, does not reach this age; the screen still shows a lost link within a second.
 const LOST_S: f64 = 0.8;
-/// The same for slow readings, in periods.
+/// The same two limits in periods of the readings; they apply if readings are slow.
 const LATE_PERIODS: f64 = 2.0;
 const LOST_PERIODS: f64 = 3.0;
-/// Messages in a second that are a fault: this multiple of the rate of readings, plus some for other messages.
+/// The link is faulty if more messages arrive in a second than this multiple of the rate of readings, plus
+/// [`FLOOD_SLACK`] for other messages.
 const FLOOD_FACTOR: f64 = 10.0;
 const FLOOD_SLACK: f64 = 100.0;
 
@@ -43,9 +44,9 @@ pub enum State {
     Connecting,
     /// Readings arrive in time.
     Alive,
-    /// The last readings are older than they should be.
+    /// The last readings are too old, but not yet so old that the link counts as lost.
     Late,
-    /// The connection has ended, or the last readings are too old. The vehicle stops by its lease.
+    /// The connection has ended, or the last readings are too old. The vehicle stops when its lease lapses.
     Lost,
     /// The vehicle cannot be trusted until it connects again.
     Fault,
@@ -103,7 +104,7 @@ impl Link {
     fn message(&mut self, message: &FromVehicle, now_s: f64) {
         match message {
             FromVehicle::Hello(hello) => {
-                // The vehicle has started again: nothing of before holds, except a fault.
+                // The vehicle has restarted: the earlier state is void, except for a fault.
                 *self =
                     Self { hello: Some(hello.as_ref().clone()), fault: self.fault.take(), ..Self::default() };
                 self.second = (now_s, 1);
@@ -120,12 +121,12 @@ impl Link {
 
     fn readings(&mut self, readings: &Readings, now_s: f64) {
         if !self.sequence.add(readings.seq) {
-            // Late or doubled: its motion is in the readings after it, or cannot be placed.
+            // A late or duplicate message: its motion is part of later readings, or cannot be put in order.
             return;
         }
         self.newest = Some((now_s, readings.stamp_s));
         let Some(motion) = self.motions.take(readings) else { return };
-        // The earliest time at which they can have been taken.
+        // The earliest time at which the readings can have been taken.
         let taken_s = self.clock.at(now_s).map(|offset| readings.stamp_s - offset.offset_s - offset.bound_s);
         let taken_s = taken_s.unwrap_or(now_s).min(now_s);
         if self.may_move_until_s(now_s).is_none_or(|until_s| taken_s > until_s) {
@@ -213,7 +214,7 @@ impl Link {
         &self.clock
     }
 
-    /// Lost, doubled and reordered readings.
+    /// The numbers of lost, duplicate and reordered readings.
     pub fn counts(&self) -> Counts {
         self.sequence.counts()
     }

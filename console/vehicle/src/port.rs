@@ -28,8 +28,8 @@ pub trait Vehicle: Send {
     /// The vehicle is not a simulation, or does not offer faults.
     fn inject(&mut self, fault: StationFault) -> Result<(), CannotInject>;
 
-    /// A handle that makes the vehicle stand at once, from any thread, without waiting for the next tick; `None` for
-    /// vehicles whose time passes with the ticks.
+    /// A handle that stops the vehicle at once, from any thread, without waiting for the next tick; `None` for vehicles
+    /// whose time passes with the ticks.
     fn brake(&self) -> Option<Brake> {
         None
     }
@@ -38,7 +38,7 @@ pub trait Vehicle: Send {
 /// The report of a vehicle since the last tick.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sensed {
-    /// The readings; of several messages in one tick, the odometry is added up.
+    /// The readings; if several messages arrived in one tick, their odometry is added up.
     pub readings: Readings,
     /// Facts about the link; `None` for a simulation inside the console.
     pub live: Option<Live>,
@@ -125,7 +125,7 @@ pub struct LinkSeen {
     pub age_p99_s: Option<f64>,
     /// Number of readings that arrived.
     pub heard: u64,
-    /// Number of readings that are missing by their sequence numbers.
+    /// Number of readings that are missing according to the sequence numbers.
     pub missed: u64,
     /// Number of faulty messages.
     pub faulty: u64,
@@ -158,7 +158,7 @@ impl LinkSeen {
 pub struct VehicleInfo {
     /// Name of the vehicle.
     pub name: String,
-    /// Where its adapter was reached, as written by the user: `unix:PATH`, `tcp:HOST:PORT`, `run:COMMAND`.
+    /// The address of its adapter, as written by the user: `unix:PATH`, `tcp:HOST:PORT`, `run:COMMAND`.
     pub at: String,
     /// Version of the protocol.
     pub protocol: u32,
@@ -170,7 +170,7 @@ pub struct VehicleInfo {
     pub speed_max_m_per_s: f64,
     /// Largest turn rate, radians per second.
     pub turn_max_rad_per_s: f64,
-    /// What it has: `odometry`, `ranges`, `scan`, `contact`, `reel`, `pressure`.
+    /// The sensors that it has: `odometry`, `ranges`, `scan`, `contact`, `reel`, `pressure`.
     pub has: Vec<String>,
 }
 
@@ -191,9 +191,9 @@ pub struct Command {
 pub struct StationFault {
     /// The station.
     pub station: StationId,
-    /// For how long, seconds of mission time.
+    /// Duration, seconds of mission time.
     pub for_s: f64,
-    /// By how much its ranges are too long, metres; `None` if it is silent.
+    /// Length by which its ranges are too long, metres; `None` if the station is silent.
     pub excess_range_m: Option<f64>,
 }
 
@@ -207,7 +207,7 @@ impl fmt::Display for CannotInject {
     }
 }
 
-/// Makes a vehicle stand at once, from any thread. Until the mission has carried out an order to hold, no motion is sent.
+/// Stops a vehicle at once, from any thread. Until the mission has carried out an order to hold, no motion is sent.
 #[derive(Clone)]
 pub struct Brake(std::sync::Arc<dyn Fn() + Send + Sync>);
 

@@ -1,8 +1,8 @@
 //! The messages between the console and an adapter: one JSON object a line, in UTF-8.
 //!
 //! Suggested reading order: [`message`] (the types), [`Reader`] (bytes to messages and named faults), [`Writer`]
-//! (messages to bytes). A message passes the same checks on its way out as on its way in, and no number that is not
-//! finite passes either.
+//! (messages to bytes). Messages pass the same checks on the way out as on the way in; both refuse numbers that are not
+//! finite.
 
 mod check;
 mod fields;

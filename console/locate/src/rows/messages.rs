@@ -29,7 +29,7 @@ pub(crate) struct Messages {
     /// The first message, kept until it is returned as a row; its keys form the header.
     first: Option<Map<String, Value>>,
     count: u64,
-    /// The number of bytes read, and of the record bytes they contained.
+    /// The number of bytes read, and the number of bytes of the unpacked records.
     read: u64,
     held: u64,
 }

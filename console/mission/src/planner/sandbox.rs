@@ -12,7 +12,7 @@ pub enum Sandbox {
     Full,
     /// Only some of the restrictions of [`Self::Full`]; the text states why the others are missing.
     Partial(String),
-    /// Only limits on memory and files; the text states why there is no more.
+    /// Only limits on memory and files; the text states why the other restrictions are missing.
     None(String),
 }
 

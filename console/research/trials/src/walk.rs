@@ -5,11 +5,12 @@ use crate::score::ARRIVED_M;
 use serde::{Deserialize, Serialize};
 use world::Point;
 
-/// A walk is trapped when this many moves in a row ...
+/// Number of moves in a row over which a walk is tested for being trapped.
 const TRAP_MOVES: usize = 25;
-/// ... gain less than this, metres, ...
+/// A walk may be trapped if these moves together gain less than this, metres.
 const TRAP_GAIN_M: f64 = 0.2;
-/// ... while the preset point is further away than this, metres, at all of them.
+/// A walk is trapped only if its preset point is further away than this throughout these moves, and further than twice
+/// this at their end, metres.
 const TRAP_LAG_M: f64 = 0.2;
 /// Maximum lag of a walk, metres: one coil of the paper's spiral. A walk that falls further behind skips floor.
 const COIL_M: f64 = 0.4 * std::f64::consts::PI;

@@ -5,11 +5,11 @@ use std::collections::VecDeque;
 
 /// Round trips are kept this long, seconds.
 const WINDOW_S: f64 = 10.0;
-/// Difference in rate between two clocks, at most.
+/// Largest difference between the rates of two clocks, as a share.
 const DRIFT: f64 = 1e-4;
-/// Round trips that are kept. Only ones that can still become the quickest are.
+/// Maximum number of round trips kept. Only trips that can still become the quickest are kept.
 const KEPT_MAX: usize = 64;
-/// How much earlier than its ping a pong may seem to come: rounding of the echo, seconds.
+/// Time by which a pong may seem to arrive before its ping was sent, because the echo is rounded, seconds.
 const ROUNDING_S: f64 = 1e-3;
 
 /// A round trip: its end, its length and the offset of the vehicle's clock, seconds.
@@ -32,7 +32,7 @@ pub struct Offset {
 /// The clock of a vehicle.
 #[derive(Debug, Clone, Default)]
 pub struct Clock {
-    /// The first is the quickest; each further one is slower and later.
+    /// The first trip is the quickest; each further trip is slower and later.
     trips: VecDeque<Trip>,
 }
 

@@ -5,26 +5,28 @@
 use crate::wire::message::{Drive, Limits, Odometry};
 use std::{collections::VecDeque, fmt};
 
-/// Delays of the vehicle with which commands are compared: this many, by this step in seconds.
+/// Number of delays of the vehicle with which commands are compared, and the step from one delay to the next, seconds.
 const DELAYS: usize = 6;
 const DELAY_STEP_S: f64 = 0.1;
-/// Commands that are kept for that; at more than 50 readings a second, the delays are shorter.
+/// Number of commands kept for this comparison. At more than 50 readings a second, the kept commands do not reach back
+/// to the longest delays.
 const KEPT_MAX: usize = 64;
 /// Both motions are smoothed over this time, seconds.
 const SMOOTHED_S: f64 = 0.5;
 /// Older motion is dropped, seconds.
 const FORGOTTEN_S: f64 = 3.0;
-/// Commanded motion that is needed for a finding.
+/// Commanded motion that a finding requires, metres and radians.
 const NEEDED_M: f64 = 0.2;
 const NEEDED_RAD: f64 = 0.35;
 /// A finding must last for this time, seconds.
 const LASTING_S: f64 = 0.5;
 /// Share of the commanded motion below which the vehicle does not move.
 const FROZEN: f64 = 0.05;
-/// Correlation from which a motion is reversed, or is along the other axis.
+/// Ratio of measured to commanded motion below which the motion counts as reversed.
 const REVERSED: f64 = -0.3;
+/// Ratio of sideways to commanded motion above which the axes count as swapped.
 const SWAPPED: f64 = 0.5;
-/// Ratios of measured to commanded motion that slip and friction explain.
+/// The range of ratios of measured to commanded motion that slip and friction explain.
 const RATIO_MIN: f64 = 0.4;
 const RATIO_MAX: f64 = 1.6;
 
@@ -72,7 +74,7 @@ impl fmt::Display for Finding {
     }
 }
 
-/// The unit that a ratio looks like.
+/// The mix-up of units that a ratio suggests, as the end of a sentence; empty if it suggests none.
 fn unit(axis: Axis, ratio: f64) -> &'static str {
     let units: &[(f64, &str)] = match axis {
         Axis::Forward => {

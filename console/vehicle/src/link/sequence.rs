@@ -1,8 +1,8 @@
 //! Counts the numbered readings that arrived, and the missing ones.
 
-/// Numbers behind the highest one that are remembered.
+/// How many numbers are remembered, counted down from the highest one.
 const WINDOW: u64 = 64;
-/// A jump by more numbers is a new start, not a loss.
+/// A jump by more numbers than this counts as a new start, not as a loss.
 const RESTART: u64 = 10_000;
 
 /// The numbers of readings.
@@ -10,7 +10,7 @@ const RESTART: u64 = 10_000;
 pub struct Counts {
     /// Different readings that arrived.
     pub received: u64,
-    /// Readings that are missing. One that arrives late does not count.
+    /// Readings that are missing. A reading that arrives late does not count.
     pub lost: u64,
     /// Readings that arrived more than once.
     pub doubled: u64,
@@ -48,7 +48,7 @@ impl Sequence {
         }
         let back = highest - seq;
         if back >= WINDOW {
-            // Too late to know whether it arrived before; it stays lost.
+            // Too late to know whether this number arrived before; it still counts as lost.
             self.counts.reordered += 1;
         } else if self.window & (1 << back) != 0 {
             self.counts.doubled += 1;

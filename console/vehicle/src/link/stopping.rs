@@ -5,7 +5,7 @@ use crate::wire::message::{Hello, Odometry};
 /// Below these rates a vehicle stands, metres and radians per second.
 const STILL_M_PER_S: f64 = 0.02;
 const STILL_RAD_PER_S: f64 = 0.05;
-/// Readings in a row without motion that confirm it.
+/// Number of readings in a row without motion that confirm a standstill.
 const STILL_READINGS: u32 = 3;
 /// The vehicle may take its stop time multiplied by this factor.
 const STOP_TIMES: f64 = 2.0;
@@ -66,7 +66,7 @@ impl Stopping {
         }
     }
 
-    /// The effect of the stop, if the vehicle is given this time.
+    /// The effect of the stop; `limit_s` is the time that the vehicle may take to stop, seconds.
     pub fn state(&self, now_s: f64, limit_s: f64) -> Hold {
         let Some(asked_s) = self.asked_s else { return Hold::NotAsked };
         match self.held_after_s {
@@ -77,8 +77,8 @@ impl Stopping {
         }
     }
 
-    /// The time that a vehicle is given: twice its measured stop time, and at least the time in which its readings can
-    /// tell, over a link with this round trip.
+    /// The time that a vehicle may take to stop, seconds: twice its measured stop time, but at least the time that its
+    /// readings need to show a standstill over a link with this round trip.
     pub fn limit_s(hello: &Hello, trip_s: f64) -> f64 {
         let told_s = f64::from(STILL_READINGS + 1) * hello.period_s + trip_s;
         (STOP_TIMES * hello.stop_time_s).max(told_s)

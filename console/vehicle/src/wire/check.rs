@@ -21,9 +21,9 @@ const POINTS_MAX: usize = 1000;
 /// A field with a value that is out of bounds.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Misfit {
-    /// The field, like `readings.scan.ranges_m[3]`; empty if the line as a whole is meant.
+    /// The field, such as `readings.scan.ranges_m[3]`; empty if the fault concerns the whole line.
     pub field: String,
-    /// What is wrong and what would be right, a clause without the field.
+    /// What is wrong and what would be right, as a clause that does not name the field.
     pub what: String,
 }
 

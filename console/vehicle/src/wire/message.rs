@@ -299,7 +299,7 @@ pub enum Commander {
     /// The console that receives this message.
     #[default]
     You,
-    /// Another console on the same adapter: this one only looks on.
+    /// Another console on the same adapter; this console only watches.
     OtherConsole,
     /// Another program sends commands to the same vehicle. The console holds the mission.
     OtherProgram,

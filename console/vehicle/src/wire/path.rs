@@ -1,6 +1,6 @@
 //! Finds places in a line of JSON without parsing its values, so that the field can be named even in a damaged line.
 
-/// Levels of nesting that are followed; messages have four.
+/// Maximum depth of nesting that is followed; messages have four levels.
 const DEPTH_MAX: usize = 8;
 
 #[derive(Debug)]
@@ -9,7 +9,7 @@ enum Level {
     Array(usize),
 }
 
-/// Walks along a line; knows at which field it is.
+/// Walks along a line, and keeps track of the current field.
 struct Walk<'a> {
     line: &'a str,
     at: usize,
@@ -23,7 +23,7 @@ impl<'a> Walk<'a> {
         Self { line, at: 0, levels: Vec::new(), deeper: 0 }
     }
 
-    /// Goes on to the next key, and returns it; ends at byte `end`.
+    /// Advances to the next key, and returns it; ends at byte `end`.
     fn next_key(&mut self, end: usize) -> Option<&'a str> {
         while self.at < end.min(self.line.len()) {
             let byte = self.line.as_bytes()[self.at];
@@ -95,7 +95,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The field at byte `end` of a line, like `scan.ranges_m[3]`; empty outside of all fields.
+/// The field at byte `end` of a line, such as `scan.ranges_m[3]`; empty outside all fields.
 pub(super) fn field_at(line: &str, end: usize) -> String {
     let mut walk = Walk::new(line);
     while walk.next_key(end).is_some() {}

@@ -15,9 +15,9 @@ use super::{
 use serde::{Deserialize, de::DeserializeOwned};
 use std::collections::BTreeSet;
 
-/// Unknown keys and kinds that are remembered and reported; further ones are only counted.
+/// Maximum number of unknown keys and kinds that are remembered and reported; further ones are only counted.
 const UNKNOWN_MAX: usize = 64;
-/// Characters of an unknown key or kind that are kept.
+/// Maximum number of characters of an unknown key or kind that are kept.
 const UNKNOWN_CHARS: usize = 64;
 
 /// The meaning of a line.
@@ -25,8 +25,8 @@ const UNKNOWN_CHARS: usize = 64;
 pub enum Heard<M> {
     /// A message.
     Message(M),
-    /// Something unknown to this version. It was ignored; the same thing is reported only once. A message with an
-    /// unknown key follows.
+    /// A kind or a key that this version does not know. It was ignored, and is reported only once. If only a key was
+    /// unknown, its message follows.
     Unknown(Unknown),
     /// A line that is not a valid message. It was ignored.
     Malformed(Misfit),
@@ -232,7 +232,7 @@ fn named(kind: &str, line: &str, error: &serde_json::Error) -> Misfit {
     Misfit { field, what }
 }
 
-/// The kind of a message that cannot be parsed, if it can be seen.
+/// The kind of a message that cannot be parsed, if the kind can be found.
 fn kind_of(line: &str) -> String {
     let after = line.split("\"type\"").nth(1).unwrap_or_default();
     let value = after.trim_start().strip_prefix(':').unwrap_or_default().trim_start();

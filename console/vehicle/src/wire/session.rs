@@ -1,4 +1,4 @@
-//! The state with which a message must agree: the introduction of the vehicle, and the messages before it.
+//! The state with which a message must agree: the `hello` of the vehicle, and the earlier messages.
 
 use super::{
     check::{Checked, misfit, stamp},
@@ -6,7 +6,7 @@ use super::{
 };
 use std::f64::consts::{PI, TAU};
 
-/// How far the sender's clock may run back, seconds: messages may be reordered on their way.
+/// Largest amount by which a stamp may go back, seconds: messages may be reordered on their way.
 const BACK_MAX_S: f64 = 1.0;
 
 /// A measured motion may exceed the limits of the vehicle by this factor and these amounts, for overshoot and noise.
@@ -33,7 +33,7 @@ pub struct ToSession {
 }
 
 impl FromSession {
-    /// The introduction of the vehicle.
+    /// The `hello` message of the vehicle, if it has arrived.
     pub fn hello(&self) -> Option<&Hello> {
         self.hello.as_ref()
     }
@@ -42,7 +42,7 @@ impl FromSession {
         match message {
             FromVehicle::Hello(hello) => {
                 hello.check()?;
-                // A vehicle that introduces itself again has started again: its clock and its frame are new.
+                // A vehicle that introduces itself again has restarted: its clock and its frame are new.
                 *self = Self { hello: Some(hello.as_ref().clone()), newest_s: None, pose: None };
                 Ok(())
             }
@@ -102,7 +102,7 @@ impl FromSession {
 }
 
 impl ToSession {
-    /// The commands to the vehicle that introduced itself like this.
+    /// The state before the first command to the vehicle with this `hello`.
     pub fn of(hello: Hello) -> Self {
         Self { hello, newest_s: None }
     }

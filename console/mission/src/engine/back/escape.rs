@@ -1,4 +1,4 @@
-//! Leads a hull that is too close to something out of there.
+//! Leads the robot away from objects that its hull is too close to.
 
 use super::super::known::Known;
 use crate::governor::Surroundings;

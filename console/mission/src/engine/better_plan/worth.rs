@@ -16,13 +16,13 @@ const LEAD_S: f64 = 60.0;
 /// plan, because planning and deciding take longer in a large tank.
 const LEAD_SHARE: f64 = 0.05;
 /// No better plan is sought if less driving time than this is left, seconds: given the two thresholds below, such a
-/// plan would have to save more than 12 % of the rest.
+/// plan would have to save more than 12 % of the remaining time.
 const WORTH_S: f64 = 300.0;
-/// A change must save more than this time, seconds, plus [`CHANGE_SHARE`] of the rest. An operator needs this time to
-/// check the plan.
+/// A change must save more than this time, seconds, plus [`CHANGE_SHARE`] of the remaining time. An operator needs this
+/// time to check the plan.
 const CHANGE_S: f64 = 30.0;
-/// Share of the rest that a change must save in addition to [`CHANGE_S`]. Because of unforeseen obstacles, the path
-/// driven is typically longer than the path planned by about this share.
+/// Share of the remaining time that a change must save in addition to [`CHANGE_S`]. Because of unforeseen obstacles,
+/// the path driven is typically longer than the path planned by about this share.
 const CHANGE_SHARE: f64 = 0.02;
 /// Two plans count as scanning the same floor if the amounts that they leave unscanned differ by at most this share of
 /// what is left to scan. Cells count by their centres, so plans with different lanes differ by single cells.

@@ -17,8 +17,8 @@ use crate::{
 };
 use planner_api::{Command, Plan};
 
-/// An answer is used if it arrives in the tick of the ask or in the next tick. Nobody waits for the answer, so it may
-/// arrive just after the first of these ticks.
+/// An answer is used if it arrives in the tick of the ask or in the next tick. The mission does not wait for the
+/// answer, so it may arrive just after the first of these ticks.
 const IN_TIME_TICKS: u64 = 1;
 
 impl Shadow {

@@ -59,7 +59,7 @@ impl Mission {
     pub(in crate::engine) fn promote_if_due(&mut self) {
         let is_ordered = |shadow: &&Shadow| shadow.promotion != Promotion::No;
         let Some(shadow) = self.shadow.as_ref().filter(is_ordered) else { return };
-        // Nobody expects a planner to take over long after the order.
+        // The operator does not expect a planner to take over long after the order.
         let refusal = self.standing().allows(&Order::Promote).err().map(|why| why.to_string());
         let barred = || shadow.worker.info.as_ref().and_then(|info| self.barred(info));
         if let Some(why) = refusal.or_else(barred) {

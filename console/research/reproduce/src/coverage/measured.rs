@@ -30,7 +30,7 @@ pub(super) struct Measured {
     pub plan_time_ms: Option<f64>,
 }
 
-/// Has a planner plan a tank, identified by case and seed, and draws the plan if plans are drawn.
+/// Asks a planner for a plan for a tank, identified by case and seed, and draws the plan if drawings are requested.
 ///
 /// # Errors
 /// The planner does not exist, or it refuses its parameters. Anything else is a result.

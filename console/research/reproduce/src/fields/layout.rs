@@ -77,7 +77,7 @@ impl GotoLayout {
         fly(planners, method, &self.site(&corners, &obstacles), &trip)
     }
 
-    /// Draws a plan, if plans are drawn.
+    /// Draws a plan, if drawings are requested.
     pub(super) fn draw(&self, runner: &Runner<'_>, method: &Method, measured: &Measured) {
         let Some(gallery) = runner.gallery() else { return };
         let world = discs::world(WallOf::Polygon { vertices: self.corners() }, &self.discs);

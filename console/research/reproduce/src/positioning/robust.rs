@@ -71,7 +71,7 @@ fn cases() -> Vec<(String, Setup)> {
     layouts.into_iter().flat_map(|layout| IMPAIRMENTS.map(|impairment| case(layout, impairment))).collect()
 }
 
-/// An id and its estimator; none calibrates the speed of sound first.
+/// An id and its estimator; `None` for the method that first calibrates the speed of sound.
 type Entry = (&'static str, Option<Estimator>);
 
 fn entries() -> impl Iterator<Item = Entry> {

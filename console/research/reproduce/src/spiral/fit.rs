@@ -1,4 +1,5 @@
-//! How far each reading of the text is from the printed Table 1, and what the reading means for the paper's claim.
+//! How far the figures of each reading (interpretation of the text) are from the printed Table 1, and what they mean
+//! for the paper's claim.
 
 use super::{
     figures::{join, with_path},
@@ -21,7 +22,7 @@ const WITH_VT: &str = "the same over 54 cells, including those of VT, whose sour
 const CLAIM: &str =
     "the sign depends on the side of IAPF's push and on the gate, neither of which the paper states";
 
-/// A reading of the two methods that the claim compares.
+/// The two methods that the claim compares, in one reading of the text.
 #[derive(Debug, Clone)]
 pub(super) struct Pair {
     /// Name of the reading.

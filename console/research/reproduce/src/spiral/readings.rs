@@ -1,7 +1,8 @@
 //! Choices for the details that the text of Wang et al. 2023 leaves open, selected to come near its Table 1.
 //!
-//! They were found by a search that compared some thousands of readings with the printed table. So they show that the
-//! table is compatible with a reading, but not what the authors did.
+//! Such a set of choices is a *reading*. The readings here were found by a search that compared some thousands of
+//! readings with the printed table. They therefore show that the table is compatible with a reading, but not what the
+//! authors did.
 
 use super::{
     fit::Pair,
@@ -38,7 +39,7 @@ pub(super) struct Reading {
     push_beside: &'static str,
 }
 
-/// The nearest readings of the search.
+/// The readings that came nearest to the table in the search.
 pub(super) fn named() -> [Reading; 4] {
     let k1 = Reading {
         name: "K1".into(),

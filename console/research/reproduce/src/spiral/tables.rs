@@ -17,7 +17,7 @@ use world::spiral::Spiral;
 const LAYOUTS_OF_A_SEARCH: u64 = 20;
 const FIRST_OF_A_SEARCH: u64 = 7_000_000;
 
-/// Table 1, as in the text and in every reading that was selected with it.
+/// Table 1: the methods as in the text, and in every reading that was selected with this table.
 pub(super) fn table1(job: &Job<'_>) -> Result<Vec<Row>> {
     let readings = readings::named();
     let entries = method::of_table1().into_iter().chain(readings.iter().flat_map(Reading::entries));

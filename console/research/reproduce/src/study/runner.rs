@@ -68,7 +68,7 @@ impl<'a> Runner<'a> {
         Self { parts: parts.map(|parts| (parts, most)), ..self }
     }
 
-    /// The gallery for plans, if they are drawn.
+    /// The gallery for plans, if drawings are requested.
     pub(crate) fn gallery(&self) -> Option<&Gallery> {
         self.gallery
     }
@@ -103,7 +103,7 @@ impl<'a> Runner<'a> {
 
     /// Computes every case for every draw; one list for each case, in the order of the draws.
     ///
-    /// Draw by draw, so that the progress is that of the whole study.
+    /// Computes draw by draw, so that the progress shown is that of the whole study.
     ///
     /// # Errors
     /// The first error in the order of the draws.
