@@ -60,7 +60,7 @@ pub struct Inspection {
     pub inspected_on: Option<String>,
     /// The reason why no coverage is stated, for readings that do not show when the tool was on.
     pub coverage_waiver: Option<String>,
-    /// The reason why the facts contradict what the scenario of the run states about the floor.
+    /// The reason why these facts about the floor contradict the scenario of the run.
     pub identity_corrected: Option<String>,
     /// The reason why coverage is not stated plate by plate, if the plate layout is not known.
     pub plates_waiver: Option<String>,

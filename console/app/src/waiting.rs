@@ -1,4 +1,5 @@
-//! Waiting for a scenario from a pipe: its writer may be slow, so the user is told what the program waits for.
+//! Waits for a scenario from a pipe. The writer of the pipe may be slow, so a note tells the user that the program is
+//! waiting.
 
 use crate::cli::{Command, VehicleCommand};
 use crate::planners::is_plugin;

@@ -1,5 +1,5 @@
-//! What varies between the missions of a campaign, and what is measured. A plan and the campaign frozen from it share
-//! this type.
+//! The values that vary between the missions of a campaign, and the metrics. A plan and the campaign frozen from it
+//! share this type.
 
 use crate::{until::Until, value::Value};
 use serde::{Deserialize, Serialize};
@@ -13,7 +13,7 @@ pub struct Seeds {
     pub count: u64,
 }
 
-/// What varies between missions besides the scenario, and what is measured.
+/// The values that vary between missions besides the scenario, and the metrics.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Design {
     /// Name of the campaign.

@@ -84,7 +84,7 @@ pub struct Faults {
 /// A mission to inspect.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Worst {
-    /// What happened in the mission.
+    /// How the mission ended, the first metric, and the reason, as text.
     pub what: String,
     /// The command that repeats the mission.
     pub command: String,

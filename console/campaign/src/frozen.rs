@@ -49,7 +49,7 @@ pub struct Campaign {
     pub program: Program,
     /// The scenarios.
     pub scenarios: Vec<ScenarioText>,
-    /// What varies and what is measured.
+    /// The values that vary between missions, and the metrics.
     #[serde(flatten)]
     pub design: Design,
     /// Number of missions per block; not part of the table.

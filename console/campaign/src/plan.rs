@@ -38,7 +38,7 @@ pub(crate) const SEEDS: Range<u64> = 0..(1 << 62);
 /// A plan, checked as far as that is possible without its scenarios and planners.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    /// What varies and what is measured.
+    /// The values that vary between missions, and the metrics.
     pub design: Design,
     /// Paths of the scenario files as written, relative to the folder of the plan.
     pub scenarios: Vec<String>,

@@ -96,7 +96,7 @@ const FIGURES: [(&str, Kind); 48] = [
     ("tether.snagged", Flag),
 ];
 
-/// Figures for which a larger value is better; for all others, a smaller one is.
+/// Figures for which a larger value is better; for all other figures, a smaller value is better.
 const MORE_IS_BETTER: [&str; 12] = [
     "clearance_min_m",
     "coverage.reachable",

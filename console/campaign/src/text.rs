@@ -53,7 +53,7 @@ pub(crate) fn points(mean: Option<&Mean>) -> String {
     )
 }
 
-/// Aligns rows of cells in columns: the first column on the left, the others on the right.
+/// Aligns rows of cells in columns: text in the first column to the left, text in the other columns to the right.
 pub(crate) fn columns(rows: &[Vec<String>]) -> String {
     let mut table = Table::new();
     table.load_preset(presets::NOTHING).add_rows(rows);

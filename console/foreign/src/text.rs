@@ -95,7 +95,7 @@ fn replaced(text: &str, instead: impl Fn(char) -> char) -> Cow<'_, str> {
     rewritten(text, is_plain, |plain, c| plain.push(instead(c)))
 }
 
-/// Keeps the characters of a text for which `may_stay` is true, and calls `write` to replace each of the others.
+/// Keeps the characters of a text for which `may_stay` is true, and calls `write` to replace each other character.
 fn rewritten(
     text: &str,
     may_stay: impl Fn(char) -> bool,
@@ -115,7 +115,7 @@ fn rewritten(
     plain.into()
 }
 
-/// Returns JSON with the same values in which every character is plain: the others are escaped, as in `\u202e`.
+/// Returns JSON with the same values in which every character is plain: other characters are escaped, as in `\u202e`.
 ///
 /// Line feeds and tabs are kept: in JSON they occur only as white space between values.
 pub fn plain_json(text: &str) -> Cow<'_, str> {

@@ -38,7 +38,7 @@ pub struct FloorPlan {
     pub no_go: Vec<Named>,
     /// Plates of the floor, if the file contains them; where plates overlap, the first takes precedence.
     pub plates: Vec<DrawnPlate>,
-    /// Notes for the user: what was assumed, changed or not understood.
+    /// Notes for the user on assumptions, changes, and unused parts of the file.
     pub notes: Vec<String>,
 }
 
@@ -64,8 +64,8 @@ impl FloorPlan {
         }
     }
 
-    /// The text of a scenario that scans this floor with a planner. Comments mark the defaults used for what the file
-    /// does not state.
+    /// The text of a scenario that scans this floor with a planner. Comments mark the defaults used for values that the
+    /// file does not state.
     pub fn scenario(&self, name: &str, source: &str, planner: &str) -> String {
         let mut text = format!("# The floor was imported from {}.\n", commented(source));
         for note in &self.notes {

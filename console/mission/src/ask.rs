@@ -117,7 +117,7 @@ pub enum Given {
     },
 }
 
-/// What a planner drew, reported and logged in addition to its answer.
+/// The drawings, figures and log messages that came with a planner's answer.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Said {
     /// The drawings.

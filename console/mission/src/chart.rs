@@ -1,4 +1,4 @@
-//! The mission's own map: the drawing, and what was found during the mission.
+//! The mission's own map: the drawing, the obstacles found, and the zones drawn during the mission.
 
 use crate::{
     ask::{Site, SiteObstacle, SiteZone},
@@ -133,7 +133,7 @@ impl Chart {
         &self.map
     }
 
-    /// Records what is seen from an estimated pose.
+    /// Records the obstacles seen from an estimated pose.
     ///
     /// Even when the position estimate is wrong, the robot sees how far away an obstacle is. Planners therefore avoid
     /// obstacles where they are seen, not where the chart puts them.
@@ -142,7 +142,7 @@ impl Chart {
         self.in_sight = sightings.iter().map(seen).collect();
     }
 
-    /// Puts sightings on the chart, made at time `now_s` from an estimated pose; returns what is new.
+    /// Puts sightings on the chart, made at time `now_s` from an estimated pose; returns the changes.
     ///
     /// The obstacle tracker recognizes the columns that are on the drawing, so only other obstacles are added.
     pub(crate) fn see(&mut self, now_s: f64, sightings: &[Sighting], from: &Pose) -> Seen {

@@ -100,7 +100,7 @@ impl Locator {
         self.sides
     }
 
-    /// Processes what was sensed since the last tick; returns the resulting events.
+    /// Processes the readings since the last tick; returns the resulting events.
     pub fn take(&mut self, readings: &Readings) -> Vec<EventKind> {
         self.positioner.predict(&readings.odometry);
         let mut events = if readings.ranging_cycle { self.cycle(readings) } else { Vec::new() };

@@ -74,7 +74,7 @@ pub enum Order {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         by: Option<String>,
     },
-    /// Record what the operator did at the console; the record affects neither robot nor planner.
+    /// Record an action of the operator at the console; the record affects neither robot nor planner.
     Note(Note),
 }
 
@@ -191,7 +191,7 @@ pub enum RangeFault {
 /// A check made before the start.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Check {
-    /// What was checked.
+    /// The item that was checked.
     pub what: String,
     /// The result.
     pub outcome: CheckOutcome,

@@ -1,7 +1,7 @@
 //! Which orders a mission accepts now.
 //!
 //! There is one table, [`Standing::allows`]. The mission consults it for every order; the screen consults it to show
-//! which keys are available, and why the others are not. The table has no state and changes none.
+//! which keys are available, and why the other keys are not. The table has no state and changes none.
 
 mod folded;
 

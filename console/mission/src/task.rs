@@ -102,7 +102,7 @@ impl Task {
         }
     }
 
-    /// Takes a plan for what is left of the task.
+    /// Takes a plan for the remaining task.
     pub(crate) fn take_plan(&mut self, plan: &api::Plan) {
         if let Self::Cover(cover) = self {
             cover.take_plan(plan);
@@ -163,7 +163,7 @@ impl Task {
         }
     }
 
-    /// What is left of the task, in the form that planners receive.
+    /// The remaining task, in the form that planners receive.
     pub(crate) fn left(
         &self,
         coverage: &CoverageGrid,

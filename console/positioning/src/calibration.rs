@@ -59,7 +59,7 @@ fn is_positive(sigma: f64) -> bool {
 /// Pools the cycles of a session: a single cycle reveals little about the scale of all ranges, but together they
 /// determine it exactly.
 ///
-/// Every cycle is fitted with a free position. The rest of its information goes into one system of linear equations (a
+/// Every cycle is fitted with a free position. Its remaining information goes into one system of linear equations (a
 /// Schur complement), so memory does not grow with the length of a session. Cycles that contradict themselves even with
 /// a free scale, such as those with a wrong station, are left out. It takes four stations to separate either a scale or
 /// an offset from a position, and five to separate both. Estimating the station positions also needs a robot that moves

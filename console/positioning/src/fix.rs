@@ -19,7 +19,8 @@ pub struct Ranging {
     pub least_m: f64,
     /// The longest repetition, metres.
     pub most_m: f64,
-    /// The part of `sigma_m` that does not depend on the distance, metres; the rest is a share of the distance.
+    /// The part of `sigma_m` that does not depend on the distance, metres; the remaining part is a share of the
+    /// distance.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub timing_sigma_m: f64,
 }

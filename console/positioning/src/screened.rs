@@ -9,7 +9,7 @@ use world::Station;
 /// The number of stations needed to identify a wrong one.
 const NEEDED_TO_EXCLUDE: usize = 5;
 
-/// Solves; if the residuals raise an alarm, looks for the one station without which the others agree.
+/// Solves; if the residuals raise an alarm, looks for the one station without which the other stations agree.
 ///
 /// If two stations qualify and their answers are far apart, the fix is suspect. If none qualifies, the alarm stays:
 /// two stations that are wrong together need [`crate::Consensus`].

@@ -63,7 +63,7 @@ pub enum FileChange {
         /// The file.
         path: PathBuf,
     },
-    /// The length of the file differs from what was written to it.
+    /// The length of the file differs from the number of bytes written to it.
     #[error("the file has {found} bytes, but {written} were written: {}", path.display())]
     Length {
         /// Length on disk, bytes.
@@ -73,7 +73,7 @@ pub enum FileChange {
         /// The file.
         path: PathBuf,
     },
-    /// The file has the length of what was written to it, but different content.
+    /// The file has the expected length, but different content.
     #[error("the file was changed by another program: {}", path.display())]
     Content {
         /// The file.
@@ -102,7 +102,8 @@ pub(crate) struct FileWatch {
 impl FileWatch {
     /// Creates a file; fails if it exists.
     ///
-    /// Every write goes to the end of the file, so a file that others truncate stays shorter than what was written.
+    /// Every write goes to the end of the file, so a file that another program truncates stays shorter than the data
+    /// written to it.
     pub(crate) fn create(path: &Path) -> io::Result<(File, Self)> {
         let file = OpenOptions::new().append(true).create_new(true).open(path)?;
         let opened = file.metadata()?;

@@ -172,8 +172,8 @@ pub fn clearance_warning(mission: &MissionConfig, drawing: &World) -> Option<Str
     })
 }
 
-/// Warns if the stations are so nearly on a line that the ranges fit two positions, and states what decides between
-/// the two.
+/// Warns if the stations are so nearly on a line that the ranges fit two positions, and states the criterion that
+/// decides between the two.
 ///
 /// Takes as long as computing the map.
 pub fn mirror_warning(mission: &MissionConfig, drawing: &World) -> Option<String> {

@@ -169,9 +169,9 @@ impl<'a> Candidate<'a> {
     }
 }
 
-/// Refuses runs that are not all on one floor, or that differ in what counts as scanned; the error names the first
-/// difference and both values. A run with a different scenario must be a re-scan that names the journal of one of the
-/// other runs.
+/// Refuses runs that are not all on one floor, or that differ in the conditions for scanned floor; the error names the
+/// first difference and both values. A run with a different scenario must be a re-scan that names the journal of one of
+/// the other runs.
 pub(crate) fn require_one_floor(runs: &[PastRun]) -> Result<(), String> {
     let all: Vec<Candidate<'_>> =
         runs.iter().map(Candidate::of).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
@@ -190,7 +190,7 @@ pub(crate) fn require_one_floor(runs: &[PastRun]) -> Result<(), String> {
     }
 }
 
-/// The first run that is not linked to the others.
+/// The first run that is not linked to the other runs.
 fn unlinked<'a, 'b>(all: &'b [Candidate<'a>]) -> Option<&'b Candidate<'a>> {
     let (mut linked, mut rest): (Vec<&Candidate<'_>>, Vec<&Candidate<'_>>) =
         (all.iter().take(1).collect(), all.iter().skip(1).collect());

@@ -248,7 +248,7 @@ fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
     lines
 }
 
-/// What is proven about the planners of a run that was reproduced.
+/// The statement on the planners of a run that was reproduced.
 fn proven(planners: Option<&Asked>) -> String {
     let Some(Asked { same, not_comparable, too_early, .. }) = planners else {
         return "the planners were not asked (--from-journal): their answers, drawings and log lines are not \

@@ -46,7 +46,7 @@ pub struct Listed {
     /// changed since.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verified: Option<String>,
-    /// What is wrong with the run; absent if nothing is wrong.
+    /// The problem with the run; absent if there is none.
     pub note: Option<String>,
     /// The remark that people wrote about the run.
     #[serde(skip_serializing_if = "Option::is_none")]

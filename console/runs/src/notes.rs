@@ -39,7 +39,7 @@ pub fn read_notes(folder: &Path) -> Result<Notes, String> {
     notes.tidied().map_err(|why| format!("{}: {why}; correct or remove the file", path.display()))
 }
 
-/// What is wrong with the notes, with line and column.
+/// The problem with the notes, with line and column.
 fn not_understood(path: &Path, error: &serde_json::Error) -> String {
     let (line, column) = (error.line(), error.column());
     let sentence = error.to_string();

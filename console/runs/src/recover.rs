@@ -1,5 +1,5 @@
 //! Closes a run that was killed while it was being written. The report records the digests of the existing files, who
-//! closed the run and when, and what is missing. Neither the journal nor the recording is changed.
+//! closed the run and when, and the missing parts. Neither the journal nor the recording is changed.
 
 use crate::{
     error::RunError, folder::RunFolder, past::Past, report_file::Reported, standing::held, utc_minute,

@@ -15,9 +15,9 @@ pub enum Standing {
     NotRecorded(Box<Summary>, String),
     /// A process is still writing to the run.
     Running,
-    /// The run has no report that can be trusted; only the journal tells what happened.
+    /// The run has no report that can be trusted; the journal is the only record.
     JournalOnly {
-        /// What is wrong with the report; absent if there is no report.
+        /// The problem with the report; absent if there is no report.
         doubt: Option<String>,
         /// Why the writer could no longer write; absent if it was killed.
         failure: Option<String>,

@@ -288,7 +288,7 @@ fn tool(survey: &Survey) -> String {
     format!("on for {on_s:.1} s in {stretches}{heading}")
 }
 
-/// The distance in metres from the start in the scenario to the first fix, if it exceeds what the errors of both and
+/// The distance in metres from the start in the scenario to the first fix, if it is larger than the errors of both and
 /// the robot's motion can explain.
 fn start_off_m(scenario: &Scenario, tally: &Tally) -> Option<f64> {
     let (first, error_95_m) = tally.first_fix_m.zip(tally.first_fix_error_95_m)?;

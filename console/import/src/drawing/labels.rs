@@ -2,7 +2,7 @@
 
 use super::groups::{Entity, unescaped};
 
-/// The largest number of characters of a name; the rest is cut off.
+/// The largest number of characters of a name; longer names are cut off.
 const LONGEST: usize = 40;
 
 /// Words in the tags of those attributes that contain a name or a number.

@@ -6,7 +6,7 @@ use std::{collections::BTreeMap, fmt};
 /// The largest number of layers that a message lists.
 const LISTED: usize = 20;
 
-/// What a layer contains.
+/// The content of a layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(test, derive(strum::EnumCount))]
 pub enum Role {

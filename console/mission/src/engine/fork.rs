@@ -9,8 +9,8 @@ use world::{Pose, World, tether::Cable};
 pub struct Fork {
     /// The mission. No planner is open: the first order has to choose one.
     pub mission: Mission,
-    /// The tank as the mission knows it: the drawing, and what was found. Obstacles that have not been seen yet are
-    /// missing.
+    /// The tank as the mission knows it: the drawing, the obstacles found, and the zones drawn. Obstacles that have not
+    /// been seen yet are missing.
     pub world: World,
     /// The robot's estimated pose.
     pub pose: Pose,

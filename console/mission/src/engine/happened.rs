@@ -24,7 +24,7 @@ impl Happened {
         self.events.extend(kinds);
     }
 
-    /// Passes on what a planner drew, reported and logged in addition to its answer.
+    /// Passes on the drawings, figures and log messages that came with a planner's answer.
     pub(super) fn pass_on(&mut self, said: Said, planner: &str) {
         self.extend(said.into_events(planner));
     }

@@ -16,7 +16,7 @@ use world::{Floor, Point, World};
 /// A robot that turns at least this fast can turn round within the time limit for reaching a corner, radians per second.
 const BRISK_RAD_PER_S: f64 = 0.75;
 
-/// What the mission knows about robot, tank and task, and its progress.
+/// The mission's knowledge of robot, tank and task, and its progress.
 #[derive(Clone)]
 pub(super) struct Known {
     pub config: MissionConfig,

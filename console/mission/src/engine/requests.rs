@@ -13,7 +13,7 @@ use world::{CoverageGrid, Point};
 /// Length, ahead of the robot, of the targets and of the plan that a planner receives, metres.
 const AHEAD_M: f64 = 4.0;
 
-/// What the mission remembers about a plan that is being made.
+/// The data that the mission keeps about a plan that is being made.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct AskedPlan {
     pub reason: Reason,
@@ -58,7 +58,7 @@ impl Known {
         (asked, ask)
     }
 
-    /// The inputs of a plan for what is left of the task at some place: the path from the start of the mission to that
+    /// The inputs of a plan for the task that remains at some place: the path from the start of the mission to that
     /// place, the floor scanned by then, the reason for the plan, and the plan to keep to.
     pub(super) fn plan_from(
         &self,

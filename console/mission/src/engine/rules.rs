@@ -110,7 +110,7 @@ impl Rules {
         }
     }
 
-    /// Resets the rules when the robot moves again: what was counted before says nothing about what follows.
+    /// Resets the rules when the robot moves again, because their earlier counts are out of date.
     pub(super) fn restart(&mut self) {
         self.lost_position = LostPositionRule::default();
         self.stuck.restart();

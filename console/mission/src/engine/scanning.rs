@@ -1,4 +1,4 @@
-//! Updates the map with what is seen, and the coverage with what is scanned, in one tick.
+//! Updates the map with the obstacles seen, and the coverage with the floor scanned, in one tick.
 
 use super::{
     Mission,
@@ -17,7 +17,7 @@ const WORTH_TELLING_M2: f64 = 0.05;
 const MOST_NAMED: usize = 4;
 
 impl Mission {
-    /// Puts what is seen on the chart; returns whether the chart has changed.
+    /// Puts the obstacles seen on the chart; returns whether the chart has changed.
     pub(super) fn look_around(&mut self, readings: &Readings) -> bool {
         let (now_s, pose) = (self.known.now_s(), self.known.locator.pose());
         self.known.chart.sight(&readings.sightings, &pose);

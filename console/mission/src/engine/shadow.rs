@@ -46,14 +46,14 @@ pub(super) struct Shadow {
     n_flown: usize,
     /// Mission time of that request, seconds.
     asked_at_s: f64,
-    /// What the planner can be asked in this tick; depends on the sensor readings alone, not on another planner's
-    /// answers.
+    /// The requests that the planner can get in this tick; depends on the sensor readings alone, not on another
+    /// planner's answers.
     now: Now,
     /// Whether the planner has been ordered to take over.
     promotion: Promotion,
 }
 
-/// What a planner in shadow can be asked in a tick, fixed at the start of the tick.
+/// The requests that a planner in shadow can get in a tick, fixed at the start of the tick.
 #[derive(Debug, Clone, Copy, Default)]
 struct Now {
     /// Whether the robot is running.

@@ -33,7 +33,7 @@ pub(super) struct Pending {
     pub kind: PendingKind,
 }
 
-/// The kind of ask, with what the mission must remember until the answer comes.
+/// The kind of ask, with the data that the mission must keep until the answer arrives.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum PendingKind {
     Open,

@@ -10,7 +10,7 @@ use std::fmt;
 pub enum Sandbox {
     /// No access to files, the network, the terminal, other processes or their memory.
     Full,
-    /// Only some of the restrictions of [`Self::Full`]; the text states why the others are missing.
+    /// Only some of the restrictions of [`Self::Full`]; the text states why the other restrictions are missing.
     Partial(String),
     /// Only limits on memory and files; the text states why the other restrictions are missing.
     None(String),

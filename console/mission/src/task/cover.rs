@@ -57,7 +57,7 @@ impl Cover {
         }
     }
 
-    /// Takes a plan for what is left.
+    /// Takes a plan for the remaining floor.
     pub(crate) fn take_plan(&mut self, plan: &Plan) {
         self.before_m += self.lanes.as_ref().map_or(0.0, |lanes| lanes.follower.along_m());
         let stations_m = polyline::stations_m(&plan.path);
@@ -187,7 +187,7 @@ impl Cover {
         self.lanes.as_ref().is_none_or(|lanes| lanes.follower.remaining().iter().any(is_in_the_way))
     }
 
-    /// What is left to scan, as boxes of floor. If nothing is left, returns one cell at the anchor, because an empty list
+    /// The floor left to scan, as boxes. If no floor is left, returns one cell at the anchor, because an empty list
     /// would mean the whole floor.
     fn regions_left(&self, coverage: &CoverageGrid, lane_m: f64) -> Vec<Vec<Point>> {
         // Before the first plan, the tool has only passed over the start, which it will pass over again.
@@ -234,7 +234,7 @@ impl Cover {
             .collect()
     }
 
-    /// What is left, in the form that planners receive.
+    /// The remaining task, in the form that planners receive.
     pub(crate) fn left(
         &self,
         coverage: &CoverageGrid,

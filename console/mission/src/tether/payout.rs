@@ -32,7 +32,7 @@ pub(super) struct Explained {
     pub points: usize,
 }
 
-/// What the mission knows from the encoder of the reel.
+/// The state that follows from the encoder of the reel.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Payout {
     measured_m: Option<f64>,

@@ -14,7 +14,7 @@ pub(crate) const OBSTACLES_FOUND: &str = "map/world/obstacles/found";
 pub(crate) const ZONES: &str = "map/world/zones";
 pub(crate) const PLATES: &str = "map/world/plates";
 pub(crate) const PLATE_NAMES: &str = "map/world/plates/names";
-/// The largest missed areas, with labels, and the others.
+/// The largest missed areas, with labels, and the smaller ones, without.
 pub(crate) const MISSED: &str = "map/world/missed";
 pub(crate) const MISSED_MORE: &str = "map/world/missed/more";
 /// The key to the colours.

@@ -14,7 +14,7 @@ use account::{clock, says_nothing};
 use mission::RunOpened;
 use world::Boundary;
 
-/// The answer to an item, and what is still missing from it.
+/// The answer to an item, and the facts or actions that are still missing.
 type Answered = (String, Vec<String>);
 
 /// Returns the thirteen items of a document.
@@ -71,7 +71,7 @@ fn empty(key: &str, text: &str) -> Option<String> {
 }
 
 /// Adds the decisions that belong to an item. A decision that was made is added to the answer, any other decision to
-/// what is missing.
+/// the missing facts.
 fn decided(document: &Document, item: usize, (answer, mut lacks): Answered) -> Answered {
     let mut answers = vec![answer];
     for decision in decisions(document).into_iter().filter(|decision| decision.item == item) {

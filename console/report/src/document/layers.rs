@@ -27,7 +27,8 @@ pub(crate) struct Layers<'a> {
 }
 
 impl<'a> Layers<'a> {
-    /// Builds the layers of what the runs scanned; `places` are the positions of the listed missed areas, in order.
+    /// Builds the layers of the floor that the runs scanned; `places` are the positions of the listed missed areas, in
+    /// order.
     pub(crate) fn new(
         run: &'a RunOpened,
         scanned: &'a Scanned,

@@ -82,13 +82,13 @@ impl Document {
 pub struct GateItem {
     /// Number of the item, from 1.
     pub number: usize,
-    /// What the item requires.
+    /// The requirement of the item.
     pub what: &'static str,
     /// Whether the item is answered.
     pub is_answered: bool,
     /// The answer, or the known part of the answer.
     pub answer: String,
-    /// What is missing: keys of `[inspection]`, or an action that is still needed.
+    /// The missing facts, as keys of `[inspection]`, or the actions that are still needed.
     pub missing: Vec<String>,
 }
 

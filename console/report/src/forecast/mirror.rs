@@ -1,4 +1,5 @@
-//! Floor that has a mirror image because the stations are on a line, and what decides between the two positions.
+//! Floor that has a mirror image because the stations are on a line, and the criterion that decides between the two
+//! positions.
 
 use mission::MissionConfig;
 use positioning::{Accuracy, AccuracyMap};
@@ -65,7 +66,7 @@ impl Mirrored {
         })
     }
 
-    /// The floor with an image and what decides, as text.
+    /// The floor with an image, and the criterion that decides, as text.
     pub(super) fn sentences(&self) -> [String; 2] {
         let (percent, by_walls) = (self.share * 100.0, self.by_walls_share * 100.0);
         let open = percent - by_walls;

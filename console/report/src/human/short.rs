@@ -11,8 +11,8 @@ const LABEL: usize = 14;
 const NARROWEST: usize = 40;
 
 /// A run in at most twelve lines of this many columns: how it ended, and the sentence about where it is kept. `name` is
-/// the name of its folder if the full report can be printed from it. Lines are wrapped between words; what does not fit
-/// is left out, least important first.
+/// the name of its folder if the full report can be printed from it. Lines are wrapped between words; lines that do not
+/// fit are left out, least important first.
 pub fn short(run: &Summary, kept: Option<&str>, name: Option<&str>, columns: usize) -> String {
     let columns = columns.max(NARROWEST);
     let wrapped = |label: &str, what: &str| wrap(label, what, columns);

@@ -100,8 +100,8 @@ impl Incidents {
     }
 }
 
-/// Classifies an event: its kind in the report (`None` if it only ends an earlier incident), what it starts, and what
-/// it ends.
+/// Classifies an event: its kind in the report (`None` if it only ends an earlier incident), the incident that it
+/// starts, and the incident that it ends.
 fn sort(kind: &EventKind) -> Option<(&'static str, Option<String>, Option<String>)> {
     let key = |text: &str| Some(text.to_owned());
     Some(match kind {

@@ -44,7 +44,7 @@ pub struct Study {
 pub struct Options {
     /// Number of layouts or draws; `None` for the study's default.
     pub layouts: Option<usize>,
-    /// Seed of the first layout; the others follow.
+    /// Seed of the first layout; later layouts use the following seeds.
     pub first_seed: u64,
     /// Cases whose ids begin with one of these; all if empty.
     pub cases: Vec<String>,

@@ -42,7 +42,7 @@ pub struct Hello {
     pub motion: MotionKind,
     /// The limits of its motion.
     pub limits: Limits,
-    /// What its readings contain.
+    /// The parts that its readings contain.
     #[serde(default)]
     pub has: Has,
     /// Time between two readings, seconds: greater than 0, at most 1.
@@ -77,7 +77,7 @@ pub struct Limits {
     pub radius_m: f64,
 }
 
-/// What the readings of a vehicle contain. A part that is not named is absent.
+/// The parts that the readings of a vehicle contain. A part that is not listed is absent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[allow(clippy::struct_excessive_bools, reason = "each is a sensor of its own")]
 pub struct Has {

@@ -25,7 +25,7 @@ const CHANGE_S: f64 = 30.0;
 /// the path driven is typically longer than the path planned by about this share.
 const CHANGE_SHARE: f64 = 0.02;
 /// Two plans count as scanning the same floor if the amounts that they leave unscanned differ by at most this share of
-/// what is left to scan. Cells count by their centres, so plans with different lanes differ by single cells.
+/// the floor left to scan. Cells count by their centres, so plans with different lanes differ by single cells.
 const SAME_FLOOR_SHARE: f64 = 0.0005;
 
 impl Known {

@@ -84,14 +84,16 @@ impl Driving {
         }
     }
 
-    /// Records that a command is not sent; what the planner drew and logged with the command is still passed on.
+    /// Records that a command is not sent; the drawings, figures and log messages that came with it are still passed
+    /// on.
     fn discard(&self, arrived: Arrived, happened: &mut Happened) {
         let ask = arrived.ask;
         self.pass_on(arrived, happened);
         happened.push(EventKind::Discarded { ask, plan: None });
     }
 
-    /// Reports what came with a command, directly before the event for the command itself.
+    /// Passes on the drawings, figures and log messages that came with a command, directly before the event for the
+    /// command itself.
     fn pass_on(&self, arrived: Arrived, happened: &mut Happened) {
         if let Some(ticks) = arrived.late_ticks {
             happened.push(EventKind::PlannerLate { planner: self.id().to_owned(), ticks });

@@ -77,7 +77,7 @@ impl Shadow {
         self.note(EventKind::Commanded { ask: Some(ask), command, asked: None }, happened);
     }
 
-    /// Takes a plan for what is left of the task. Whether the plan can be run from the robot's position is checked at
+    /// Takes a plan for the remaining task. Whether the plan can be run from the robot's position is checked at
     /// promotion.
     fn take_plan(&mut self, plan: Plan, asked: &AskedPlan, known: &Known) {
         self.task = known.task.clone();
@@ -93,7 +93,7 @@ impl Shadow {
         self.course.doubt_fresh_plan(&self.task, known.config.room_m());
     }
 
-    /// Reports what the planner drew, reported and logged in addition to an answer.
+    /// Passes on the drawings, figures and log messages that came with an answer.
     fn pass_on(&mut self, said: Said, happened: &mut Happened) {
         for kind in said.into_events(&self.worker.choice.id.clone()) {
             self.note(kind, happened);

@@ -7,7 +7,7 @@ use super::super::{
 };
 use crate::human::text::counted;
 
-/// The answer to an item, and what is still missing from it.
+/// The answer to an item, and the facts or actions that are still missing.
 type Answered = (String, Vec<String>);
 
 /// The answer about the scope: the readings that were located.

@@ -39,7 +39,7 @@ pub(super) fn rows(block: &Block<'_>, run: &Run, plans: &[Measured], success: Su
     rows
 }
 
-/// The number of plans that arrive, and the outcome of the others.
+/// The number of plans that arrive, and the outcome of the other plans.
 fn outcome(block: &Block<'_>, plans: &[Measured], success: Success) -> Vec<Row> {
     let n = plans.len();
     let count = |is: &dyn Fn(&Measured) -> bool| plans.iter().filter(|plan| is(plan)).count();

@@ -13,7 +13,7 @@ pub enum StudyError {
     Planner {
         /// Layout and method.
         case: String,
-        /// What happened.
+        /// The fault of the planner.
         fault: Box<Fault>,
     },
     /// The study cannot be carried out as requested; with the reason.
