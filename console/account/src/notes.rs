@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Bookmarks closer together than this count as one, seconds.
+/// Time, seconds, below which two bookmarks count as one.
 const SAME_S: f64 = 0.005;
 /// Longest text of a note, characters.
 pub const MOST_LETTERS: usize = 500;

@@ -6,7 +6,7 @@ use world::{CellRun, Tiles};
 
 /// Distance is counted in steps of half a swath: 65,535 steps are 19 km for a swath of 0.6 m.
 const STEPS_PER_SWATH: f64 = 2.0;
-/// A return to a cell counts as a second scan after more than this many steps (two swaths).
+/// Number of steps after which a return to a cell counts as a second scan (two swaths).
 const AGAIN_STEPS: u16 = 4;
 
 /// Counts how often each cell was scanned again.

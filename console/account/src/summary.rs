@@ -210,7 +210,7 @@ pub struct Tracking {
 }
 
 impl Tracking {
-    /// A robot within this distance counts as being on the path, metres (T0 in Wang et al. 2023).
+    /// Distance, metres, within which a robot counts as being on the path (T0 in Wang et al. 2023).
     pub const NEAR_M: f64 = 0.2;
 }
 

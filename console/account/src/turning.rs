@@ -3,11 +3,11 @@
 use std::{collections::VecDeque, f64::consts::TAU};
 use world::{Pose, geometry::wrap_angle_rad};
 
-/// A change of heading above this within [`WITHIN_M`] of path is a turn, radians (30 degrees).
+/// Change of heading within [`WITHIN_M`] of path, radians, above which the change counts as a turn (30 degrees).
 const TURN_RAD: f64 = std::f64::consts::FRAC_PI_6;
 /// Length of path over which a change of heading is measured, metres.
 const WITHIN_M: f64 = 0.5;
-/// A turn is over when the heading changes by less than this within [`WITHIN_M`] of path, radians.
+/// Change of heading within [`WITHIN_M`] of path, radians, below which a turn is over.
 const STRAIGHT_RAD: f64 = TURN_RAD / 2.0;
 
 /// The heading changes along the true path.

@@ -64,7 +64,7 @@ fn keep_memory_small() {
     #[expect(unsafe_code, reason = "the C library offers no other way for a process to set this")]
     // SAFETY: `mallopt` changes parameters of the allocator under its own lock; no other thread runs yet.
     unsafe {
-        /// Blocks of at least this size, in bytes, get mappings of their own and are unmapped when freed.
+        /// Size, in bytes, from which a block gets a mapping of its own and is unmapped when freed.
         const MAPPED_FROM: libc::c_int = 128 << 10;
         // If a parameter is refused, its default stays in effect.
         libc::mallopt(libc::M_MMAP_THRESHOLD, MAPPED_FROM);

@@ -12,7 +12,7 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-/// A claim that has not been refreshed for this long is void, and a draft of this age is abandoned.
+/// Time without a refresh after which a claim is void; also the age from which a draft counts as abandoned.
 const SILENT_FOR: Duration = Duration::from_mins(10);
 /// The subfolder of the claims.
 const CLAIMS: &str = "claims";

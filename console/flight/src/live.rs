@@ -5,12 +5,12 @@ use mission::{Event, EventKind};
 use vehicle::port::{LEASE_S, LinkSeen, Live, VehicleInfo};
 use world::{Odometry, Readings};
 
-/// A vehicle that moves no faster than this counts as standing, metres per second and radians per second.
+/// Speeds, metres and radians per second, up to which a vehicle counts as standing.
 const STANDS_M_PER_S: f64 = 0.005;
 const STANDS_RAD_PER_S: f64 = 0.02;
 /// Number of readings in a row that must show a standing vehicle.
 const STANDS_READINGS: u32 = 2;
-/// A stop takes at most this many times the vehicle's own stop time.
+/// Maximum duration of a stop, as a multiple of the vehicle's own stop time.
 const STOP_FACTOR: f64 = 2.0;
 /// The least time after which a stop can be reported as not confirmed, seconds.
 const STOP_LEAST_S: f64 = 0.5;

@@ -25,16 +25,15 @@ mod learning;
 
 /// The number of bad rows that an error lists.
 const LISTED: usize = 10;
-/// If the time between two motions is more than this many times the usual interval, it is a gap: some motions were
-/// lost.
+/// Multiple of the usual interval between motions above which an interval is a gap, in which motions were lost.
 const GAP: f64 = 5.0;
 /// The number of intervals between motions from which the usual interval is determined.
 const INTERVALS: usize = 4_096;
 
-/// The motion is ignored if at least this many fixes contradict it. A wrong start alone makes three fixes contradict
-/// it.
+/// Minimum number of contradicting fixes for the motion to be ignored. A wrong start alone makes three fixes contradict
+/// the motion.
 const CONTRADICTING: u64 = 4;
-/// In addition, at least one in this many fixes must contradict the motion.
+/// Maximum number of fixes for each contradicting fix, as a second condition for the motion to be ignored.
 const CONTRADICTING_OF: u64 = 4;
 
 /// A file to locate, with the options.

@@ -13,7 +13,7 @@ use world::{Odometry, Pose, RangeSet};
 /// The length added to each arrival difference to make it a range, metres: ranges must be positive.
 const BASE_M: f64 = 100.0;
 
-/// If the time of day goes back by more than this, midnight has passed, seconds.
+/// Time, seconds: if the time of day goes back by more than this, midnight has passed.
 const HALF_A_DAY_S: f64 = 43_200.0;
 
 /// All measurements of one time or emission.

@@ -5,15 +5,14 @@ use crate::moments::Moment;
 use positioning::{RangeNoise, Timing, scatter_limit};
 use world::StationId;
 
-/// A squared difference counts for at most this many variances, so that a few far outliers do not make a session
-/// suspect.
+/// Maximum weight of a squared difference, in variances, so that a few far outliers do not make a session suspect.
 const MOST_SQUARES: f64 = 16.0;
-/// Scatter below this multiple of the noise, as a ratio of variances, does no harm.
+/// Ratio of the variance of the scatter to that of the noise below which the scatter does no harm.
 const HARMLESS: f64 = 1.3;
-/// Readings whose variance is below this share of the noise variance are not independent: they are copies of one
-/// reading, or share its error. Such readings count as one.
+/// Share of the noise variance below which readings are not independent: they are copies of one reading, or share its
+/// error. Such readings count as one.
 const NARROW: f64 = 0.25;
-/// A sum that deviates by more standard deviations than this is significant.
+/// Number of standard deviations above which the deviation of a sum is significant.
 const SIGNIFICANT: f64 = 5.0;
 
 /// The two readings of one station that differ the most.

@@ -12,11 +12,11 @@ use planner_api as api;
 use std::sync::Arc;
 use world::{Obstacle, ObstacleId, ObstacleMap, Point, Pose, Shape, Sighting, World, Zone, ZoneKind};
 
-/// A found obstacle is reported again once its estimated position has moved by this much, metres.
+/// Change of its estimated position, metres, after which a found obstacle is reported again.
 const MOVED_M: f64 = 0.05;
 /// Number of sightings in the running mean of a found obstacle's position.
 const MEMORY: f64 = 50.0;
-/// A moving obstacle is forgotten after being out of sight for this long, seconds.
+/// Time out of sight, seconds, after which a moving obstacle is forgotten.
 const OUT_OF_SIGHT_S: f64 = 2.0;
 
 /// The drawing and the found obstacles, with an index for queries.

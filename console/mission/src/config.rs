@@ -135,7 +135,7 @@ impl TetherConfig {
     }
 }
 
-/// What to do about better plans. After a repair, the planner makes a plan for all that is left, in the background.
+/// What to do about better plans. After a repair, the planner makes a plan for the rest of the task in the background.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BetterPlan {

@@ -3,14 +3,14 @@
 use std::collections::VecDeque;
 use world::{Point, Vector};
 
-/// Sightings older than this are forgotten, seconds.
+/// Age, seconds, above which sightings are forgotten.
 const MEMORY_S: f64 = 1.5;
 /// Minimum number of sightings for an estimate.
 const LEAST_PLACES: usize = 4;
-/// An obstacle that is slower than this counts as standing still, metres per second: errors of the estimated position can
-/// mimic such speeds.
+/// Speed, metres per second, below which an obstacle counts as standing still: errors of the estimated position can
+/// mimic lower speeds.
 const MOVING_M_PER_S: f64 = 0.08;
-/// An obstacle that already counts as moving continues to do so down to this speed, metres per second.
+/// Speed, metres per second, down to which an obstacle that already counts as moving continues to do so.
 const STILL_MOVING_M_PER_S: f64 = 0.04;
 /// Minimum distance that an obstacle must have moved to count as moving, metres.
 const LEAST_WAY_M: f64 = 0.12;

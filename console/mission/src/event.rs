@@ -395,8 +395,8 @@ pub enum EventKind {
         /// The reason, as a sentence.
         why: String,
     },
-    /// After a repair, a plan for all that is left was made in the background. It begins at a place ahead on the current
-    /// plan.
+    /// After a repair, a plan for the rest of the task was made in the background. It begins at a place ahead on the
+    /// current plan.
     BetterPlanned {
         /// Id of the ask that this answers.
         ask: AskId,

@@ -16,7 +16,7 @@ const CHART_ROOM_MOST_M: f64 = 0.15;
 /// Where room is short, the share of the room that must remain, because a robot that brakes straight ahead along a
 /// curved wall gets closer to the wall.
 const ROOM_SHARE: f64 = 0.5;
-/// A hull in contact with an obstacle may move into it by this much, metres, to allow for rounding.
+/// Distance, metres, by which a hull in contact with an obstacle may move into it, to allow for rounding.
 const TOUCH_M: f64 = 1e-4;
 /// Minimum step for checking the robot's path, metres.
 const LOOK_M: f64 = 0.01;

@@ -17,8 +17,7 @@ use world::{ObstacleMap, Point, Station, World};
 const NEAREST_M: f64 = 0.05;
 /// The largest number of cells along the longer side of a map.
 const MOST_CELLS: usize = 400;
-/// A ray that comes within this distance of a station counts as having reached it, metres: a station may be mounted on
-/// a column.
+/// Distance, metres, within which a ray counts as having reached a station: a station may be mounted on a column.
 const REACHED_M: f64 = 1e-3;
 
 /// The inputs of a forecast.

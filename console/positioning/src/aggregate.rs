@@ -17,7 +17,7 @@ pub(crate) const RANGE_LIMIT_M: f64 = 1e6;
 
 /// The number of nodes in the numerical posterior of one distance.
 const NODES: u32 = 48;
-/// Ranges more than this many sigmas from the median are trimmed.
+/// Number of sigmas from the median beyond which ranges are trimmed.
 const TRIM_SIGMAS: f64 = 3.0;
 /// Standard deviation of a normal distribution, as a multiple of its median absolute deviation.
 const SIGMA_PER_MAD: f64 = 1.4826;

@@ -11,7 +11,7 @@ use world::{Point, Station, StationId, Vector};
 /// Least distance to a station that is used in the computation, metres: closer to the station, the direction is
 /// undefined.
 const NEAREST_M: f64 = 1e-3;
-/// A range is short if it is less than this share of the longest one.
+/// Share of the longest range below which a range is short.
 const SHORT_RANGE: f64 = 0.2;
 /// The number of starts tried around a station that is close by.
 const CIRCLE_STARTS: u32 = 36;

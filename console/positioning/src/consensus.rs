@@ -8,7 +8,7 @@ use crate::{
 };
 use world::{Point, Station};
 
-/// A residual of more sigmas than this indicates a wrong range.
+/// The number of sigmas above which a residual indicates a wrong range.
 const CUT_SIGMAS: f64 = 3.0;
 /// The number of Newton steps on a subset of three; the linear start is already close.
 const SUBSET_STEPS: usize = 2;
@@ -18,9 +18,9 @@ const MOST_SUBSETS: usize = 120;
 const REFINED: usize = 8;
 /// The largest number of times that the agreeing stations are selected again.
 const ROUNDS: usize = 6;
-/// A second answer is as good as the first if its cost is higher by less than this.
+/// The difference in cost below which a second answer is as good as the first.
 const MARGIN: f64 = 16.0;
-/// Fewer agreeing stations than this prove nothing.
+/// The least number of agreeing stations that prove a position.
 const NEEDED: usize = 4;
 
 /// The sign of the error of wrong ranges.

@@ -13,7 +13,7 @@ use world::{Point, Station};
 const NEEDED: usize = 4;
 /// The largest number of steps before the search gives up; six are usual.
 const MAX_ITERATIONS: usize = 60;
-/// The search ends when a step is shorter than this, metres.
+/// The length of a step, metres, below which the search ends.
 const SETTLED_M: f64 = 1e-9;
 
 /// Least squares on ranges that are all too long by one unknown length, such as arrival times without the emission

@@ -13,9 +13,9 @@ use world::{Point, Station, Vector};
 
 /// The largest number of steps before the search gives up; five are usual.
 const MAX_ITERATIONS: usize = 60;
-/// The search ends when a step is shorter than this share of the longest range.
+/// The length of a step, as a share of the longest range, below which the search ends.
 const STEP_TOLERANCE: f64 = 1e-9;
-/// A second position fits nearly as well if its chi-squared is higher by less than this.
+/// The difference in chi-squared below which a second position fits nearly as well.
 const MIRROR_MARGIN: f64 = 9.0;
 
 /// Least squares on relative range errors, `sum ((r_i - l_i) / (s_i l_i))^2` where `s_i` is the relative sigma of a

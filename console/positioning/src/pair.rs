@@ -9,7 +9,7 @@ use crate::{
 use nalgebra::Matrix2;
 use world::{Point, Vector};
 
-/// Circles whose gap exceeds this many sigmas contradict each other.
+/// The number of sigmas above which the gap between two circles is a contradiction.
 const GAP_SIGMAS: f64 = 3.0;
 
 /// Returns the crossing of two range circles on the side of `near`, or either crossing if there is no `near`. The other

@@ -12,9 +12,9 @@ use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 use world::{Odometry, Point, Pose, Station, Vector, geometry::wrap_angle_rad};
 
-/// If the share of effective guesses is smaller than this, there are too few to continue with.
+/// The share of effective guesses below which there are too few to continue with.
 const TOO_FEW: f64 = 0.02;
-/// Copies of a survivor are scattered by this share of the spread of all survivors.
+/// The scatter of the copies of a survivor, as a share of the spread of all survivors.
 const JITTER: f64 = 0.25;
 /// The number of attempts to place a new guess within the bounds.
 const TRIES: u32 = 20;

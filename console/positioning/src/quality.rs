@@ -17,10 +17,9 @@ const SCATTER_Z: f64 = 3.719_016_485;
 
 /// The number of standard deviations that a protection level allows for chance: one position in 3000 lies farther off.
 const PROTECTION_SIGMAS: f64 = 4.0;
-/// If a place this many standard deviations away cannot be ruled out, the errors do not form an ellipse.
+/// A distance, in standard deviations: if a place this far away cannot be ruled out, the errors do not form an ellipse.
 const BENT_SIGMAS: f64 = 5.0;
-/// If the residual of a range keeps less than this share of the range's variance, the other ranges cannot check the
-/// range.
+/// The share of a range's variance that must remain in its residual for the other ranges to check it.
 const LEAST_SPARED: f64 = 1e-6;
 
 /// Stands for an infinite dilution, so that every number stays finite.

@@ -13,15 +13,15 @@ use crate::{
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2, Vector3};
 use world::{Station, StationId};
 
-/// An error of more standard deviations than this is significant. Fixes allow for smaller errors ([`Wrong::likely`]).
-/// In two series of 200 sets with a wrong speed of sound and no emission times, 93.1 and 94.0 % of the true positions
-/// lie in the ellipses of the fixes rated ok. With a limit of 4, only 92.2 % would, because chance hides the remaining
-/// errors.
+/// Number of standard deviations above which an error is significant. Fixes allow for smaller errors
+/// ([`Wrong::likely`]). In two series of 200 sets with a wrong speed of sound and no emission times, 93.1 and 94.0 % of
+/// the true positions lie in the ellipses of the fixes rated ok. With a limit of 4, only 92.2 % would, because chance
+/// hides the remaining errors.
 const SIGNIFICANT: f64 = 5.0;
-/// An error does no harm if the squared shift of the fixes, in units of their variance, is below this: 93.5 % of the
-/// true positions still lie in the 95 % ellipse.
+/// Squared shift of the fixes, in units of their variance, below which an error does no harm: 93.5 % of the true
+/// positions still lie in the 95 % ellipse.
 const HARMLESS: f64 = 0.2;
-/// An offset of fewer standard deviations than this is attributed to chance: most sessions have no offset.
+/// Number of standard deviations below which an offset is attributed to chance: most sessions have no offset.
 const BEYOND_CHANCE: f64 = 2.0;
 /// The least information from which an error can be seen, as a share of the information that there would be if the
 /// positions were known.

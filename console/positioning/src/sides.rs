@@ -14,7 +14,7 @@ use world::{Boundary, Point, Station};
 const CONTRADICTS: f64 = 18.42;
 /// The difference in normalised squared distance that decides between the two positions: one wrong choice in 1000.
 const DECIDES: f64 = 13.82;
-/// Stations with a condition number above this are nearly on a line, and can allow a second position.
+/// Condition number above which stations are nearly on a line, and can allow a second position.
 pub(crate) const MIRROR_CONDITIONING: f64 = 5.0;
 
 /// The criterion that decides on which side of the stations a fix lies.

@@ -23,7 +23,7 @@ use world::{Boundary, Obstacle, Point, Pose, Station, World};
 /// m, but its actual error was 0.063 m.
 const LEAST_CLEARANCE_M: f64 = 0.08;
 
-/// A start within this distance of the first path point, in metres, counts as being at that point.
+/// Distance, in metres, within which a start counts as being at the first path point.
 const ON_PATH_M: f64 = 1e-3;
 
 /// Reads every section and checks that they fit together. Returns the scenario or all problems. `also` runs an

@@ -17,7 +17,7 @@ use world::Point;
 /// The largest number of obstacles, zones or stations of a scenario.
 const MOST_ENTRIES: usize = 50_000;
 
-/// Coordinates beyond this, in metres, are mistakes.
+/// Largest plausible coordinate, in metres; larger ones are mistakes.
 const FAR_M: f64 = 10_000.0;
 
 /// The position of a value, for later reports of problems with it.

@@ -36,8 +36,8 @@ pub(crate) fn check(section: &Section<'_>, tether: &TetherConfig, site: &Site<'_
     }
 }
 
-/// For the certificate of a plan, the robot counts as back within this distance of the anchor, in metres, or within the
-/// mission's tolerance if that is smaller.
+/// Distance from the anchor, in metres, within which the certificate of a plan counts the robot as back; the mission's
+/// tolerance applies if it is smaller.
 const BACK_M: f64 = 0.3;
 /// The share of that distance within which there must be a point with room for the hull and its clearance.
 const ASIDE: f64 = 0.5;

@@ -6,7 +6,7 @@ use geometry::{
 };
 use world::{Boundary, Obstacle, ObstacleMap, Point, Pose, Shape, Sighting};
 
-/// A ray that comes within this distance of an outline counts as having hit it, metres.
+/// Distance, metres, within which a ray counts as having hit an outline.
 const TOUCH_M: f64 = 1e-6;
 /// Number of points tested on a round outline.
 const ROUND_POINTS: u32 = 24;

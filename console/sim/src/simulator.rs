@@ -14,7 +14,7 @@ use world::{
     Medium, Mode, ObstacleMap, Odometry, Point, Pose, Readings, StationId, TetherTruth, Truth, tether::Cable,
 };
 
-/// A contact of the hull ends only once the gap is wider than this, metres.
+/// Width of the gap, metres, at which a contact of the hull ends.
 const CONTACT_GAP_M: f64 = 1e-3;
 
 /// One robot in one tank; time is the number of ticks.

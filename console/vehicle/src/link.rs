@@ -32,7 +32,7 @@ const LOST_S: f64 = 0.8;
 /// The same two limits in periods of the readings; they apply if readings are slow.
 const LATE_PERIODS: f64 = 2.0;
 const LOST_PERIODS: f64 = 3.0;
-/// The link is faulty if more messages arrive in a second than this multiple of the rate of readings, plus
+/// Number of messages in a second above which the link is faulty: this multiple of the rate of readings, plus
 /// [`FLOOD_SLACK`] for other messages.
 const FLOOD_FACTOR: f64 = 10.0;
 const FLOOD_SLACK: f64 = 100.0;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, fmt};
 use world::{Floor, PlateMap, Point, Vector};
 
-/// Areas smaller than this are not listed, only added up, square metres.
+/// Area, square metres, from which an area is listed; smaller areas are only added up.
 const LEAST_M2: f64 = 0.01;
 
 /// A group of adjacent cells.

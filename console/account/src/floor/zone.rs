@@ -9,9 +9,9 @@ use world::{Point, ShellFigures, ShellStretch};
 pub(crate) const CRITICAL_ZONE_M: f64 = 0.075;
 /// Share of the shell along which the full width must be scanned for the zone to count as done.
 const CRITICAL_DONE: f64 = 0.995;
-/// An unreachable rim narrower than this is not stated, metres.
+/// Width, metres, below which an unreachable rim is not stated.
 const LEAST_RIM_M: f64 = 0.005;
-/// Arcs closer together than this are merged, and shorter arcs are omitted, metres.
+/// Length, metres: arcs less than this apart are merged, and arcs shorter than this are omitted.
 const ARC_M: f64 = 0.1;
 
 /// The critical zone along the shell, where the floor meets it.

@@ -3,7 +3,7 @@
 /// Placeholders for facts that are not known yet.
 const PLACEHOLDERS: [&str; 6] = ["fixme", "lorem ipsum", "tba", "tbc", "tbd", "todo"];
 
-/// Texts that begin like this announce a fact instead of stating it.
+/// Beginnings of texts that announce a fact instead of stating it.
 const ANNOUNCED: [&str; 15] = [
     "to be added",
     "to be advised",
@@ -22,7 +22,7 @@ const ANNOUNCED: [&str; 15] = [
     "will follow",
 ];
 
-/// A text that consists only of these words has no content.
+/// Words without content: a text that consists only of these states no fact.
 const EMPTY: [&str; 58] = [
     "any",
     "applicable",

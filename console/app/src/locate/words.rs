@@ -8,10 +8,10 @@ use report::forecast::line_of_stations;
 use scenario::Scenario;
 use std::fmt::Write as _;
 
-/// If the relative uncertainty of the speed of sound exceeds this, ranges cannot be corrected with it reliably.
+/// Relative uncertainty of the speed of sound above which it cannot correct ranges reliably.
 const DOUBTFUL_SCALE: f64 = 0.005;
 
-/// An error in the speed of sound is reported if it exceeds this many standard deviations.
+/// Number of standard deviations above which an error in the speed of sound is reported.
 const SURE_SIGMAS: f64 = 4.0;
 
 /// Lines that each begin with a label.

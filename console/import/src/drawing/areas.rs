@@ -9,9 +9,9 @@ use world::{Boundary, Point, Shape, Vector, shape::ring_area_m2};
 const PLATE_M: f64 = 0.25;
 /// Tolerances in metres for the floor that may be lost when corners of the shell are removed; tried in this order.
 const TOLERANCES_M: [f64; 4] = [1e-3, 2e-3, 5e-3, 1e-2];
-/// Discs whose positions and radii differ by less than this, in metres, count as one disc drawn twice.
+/// Difference, in metres, below which two discs count as one disc drawn twice; applies to positions and radii.
 const TWICE_M: f64 = 5e-3;
-/// Outlines with a radius smaller than this, in metres, enclose nothing.
+/// Radius, in metres, below which an outline encloses nothing.
 const SMALLEST_M: f64 = 1e-3;
 /// The number of corners of the polygon that replaces the round tip of a wide line.
 const N_TIP: usize = 16;

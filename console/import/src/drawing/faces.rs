@@ -9,13 +9,12 @@ use world::{
     shape::{bounds_of, ring_area_m2},
 };
 
-/// Points closer together than this, in metres, are merged: in a drawing, a seam may end up to this far short of
-/// another seam, or beyond it.
+/// Distance, in metres, below which points are merged: in a drawing, a seam may end slightly short of another seam, or
+/// slightly beyond it.
 const SAME_M: f64 = 5e-3;
 /// The largest number of straight pieces that are compared with each other.
 const MOST_PIECES: usize = 20_000;
-/// The remainder of a line beyond the last line that it meets counts as a loose line only if it is longer than this, in
-/// metres.
+/// Length, in metres, above which the remainder of a line beyond the last line that it meets counts as a loose line.
 const LOOSE_M: f64 = 0.1;
 
 type Piece = [Point; 2];

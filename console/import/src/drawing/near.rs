@@ -4,7 +4,7 @@ use world::{Point, shape::bounds_of};
 
 /// The largest number of lines whose ends are compared with each other; the longest lines are taken.
 const MOST_LINES: usize = 400;
-/// A gap wider than this share of the outline is obvious to the user and is not reported.
+/// Width of a gap, as a share of the outline, above which the gap is obvious to the user and is not reported.
 const WIDEST_SHARE: f64 = 0.25;
 /// The largest number of sides that are compared with each other.
 const MOST_SIDES: usize = 5_000;

@@ -17,13 +17,13 @@ use world::{
 
 /// The number of corners with which a round plate, or a round shell divided by seams, is approximated.
 const N_ROUND: [usize; 2] = [120, 720];
-/// A strip narrower than this, in metres, lies between the two edges of an overlap and is not a plate.
+/// Width, in metres, below which a strip is not a plate: it lies between the two edges of an overlap.
 const NARROWEST_M: f64 = 0.1;
-/// A point closer than this, in metres, to the line between its neighbours is not a corner.
+/// Distance, in metres, from the line between its neighbours below which a point is not a corner.
 const STRAIGHT_M: f64 = 2e-4;
 /// The largest distance in metres by which an outline with too many corners may shrink.
 const COARSEST_M: f64 = 0.05;
-/// Plates whose centres differ by less than this from south to north, in metres, form a row.
+/// Distance from south to north, in metres, below which the centres of plates form a row.
 const ROW_M: f64 = 0.25;
 
 /// A text of the drawing.

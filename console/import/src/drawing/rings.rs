@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use world::Point;
 
-/// Ends closer than this, in metres, are joined.
+/// Distance, in metres, below which two ends are joined.
 pub(super) const SAME_M: f64 = 2e-3;
 
 /// Points, and whether the last is joined to the first.

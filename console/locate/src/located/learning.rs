@@ -10,15 +10,15 @@ use crate::{
 use flight::failure::bad_input;
 use positioning::{Calibration, Integrity, Possible, Ranging, Session, SolverKind, Unknowns};
 
-/// The estimate of clock and sound errors stops after at most this many passes over the session.
+/// Maximum number of passes over the session to estimate clock and sound errors.
 const ROUNDS: usize = 10;
-/// The estimate of clock and sound errors stops once it changes by less than this share of its standard deviation.
+/// Change of the estimate of clock and sound errors, as a share of its standard deviation, below which the passes end.
 const SETTLED: f64 = 0.1;
 /// Standard deviation that is assumed for clock offsets before the search, metres.
 const OFFSET_SIGMA_M: f64 = 20.0;
 /// Standard deviation that is assumed for the error of the speed of sound before the search, as a share.
 const SOUND_SIGMA_RATIO: f64 = 0.05;
-/// A speed of sound that is less certain than this, as a share, counts as not found.
+/// Standard deviation of the speed of sound, as a share, above which the speed counts as not found.
 const UNSEEN_SIGMA_RATIO: f64 = 0.05;
 /// The share by which ranges may be too long while the speed of sound is being estimated.
 pub(super) const MOST_TOO_LONG: f64 = 0.3;

@@ -15,7 +15,7 @@ const LONGEST_RECORD: usize = 64_000_000;
 
 /// The longest message that is accepted as a row, bytes.
 const LONGEST_ROW: usize = 1 << 16;
-/// The unpacked records may be at most this many times as long as the bytes read, plus `FREE_BYTES`.
+/// Maximum ratio of the length of the unpacked records, less `FREE_BYTES`, to the number of bytes read.
 const MOST_EXPANSION: u64 = 1000;
 const FREE_BYTES: u64 = 64 << 20;
 

@@ -86,7 +86,8 @@ impl Mission {
         self.happened.push(EventKind::ReturnBegan { way });
     }
 
-    /// Searches for a different way if something that was not there before is in the way; without one, holds the robot.
+    /// Searches for a different way back if a new obstacle or zone blocks the current one. If none is found, holds the
+    /// robot.
     pub(super) fn doubt_way_back(&mut self) {
         if !self.known.phase.is_return() || self.known.is_way_back_free() {
             return;

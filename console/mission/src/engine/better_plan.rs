@@ -1,5 +1,5 @@
-//! Better plans. After a repair, a second worker of the same planner makes a plan for all that is left while the robot
-//! continues.
+//! Better plans. After a repair, a second worker of the same planner makes a plan for the rest of the task while the
+//! robot continues.
 //!
 //! The second worker receives no plan to keep to. Its plan begins at a place ahead on the current plan: floor on the
 //! way there counts as scanned, and the cable counts as laid up to there. If the new plan saves enough time to justify
@@ -115,7 +115,7 @@ impl Mission {
         is_due && is_steady && self.preparing.is_none() && self.known.follows_planner()
     }
 
-    /// Judges a plan for all that is left; returns the planner if its plan is offered.
+    /// Judges a plan for the rest of the task; returns the planner if its plan is offered.
     pub(super) fn better_plan_arrived(
         &mut self,
         mut worker: Worker,

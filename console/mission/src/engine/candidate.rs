@@ -15,10 +15,10 @@ use crate::{
 };
 use planner_api::Plan;
 
-/// If the candidate's plan begins farther from the robot than this, the candidate must plan again, metres.
+/// Distance from the robot to the beginning of the candidate's plan, metres, above which the candidate must plan again.
 pub(super) const NEAR_PLAN_M: f64 = 0.5;
-/// When the candidate plans again, it keeps to its first plan if the robot has moved no farther than this, metres; beyond
-/// that, too much floor would be scanned twice.
+/// Distance that the robot may have moved, metres, for a candidate that plans again to keep to its first plan; beyond
+/// this, too much floor would be scanned twice.
 const MOST_GONE_M: f64 = 3.0;
 
 impl Mission {

@@ -17,7 +17,7 @@ use world::{ObstacleMap, Point, Shape};
 pub(super) struct Course {
     /// The plan that is still due or being made.
     pub due: Option<Due>,
-    /// Whether the last plan covered all that was left of the task.
+    /// Whether the last plan covered the whole rest of the task.
     pub is_whole: bool,
     /// Progress along the plan, for tasks that do not track it themselves.
     pub follower: Option<PathFollower>,
@@ -60,7 +60,7 @@ impl Course {
         self.due.is_none()
     }
 
-    /// Whether the plan covers all that was left of the task; assumed to be true while a plan is due.
+    /// Whether the plan covers the whole rest of the task; assumed to be true while a plan is due.
     pub(super) fn is_whole(&self) -> bool {
         self.is_whole || self.due.is_some()
     }

@@ -11,7 +11,7 @@ use geometry::{Braking, Drive};
 use planner_api::{Command, Limits};
 use world::{Medium, Mode};
 
-/// A command counts as limited if the speed sent is less than this share of the speed requested.
+/// Ratio of the speed sent to the speed requested below which a command counts as limited.
 const LIMITED_SHARE: f64 = 0.9;
 
 impl Known {

@@ -13,7 +13,7 @@ use crate::{
 use planner_api::Drive;
 use world::{Floor, Point, World};
 
-/// A robot that turns at least this fast can turn round within the time limit for reaching a corner, radians per second.
+/// Turn rate, radians per second, from which a robot can turn round within the time limit for reaching a corner.
 const BRISK_RAD_PER_S: f64 = 0.75;
 
 /// The mission's knowledge of robot, tank and task, and its progress.

@@ -5,7 +5,7 @@ use crate::{ask::AskId, event::EventKind};
 use planner_api::{Leg, LegTag, Plan};
 use world::{Point, polyline};
 
-/// A plan shorter than this leads nowhere, metres.
+/// Length, metres, below which a plan leads nowhere.
 const NO_WAY_M: f64 = 0.01;
 
 /// A plan as it would be run, with its events.

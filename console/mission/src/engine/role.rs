@@ -22,7 +22,7 @@ pub(super) struct Preparing {
 pub(super) enum Role {
     /// The planner takes over as soon as it has an acceptable plan.
     Candidate(Candidate),
-    /// The planner makes a plan for all that is left, to replace the repaired plan in use.
+    /// The planner makes a plan for the rest of the task, to replace the repaired plan in use.
     Better(Better),
 }
 

@@ -11,7 +11,7 @@ use crate::{chart::Seen, event::EventKind, passage::Passage, task::Task};
 use planner_api::Reason;
 use world::{Cell, Pose, Readings, Shape, coverage::percent_text, tether::Reach};
 
-/// An area left out is mentioned at the end only if it is larger than this, square metres.
+/// Area, square metres, above which an area left out is mentioned at the end.
 const WORTH_TELLING_M2: f64 = 0.05;
 /// Maximum number of unreachable areas named at the end.
 const MOST_NAMED: usize = 4;

@@ -23,7 +23,7 @@ use planner_api::{Plan, Reason};
 use promotion::Promotion;
 use world::{Point, Shape};
 
-/// A robot farther from the shadow's plan than this counts as having left the plan, metres.
+/// Distance from the shadow's plan, metres, above which the robot counts as having left the plan.
 const NEAR_PLAN_M: f64 = 0.5;
 /// Minimum time between two plans for a robot that has left the shadow's plan, seconds.
 const PLAN_AGAIN_S: f64 = 10.0;

@@ -30,7 +30,7 @@ const BREACH_M: f64 = 0.05;
 const PIECE_M: f64 = 0.1;
 /// Maximum number of corners of a zone.
 const MOST_CORNERS: usize = 64;
-/// A ring that turns by more than this crosses itself, radians; with some room for rounding.
+/// Sum of the turns of a ring, radians, above which the ring crosses itself; with some room for rounding.
 const FULL_TURN_RAD: f64 = TAU + 1e-6;
 
 impl Known {

@@ -9,7 +9,7 @@ use world::{Pose, Tool};
 /// Number of standard deviations that a normally distributed error stays within in 95 of 100 cases.
 const NORMAL_95: f64 = 1.96;
 
-/// Times that differ by less than this count as equal, seconds: the same time can be computed in two different ways.
+/// Difference, seconds, below which times count as equal: the same time can be computed in two different ways.
 const TIE_S: f64 = 1e-6;
 
 /// The file of readings behind a located run.

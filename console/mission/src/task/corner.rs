@@ -3,7 +3,7 @@
 use geometry::PathFollower;
 use world::Point;
 
-/// A corner closer than this is given up if the robot stops getting closer to the corner, metres.
+/// Distance, metres, below which a corner is given up if the robot stops getting closer to it.
 const NEAR_CORNER_M: f64 = 0.3;
 /// Time after which such a corner is given up, seconds: longer than a turn on the spot takes.
 const PATIENCE_S: f64 = 6.0;

@@ -4,8 +4,8 @@ use world::Point;
 
 /// Spacing of the stored points of the path, metres.
 pub(super) const KEPT_M: f64 = 0.05;
-/// A step that ends this close to the second-last point undoes the last step, metres: no obstacle fits into so small a
-/// loop of the hull.
+/// Distance from the second-last point, metres, within which a step undoes the last step: no obstacle fits into such a
+/// small loop of the hull.
 const UNDONE_M: f64 = 0.08;
 
 /// The path driven, without the parts that were driven there and back.

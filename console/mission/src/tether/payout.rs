@@ -11,14 +11,14 @@ use super::driven::KEPT_M;
 const SLACK_M: f64 = 0.2;
 /// Excess length that sag and stretch may cause, as a share of the expected length.
 const SLACK_SHARE: f64 = 0.02;
-/// A reel with at most this much cable left counts as empty, metres.
+/// Length of cable left on the reel, metres, up to which the reel counts as empty.
 const AT_END_M: f64 = 0.05;
 /// How long the excess must last before the cable counts as caught, seconds.
 const SNAG_S: f64 = 3.0;
 /// Share of the permitted excess below which the cable length counts as expected again, and a caught cable as free.
 const EXPLAINED: f64 = 0.25;
-/// To free a caught cable, the robot goes back at least this far beyond the place where the cable length was last as
-/// expected, metres.
+/// Minimum distance, metres, by which the robot goes back beyond the place where the cable length was last as expected,
+/// to free a caught cable.
 const FURTHER_BACK_M: f64 = 0.5;
 
 /// The cable expected from the map.

@@ -3,11 +3,11 @@
 use nalgebra::Matrix2;
 use world::{Point, Vector};
 
-/// Cells are subdivided until this many of their centres are in the region.
+/// The number of cell centres in the region that is sufficient; until then, cells are subdivided.
 const ENOUGH: usize = 128;
-/// Subdivision stops at this many cells: the region is then narrower than the cells.
+/// The number of cells at which subdivision stops: the region is then narrower than the cells.
 const MOST_CELLS: usize = 4096;
-/// Subdivision stops at this cell size, metres.
+/// The cell size, metres, at which subdivision stops.
 const SMALLEST_M: f64 = 1e-7;
 
 /// The distances from a station that its ranges allow.

@@ -13,7 +13,7 @@ const FRESH_SHARE: f64 = 0.3;
 const ACROSS_SHARE: f64 = 0.3;
 /// Half width of the 95 % interval of a normal distribution, in standard deviations.
 const HALF_WIDTH_95: f64 = 1.96;
-/// If the standard deviation of the heading is above this, radians, the direction of a motion is unknown.
+/// Standard deviation of the heading, radians, above which the direction of a motion is unknown.
 const LOST_HEADING_RAD: f64 = 0.35;
 /// Drift of slip and turn error within a metre, as a share of their standard deviations.
 const WANDER_SHARE: f64 = 0.05;

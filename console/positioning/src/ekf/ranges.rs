@@ -14,7 +14,7 @@ use world::{Point, Station};
 const GATE_Z: f64 = 3.719;
 /// The largest number of steps in an iterated update; three are usual.
 const UPDATE_STEPS: usize = 12;
-/// The update ends when a step is shorter than this, metres.
+/// The length of a step, metres, below which the update ends.
 const SETTLED_M: f64 = 1e-5;
 /// The share of a motion that is lost when tracks spin: mean and standard deviation.
 const SLIPPED_THROUGH: (f64, f64) = (0.5, 0.2);

@@ -13,12 +13,12 @@ use world::{Boundary, Obstacle, Point, Shape, Tool, Vector, Zone, ZoneKind};
 
 type Done = Result<(), RecordingError>;
 
-/// More labels than this would hide the map; the names still appear when the pointer is over an item.
+/// Maximum number of labels; more would hide the map. The names still appear when the pointer is over an item.
 const MOST_LABELS: usize = 12;
 /// Half the size of the cross that marks an obstacle without extent, metres.
 const CROSS_M: f64 = 0.08;
 
-/// Points closer together than this share a label, metres.
+/// Distance, metres, below which points share a label.
 const LABEL_M: f64 = 0.5;
 
 /// Draws the static scene.

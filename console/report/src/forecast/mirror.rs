@@ -6,7 +6,7 @@ use positioning::{Accuracy, AccuracyMap};
 use serde::Serialize;
 use world::{Point, Station, Vector, World};
 
-/// The start must be closer to one position than to the other by this many standard deviations.
+/// Number of standard deviations by which the start must be closer to one position than to the other.
 const DECIDES_SIGMAS: f64 = 3.72;
 /// The 95 % error of a two-dimensional normal distribution, in standard deviations.
 const SIGMAS_95: f64 = 2.448;

@@ -15,7 +15,7 @@ use world::{
 const STEP_M: f64 = 0.2;
 /// Length of cable beyond the minimum that counts as a detour, metres.
 const DETOUR_M: f64 = 0.05;
-/// A robot whose direction is within this angle of its own cable may drive over the cable, radians.
+/// Angle, radians, between the robot's direction and its own cable within which it may drive over the cable.
 const AHEAD_RAD: f64 = PI / 6.0;
 
 /// The state of a taut cable along a path.

@@ -21,7 +21,7 @@ const PASSED_M: f64 = 0.5;
 const AHEAD_M: f64 = 4.0;
 /// Distance at which the last point counts as reached, metres.
 const TOLERANCE_M: f64 = 0.3;
-/// A drive ends after the planner has reported being stuck for this long, seconds.
+/// Time, seconds, for which the planner must report being stuck before a drive ends.
 const BORNE_S: f64 = 30.0;
 /// Time limit of a drive, as a multiple of the time for the preset path at full speed.
 const PATIENCE: f64 = 3.0;

@@ -6,7 +6,7 @@ use world::{Point, Vector, polyline};
 
 /// Distance from its preset point within which a planned point is correct, metres; the paper's `T0`.
 const CORRECT_M: f64 = 0.2;
-/// A path along the spiral arrives if it ends within this distance of the last preset point, metres.
+/// Distance from the last preset point, metres, within which a path along the spiral must end to arrive.
 pub(crate) const ARRIVED_M: f64 = 0.4;
 /// Length of path over which a change of heading is measured, metres.
 const HEADING_SPAN_M: f64 = 0.2;

@@ -7,10 +7,10 @@ use world::Point;
 
 /// Number of moves in a row over which a walk is tested for being trapped.
 const TRAP_MOVES: usize = 25;
-/// A walk may be trapped if these moves together gain less than this, metres.
+/// Distance gained in these moves, metres, below which a walk may be trapped.
 const TRAP_GAIN_M: f64 = 0.2;
-/// A walk is trapped only if its preset point is further away than this throughout these moves, and further than twice
-/// this at their end, metres.
+/// Distance to the preset point, metres, that a trapped walk exceeds throughout these moves; at their end, it exceeds
+/// twice this distance.
 const TRAP_LAG_M: f64 = 0.2;
 /// Maximum lag of a walk, metres: one coil of the paper's spiral. A walk that falls further behind skips floor.
 const COIL_M: f64 = 0.4 * std::f64::consts::PI;

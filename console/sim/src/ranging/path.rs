@@ -5,12 +5,11 @@ use geometry::{polyline::edges, unit_vector};
 use std::f64::consts::TAU;
 use world::{Boundary, Obstacle, ObstacleMap, Point, Vector, World};
 
-/// A ray that comes within this distance of a station counts as having reached it, metres: a station may be mounted on
-/// a column.
+/// Distance, metres, within which a ray counts as having reached a station: a station may be mounted on a column.
 const REACHED_M: f64 = 1e-3;
 /// Number of points on a round wall at which an echo is sought.
 const WALL_POINTS: u32 = 720;
-/// An echo that is reflected within this distance of a station counts as the direct sound, metres.
+/// Distance from a station, metres, within which a reflected echo counts as the direct sound.
 const OWN_WALL_M: f64 = 0.1;
 
 /// A path of sound.

@@ -3,7 +3,7 @@
 use crate::wire::{Misfit, message::Pong};
 use std::collections::VecDeque;
 
-/// Round trips are kept this long, seconds.
+/// Time for which round trips are kept, seconds.
 const WINDOW_S: f64 = 10.0;
 /// Largest difference between the rates of two clocks, as a share.
 const DRIFT: f64 = 1e-4;

@@ -11,16 +11,16 @@ const DELAY_STEP_S: f64 = 0.1;
 /// Number of commands kept for this comparison. At more than 50 readings a second, the kept commands do not reach back
 /// to the longest delays.
 const KEPT_MAX: usize = 64;
-/// Both motions are smoothed over this time, seconds.
+/// Time over which both motions are smoothed, seconds.
 const SMOOTHED_S: f64 = 0.5;
-/// Older motion is dropped, seconds.
+/// Age, seconds, above which motion is dropped.
 const FORGOTTEN_S: f64 = 3.0;
 /// Commanded motion that a finding requires, metres and radians.
 const NEEDED_M: f64 = 0.2;
 const NEEDED_RAD: f64 = 0.35;
-/// A finding must last for this time, seconds.
+/// Time for which a finding must last, seconds.
 const LASTING_S: f64 = 0.5;
-/// Share of the commanded motion below which the vehicle does not move.
+/// Ratio of measured to commanded motion below which the vehicle counts as not moving.
 const FROZEN: f64 = 0.05;
 /// Ratio of measured to commanded motion below which the motion counts as reversed.
 const REVERSED: f64 = -0.3;

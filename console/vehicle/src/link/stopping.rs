@@ -2,12 +2,12 @@
 
 use crate::wire::message::{Hello, Odometry};
 
-/// Below these rates a vehicle stands, metres and radians per second.
+/// Rates, metres and radians per second, below which a vehicle stands still.
 const STILL_M_PER_S: f64 = 0.02;
 const STILL_RAD_PER_S: f64 = 0.05;
 /// Number of readings in a row without motion that confirm a standstill.
 const STILL_READINGS: u32 = 3;
-/// The vehicle may take its stop time multiplied by this factor.
+/// Time that a vehicle may take to stop, as a multiple of its stop time.
 const STOP_TIMES: f64 = 2.0;
 
 /// The effect of a stop.

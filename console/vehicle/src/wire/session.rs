@@ -9,7 +9,8 @@ use std::f64::consts::{PI, TAU};
 /// Largest amount by which a stamp may go back, seconds: messages may be reordered on their way.
 const BACK_MAX_S: f64 = 1.0;
 
-/// A measured motion may exceed the limits of the vehicle by this factor and these amounts, for overshoot and noise.
+/// Factor and amounts by which a measured motion may exceed the limits of the vehicle, to allow for overshoot and
+/// noise.
 const MEASURED_FACTOR: f64 = 1.5;
 const MEASURED_SLACK_M: f64 = 0.05;
 const MEASURED_SLACK_RAD: f64 = 0.1;

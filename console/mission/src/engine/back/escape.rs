@@ -8,7 +8,7 @@ use world::Point;
 const CELLS: i32 = 20;
 /// Minimum reach of the search, metres.
 const LEAST_REACH_M: f64 = 1.0;
-/// The place must have this much more room than required, metres.
+/// Room, metres, that the place must have in addition to the required room.
 const SPARE_M: f64 = 0.005;
 
 impl Known {

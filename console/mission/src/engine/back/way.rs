@@ -9,8 +9,8 @@ use world::{Obstacle, ObstacleId, Point, World, ZoneKind, polyline, shortest::No
 
 /// Maximum number of times that a search for a path may ask whether to go on.
 const MOST_STEPS: usize = 200_000;
-/// The way is searched for again if the hull would overlap something by this much, metres: found obstacles are placed
-/// with about this accuracy.
+/// Overlap of the hull with an object, metres, from which a new way is searched for: found obstacles are placed with
+/// about this accuracy.
 const DOUBT_M: f64 = 0.02;
 
 impl Known {

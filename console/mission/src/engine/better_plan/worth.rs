@@ -1,4 +1,4 @@
-//! How much time a plan for all that is left must save, and where it begins.
+//! The time that a plan for the rest of the task must save, and the place where it begins.
 
 use super::super::{known::Known, requests::AskedPlan};
 use crate::{
@@ -15,10 +15,10 @@ const LEAD_S: f64 = 60.0;
 /// The minimum time until the robot reaches the start of the better plan, as a share of the time left in the current
 /// plan, because planning and deciding take longer in a large tank.
 const LEAD_SHARE: f64 = 0.05;
-/// No better plan is sought if less driving time than this is left, seconds: given the two thresholds below, such a
-/// plan would have to save more than 12 % of the remaining time.
+/// Remaining driving time, seconds, below which no better plan is sought: given the two thresholds below, such a plan
+/// would have to save more than 12 % of that time.
 const WORTH_S: f64 = 300.0;
-/// A change must save more than this time, seconds, plus [`CHANGE_SHARE`] of the remaining time. An operator needs this
+/// Time, seconds, that a change must save in addition to [`CHANGE_SHARE`] of the remaining time. An operator needs this
 /// time to check the plan.
 const CHANGE_S: f64 = 30.0;
 /// Share of the remaining time that a change must save in addition to [`CHANGE_S`]. Because of unforeseen obstacles,
@@ -38,8 +38,8 @@ impl Known {
         (lanes.length_m() - joint.station_m >= WORTH_S * v_m_per_s).then_some(joint)
     }
 
-    /// The place where a better plan would begin, and the inputs of that plan: it covers what will be left when the
-    /// robot reaches the place; `None` if too little is left.
+    /// The place where a better plan would begin, and the inputs of that plan: it covers the part of the task that will
+    /// be left when the robot reaches the place; `None` if too little is left.
     pub(in crate::engine) fn better_plan_ask(&self) -> Option<(Joint, (AskedPlan, PlanAsk))> {
         let joint = self.joint()?;
         let way = self.task.cover()?.way_to(&joint);

@@ -3,9 +3,9 @@
 use crate::{config::MissionConfig, governor::Momentum};
 use world::{Medium, Mode, SensedMedium, Zone};
 
-/// A planner is reported after being slowed down for this long, seconds.
+/// Time, seconds, after which a planner that is being slowed down is reported.
 const NAMED_AFTER_S: f64 = 2.0;
-/// A planner is reported again only after not being slowed down for this long, seconds.
+/// Time without slowing down, seconds, after which a planner can be reported again.
 const NAMED_AGAIN_S: f64 = 10.0;
 /// State of the rule that limits commands.
 #[derive(Debug, Clone)]

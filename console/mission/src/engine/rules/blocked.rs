@@ -5,11 +5,11 @@ use super::seen::Verdict;
 use planner_api::{Reason, Status};
 use world::Point;
 
-/// A planner that cannot continue along its lanes for this long is asked for new ones, seconds.
+/// Time, seconds, after which a planner that cannot continue along its lanes is asked for new ones.
 const BLOCKED_S: f64 = 1.0;
 /// Maximum number of new plans at one place.
 const MOST_PLANS: usize = 4;
-/// A robot that is farther away than this counts as blocked at a new place, metres.
+/// Distance, metres, from which a blocked robot counts as blocked at a new place.
 const MOVED_ON_M: f64 = 0.3;
 
 /// How long a planner has been reporting that it cannot continue, and where.

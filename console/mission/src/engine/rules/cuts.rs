@@ -11,13 +11,13 @@ use world::{
 /// Distance from the end of a return path within which the plan that follows counts as begun, metres.
 pub(in crate::engine) const HOME_M: f64 = 0.3;
 
-/// A cut is extended into a solid object if the object is no farther from the end of the cut than this multiple of the
-/// clearance that the hull needs. The multiple allows for the outlines of planners, which are slightly larger than the
-/// exact outlines.
+/// Distance from the end of a cut up to which the cut is extended into a solid object, as a multiple of the clearance
+/// that the hull needs. The multiple allows for the outlines of planners, which are slightly larger than the exact
+/// outlines.
 const ROOT_SHARE: f64 = 1.1;
 /// Length of that extension inside the solid object, metres.
 const ROOT_M: f64 = 0.01;
-/// A move within this distance of a cut may touch it, metres.
+/// Distance, metres, within which a move may touch a cut.
 const BESIDE_M: f64 = 1e-6;
 
 /// The lines that the plan never crosses, and whether the robot has crossed them.

@@ -3,9 +3,9 @@
 use super::seen::{PlannerSeen, Verdict};
 use crate::phase::{Hold, HoldReason, Resumes};
 
-/// A command older than this, and older than a tick, is not sent, seconds.
+/// Age, seconds, above which a command is not sent, unless it is no older than a tick.
 const STALE_S: f64 = 0.2;
-/// If a planner has not answered for this long, the robot is held until the planner answers, seconds.
+/// Time without an answer from the planner, seconds, after which the robot is held until the planner answers.
 const SILENT_S: f64 = 2.0;
 
 /// Whether the planner's last command came late.

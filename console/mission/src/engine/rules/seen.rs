@@ -10,7 +10,7 @@ use crate::{
 use planner_api::Reason;
 use world::Point;
 
-/// Within this distance of the previous stop, the robot counts as stopped at the same place again, metres.
+/// Distance from the previous stop, metres, within which the robot counts as stopped at the same place again.
 pub(super) const SAME_PLACE_M: f64 = 1.0;
 
 /// The inputs of the rules in one tick.

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A plugin that has this many faults within [`WINDOW_S`] is not used again.
+/// Number of faults within [`WINDOW_S`] after which a plugin is not used again.
 pub(in crate::engine) const MOST_FAULTS: usize = 3;
 /// Mission time after which a fault no longer counts, seconds.
 pub(in crate::engine) const WINDOW_S: f64 = 60.0;

@@ -8,7 +8,7 @@ use super::{
 use foreign::unplain;
 use world::Point;
 
-/// Numbers above this cannot be a position or a size.
+/// Largest number that can be a position or a size.
 const MOST: f64 = 1e9;
 
 /// A row whose cells were read and are within their limits.

@@ -9,9 +9,9 @@ use crate::human::text::counted;
 use account::{Area, Cause, MissReason, OutOfReach};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// If there are more missed areas than this, small ones are listed in short form.
+/// Number of missed areas above which small ones are listed in short form.
 const MOST_ROWS: usize = 40;
-/// Missed areas below this size are small, square metres.
+/// Area, square metres, below which a missed area is small.
 const SMALL_M2: f64 = 0.05;
 
 /// Lists missed areas and unreachable floor.

@@ -9,7 +9,7 @@ use world::tether::capstan_factor;
 const FRICTION: f64 = 0.3;
 /// Required coverage of the reachable floor.
 const GOAL: f64 = 0.995;
-/// On return, a cable counts as reeled in if no more than this length is still out, metres.
+/// Length still out on return, metres, up to which a cable counts as reeled in.
 const IN_M: f64 = 0.3;
 /// Maximum number of layouts named in a note.
 const NAMED_MAX: usize = 12;

@@ -14,9 +14,9 @@ use world::{Amphibious, Boundary, Medium, Mode, Point, Pose, Shape, Zone, ZoneKi
 const TRANSITIONS: [u32; 3] = [0, 20, 60];
 /// Duration of a step, seconds.
 const STEP_S: f64 = 0.1;
-/// The goal counts as reached at this distance, metres.
+/// Distance, metres, at which the goal counts as reached.
 const TOLERANCE_M: f64 = 0.15;
-/// Speeds above the limit by less than this count as rounding errors, metres per second.
+/// Excess over the speed limit, metres per second, below which it counts as a rounding error.
 const ROUNDING_M_PER_S: f64 = 1e-6;
 
 const OURS: &str = "virtual goals are the corners of the shortest path on the known map (ours)";

@@ -11,7 +11,7 @@ use world::{Point, Pose};
 
 /// Length of the part of its plan, ahead of the robot, that the planner receives, metres.
 const SHOWN_M: f64 = 4.0;
-/// The drive ends after the planner has reported being stuck for this long, seconds.
+/// Time, seconds, for which the planner must report being stuck before the drive ends.
 const STUCK_S: f64 = 60.0;
 
 /// A trip.

@@ -6,7 +6,7 @@ use positioning::{Fix, FixError, Integrity};
 use serde::{Deserialize, Serialize};
 use world::Point;
 
-/// A fix with a larger error than this and no warning is dangerous, metres.
+/// Error, metres, above which a fix without a warning is dangerous.
 const DANGER_M: f64 = 0.3;
 
 /// The outcome of one cycle.

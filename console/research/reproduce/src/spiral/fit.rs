@@ -12,7 +12,7 @@ use crate::study::{Job, Row, Sample, jackknife_95};
 /// One figure of a plan.
 type Figure = fn(&Measured) -> f64;
 
-/// A figure agrees with the printed one if it differs by at most this share of the printed one.
+/// Difference, as a share of the printed figure, up to which a figure agrees with the printed one.
 const NEAR: f64 = 0.05;
 
 const DISTANCE: &str = "mean of |ln(ours / printed)| over the 36 printed cells of IAPF and RPF, without and \

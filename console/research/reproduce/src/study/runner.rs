@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use serde::{Serialize, de::DeserializeOwned};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// More threads than this do not help, and each starts planners of its own.
+/// Maximum number of threads; more do not help, and each starts planners of its own.
 const THREADS_MAX: usize = 256;
 
 /// Runs the cases of a study.

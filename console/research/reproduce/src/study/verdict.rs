@@ -3,9 +3,9 @@
 use super::row::Row;
 use serde::{Deserialize, Serialize};
 
-/// A figure is reproduced if it differs from the printed one by at most this share.
+/// Difference, as a share of the printed figure, up to which a figure is reproduced.
 const NEAR: f64 = 0.05;
-/// Values that differ by less than this are equal.
+/// Difference below which two values are equal.
 const EQUAL: f64 = 1e-9;
 
 /// How a figure of ours compares with the printed one.

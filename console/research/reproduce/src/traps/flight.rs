@@ -15,9 +15,9 @@ use world::{Point, polyline};
 
 /// Length of the part of its plan, ahead of the robot, that the planner receives, metres.
 const SHOWN_M: f64 = 4.0;
-/// A drive ends after this many times as many moves as the straight line takes.
+/// Maximum number of moves of a drive, as a multiple of the moves that the straight line takes.
 const PATIENCE: f64 = 30.0;
-/// A drive also ends when the planner reports this many times in a row that it is stuck.
+/// Number of reports in a row of being stuck after which a drive ends, too.
 const MOST_STUCK: u32 = 600;
 
 /// A point robot on its way: moves of at most 0.05 m, one per tick.

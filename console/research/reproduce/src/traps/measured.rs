@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use trials::Trap;
 use world::{Point, polyline};
 
-/// The goal counts as reached at this distance, metres.
+/// Distance, metres, at which the goal counts as reached.
 pub(super) const TOLERANCE_M: f64 = 0.1;
 /// Tolerance for rounding of clearances, metres.
 const ROUNDING_M: f64 = 1e-6;

@@ -2,7 +2,7 @@
 
 use mission::{ParamKind, ParamValue, Parameters, PlannerInfo};
 
-/// Ranges whose ends differ by more than this factor are searched by orders of magnitude.
+/// Ratio of the ends of a range above which the range is searched by orders of magnitude.
 const WIDE: f64 = 100.0;
 
 /// The range of a parameter.
