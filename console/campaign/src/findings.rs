@@ -101,8 +101,8 @@ struct Columns {
 }
 
 impl Findings {
-    /// Which arms may be ranked by their metrics: those that do not complete clearly fewer missions than another arm. If
-    /// all were ranked, a planner that gives up early would look fast, because only the few missions that it completes
+    /// Whether each arm may be ranked by its metrics. An arm that completes clearly fewer missions than another arm is
+    /// not ranked: a planner that gives up early would look fast, because only the few missions that it completes
     /// count.
     pub fn ranked(&self) -> Vec<bool> {
         let is_ranked =

@@ -127,7 +127,7 @@ impl Task<'_> {
     /// Reads the whole file once to collect its contents and problems, and again to estimate clock and sound errors.
     ///
     /// # Errors
-    /// The file cannot be read, or it has bad rows and there is no request to leave them out.
+    /// The file cannot be read, or it has bad rows that were not to be left out.
     pub fn survey(&self) -> anyhow::Result<Survey> {
         let (mut moments, columns) = self.open()?;
         let in_file = self.tool_on_in_file()?;

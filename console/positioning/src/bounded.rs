@@ -16,8 +16,7 @@ use world::{Point, Station};
 /// The least width of a bound, metres.
 const THINNEST_M: f64 = 1e-6;
 
-/// Computes the mean of all positions that are consistent with every single range, with an error of at most `ratio`
-/// of the distance.
+/// Computes the mean of all positions at which the error of every single range is at most `ratio` times the distance.
 ///
 /// Each station allows an annulus around it, from its longest range divided by `1 + ratio` to its shortest range
 /// divided by `1 - ratio`; the possible positions are those where all annuli overlap. With uniform noise, the

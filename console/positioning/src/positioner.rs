@@ -360,7 +360,7 @@ impl Positioner {
     }
 
     /// Processes a fix on an unknown side of the stations. If the estimate keeps contradicting both sides, or is less
-    /// accurate than one that covers both sides would be, it is replaced with one that does.
+    /// accurate than an estimate that covers both sides, it is replaced with such an estimate.
     ///
     /// Nothing is merged, because two such fixes together do not determine the side any better than one.
     fn take_both(&mut self, fix: &Fix, other: Point, contradicts: bool) -> bool {

@@ -72,9 +72,9 @@ fn has_rival_on_circle(anchors: &[Anchor], position: Point, covariance: &Matrix2
         .any(|at| (at - position).norm() > reach_m && cost(at) < chi2 + PROTECTION_SIGMAS.powi(2))
 }
 
-/// Returns the radius that contains the true position even if any one range is wrong: for each station, the distance
-/// to the position from the other stations plus the uncertainty of that position (solution separation). `None` if any
-/// station is indispensable.
+/// Returns the radius that contains the true position even if any one range is wrong: for each station, the distance to
+/// the position computed without that station, plus the uncertainty of that position (solution separation); the largest
+/// sum counts. `None` if any station is indispensable.
 fn protection_level_m(anchors: &[Anchor], position: Point, covariance: &Matrix2<f64>) -> Option<f64> {
     let reach_m = |covariance: &Matrix2<f64>| PROTECTION_SIGMAS * largest_sigma_m(covariance);
     if anchors.len() < 3 {

@@ -1,7 +1,7 @@
 //! Merges the chunks of a closed recording into a few large ones: the viewer then opens it several times as fast.
 //!
-//! During a run every event must be in the file within seconds, so the chunks are small. A file that was cut off by a
-//! kill keeps them; it has the same content.
+//! During a run every event must be in the file within seconds, so the chunks are small. The recording of a killed
+//! process keeps its small chunks; its content is the same.
 
 use crate::{error::RecordingError, recorder::paths, rr};
 use std::{

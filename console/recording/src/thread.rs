@@ -85,9 +85,9 @@ pub struct Finished {
 ///
 /// [`RunRecorder::send`] hands over events and returns immediately, unless 8192 batches are waiting. In that case the
 /// simulation waits for the disk, and no data is lost. An error affects only its own file and appears in
-/// [`RunRecorder::health`] within a second. The same applies to a file that others delete, replace or truncate. The
-/// other file and the mission continue. [`crate::FAILURE_FILE`] in the folder of the run states the reason for later
-/// readers.
+/// [`RunRecorder::health`] within a second. The same applies to a file that another program deletes, replaces or
+/// truncates. The other file and the mission continue. [`crate::FAILURE_FILE`] in the folder of the run states the
+/// reason for later readers.
 pub struct RunRecorder {
     sender: Option<SyncSender<Arc<[Event]>>>,
     /// A lock protects the value so that screens can read the health from other threads; only `close` takes the value

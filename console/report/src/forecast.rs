@@ -150,8 +150,8 @@ impl<'a> ForecastReport<'a> {
 }
 
 /// Warns if the clearance is so small that the position error may exceed it. This concerns scans, because the robot
-/// senses its distance from columns but not from walls, and any mission of a robot that senses little beyond its
-/// hull.
+/// senses its distance from columns but not from walls. It also concerns every mission of a robot that senses little
+/// beyond its hull.
 ///
 /// Takes as long as computing the map, which is one forecast for each of several thousand places.
 pub fn clearance_warning(mission: &MissionConfig, drawing: &World) -> Option<String> {

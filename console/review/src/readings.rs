@@ -8,8 +8,8 @@ use recording::{Ticks, journal_of};
 use std::{io, path::Path};
 use world::{Pose, Readings};
 
-/// Writes the sensor readings tick by tick, each with its time, seconds, and the true pose of the robot, which a live
-/// run does not have.
+/// Writes the sensor readings tick by tick, each with its time, seconds, and, for a simulated run, the true pose of the
+/// robot.
 ///
 /// # Errors
 /// The journal of the run in the folder cannot be read, this build recomputes a different run from it, or the

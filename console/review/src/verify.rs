@@ -1,11 +1,11 @@
 //! Recomputes a past run and proves that the result equals its journal.
 //!
-//! One pass makes two proofs. *Mission*: simulator and mission get the recorded orders, and the recorded answers of
-//! the planners in the ticks in which they arrived. Every line must then be reproduced, byte for byte. This is always
+//! One pass makes two proofs. *Mission*: simulator and mission get the recorded orders, and the recorded answers of the
+//! planners in the ticks in which they arrived. Every line must then be reproduced, byte for byte. This is always
 //! possible, whatever happened to the planners during the run. *Planners*: each ask also goes to a planner, whose
-//! answer must equal the recorded one. The machine, not the ask, determines when a planner is killed, stopped, too
-//! late, or disturbed by a thread that it left behind. Such faults are therefore taken from the journal and counted,
-//! and one that occurs in a different tick counts as the same fault.
+//! answer must equal the recorded one. Some faults depend on the machine and not on the ask: a planner is killed or
+//! stopped, answers too late, or is disturbed by a thread that it left behind. Such faults are taken from the journal
+//! and counted. A fault that occurs again in a different tick counts as the same fault.
 //!
 //! The journal is read tick by tick; memory use does not grow with its length.
 

@@ -75,8 +75,8 @@ pub fn signatures(folder: &Path, register: &Register) -> Signatures {
     found
 }
 
-/// Searches the register for a signed report on exactly these files, but under a name that the run in this folder no
-/// longer has. Returns a message if there is such a report.
+/// Searches the register for a signed report on exactly these files under a different name than that of the run in this
+/// folder. Returns a message if there is such a report.
 ///
 /// Both digests must match: equal runs have equal journals, but each recording contains the time of day at which it was
 /// made.

@@ -1,5 +1,5 @@
 //! The state of the link to a vehicle, from the stamps of its messages. All times come from outside: `now_s` is the
-//! console's clock, the one that also stamps its commands.
+//! time of the console's clock, which also stamps its commands.
 //!
 //! [`Link`] folds received and sent messages; its parts can also be used alone: [`Clock`] (offset and delay),
 //! [`Sequence`] (loss), [`Motions`] (motion from odometry or poses), [`Stopping`] (whether the vehicle stands),

@@ -68,9 +68,9 @@ pub(super) struct LeftPlan {
 }
 
 impl LeftPlan {
-    /// The plan, if `choice` is the planner that made the plan, with the same values, and the robot is still within
-    /// `near_m` of the point where it left the plan. If the mission switches back to a planner, the planner continues
-    /// its old plan.
+    /// The plan, provided that `choice` names the planner that made it, with the same parameter values, and that the
+    /// robot is still within `near_m` of the point where it left the plan. If the mission switches back to a planner,
+    /// the planner continues its old plan.
     pub(super) fn to_go_on_with(&self, choice: &PlannerChoice, here: Point, near_m: f64) -> Option<Plan> {
         (self.choice == *choice && (self.at - here).norm() < near_m).then(|| self.plan.clone())
     }

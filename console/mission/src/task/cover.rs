@@ -123,7 +123,8 @@ impl Cover {
     }
 
     /// The first place at least `lead_m` ahead of the robot at which a stretch of the plan ends. If that place is more
-    /// than twice as far away, the first point of the path at least `lead_m` ahead. `None` if the plan ends before then.
+    /// than twice as far away, this is the first point of the path at least `lead_m` ahead instead. `None` if the plan
+    /// ends before then.
     pub(crate) fn joint(&self, lead_m: f64) -> Option<Joint> {
         let Lanes { plan, follower, .. } = self.lanes.as_ref()?;
         let stations_m = polyline::stations_m(&plan.path);

@@ -81,8 +81,9 @@ impl Payout {
         self.beyond_s > SNAG_S
     }
 
-    /// Of the `points` of the path driven, the number that is left when the robot has gone back far enough for a caught
-    /// cable to come free: driving back undoes the effect of driving on, among known and unknown obstacles alike.
+    /// The number of points of the path driven, out of `points`, that are left when the robot has gone back far enough
+    /// for a caught cable to come free: driving back undoes the effect of driving on, among known and unknown obstacles
+    /// alike.
     ///
     /// The excess grows with the square of the distance driven since the cable touched the obstacle. Where the excess
     /// became noticeable, the cable may therefore already have been caught for about the same distance as it has been

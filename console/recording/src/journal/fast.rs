@@ -28,8 +28,8 @@ macro_rules! read {
     }};
 }
 
-/// The event in a line that has the form written by this program, if the event is one that occurs in every tick.
-/// `None` for any other line, and for a faulty one: the general reader then reports the fault.
+/// Reads a plan, or an event that occurs in every tick, from a line in the form that this program writes. `None` for
+/// any other line and for a faulty line, which the general reader then reads or reports.
 pub(super) fn event(line: &[u8]) -> Option<Event> {
     let name = name_of(line)?;
     // Checked once for the whole line instead of once for each key.

@@ -43,8 +43,8 @@ const SITE: Site<'static> = Site {
     seed: 0,
 };
 
-/// Has a planner drive, without a plan, on an open floor to a goal 12 m to the east, while a cart with a constant
-/// speed crosses the way from `from_y_m`.
+/// Lets a planner drive without a plan over an open floor to a goal 12 m to the east, while a cart that starts at
+/// `from_y_m` crosses its way at a constant speed.
 ///
 /// # Panics
 /// The planner refuses its parameters, or a step fails.

@@ -12,8 +12,9 @@ const LEAST_REACH_M: f64 = 1.0;
 const SPARE_M: f64 = 0.005;
 
 impl Known {
-    /// The nearest place with at least `room_m` metres of room for the hull's centre that the robot can reach straight
-    /// from here, without coming closer to anything that it is too close to; the current place, if it has enough room.
+    /// The nearest place with at least `room_m` metres of room for the hull's centre that the robot can reach in a
+    /// straight line without coming closer to the objects that it is too close to. This is the current place, if it has
+    /// enough room.
     pub(super) fn outside(&self, room_m: f64) -> Option<Point> {
         let here = self.position();
         let is_roomy = |at: Point| self.chart.has_room(at, room_m + SPARE_M);

@@ -18,7 +18,7 @@ pub(crate) struct Trained {
 }
 
 impl Trained {
-    /// Has a planner plan the layouts of these seeds.
+    /// Asks a planner for plans on the layouts of these seeds.
     pub(crate) fn new(runner: &Runner<'_>, seeds: &[u64], method: Method, group: Group) -> Result<Self> {
         let run =
             Run { case: group.id(), method, group, printed: None, pairing: Pairing::Index, set: Set::Text };

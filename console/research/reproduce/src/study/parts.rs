@@ -45,7 +45,8 @@ impl Kept<'_> {
     /// Returns the results of all cases, in order: read from existing parts, or computed. `is_done` is called with
     /// the number of cases of each part that did not have to be computed.
     ///
-    /// # Errors The first error in the order of the cases, or an error of the folder.
+    /// # Errors
+    /// The first error in the order of the cases, or an error of the folder.
     pub(super) fn map<C: Sync, T: Send + Serialize + DeserializeOwned>(
         &self,
         cases: &[C],
