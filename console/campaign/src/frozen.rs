@@ -106,7 +106,7 @@ impl Campaign {
     /// The frozen form, with the digest by which [`Self::thaw`] detects changes.
     ///
     /// # Errors
-    /// Never occur for a campaign frozen from a plan.
+    /// None for a campaign that was frozen from a plan.
     pub fn to_json(&self) -> serde_json::Result<Vec<u8>> {
         let mut value = serde_json::to_value(self)?;
         value["sha256"] = self.digest().into();

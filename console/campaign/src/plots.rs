@@ -134,8 +134,8 @@ pub(crate) fn success(findings: &Findings) -> String {
     plot.svg("Success with 95 % intervals")
 }
 
-/// Cumulative share of all missions run that are complete and have at most a given value of the first metric, shown for
-/// the first arms. Each curve ends at the arm's share of complete missions.
+/// Curves for the first arms: the share of all missions run that are complete with at most a given value of the first
+/// metric. Each curve ends at the arm's share of complete missions.
 pub(crate) fn distribution(findings: &Findings) -> Option<String> {
     let metric = findings.metrics.first()?;
     let curves =

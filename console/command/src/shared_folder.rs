@@ -86,8 +86,8 @@ impl SharedFolder {
         }
     }
 
-    /// The time by the clock that dates the files here. If the folder is on a server, this is the server's clock, so
-    /// all machines judge claims alike even if their own clocks are wrong.
+    /// The time according to the clock that dates the files in this folder. If the folder is on a server, this is the
+    /// server's clock, so all machines judge claims alike even if their own clocks are wrong.
     fn now(&self) -> SystemTime {
         let probe = self.0.join(CLAIMS).join(format!(".now-{}-{}", host(), std::process::id()));
         let dated = File::create(&probe).and_then(|mut file| {

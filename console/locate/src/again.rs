@@ -29,7 +29,7 @@ pub enum Again {
 /// Recomputes the located run in a folder from its readings, if the file of readings is still where it was.
 ///
 /// # Errors
-/// The journal cannot be read, has a different version, or belongs to a run that was flown.
+/// The journal cannot be read, has a different version, or belongs to a mission.
 pub fn again(folder: &Path) -> anyhow::Result<Again> {
     let path = journal_of(folder);
     let mut reader = JournalReader::open(&path)?;

@@ -162,7 +162,7 @@ impl Repeats {
         (excess * variances.iter().sum::<f64>() / variances.len() as f64).sqrt()
     }
 
-    /// Returns the likely error of the readings in an emission that their scatter suggests, metres; `None` if the
+    /// Returns the likely error of the readings in an emission, as their scatter suggests, metres; `None` if the
     /// scatter raises no doubt.
     pub(crate) fn doubt_m(&self, moment: &Moment, scatter: &Scatter) -> Option<f64> {
         let once = Once::of(moment, scatter);

@@ -10,11 +10,11 @@ use world::{Point, Pose, Vector};
 
 /// Clearance to keep from obstacles in sight, metres; small, because their position relative to the robot is known.
 const SEEN_ROOM_M: f64 = 0.01;
-/// Maximum clearance to keep, because of the position error, from obstacles that are only on the chart, metres; limited,
-/// because a robot that is lost must still be able to move.
+/// Maximum clearance, metres, to keep from obstacles that are only on the chart. The clearance allows for the position
+/// error, but is limited, because a robot that is lost must still be able to move.
 const CHART_ROOM_MOST_M: f64 = 0.15;
-/// Where room is short, the share of the room that must remain, because a robot that brakes straight ahead along a
-/// curved wall gets closer to the wall.
+/// Share of the room that must remain where room is short, because a robot that brakes straight ahead along a curved
+/// wall gets closer to the wall.
 const ROOM_SHARE: f64 = 0.5;
 /// Distance, metres, by which a hull in contact with an obstacle may move into it, to allow for rounding.
 const TOUCH_M: f64 = 1e-4;

@@ -128,8 +128,8 @@ pub enum Noted {
 }
 
 impl Order {
-    /// The order with every text that a person may have typed on one line and without hidden characters. Readers of
-    /// journals replace such characters, so only a plain order is the same when a run is verified.
+    /// The order with its typed texts in plain form: on one line, and without hidden characters. Readers of journals
+    /// replace such characters, so only a plain order is the same when a run is verified.
     #[must_use]
     pub(crate) fn plain(mut self) -> Self {
         let plain = |text: &mut String| *text = foreign::plain(text).into_owned();

@@ -23,8 +23,7 @@ const SIGNIFICANT: f64 = 5.0;
 const HARMLESS: f64 = 0.2;
 /// Number of standard deviations below which an offset is attributed to chance: most sessions have no offset.
 const BEYOND_CHANCE: f64 = 2.0;
-/// The least information from which an error can be seen, as a share of the information that there would be if the
-/// positions were known.
+/// The least information that shows an error, as a share of the information that known positions would give.
 const LEAST_SEEN: f64 = 1e-6;
 
 /// The index of the scale error of all ranges; the errors of the stations come next, and then the common length of all
@@ -100,8 +99,8 @@ pub struct Verdict {
     /// The length by which all ranges are too long, metres; `None` if it cannot be seen, for example without emission
     /// times.
     pub offset_m: Option<Wrong>,
-    /// The length by which the ranges of each station are too long, metres; stations for which it cannot be seen are
-    /// left out.
+    /// The length by which the ranges of each station are too long, metres; stations for which the data do not show it
+    /// are left out.
     pub stations: Vec<(StationId, Wrong)>,
 }
 

@@ -72,8 +72,8 @@ pub(crate) fn both(fix: &Fix, other: Point) -> (Point, Matrix2<f64>) {
     (fix.position + half, fix.covariance + half * half.transpose())
 }
 
-/// Returns the mirror image of a place, with nearly the same ranges from all stations, if the stations are nearly
-/// enough on a line.
+/// Returns the mirror image of a place, with nearly the same ranges from all stations, if the stations are sufficiently
+/// close to a line.
 pub fn mirrored(ranges: &[Ranging], stations: &[Station], at: Point) -> Option<Point> {
     let anchors: Vec<Anchor> = anchored(ranges, stations).ok()?;
     (anchors.len() >= 3 && conditioning(&anchors) > MIRROR_CONDITIONING).then(|| mirror_of(&anchors, at))?

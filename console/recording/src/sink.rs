@@ -133,7 +133,7 @@ impl SafeSink {
         let mut encoder = rr::Encoder::new_eager(rr::CrateVersion::LOCAL, options, guarded)
             .map_err(|error| RecordingError::sdk(&error))?;
         // The table of contents would be kept in memory until the end: 80 MB for a run of seven hours. Readers work
-        // without it, as with a recording that was cut off; merging adds it where the file is small.
+        // without it, as with a recording that was cut off. Merging the chunks adds a table that is small.
         encoder.do_not_emit_footer();
         Ok(Self { encoder: Mutex::new(encoder), health })
     }

@@ -257,8 +257,8 @@ fn agrees(summary: &Summary, ending: &Event) -> bool {
         && summary.ticks == Some(ending.tick)
 }
 
-/// Why the journal of a run, which has this digest, is not trusted: the report states a different digest, or cannot be
-/// read. `None` if the journal is trusted.
+/// The reason why the journal of a run, whose digest is `sha256`, is not trusted: the report states a different digest,
+/// or cannot be read. `None` if the journal is trusted.
 pub fn journal_doubt(folder: &Path, sha256: Option<&str>) -> Option<String> {
     match Reported::read(folder) {
         Ok(reported) => reported?.journal_doubt(sha256),

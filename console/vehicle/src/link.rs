@@ -32,8 +32,8 @@ const LOST_S: f64 = 0.8;
 /// The same two limits in periods of the readings; they apply if readings are slow.
 const LATE_PERIODS: f64 = 2.0;
 const LOST_PERIODS: f64 = 3.0;
-/// Number of messages in a second above which the link is faulty: this multiple of the rate of readings, plus
-/// [`FLOOD_SLACK`] for other messages.
+/// The link is faulty above this number of messages in a second, as a multiple of the rate of readings; [`FLOOD_SLACK`]
+/// is added for other messages.
 const FLOOD_FACTOR: f64 = 10.0;
 const FLOOD_SLACK: f64 = 100.0;
 

@@ -91,8 +91,8 @@ fn squared_speeds(mission: &MissionConfig, map: &ObstacleMap, places: &[Point], 
     squares
 }
 
-/// The highest speed at a place from which the robot can stop straight ahead before it touches a drawn object, and
-/// within its sensing range, metres per second.
+/// The highest speed at a place, metres per second, from which the robot can stop straight ahead within its sensing
+/// range and before it touches a drawn object.
 fn free_speed(mission: &MissionConfig, map: &ObstacleMap, at: Point, ahead: Vector) -> f64 {
     let limits = &mission.limits;
     let braking = Braking::of(limits);

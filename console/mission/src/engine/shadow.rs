@@ -46,7 +46,7 @@ pub(super) struct Shadow {
     n_flown: usize,
     /// Mission time of that request, seconds.
     asked_at_s: f64,
-    /// The requests that the planner can get in this tick; depends on the sensor readings alone, not on another
+    /// The requests that the planner can get in this tick; they depend on the sensor readings alone, not on another
     /// planner's answers.
     now: Now,
     /// Whether the planner has been ordered to take over.

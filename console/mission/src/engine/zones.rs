@@ -102,8 +102,8 @@ impl Known {
         }
     }
 
-    /// The floor that is available to a hull's centre that needs `room_m` metres of room, outside the no-go zones: those
-    /// already drawn and, if given, a new one.
+    /// The floor that is available to the hull's centre if it needs `room_m` metres of room, outside the no-go zones:
+    /// those already drawn and, if given, a new one.
     pub(super) fn floor_for(&self, room_m: f64, zone: Option<&Shape>) -> GrownFloor {
         let world = self.chart.world();
         let zones = world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo).map(|zone| &zone.shape);

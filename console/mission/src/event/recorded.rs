@@ -25,8 +25,8 @@ struct Recorded {
 }
 
 impl RecordedAnswers {
-    /// Takes the recorded events of the tick that begins; answers recorded for earlier ticks for which there was no ask
-    /// are dropped.
+    /// Takes the recorded events of the tick that begins; answers recorded for earlier ticks are dropped if no ask
+    /// matched them.
     pub fn begin_tick<'a>(&mut self, events: impl IntoIterator<Item = &'a EventKind>) {
         self.due.clear();
         let mut said = Said::default();

@@ -118,7 +118,7 @@ impl Ekf {
 
     /// Makes the position as uncertain as if the tracks had spun during the whole last motion.
     ///
-    /// For a filter that has refused ranges that the solver accepts.
+    /// Intended for a filter that has refused ranges that the solver accepts.
     pub fn doubt_motion(&mut self, odometry: &Odometry) {
         let way_m = odometry.forward_m.hypot(odometry.sideways_m);
         if way_m <= MOTION_LIMIT {
