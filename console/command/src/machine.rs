@@ -28,7 +28,7 @@ pub fn check() -> anyhow::Result<()> {
 fn enough(limit: Option<u64>, needed: u64, of_what: &str, option: char) -> Result<(), String> {
     match limit {
         Some(limit) if limit < needed => Err(format!(
-            "tankops needs {} kB of {of_what}, but the system grants only {} kB: `ulimit -{option} {}`",
+            "tankops needs {} kB of {of_what}, but the system grants only {} kB; try `ulimit -{option} {}`",
             needed >> 10,
             limit >> 10,
             needed >> 10
@@ -47,7 +47,7 @@ mod tests {
             (enough(None, 1 << 20, "stack", 's'), enough(Some(1 << 20), 1 << 20, "stack", 's')),
             (Ok(()), Ok(()))
         );
-        let why = "tankops needs 1024 kB of stack, but the system grants only 64 kB: `ulimit -s 1024`";
+        let why = "tankops needs 1024 kB of stack, but the system grants only 64 kB; try `ulimit -s 1024`";
         assert_eq!(enough(Some(64 << 10), 1 << 20, "stack", 's'), Err(why.to_owned()));
     }
 }

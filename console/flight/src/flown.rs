@@ -150,7 +150,7 @@ impl Flight {
         self.watch.as_ref().is_some_and(LiveWatch::awaits_stop)
     }
 
-    /// A handle that makes a real vehicle stand at once; `None` in a simulation.
+    /// A handle that stops a real vehicle at once; `None` in a simulation.
     pub fn brake(&self) -> Option<Brake> {
         self.vehicle.brake()
     }

@@ -224,7 +224,7 @@ impl Tether {
         contacts.collect()
     }
 
-    /// The path driven, from the anchor on, without the parts that were driven there and back.
+    /// The path driven, from the anchor on, without the parts that were driven out and back.
     pub(crate) fn way_driven(&self) -> &[Point] {
         self.driven.points()
     }

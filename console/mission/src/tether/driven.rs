@@ -8,7 +8,7 @@ pub(super) const KEPT_M: f64 = 0.05;
 /// small loop of the hull.
 const UNDONE_M: f64 = 0.08;
 
-/// The path driven, without the parts that were driven there and back.
+/// The path driven, without the parts that were driven out and back.
 #[derive(Clone)]
 pub(super) struct Driven {
     points: Vec<Point>,
@@ -25,7 +25,7 @@ impl Driven {
         &self.points
     }
 
-    /// Adds a step. A step that goes back over the last one removes it instead, so that parts driven there and back are
+    /// Adds a step. A step that goes back over the last one removes it instead, so that parts driven out and back are
     /// not kept.
     pub(super) fn keep(&mut self, here: Point) {
         let far_from =

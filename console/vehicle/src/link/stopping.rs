@@ -15,7 +15,7 @@ const STOP_TIMES: f64 = 2.0;
 pub enum Hold {
     /// The vehicle may drive.
     NotAsked,
-    /// The vehicle has been commanded to stand still, and its time has not run out.
+    /// The vehicle has been commanded to stand still, and the time that it may take has not run out.
     Stopping,
     /// The vehicle stands still, as its readings show.
     Held {

@@ -21,7 +21,7 @@ pub enum FromVehicle {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum ToVehicle {
-    /// Move like this until the lease lapses or the next command arrives.
+    /// Move as stated until the lease lapses or the next command arrives.
     Drive(Drive),
     /// Stand still as fast as the vehicle safely can, until the next drive. This is not an emergency stop.
     Stop(Stop),
@@ -47,7 +47,7 @@ pub struct Hello {
     pub has: Has,
     /// Time between two readings, seconds: greater than 0, at most 1.
     pub period_s: f64,
-    /// Time from the arrival of `stop` at full speed until the vehicle stands, measured, seconds: at most 60.
+    /// Measured time from the arrival of a `stop` at full speed until the vehicle stands still, seconds: at most 60.
     pub stop_time_s: f64,
     /// Longest lease that the vehicle honours, seconds: greater than 0, at most 5.
     pub lease_max_s: f64,
@@ -322,7 +322,7 @@ pub struct Drive {
     pub seq: u64,
     /// Time of sending, seconds of the console's clock.
     pub stamp_s: f64,
-    /// The vehicle stands still if no other drive arrives within this time after this one, seconds.
+    /// Time after this drive, seconds, after which the vehicle stands still if no other drive has arrived.
     pub lease_s: f64,
     /// Speed ahead, metres per second.
     pub forward_m_per_s: f64,
