@@ -1,10 +1,9 @@
 //! Limits the part of a planner's memory that the kernel does not count.
 //!
 //! The kernel counts private writable memory (`RLIMIT_DATA`), which is nearly all of a planner's memory. There are two
-//! gaps: memory that was written and then made read-only is no longer counted, and neither are the page tables of
-//! read-only address space. `RLIMIT_AS` does not help: when this limit is reached, the kernel makes memory writable
-//! without counting it. So calls that make memory read-only, or reserve read-only address space, wait for a decision
-//! here.
+//! gaps: memory that was written and then made read-only is not counted, and neither are the page tables of read-only
+//! address space. `RLIMIT_AS` does not help: when this limit is reached, the kernel makes memory writable without
+//! counting it. So calls that make memory read-only, or reserve read-only address space, wait for a decision here.
 
 use super::listener::Call;
 use super::verdict::Verdict;

@@ -3,9 +3,10 @@
 
 use std::time::Duration;
 
-/// A worker that is starved of CPU time is killed after this many budgets of wall time ...
+/// A worker that is starved of CPU time is killed after this many times its budget in wall time, but not before
+/// [`LEAST_CAP`].
 const MOST_BUDGETS: u32 = 10;
-/// ... but not before this much wall time has passed.
+/// The minimum wall time before a starved worker is killed.
 const LEAST_CAP: Duration = Duration::from_mins(1);
 
 /// The state of a busy process at one check.

@@ -89,7 +89,7 @@ fn a_closed_worker_ends_also_when_nobody_looks_at_it() {
     desk.submit(ONE, plan());
     desk.submit(ONE, What::Close);
     let began = Instant::now();
-    // It has ended, and nobody has reaped it.
+    // It has ended but has not been reaped.
     while states(&name) != ['Z'] {
         assert!(began.elapsed() < LONG, "it still runs: {:?}", states(&name));
         std::thread::sleep(Duration::from_millis(5));

@@ -159,7 +159,7 @@ mod tests {
             let plate = map.plate_of(floor.cell_at(Point::new(x, y)).unwrap()).unwrap();
             map.plates[plate].name.as_str()
         };
-        assert_eq!(name(-0.5, -1.5), "L", "both hold it");
+        assert_eq!(name(-0.5, -1.5), "L", "both contain it");
         assert_eq!(name(0.0, -2.5), "lapped");
         assert_eq!((name(2.05, -1.0), name(2.12, -1.0)), ("L", "beyond a gap"));
         assert_eq!((name(1.0, 1.0), name(-4.0, 0.0)), (NO_PLATE, NO_PLATE));

@@ -1,4 +1,4 @@
-//! Shortest paths as tangents and arcs, and the reasons why there may be none.
+//! Shortest paths as tangents and arcs, and the reasons why a search finds none.
 
 use geometry::{Point, unit_vector};
 
@@ -83,7 +83,7 @@ fn tangent_corners(
     (0..n as u32).map(move |k| center + unit_vector(from_rad + half_rad * f64::from(2 * k + 1)) * outer_m)
 }
 
-/// The reason why there is no shortest path.
+/// The reason why no shortest path was found.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum NoWay {
     /// The robot does not fit at the start.

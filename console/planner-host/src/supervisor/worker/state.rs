@@ -3,11 +3,12 @@
 use crate::supervisor::clock::{FairClock, Load, Verdict};
 use std::time::{Duration, Instant};
 
-/// The time after a request at which a busy worker is first checked, ...
+/// The time after a request at which a busy worker is first checked.
 const FIRST_LOOK: Duration = Duration::from_millis(100);
-/// ... the interval between checks after that, ...
+/// The interval between later checks.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
-/// ... and the shortest interval, near the end of the worker's budget, which is the resolution of processor time.
+/// The shortest interval between checks, used near the end of the worker's budget. It is the resolution of processor
+/// time.
 const LEAST_LOOK: Duration = Duration::from_millis(10);
 /// How long a process may take to end after its socket is closed.
 const EXIT_WITHIN: Duration = Duration::from_millis(80);
