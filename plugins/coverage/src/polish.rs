@@ -1,5 +1,5 @@
-//! Makes a path shorter and straighter without losing floor. No part of the path need sweep floor that other parts also
-//! sweep, and missed floor is worth a detour only if there is enough of it.
+//! Makes a path shorter and straighter without losing floor. A part of the path need not sweep floor that other parts
+//! also sweep, and missed floor is worth a detour only if its area is large enough.
 
 mod bends;
 pub(crate) mod shell;
@@ -45,8 +45,8 @@ pub(crate) fn polish(
     track.pass_along_shell(terms)
 }
 
-/// Brings the coverage to the required value, counted in cells other than those to which the path was fitted. Bends and
-/// ties raise it; shortcuts lower it while it is too high.
+/// Brings the coverage to the required value. It is counted in different cells from those to which the path was fitted.
+/// Bends and ties raise it; shortcuts lower it while it is too high.
 pub(crate) fn settle(track: &mut Track<'_>, terms: &Terms<'_>, other: &ReachableFloor) -> Result<()> {
     let enough = track.enough_here(terms.enough, other);
     let terms = Terms { enough, keep: enough, ..*terms };

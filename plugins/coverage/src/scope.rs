@@ -17,7 +17,7 @@ pub(crate) struct Scope<'a> {
     pub tether: Option<TetherLimits>,
     /// Longest path from home, metres.
     pub reel_length_m: f64,
-    /// Within this distance of home the robot is considered to be back, metres.
+    /// Distance from home within which the robot counts as being back, metres.
     pub tolerance_m: f64,
     /// Polygons still to scan; all floor if empty.
     pub regions: &'a [&'a [Point]],

@@ -13,9 +13,9 @@ use world::{
     shape::{mean_of, ring_area_m2},
 };
 
-/// Smaller unreachable areas are not reported, square metres.
+/// Smallest unreachable area that is reported, square metres.
 const LEAST_M2: f64 = 0.05;
-/// Smaller widths of an unreachable rim along the shell, and shorter open stretches of the shell, are not reported,
+/// Smallest width of an unreachable rim along the shell, and shortest open stretch of the shell, that is reported,
 /// metres.
 const LEAST_RIM_M: f64 = 0.005;
 const LEAST_OPEN_M: f64 = 0.1;

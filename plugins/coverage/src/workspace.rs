@@ -18,8 +18,8 @@ use world::{
     tether::Ground,
 };
 
-/// A cut is extended into solids that are no farther from its ends than this multiple of the distance to keep:
-/// outlines, at which cuts may end, are slightly larger than the exact ones.
+/// Largest distance of a solid from the end of a cut at which the cut is extended into the solid, as a multiple of the
+/// distance to keep. It exceeds 1 because the outlines at which cuts may end are slightly larger than the exact ones.
 const ROOT_SHARE: f64 = 1.1;
 /// Depth to which a cut is extended into solids, metres.
 const ROOT_M: f64 = 0.01;

@@ -6,7 +6,7 @@ use geometry::{Point, convex::Part};
 use planner_api::{Command, Ctx, Result, Sensed, Site};
 use steering::{Flight, Forces, Keep, Pilot, Tick};
 
-/// How far ahead the robot checks whether its way is free, metres.
+/// Distance ahead within which the robot checks whether its way is free, metres.
 const REACH_M: f64 = 0.4;
 
 /// Follows a plan, or the preset points if there is no plan, with a noisy pose and obstacles found during the mission.
