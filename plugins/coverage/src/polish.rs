@@ -14,9 +14,9 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 pub(crate) use track::{Terms, Track};
 
-/// Approximate progress of a round when the path has been shortened, and when it has been bent, as shares of the
-/// round's time.
+/// Approximate progress of a round once the path has been shortened, as a share of the round's time.
 const SHORTENED: f64 = 0.63;
+/// Approximate progress of a round once the path has also been bent, as a share of the round's time.
 const BENT: f64 = 0.92;
 
 /// Shortens a path, bends it to floor that it misses, and ties in short lanes if that is not enough. A second round is

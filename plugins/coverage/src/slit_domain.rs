@@ -240,7 +240,7 @@ impl<'a> SlitDomain<'a> {
         matches!((self.spot(a), self.spot(b)), (Some(a), Some(b)) if self.sees_between(a, b))
     }
 
-    /// The same for two spots.
+    /// Whether the straight line between two spots stays in the domain.
     pub(crate) fn sees_between(&self, a: Spot, b: Spot) -> bool {
         let is_straight = || {
             let path = self.path_between(a, b);

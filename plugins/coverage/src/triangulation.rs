@@ -20,7 +20,7 @@ pub(crate) const SNAPPED_M: f64 = 8.0 * SNAP_M;
 const BUCKET_M: f64 = 1.0;
 /// Tolerance by which a point may be outside a triangle and still count as inside, as signed area, square metres.
 pub(crate) const NEARLY: f64 = 1e-9;
-/// The index that stands for the absence of a triangle.
+/// The index used where there is no triangle.
 pub(crate) const NONE: u32 = u32::MAX;
 
 type Cdt = ConstrainedDelaunayTriangulation<Vertex<f64>>;

@@ -81,8 +81,8 @@ pub(crate) fn report(scan: &Scan<'_>, scope: &Scope<'_>, ctx: &Ctx<'_>) -> bool 
     closed.is_empty()
 }
 
-/// What a pass along the shell does not scan, and why: the rim that the tool cannot reach from anywhere, and stretches
-/// where the path is farther from the shell than hull and clearance require.
+/// The floor that a pass along the shell does not scan, with the reasons: the rim that the tool cannot reach from
+/// anywhere, and stretches where the path is farther from the shell than hull and clearance require.
 fn shell_left(scan: &Scan<'_>, scope: &Scope<'_>) -> Vec<String> {
     let workspace = scan.domain.workspace;
     let Workspace { hull_m, keep_m, swath_m, .. } = *workspace;

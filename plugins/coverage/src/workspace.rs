@@ -161,7 +161,8 @@ impl Workspace {
     }
 }
 
-/// Why a floor between inner walls is too large or too fragmented to be planned in time, if it is.
+/// The reason why a floor between inner walls cannot be planned in time: it is too large or too fragmented. `None` if
+/// it can be planned.
 fn too_large(wall: &Boundary, parts: &[Part], swath_m: f64) -> Option<String> {
     let Boundary::Polygon { vertices } = wall else { return None };
     let solid_m2: f64 = parts.iter().map(area_m2).sum();

@@ -21,7 +21,7 @@ pub enum TangentUse {
     /// robot stop where the paper says: with a weight of 0.02 and an obstacle of 1 m radius, or with full weight and an
     /// obstacle of 3.2 to 3.55 m radius.
     Always,
-    /// Around whatever blocks the path to the goal, on the side opposite its centre.
+    /// Around whatever blocks the path to the goal; the robot passes on the side away from the centre of the obstacle.
     Blocking,
 }
 

@@ -54,7 +54,7 @@ pub(crate) struct Knot {
     pub fixed: bool,
 }
 
-/// How long to keep trying.
+/// The effort of one attempt.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Patience {
     /// The maximum number of sets of rows.

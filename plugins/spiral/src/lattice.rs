@@ -59,7 +59,7 @@ pub(crate) struct Path {
     pub sharp: Vec<RangeInclusive<usize>>,
 }
 
-/// Why there is no path.
+/// The reason why no path was found.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Blocked {
     /// Index of the point of the course that cannot be passed.
@@ -78,7 +78,7 @@ enum Beside {
     Blocked { station: usize },
 }
 
-/// Which alternatives to the cheapest path are tried.
+/// The range of alternatives to the cheapest path that are tried.
 #[derive(Debug, Clone, Copy)]
 struct Others {
     /// Largest cost, as a multiple of the cheapest path's.

@@ -41,7 +41,7 @@ impl Pursuit {
         Ok(self.pilot.pursue(&self.flight, &tick, aim).into())
     }
 
-    /// If something is in the way, returns where to head now: along its tangent.
+    /// If something is in the way, returns the point to aim at now, along the tangent of the obstacle.
     fn aim(&mut self, tick: &Tick<'_>) -> Option<Point> {
         let at = tick.pose.position;
         let keep_m = self.pilot.keep_m(&self.flight, &tick.pose).max(self.clearance_m);

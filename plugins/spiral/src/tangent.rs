@@ -28,7 +28,7 @@ pub(crate) struct Track<'a> {
     pub stations_m: &'a [f64],
 }
 
-/// What is known about the surroundings.
+/// The known surroundings.
 #[derive(Debug, Clone)]
 pub(crate) struct Around<'a> {
     /// The wall.

@@ -53,8 +53,8 @@ impl Stall {
     }
 }
 
-/// What to try in turn while the robot makes no progress: first the other side, then straight on without a detour. The
-/// second is needed because the path to a preset point in a niche is blocked from every side.
+/// The remedies tried in turn while the robot makes no progress: first the other side, then straight on without a
+/// detour. The second remedy is needed because the path to a preset point in a niche is blocked from every side.
 #[derive(Debug, Clone, Default)]
 pub struct Remedy {
     tried: u32,

@@ -8,7 +8,8 @@
 use super::listener::Call;
 use super::verdict::Verdict;
 
-/// How much memory may be made read-only in large pieces, bytes: enough for the address tables that libraries fix up.
+/// Maximum memory that may be made read-only in large pieces, bytes: enough for the address tables that libraries fix
+/// up.
 pub(crate) const MAY_HIDE: u64 = 32 << 20;
 /// Smaller pieces are guard pages of threads and are always allowed. Hiding a lot of memory in small pieces takes so
 /// long that the supervisor, which measures the memory of the process ([`crate::supervisor`]), notices it.

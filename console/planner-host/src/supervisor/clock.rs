@@ -31,8 +31,8 @@ pub(super) struct FairClock {
 }
 
 impl FairClock {
-    /// Charges the time of a check that takes place this long after the request; without a `load`, wall time is
-    /// charged.
+    /// Charges the time since the last check. `wall` is the time from the request to this check. Without a `load`, wall
+    /// time is charged.
     ///
     /// The processor time that a running process used before the first check is unknown, and is not charged.
     pub(super) fn advance(&mut self, wall: Duration, load: Option<Load>) {

@@ -18,7 +18,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 /// The maximum number of entries, beyond which the folder is emptied. Every build that an author makes adds an entry.
 const MOST_ENTRIES: usize = 256;
 
-/// A file that changed more recently than this could change again without its time changing, because file times are
+/// Age of a file below which it could change again without a change of its modification time, because file times are
 /// coarse.
 const SETTLED: Duration = Duration::from_secs(1);
 

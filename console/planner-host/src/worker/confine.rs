@@ -102,7 +102,7 @@ pub(super) fn close_off(
     Ok((sealed.sandbox, reads_libraries))
 }
 
-/// Limits the planner's memory to this much in addition to what the worker itself uses. The system counts private
+/// Limits the planner's memory to `bytes` in addition to what the worker itself uses. The system counts private
 /// writable memory; the console decides on the rest ([`crate::sandbox::Uncounted`]).
 pub(super) fn limit_memory(bytes: u64) {
     let (_, own_data) = own_memory();

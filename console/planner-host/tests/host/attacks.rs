@@ -52,7 +52,7 @@ fn assert_sealed() {
     );
 }
 
-/// What the survey states about a plugin that attacks in its constructor.
+/// The reason that the survey gives for refusing a plugin that attacks in its constructor.
 fn refusal_of(attack: &str) -> String {
     assert_sealed();
     let (_folder, dirs) = hostile("IN_CONSTRUCTOR", attack);

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 /// The name for floor that lies on no plate of the drawing.
 pub const NO_PLATE: &str = "no plate";
-/// A plate lies along the shell if one of its corners is closer to the shell than this, metres.
+/// Distance from the shell within which a corner must lie for its plate to lie along the shell, metres.
 const AT_SHELL_M: f64 = 0.05;
-/// Floor in the gap between plates belongs to the nearest plate within this many cells.
+/// Distance, in cells, within which floor in the gap between plates belongs to the nearest plate.
 const GAP_CELLS: isize = 2;
 
 /// A plate of a drawing.

@@ -48,7 +48,7 @@ struct Exit {
 struct Arrival {
     turn: Option<TurnId>,
     bearing_rad: f64,
-    /// How far the path can follow the turn, radians.
+    /// Angle by which the path can still follow the turn, radians.
     room_rad: f64,
     at: Point,
     way_m: f64,

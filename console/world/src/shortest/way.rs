@@ -2,9 +2,9 @@
 
 use geometry::{Point, unit_vector};
 
-/// The chain of points for an arc lies at most this far outside the circle, metres.
+/// Maximum distance of the chain of points for an arc outside the circle, metres.
 const ARC_EXCESS_M: f64 = 4e-5;
-/// The chain of points for an arc turns by no more than this at each corner, radians.
+/// Maximum turn of the chain of points for an arc at each corner, radians.
 const ARC_STEP_RAD: f64 = 0.2;
 
 /// A piece of a shortest path.

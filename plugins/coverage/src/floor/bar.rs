@@ -37,7 +37,8 @@ impl Raster {
         self.along_some(path, 0..path.len(), visit);
     }
 
-    /// The same, but for only some sides of the path. Turns are included for the whole path.
+    /// Calls `visit` as [`Self::along`] does, but for only some sides of the path. Turns are included for the whole
+    /// path.
     pub(crate) fn along_some(
         &self,
         path: &[Point],

@@ -23,7 +23,7 @@ const NARROWINGS: u32 = 4;
 const TURN_RAD: f64 = 1.2;
 /// The largest number of steps along a passage.
 const MOST_STEPS: usize = 2_000;
-/// Free cells are searched for within this distance of a place, in cells.
+/// Distance from a place within which free cells are searched for, in cells.
 const ABOUT_CELLS: i64 = 2;
 
 /// The group of a cell that is not free.
