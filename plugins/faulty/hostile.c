@@ -1,7 +1,10 @@
-/* A planner that attacks, for tests. ATTACK is what it does, in C; one of these says when: IN_CONSTRUCTOR, IN_STEP (the
- * fourth), IN_CREATE, IN_THREAD (one that its constructor starts, while steps are made), IN_LEFTOVER (a thread that its fourth step
- * leaves behind, at some time in the next 40 ms), IN_DESTRUCTOR, IN_DESTROY; IN_ANSWER and IN_ANSWER_ALWAYS: it is done to
- * the answer `out` of the fourth step, or of each. */
+/* A planner that attacks, for tests. The macro ATTACK is the attack, in C. One of these macros determines when the attack
+ * happens:
+ *  - IN_CONSTRUCTOR, IN_DESTRUCTOR, IN_CREATE, IN_DESTROY: in this function;
+ *  - IN_STEP: in the fourth step;
+ *  - IN_THREAD: during the steps, in a thread that the constructor starts;
+ *  - IN_LEFTOVER: within 40 ms after the fourth step, in a thread that this step leaves behind;
+ *  - IN_ANSWER, IN_ANSWER_ALWAYS: on the answer `out` of the fourth step, or of every step. */
 #define _GNU_SOURCE
 #include "tankops_planner.h"
 #include <fcntl.h>
@@ -31,7 +34,7 @@
 #define CAPS TP_CAP_LOCAL
 #endif
 
-/* A file of the console's process. */
+/* Returns the path of a file of the console's process in /proc. */
 static const char *of_parent(const char *what) {
   static char path[64];
   sprintf(path, "/proc/%d/%s", getppid(), what);

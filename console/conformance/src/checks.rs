@@ -11,14 +11,14 @@ use scenario::Scenario;
 use serde::Serialize;
 use std::time::Duration;
 
-/// How long a tick of the console waits for a command, milliseconds: 60 % of a tick of 0.1 s.
+/// Time for which a tick of the console waits for a command, milliseconds: 60 % of a tick of 0.1 s.
 const STEP_WITHIN_MS: f64 = 60.0;
 /// The ticks at which the planner takes over from a different planner.
 const SWAPS_AT: [u64; 3] = [5, 40, 120];
 /// A planner's memory is measured after `WARM_UP` steps, and again after `STEPS` more.
 const WARM_UP: usize = 300;
 const STEPS: usize = 3000;
-/// How much the memory may grow in between, bytes. At this rate, 0.7 kB per step, a mission of eight hours takes 200
+/// Maximum growth of the memory in between, bytes. At this rate, 0.7 kB per step, a mission of eight hours takes 200
 /// MB.
 const MAY_GROW: u64 = 2 << 20;
 /// The number of ticks for which a planner is watched after an intervention.
@@ -29,7 +29,7 @@ const LOOK_FOR: u64 = 30;
 pub struct Check {
     /// The check.
     pub what: &'static str,
-    /// Why it failed; absent if it passed.
+    /// The reason why it failed; absent if it passed.
     pub failure: Option<String>,
     /// A breach of the rules that did no visible harm; absent if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -40,7 +40,7 @@ impl Flown {
 /// The planner's memory is measured at this interval, ticks.
 const LOOK_AT_MEMORY_EVERY: u64 = 16;
 
-/// A thread is regarded as left running if this many consecutive measurements find it.
+/// The number of consecutive measurements that must find a thread for it to count as left running.
 const LOOKS: usize = 3;
 /// The number of threads that every worker has.
 const OWN_THREADS: u32 = 2;

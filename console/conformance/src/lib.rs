@@ -94,7 +94,7 @@ impl Trial {
         let checks = if rows[0].unsupported == rows[0].tanks {
             vec![Check::not_made(
                 "supports such missions",
-                "it reports that it does not; nothing was checked",
+                "it reports that it does not support them; nothing was checked",
             )]
         } else {
             checks::all(&subject, &flown[..tanks.len()], first_seed)

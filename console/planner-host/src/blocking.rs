@@ -21,7 +21,8 @@ pub struct Reply<T> {
     pub logs: Vec<(LogLevel, String)>,
 }
 
-/// Runs one planner at a time and waits for each of its answers. It saves no private state: every planner starts anew.
+/// Runs one planner at a time and waits for each of its answers. It saves no private state: every planner starts from
+/// scratch.
 pub struct BlockingHost {
     host: Host,
     /// The worker of the active planner.

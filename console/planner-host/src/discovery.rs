@@ -94,7 +94,7 @@ pub struct PluginFile {
     pub(crate) words: Words,
 }
 
-/// How to find out which planners a plugin contains.
+/// The data from which to find out which planners a plugin contains.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Words {
     /// The complete list of the planners' ids.

@@ -351,7 +351,7 @@ impl Host {
         self.answers.push_back(Answer { ask, result, said });
     }
 
-    /// Keeps the remains of a planner if its author must find out why it failed.
+    /// Keeps the remains of a planner if the author must find out why the planner failed.
     fn keep_remains(&mut self, id: WorkerId, fault: &Fault) {
         let planner = self.planners.iter_mut().find(|planner| planner.id == id);
         let of_worker = planner.and_then(|planner| planner.worker.as_mut()).map(Worker::remains);

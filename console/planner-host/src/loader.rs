@@ -44,7 +44,7 @@ pub(crate) struct File {
 /// A library whose constructors have run; it stays loaded until the process ends.
 pub(crate) struct Loaded(abi::Entry);
 
-/// Why a file cannot be loaded.
+/// The reason why a file cannot be loaded.
 pub(crate) enum NotRead {
     /// The file is not a plugin that can be loaded.
     Refused(String),
@@ -56,7 +56,7 @@ impl File {
     /// Reads and checks a file.
     ///
     /// # Errors
-    /// Why the file is refused; the text follows "refused:".
+    /// The reason why the file is refused; the text follows "refused:".
     pub(crate) fn read(path: &Path) -> Result<Self, NotRead> {
         let bytes = read_bytes(path).map_err(NotRead::Refused)?;
         let abi = stamp::read(&bytes).map_err(|error| NotRead::Refused(error.to_string()))?;
@@ -73,7 +73,7 @@ impl File {
     /// Loads exactly the bytes that were checked.
     ///
     /// # Errors
-    /// Why the library is refused; the text follows "refused:". The same applies below.
+    /// The reason why the library is refused; the text follows "refused:". The same applies below.
     pub(crate) fn load(self) -> Result<Loaded, String> {
         let staged = self.staged.path();
         // All symbols are resolved now, so a missing symbol causes a refusal here instead of ending the process on

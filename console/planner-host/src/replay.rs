@@ -15,7 +15,7 @@ use judge::Judge;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// How a replay ended.
+/// The outcome of a replay.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Replayed {
     /// Every request was answered, and the console accepts every answer.
@@ -27,7 +27,7 @@ pub enum Replayed {
     Failed(String),
 }
 
-/// Why nothing was replayed.
+/// The reason why nothing was replayed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum NotReplayed {
     /// The requests are incomplete; the text completes a sentence that begins with the name of their file.
@@ -94,7 +94,7 @@ pub fn digest_of(frames: &[u8]) -> String {
 /// Checks that recorded requests are complete, and counts them.
 ///
 /// # Errors
-/// What is wrong with the requests.
+/// The fault of the requests; the text completes a sentence that begins with the name of their file.
 fn whole(frames: &[u8]) -> Result<usize, String> {
     if frames.is_empty() {
         return Err("is empty: no request was recorded".to_owned());

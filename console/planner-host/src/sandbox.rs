@@ -45,7 +45,7 @@ pub(crate) const PLUGIN_AT: i32 = 201;
 #[cfg(target_os = "linux")]
 const PLUGIN: &str = "/proc/self/fd/201";
 
-/// How far a worker has progressed with loading its plugin.
+/// The progress of a worker in loading its plugin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Stage {
     /// The plugin's libraries are being read.

@@ -24,7 +24,7 @@ impl fmt::Display for Abi {
 /// The ABI that this console uses.
 pub const CONSOLE_ABI: Abi = Abi { major: abi::MAJOR, minor: abi::MINOR };
 
-/// Why a file is not a plugin for this console; the text follows "refused:".
+/// The reason why a file is not a plugin for this console; the text follows "refused:".
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum StampError {
     /// The file is neither ELF, Mach-O nor PE.
@@ -64,7 +64,7 @@ fn advice(theirs: Abi) -> &'static str {
 /// Reads the stamp of a library and accepts it if this console can run the library.
 ///
 /// # Errors
-/// Why the file is not a plugin for this console.
+/// The reason why the file is not a plugin for this console.
 pub fn read(bytes: &[u8]) -> Result<Abi, StampError> {
     let kind = object::FileKind::parse(bytes).map_err(|_| StampError::NotALibrary)?;
     if !is_library_format(kind) {

@@ -28,7 +28,7 @@ use std::io;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// How to start a worker: a program that eventually calls [`crate::worker_main`].
+/// The command that starts a worker: a program that eventually calls [`crate::worker_main`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WorkerCommand {
     /// The program.
@@ -60,7 +60,8 @@ fn soft(deadline: Duration) -> Duration {
     deadline * 9 / 10
 }
 
-/// Why there is no answer. Every text completes a sentence that begins with the name of the planner or plugin.
+/// The reason why a request has no answer. Every text completes a sentence that begins with the name of the planner or
+/// plugin.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Failure {
     /// The planner refused the request.

@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// How long a library may take to load and describe itself.
+/// Maximum time for a library to load and describe itself.
 pub(crate) const LOAD_WITHIN: Duration = Duration::from_secs(2);
 /// The default memory limit of a planner, bytes.
 pub(crate) const MEMORY_LIMIT: u64 = 256 << 20;
@@ -42,7 +42,7 @@ pub struct SurveyedPlugin {
     pub planners: Vec<PlannerInfo>,
     /// Ids of planners that an earlier plugin also contains; they cannot be chosen from this plugin.
     pub shadowed: Vec<String>,
-    /// Why the plugin is refused, if it is.
+    /// The reason why the plugin is refused; `None` if it is accepted.
     pub refused: Option<String>,
 }
 
@@ -142,7 +142,7 @@ impl<'a> Surveyor<'a> {
 /// Checks one file, whatever its folder and name. The file is loaded even if it is cached.
 ///
 /// # Errors
-/// Why this machine prevents planners from running, which is not the plugin's fault.
+/// The reason why this machine prevents planners from running, which is not the plugin's fault.
 pub fn check_plugin(
     file: &Path,
     worker: &WorkerCommand,

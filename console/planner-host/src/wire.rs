@@ -27,7 +27,7 @@ pub(crate) const LONGEST: usize = 16 << 20;
 pub(crate) const CHANNEL_LOST: Signal = Signal::STKFLT;
 #[cfg(not(target_os = "linux"))]
 pub(crate) const CHANNEL_LOST: Signal = Signal::USR2;
-/// How long a worker that is asked to shut down may take to destroy its planner cleanly.
+/// Maximum time for a worker that is asked to shut down to destroy its planner cleanly.
 pub(crate) const SHUT_DOWN_WITHIN: Duration = Duration::from_millis(100);
 
 /// Kinds of frames.

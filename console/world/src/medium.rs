@@ -42,7 +42,7 @@ pub struct PressureSensor {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SensedMedium {
     known: Option<Medium>,
-    /// Positive for water.
+    /// The accumulated log-likelihood ratio; positive for water.
     evidence: f64,
 }
 

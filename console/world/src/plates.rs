@@ -384,7 +384,7 @@ mod tests {
         }
         assert_eq!(map.plates.iter().filter(|plate| plate.kind == PlateKind::Annular).count(), 12);
         let names: BTreeSet<&str> = map.plates.iter().map(|p| p.name.as_str()).collect();
-        assert_eq!(names.len(), map.plates.len(), "names are given once");
+        assert_eq!(names.len(), map.plates.len(), "every name is unique");
         assert!(names.contains("A-01") && names.iter().any(|name| name.starts_with("S-01-01")));
     }
 

@@ -28,7 +28,7 @@ use search::Search;
 /// The length limit of the first search is this multiple of the straight distance, plus `FIRST_M` metres.
 const FIRST_SHARE: f64 = 1.2;
 const FIRST_M: f64 = 1.0;
-/// A restricted search is tried only if it uses fewer than one corner in this many.
+/// A restricted search is tried only if it uses fewer than one in `FEW` corners.
 const FEW: usize = 8;
 /// A difference in path length that exceeds any rounding error, metres.
 const SURE_M: f64 = 1e-6;

@@ -1,4 +1,4 @@
-//! One choice of the dynamic window (147 arcs) with ten discs near, and one step of the whole loop.
+//! Measures one choice of the dynamic window (147 arcs) with ten discs nearby, and one step of the whole loop.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use field::{GoalLaw, Pull, PushForm, TangentUse, virtual_goals::SquareLaw};

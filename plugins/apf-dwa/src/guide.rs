@@ -11,9 +11,9 @@ use world::{Point, Vector};
 
 /// Number of steps over which the robot must make progress (the paper's loop uses 60).
 const STALL_STEPS: usize = 60;
-/// A movement smaller than this over these steps is no progress, metres.
+/// Minimum movement over these steps that counts as progress, metres.
 const STALL_M: f64 = 0.12;
-/// A corner closer than this is considered passed, metres.
+/// Distance within which a corner counts as passed, metres.
 const PASSED_M: f64 = 0.35;
 /// Initial clearance beside the path, in addition to the distance that the window keeps, metres; halved until a path is
 /// found.
@@ -23,13 +23,13 @@ const ATTEMPTS: u32 = 6;
 /// Interval between checks whether the path is still free, steps. The path is replanned if it is not free, and whenever
 /// the map changes.
 const LOOK_STEPS: usize = 20;
-/// The path is replanned after this many steps in any case, because the robot has moved sideways.
+/// Number of steps after which the path is replanned in any case, because the robot has moved sideways.
 const FRESH_STEPS: usize = 40;
-/// The path is too short if the point to aim for is this far beyond its end, metres.
+/// Distance of the point to aim for beyond the end of the path at which the path counts as too short, metres.
 const AIM_MOVED_M: f64 = 1.0;
 /// Interval between checks whether a moving obstacle blocks the path, steps.
 const MOVING_STEPS: usize = 5;
-/// A path is considered free even with this much less clearance than the window keeps, metres.
+/// Clearance that a path may lack, compared with the clearance that the window keeps, and still count as free, metres.
 const SLACK_M: f64 = 0.03;
 /// On a map of many parts, the push is limited to these shares of the pull: against the direction of the pull, and
 /// across it.
@@ -91,7 +91,7 @@ impl Guide {
         }
     }
 
-    /// Takes note of a change to the map.
+    /// Notes a change to the map.
     pub fn take_change(&mut self, changed: Changed) {
         if changed.parts {
             self.nearby.forget();

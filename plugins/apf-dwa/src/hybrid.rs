@@ -9,7 +9,8 @@ use crate::{
 use steering::{Forces, KnownMap};
 use world::{Amphibious, Medium, Mode, Pace, Point, Pose, Zone, polyline};
 
-/// Within this distance of the goal, or of a point to pass, the robot drives no faster than it can turn there, metres.
+/// Distance from the goal, or from a point to pass, within which the robot drives no faster than it can turn there,
+/// metres.
 const TURNING_M: f64 = 1.2;
 /// Angle between the robot's heading and its target above which the robot turns first, radians.
 const ASIDE_RAD: f64 = 0.35;
@@ -91,7 +92,7 @@ impl Hybrid {
         self.mode.map(Mode::weight)
     }
 
-    /// Takes note of a change to the map.
+    /// Notes a change to the map.
     pub fn take_change(&mut self, changed: Changed) {
         self.guide.take_change(changed);
     }

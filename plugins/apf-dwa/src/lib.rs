@@ -1,8 +1,8 @@
 //! The hybrid planner of Yang et al. 2021: a potential field with virtual goals chooses the direction, and a dynamic
 //! window chooses the motion.
 //!
-//! For a robot that walks and swims: its limits depend on the zone of the floor. Frame: the tank frame, metres,
-//! radians.
+//! The planner is for a robot that walks and swims, whose limits depend on the zone of the floor. Frame: the tank
+//! frame, metres, radians.
 #![forbid(unsafe_code)]
 
 pub mod window;

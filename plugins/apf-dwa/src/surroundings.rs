@@ -1,8 +1,9 @@
-//! The part of the map that matters to the next steps: as many parts as a step has time for, however large the map.
+//! The part of the map that matters to the next steps: as many parts as a step has time for, whatever the size of the
+//! map.
 //!
-//! A map of a building has thousands of parts. The part of the drawing near the robot is looked up again after a metre,
-//! and sensed obstacles stay where they are sensed. A step therefore costs as much as on a floor of a few hundred
-//! parts.
+//! A map of a building has thousands of parts. The parts of the drawing near the robot are looked up again after a
+//! metre, and sensed obstacles stay where they are sensed. A step therefore costs as much as on a floor of a few
+//! hundred parts.
 
 use geometry::polyline::{edges, nearest_on_segment};
 use planner_api::Site;
@@ -12,7 +13,7 @@ use world::{Boundary, Point, Shape, shortest::GrownFloor};
 
 /// Maximum number of parts of the drawing that are kept, unless the window reaches more.
 const PARTS_MOST: usize = 100;
-/// The nearby parts are looked up again after this distance, metres.
+/// Distance after which the nearby parts are looked up again, metres.
 const SLACK_M: f64 = 1.0;
 /// Distance at which a wall no longer has any effect, metres.
 const FAR_M: f64 = 1e6;

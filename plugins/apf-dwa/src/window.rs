@@ -8,13 +8,13 @@ use world::{Pace, Point, Pose, Vector};
 const N_SPEEDS: usize = 7;
 /// Number of turn rates tried.
 const N_TURNS: usize = 21;
-/// An arc is followed for this long, seconds.
+/// Time for which an arc is followed, seconds.
 const HORIZON_S: f64 = 3.0;
 /// Time between the points checked on an arc, seconds.
 const STEP_S: f64 = 0.2;
 /// Number of points checked on an arc.
 const N_PLACES: usize = 15;
-/// Clearances in excess of the distance to keep are capped at this value, metres.
+/// Upper limit for clearances in excess of the distance to keep, metres.
 const CAP_M: f64 = 1.0;
 /// Turn rate when no arc is allowed, as a share of the maximum.
 const TURN_SHARE: f64 = 0.3;

@@ -1,4 +1,4 @@
-//! One step of the state machine in a random trap, on average over the whole walk.
+//! Measures one step of the state machine in a random trap, averaged over the whole walk.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use field::{GoalLaw, NearLaw, Pull, PushForm, TangentUse};

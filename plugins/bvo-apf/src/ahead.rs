@@ -31,10 +31,11 @@ const ATTEMPTS: [By; 5] =
 /// room.
 const ATTEMPTS_IN_ROOMS: [By; 5] =
     [By::Thought, By::Outlines, By::Mode(Mode::Rollout), By::Mode(Mode::Hull), By::Mode(Mode::Literal)];
-/// A map with more parts than this is treated as one with many parts.
+/// Number of parts above which a map counts as a map with many parts.
 const MANY_PARTS: usize = 200;
 
-/// Up to this number of parts, the result of the paper's own mode is shown as well if the outlines were followed.
+/// Maximum number of parts of a map for which the result of the paper's own mode is shown as well if the outlines were
+/// followed.
 const SHOWN_PARTS: usize = 1000;
 
 /// The outcome of an attempt.

@@ -23,12 +23,13 @@ use steering::{
 };
 use world::Point;
 
-/// During a retreat the robot aims this far ahead, metres.
+/// Distance ahead at which the robot aims during a retreat, metres.
 const BACK_AHEAD_M: f64 = 0.2;
-/// In flight, the oscillation window is multiplied by this factor, because the robot slows down and turns.
+/// Factor by which the oscillation window is longer in flight, because the robot slows down and turns.
 const FLIGHT_WINDOWS: f64 = 1.5;
 
-/// Larger maps are refused, because every part is compared with every other and the path is simulated.
+/// Maximum number of parts of a map. Larger maps are refused, because every part is compared with every other and the
+/// path is simulated.
 const PARTS_MOST: usize = 4000;
 /// Advice logged when the planner finds no path.
 const INSTEAD: &str = "in rooms choose shortest or navfn, which find a path wherever one exists";

@@ -5,14 +5,14 @@ use std::{collections::BTreeSet, f64::consts::PI};
 use steering::{KnownMap, Side, solid::disc_around, tangents};
 use world::{Point, Vector};
 
-/// The hull of the group is recomputed after this distance, metres.
+/// Distance after which the hull of the group is recomputed, metres.
 const LOOK_M: f64 = 0.25;
-/// Solids farther ahead than this on the way to the tangent point are ignored for now, metres.
+/// Distance ahead, on the way to the tangent point, beyond which solids are ignored for now, metres.
 const AHEAD_M: f64 = 4.0;
 /// Rate at which the distance to the group is corrected as the robot goes around it, per metre.
 const HUG_PER_M: f64 = 2.0;
-/// After this many times around the group, its outline is followed closely, because the way out must be in one of its
-/// bays.
+/// Number of times around the group after which its outline is followed closely, because the way out must be in one of
+/// its bays.
 const ROUNDS: f64 = 1.3;
 
 /// A group of solids that the robot goes around.

@@ -9,13 +9,13 @@ use world::{Point, Vector};
 const THETA_PER_M: f64 = 0.15;
 /// Space that the seal needs in front of the robot, in addition to the edge's radius and twice the hull radius, metres.
 const ROOM_M: f64 = 0.5;
-/// If the opening is wider than this, the robot is considered to be outside, radians.
+/// Width of the opening above which the robot counts as being outside, radians.
 const OPEN_RAD: f64 = 0.98 * PI;
-/// A mouth seen under a smaller angle is the inside of a spiral, radians.
+/// Minimum angle under which a mouth is seen, radians; a smaller angle means that the robot is inside a spiral.
 const NARROW_RAD: f64 = 0.15;
-/// A spiral has been left when its opening is wider than this, radians.
+/// Width of the opening above which the robot has left a spiral, radians.
 const OUT_RAD: f64 = 1.1 * PI;
-/// Any trap has been left when its opening is wider than this, radians.
+/// Width of the opening above which the robot has left any trap, radians.
 const FAR_OUT_RAD: f64 = 1.3 * PI;
 /// Minimum radius of virtual circles, metres.
 const SMALLEST_M: f64 = 0.15;

@@ -4,7 +4,7 @@
 //! Xu et al. 2022 consider only free-standing obstacles. The tank's outline encloses the robot and its goal: it has no
 //! mouth to seal and no circle to go around. So the robot follows the outline of whatever stops it. It leaves the
 //! outline where it is closer to the goal than ever before and nothing stops it there. That method reaches the goal if
-//! there is a path (Class1 in Ng and Bräunl 2007, after Lumelsky and Stepanov 1987).
+//! a path exists (Class1 in Ng and Bräunl 2007, after Lumelsky and Stepanov 1987).
 
 use crate::{
     clusters::{Clusters, gap_m},
@@ -24,16 +24,15 @@ const ROUND_EDGES: u32 = 256;
 /// Id of the edges of the wall. Ids of obstacles count up; ids of no-go zones count down from the largest number.
 const WALL: u32 = LAST_VIRTUAL;
 
-/// The robot detects an outline up to this much beyond the distance to keep, metres.
+/// Distance beyond the distance to keep within which the robot detects an outline, metres.
 const HAND_M: f64 = 0.2;
-/// If it detects none, it turns back by this angle from its last move, radians.
+/// Angle from its last move by which the robot turns back if it detects no outline, radians.
 const HAND_RAD: f64 = 0.6 * PI;
 /// Number of directions tried.
 const DIRECTIONS: u32 = 96;
-/// Distances to the goal that differ by less than this are considered equal, metres.
+/// Difference between distances to the goal up to which they count as equal, metres.
 const ROUNDING_M: f64 = 1e-9;
-/// If the robot comes no closer to the goal over this many times the length of all outlines, it gives up, whatever else
-/// it remembers.
+/// Distance without progress, as a multiple of the length of all outlines, after which the robot gives up in any case.
 const ROUNDS: f64 = 2.0;
 /// Distance without progress, metres, after which a return to the point closest to the goal means that the robot has
 /// gone all the way around.
@@ -135,7 +134,7 @@ fn round_m(solid: &Solid, distance_m: f64) -> f64 {
     edges(&corners).map(|(a, b)| (b - a).norm()).sum::<f64>() + TAU * (widest_m + distance_m)
 }
 
-/// If the robot meets an obstacle this far from its last choice of side, it chooses the side again, metres.
+/// Distance from its last choice of side at which the robot, on meeting an obstacle, chooses the side again, metres.
 const CHOICE_M: f64 = 1.0;
 
 /// A robot that follows outlines.

@@ -6,12 +6,13 @@ use world::Point;
 
 /// Rollouts take steps of at least this length, metres.
 pub(crate) const COARSE_M: f64 = 0.1;
-/// A rollout is abandoned when it is this many times as long as the distance around the group and to the goal.
+/// Maximum length of a rollout, as a multiple of the distance around the group and to the goal; a longer rollout is
+/// abandoned.
 const PATIENCE: f64 = 4.0;
 /// Maximum length of a walk, as a multiple of the straight path, plus a constant for short paths.
 const DETOUR: f64 = 15.0;
 const SPARE_M: f64 = 60.0;
-/// `check` is called once per this many steps; each of them may simulate two detours.
+/// Number of steps between two calls of `check`; each step may simulate two detours.
 const CHECKED_STEPS: usize = 16;
 
 /// The result of a walk.

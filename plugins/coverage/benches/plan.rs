@@ -1,4 +1,4 @@
-//! Time of a tether-safe plan.
+//! Measures the time that a tether-safe plan takes.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use planner_api::{Plan, PlanRequest, Planner, PoseEstimate, Reason, Task, testing::Bench};

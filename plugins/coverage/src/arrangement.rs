@@ -32,8 +32,8 @@ pub(crate) fn border(rings: &[Vec<Point>], near_m: f64) -> Vec<Border> {
 struct Cover<'a> {
     ring: &'a [Point],
     bounds: (Point, Point),
-    /// The ring covers everything deeper inside it than this; if negative, also everything outside it within this
-    /// distance.
+    /// Depth inside the ring beyond which the ring covers everything, metres. If the depth is negative, the ring also
+    /// covers everything outside it within that distance.
     depth_m: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The traditional planner: parallel lanes over the whole floor, one after another, as if there were no tether.
+//! The traditional planner: parallel lanes over the whole floor, one after another, ignoring the tether.
 
 use crate::floor::ReachableFloor;
 use crate::follow::Follow;

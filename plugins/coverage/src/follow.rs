@@ -1,8 +1,8 @@
 //! Follows a plan: straight along it, slower at bends, and never across a cut.
 //!
-//! Lanes end at cuts, so position noise occasionally makes the robot appear slightly beyond a cut. This winds nothing
-//! as long as the robot returns the way it came. So the line back to the path may cross a cut, as long as it ends on
-//! the same side of the cut as the path.
+//! Lanes end at cuts, so position noise occasionally makes the robot appear slightly beyond a cut. The tether is not
+//! wound round anything as long as the robot returns the way it came. So the line back to the path may cross a cut, as
+//! long as it ends on the same side of the cut as the path.
 
 mod steer;
 
@@ -15,12 +15,12 @@ use world::{Boundary, Point, polyline, tether::crossings};
 
 /// Distance along the path to the point at which the robot aims, metres.
 const LOOK_M: f64 = 0.25;
-/// The path is checked for obstacles this far ahead, metres.
+/// Distance ahead within which the path is checked for obstacles, metres.
 const WATCH_M: f64 = 1.0;
-/// An obstacle is considered to block the path if it still blocks it with the path shifted by this many standard
-/// deviations.
+/// Shift of the path, in standard deviations of the position, with which an obstacle must still be in the way to count
+/// as blocking the path.
 const PATH_SIGMAS: f64 = 2.0;
-/// Within this distance of the point from which the cuts apply, the robot is considered to have reached it, metres.
+/// Distance from the point from which the cuts apply within which that point counts as reached, metres.
 const THERE_M: f64 = 0.3;
 /// Largest share of the mission's clearance that the guard maintains. A path is planned with the full clearance; a
 /// guard that maintained all of it would push the robot off lanes beside walls and columns.

@@ -160,7 +160,7 @@ impl HullPartition {
     }
 }
 
-/// Why hull rings are impossible, if they are.
+/// The reason why hull rings are impossible; `None` if they are possible.
 fn no_rings(workspace: &Workspace) -> Option<String> {
     let n = workspace.parts.len();
     match &workspace.wall {

@@ -5,7 +5,7 @@ use geometry::convex::Part;
 use std::f64::consts::{PI, TAU};
 use world::{Boundary, Point, polyline::edges};
 
-/// Margin by which the planned distance exceeds the one that the mission requires, metres.
+/// Margin by which the planned distance exceeds the distance that the mission requires, metres.
 pub(crate) const SLACK_M: f64 = 2e-3;
 /// Largest angle between neighbouring tangents of an outline, radians. With larger angles, the corners of outlines
 /// would keep the tool a centimetre farther from columns, which adds up where many columns are close together.

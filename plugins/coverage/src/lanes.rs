@@ -23,7 +23,7 @@ pub(crate) fn lanes(domain: &SlitDomain<'_>, pattern: &Pattern, least_m: f64) ->
     lanes
 }
 
-/// The same, with the lanes along walls and cuts separate from the straight rows.
+/// The lanes that `lanes` returns, with those along walls and cuts separate from the straight rows.
 pub(crate) fn laps_and_rows(
     domain: &SlitDomain<'_>,
     pattern: &Pattern,

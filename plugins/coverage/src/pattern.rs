@@ -14,7 +14,7 @@ use world::{Boundary, Point, Vector, polyline};
 const STEP_M: f64 = 0.04;
 /// Chord length of a lane along a round wall, metres.
 const CHORD_M: f64 = 0.15;
-/// Only slivers along the wall that are wider than this are counted, metres.
+/// Minimum width of the slivers along the wall that are counted, metres.
 const LEAST_SLIVER_M: f64 = 0.02;
 
 /// The layout of lanes on the floor.

@@ -1,5 +1,5 @@
-//! Makes a path shorter and straighter without losing floor. No part of the path need sweep floor that other parts also
-//! sweep, and missed floor is worth a detour only if there is enough of it.
+//! Makes a path shorter and straighter without losing floor. A part of the path need not sweep floor that other parts
+//! also sweep, and missed floor is worth a detour only if its area is large enough.
 
 mod bends;
 pub(crate) mod shell;
@@ -14,9 +14,9 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 pub(crate) use track::{Terms, Track};
 
-/// Approximate progress of a round when the path has been shortened, and when it has been bent, as shares of the
-/// round's time.
+/// Approximate progress of a round once the path has been shortened, as a share of the round's time.
 const SHORTENED: f64 = 0.63;
+/// Approximate progress of a round once the path has also been bent, as a share of the round's time.
 const BENT: f64 = 0.92;
 
 /// Shortens a path, bends it to floor that it misses, and ties in short lanes if that is not enough. A second round is
@@ -45,8 +45,8 @@ pub(crate) fn polish(
     track.pass_along_shell(terms)
 }
 
-/// Brings the coverage to the required value, counted in cells other than those to which the path was fitted. Bends and
-/// ties raise it; shortcuts lower it while it is too high.
+/// Brings the coverage to the required value. It is counted in different cells from those to which the path was fitted.
+/// Bends and ties raise it; shortcuts lower it while it is too high.
 pub(crate) fn settle(track: &mut Track<'_>, terms: &Terms<'_>, other: &ReachableFloor) -> Result<()> {
     let enough = track.enough_here(terms.enough, other);
     let terms = Terms { enough, keep: enough, ..*terms };

@@ -17,7 +17,7 @@ pub(crate) struct Scope<'a> {
     pub tether: Option<TetherLimits>,
     /// Longest path from home, metres.
     pub reel_length_m: f64,
-    /// Within this distance of home the robot is considered to be back, metres.
+    /// Distance from home within which the robot counts as being back, metres.
     pub tolerance_m: f64,
     /// Polygons still to scan; all floor if empty.
     pub regions: &'a [&'a [Point]],
@@ -60,7 +60,7 @@ impl<'a> Scope<'a> {
         })
     }
 
-    /// The same for a robot that has already driven a path: the floor that the path scanned counts towards the whole.
+    /// The scope for a robot that has already driven a path: the floor that the path scanned counts towards the whole.
     pub(crate) fn after(self, flown: &[Point], workspace: &Workspace) -> Self {
         if self.regions.is_empty() || flown.is_empty() {
             return self;
@@ -80,7 +80,7 @@ impl<'a> Scope<'a> {
         (1.0 - self.whole * (1.0 - enough_of_whole)).max(KEPT.min(enough_of_whole))
     }
 
-    /// Whether the reel lets the robot reach a position of a domain.
+    /// Whether the reel is long enough for the robot to reach a position of a domain.
     pub(crate) fn is_in_reach(&self, domain: &SlitDomain<'_>, at: Point) -> bool {
         let way_m = || domain.way_home_m(at);
         self.reel_length_m.is_infinite() || way_m().is_some_and(|way_m| way_m <= self.reel_length_m)

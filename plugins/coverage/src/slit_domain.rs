@@ -24,7 +24,8 @@ const ASIDE_M: f64 = SNAP_M / 4.0;
 /// The triangles of the floor that can be reached from home without crossing a cut.
 pub(crate) struct SlitDomain<'a> {
     pub workspace: &'a Workspace,
-    /// Lines that the robot does not cross, each from the centre of an obstacle to the wall or to another obstacle.
+    /// The cuts: lines that the robot does not cross, each from the centre of an obstacle to the wall or to another
+    /// obstacle.
     pub cuts: Vec<Vec<Point>>,
     points: Vec<Point>,
     triangles: Vec<Triangle>,
@@ -33,7 +34,7 @@ pub(crate) struct SlitDomain<'a> {
     hinges: BTreeSet<[u64; 2]>,
     /// Whether the domain is simply connected, so that all paths between two points are equivalent for the tether.
     pub is_simple: bool,
-    /// Floor from which only cuts keep the hull out.
+    /// Floor that the hull centre could reach if there were no cuts.
     pub sealed: SealedRegion,
 }
 
@@ -239,7 +240,7 @@ impl<'a> SlitDomain<'a> {
         matches!((self.spot(a), self.spot(b)), (Some(a), Some(b)) if self.sees_between(a, b))
     }
 
-    /// The same for two spots.
+    /// Whether the straight line between two spots stays in the domain.
     pub(crate) fn sees_between(&self, a: Spot, b: Spot) -> bool {
         let is_straight = || {
             let path = self.path_between(a, b);

@@ -2,8 +2,8 @@
 
 use planner_api::Ctx;
 
-/// The stages of a plan. Every stage takes a share of the remaining progress, so progress never decreases, however many
-/// stages follow.
+/// The stages of a plan. Every stage takes a share of the remaining progress, so progress never decreases, whatever the
+/// number of later stages.
 pub(crate) struct Stages<'a> {
     /// The console.
     pub ctx: Ctx<'a>,

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use world::tether::{Cable, Case, Certificate, Ground, Limits, Strain, certify_on, strain};
 use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, tether};
 
-/// A cable with at most this length outside the anchor is considered reeled in, metres.
+/// Length outside the anchor up to which a cable counts as reeled in, metres.
 const IN_M: f64 = 1e-3;
 
 /// The minimum cable length, metres: approximately the longest straight line from the anchor to a position that the

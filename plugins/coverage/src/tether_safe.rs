@@ -154,8 +154,8 @@ fn tried_from_here_or_home<'a>(
     Ok((tried, way))
 }
 
-/// Why not even one lane can be planned, if that is so: the swath is wider than the floor, or the reel does not reach a
-/// lane.
+/// The reason why not even one lane can be planned: the swath is wider than the floor, or the reel does not reach a
+/// lane. `None` if a lane can be planned.
 fn no_lane(workspace: &Workspace, reel_length_m: f64) -> Option<String> {
     let Workspace { swath_m, home, anchor, .. } = *workspace;
     let (low, high) = workspace.wall.bounds();

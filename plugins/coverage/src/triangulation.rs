@@ -10,7 +10,7 @@ use spade::{CdtEdge, ConstrainedDelaunayTriangulation, Point2 as Vertex, Triangu
 use std::collections::BTreeMap;
 use world::{Boundary, Point, polyline::edges, shape::bounds_of};
 
-/// Corners are snapped to multiples of this, metres, so that corners of touching outlines coincide instead of lying
+/// Grid spacing to which corners are snapped, metres, so that corners of touching outlines coincide instead of lying
 /// slightly apart.
 pub(crate) const SNAP_M: f64 = 1.0 / 65536.0;
 /// Maximum displacement caused by snapping or by splitting lines, metres.
@@ -18,9 +18,9 @@ pub(crate) const SNAPPED_M: f64 = 8.0 * SNAP_M;
 
 /// Edge length of the buckets in which outlines are looked up, metres.
 const BUCKET_M: f64 = 1.0;
-/// Tolerance by which a point may be outside a triangle and still be taken as inside, as signed area, square metres.
+/// Tolerance by which a point may be outside a triangle and still count as inside, as signed area, square metres.
 pub(crate) const NEARLY: f64 = 1e-9;
-/// Stands for no triangle.
+/// The index used where there is no triangle.
 pub(crate) const NONE: u32 = u32::MAX;
 
 type Cdt = ConstrainedDelaunayTriangulation<Vertex<f64>>;
@@ -112,7 +112,7 @@ pub(crate) struct Triangle {
     pub depth: u32,
 }
 
-/// Floor from which only cuts keep the hull centre out.
+/// Floor that only cuts prevent the hull centre from reaching.
 #[derive(Default)]
 pub(crate) struct SealedRegion {
     pub area_m2: f64,
@@ -133,7 +133,7 @@ pub(crate) struct Walk {
     pub sealed: SealedRegion,
 }
 
-/// The triangles between cuts by index, and which of them the hull centre may use.
+/// The triangles of the triangulation with cuts, by index, and which of them the hull centre may use.
 struct Faces<'a> {
     all: Vec<Face<'a>>,
     numbers: BTreeMap<usize, usize>,

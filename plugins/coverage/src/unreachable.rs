@@ -13,9 +13,9 @@ use world::{
     shape::{mean_of, ring_area_m2},
 };
 
-/// Smaller unreachable areas are not reported, square metres.
+/// Smallest unreachable area that is reported, square metres.
 const LEAST_M2: f64 = 0.05;
-/// Smaller widths of an unreachable rim along the shell, and shorter open stretches of the shell, are not reported,
+/// Smallest width of an unreachable rim along the shell, and shortest open stretch of the shell, that is reported,
 /// metres.
 const LEAST_RIM_M: f64 = 0.005;
 const LEAST_OPEN_M: f64 = 0.1;
@@ -81,8 +81,8 @@ pub(crate) fn report(scan: &Scan<'_>, scope: &Scope<'_>, ctx: &Ctx<'_>) -> bool 
     closed.is_empty()
 }
 
-/// What a pass along the shell does not scan, and why: the rim that the tool cannot reach from anywhere, and stretches
-/// where the path is farther from the shell than hull and clearance require.
+/// The floor that a pass along the shell does not scan, with the reasons: the rim that the tool cannot reach from
+/// anywhere, and stretches where the path is farther from the shell than hull and clearance require.
 fn shell_left(scan: &Scan<'_>, scope: &Scope<'_>) -> Vec<String> {
     let workspace = scan.domain.workspace;
     let Workspace { hull_m, keep_m, swath_m, .. } = *workspace;

@@ -9,7 +9,7 @@ use world::{Point, Shape, shortest::GrownFloor};
 /// The floor of a robot that may go anywhere.
 pub(crate) struct UntetheredPaths {
     floor: GrownFloor,
-    /// The same floor with slightly less clearance, for ends that are slightly too close to something.
+    /// The same floor with slightly less clearance, for ends of paths that are slightly too close to something.
     tight: GrownFloor,
 }
 

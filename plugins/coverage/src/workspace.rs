@@ -18,8 +18,8 @@ use world::{
     tether::Ground,
 };
 
-/// A cut is extended into solids that are no farther from its ends than this multiple of the distance to keep:
-/// outlines, at which cuts may end, are slightly larger than the exact ones.
+/// Largest distance of a solid from the end of a cut at which the cut is extended into the solid, as a multiple of the
+/// distance to keep. It exceeds 1 because the outlines at which cuts may end are slightly larger than the exact ones.
 const ROOT_SHARE: f64 = 1.1;
 /// Depth to which a cut is extended into solids, metres.
 const ROOT_M: f64 = 0.01;
@@ -161,7 +161,8 @@ impl Workspace {
     }
 }
 
-/// Why a floor between inner walls is too large or too fragmented to be planned in time, if it is.
+/// The reason why a floor between inner walls cannot be planned in time: it is too large or too fragmented. `None` if
+/// it can be planned.
 fn too_large(wall: &Boundary, parts: &[Part], swath_m: f64) -> Option<String> {
     let Boundary::Polygon { vertices } = wall else { return None };
     let solid_m2: f64 = parts.iter().map(area_m2).sum();

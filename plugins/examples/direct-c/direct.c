@@ -1,4 +1,4 @@
-/* A planner in C: turn to the target, drive there. It looks at no obstacle. */
+/* A planner in C that turns to the target and drives there. It ignores obstacles. */
 #include "tankops_planner.h"
 
 #include <math.h>
@@ -11,7 +11,7 @@ typedef struct {
   double speed;     /* cruise speed, m/s */
   double turn_gain; /* turn rate per radian of heading error, 1/s */
   double v_max, w_max;
-  double tolerance; /* of the last plan, m */
+  double tolerance; /* tolerance of the last plan, m */
 } direct;
 
 static int is_key(tp_str key, const char *name) {
@@ -29,7 +29,7 @@ static int32_t describe(const tp_host *host) {
   const tp_param speed = {
       sizeof(tp_param), TP_PARAM_FLOAT, 0, 0,
       TP_STR("speed"), TP_STR("Cruise speed"), TP_STR("m/s"),
-      TP_STR("Speed on a straight way; the robot's own limit comes first."), TP_STR("Drive"), TP_STR(""),
+      TP_STR("Speed on the way to the target, at most the robot's own limit."), TP_STR("Drive"), TP_STR(""),
       0.01, 1.0, 0.2};
   const tp_param turn_gain = {
       sizeof(tp_param), TP_PARAM_FLOAT, TP_PARAM_LIVE, 0,
@@ -50,7 +50,7 @@ static void take(direct *self, const tp_value *values, uint32_t n) {
 
 static int32_t create(const tp_host *host, const tp_site *site, const tp_value *values, uint32_t n, void **instance) {
   direct *self = calloc(1, sizeof *self);
-  if (!self) return refuse(host, TP_E_INTERNAL, "no memory for the planner");
+  if (!self) return refuse(host, TP_E_INTERNAL, "out of memory");
   self->v_max = site->v_max;
   self->w_max = site->w_max;
   self->tolerance = 0.05;
@@ -70,15 +70,15 @@ static int32_t reconfigure(void *instance, const tp_host *host, const tp_value *
 static int32_t plan(void *instance, const tp_host *host, const tp_plan_in *in, tp_plan_out *out) {
   direct *self = instance;
   if (in->task != TP_GOTO && in->task != TP_FOLLOW)
-    return refuse(host, TP_E_UNSUPPORTED, "direct-c drives to points, it covers no floor");
-  if (in->n_targets == 0) return refuse(host, TP_E_INVALID, "there is no target to drive to");
+    return refuse(host, TP_E_UNSUPPORTED, "direct-c drives to points but does not cover floors");
+  if (in->n_targets == 0) return refuse(host, TP_E_INVALID, "the task has no target");
   const tp_vec2 start = {in->start.x, in->start.y};
   host->points(host->ctx, &start, 1);
   host->points(host->ctx, in->targets, in->n_targets);
   double length = hypot(in->targets[0].x - start.x, in->targets[0].y - start.y);
   for (uint32_t i = 1; i < in->n_targets; i++)
     length += hypot(in->targets[i].x - in->targets[i - 1].x, in->targets[i].y - in->targets[i - 1].y);
-  if (TP_HOST_HAS(host, legs)) { /* a console of ABI 1.0 knows no legs */
+  if (TP_HOST_HAS(host, legs)) { /* a console of ABI 1.0 does not accept legs */
     const tp_leg way = {TP_LEG_TRAVEL, 0, in->n_targets, 0};
     host->legs(host->ctx, &way, 1);
   }
@@ -116,7 +116,7 @@ static int32_t step(void *instance, const tp_host *host, const tp_step_in *in, t
 static const tp_planner direct_planner = {
     sizeof(tp_planner), TP_CAP_LOCAL | TP_CAP_LIVE_PARAMS, 1, 0,
     TP_STR("direct-c"), TP_STR("Straight to the target, in C"), TP_STR("0.1.0"),
-    TP_STR("Turns to the target and drives; looks at no obstacle."),
+    TP_STR("Turns to the target and drives there; ignores obstacles."),
     describe, create, destroy, plan, step, reconfigure, NULL, NULL, NULL, NULL};
 
 static const tp_planner *const planners[] = {&direct_planner};

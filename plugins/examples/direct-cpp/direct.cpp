@@ -1,4 +1,4 @@
-// A planner in C++: turn to the target, drive there. It looks at no obstacle.
+// A planner in C++ that turns to the target and drives there. It ignores obstacles.
 #include "tankops_planner.h"
 
 #include <algorithm>
@@ -55,7 +55,7 @@ int32_t guarded(const tp_host *host, Call call) {
 int32_t describe(const tp_host *host) {
   const tp_param params[] = {
       {sizeof(tp_param), TP_PARAM_FLOAT, TP_PARAM_LIVE, 0, TP_STR("speed"), TP_STR("Cruise speed"), TP_STR("m/s"),
-       TP_STR("Speed on a straight way."), TP_STR("Drive"), TP_STR(""), 0.01, 1.0, 0.2},
+       TP_STR("Speed on the way to the target."), TP_STR("Drive"), TP_STR(""), 0.01, 1.0, 0.2},
       {sizeof(tp_param), TP_PARAM_FLOAT, TP_PARAM_LIVE, 0, TP_STR("turn_gain"), TP_STR("Turn gain"), TP_STR("1/s"),
        TP_STR("Turn rate per radian of heading error."), TP_STR("Drive"), TP_STR(""), 0.1, 10.0, 2.0}};
   for (const tp_param &param : params) host->param(host->ctx, &param);
@@ -74,7 +74,7 @@ int32_t create(const tp_host *host, const tp_site *site, const tp_value *values,
 void destroy(void *instance) { delete static_cast<Mine *>(instance); }
 
 int32_t plan(void *, const tp_host *host, const tp_plan_in *in, tp_plan_out *out) {
-  if (in->task == TP_COVER) return refuse(host, TP_E_UNSUPPORTED, ID " covers no floor");
+  if (in->task == TP_COVER) return refuse(host, TP_E_UNSUPPORTED, ID " does not cover floors");
   tp_vec2 last = {in->start.x, in->start.y};
   host->points(host->ctx, &last, 1);
   host->points(host->ctx, in->targets, in->n_targets);
@@ -100,7 +100,7 @@ int32_t reconfigure(void *instance, const tp_host *, const tp_value *values, uin
 const tp_planner mine = {
     sizeof(tp_planner), TP_CAP_LOCAL | TP_CAP_LIVE_PARAMS, 1, 0,
     TP_STR(ID), TP_STR("Straight to the target, in C++"), TP_STR("0.1.0"),
-    TP_STR("Turns to the target and drives; looks at no obstacle."),
+    TP_STR("Turns to the target and drives there; ignores obstacles."),
     describe, create, destroy, plan, step, reconfigure, nullptr, nullptr, nullptr, nullptr};
 
 const tp_planner *const planners[] = {&mine};

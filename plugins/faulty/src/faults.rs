@@ -41,11 +41,11 @@ pub(crate) const FAULTS: &[&str] = &[
     "replan_long",
 ];
 
-/// Longer than a tick of the usual length, but not a fault.
+/// A sleep that is longer than a tick of the usual length, but is not a fault.
 const NAP: Duration = Duration::from_millis(150);
-/// Fits within a tick of the usual length, but adds up to seconds over a mission.
+/// A delay that fits within a tick of the usual length, but adds up to seconds over a mission.
 const DAWDLE: Duration = Duration::from_millis(50);
-/// Long enough for an operator to act meanwhile.
+/// A delay that is long enough for an operator to act meanwhile.
 const LONG: Duration = Duration::from_millis(2500);
 
 /// Whether a fault happens only once; the other faults recur in every later step.
@@ -53,7 +53,7 @@ pub(crate) fn happens_once(kind: &str) -> bool {
     kind == "nap"
 }
 
-/// Commits the fault with this name. Returns only if the fault can be survived.
+/// Commits the fault with this name. Returns only if the process survives the fault.
 pub(crate) fn commit(kind: &str, ctx: &Ctx<'_>) -> Result<()> {
     match kind {
         "panic" => look_up_nothing(),

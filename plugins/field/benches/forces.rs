@@ -1,5 +1,5 @@
-//! Cost of one evaluation of the forces against the number of obstacles: only obstacles within reach may add to the
-//! cost.
+//! Measures the cost of one evaluation of the forces for different numbers of obstacles: only obstacles within reach
+//! may add to the cost.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use field::{Law, PushForm, Repulsion, RotationForm, Scene, law::Beside};

@@ -10,7 +10,7 @@ use crate::{
 use geometry::Point;
 use planner_api::{Ctx, Result};
 
-/// With a rotating force, the goal is given up after this many moves without coming closer to it.
+/// Number of moves without coming closer to the goal after which a walk with a rotating force gives up.
 const PATIENCE_MOVES: usize = 2000;
 /// Maximum number of moves, as a multiple of the number needed for the straight path.
 const DETOUR: f64 = 20.0;

@@ -5,7 +5,7 @@ use geometry::Point;
 use planner_api::{Code, PlanRequest, PlannerError, Result, Site, Task};
 use steering::evade;
 
-/// A position outside the floor by at most this much is put down to rounding, metres.
+/// Distance outside the floor that is attributed to rounding, metres.
 const ROUNDING_M: f64 = 1e-6;
 
 /// Returns the goal of a request and its tolerance, metres, after checking start and goal. `id` names the planner in

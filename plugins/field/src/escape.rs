@@ -7,7 +7,7 @@ use crate::law::{Law, nearest_obstacle};
 use geometry::{Point, Vector};
 use steering::{Contact, Forces};
 
-/// A virtual target is given up after this many moves.
+/// Number of moves after which a virtual target is given up.
 const TARGET_MOVES: usize = 25;
 /// Distance of the virtual target from the obstacle, as a share of the obstacle range.
 const TARGET_OFF: f64 = 0.7;
@@ -62,7 +62,7 @@ pub enum PushSide {
     Right,
     /// Random; every plan and every flight uses the same sequence from its start.
     Random,
-    /// The opposite side from the last time.
+    /// The opposite of the last side.
     Alternating,
 }
 

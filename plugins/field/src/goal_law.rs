@@ -17,11 +17,11 @@ const SHORTEST_M: f64 = 0.3;
 pub enum TangentUse {
     /// Never.
     Off,
-    /// Always, towards the left tangent of every obstacle in range. Of the variants tried, only this variant lets the
-    /// tangent field stop where the paper says it does: with a weight of 0.02 and an obstacle of 1 m radius, or with
-    /// full weight and an obstacle of 3.2 to 3.55 m radius.
+    /// Always, towards the left tangent of every obstacle in range. Of the variants tried, only with this one does the
+    /// robot stop where the paper says: with a weight of 0.02 and an obstacle of 1 m radius, or with full weight and an
+    /// obstacle of 3.2 to 3.55 m radius.
     Always,
-    /// Around whatever blocks the path to the goal, on the side opposite its centre.
+    /// Around whatever blocks the path to the goal; the robot passes on the side away from the centre of the obstacle.
     Blocking,
 }
 

@@ -7,14 +7,15 @@ use steering::{Contact, Forces, Side, Source};
 /// The form of repulsion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Repulsion {
-    /// Khatib's.
+    /// Khatib's repulsion.
     Classic,
     /// Weighted with the distance to the goal, with a component towards the goal (Ge and Cui 2000).
     Improved {
         /// Power of the distance to the goal.
         exponent: f64,
     },
-    /// Weighted with the distance to the goal, without that component; one interpretation of Wang et al. 2023.
+    /// Weighted with the distance to the goal, without a component towards the goal; one interpretation of Wang et al.
+    /// 2023.
     Scaled {
         /// Power of the distance to the goal.
         exponent: f64,
@@ -52,7 +53,7 @@ pub struct Law {
     pub k_rot: f64,
     /// Distance at which obstacles begin to act, metres.
     pub rho_0_m: f64,
-    /// The wall pushes with this share of `k_rep`, within half of `rho_0_m`; the papers have no wall.
+    /// Push of the wall, as a share of `k_rep`, within half of `rho_0_m`; the papers have no wall.
     pub wall_gain: f64,
     /// The form of repulsion.
     pub repulsion: Repulsion,

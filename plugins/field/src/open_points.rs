@@ -41,7 +41,7 @@ pub const MOVE_LENGTH: ParamSpec = choice("move_length", "Move length", &["to-ta
 pub const PUSH_FORM: ParamSpec = choice("push_form", "Repulsion form", &["khatib", "inverse"], 0)
     .help("Khatib: (1/rho - 1/rho0) / rho2. Inverse: 1/rho - 1/rho0.")
     .group(GROUP);
-/// The same choice for goal planners.
+/// How the push decreases with distance, for goal planners.
 pub const GOAL_PUSH_FORM: ParamSpec = choice("push_form", "Repulsion form", &["khatib", "hyperbola"], 0)
     .help(
         "Khatib: (1/rho - 1/rho0) / rho2, eq. 2 of the paper. Hyperbola: 1/rho up to rho0, eq. 8 of \

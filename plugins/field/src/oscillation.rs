@@ -3,7 +3,7 @@
 use geometry::Point;
 use std::collections::VecDeque;
 
-/// An oscillation: the net displacement is below this share of the distance covered.
+/// Net displacement, as a share of the distance covered, below which the robot oscillates.
 const SHARE: f64 = 0.15;
 /// Number of windows without a new best distance to the goal after which the robot is considered trapped, unless more
 /// are allowed.

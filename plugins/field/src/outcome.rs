@@ -12,7 +12,7 @@ const ROUNDING_M: f64 = 1e-6;
 pub struct Walk {
     /// The points of the walk, starting with the start.
     pub path: Vec<Point>,
-    /// Why the walk does not achieve its task, if it does not.
+    /// The reason why the walk does not achieve its task; `None` if it does.
     pub shortfall: Option<Shortfall>,
 }
 
@@ -42,7 +42,7 @@ impl Walk {
     }
 }
 
-/// Why a path does not achieve its task.
+/// The reason why a path does not achieve its task.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shortfall {
     /// The law was trapped.

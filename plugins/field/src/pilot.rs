@@ -15,10 +15,11 @@ use steering::{
     wall_contacts,
 };
 
-/// If the force reverses, the speed is multiplied by the first factor; otherwise, by the second. The speed never falls
-/// below the third value, a share of the speed that the pilot allows.
+/// Factor by which the speed is multiplied if the force reverses.
 const TURNED_BACK: f64 = 0.5;
+/// Factor by which the speed is multiplied otherwise.
 const GOES_ON: f64 = 1.2;
+/// Minimum speed, as a share of the speed that the pilot allows.
 const LEAST_SHARE: f64 = 0.02;
 
 /// Flies a robot along the resultant of a law.

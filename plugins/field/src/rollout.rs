@@ -12,10 +12,9 @@ use steering::Tick;
 
 /// Distance covered in a tick at full speed, metres.
 const MOVE_M: f64 = 0.05;
-/// A preset point is considered passed when the robot is within this distance of it, metres. The mission looks ahead
-/// just as far.
+/// Distance from the robot within which a preset point counts as passed, metres. The mission looks ahead just as far.
 const LOOKAHEAD_M: f64 = 0.5;
-/// Obstacles further from the robot than this do not affect the pilot, metres.
+/// Distance from the robot beyond which obstacles do not affect the pilot, metres.
 const RANGE_M: f64 = 4.5;
 /// Maximum number of ticks: a multiple of the number needed for the straight path, plus a constant for short paths.
 const DETOUR: f64 = 4.0;

@@ -52,7 +52,7 @@ pub struct Walking {
     pub flexible: bool,
     /// Largest change of heading from one move to the next, radians, if it is limited.
     pub turn_limit_rad: Option<f64>,
-    /// A path that lags further behind its preset point than this skips floor, metres.
+    /// Lag behind its preset point above which a path skips floor, metres.
     pub max_lag_m: f64,
 }
 

@@ -17,9 +17,9 @@ pub enum Gate {
     Opposed,
 }
 
-/// An opposing push is larger than this share of the pull ...
+/// Share of the pull that an opposing push exceeds.
 const OPPOSED_SHARE: f64 = 0.8;
-/// ... and the cosine of the angle between the two is below that of 154 degrees.
+/// Cosine of the angle between pull and push, 154 degrees, above which the push does not count as opposing.
 const OPPOSED_COS: f64 = -0.898_794;
 
 impl Gate {
@@ -39,7 +39,8 @@ impl Gate {
 
 /// Number of moves examined by the detector.
 const WINDOW: usize = 6;
-/// A trap: the net displacement is below this share of the distance that those moves could have covered.
+/// Net displacement, as a share of the distance that these moves could have covered, below which the robot is in a
+/// trap.
 const SHARE: f64 = 0.35;
 
 /// Detects a trap from the last six moves. It is a trap if their net displacement is less than 0.35 of the distance

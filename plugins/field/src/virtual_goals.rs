@@ -12,14 +12,14 @@ use geometry::{Point, Vector};
 use std::collections::VecDeque;
 use steering::KnownMap;
 
-/// Below this share of the attraction gain, a force is treated as zero (eq. 17 says "= 0", which discrete steps never
+/// Share of the attraction gain below which a force counts as zero (eq. 17 says "= 0", which discrete steps never
 /// meet).
 const ZERO_SHARE: f64 = 0.5;
 /// Number of steps over which the robot must have moved.
 const STALL_STEPS: usize = 6;
-/// The robot is considered to be moving if it moved further than this many steps.
+/// Displacement, in steps, above which the robot counts as moving.
 const STALL_SHARE: f64 = 1.5;
-/// A virtual goal is reached when the robot is within this many steps of it.
+/// Distance from a virtual goal, in steps, within which the goal counts as reached.
 const REACHED_STEPS: f64 = 2.0;
 /// Maximum number of steps for which a virtual goal is kept.
 pub const HOLD_STEPS: usize = 30;

@@ -10,7 +10,7 @@ use geometry::{Point, Vector};
 use std::collections::VecDeque;
 use steering::Contact;
 
-/// A walk is considered trapped after this many moves without headway.
+/// Number of moves without headway after which a walk counts as trapped.
 const TRAP_MOVES: usize = 25;
 
 /// A walk in progress and its state.

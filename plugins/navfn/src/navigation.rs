@@ -7,8 +7,8 @@ use crate::{
 };
 use world::{Boundary, Point, Vector, shortest::GrownFloor};
 
-/// Cells within this many cells of the goal get their exact distance if nothing is in between: a march is least
-/// accurate near its source.
+/// Distance from the goal, in cells, within which cells get their exact distance if nothing is in between: a march is
+/// least accurate near its source.
 const SOURCE_CELLS: usize = 8;
 /// Largest number of steps per cell when descending the field.
 const STEPS_PER_CELL: usize = 4;

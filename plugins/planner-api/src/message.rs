@@ -102,7 +102,7 @@ pub enum Task<P = Vec<Point>, R = Vec<Vec<Point>>> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PlanRequest<P = Vec<Point>, R = Vec<Vec<Point>>, W = Reason, S = Arc<Site>, Y = Plan> {
-    /// Why the plan is requested.
+    /// The reason why the plan is requested.
     pub reason: W,
     /// Where the robot starts.
     pub start: PoseEstimate,

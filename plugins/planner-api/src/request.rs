@@ -17,7 +17,7 @@ pub struct PoseEstimate {
     pub covariance: Matrix3<f64>,
 }
 
-/// Why a plan is requested.
+/// The reason why a plan is requested.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Reason {

@@ -1,6 +1,7 @@
-//! What one plan of the paper's whole spiral costs, on layouts of its first distribution with 39 obstacles.
+//! Measures the cost of one plan for the paper's whole spiral, on layouts of its first distribution with 39 obstacles.
 //!
-//! The classical field lies in another plugin and has its bench there: two plugins cannot be linked into one program.
+//! The classical field is in a different plugin, which has its own bench: two plugins cannot be linked into one
+//! program.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use planner_api::{Motion, PlanRequest, Planner, Reason, Task, testing::Bench};

@@ -17,7 +17,7 @@ use world::{Boundary, Point, Vector, polyline};
 
 /// Length of path over which a change of heading is measured, metres.
 pub(crate) const SPAN_M: f64 = 0.2;
-/// Once a path has been found, the band aims for this share of the turn limit.
+/// Share of the turn limit for which the band aims once a path has been found.
 const TURN_SHARE: f64 = 0.985;
 /// Extra margin added to clearances, metres.
 const SPARE_M: f64 = 2e-4;
@@ -26,7 +26,7 @@ const ORDER_WEIGHT: f64 = 0.02;
 const BEND_WEIGHT: f64 = 0.1;
 /// Weight of a fixed point.
 const FIXED_WEIGHT: f64 = 1e6;
-/// Points that are closer to the wall than this have a row for the wall, metres.
+/// Distance from the wall within which points have a row for the wall, metres.
 const WALL_REACH_M: f64 = 0.25;
 /// Over-relaxation of the multiplier updates.
 const OVER: f64 = 1.6;
@@ -34,9 +34,10 @@ const OVER: f64 = 1.6;
 const ROUNDS: usize = 10;
 /// The largest factor by which penalties grow.
 const MOST_GROWN: f64 = 100.0;
-/// The search ends when a new set of rows reduces the cost by less than this share.
+/// Minimum reduction of the cost by a new set of rows, as a share; the search ends when a set reduces the cost by less.
 const GAIN: f64 = 0.002;
-/// At the end, points may slide along the path `SLIDES` times, initially by the share `SLIDE_SHARE` of their deviation.
+/// Number of times that points may slide along the path at the end. The first time, they slide by the share
+/// `SLIDE_SHARE` of their deviation.
 const SLIDES: usize = 12;
 const SLIDE_SHARE: f64 = 0.5;
 
@@ -53,7 +54,7 @@ pub(crate) struct Knot {
     pub fixed: bool,
 }
 
-/// How long to keep trying.
+/// The effort of one attempt.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Patience {
     /// The maximum number of sets of rows.

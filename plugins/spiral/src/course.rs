@@ -7,16 +7,16 @@ use world::{Point, Vector, geometry::wrap_angle_rad, polyline};
 
 /// Largest distance between neighbouring points, metres: the step of the paper.
 const SPACING_M: f64 = 0.2;
-/// Courses with more points than this are refused.
+/// Maximum number of points of a course; longer courses are refused.
 const MOST_POINTS: usize = 200_000;
-/// A start that is closer than this to the first point is on the course, metres.
+/// Distance from the first point within which a start is on the course, metres.
 const ON_COURSE_M: f64 = 1e-3;
-/// A point outside the floor by no more than this is there because of rounding, metres.
+/// Distance outside the floor that is attributed to rounding, metres.
 const ROUNDING_M: f64 = 1e-6;
-/// Turns of the path that are closer together than this coincide, metres.
+/// Distance below which turns of the path coincide, metres.
 const LEAST_PITCH_M: f64 = 1e-3;
 
-/// Points to follow in order.
+/// The points to follow, in order.
 #[derive(Debug, Clone)]
 pub(crate) struct Course {
     /// The points; the first one is the robot's position.

@@ -1,5 +1,5 @@
-//! Plans by offsets from the course: where the course is free, the path stays on it; elsewhere, the path passes beside
-//! it at the lowest cost.
+//! Plans a path by its offsets from the course. Where the course is free, the path stays on it; elsewhere, it passes
+//! beside the course at the lowest cost.
 
 use crate::{
     band::{Band, Knot, Patience, SPAN_M},
@@ -15,29 +15,30 @@ use world::{Point, Vector};
 const COARSE_M: f64 = 0.15;
 /// Distance between neighbouring offsets in the first search, metres.
 const CELL_M: f64 = 0.05;
-/// Preset points that are closer to each other than this are moved together, metres.
+/// Distance within which neighbouring preset points are moved together, metres.
 const FINE_M: f64 = 0.1;
 /// The same distance for the last search, used when no other finds a smooth path, metres.
 const FINEST_M: f64 = 0.05;
-/// Space before and after a blockage of the course, metres: enough to leave the course and return to it.
+/// Length of course included before and after a blockage, metres: enough to leave the course and return to it.
 const RAMPS_M: [f64; 2] = [1.0, 3.0];
-/// On either side of a window, the heading must be smooth over this length of the course, metres.
+/// Length of course on either side of a window over which the heading must be smooth, metres.
 const BESIDE_M: f64 = SPAN_M * 1.3;
-/// If a path passes something at no more than the clearance plus this, a path on the other side may be tried, metres.
+/// Distance in excess of the clearance up to which a path touches an obstacle, metres. For such an obstacle, a path on
+/// its other side may be tried.
 const TOUCH_M: f64 = 0.1;
-/// At first few alternatives are tried; if none of them is smooth, many are.
+/// The alternatives tried at first: only a few. If none of them is smooth, many are tried.
 const FEW: Others = Others { cost: 2.0, number: 2 };
 const MANY: Others = Others { cost: 6.0, number: 8 };
-/// Most paths are tightened after a few attempts; the others are given more.
+/// The effort for a first attempt to tighten a path, which is enough for most paths. The remaining paths get a longer
+/// attempt.
 const HASTE: Patience = Patience { sets: 40, growth: 1.1, turn_share: 0.95 };
 const PATIENCE: Patience = Patience { sets: 80, growth: 1.2, turn_share: 0.92 };
-/// The last point has a higher weight than all others, so that the path reaches the end.
+/// Weight of the last point. It is higher than that of all others, so that the path reaches the end.
 const END_WEIGHT: f64 = 20.0;
-/// If the last point is inside an obstacle, the path may end this much further from it than the clearance requires,
-/// metres.
+/// If the last point is inside an obstacle: the distance by which the path may end further from the obstacle than the
+/// clearance requires, metres.
 const NEARLY_M: f64 = 0.1;
-/// The course itself may turn more sharply than the limit. There the path may turn more sharply than the course by this
-/// factor.
+/// Factor by which the path may turn more sharply than the course where the course itself exceeds the turn limit.
 const OWN_TURN: f64 = 1.15;
 
 /// The limits that the plan must meet.
@@ -58,7 +59,7 @@ pub(crate) struct Path {
     pub sharp: Vec<RangeInclusive<usize>>,
 }
 
-/// Why there is no path.
+/// The reason why no path was found.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Blocked {
     /// Index of the point of the course that cannot be passed.
@@ -77,7 +78,7 @@ enum Beside {
     Blocked { station: usize },
 }
 
-/// Which alternatives to the cheapest path are tried.
+/// The range of alternatives to the cheapest path that are tried.
 #[derive(Debug, Clone, Copy)]
 struct Others {
     /// Largest cost, as a multiple of the cheapest path's.
@@ -97,7 +98,7 @@ struct Attempt {
     begins_on: bool,
     patience: Patience,
     others: Others,
-    /// Points of the course that are closer to each other than this are moved together, metres.
+    /// Distance within which neighbouring points of the course are moved together, metres.
     fine_m: f64,
 }
 
@@ -108,8 +109,8 @@ struct Search<'a> {
     limits: Limits,
 }
 
-/// Among the paths along a course that keep their distance from everything, finds the one with the smallest sum of
-/// squared offsets.
+/// Finds the path with the smallest sum of squared offsets from a course, among the paths that keep their distance from
+/// everything.
 ///
 /// # Errors
 /// The console asked to stop.

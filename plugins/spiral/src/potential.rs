@@ -8,7 +8,7 @@ use planner_api::{
 };
 use std::marker::PhantomData;
 
-/// What distinguishes one potential field from another.
+/// The properties in which the potential fields differ.
 pub trait Kind: 'static {
     /// The planner's id.
     const ID: &'static str;

@@ -6,7 +6,7 @@ use geometry::{Point, convex::Part};
 use planner_api::{Command, Ctx, Result, Sensed, Site};
 use steering::{Flight, Forces, Keep, Pilot, Tick};
 
-/// How far ahead the robot checks whether its way is free, metres.
+/// Distance ahead within which the robot checks whether its way is free, metres.
 const REACH_M: f64 = 0.4;
 
 /// Follows a plan, or the preset points if there is no plan, with a noisy pose and obstacles found during the mission.
@@ -41,7 +41,7 @@ impl Pursuit {
         Ok(self.pilot.pursue(&self.flight, &tick, aim).into())
     }
 
-    /// If something is in the way, returns where to head now: along its tangent.
+    /// If something is in the way, returns the point to aim at now, along the tangent of the obstacle.
     fn aim(&mut self, tick: &Tick<'_>) -> Option<Point> {
         let at = tick.pose.position;
         let keep_m = self.pilot.keep_m(&self.flight, &tick.pose).max(self.clearance_m);

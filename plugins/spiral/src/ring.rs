@@ -12,9 +12,9 @@ use std::collections::{BTreeSet, VecDeque};
 use steering::{Keep, solid_parts};
 use world::{Boundary, Point, Vector};
 
-/// A site with more solids than this is not examined.
+/// Maximum number of solids of a site that is examined.
 const MOST_PARTS: usize = 3000;
-/// A gap is closed only if the solids overlap by more than this rounding margin, metres.
+/// Rounding margin by which solids must overlap to close a gap, metres.
 const ROUNDING_M: f64 = 1e-9;
 
 /// The elements of a ring.

@@ -14,7 +14,7 @@ use planner_api::{
 use steering::{params as p, solid_parts};
 use world::polyline;
 
-/// How far the robot must see beyond the clearance, metres.
+/// Minimum sensing range beyond the clearance, metres.
 const LEAST_SIGHT_M: f64 = 0.5;
 
 const RANGE: ParamSpec = float("range_m", "Sensing range", "m", 0.5, 10.0, 1.2)

@@ -6,17 +6,17 @@ use std::f64::consts::TAU;
 use steering::{Keep, Side, wall_contacts};
 use world::{Boundary, Point, Vector, geometry::wrap_angle_rad};
 
-/// How far ahead the nearest point of the course is searched for, metres.
+/// Distance ahead within which the nearest point of the course is searched for, metres.
 const WINDOW_M: f64 = 1.5;
-/// A place is on the course if it is closer to the course than this, metres.
+/// Distance from the course within which a place is on the course, metres.
 const ON_COURSE_M: f64 = 0.01;
 /// The margin between a heading and blocked headings, radians.
 const MARGIN_RAD: f64 = 1e-6;
-/// How many moves of a way round are simulated.
+/// The number of moves of a way round that are simulated.
 const THOUGHT_MOVES: usize = 120;
-/// The follower is stuck after this many moves without progress along the course.
+/// Number of moves without progress along the course after which the follower is stuck.
 const PATIENCE_MOVES: usize = 40;
-/// Coming too close by no more than this is a rounding error, metres.
+/// Shortfall in clearance that is attributed to rounding, metres.
 const ROUNDING_M: f64 = 1e-7;
 
 /// A course with the distances along it.
@@ -28,7 +28,7 @@ pub(crate) struct Track<'a> {
     pub stations_m: &'a [f64],
 }
 
-/// What is known about the surroundings.
+/// The known surroundings.
 #[derive(Debug, Clone)]
 pub(crate) struct Around<'a> {
     /// The wall.
@@ -59,7 +59,7 @@ pub(crate) struct Follower {
     idle: usize,
 }
 
-/// The follower is stuck: on neither side is there a way past the obstacles in range and back to the course.
+/// The follower is stuck: neither side leads past the obstacles in range and back to the course.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Stuck;
 

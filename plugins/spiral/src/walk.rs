@@ -11,11 +11,11 @@ use planner_api::{Ctx, Result};
 use steering::Room;
 use world::{Point, polyline};
 
-/// The surroundings are sensed again after this distance, metres.
+/// Distance after which the surroundings are sensed again, metres.
 const LOOK_M: f64 = 0.2;
 /// The maximum number of moves, as a multiple of those that the course takes.
 const DETOUR: f64 = 4.0;
-/// How often to check whether the console wants to stop, moves.
+/// Number of moves between two checks whether the console has requested a stop.
 const ASK_EVERY: usize = 32;
 
 /// A walk along a course by a robot that senses only what is within its range.

@@ -8,7 +8,7 @@ use geometry::convex::Part;
 use steering::Room;
 use world::{Point, Shape, shortest::GrownFloor};
 
-/// A detour of up to this length to the next section of the course is accepted, metres. If the detour would be longer,
+/// Length up to which a detour to the next section of the course is accepted, metres. If the detour would be longer,
 /// the later sections are tried, too.
 const SHORT_M: f64 = 6.0;
 

@@ -10,16 +10,16 @@ use geometry::{
 };
 use std::collections::BTreeSet;
 
-/// The path is examined this far ahead, metres.
+/// Distance ahead within which the path is examined, metres.
 const AHEAD_M: f64 = 2.5;
-/// Obstacles further from the hull than this are ignored, metres.
+/// Distance from the hull beyond which obstacles are ignored, metres.
 const HORIZON_M: f64 = 4.0;
-/// At most this many obstacles are considered, nearest first.
+/// Maximum number of obstacles considered, nearest first.
 const MOST_BODIES: usize = 48;
-/// A path blocked by less than this share of the guard distance is considered free: the guard lets the robot slide
-/// past.
+/// Share of the guard distance within which an obstacle beside the path blocks it. At a larger distance, the guard lets
+/// the robot slide past.
 const BLOCKING_SHARE: f64 = 0.7;
-/// The last part of the path to a preset point, of this length, need not be free, metres. Preset points pass close to
+/// Length of the last part of the path to a preset point, which need not be free, metres. Preset points pass close to
 /// obstacles, and the mission looks half a metre ahead.
 const PASSING_M: f64 = 0.35;
 

@@ -1,4 +1,5 @@
-//! Chooses the side on which to pass whatever blocks the path. The side of the smaller detour is chosen and then kept.
+//! Chooses the side on which the robot passes whatever blocks the path: the side of the smaller detour. The chosen side
+//! is then kept.
 //!
 //! Wang et al. 2023 turn counter-clockwise around single points. That pushes the robot back at half of the points, and
 //! cancels out between two of them. Here obstacles with no passage between them, or to the wall, are bypassed as one.
@@ -10,7 +11,7 @@ use crate::{
 use geometry::Point;
 use std::collections::BTreeSet;
 
-/// A side is kept for this long after the path has become free, seconds.
+/// Time for which a side is kept after the path has become free, seconds.
 const KEPT_S: f64 = 2.0;
 
 /// The obstacles to bypass, and the side.
@@ -35,8 +36,8 @@ struct Kept {
     members: BTreeSet<u32>,
     side: Side,
     seen_s: f64,
-    /// Whether the wall has been considered. After that the wall no longer changes the side, because left and right of
-    /// the path swap as the robot goes around.
+    /// Whether the wall has been considered. After that the wall does not change the side again, because left and right
+    /// of the path swap as the robot goes around.
     knows_wall: bool,
 }
 

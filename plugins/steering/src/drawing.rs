@@ -4,7 +4,7 @@ use crate::body::Body;
 use geometry::{Point, Vector};
 use planner_api::{Ctx, Layer};
 
-/// Beyond this distance the pull of a target no longer grows, metres.
+/// Distance beyond which the pull of a target stays constant, metres.
 pub const FAR_M: f64 = 1.0;
 /// Longest arrow, metres: repulsion grows without bound near an outline.
 const LONGEST_M: f64 = 1.5;

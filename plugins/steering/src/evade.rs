@@ -2,8 +2,8 @@
 //!
 //! In every tick, a set of velocities is simulated, including the turn that the robot needs to follow each one. Moving
 //! obstacles are assumed to keep their observed velocities. Of the velocities that stay clear, the one closest to the
-//! desired velocity is taken. A little more distance is preferred, because moving obstacles may turn. After the
-//! velocity obstacles of Fiorini and Shiller 1998 and the dynamic window of Fox et al. 1997.
+//! desired velocity is taken. A little more distance is preferred, because moving obstacles may turn. The method
+//! follows the velocity obstacles of Fiorini and Shiller 1998 and the dynamic window of Fox et al. 1997.
 
 use crate::body::Body;
 use geometry::{
@@ -12,12 +12,12 @@ use geometry::{
 };
 use planner_api::{Ctx, Layer, Obstacle, PoseEstimate, Sensed, Site};
 
-/// Below this speed an obstacle is treated as stationary, metres per second.
+/// Speed below which an obstacle is treated as stationary, metres per second.
 const STILL_M_PER_S: f64 = 0.02;
-/// Moving obstacles are predicted this far ahead, seconds, in steps of [`STEP_S`].
+/// Time for which the motion of obstacles is predicted, seconds, in steps of [`STEP_S`].
 const HORIZON_S: f64 = 5.0;
 const STEP_S: f64 = 0.2;
-/// Stationary obstacles are checked this far ahead, seconds. Beyond that, the desired velocity avoids them.
+/// Time for which stationary obstacles are checked, seconds. Beyond that, the desired velocity avoids them.
 const STANDING_S: f64 = 1.6;
 /// Number of headings tried, and the speeds tried as shares of the maximum.
 const HEADINGS: u32 = 24;
@@ -25,7 +25,7 @@ const SHARES: [f64; 3] = [1.0, 0.6, 0.3];
 /// Extra distance from a moving obstacle, in addition to the clearance, metres: kept if possible, and preferred.
 const ROOM_M: f64 = 0.1;
 const LIKED_M: f64 = 0.8;
-/// The uncertainty of a moving obstacle's predicted position grows by this much every second, metres.
+/// Growth of the uncertainty of a moving obstacle's predicted position, metres per second.
 const DOUBT_M_PER_S: f64 = 0.04;
 /// Cost of each metre by which the extra distance falls short, expressed as deviation from the desired velocity, metres
 /// per second.

@@ -8,7 +8,7 @@ use crate::{
 use geometry::{Boundary, Point, convex::Part, polyline::edges};
 use planner_api::Site;
 
-/// The nearby solids are looked up again after the robot has moved this far, metres.
+/// Distance moved after which the nearby solids are looked up again, metres.
 const SLACK_M: f64 = 1.0;
 
 /// All solids, and the wall.

@@ -18,11 +18,11 @@ use planner_api::{Command, Ctx, Drive, PoseEstimate, Sensed, Site, Status};
 /// Distance that the guard adds to the mission's clearance, metres, because the guard lets the hull go right to its
 /// limit.
 const SPARE_M: f64 = 0.02;
-/// The position error widens the guard distance by at most this much, metres, so that a lost robot can still move.
+/// Maximum widening of the guard distance because of the position error, metres, so that a lost robot can still move.
 const MOST_WIDENING_M: f64 = 0.15;
-/// If the guard leaves less than this share of the desired speed, the robot is wedged.
+/// Share of the desired speed below which the guard has wedged the robot.
 const WEDGED_SHARE: f64 = 0.05;
-/// Within this distance of the last point the robot slows down, metres.
+/// Distance from the last point within which the robot slows down, metres.
 const ARRIVING_M: f64 = 0.5;
 /// Interval between remedies, as a share of the time after which the robot is considered stuck.
 const REMEDY_SHARE: f64 = 0.3;
@@ -30,7 +30,7 @@ const REMEDY_SHARE: f64 = 0.3;
 const TICK_MOST_M: f64 = 0.1;
 /// Share of the turn rate that an arc to the target may use; the rest is for corrections.
 const TURN_SHARE: f64 = 0.9;
-/// Targets closer than this do not tighten the arc, metres.
+/// Distance of the target below which the arc does not get any tighter, metres.
 const LEAST_REACH_M: f64 = 0.15;
 /// Weight of the previous direction, so that noise does not shake the robot.
 const SMOOTHING: f64 = 0.5;

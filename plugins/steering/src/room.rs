@@ -1,4 +1,4 @@
-//! Where the hull centre may be: hard clearances to all solids and to the wall.
+//! The floor that the hull centre may occupy, given hard clearances to all solids and to the wall.
 
 use crate::body::solid_parts;
 use geometry::{Boundary, Point, Vector, convex::Part, polyline::edges};
@@ -6,7 +6,7 @@ use planner_api::Site;
 
 /// Edge length of a bucket, metres.
 const BUCKET_M: f64 = 1.0;
-/// Spare distance is measured up to this value, metres; anything larger is reported as this value.
+/// Maximum spare distance that is reported, metres; larger distances are reported as this value.
 pub const MOST_SPARE_M: f64 = 0.6;
 /// Tolerance for rounding, metres.
 const ROUNDING_M: f64 = 1e-9;

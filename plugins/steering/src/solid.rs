@@ -42,7 +42,7 @@ impl Solid {
         &self.corners
     }
 
-    /// Whether a point is certainly further than this from the outline; a very cheap check.
+    /// Whether a point is certainly further than `distance_m` from the outline; a very cheap check.
     pub fn is_beyond(&self, at: Point, distance_m: f64) -> bool {
         let reach_m = self.radius_m + distance_m;
         (at - self.center).norm_squared() > reach_m * reach_m
@@ -57,7 +57,7 @@ impl Solid {
         (from.norm() - self.radius_m, direction_or(from, Vector::x()))
     }
 
-    /// The contact of a hull within this distance of the solid. Very cheap if there is none.
+    /// The contact of a hull with the solid, if the solid is within `reach_m`. Very cheap if it is not.
     pub fn contact(&self, at: Point, hull_m: f64, reach_m: f64) -> Option<Contact> {
         if self.is_beyond(at, reach_m + hull_m) {
             return None;

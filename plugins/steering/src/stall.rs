@@ -2,15 +2,15 @@
 
 use geometry::Point;
 
-/// A robot that leaves a circle of this radius is moving, metres.
+/// Radius of a circle that a moving robot leaves, metres.
 const MOVING_M: f64 = 0.5;
-/// A robot that comes closer to its target by this much makes progress, metres.
+/// Distance by which a robot must come closer to its target to make progress, metres.
 const GAIN_M: f64 = 0.1;
-/// A target that shifts by more than this is a new target, metres.
+/// Shift above which a target counts as a new target, metres.
 const OTHER_TARGET_M: f64 = 0.2;
-/// Moving without coming closer is tolerated for this many times as long as standing still.
+/// Factor by which moving without coming closer is tolerated for longer than standing still.
 const PATIENCE: f64 = 3.0;
-/// A longer interval between ticks means that the robot was held, seconds; a held robot could not make progress.
+/// Interval between ticks above which the robot must have been held, seconds; a held robot could not make progress.
 const HELD_S: f64 = 1.0;
 
 /// Remembers when the robot last moved and when it last came closer to its target.
@@ -53,8 +53,8 @@ impl Stall {
     }
 }
 
-/// What to try in turn while the robot makes no progress: first the other side, then straight on without a detour. The
-/// second is needed because the path to a preset point in a niche is blocked from every side.
+/// The remedies tried in turn while the robot makes no progress: first the other side, then straight on without a
+/// detour. The second remedy is needed because the path to a preset point in a niche is blocked from every side.
 #[derive(Debug, Clone, Default)]
 pub struct Remedy {
     tried: u32,

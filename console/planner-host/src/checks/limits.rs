@@ -16,7 +16,7 @@ pub(crate) const MOST_PLANNERS: usize = 64;
 pub(crate) const MOST_PARAMS: usize = 256;
 pub(crate) const MOST_DRAWINGS: usize = 4096;
 pub(crate) const MOST_SCALARS: usize = 256;
-/// This is the planner's limit; the worker may add one more.
+/// The maximum number of log messages of the planner in one answer; the worker may add one more message.
 pub(crate) const MOST_LOGS: usize = 64;
 pub(crate) const MOST_POINTS: usize = 1_000_000;
 pub(crate) const MOST_CUTS: usize = 10_000;

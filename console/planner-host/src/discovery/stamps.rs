@@ -7,8 +7,8 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-/// The coarsest resolution of file times on common file systems. If a folder changed less than this before it was
-/// listed, it may have changed again afterwards without its time changing.
+/// The coarsest resolution of file times on common file systems. If a folder changed less than this time before it was
+/// listed, a further change may leave its modification time the same.
 const COARSEST: Duration = Duration::from_secs(2);
 
 /// The modification times of all files in some folders that have the names of plugins.

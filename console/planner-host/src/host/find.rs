@@ -122,7 +122,7 @@ impl Catalog {
         match nearest(id, self.known.keys().chain(&plugins).map(String::as_str)) {
             Some(known) => format!("no plugin has the planner {id}; did you mean `{known}`?"),
             None if plugins.is_empty() => {
-                format!("no plugin has the planner {id}; there are no plugins in the folders searched")
+                format!("no plugin has the planner {id}; the folders searched contain no plugins")
             }
             None => {
                 let plugins: Vec<String> = plugins.into_iter().collect();

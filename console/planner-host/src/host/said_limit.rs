@@ -9,9 +9,9 @@ use std::collections::BTreeSet;
 const MOST: usize = 64;
 /// The maximum number of distinct figures, each of which is a separate curve in the recording.
 const MOST_FIGURES: usize = 128;
-/// The maximum number of drawings in one burst ...
+/// The maximum number of drawings in one burst.
 const MOST_DRAWINGS: usize = 4096;
-/// ... and the number of further drawings that every step allows.
+/// The number of further drawings that every step allows.
 const DRAWINGS_A_STEP: usize = 512;
 
 /// The amount that a planner may still log, report and draw.
@@ -45,7 +45,7 @@ impl FigureLimit {
             self.names.contains(name) || (self.names.len() < MOST_FIGURES && self.names.insert(name.clone()))
         });
         let is_news = figures.len() < before && !std::mem::replace(&mut self.is_warned, true);
-        is_news.then(|| format!("reports more than {MOST_FIGURES} distinct figures; the others are dropped"))
+        is_news.then(|| format!("reports more than {MOST_FIGURES} distinct figures; the rest are dropped"))
     }
 }
 
@@ -69,7 +69,7 @@ impl DrawingLimit {
         drawings.truncate(self.left);
         self.left -= drawings.len();
         let is_news = is_too_much && !std::mem::replace(&mut self.is_warned, true);
-        is_news.then(|| format!("draws more than {DRAWINGS_A_STEP} things per step; the others are dropped"))
+        is_news.then(|| format!("draws more than {DRAWINGS_A_STEP} items per step; the rest are dropped"))
     }
 }
 

@@ -8,9 +8,9 @@ use crate::supervisor::Worker;
 use rustix::thread::{CpuSet, sched_getaffinity, sched_getcpu, sched_setaffinity};
 use std::time::{Duration, Instant};
 
-/// How long the two threads stay on the same processor before the system may move them to a less busy one.
+/// Time for which the two threads stay on the same processor before the system may move them to a less busy one.
 const STAYS_FOR: Duration = Duration::from_millis(100);
-/// How often a worker is checked for other events while its answers come immediately.
+/// Interval at which a worker is checked for other events while its answers come immediately.
 const LOOK_EVERY: Duration = Duration::from_millis(1);
 
 /// The asking thread, and possibly the worker that shares its processor.

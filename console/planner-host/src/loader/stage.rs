@@ -1,5 +1,5 @@
-//! Ensures that the bytes that run are the bytes that were checked, by copying them to a place where nobody can change
-//! them while they are being loaded.
+//! Ensures that the bytes that run are the bytes that were checked, by copying them to a place where they cannot be
+//! changed while they are being loaded.
 
 #[cfg(target_os = "linux")]
 use crate::sandbox::PLUGIN_AT;

@@ -1,15 +1,15 @@
 //! Limits the part of a planner's memory that the kernel does not count.
 //!
 //! The kernel counts private writable memory (`RLIMIT_DATA`), which is nearly all of a planner's memory. There are two
-//! gaps: memory that was written and then made read-only is no longer counted, and neither are the page tables of
-//! read-only address space. `RLIMIT_AS` does not help: when this limit is reached, the kernel makes memory writable
-//! without counting it. So calls that make memory read-only, or reserve read-only address space, wait for a decision
-//! here.
+//! gaps: memory that was written and then made read-only is not counted, and neither are the page tables of read-only
+//! address space. `RLIMIT_AS` does not help: when this limit is reached, the kernel makes memory writable without
+//! counting it. So calls that make memory read-only, or reserve read-only address space, wait for a decision here.
 
 use super::listener::Call;
 use super::verdict::Verdict;
 
-/// How much memory may be made read-only in large pieces, bytes: enough for the address tables that libraries fix up.
+/// Maximum memory that may be made read-only in large pieces, bytes: enough for the address tables that libraries fix
+/// up.
 pub(crate) const MAY_HIDE: u64 = 32 << 20;
 /// Smaller pieces are guard pages of threads and are always allowed. Hiding a lot of memory in small pieces takes so
 /// long that the supervisor, which measures the memory of the process ([`crate::supervisor`]), notices it.

@@ -3,9 +3,10 @@
 
 use std::time::Duration;
 
-/// A worker that is starved of CPU time is killed after this many budgets of wall time ...
+/// A worker that is starved of CPU time is killed after this many times its budget in wall time, but not before
+/// [`LEAST_CAP`].
 const MOST_BUDGETS: u32 = 10;
-/// ... but not before this much wall time has passed.
+/// The minimum wall time before a starved worker is killed.
 const LEAST_CAP: Duration = Duration::from_mins(1);
 
 /// The state of a busy process at one check.
@@ -30,8 +31,8 @@ pub(super) struct FairClock {
 }
 
 impl FairClock {
-    /// Charges the time of a check that takes place this long after the request; without a `load`, wall time is
-    /// charged.
+    /// Charges the time since the last check. `wall` is the time from the request to this check. Without a `load`, wall
+    /// time is charged.
     ///
     /// The processor time that a running process used before the first check is unknown, and is not charged.
     pub(super) fn advance(&mut self, wall: Duration, load: Option<Load>) {

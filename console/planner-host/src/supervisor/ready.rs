@@ -3,7 +3,7 @@
 use rustix::event::PollFlags;
 use std::os::fd::BorrowedFd;
 
-/// What a worker's descriptor is for.
+/// The purpose of a worker's descriptor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Source {
     /// Receives answers and sends requests.

@@ -3,8 +3,8 @@
 //! A flag states whether a wake-up is pending; the socket only ends a wait that has already begun. A sender first sets
 //! the flag and then writes to the socket. The receiver begins to wait only if it has found the flag cleared and has
 //! not read from the socket since, so if a sender sets the flag later, nothing else reads the byte that it writes. If
-//! the receiver takes the flag before the sender has written, the byte stays in the socket. It then ends one wait too
-//! early, which does no harm.
+//! the receiver takes the flag before the sender has written, the byte stays in the socket. The byte then ends one wait
+//! too early, which does no harm.
 
 use std::io::{Read, Write};
 use std::os::fd::{AsFd, BorrowedFd};
@@ -164,7 +164,10 @@ mod tests {
             // The console does the same before it looks for orders: a thread whose wake-up is dropped here has already
             // made its request.
             if n_given % 3 > 0 || !wake_ups.take() {
-                assert!(is_woken(&wake_ups), "nobody woke the receiver, which has given {n_given}");
+                assert!(
+                    is_woken(&wake_ups),
+                    "the receiver was not woken after {n_given} requests had been granted"
+                );
             }
             n_given += asked.iter().map(|asked| u32::from(asked.swap(false, Ordering::AcqRel))).sum::<u32>();
         }

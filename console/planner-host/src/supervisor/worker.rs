@@ -45,8 +45,8 @@ pub(crate) struct Worker {
     tape: Tape,
     /// Whether the worker was idle when it was asked to exit.
     leaves_idle: bool,
-    /// How a worker that was asked to exit did so, if not cleanly; completes a sentence that begins with the planner's
-    /// name.
+    /// The way in which a worker ended that was asked to exit but did not exit cleanly; completes a sentence that
+    /// begins with the planner's name.
     bad_end: Option<String>,
 }
 

@@ -15,10 +15,10 @@ use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// With more entries than this, the folder is emptied, because every build that an author makes adds a file.
+/// The maximum number of entries, beyond which the folder is emptied. Every build that an author makes adds an entry.
 const MOST_ENTRIES: usize = 256;
 
-/// A file that changed more recently than this could change again without its time changing, because file times are
+/// Age of a file below which it could change again without a change of its modification time, because file times are
 /// coarse.
 const SETTLED: Duration = Duration::from_secs(1);
 
@@ -47,8 +47,8 @@ struct Place {
     ids: Option<Vec<String>>,
 }
 
-/// Changes whenever the file is written to: its device, inode, length, and the times of its last modification and last
-/// status change.
+/// Identifies the content of a file: its device, inode, length, and the times of its last modification and last status
+/// change. At least one of them changes whenever the file is written to.
 type Identity = (u64, u64, u64, (i64, i64), (i64, i64));
 
 impl Cache {

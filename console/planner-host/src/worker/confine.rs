@@ -57,7 +57,7 @@ pub(super) fn take_socket() -> io::Result<UnixStream> {
     Ok(socket.into())
 }
 
-/// Drops what a planner does not need, above all the terminal. If the system does not grant a limit, this is ignored:
+/// Drops what a planner does not need, above all the terminal. If the system refuses a limit, the refusal is ignored:
 /// these limits only guard against accidents, and the deadlines are enforced without them.
 pub(super) fn confine() {
     let _ = setsid();
@@ -102,7 +102,7 @@ pub(super) fn close_off(
     Ok((sealed.sandbox, reads_libraries))
 }
 
-/// Limits the planner's memory to this much in addition to what the worker itself uses. The system counts private
+/// Limits the planner's memory to `bytes` in addition to what the worker itself uses. The system counts private
 /// writable memory; the console decides on the rest ([`crate::sandbox::Uncounted`]).
 pub(super) fn limit_memory(bytes: u64) {
     let (_, own_data) = own_memory();
@@ -148,7 +148,7 @@ pub(super) fn die_with_the_console(socket: Socket) -> io::Result<()> {
             let mut sockets = [PollFd::new(&socket, SHUTDOWN_REQUESTED)];
             let happened = poll(&mut sockets, None).map_or(PollFlags::empty(), |_| sockets[0].revents());
             if happened.contains(PollFlags::NVAL) {
-                // The planner closed the worker's descriptor; the main thread notices that, too, and ends with its own
+                // The planner closed the worker's descriptor; the main thread notices that, too, and exits with its own
                 // code.
                 return;
             }
@@ -164,7 +164,7 @@ pub(super) fn die_with_the_console(socket: Socket) -> io::Result<()> {
     Ok(())
 }
 
-/// The console sends nothing more. A full hang-up and errors are always reported.
+/// The event that reports that the console sends nothing more. A full hang-up and errors are always reported.
 #[cfg(target_os = "linux")]
 const SHUTDOWN_REQUESTED: PollFlags = PollFlags::RDHUP;
 /// Other systems report only a full hang-up or an error, and the console must kill a worker that does not exit.

@@ -14,8 +14,8 @@ use std::cell::Cell;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// The socket and the processor time are checked at most this often. Between requests a process computes nothing, so
-/// this is also the accuracy with which the processor time at the start of a request is known.
+/// Minimum interval between two checks of the socket and of the processor time. Between requests a process computes
+/// nothing, so this is also the accuracy with which the processor time at the start of a request is known.
 const CHECK_PERIOD: Duration = Duration::from_millis(1);
 
 /// The deadline of a request, and whether a CANCEL has arrived after it.
@@ -31,8 +31,8 @@ pub(super) struct Deadline {
     progress: ProgressReporter,
 }
 
-/// The budget of a request. It is used up when this much wall time has passed and this process has also used as much
-/// processor time.
+/// The budget of a request. It is used up when the wall time and the processor time of this process have both reached
+/// it.
 #[derive(Debug, Clone, Copy)]
 struct Budget {
     within: Duration,

@@ -14,7 +14,7 @@ use mission::Sandbox;
 use mission::ask::{PlanAsk, Site, StepAsk};
 use std::sync::Arc;
 
-/// Why a request has no result.
+/// The reason why a request has no result.
 pub(super) enum Trouble {
     /// The library is not a plugin, or failed to describe itself.
     Refused(String),

@@ -52,7 +52,7 @@ fn assert_sealed() {
     );
 }
 
-/// What the survey states about a plugin that attacks in its constructor.
+/// The reason that the survey gives for refusing a plugin that attacks in its constructor.
 fn refusal_of(attack: &str) -> String {
     assert_sealed();
     let (_folder, dirs) = hostile("IN_CONSTRUCTOR", attack);
@@ -378,7 +378,10 @@ fn threads_are_limited() {
     let mut host = host(&dirs);
     choose(&mut host, "hostile", &Parameters::new()).unwrap();
     let fault = (0..4).find_map(|tick| step(&mut host, tick).err()).expect("a fault");
-    assert!(fault.message.contains("exit code 62"), "its own two are two of 64: {fault}");
+    assert!(
+        fault.message.contains("exit code 62"),
+        "the worker's own two threads count towards the 64: {fault}"
+    );
 }
 
 #[test]

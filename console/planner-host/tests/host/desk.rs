@@ -107,7 +107,7 @@ pub(crate) fn step(tick: u64) -> What {
     })))
 }
 
-/// Soon enough to look again often.
+/// A time limit so short that a caller in a loop checks often.
 pub(crate) fn soon() -> Instant {
     Instant::now() + Duration::from_millis(20)
 }

@@ -166,7 +166,7 @@ fn a_planner_that_is_not_there_names_the_nearest_one() {
         (tempfile::tempdir().unwrap(), |folder: &Path| PluginDirs::of(vec![folder.to_owned()]));
     let mut empty = BlockingHost::new(&dirs(folder.path()), config());
     let fault = choose(&mut empty, "apf", &Parameters::new()).unwrap_err();
-    assert_refused(&fault, &["no plugin has the planner apf", "there are no plugins"]);
+    assert_refused(&fault, &["no plugin has the planner apf", "contain no plugins"]);
     compile(&direct_c(), folder.path(), "direct_c", &[]);
     let fault = choose(&mut empty, "direkt-c", &Parameters::new()).unwrap_err();
     assert_refused(&fault, &["did you mean `direct-c`?"]);

@@ -75,7 +75,7 @@ fn a_live_value_may_change_beside_a_fixed_one_that_was_set_before() {
         Parameters::from(values.map(|(key, value)| (key.to_owned(), ParamValue::Float(value))))
     };
     choose(&mut host, "direct-c", &values(0.1, 1.0)).unwrap();
-    host.reconfigure(&values(0.1, 0.5)).expect("the fixed value is the one that it has");
+    host.reconfigure(&values(0.1, 0.5)).expect("the fixed parameter keeps its value");
     let fault = host.reconfigure(&values(0.2, 0.5)).unwrap_err();
     assert_eq!(fault.message, "parameter `speed` of planner direct-c cannot change during a mission");
 }
@@ -102,7 +102,8 @@ fn answers_that_are_none_are_caught() {
     );
 }
 
-/// A planner in C that covers: it hands over the last corner of every region, and what the test puts in.
+/// Requests a coverage plan from a planner in C that returns the last corner of every region; the test adds `by` to its
+/// source.
 fn plans_to_cover(by: &str) -> Result<planner_api::Plan, mission::planner::Fault> {
     let plan = "out->cost = 0.0; out->complete = 1;";
     let covers = format!(

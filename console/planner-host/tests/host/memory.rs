@@ -10,9 +10,9 @@ use std::time::Duration;
 
 const HOSTILE: &str = include_str!("../../../../plugins/faulty/hostile.c");
 const MB: u64 = 1 << 20;
-/// What planners may have here ...
+/// The memory limit of planners in these tests, bytes.
 const LIMIT: u64 = 64 * MB;
-/// ... and what a worker may have in addition: libraries, its own memory, page tables, memory made read-only.
+/// The memory that a worker may have in addition, bytes: libraries, its own memory, page tables, memory made read-only.
 const BESIDE: u64 = 64 * MB;
 
 /// Helper functions for the attacks.

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// A host that is dropped waits no longer than this for the end of a worker that it has killed.
+/// The maximum time for which a dropped host waits for the end of a worker that it has killed.
 const REAPED_WITHIN: Duration = Duration::from_millis(30);
 
 /// A worker program with a name of its own, so that its processes can be distinguished from those of other tests.
@@ -89,7 +89,7 @@ fn a_closed_worker_ends_also_when_nobody_looks_at_it() {
     desk.submit(ONE, plan());
     desk.submit(ONE, What::Close);
     let began = Instant::now();
-    // It has ended, and nobody has reaped it.
+    // It has ended but has not been reaped.
     while states(&name) != ['Z'] {
         assert!(began.elapsed() < LONG, "it still runs: {:?}", states(&name));
         std::thread::sleep(Duration::from_millis(5));

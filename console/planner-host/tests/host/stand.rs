@@ -144,7 +144,7 @@ pub(crate) fn fly(host: &mut BlockingHost) -> Result<(), Fault> {
     (0..10).try_for_each(|tick| step(host, tick).map(|_| ()))
 }
 
-/// Whatever happened before, another planner can take over.
+/// Asserts that another planner can take over, whatever happened before.
 pub(crate) fn assert_another_drives(host: &mut BlockingHost) {
     choose(host, "faulty", &Parameters::new()).unwrap();
     assert!(plan(host).unwrap().value.complete);

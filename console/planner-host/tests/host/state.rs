@@ -124,7 +124,7 @@ fn the_state_of_another_planner_is_not_restored() {
     desk.ask(TWO, opening("twin", &Parameters::new(), Some(saved))).unwrap();
     assert_eq!(desk.count(TWO, 15), 1, "it would understand the state");
     desk.ask(TWO, open(Some(saved))).unwrap();
-    assert_eq!(desk.count(TWO, 16), 16, "whose it is can have it all the same");
+    assert_eq!(desk.count(TWO, 16), 16, "the planner that saved the state can still have it");
 }
 
 #[test]

@@ -5,7 +5,8 @@ use geometry::{Point, Pose, Vector};
 use serde::{Deserialize, Serialize};
 use std::{ops::Range, sync::Arc};
 
-/// How far outside a box a cell's centre is still tested, as a share of a cell, so that rounding excludes no cell.
+/// Margin around a box within which the centres of cells are still tested, as a share of a cell, so that rounding
+/// excludes no cell.
 const BESIDE_CELLS: f64 = 1e-3;
 
 /// The kind of a floor cell.

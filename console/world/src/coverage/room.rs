@@ -3,7 +3,8 @@
 //!
 //! The rim of the free floor consists of arcs and straight pieces at that distance from each solid. The point on the
 //! rim nearest to a given point is either the foot of a perpendicular on one of these pieces, or a corner where two
-//! pieces cross. Both are tried as candidates: from those that are free, the tool may reach the given point.
+//! pieces cross. Points of both kinds are candidates: from any candidate that is free, the tool may reach the given
+//! point.
 
 mod passages;
 mod rim;
@@ -16,7 +17,7 @@ use geometry::{Boundary, Point, Shape, Vector, polyline::nearest_on_segment, pol
 use rim::{Core, Rim};
 use std::collections::BTreeMap;
 
-/// A distance that is too short by no more than this is still accepted, metres, so that an exact fit passes.
+/// The largest shortfall of a distance that is still accepted, metres, so that an exact fit passes.
 pub(super) const TIE_M: f64 = 1e-6;
 
 /// The free floor, tank frame.

@@ -50,7 +50,7 @@ struct Stretch {
     passed: u32,
 }
 
-/// How much of the critical zone was scanned.
+/// Figures on how much of the critical zone was scanned.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ShellFigures {
     /// Length of the shell beside free floor, metres.
@@ -296,7 +296,7 @@ mod tests {
 
     const BAR: Tool = Tool::Bar { swath_m: 0.6 };
 
-    /// Drives once around a tank of 5 m, with the robot's centre this far from the wall.
+    /// Drives once around a tank of 5 m, with the robot's centre at `distance_m` from the wall.
     fn round(distance_m: f64, share: f64) -> ShellZone {
         let mut zone = ShellZone::new(&Boundary::Circle { radius_m: 5.0 }, 0.075);
         let radius_m = 5.0 - distance_m;

@@ -169,7 +169,8 @@ fn most_squared(root: f64) -> f64 {
     square
 }
 
-/// A point this far outside a triangle still counts as inside, metres, so that adjacent triangles leave no gap.
+/// Distance outside a triangle at which a point still counts as inside, metres, so that adjacent triangles leave no
+/// gap.
 const SEAM_M: f64 = 1e-9;
 /// The margin added to the band on each side of the area, and to the capsule around the area, metres.
 const BESIDE_M: f64 = 1e-3;

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 /// The name for floor that lies on no plate of the drawing.
 pub const NO_PLATE: &str = "no plate";
-/// A plate lies along the shell if one of its corners is closer to the shell than this, metres.
+/// Distance from the shell within which a corner must lie for its plate to lie along the shell, metres.
 const AT_SHELL_M: f64 = 0.05;
-/// Floor in the gap between plates belongs to the nearest plate within this many cells.
+/// Distance, in cells, within which floor in the gap between plates belongs to the nearest plate.
 const GAP_CELLS: isize = 2;
 
 /// A plate of a drawing.
@@ -159,7 +159,7 @@ mod tests {
             let plate = map.plate_of(floor.cell_at(Point::new(x, y)).unwrap()).unwrap();
             map.plates[plate].name.as_str()
         };
-        assert_eq!(name(-0.5, -1.5), "L", "both hold it");
+        assert_eq!(name(-0.5, -1.5), "L", "both contain it");
         assert_eq!(name(0.0, -2.5), "lapped");
         assert_eq!((name(2.05, -1.0), name(2.12, -1.0)), ("L", "beyond a gap"));
         assert_eq!((name(1.0, 1.0), name(-4.0, 0.0)), (NO_PLATE, NO_PLATE));

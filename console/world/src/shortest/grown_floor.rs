@@ -12,7 +12,7 @@ use geometry::{
 
 use std::collections::{HashMap, HashSet};
 
-/// Smallest radius of a disc or corner, metres: if it had no extent, a path could lead across it.
+/// Smallest radius of a disc or corner, metres: a path could lead across a disc of radius zero.
 const LEAST_RADIUS_M: f64 = 1e-6;
 
 /// A floor on which the robot is treated as a point, tank frame.

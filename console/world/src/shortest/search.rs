@@ -48,7 +48,7 @@ struct Exit {
 struct Arrival {
     turn: Option<TurnId>,
     bearing_rad: f64,
-    /// How far the path can follow the turn, radians.
+    /// Angle by which the path can still follow the turn, radians.
     room_rad: f64,
     at: Point,
     way_m: f64,
@@ -154,7 +154,8 @@ impl<'a> Search<'a> {
         exit.test == Test::Free
     }
 
-    /// Continues from an arrival, unless an earlier arrival reaches the same exits by a path that is no longer.
+    /// Continues from an arrival, unless an earlier arrival reaches the same exits by a path of equal or smaller
+    /// length.
     fn arrive(&mut self, arrival: Arrival) {
         let slot = self.slot(arrival.turn);
         if let Some(id) = arrival.turn {

@@ -1,10 +1,10 @@
-//! Shortest paths as tangents and arcs, and the reasons why there may be none.
+//! Shortest paths as tangents and arcs, and the reasons why a search finds none.
 
 use geometry::{Point, unit_vector};
 
-/// The chain of points for an arc lies at most this far outside the circle, metres.
+/// Maximum distance of the chain of points for an arc outside the circle, metres.
 const ARC_EXCESS_M: f64 = 4e-5;
-/// The chain of points for an arc turns by no more than this at each corner, radians.
+/// Maximum turn of the chain of points for an arc at each corner, radians.
 const ARC_STEP_RAD: f64 = 0.2;
 
 /// A piece of a shortest path.
@@ -83,7 +83,7 @@ fn tangent_corners(
     (0..n as u32).map(move |k| center + unit_vector(from_rad + half_rad * f64::from(2 * k + 1)) * outer_m)
 }
 
-/// The reason why there is no shortest path.
+/// The reason why no shortest path was found.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum NoWay {
     /// The robot does not fit at the start.

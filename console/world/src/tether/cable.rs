@@ -40,7 +40,7 @@ pub struct Contact {
     pub last: Point,
 }
 
-/// The reason why there can be no cable.
+/// The reason why a cable cannot be created.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TetherError {
     /// The anchor is not on the floor.

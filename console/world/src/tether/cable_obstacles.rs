@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 /// The largest angle to an edge, given as its sine, at which a line does not count as entering the solid.
 const ALONG_EDGE: f64 = 1e-6;
-/// Anything solid at this distance from a corner counts as directly adjacent, metres.
+/// Distance from a corner at which anything solid counts as directly adjacent, metres.
 const BESIDE_M: f64 = 1e-6;
 
 /// The object that a cable bears on.

@@ -304,9 +304,9 @@ impl Geodesic {
     }
 }
 
-/// Returns the same points with tighter bounds, for paths that wind their cable around many obstacles. The new bound is
-/// the length of a cable that is dragged straight from the anchor to the point. For points close to that point, it is
-/// the same bound plus the distance from that point along the path.
+/// Returns the same points with tighter bounds, for paths that wind their cable around many obstacles. At intervals
+/// along the path, the bound of a point is the length of a cable that is dragged straight from the anchor to the point.
+/// For the points in between, it is the bound of the last such point plus the distance from it along the path.
 fn bounded(anchor: Point, obstacles: &Arc<CableObstacles>, points: &[(Point, f64)]) -> Vec<(Point, f64)> {
     let straight_m = |point: Point| {
         let mut cable = Cable::on(anchor, Arc::clone(obstacles)).ok()?;

@@ -25,8 +25,8 @@ impl Reach {
         Self { anchor, paths, within_m }
     }
 
-    /// Whether the shortest path to a point is longer than the tether. A point to which there is no path does not count
-    /// as beyond the tether, because it is not the tether that keeps the robot away.
+    /// Whether the shortest path to a point is longer than the tether. A point that no path reaches does not count as
+    /// beyond the tether, because the tether is not what keeps the robot away.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, tether::Reach};

@@ -6,7 +6,7 @@ use super::{
 };
 use geometry::Point;
 
-/// A path has returned if it ends within this distance from the anchor, metres.
+/// Distance from the anchor within which a path must end to have returned, metres.
 const BACK_M: f64 = 0.3;
 
 /// The data that the reasons are derived from, besides the certificate.

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 /// Number of tangents that form the outline of a round core.
 const TANGENTS: u32 = 24;
-/// At a point closer to an edge than this, metres, the direction away from the edge is only rounding noise.
+/// Distance from an edge below which the direction away from the edge is only rounding noise, metres.
 const ON_EDGE_M: f64 = 1e-9;
 
 /// All points within a radius of the core: a convex polygon, a segment or a point.

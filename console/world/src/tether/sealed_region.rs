@@ -9,7 +9,7 @@ use std::ops::Range;
 const CELL_M: f64 = 0.05;
 /// The largest number of cells along one side.
 const MOST_CELLS: f64 = 1000.0;
-/// Regions smaller than this are artefacts of the grid, square metres.
+/// Area below which a region is an artefact of the grid, square metres.
 const LEAST_M2: f64 = 0.05;
 
 /// All sealed regions.

@@ -60,7 +60,7 @@ impl Sidestep {
         !self.near(from, to).any(|(_, solid)| solid.is_entered_by(from, to, TOUCH_M))
     }
 
-    /// Whether there is no more than one solid near a disc.
+    /// Whether at most one solid is near a disc.
     pub(super) fn is_alone(&self, center: Point, radius_m: f64) -> bool {
         self.boxes.near(center, center, radius_m + TOUCH_M).nth(1).is_none()
     }

@@ -13,10 +13,10 @@ pub(super) const SLACK_M: f64 = 1e-8;
 pub(super) struct Base {
     pub center: Point,
     pub radius_m: f64,
-    /// 1: the cable turns counter-clockwise around it; -1: clockwise; 0: the anchor.
+    /// 1 if the cable turns counter-clockwise around the base, -1 if clockwise, 0 for the anchor.
     pub side: f64,
     pub out_rad: f64,
-    /// Infinite for the anchor, which never releases the cable.
+    /// The wrap around the base, radians; infinite for the anchor, which never releases the cable.
     pub wrap_rad: f64,
     pub post: Option<usize>,
 }

@@ -1,4 +1,4 @@
-//! Plan and flight keep the required clearance, or the plan reports that it does not.
+//! Tests that plan and flight keep the required clearance, or that the plan reports its lack.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use super::*;

@@ -10,10 +10,10 @@ use world::Boundary;
 
 const HULL_M: f64 = 0.25;
 const FLOOR: [(f64, f64); 4] = [(0.0, 0.0), (8.0, 0.0), (8.0, 6.0), (0.0, 6.0)];
-/// The same with a wall of 4 m that hangs on the outline.
+/// A floor like [`FLOOR`], with a wall of 4 m that is part of the outline.
 const SPUR: [(f64, f64); 8] =
     [(0.0, 0.0), (3.9, 0.0), (3.9, 4.0), (4.1, 4.0), (4.1, 0.0), (8.0, 0.0), (8.0, 6.0), (0.0, 6.0)];
-/// The same with two such walls, one from each side.
+/// A floor like [`FLOOR`], with two such walls, one from each side.
 const BEND: [(f64, f64); 12] = [
     (0.0, 0.0),
     (2.9, 0.0),

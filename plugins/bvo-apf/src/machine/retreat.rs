@@ -5,7 +5,7 @@ use crate::{mouth::Mouth, view::View};
 use std::{collections::BTreeSet, f64::consts::PI};
 use world::Point;
 
-/// During a retreat the trap is examined again after this distance, metres.
+/// Distance after which the trap is examined again during a retreat, metres.
 const LOOK_BACK_M: f64 = 0.05;
 
 /// A retreat in progress.

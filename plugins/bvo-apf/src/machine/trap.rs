@@ -15,10 +15,10 @@ use world::{Point, Vector};
 
 /// Distance ahead within which the nearest solid on the way to the goal is sought, as a multiple of the law's range.
 const AHEAD_RANGES: f64 = 2.0;
-/// An escape that begins within this distance of an earlier one is another attempt at the same trap, metres.
+/// Distance from an earlier escape within which a new escape counts as another attempt at the same trap, metres.
 const SAME_PLACE_M: f64 = 1.5;
-/// A further attempt continues until the robot is closer to the goal than where the attempt began: by this much for
-/// each earlier attempt, metres.
+/// Progress towards the goal, for each earlier attempt, after which a further attempt ends, metres. It is measured from
+/// the place where the attempt began.
 const GAIN_M: f64 = 1.0;
 /// Tolerance for rounding when a path is compared with its margin, metres.
 const ROUNDING_M: f64 = 1e-6;

@@ -10,7 +10,7 @@ use crate::workspace::Workspace;
 use geometry::convex::{Part, crossing};
 use world::{Point, Vector, polyline};
 
-/// A cut ends this far beyond the cut that it meets, so that no gap is left between them, metres.
+/// Distance by which a cut extends beyond the cut that it meets, so that no gap is left between them, metres.
 const BEYOND_M: f64 = 1e-4;
 
 /// The existing cuts, the tether and the path that new cuts must take into account.

@@ -6,9 +6,9 @@ use crate::plane::left_of;
 use std::ops::Range;
 use world::{Point, Vector};
 
-/// Turns smaller than this leave no gap worth filling, radians.
+/// Smallest turn that leaves a gap worth filling, radians.
 const SMALL_TURN_RAD: f64 = 2e-3;
-/// A turn is filled in wedges of this angle, radians.
+/// Angle of the wedges that fill a turn, radians.
 const WEDGE_RAD: f64 = 0.35;
 
 /// Neighbouring cells of one row.
@@ -37,7 +37,8 @@ impl Raster {
         self.along_some(path, 0..path.len(), visit);
     }
 
-    /// The same, but for only some sides of the path. Turns are included for the whole path.
+    /// Calls `visit` as [`Self::along`] does, but for only some sides of the path. Turns are included for the whole
+    /// path.
     pub(crate) fn along_some(
         &self,
         path: &[Point],

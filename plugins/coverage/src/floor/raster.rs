@@ -16,7 +16,7 @@ const OTHER_ROWS_RAD: f64 = 0.9;
 pub(super) const MOST_CORNERS: usize = 11;
 /// Number of rows of a polygon that are filled together.
 const BAND: usize = 32;
-/// Added to the last position of a closed range to find the index after it.
+/// Amount added to the last position of a closed range to find the index after it.
 const NEXT: f64 = 1e-9;
 
 /// Size of the cells and direction of their rows.

@@ -1,8 +1,8 @@
 //! Steers a tracked robot along a path: on circular arcs that end on the path, slower at bends.
 //!
-//! This is proper pure pursuit: the robot drives on the one arc that begins along its heading and meets the aim. On a
-//! path of constant curvature, it follows without an offset. A robot that merely turned towards its aim would have an
-//! offset, and would cut inside the path around a column.
+//! This is pure pursuit: the robot drives on the one arc that begins along its heading and meets the aim. On a path of
+//! constant curvature, it follows without an offset. A robot that merely turned towards its aim would have an offset,
+//! and would cut inside the path around a column.
 
 use planner_api::{Drive, Limits};
 use std::collections::VecDeque;
@@ -15,22 +15,22 @@ use world::{
 const TURN_FIRST_RAD: f64 = 0.5;
 /// Turn rate per angle to the aim when turning on the spot, 1/s.
 const TURN_GAIN_PER_S: f64 = 2.5;
-/// Aims closer than this do not tighten the arc any further, metres.
+/// Distance of the aim below which the arc does not get any tighter, metres.
 const LEAST_REACH_M: f64 = 0.15;
 /// Share of the turn rate that an arc may use; the rest is for corrections.
 const TURN_SHARE: f64 = 0.9;
 /// A slowed robot turns at least as fast as if it drove along its arc at this speed, metres per second. While it heads
 /// for a column, it stays slow until it has turned away; without this minimum, it would turn as slowly as it creeps.
 const TURNING_M_PER_S: f64 = 0.15;
-/// Turns of a path above this angle are corners, radians.
+/// Angle above which a turn of a path is a corner, radians.
 const CORNER_RAD: f64 = 0.5;
-/// The turns within this distance form one bend, metres: as far as the robot looks ahead.
+/// Length of path within which turns form one bend, metres: as far as the robot looks ahead.
 const BEND_M: f64 = 0.25;
-/// Within this distance the robot is at a corner, metres.
+/// Distance from a corner within which the robot is at the corner, metres.
 const AT_CORNER_M: f64 = 0.05;
-/// The robot approaches a corner so slowly that it would take at least this long to reach it, seconds.
+/// Minimum time to reach a corner at the current speed, seconds; the robot slows down accordingly.
 const CORNER_S: f64 = 0.6;
-/// The robot does not slow down below this speed before corners, metres per second.
+/// Minimum speed before corners, metres per second.
 const LEAST_M_PER_S: f64 = 0.08;
 
 /// The twist along the arc that begins along the heading and ends at the aim, at the speed of the desired velocity.

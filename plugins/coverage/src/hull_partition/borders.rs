@@ -5,7 +5,7 @@ use crate::tuning::hull_partition::LEAST_GATE_M;
 use crate::workspace::Workspace;
 use world::{Point, polyline::edges};
 
-/// Edges closer than this to the same line count as collinear, metres.
+/// Distance from a line within which edges count as collinear, metres.
 pub(super) const ON_LINE_M: f64 = 1e-5;
 
 /// A piece of the boundary between two cells.

@@ -62,7 +62,7 @@ fn picked<'a>(population: &'a [Measured], random: &mut Pcg64Mcg) -> &'a [usize] 
     &population[best].1
 }
 
-/// Order crossover: a stretch of one parent, and the rest in the order of the other.
+/// Order crossover: keeps a stretch of one parent, and adds the remaining cells in the order of the other parent.
 fn crossed(mother: &[usize], father: &[usize], random: &mut Pcg64Mcg) -> Vec<usize> {
     let n = mother.len();
     let (a, b) = (random.random_range(1..n), random.random_range(1..n));

@@ -111,7 +111,7 @@ impl Track<'_> {
         best
     }
 
-    /// The stretch that extends this many sides of the path both ways from a point.
+    /// The stretch that extends `base` sides of the path both ways from a point.
     fn stretch(&self, k: usize, base: usize) -> Option<Stretch> {
         let (from, past) = (k.checked_sub(base)?, k + base);
         if past > self.sides.len() {

@@ -83,7 +83,7 @@ const KICKS: ParamSpec = float("kicks", "Search", "", 0.0, 200.0, 4.0)
            longer and shorten the path.",
     )
     .group("Plan");
-/// How close the robot may come to obstacles when it leaves its path.
+/// Distance that the robot keeps from obstacles when it leaves its path.
 const GUARD: ParamSpec = float("guard_m", "Guard distance", "m", 0.0, 1.0, 0.1)
     .help(
         "No motion toward an obstacle is allowed if the hull is closer to it than this distance, which \
@@ -203,7 +203,7 @@ impl Preferences {
             && strain.wrap_total_max_rad <= self.limits.wrap_total_max_rad
     }
 
-    /// The same preferences with length and wraps multiplied by these factors.
+    /// The same preferences, with the length multiplied by one factor and the wraps by another.
     pub(super) fn with_leeway(&self, length: f64, wrap: f64) -> Self {
         let limits = Limits {
             wrap_max_rad: self.limits.wrap_max_rad * wrap,

@@ -15,7 +15,7 @@ use crate::tuning::repair::{AHEAD_M, AS_BEFORE_M, LONGER, LONGER_CABLE, LONGER_M
 use planner_api::{LogLevel, Reason, Result};
 use world::{Point, polyline};
 
-/// A repair of the current plan, and its value.
+/// A repaired plan, and its value.
 pub(super) type RepairedPlan<'a> = (Worth, Repaired<'a>);
 
 /// The outcome of trying to repair the current plan.

@@ -25,7 +25,7 @@ pub(crate) struct Costs {
 }
 
 impl Costs {
-    /// The same costs for this many ends, at least as many as now. New ends come before home and start.
+    /// The same costs, with space for `ends` ends, at least as many as now. New ends come before home and start.
     pub(super) fn with_ends(self, ends: usize) -> Self {
         if self.ends == ends {
             return self;

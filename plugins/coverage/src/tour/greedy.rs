@@ -36,7 +36,7 @@ pub(super) fn neighbours(connectors: &Connectors<'_>, job: &Job) -> Result<Vec<V
     (0..n).map(list).collect()
 }
 
-/// The same when there are so few ends that all others can be examined.
+/// The cheapest neighbours of every end, if the ends are few enough to compare each of them with all others.
 pub(super) fn neighbours_of_few(connectors: &Connectors<'_>) -> Vec<Vec<Neighbour>> {
     let list = |u: End| {
         let others = (0..connectors.len()).filter(|v| v / 2 != u / 2).collect();

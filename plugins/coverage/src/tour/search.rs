@@ -10,7 +10,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::collections::VecDeque;
 
-/// Changes smaller than this are not gains, metres.
+/// Smallest change that counts as a gain, metres.
 const LEAST_GAIN_M: f64 = 1e-6;
 
 /// The effort of the search, and the price of turns.

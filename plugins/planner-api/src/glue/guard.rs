@@ -15,7 +15,7 @@ thread_local! {
     static WHERE: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// The plugin links its own copy of the standard library, so its panic hook affects nobody else.
+/// The plugin links its own copy of the standard library, so its panic hook affects no other code.
 static HOOK: Once = Once::new();
 
 /// Runs the author's code. A refusal or panic becomes a code, and its sentence is reported to the console.
@@ -37,7 +37,7 @@ pub(super) fn run(services: &HostServices, call: impl FnOnce() -> Result<()>) ->
 
 /// Runs the author's code and ignores a panic.
 pub(super) fn quietly(call: impl FnOnce()) {
-    // Nobody would read a report: the instance is gone either way.
+    // A report would not be read: the instance is gone either way.
     let _ = caught(call);
 }
 

@@ -204,7 +204,8 @@ fn estimate(pose: abi::Pose, covariance: &[f64; 6]) -> PoseEstimate {
     }
 }
 
-/// Reads why a plan is requested; a reason that only newer consoles know is treated as a request by the operator.
+/// Reads the reason why a plan is requested; a reason that only newer consoles know is treated as a request by the
+/// operator.
 ///
 /// # Safety
 /// `raw.from` points to a text.

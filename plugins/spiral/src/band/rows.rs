@@ -6,19 +6,19 @@ use world::{Point, Vector, polyline};
 /// Penalties for solids and for turns.
 const SOLID_PENALTY: f64 = 1.0;
 const TURN_PENALTY: f64 = 15.0;
-/// A solid gets a row if a segment comes closer to it than its clearance plus this, metres.
+/// Distance, in addition to the clearance, within which a segment gets a row for a solid, metres.
 const REACH_M: f64 = 0.25;
 
 /// The permitted values of a combination of points.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Limit<'a> {
-    /// At most this far to either side along a direction.
+    /// At most this distance to either side along a direction, metres.
     Across(Vector, f64),
-    /// At least this far from the origin in a direction.
+    /// At least this distance from the origin in a direction, metres.
     Beyond(Vector, f64),
-    /// At least this far from a part.
+    /// At least this distance from a part, metres.
     Beside(&'a Part, f64),
-    /// Within a circle about the origin.
+    /// Within a circle of this radius about the origin, metres.
     Within(f64),
 }
 

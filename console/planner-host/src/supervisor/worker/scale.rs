@@ -6,7 +6,8 @@ use crate::supervisor::load::weight_of;
 use rustix::process::Pid;
 use std::time::{Duration, Instant};
 
-/// How often the memory of a busy worker is measured. In between, a thread can write to about 30 MB of new memory.
+/// Interval at which the memory of a busy worker is measured. In between, a thread can write to about 30 MB of new
+/// memory.
 const WEIGH_EVERY: Duration = Duration::from_millis(10);
 
 /// Measures the memory of a worker.

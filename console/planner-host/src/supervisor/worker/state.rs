@@ -1,26 +1,27 @@
-//! What a worker is doing.
+//! The activities of a worker, with their time limits.
 
 use crate::supervisor::clock::{FairClock, Load, Verdict};
 use std::time::{Duration, Instant};
 
-/// The time after a request at which a busy worker is first checked, ...
+/// The time after a request at which a busy worker is first checked.
 const FIRST_LOOK: Duration = Duration::from_millis(100);
-/// ... the interval between checks after that, ...
+/// The interval between later checks.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
-/// ... and the shortest interval, near the end of the worker's budget, which is the resolution of processor time.
+/// The shortest interval between checks, used near the end of the worker's budget. It is the resolution of processor
+/// time.
 const LEAST_LOOK: Duration = Duration::from_millis(10);
-/// How long a process may take to end after its socket is closed.
+/// Maximum time for a process to end after its socket is closed.
 const EXIT_WITHIN: Duration = Duration::from_millis(80);
-/// How long a killed process may take to end; if it takes longer, the system is stuck.
+/// Maximum time for a killed process to end; if it takes longer, the system is stuck.
 pub(super) const DIE_WITHIN: Duration = Duration::from_millis(30);
-/// How long to wait for the output of a dead process; the output is already in the pipe.
+/// Maximum time to wait for the output of a dead process; the output is already in the pipe.
 const OUTPUT_WITHIN: Duration = Duration::from_millis(30);
-/// Progress messages are forwarded at this rate, after an initial burst; all others are dropped. A well-behaved worker
-/// sends 20 a second.
+/// Maximum rate at which progress messages are forwarded after an initial burst, per second; further messages are
+/// dropped. A well-behaved worker sends 20 a second.
 const MOST_PER_S: f64 = 40.0;
 const MOST_AT_FIRST: f64 = 20.0;
 
-/// What a worker is doing.
+/// The current activity of a worker.
 pub(super) enum State {
     /// Waiting for a request.
     Idle,

@@ -12,18 +12,18 @@ use std::{
     f64::consts::TAU,
 };
 
-/// If a passage is wider than required by this much, in cells, the cells are fine enough to show it.
+/// Excess width of a passage, in cells, above which the cells are fine enough to show the passage.
 const WIDE_CELLS: f64 = 3.0;
 /// The length of a step along a passage, in cells.
 const STEP_CELLS: f64 = 0.5;
-/// The number of directions tried for a step, and how often their range is narrowed.
+/// The number of directions tried for a step, and also the number of times that their range is narrowed.
 const DIRECTIONS: u32 = 9;
 const NARROWINGS: u32 = 4;
 /// The largest turn in one step, to either side, radians.
 const TURN_RAD: f64 = 1.2;
 /// The largest number of steps along a passage.
 const MOST_STEPS: usize = 2_000;
-/// Free cells are searched for within this distance of a place, in cells.
+/// Distance from a place within which free cells are searched for, in cells.
 const ABOUT_CELLS: i64 = 2;
 
 /// The group of a cell that is not free.

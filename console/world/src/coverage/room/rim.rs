@@ -3,8 +3,7 @@
 use geometry::{Boundary, Point, Shape, Vector, polyline::edges};
 use std::collections::BTreeSet;
 
-/// Two curves with a gap of no more than this still count as touching, metres: rounding can leave a gap between
-/// tangents.
+/// The largest gap between two curves that still count as touching, metres: rounding can leave a gap between tangents.
 const TOUCH_M: f64 = 1e-9;
 
 /// Something solid, as a line with a thickness; for a disc, both ends are at its centre.
