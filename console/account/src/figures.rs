@@ -227,7 +227,7 @@ impl Figures {
         Self::default()
     }
 
-    /// The rows: the figures that a run has; empty until the run is opened.
+    /// The figures of the run, one per row; empty until the run is opened.
     pub fn rows(&self) -> &[Figure] {
         &self.rows
     }

@@ -365,7 +365,8 @@ pub(crate) mod tests {
         assert!(findings.worst[0].command.starts_with("tankops run "));
     }
 
-    /// A campaign in which the second planner gives up at once but for one mission, and the third has faults.
+    /// A campaign in which the second planner gives up at once in all missions except one, and the third planner has
+    /// faults.
     fn with_one_that_aborts() -> Findings {
         let campaign = campaign(
             "scenarios = [\"a.toml\"]\nplanners = [\"p\", \"q\", \"r\"]\n\

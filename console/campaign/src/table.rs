@@ -431,7 +431,7 @@ pub(crate) mod tests {
                         metrics = [\"mission_time_s\", \"path_length_m\"]\n\
                         seeds = { first = 10, count = 20 }\n[grid]\nk = [0.5, 2.0]\n";
 
-    /// A row that any number makes: most are flown, some are not.
+    /// The row for a mission number; most of these missions ran, some did not.
     pub(crate) fn row(case: u64) -> Row {
         let chance = (case * 7919) % 101;
         if chance < 4 {
@@ -484,7 +484,7 @@ pub(crate) mod tests {
         assert_eq!(found_whole(&table(PLAN), |file| Table::read(file).is_ok()), [] as [usize; 0]);
     }
 
-    /// The bytes in which a flipped bit is not found.
+    /// The bytes in which a flipped bit is not detected.
     fn found_whole(bytes: &[u8], is_whole: impl Fn(std::fs::File) -> bool) -> Vec<usize> {
         use std::os::unix::fs::FileExt;
         let shared = file(bytes);

@@ -118,12 +118,12 @@ impl Answers for Windowed<'_> {
 /// How long a tick waits for answers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
-    /// For the robot's command; `None` means no limit.
+    /// How long a tick waits for the robot's command; `None` means no limit.
     pub step: Option<Duration>,
-    /// For a planner to be opened, or for a plan, while the robot stands still.
+    /// How long a tick waits for a planner to be opened, or for a plan, while the robot stands still.
     pub work: Duration,
-    /// For the planner in shadow, if no other planner has an open ask. In real time there is no wait: the planner has
-    /// until the next tick.
+    /// How long a tick waits for the planner in shadow, if no other planner has an open ask. In real time, this is
+    /// zero: the planner can answer until the next tick.
     pub shadow: Duration,
 }
 

@@ -47,7 +47,7 @@ impl Behind {
         }
     }
 
-    /// The same vehicle, which also sends its dead-reckoned pose, so that lost messages lose no motion.
+    /// The same vehicle, but it also sends its dead-reckoned pose, so that lost messages lose no motion.
     #[must_use]
     pub fn with_pose(mut self) -> Self {
         self.hello.has.pose = true;
@@ -80,7 +80,7 @@ impl Behind {
         self.driven = None;
     }
 
-    /// Takes a message; returns its answer, if it has one.
+    /// Processes a message; returns the answer to it, if there is one.
     pub fn take(&mut self, message: &ToVehicle, now_s: f64) -> Option<FromVehicle> {
         match message {
             ToVehicle::Drive(drive) if self.is_new(drive.seq) => {
@@ -116,7 +116,7 @@ impl Behind {
         self.readings(now_s)
     }
 
-    /// A motion in the robot frame as a drive of the simulator.
+    /// Converts a motion in the robot frame to a drive of the simulator.
     fn drive(&self, drive: &message::Drive) -> Drive {
         match self.hello.motion {
             MotionKind::Unicycle => {
@@ -145,7 +145,7 @@ impl Behind {
     }
 }
 
-/// The readings of a simulator as a message, without number and stamp.
+/// Converts the readings of a simulator to a message, without number and stamp.
 fn told(readings: &Readings, stations: &[Station], tick_s: f64) -> message::Readings {
     let name = |id| stations.iter().find(|station| station.id == id).map(|station| station.name.clone());
     let ranges = readings.ranges.iter().filter_map(|set| {

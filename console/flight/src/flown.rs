@@ -145,7 +145,7 @@ impl Flight {
         self.watch.is_some()
     }
 
-    /// Whether odometry has neither confirmed nor disproved a commanded stop of a real vehicle yet.
+    /// Whether odometry has not yet shown whether a real vehicle carried out a commanded stop.
     pub fn awaits_stop(&self) -> bool {
         self.watch.as_ref().is_some_and(LiveWatch::awaits_stop)
     }

@@ -1,5 +1,5 @@
-//! The additions of a real vehicle to each tick: the readings and the link as events, and the check that a vehicle
-//! stands as commanded.
+//! The part of a tick that only a real vehicle needs: events about its readings and its link, and the check that it
+//! stands still when commanded to stop.
 
 use mission::{Event, EventKind};
 use vehicle::port::{LEASE_S, LinkSeen, Live, VehicleInfo};
@@ -49,7 +49,7 @@ impl LiveWatch {
         self.link.trouble()
     }
 
-    /// Whether odometry has neither confirmed nor disproved a commanded stop yet.
+    /// Whether odometry has not yet shown whether the vehicle carried out a commanded stop.
     pub(crate) fn awaits_stop(&self) -> bool {
         matches!(self.stop, Stop::Awaited { .. })
     }
@@ -88,7 +88,8 @@ impl LiveWatch {
 }
 
 impl Stop {
-    /// The state after a tick with this odometry (`None` if no reading arrived), and the event if it is decided.
+    /// The state after a tick with this odometry (`None` if no reading arrived), and the event if the odometry has
+    /// decided whether the vehicle stopped.
     fn next(self, odometry: Option<Odometry>, tick_s: f64, stop_s: f64) -> (Self, Option<EventKind>) {
         let stands = odometry.map(|odometry| stands(odometry, tick_s));
         let count = |n: u32| match stands {

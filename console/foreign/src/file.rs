@@ -27,7 +27,7 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
     if !about.is_file() {
         return Err(io::Error::new(ErrorKind::InvalidInput, "it is not a regular file"));
     }
-    // Where the system does not report holes, the end of the file counts as the first one.
+    // Where the system does not report holes, the end of the file counts as the first hole.
     let first_hole = seek(&file, SeekFrom::Hole(0)).unwrap_or(about.len());
     seek(&file, SeekFrom::Start(0))?;
     if first_hole < about.len() {
@@ -114,7 +114,7 @@ pub fn read_json(path: &Path, most_bytes: u64) -> io::Result<String> {
 
 /// The greatest weight of a JSON file, as a multiple of its greatest length.
 const MOST_GROWTH: u64 = 8;
-/// The memory that a number, a word or a key takes as a generic JSON value, and that a list or an object takes, bytes.
+/// The memory, in bytes, that a generic JSON value takes for a number, a word or a key, and for a list or an object.
 const VALUE_BYTES: usize = 32;
 const LIST_BYTES: usize = 176;
 

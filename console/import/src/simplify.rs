@@ -171,7 +171,7 @@ impl Sides {
         if self.is_slot() {
             return 0.5;
         }
-        // Mirrored so that the solid sides are in the west and the south; distances are then x and y.
+        // Mirror the cell so that its solid sides are in the west and the south; distances are then x and y.
         let [west, east, south, north] = self.0;
         let turned = |p: &[f64; 2]| {
             let (x, y) = (p[0] - f64::from(cell[0]), p[1] - f64::from(cell[1]));

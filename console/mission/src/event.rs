@@ -504,8 +504,8 @@ pub enum EventKind {
         #[serde(default, skip_serializing_if = "Resumes::is_never")]
         resumes: Resumes,
     },
-    /// Readings of a real vehicle arrived; a tick without this event had none. Occurs only in live runs, because a
-    /// simulation computes its readings again.
+    /// Readings of a real vehicle arrived; a tick without this event had no readings. Occurs only in live runs, because
+    /// a simulation computes its readings again.
     Sensed {
         /// The vehicle's own clock when it took the last of the readings, seconds.
         source_t_s: f64,

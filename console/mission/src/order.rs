@@ -61,8 +61,8 @@ pub enum Order {
     /// The corners are in metres, tank frame; [`outline`](crate::outline) makes the corners of boxes and circles. The
     /// mission gives the zone its name. See [`Mission::zone_cost`](crate::Mission::zone_cost).
     DrawZone(Vec<Point>),
-    /// For training: make a station of the simulation faulty for a while. The mission records the order, but ignores
-    /// the order when it locates the robot.
+    /// For training: make a station of the simulation faulty for a while. The mission records the order, but does not
+    /// use it to locate the robot.
     Inject(Injection),
     /// Set whether the ranges from a station are used; the other stations still locate the robot.
     UseStation {

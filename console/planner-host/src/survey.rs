@@ -114,8 +114,8 @@ impl<'a> Surveyor<'a> {
         self.probing.no_worker()
     }
 
-    /// Returns those of these ids that more than one plugin contains: the id, the plugin that is used, and the first
-    /// plugin that is not used.
+    /// Returns those of the given ids that more than one plugin contains, each with the plugin that is used and the
+    /// first plugin that is not used.
     pub fn shadowed(&self, ids: &[&str]) -> Vec<(String, PathBuf, PathBuf)> {
         let holders = |id: &&str| {
             let has_it = |plugin: &&PluginFile| {

@@ -225,7 +225,7 @@ fn jitter(guess: &mut Guess, spread: &Spread, rng: &mut Pcg64, is_within: impl F
     guess.turn_bias_rad += JITTER * spread.turn_bias_rad * bell(rng);
 }
 
-/// Returns the number of equally weighted guesses with the same information.
+/// Returns the number of equally weighted guesses that would contain as much information as these weighted ones.
 fn effective(weights: &[f64]) -> f64 {
     let squares: f64 = weights.iter().map(|w| w * w).sum();
     if squares > 0.0 { weights.iter().sum::<f64>().powi(2) / squares } else { 0.0 }

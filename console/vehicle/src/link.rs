@@ -180,7 +180,7 @@ impl Link {
     }
 
     /// Age of the newest readings, seconds: since their arrival or, if that is longer and the clock offset is known,
-    /// since their measurement at the latest.
+    /// since the latest time at which they can have been measured.
     pub fn age_s(&self, now_s: f64) -> Option<f64> {
         let (arrival_s, stamp_s) = self.newest?;
         let measured =

@@ -1,4 +1,4 @@
-//! A plugin author's crate: no unsafe code allowed, and still the macro exports a table and a stamp.
+//! Tests the crate of a plugin author: it forbids unsafe code, yet the macro exports a table and a stamp.
 #![forbid(unsafe_code)]
 
 use planner_api::{

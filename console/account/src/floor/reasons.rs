@@ -77,7 +77,7 @@ impl Reasons<'_> {
         }
     }
 
-    /// The value behind the reason for some cells, of which there is at least one.
+    /// The value behind a reason, computed over the cells to which the reason applies.
     pub fn measure(&self, grid: &CoverageGrid, reason: MissReason, cells: &[usize]) -> Option<Measure> {
         let (floor, evidence) = (grid.floor(), self.evidence);
         let most =

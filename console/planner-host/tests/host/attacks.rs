@@ -41,7 +41,7 @@ fn assert_another_drives(host: &mut BlockingHost) {
     step(host, 0).unwrap();
 }
 
-/// Makes sure that nothing hostile runs where this system cannot close off a planner's process.
+/// Asserts that this system can fully sandbox a planner's process, so that no hostile code runs outside a sandbox.
 fn assert_sealed() {
     let (_folder, dirs) = hostile("IN_STEP", "");
     let survey = survey(&dirs, &worker());

@@ -84,7 +84,7 @@ pub(super) fn event(line: &[u8]) -> Option<Event> {
     }
 }
 
-/// The name of the event, if it is where this program writes it.
+/// The name of the event; `None` if the name is not in the place where this program writes it.
 fn name_of(line: &[u8]) -> Option<&[u8]> {
     const KEY: &[u8] = b",\"event\":\"";
     let head = line.get(..line.len().min(96))?;

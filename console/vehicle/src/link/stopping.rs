@@ -38,14 +38,14 @@ pub struct Stopping {
 }
 
 impl Stopping {
-    /// A stop was sent; only the first one begins.
+    /// Records that a stop was sent. Of several stops in a row, only the first counts.
     pub fn ask(&mut self, now_s: f64) {
         if self.asked_s.is_none() {
             *self = Self { asked_s: Some(now_s), ..Self::default() };
         }
     }
 
-    /// A drive was sent.
+    /// Records that a drive was sent, which ends the check.
     pub fn release(&mut self) {
         *self = Self::default();
     }

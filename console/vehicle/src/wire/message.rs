@@ -23,7 +23,7 @@ pub enum FromVehicle {
 pub enum ToVehicle {
     /// Move as stated until the lease lapses or the next command arrives.
     Drive(Drive),
-    /// Stand still as fast as the vehicle safely can, until the next drive. This is not an emergency stop.
+    /// Stop as fast as the vehicle safely can, and stand still until the next drive. This is not an emergency stop.
     Stop(Stop),
     /// Asks for a pong.
     Ping(Ping),

@@ -15,7 +15,7 @@ const MEASURED_FACTOR: f64 = 1.5;
 const MEASURED_SLACK_M: f64 = 0.05;
 const MEASURED_SLACK_RAD: f64 = 0.1;
 
-/// Rounding of a command on its way through text.
+/// Amount by which a command may exceed a limit, to allow for rounding when it is converted to text and back.
 const COMMAND_SLACK: f64 = 1e-9;
 
 /// The messages of a vehicle so far.

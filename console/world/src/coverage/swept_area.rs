@@ -19,7 +19,7 @@ const ROW_M: f64 = 0.02;
 const MOST_ROWS: f64 = 5_000.0;
 /// The accuracy to which the border of the reachable floor is found along a row, metres.
 const EDGE_M: f64 = 1e-5;
-/// Spans in a row are joined if the gap between them is below this, metres.
+/// Gap between spans in a row below which they are joined, metres.
 const SEAM_M: f64 = 1e-9;
 
 /// The area that a tool has swept, as spans of rows across a floor; it is exact along each row.

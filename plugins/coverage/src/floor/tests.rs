@@ -82,7 +82,7 @@ proptest! {
         let regions: Vec<&[Point]> = rings.iter().map(Vec::as_slice).collect();
         let whole = empty().floor;
         let within = whole.clone().within(&regions);
-        // A polygon between the centres of the cells stands for the cell about its middle.
+        // A polygon that contains no cell centre counts as the cell around its middle.
         let holds = |ring: &&[Point], cell: usize| whole.cells[cell] && world::shape::ring_contains(ring, whole.raster.center(cell));
         let cell_of = |ring: &&[Point]| {
             let is_empty = !(0..whole.cells.len()).any(|cell| holds(ring, cell));

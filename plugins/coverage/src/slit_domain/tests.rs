@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use trials::tanks::Tank;
 use world::{Boundary, Point, polyline};
 
-/// A room with an inward corner and a column before it: cuts begin at corners about which ways bend.
+/// A room with an inward corner and a column before it: cuts begin at corners around which paths bend.
 fn room() -> Tank {
     let corners = [(0.0, 0.0), (9.0, 0.0), (9.0, 4.0), (4.0, 4.0), (4.0, 9.0), (0.0, 9.0)];
     let vertices = corners.map(|(x, y)| Point::new(x, y)).to_vec();

@@ -23,7 +23,7 @@ impl Worker {
         failure
     }
 
-    /// Handles a lost channel: how the process ends becomes the outcome.
+    /// Handles a lost channel: the way in which the process ends becomes the outcome.
     pub(super) fn lose(&mut self, now: Instant) {
         self.state = State::Dying(Dying::new(now));
     }

@@ -13,8 +13,8 @@ use crate::wire::frame::Filled;
 use crate::wire::kind;
 use std::time::{Duration, Instant};
 
-/// A worker that does not answer within its budget is asked to stop, and is killed if it has not answered after this
-/// time.
+/// Time between the request to stop and the kill. A worker that does not answer within its budget is asked to stop, and
+/// is killed if it has still not answered after this time.
 const GRACE: Duration = Duration::from_millis(100);
 
 /// What has arrived from a worker.

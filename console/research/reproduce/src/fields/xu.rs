@@ -85,8 +85,8 @@ fn methods(gains: Gains) -> Vec<Method> {
     ]
 }
 
-/// The three methods whose forces the paper plots, over the floor of Table 2; the classical field is `tapf` without
-/// its tangent force, because that drive follows the law.
+/// The three methods whose forces the paper plots, over the floor of Table 2; the classical field is `tapf` without its
+/// tangent force, because a drive with `tapf` follows the force law.
 pub(super) fn methods_of_forces(note: &'static str) -> Vec<Method> {
     let tapf = |id: &str| {
         let method = Method::new(id, "tapf", note).number("k_rep", TABLE2.k_rep);

@@ -8,7 +8,7 @@ pub type Result<T, E = StudyError> = std::result::Result<T, E>;
 /// Why a study has no rows.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StudyError {
-    /// A planner is missing, refuses its parameters or failed; with the case.
+    /// In the case that is named, a planner is missing, refuses its parameters or failed.
     #[error("{case}: {fault}")]
     Planner {
         /// Layout and method.
@@ -16,7 +16,7 @@ pub enum StudyError {
         /// The fault of the planner.
         fault: Box<Fault>,
     },
-    /// The study cannot be carried out as requested; with the reason.
+    /// The study cannot be carried out as requested. Contains the reason.
     #[error("{0}")]
     Refused(String),
 }
