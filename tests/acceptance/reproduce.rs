@@ -123,7 +123,7 @@ fn a_study_with_a_folder_resumes_and_is_shared_by_several_processes() {
     let pipe = bench.tankops(&shared);
     assert!(made.success() && pipe.code == Some(2) && pipe.err.contains("not a regular file"), "{pipe:?}");
     let other = bench.tankops(&[&shared[..], &["--first-seed", "9"]].concat());
-    assert!(other.code == Some(2) && other.err.contains("of different arguments"), "{other:?}");
+    assert!(other.code == Some(2) && other.err.contains("computed with different arguments"), "{other:?}");
     std::fs::write(bench.path().join("study/study.json"), b"{half").unwrap();
     let broken = bench.tankops(&shared);
     assert!(broken.code == Some(2) && broken.err.contains("study.json: "), "{broken:?}");

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// The cost of a no-go zone.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct ZoneCost {
-    /// Length of the present plan that leads through the zone or too close to it, metres.
+    /// Length of the part of the current plan that leads through the zone or too close to it, metres.
     pub path_m: f64,
     /// Reachable floor that would be closed, square metres: in the zone, beside it, and behind it.
     pub closed_m2: f64,

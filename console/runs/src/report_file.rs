@@ -271,5 +271,5 @@ pub fn end_is_missing(folder: &Path) -> Option<String> {
     let reported = Reported::read(folder).ok()??;
     let report: Value = serde_json::from_str(&reported.text).ok()?;
     report.get("outcome")?.as_str()?;
-    Some("the run has a report, so it finished, but the journal has no end".to_owned())
+    Some("the run has a report, so it finished, but the end of its journal is missing".to_owned())
 }

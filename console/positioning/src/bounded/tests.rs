@@ -23,9 +23,10 @@ proptest! {
         seed in any::<u64>(), repetitions in 1..30_usize, n in 3..9_u32,
     ) {
         let (error_m, long_m) = error_and_axis_m(seed, repetitions, n);
-        // Seen from any side, a convex set is spread by a concave density, and of those a triangle's reaches furthest from
-        // its mean: sqrt(8) standard deviations, 1.16 of the longer semi-axis. Bent sets and sets of two pieces may reach
-        // further, but a truth so far off is as rare as the small piece in which it must lie.
+        // Seen from any side, a convex set is spread by a concave density. Of all such densities, that of a triangle
+        // reaches furthest from its mean: sqrt(8) standard deviations, 1.16 times the longer semi-axis. Bent sets and
+        // sets of two pieces may reach further, but a truth so far off is as rare as the small piece in which it must
+        // lie.
         prop_assert!(error_m < 3.0 * long_m, "{error_m} {long_m}");
     }
 }

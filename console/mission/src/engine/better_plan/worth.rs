@@ -105,11 +105,11 @@ fn saves_too_little(flown: &Effort, better: &Effort) -> Option<String> {
     let [flown_min, better_min, saves_min, worth_min] =
         [flown.time_s, better.time_s, saves_s, worth_s].map(|s| s / 60.0);
     if saves_s <= 0.0 {
-        return Some(format!("{better_min:.1} min, slower than the present {flown_min:.1}"));
+        return Some(format!("{better_min:.1} min, slower than the current plan ({flown_min:.1} min)"));
     }
     let why = || {
         format!(
-            "{better_min:.1} min, {saves_min:.1} min shorter than the present plan; a change must save \
+            "{better_min:.1} min, {saves_min:.1} min shorter than the current plan; a change must save \
              {worth_min:.1} min"
         )
     };
