@@ -352,11 +352,17 @@ fn what_a_lying_adapter_says_is_named_with_its_field_and_holds_the_robot() {
             b"{\"type\": \"readings\", \"seq\n".to_vec()
         }
     });
+    let restarted = lied_to(move |number| match number {
+        // It goes on at once, with numbers above those before.
+        20 => format!("{HELLO}\n").into_bytes(),
+        _ => odometry(number, "0"),
+    });
     let long = lied_to(|_| vec![b'x'; 1 << 20]);
     let cases = [
         (nan, "readings.odometry.forward_m: NaN is not a finite number"),
         (jump, "readings.odometry.forward_m: 5 m in 0.1 s"),
         (half, "3 malformed lines in a row; readings"),
+        (restarted, "the vehicle has restarted"),
         (long, "the line is longer than"),
     ];
     for (ended, why) in cases {

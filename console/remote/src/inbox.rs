@@ -29,6 +29,8 @@ const STAMP_STEPS: f64 = 1e4;
 pub(crate) struct Inbox {
     stations: BTreeMap<String, StationId>,
     hello: Option<Box<Hello>>,
+    /// Whether the vehicle has started again since the last tick.
+    has_restarted: bool,
     state: Option<State>,
     link: Link,
     motions: Motions,
@@ -51,6 +53,7 @@ impl Inbox {
         Self {
             stations,
             hello: None,
+            has_restarted: false,
             state: None,
             link: Link::default(),
             motions: Motions::default(),
@@ -115,13 +118,17 @@ impl Inbox {
         }
     }
 
-    /// A vehicle that introduces itself again has started again; its poses are in a new frame. Over datagrams, the same
-    /// introduction arrives several times.
+    /// A vehicle that introduces itself again has started again: its poses are in a new frame, its numbers begin again.
     fn greet(&mut self, hello: Box<Hello>) {
-        if self.hello.as_ref() != Some(&hello) {
-            self.motions = Motions::default();
-        }
+        self.has_restarted |= self.hello.is_some();
+        (self.motions, self.state, self.unread_since_s) = (Motions::default(), None, None);
+        self.sequence.restart();
         self.hello = Some(hello);
+    }
+
+    /// Whether a motion may be sent: a vehicle that has just started again has not been held yet.
+    pub(crate) fn may_drive(&self) -> bool {
+        !self.has_restarted
     }
 
     /// Adds readings. Readings that arrive twice, or after later ones, are left out: their motion would count twice.
@@ -173,6 +180,7 @@ impl Inbox {
         if is_due {
             self.told = Some((link.state, link.why.clone(), now_s));
         }
+        self.has_restarted = false;
         is_due.then_some(link)
     }
 
@@ -196,6 +204,9 @@ impl Inbox {
     fn state(&self, now_s: f64) -> (LinkState, String) {
         if let Some(why) = &self.closed {
             return (LinkState::Closed, why.clone());
+        }
+        if self.has_restarted {
+            return (LinkState::Restarted, String::new());
         }
         match self.link.state(now_s) {
             Reached::Lost => return (LinkState::Lost, "its readings stopped".into()),

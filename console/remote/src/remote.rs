@@ -91,9 +91,10 @@ impl Remote {
             is_closing: AtomicBool::new(false),
             has_left: AtomicBool::new(false),
         });
-        let reading = Arc::clone(&shared);
+        let (reading, is_of_datagrams) = (Arc::clone(&shared), matches!(address, Address::Udp(_)));
+        let session = if is_of_datagrams { FromSession::of_datagrams() } else { FromSession::default() };
         let spawned =
-            thread::Builder::new().name("vehicle in".into()).spawn(move || read_all(read, &reading));
+            thread::Builder::new().name("vehicle in".into()).spawn(move || read_all(read, session, &reading));
         spawned.map_err(|error| failed(&error))?;
         let (hello, write) = greeted(&shared, address, write).map_err(|why| failed(&why))?;
         let (writing, session) = (Arc::clone(&shared), ToSession::of(hello.clone()));
@@ -130,6 +131,7 @@ impl Vehicle for Remote {
     }
 
     fn act(&mut self, Command { drive, heading_rad, has_held }: Command) {
+        let drive = drive.filter(|_| self.shared.inbox().may_drive());
         let motion = drive.map(|drive| motion(drive, heading_rad, self.is_omni));
         self.shared.outbox.command(motion, has_held);
     }
@@ -197,8 +199,8 @@ fn greeted(
     })
 }
 
-fn read_all(mut read: Box<dyn Read + Send>, shared: &Shared) {
-    let mut reader = Reader::<FromVehicle>::new(FromSession::default());
+fn read_all(mut read: Box<dyn Read + Send>, session: FromSession, shared: &Shared) {
+    let mut reader = Reader::<FromVehicle>::new(session);
     let mut chunk = vec![0; CHUNK_BYTES];
     let why = loop {
         if shared.is_closing.load(Ordering::Acquire) {

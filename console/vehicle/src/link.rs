@@ -103,9 +103,11 @@ impl Link {
     fn message(&mut self, message: &FromVehicle, now_s: f64) {
         match message {
             FromVehicle::Hello(hello) => {
-                // The vehicle has started again: nothing of before holds, except a fault.
-                *self =
-                    Self { hello: Some(hello.as_ref().clone()), fault: self.fault.take(), ..Self::default() };
+                // The vehicle has started again: nothing of before holds, except a fault and the counts.
+                let mut sequence = std::mem::take(&mut self.sequence);
+                sequence.restart();
+                let fault = self.fault.take();
+                *self = Self { hello: Some(hello.as_ref().clone()), fault, sequence, ..Self::default() };
                 self.second = (now_s, 1);
             }
             FromVehicle::Readings(readings) => self.readings(readings, now_s),

@@ -75,6 +75,8 @@ pub enum LinkState {
     Closed,
     /// Several messages in a row were faulty.
     Faulty,
+    /// The vehicle has started again; its clock, its frame and its commands of before do not count.
+    Restarted,
     /// A person drives the vehicle by hand.
     Manual,
     /// The emergency stop of the vehicle is pressed.
@@ -96,6 +98,7 @@ impl LinkState {
             Self::Lost => "lost",
             Self::Closed => "closed",
             Self::Faulty => "faulty",
+            Self::Restarted => "restarted",
             Self::Manual => "manual",
             Self::EmergencyStop => "emergency stop",
             Self::VehicleFault => "fault",
@@ -139,6 +142,7 @@ impl LinkSeen {
             LinkState::Lost => "the link to the vehicle is lost",
             LinkState::Closed => "the link to the vehicle is closed",
             LinkState::Faulty => "the vehicle sends faulty messages",
+            LinkState::Restarted => "the vehicle has restarted",
             LinkState::Manual => "a person drives the vehicle by hand",
             LinkState::EmergencyStop => "the emergency stop of the vehicle is pressed",
             LinkState::VehicleFault => "the vehicle reports a fault",

@@ -21,6 +21,7 @@ fn hello() -> Heard<FromVehicle> {
         period_s: PERIOD_S,
         stop_time_s: 0.5,
         lease_max_s: 0.5,
+        session: None,
     })))
 }
 
