@@ -101,7 +101,7 @@ impl Flight {
         };
         Self {
             vehicle: vehicle.unwrap_or_else(simulated),
-            watch: info.map(|info| LiveWatch::new(&info, config.tick_s)),
+            watch: info.map(|_| LiveWatch::default()),
             tick: 0,
             tick_s: config.tick_s,
             mission: Mission::new(config, drawing, floor, scenario.seed),

@@ -5,8 +5,8 @@ mod ages;
 use ages::Ages;
 use std::collections::BTreeMap;
 use vehicle::{
-    link::{Link, Motions, Sequence, State as Reached},
-    port::{LinkSeen, LinkState, Live, Sensed, Stamps},
+    link::{Hold, Link, Motions, Sequence, State as Reached},
+    port::{LinkSeen, LinkState, Live, Sensed, Stamps, Stood},
     wire::{
         FromVehicle, Heard, ToVehicle,
         message::{Commander, Hello, Mode, Odometry, Outline, Readings, State},
@@ -46,6 +46,8 @@ pub(crate) struct Inbox {
     ages: Ages,
     /// The last report and its time.
     told: Option<(LinkState, String, f64)>,
+    /// Whether the last report about a commanded stop was that it is confirmed; `None` without such a report.
+    told_stood: Option<bool>,
 }
 
 impl Inbox {
@@ -66,6 +68,7 @@ impl Inbox {
             closed: None,
             ages: Ages::default(),
             told: None,
+            told_stood: None,
         }
     }
 
@@ -92,6 +95,15 @@ impl Inbox {
     pub(crate) fn close(&mut self, why: String) {
         self.closed.get_or_insert(why);
         self.link.closed();
+    }
+
+    /// A command was given; it will be sent as soon as the stream takes it.
+    pub(crate) fn commanded(&mut self, drives: bool, now_s: f64) {
+        if drives {
+            self.told_stood = None;
+        } else {
+            self.link.must_stand(now_s);
+        }
     }
 
     /// A command was sent.
@@ -122,6 +134,7 @@ impl Inbox {
     fn greet(&mut self, hello: Box<Hello>) {
         self.has_restarted |= self.hello.is_some();
         (self.motions, self.state, self.unread_since_s) = (Motions::default(), None, None);
+        self.told_stood = None;
         self.sequence.restart();
         self.hello = Some(hello);
     }
@@ -169,7 +182,19 @@ impl Inbox {
             arrival_t_s: rounded(arrival_t_s),
         });
         let readings = std::mem::take(&mut self.readings);
-        Sensed { readings, live: Some(Live { stamps, link: self.due_link(now_s) }) }
+        let live = Live { stamps, link: self.due_link(now_s), stood: self.due_stood(now_s) };
+        Sensed { readings, live: Some(live) }
+    }
+
+    fn due_stood(&mut self, now_s: f64) -> Option<Stood> {
+        let asked_s = self.link.asked_to_stand_s()?;
+        let (confirmed, after_s) = match self.link.hold(now_s) {
+            Hold::Held { after_s } => (true, after_s),
+            Hold::NotConfirmed => (false, now_s - asked_s),
+            Hold::NotAsked | Hold::Stopping => return None,
+        };
+        let is_new = self.told_stood.replace(confirmed) != Some(confirmed);
+        is_new.then(|| Stood { confirmed, after_s: rounded(after_s) })
     }
 
     fn due_link(&mut self, now_s: f64) -> Option<LinkSeen> {

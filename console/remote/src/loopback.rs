@@ -96,6 +96,7 @@ impl Vehicle for Loopback {
     }
 
     fn act(&mut self, Command { drive, heading_rad, has_held }: Command) {
+        self.inbox.commanded(drive.is_some(), self.now_s());
         self.outbox.command(drive.map(|drive| motion(drive, heading_rad, self.is_omni)), has_held);
         if let Err(misfit) = self.say() {
             self.inbox.close(misfit.to_string());

@@ -131,7 +131,11 @@ impl Vehicle for Remote {
     }
 
     fn act(&mut self, Command { drive, heading_rad, has_held }: Command) {
-        let drive = drive.filter(|_| self.shared.inbox().may_drive());
+        let now_s = self.shared.now_s();
+        let mut inbox = self.shared.inbox();
+        let drive = drive.filter(|_| inbox.may_drive());
+        inbox.commanded(drive.is_some(), now_s);
+        drop(inbox);
         let motion = drive.map(|drive| motion(drive, heading_rad, self.is_omni));
         self.shared.outbox.command(motion, has_held);
     }
@@ -146,7 +150,12 @@ impl Vehicle for Remote {
 
     fn brake(&self) -> Option<Brake> {
         let shared = Arc::clone(&self.shared);
-        Some(Brake::new(move || shared.outbox.brake()))
+        Some(Brake::new(move || {
+            // The stop leaves first: the other thread may hold the inbox.
+            shared.outbox.brake();
+            let now_s = shared.now_s();
+            shared.inbox().commanded(false, now_s);
+        }))
     }
 }
 

@@ -146,9 +146,15 @@ impl Link {
         self.comparison.command(Some(drive));
     }
 
+    /// A stop was commanded, and will be sent as soon as the stream takes it.
+    pub fn must_stand(&mut self, now_s: f64) {
+        self.stopping.ask(now_s);
+    }
+
     /// A stop was sent, again or for the first time.
     pub fn stopped(&mut self, stop: &Stop) {
         self.stopping.ask(stop.stamp_s);
+        self.stopping.sent(stop.stamp_s);
         self.comparison.command(None);
     }
 
@@ -203,6 +209,11 @@ impl Link {
         let Some(hello) = &self.hello else { return Hold::NotAsked };
         let trip_s = self.clock.at(now_s).map_or(0.0, |offset| 2.0 * offset.bound_s);
         self.stopping.state(now_s, Stopping::limit_s(hello, trip_s))
+    }
+
+    /// When the vehicle was commanded to stand, seconds; `None` while it may drive.
+    pub fn asked_to_stand_s(&self) -> Option<f64> {
+        self.stopping.asked_s()
     }
 
     /// The difference between commands and motion, if any.

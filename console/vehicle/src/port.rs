@@ -51,6 +51,17 @@ pub struct Live {
     pub stamps: Option<Stamps>,
     /// The state of the link, if it changed or is due.
     pub link: Option<LinkSeen>,
+    /// Whether a commanded stop is confirmed, if that was decided in this tick.
+    pub stood: Option<Stood>,
+}
+
+/// The result of a commanded stop, from readings that were taken after it was sent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stood {
+    /// Whether the readings show that the vehicle stands; if not, it still moves or is silent although it should stand.
+    pub confirmed: bool,
+    /// Time since the command, seconds; until the first of the readings without motion if the stop is confirmed.
+    pub after_s: f64,
 }
 
 /// When a reading was taken and when it arrived.

@@ -164,6 +164,31 @@ fn a_vehicle_that_restarts_is_told_at_once_and_its_numbers_and_poses_begin_again
 }
 
 #[test]
+fn a_stop_is_decided_by_readings_that_were_taken_after_it_was_sent() {
+    let mut inbox = inbox();
+    let stood = |inbox: &mut Inbox, now_s| inbox.sense(now_s).live.and_then(|live| live.stood);
+    say(&mut inbox, moved(1, 0.0, 0.0), 1.0);
+    inbox.take(Heard::Message(FromVehicle::Pong(Pong { echo_s: 1.0, stamp_s: 100.05 })), 1.0);
+    inbox.commanded(false, 1.02);
+    // The stream takes no bytes yet: a vehicle that stands so far proves nothing.
+    (2..=5).for_each(|seq| say(&mut inbox, moved(seq, 0.0, 0.0), 0.95 + 0.05 * seq as f64));
+    assert_eq!(stood(&mut inbox, 1.2), None);
+    inbox.sent(&ToVehicle::Stop(vehicle::wire::message::Stop { seq: 1, stamp_s: 1.2 }));
+    for seq in 6..=20_u64 {
+        let forward_m = if seq < 9 { 0.01 } else { 0.0 };
+        let now_s = 0.95 + 0.05 * seq as f64;
+        say(&mut inbox, moved(seq, forward_m, 0.0), now_s);
+        let expected = (seq == 11).then_some(true);
+        let found = stood(&mut inbox, now_s);
+        assert_eq!(found.map(|stood| stood.confirmed), expected, "{seq}");
+        assert!(found.is_none_or(|stood| (stood.after_s - 0.38).abs() < 1e-3), "{found:?}");
+    }
+    inbox.commanded(true, 2.0);
+    inbox.commanded(false, 2.0);
+    assert!(stood(&mut inbox, 2.0).is_some(), "the brake: no motion was sent in between");
+}
+
+#[test]
 fn the_link_is_reported_when_it_changes_and_every_ten_seconds() {
     let mut inbox = inbox();
     let mut reports = Vec::new();
