@@ -186,9 +186,8 @@ impl Flight {
         if let Some(sent) = self.watch.as_mut().and_then(|watch| watch.sent(drive)) {
             before_end(events, self.event(sent));
         }
-        let has_held =
-            orders.iter().any(|order| matches!(order, Order::Hold | Order::Abort | Order::Terminate));
-        self.vehicle.act(Command { drive, heading_rad: self.mission.heading_rad(), has_held });
+        let braking_orders = orders.iter().filter(|order| order.brakes()).count() as u32;
+        self.vehicle.act(Command { drive, heading_rad: self.mission.heading_rad(), braking_orders });
     }
 
     fn event(&self, kind: EventKind) -> Event {

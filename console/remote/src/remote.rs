@@ -130,14 +130,14 @@ impl Vehicle for Remote {
         self.shared.inbox().sense(now_s)
     }
 
-    fn act(&mut self, Command { drive, heading_rad, has_held }: Command) {
+    fn act(&mut self, Command { drive, heading_rad, braking_orders }: Command) {
         let now_s = self.shared.now_s();
         let mut inbox = self.shared.inbox();
         let drive = drive.filter(|_| inbox.may_drive());
         inbox.commanded(drive.is_some(), now_s);
         drop(inbox);
         let motion = drive.map(|drive| motion(drive, heading_rad, self.is_omni));
-        self.shared.outbox.command(motion, has_held);
+        self.shared.outbox.command(motion, braking_orders);
     }
 
     fn truth(&self) -> Option<Truth> {
@@ -149,13 +149,14 @@ impl Vehicle for Remote {
     }
 
     fn brake(&self) -> Option<Brake> {
-        let shared = Arc::clone(&self.shared);
-        Some(Brake::new(move || {
-            // The stop leaves first: the other thread may hold the inbox.
+        let (shared, released) = (Arc::clone(&self.shared), Arc::clone(&self.shared));
+        let pull = move || {
+            // The stop leaves first: another thread may use the inbox.
             shared.outbox.brake();
             let now_s = shared.now_s();
             shared.inbox().commanded(false, now_s);
-        }))
+        };
+        Some(Brake::new(pull, move || released.outbox.release()))
     }
 }
 
@@ -163,7 +164,7 @@ impl Drop for Remote {
     /// Stops the vehicle and tells the adapter that the console leaves; an adapter that takes no bytes stops the vehicle
     /// by its lease.
     fn drop(&mut self) {
-        self.shared.outbox.command(None, true);
+        self.shared.outbox.command(None, 0);
         self.shared.outbox.close();
         let began = Instant::now();
         while !self.shared.has_left.load(Ordering::Acquire) && began.elapsed() < LEAVE_WITHIN {
@@ -243,7 +244,7 @@ fn write_all(mut write: Box<dyn Write + Send>, session: ToSession, shared: &Shar
         if let Err(misfit) = writer.write(&message, &mut line) {
             // A command that does not fit the vehicle must not leave the one before it in effect.
             shared.inbox().close(format!("a command does not fit the vehicle: {misfit}"));
-            shared.outbox.command(None, true);
+            shared.outbox.command(None, 0);
             continue;
         }
         shared.inbox().sent(&message);

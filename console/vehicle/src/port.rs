@@ -197,8 +197,9 @@ pub struct Command {
     /// The estimated heading of the robot, radians, with which a velocity in the tank frame is turned into the robot's
     /// frame.
     pub heading_rad: f64,
-    /// Whether the mission has carried out an order to hold or end in this tick, which releases the [`Brake`].
-    pub has_held: bool,
+    /// Number of orders that the mission has carried out in this tick and that pulled the [`Brake`] before. Each releases
+    /// the brake that it has pulled.
+    pub braking_orders: u32,
 }
 
 /// A fault of a station.
@@ -222,19 +223,28 @@ impl fmt::Display for CannotInject {
     }
 }
 
-/// Makes a vehicle stand at once, from any thread. Until the mission has carried out an order to hold, no motion is sent.
+/// Makes a vehicle stand at once, from any thread. No motion is sent until each pull has been released, by the order that
+/// pulled it: when the mission has carried it out ([`Command::braking_orders`]), or if the order is dropped.
 #[derive(Clone)]
-pub struct Brake(std::sync::Arc<dyn Fn() + Send + Sync>);
+pub struct Brake {
+    pull: std::sync::Arc<dyn Fn() + Send + Sync>,
+    release: std::sync::Arc<dyn Fn() + Send + Sync>,
+}
 
 impl Brake {
-    /// Creates a brake from its effect.
-    pub fn new(stop: impl Fn() + Send + Sync + 'static) -> Self {
-        Self(std::sync::Arc::new(stop))
+    /// Creates a brake from its effects.
+    pub fn new(pull: impl Fn() + Send + Sync + 'static, release: impl Fn() + Send + Sync + 'static) -> Self {
+        Self { pull: std::sync::Arc::new(pull), release: std::sync::Arc::new(release) }
     }
 
     /// Sends `stop`.
     pub fn pull(&self) {
-        (self.0)();
+        (self.pull)();
+    }
+
+    /// Releases one pull whose order was dropped, because the robot was held already.
+    pub fn release(&self) {
+        (self.release)();
     }
 }
 
