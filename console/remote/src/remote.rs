@@ -4,12 +4,12 @@ use crate::{
     address::Address,
     inbox::Inbox,
     outbox::Outbox,
-    stream::{End, Stream},
+    stream::{End, Outgoing, Stream},
 };
 use geometry::Drive;
 use std::{
     fmt,
-    io::{self, Read, Write},
+    io::{self, Read},
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicBool, Ordering},
@@ -178,8 +178,8 @@ impl Drop for Remote {
 fn greeted(
     shared: &Shared,
     address: &Address,
-    mut write: Box<dyn Write + Send>,
-) -> Result<(Hello, Box<dyn Write + Send>), String> {
+    mut write: Box<dyn Outgoing>,
+) -> Result<(Hello, Box<dyn Outgoing>), String> {
     let began = Instant::now();
     while began.elapsed() < HELLO_WITHIN {
         if matches!(address, Address::Udp(_)) {
@@ -235,11 +235,15 @@ fn read_all(mut read: Box<dyn Read + Send>, session: FromSession, shared: &Share
     shared.inbox().close(why);
 }
 
-fn write_all(mut write: Box<dyn Write + Send>, session: ToSession, shared: &Shared) {
+fn write_all(mut write: Box<dyn Outgoing>, session: ToSession, shared: &Shared) {
     let mut writer = Writer::<ToVehicle>::new(session);
     let (mut line, mut last_ping_s) = (Vec::new(), f64::NEG_INFINITY);
     loop {
         let message = shared.outbox.next(|| shared.now_s(), &mut last_ping_s);
+        if matches!(message, ToVehicle::Drive(_)) && !write.has_room() {
+            // The adapter has not read the motions before this one. A stop must not wait behind more of them.
+            continue;
+        }
         line.clear();
         if let Err(misfit) = writer.write(&message, &mut line) {
             // A command that does not fit the vehicle must not leave the one before it in effect.
