@@ -150,6 +150,12 @@ impl Flight {
         self.watch.as_ref().is_some_and(LiveWatch::awaits_stop)
     }
 
+    /// Whether the vehicle can be driven as far as its readings are concerned: some have arrived, or it is in trouble
+    /// without them, so that a start is refused with the reason.
+    pub fn hears_vehicle(&self) -> bool {
+        self.vehicle.is_heard() || self.watch.as_ref().is_some_and(|watch| watch.trouble().is_some())
+    }
+
     /// A handle that makes a real vehicle stand at once; `None` in a simulation.
     pub fn brake(&self) -> Option<Brake> {
         self.vehicle.brake()

@@ -111,7 +111,8 @@ impl Inbox {
         match message {
             ToVehicle::Drive(drive) => self.link.drove(drive),
             ToVehicle::Stop(stop) => self.link.stopped(stop),
-            ToVehicle::Ping(_) | ToVehicle::Bye(_) => {}
+            ToVehicle::Ping(_) => self.link.pinged(),
+            ToVehicle::Bye(_) => {}
         }
     }
 
@@ -139,9 +140,10 @@ impl Inbox {
         self.hello = Some(hello);
     }
 
-    /// Whether a motion may be sent: a vehicle that has just started again has not been held yet.
+    /// Whether a motion may be sent: not before the first readings, and not to a vehicle that has just started again and
+    /// has not been held yet.
     pub(crate) fn may_drive(&self) -> bool {
-        !self.has_restarted
+        self.heard() > 0 && !self.has_restarted
     }
 
     /// Adds readings. Readings that arrive twice, or after later ones, are left out: their motion would count twice.
@@ -234,6 +236,9 @@ impl Inbox {
             return (LinkState::Restarted, String::new());
         }
         match self.link.state(now_s) {
+            Reached::Lost if self.link.is_deaf(now_s) => {
+                return (LinkState::Lost, "it takes no commands: its answers stopped".into());
+            }
             Reached::Lost => return (LinkState::Lost, "its readings stopped".into()),
             Reached::Connecting if now_s > FIRST_WITHIN_S => {
                 return (LinkState::Lost, "it has not sent readings yet".into());

@@ -10,7 +10,7 @@ use vehicle::{
 };
 
 /// Time between two pings.
-const PING_EVERY: Duration = Duration::from_millis(500);
+const PING_EVERY: Duration = Duration::from_millis(200);
 
 /// The messages to write next.
 #[derive(Debug, Default)]

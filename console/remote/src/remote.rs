@@ -148,6 +148,10 @@ impl Vehicle for Remote {
         Err(CannotInject)
     }
 
+    fn is_heard(&self) -> bool {
+        self.heard() > 0
+    }
+
     fn brake(&self) -> Option<Brake> {
         let (shared, released) = (Arc::clone(&self.shared), Arc::clone(&self.shared));
         let pull = move || {

@@ -32,6 +32,9 @@ const LOST_S: f64 = 0.8;
 /// The same for slow readings, in periods.
 const LATE_PERIODS: f64 = 2.0;
 const LOST_PERIODS: f64 = 3.0;
+/// A vehicle that has answered pings and has not answered one for this time takes no commands, seconds: longer than ten
+/// pings and their answers, of which a network may lose some.
+const DEAF_S: f64 = 2.0;
 /// Messages in a second that are a fault: this multiple of the rate of readings, plus some for other messages.
 const FLOOD_FACTOR: f64 = 10.0;
 const FLOOD_SLACK: f64 = 100.0;
@@ -45,7 +48,7 @@ pub enum State {
     Alive,
     /// The last readings are older than they should be.
     Late,
-    /// The connection has ended, or the last readings are too old. The vehicle stops by its lease.
+    /// The connection has ended, the last readings are too old, or the vehicle does not answer. It stops by its lease.
     Lost,
     /// The vehicle cannot be trusted until it connects again.
     Fault,
@@ -63,6 +66,9 @@ pub struct Link {
     /// Arrival and stamp of the newest readings.
     newest: Option<(f64, f64)>,
     last_drive: Option<Drive>,
+    /// Whether pings are sent, and the time of sending of the newest one that was answered.
+    pings: bool,
+    answered_s: Option<f64>,
     closed: bool,
     fault: Option<String>,
     malformed_in_row: u32,
@@ -114,6 +120,8 @@ impl Link {
             FromVehicle::Pong(pong) => {
                 if let Err(misfit) = self.clock.pong(pong, now_s) {
                     self.fault.get_or_insert_with(|| misfit.to_string());
+                } else {
+                    self.answered_s = Some(self.answered_s.map_or(pong.echo_s, |s| s.max(pong.echo_s)));
                 }
             }
             FromVehicle::State(_) => {}
@@ -158,6 +166,16 @@ impl Link {
         self.comparison.command(None);
     }
 
+    /// A ping was sent.
+    pub fn pinged(&mut self) {
+        self.pings = true;
+    }
+
+    /// Whether the vehicle has stopped answering: commands wait somewhere on their way to it.
+    pub fn is_deaf(&self, now_s: f64) -> bool {
+        self.pings && self.answered_s.is_some_and(|answered_s| now_s - answered_s > DEAF_S)
+    }
+
     /// The connection has ended.
     pub fn closed(&mut self) {
         self.closed = true;
@@ -172,7 +190,7 @@ impl Link {
             return State::Fault;
         }
         let (Some(hello), Some(age_s)) = (&self.hello, self.age_s(now_s)) else { return State::Connecting };
-        if age_s > LOST_S.max(LOST_PERIODS * hello.period_s) {
+        if age_s > LOST_S.max(LOST_PERIODS * hello.period_s) || self.is_deaf(now_s) {
             State::Lost
         } else if age_s > LATE_S.max(LATE_PERIODS * hello.period_s) {
             State::Late

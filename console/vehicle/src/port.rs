@@ -28,6 +28,11 @@ pub trait Vehicle: Send {
     /// The vehicle is not a simulation, or does not offer faults.
     fn inject(&mut self, fault: StationFault) -> Result<(), CannotInject>;
 
+    /// Whether readings have arrived. Until then, a vehicle in another process is not driven.
+    fn is_heard(&self) -> bool {
+        true
+    }
+
     /// A handle that makes the vehicle stand at once, from any thread, without waiting for the next tick; `None` for
     /// vehicles whose time passes with the ticks.
     fn brake(&self) -> Option<Brake> {

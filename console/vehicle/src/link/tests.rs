@@ -57,6 +57,26 @@ fn a_silent_link_is_late_then_lost_within_a_second_and_alive_again_with_readings
 }
 
 #[test]
+fn a_vehicle_that_sends_readings_but_takes_no_commands_is_lost() {
+    let mut link = connected();
+    for seq in 1..80_u64 {
+        let now_s = seq as f64 * PERIOD_S;
+        link.heard(&readings(seq, 0.0), now_s);
+        link.pinged();
+        if seq <= 20 {
+            link.heard(
+                &Heard::Message(FromVehicle::Pong(Pong { echo_s: now_s, stamp_s: 500.0 + now_s })),
+                now_s,
+            );
+        }
+        let expected = if seq <= 60 { State::Alive } else { State::Lost };
+        assert_eq!(link.state(now_s), expected, "{seq}");
+    }
+    link.heard(&Heard::Message(FromVehicle::Pong(Pong { echo_s: 3.95, stamp_s: 503.95 })), 3.95);
+    assert_eq!(link.state(3.95), State::Alive);
+}
+
+#[test]
 fn old_readings_that_arrive_steadily_are_late_too() {
     let mut link = connected();
     link.heard(&Heard::Message(FromVehicle::Pong(Pong { echo_s: 0.0, stamp_s: 500.01 })), 0.02);
