@@ -352,11 +352,17 @@ fn what_a_lying_adapter_says_is_named_with_its_field_and_holds_the_robot() {
             b"{\"type\": \"readings\", \"seq\n".to_vec()
         }
     });
+    let restarted = lied_to(move |number| match number {
+        // It goes on at once, with numbers above those before.
+        20 => format!("{HELLO}\n").into_bytes(),
+        _ => odometry(number, "0"),
+    });
     let long = lied_to(|_| vec![b'x'; 1 << 20]);
     let cases = [
         (nan, "readings.odometry.forward_m: NaN is not a finite number"),
         (jump, "readings.odometry.forward_m: 5 m in 0.1 s"),
         (half, "3 malformed lines in a row; readings"),
+        (restarted, "the vehicle has restarted"),
         (long, "the line is longer than"),
     ];
     for (ended, why) in cases {
@@ -364,6 +370,38 @@ fn what_a_lying_adapter_says_is_named_with_its_field_and_holds_the_robot() {
         let said = format!("{}\n{}", ended.json()["reason"].as_str().unwrap(), ended.err);
         assert!(ended.code == Some(1) && said.contains(why), "{why}: {ended:?}");
     }
+}
+
+#[test]
+fn a_vehicle_that_speaks_only_after_a_command_is_not_driven_before_its_first_readings() {
+    let bench = Bench::new();
+    let path = bench.path().join("shy");
+    let listener = UnixListener::bind(&path).unwrap();
+    let shy = thread::spawn(move || {
+        let (mut stream, _) = listener.accept().unwrap();
+        let lines = BufReader::new(stream.try_clone().unwrap()).lines();
+        stream.write_all(format!("{HELLO}\n").as_bytes()).unwrap();
+        let still = r#""odometry": {"over_s": 0.1, "forward_m": 0, "turn_rad": 0}"#;
+        let (mut before, mut number) = (Vec::new(), 0);
+        for line in lines {
+            let command: Value = serde_json::from_str(&line.unwrap()).unwrap();
+            match command["type"].as_str().unwrap() {
+                "ping" => {}
+                "drive" if number > 0 => break,
+                kind => {
+                    before.extend((number == 0).then(|| kind.to_owned()));
+                    number += u64::from(before.len() >= 5);
+                    stream.write_all(&(1..=number).next_back().map_or(Vec::new(), |n| readings(n, still))).unwrap();
+                }
+            }
+        }
+        before
+    });
+    let ended = bench.fly(&short(&bench), &["--vehicle", &format!("unix:{}", path.display())]);
+    assert_eq!(shy.join().unwrap(), ["stop"; 5], "{ended:?}");
+    let run = bench.runs().pop().unwrap();
+    assert!(ended.json()["reason"].as_str().unwrap().contains("the link to the vehicle is closed"), "{ended:?}");
+    bench.prove(&run);
 }
 
 #[test]

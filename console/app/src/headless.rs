@@ -147,6 +147,9 @@ fn fly_to_end(
         if stop.requested() {
             orders.push(Order::Terminate);
         }
+        // A vehicle may send its first readings only after a command to stand.
+        let is_early = matches!(flight.phase(), Phase::Waiting) && !flight.hears_vehicle();
+        let later = if is_early && !stop.requested() { std::mem::take(&mut orders) } else { Vec::new() };
         let events = if clock.is_some() {
             let mut windowed = Windowed::new(answers.host(), Window::real_time(flight.tick_length()));
             flight.tick(&orders, &mut Watched::new(&mut windowed, &mut watch))
@@ -159,7 +162,7 @@ fn fly_to_end(
         } else {
             flight.tick(&orders, &mut Watched::new(&mut answers, &mut watch))
         };
-        orders.clear();
+        orders = later;
         if let Some(why) = events.iter().find_map(refused_start) {
             warn_line(&format!("the mission cannot start: {why}"));
             orders.push(Order::Terminate);

@@ -12,7 +12,7 @@ use report::print::say_line;
 use std::{
     collections::BTreeMap,
     process::ExitCode,
-    time::{Duration, Instant},
+    time::{Duration, Instant, SystemTime, UNIX_EPOCH},
 };
 use vehicle::wire::{
     FromVehicle, ToVehicle,
@@ -28,7 +28,8 @@ const LOOK_AGAIN: Duration = Duration::from_millis(100);
 pub(crate) fn simulate(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
     let stop = stop_signal::listen();
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
-    let vehicle = Behind::new(&scenario);
+    let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    let vehicle = Behind::new(&scenario).with_session(since_1970.as_secs());
     let vehicle = if args.lockstep { vehicle } else { vehicle.with_pose() };
     let FromVehicle::Hello(hello) = vehicle.hello() else {
         anyhow::bail!("the simulated vehicle sent no `hello` message")

@@ -55,7 +55,14 @@ impl Behind {
         self
     }
 
-    /// The `hello` message of the vehicle.
+    /// The same vehicle, whose introduction tells this start from others.
+    #[must_use]
+    pub fn with_session(mut self, session: u64) -> Self {
+        self.hello.session = Some(session);
+        self
+    }
+
+    /// The introduction of the vehicle.
     pub fn hello(&self) -> FromVehicle {
         FromVehicle::Hello(Box::new(self.hello.clone()))
     }
@@ -217,5 +224,6 @@ fn hello(scenario: &Scenario) -> Hello {
         period_s: *tick_s,
         stop_time_s: (limits.v_max_m_per_s / acceleration_m_per_s2).min(60.0) + tick_s,
         lease_max_s: 1.0,
+        session: None,
     }
 }

@@ -101,7 +101,7 @@ impl Flight {
         };
         Self {
             vehicle: vehicle.unwrap_or_else(simulated),
-            watch: info.map(|info| LiveWatch::new(&info, config.tick_s)),
+            watch: info.map(|_| LiveWatch::default()),
             tick: 0,
             tick_s: config.tick_s,
             mission: Mission::new(config, drawing, floor, scenario.seed),
@@ -150,7 +150,13 @@ impl Flight {
         self.watch.as_ref().is_some_and(LiveWatch::awaits_stop)
     }
 
-    /// A handle that stops a real vehicle at once; `None` in a simulation.
+    /// Whether the vehicle can be driven as far as its readings are concerned: some have arrived, or it is in trouble
+    /// without them, so that a start is refused with the reason.
+    pub fn hears_vehicle(&self) -> bool {
+        self.vehicle.is_heard() || self.watch.as_ref().is_some_and(|watch| watch.trouble().is_some())
+    }
+
+    /// A handle that makes a real vehicle stand at once; `None` in a simulation.
     pub fn brake(&self) -> Option<Brake> {
         self.vehicle.brake()
     }
@@ -186,9 +192,8 @@ impl Flight {
         if let Some(sent) = self.watch.as_mut().and_then(|watch| watch.sent(drive)) {
             before_end(events, self.event(sent));
         }
-        let has_held =
-            orders.iter().any(|order| matches!(order, Order::Hold | Order::Abort | Order::Terminate));
-        self.vehicle.act(Command { drive, heading_rad: self.mission.heading_rad(), has_held });
+        let braking_orders = orders.iter().filter(|order| order.brakes()).count() as u32;
+        self.vehicle.act(Command { drive, heading_rad: self.mission.heading_rad(), braking_orders });
     }
 
     fn event(&self, kind: EventKind) -> Event {

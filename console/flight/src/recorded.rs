@@ -2,7 +2,7 @@
 
 use mission::EventKind;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use vehicle::port::{CannotInject, Command, Live, Sensed, Stamps, StationFault, Vehicle};
+use vehicle::port::{CannotInject, Command, Live, Sensed, Stamps, StationFault, Stood, Vehicle};
 use world::Truth;
 
 /// A vehicle that repeats the readings of a journal; commands have no effect on it.
@@ -29,6 +29,9 @@ impl Feed {
                     sensed.readings.clone_from(readings);
                 }
                 EventKind::Link(link) => live.link = Some(link.clone()),
+                EventKind::Stood { confirmed, after_s } => {
+                    live.stood = Some(Stood { confirmed: *confirmed, after_s: *after_s });
+                }
                 _ => {}
             }
         }

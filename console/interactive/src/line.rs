@@ -56,7 +56,7 @@ impl EngineHandle {
     /// Sends an order to the mission, which receives it with the next tick. An order that stops the robot triggers that
     /// tick immediately.
     pub(super) fn order(&self, order: Order) {
-        let is_urgent = matches!(order, Order::Hold | Order::Abort);
+        let is_urgent = order.brakes();
         if is_urgent {
             self.brake.iter().for_each(Brake::pull);
         }

@@ -158,6 +158,11 @@ impl Order {
         self
     }
 
+    /// Whether the order stops a vehicle at once, before the tick that carries it out.
+    pub fn brakes(&self) -> bool {
+        matches!(self, Self::Hold | Self::Abort)
+    }
+
     /// Whether the order begins the mission.
     pub fn is_start(&self) -> bool {
         matches!(self, Self::Start | Self::StartPlan(_))

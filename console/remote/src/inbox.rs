@@ -5,8 +5,8 @@ mod ages;
 use ages::Ages;
 use std::collections::BTreeMap;
 use vehicle::{
-    link::{Link, Motions, Sequence, State as Reached},
-    port::{LinkSeen, LinkState, Live, Sensed, Stamps},
+    link::{Hold, Link, Motions, Sequence, State as Reached},
+    port::{LinkSeen, LinkState, Live, Sensed, Stamps, Stood},
     wire::{
         FromVehicle, Heard, ToVehicle,
         message::{Commander, Hello, Mode, Odometry, Outline, Readings, State},
@@ -29,6 +29,8 @@ const STAMP_STEPS: f64 = 1e4;
 pub(crate) struct Inbox {
     stations: BTreeMap<String, StationId>,
     hello: Option<Box<Hello>>,
+    /// Whether the vehicle has started again since the last tick.
+    has_restarted: bool,
     state: Option<State>,
     link: Link,
     motions: Motions,
@@ -44,6 +46,8 @@ pub(crate) struct Inbox {
     ages: Ages,
     /// The last report and its time.
     told: Option<(LinkState, String, f64)>,
+    /// Whether the last report about a commanded stop was that it is confirmed; `None` without such a report.
+    told_stood: Option<bool>,
 }
 
 impl Inbox {
@@ -51,6 +55,7 @@ impl Inbox {
         Self {
             stations,
             hello: None,
+            has_restarted: false,
             state: None,
             link: Link::default(),
             motions: Motions::default(),
@@ -63,6 +68,7 @@ impl Inbox {
             closed: None,
             ages: Ages::default(),
             told: None,
+            told_stood: None,
         }
     }
 
@@ -91,12 +97,22 @@ impl Inbox {
         self.link.closed();
     }
 
+    /// A command was given; it will be sent as soon as the stream takes it.
+    pub(crate) fn commanded(&mut self, drives: bool, now_s: f64) {
+        if drives {
+            self.told_stood = None;
+        } else {
+            self.link.must_stand(now_s);
+        }
+    }
+
     /// A command was sent.
     pub(crate) fn sent(&mut self, message: &ToVehicle) {
         match message {
             ToVehicle::Drive(drive) => self.link.drove(drive),
             ToVehicle::Stop(stop) => self.link.stopped(stop),
-            ToVehicle::Ping(_) | ToVehicle::Bye(_) => {}
+            ToVehicle::Ping(_) => self.link.pinged(),
+            ToVehicle::Bye(_) => {}
         }
     }
 
@@ -115,13 +131,19 @@ impl Inbox {
         }
     }
 
-    /// A vehicle that introduces itself again has started again; its poses are in a new frame. Over datagrams, the same
-    /// introduction arrives several times.
+    /// A vehicle that introduces itself again has started again: its poses are in a new frame, its numbers begin again.
     fn greet(&mut self, hello: Box<Hello>) {
-        if self.hello.as_ref() != Some(&hello) {
-            self.motions = Motions::default();
-        }
+        self.has_restarted |= self.hello.is_some();
+        (self.motions, self.state, self.unread_since_s) = (Motions::default(), None, None);
+        self.told_stood = None;
+        self.sequence.restart();
         self.hello = Some(hello);
+    }
+
+    /// Whether a motion may be sent: not before the first readings, and not to a vehicle that has just started again and
+    /// has not been held yet.
+    pub(crate) fn may_drive(&self) -> bool {
+        self.heard() > 0 && !self.has_restarted
     }
 
     /// Adds readings. Readings that arrive twice, or after later ones, are left out: their motion would count twice.
@@ -162,7 +184,19 @@ impl Inbox {
             arrival_t_s: rounded(arrival_t_s),
         });
         let readings = std::mem::take(&mut self.readings);
-        Sensed { readings, live: Some(Live { stamps, link: self.due_link(now_s) }) }
+        let live = Live { stamps, link: self.due_link(now_s), stood: self.due_stood(now_s) };
+        Sensed { readings, live: Some(live) }
+    }
+
+    fn due_stood(&mut self, now_s: f64) -> Option<Stood> {
+        let asked_s = self.link.asked_to_stand_s()?;
+        let (confirmed, after_s) = match self.link.hold(now_s) {
+            Hold::Held { after_s } => (true, after_s),
+            Hold::NotConfirmed => (false, now_s - asked_s),
+            Hold::NotAsked | Hold::Stopping => return None,
+        };
+        let is_new = self.told_stood.replace(confirmed) != Some(confirmed);
+        is_new.then(|| Stood { confirmed, after_s: rounded(after_s) })
     }
 
     fn due_link(&mut self, now_s: f64) -> Option<LinkSeen> {
@@ -173,6 +207,7 @@ impl Inbox {
         if is_due {
             self.told = Some((link.state, link.why.clone(), now_s));
         }
+        self.has_restarted = false;
         is_due.then_some(link)
     }
 
@@ -197,7 +232,13 @@ impl Inbox {
         if let Some(why) = &self.closed {
             return (LinkState::Closed, why.clone());
         }
+        if self.has_restarted {
+            return (LinkState::Restarted, String::new());
+        }
         match self.link.state(now_s) {
+            Reached::Lost if self.link.is_deaf(now_s) => {
+                return (LinkState::Lost, "it takes no commands: its answers stopped".into());
+            }
             Reached::Lost => return (LinkState::Lost, "its readings stopped".into()),
             Reached::Connecting if now_s > FIRST_WITHIN_S => {
                 return (LinkState::Lost, "it has not sent readings yet".into());

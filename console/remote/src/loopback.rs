@@ -95,8 +95,9 @@ impl Vehicle for Loopback {
         self.inbox.sense(now_s)
     }
 
-    fn act(&mut self, Command { drive, heading_rad, has_held }: Command) {
-        self.outbox.command(drive.map(|drive| motion(drive, heading_rad, self.is_omni)), has_held);
+    fn act(&mut self, Command { drive, heading_rad, braking_orders }: Command) {
+        self.inbox.commanded(drive.is_some(), self.now_s());
+        self.outbox.command(drive.map(|drive| motion(drive, heading_rad, self.is_omni)), braking_orders);
         if let Err(misfit) = self.say() {
             self.inbox.close(misfit.to_string());
         }

@@ -10,7 +10,7 @@ use vehicle::{
 };
 
 /// Time between two pings.
-const PING_EVERY: Duration = Duration::from_millis(500);
+const PING_EVERY: Duration = Duration::from_millis(200);
 
 /// The messages to write next.
 #[derive(Debug, Default)]
@@ -22,8 +22,9 @@ pub(crate) struct Outbox {
 #[derive(Debug, Default)]
 struct Waiting {
     motion: Option<Motion>,
-    /// Whether the operator has stopped the vehicle between two ticks; until a tick takes this over, no motion is sent.
-    is_braked: bool,
+    /// Number of orders that have stopped the vehicle between two ticks and that no tick has carried out yet; until then,
+    /// no motion is sent.
+    brakes: u32,
     is_closed: bool,
     /// Number of commands so far.
     seq: u64,
@@ -33,13 +34,11 @@ struct Waiting {
 type Motion = Option<[f64; 3]>;
 
 impl Outbox {
-    /// Replaces the command that waits. `has_held`: the mission has carried out a stop, so the brake is released.
-    pub(crate) fn command(&self, motion: Motion, has_held: bool) {
+    /// Replaces the command that waits. `carried_out`: number of braking orders that the mission has carried out.
+    pub(crate) fn command(&self, motion: Motion, carried_out: u32) {
         let mut waiting = self.lock();
-        if motion.is_none() || has_held {
-            waiting.is_braked = false;
-        }
-        let motion = if waiting.is_braked { None } else { motion };
+        waiting.brakes = waiting.brakes.saturating_sub(carried_out);
+        let motion = motion.filter(|_| waiting.brakes == 0);
         waiting.motion = Some(motion);
         self.changed.notify_all();
     }
@@ -47,9 +46,15 @@ impl Outbox {
     /// Stops the vehicle between two ticks.
     pub(crate) fn brake(&self) {
         let mut waiting = self.lock();
-        waiting.is_braked = true;
+        waiting.brakes += 1;
         waiting.motion = Some(None);
         self.changed.notify_all();
+    }
+
+    /// Releases the brake of an order that was dropped.
+    pub(crate) fn release(&self) {
+        let mut waiting = self.lock();
+        waiting.brakes = waiting.brakes.saturating_sub(1);
     }
 
     pub(crate) fn close(&self) {
@@ -111,7 +116,7 @@ mod tests {
     fn only_the_newest_command_waits() {
         let outbox = Outbox::default();
         for speed in [0.1, 0.2, 0.3] {
-            outbox.command(Some([speed, 0.0, 0.0]), false);
+            outbox.command(Some([speed, 0.0, 0.0]), 0);
         }
         assert!(
             matches!(next(&outbox), ToVehicle::Drive(Drive { seq: 1, forward_m_per_s, .. }) if forward_m_per_s.to_bits() == 0.3_f64.to_bits())
@@ -124,14 +129,32 @@ mod tests {
     fn after_the_brake_no_motion_is_sent_until_the_mission_has_held() {
         let outbox = Outbox::default();
         let drive = Some([0.3, 0.0, 0.0]);
-        outbox.command(drive, false);
+        outbox.command(drive, 0);
         outbox.brake();
         assert!(matches!(next(&outbox), ToVehicle::Stop(Stop { seq: 1, .. })));
-        outbox.command(drive, false);
+        outbox.command(drive, 0);
         assert!(matches!(next(&outbox), ToVehicle::Stop(_)), "a tick that had begun before the brake");
-        outbox.command(None, true);
+        outbox.command(None, 1);
         assert!(matches!(next(&outbox), ToVehicle::Stop(_)));
-        outbox.command(drive, false);
+        outbox.command(drive, 0);
         assert!(matches!(next(&outbox), ToVehicle::Drive(Drive { seq: 4, .. })));
+    }
+
+    #[test]
+    fn a_brake_is_released_only_by_its_own_order() {
+        let outbox = Outbox::default();
+        let drive = Some([0.3, 0.0, 0.0]);
+        // HOLD, resume, HOLD within a tick: the tick carries out the first two.
+        outbox.brake();
+        outbox.brake();
+        outbox.command(drive, 1);
+        assert!(matches!(next(&outbox), ToVehicle::Stop(_)));
+        // A tick of a held mission is not that order either.
+        outbox.command(None, 0);
+        outbox.command(drive, 0);
+        assert!(matches!(next(&outbox), ToVehicle::Stop(_)));
+        outbox.release();
+        outbox.command(drive, 0);
+        assert!(matches!(next(&outbox), ToVehicle::Drive(_)));
     }
 }

@@ -4,12 +4,12 @@ use crate::{
     address::Address,
     inbox::Inbox,
     outbox::Outbox,
-    stream::{End, Stream},
+    stream::{End, Outgoing, Stream},
 };
 use geometry::Drive;
 use std::{
     fmt,
-    io::{self, Read, Write},
+    io::{self, Read},
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicBool, Ordering},
@@ -91,9 +91,10 @@ impl Remote {
             is_closing: AtomicBool::new(false),
             has_left: AtomicBool::new(false),
         });
-        let reading = Arc::clone(&shared);
+        let (reading, is_of_datagrams) = (Arc::clone(&shared), matches!(address, Address::Udp(_)));
+        let session = if is_of_datagrams { FromSession::of_datagrams() } else { FromSession::default() };
         let spawned =
-            thread::Builder::new().name("vehicle in".into()).spawn(move || read_all(read, &reading));
+            thread::Builder::new().name("vehicle in".into()).spawn(move || read_all(read, session, &reading));
         spawned.map_err(|error| failed(&error))?;
         let (hello, write) = greeted(&shared, address, write).map_err(|why| failed(&why))?;
         let (writing, session) = (Arc::clone(&shared), ToSession::of(hello.clone()));
@@ -129,9 +130,14 @@ impl Vehicle for Remote {
         self.shared.inbox().sense(now_s)
     }
 
-    fn act(&mut self, Command { drive, heading_rad, has_held }: Command) {
+    fn act(&mut self, Command { drive, heading_rad, braking_orders }: Command) {
+        let now_s = self.shared.now_s();
+        let mut inbox = self.shared.inbox();
+        let drive = drive.filter(|_| inbox.may_drive());
+        inbox.commanded(drive.is_some(), now_s);
+        drop(inbox);
         let motion = drive.map(|drive| motion(drive, heading_rad, self.is_omni));
-        self.shared.outbox.command(motion, has_held);
+        self.shared.outbox.command(motion, braking_orders);
     }
 
     fn truth(&self) -> Option<Truth> {
@@ -142,9 +148,19 @@ impl Vehicle for Remote {
         Err(CannotInject)
     }
 
+    fn is_heard(&self) -> bool {
+        self.heard() > 0
+    }
+
     fn brake(&self) -> Option<Brake> {
-        let shared = Arc::clone(&self.shared);
-        Some(Brake::new(move || shared.outbox.brake()))
+        let (shared, released) = (Arc::clone(&self.shared), Arc::clone(&self.shared));
+        let pull = move || {
+            // The stop leaves first: another thread may use the inbox.
+            shared.outbox.brake();
+            let now_s = shared.now_s();
+            shared.inbox().commanded(false, now_s);
+        };
+        Some(Brake::new(pull, move || released.outbox.release()))
     }
 }
 
@@ -152,7 +168,7 @@ impl Drop for Remote {
     /// Stops the vehicle and tells the adapter that the console leaves; an adapter that takes no bytes stops the vehicle
     /// by its lease.
     fn drop(&mut self) {
-        self.shared.outbox.command(None, true);
+        self.shared.outbox.command(None, 0);
         self.shared.outbox.close();
         let began = Instant::now();
         while !self.shared.has_left.load(Ordering::Acquire) && began.elapsed() < LEAVE_WITHIN {
@@ -166,8 +182,8 @@ impl Drop for Remote {
 fn greeted(
     shared: &Shared,
     address: &Address,
-    mut write: Box<dyn Write + Send>,
-) -> Result<(Hello, Box<dyn Write + Send>), String> {
+    mut write: Box<dyn Outgoing>,
+) -> Result<(Hello, Box<dyn Outgoing>), String> {
     let began = Instant::now();
     while began.elapsed() < HELLO_WITHIN {
         if matches!(address, Address::Udp(_)) {
@@ -197,8 +213,8 @@ fn greeted(
     })
 }
 
-fn read_all(mut read: Box<dyn Read + Send>, shared: &Shared) {
-    let mut reader = Reader::<FromVehicle>::new(FromSession::default());
+fn read_all(mut read: Box<dyn Read + Send>, session: FromSession, shared: &Shared) {
+    let mut reader = Reader::<FromVehicle>::new(session);
     let mut chunk = vec![0; CHUNK_BYTES];
     let why = loop {
         if shared.is_closing.load(Ordering::Acquire) {
@@ -223,16 +239,20 @@ fn read_all(mut read: Box<dyn Read + Send>, shared: &Shared) {
     shared.inbox().close(why);
 }
 
-fn write_all(mut write: Box<dyn Write + Send>, session: ToSession, shared: &Shared) {
+fn write_all(mut write: Box<dyn Outgoing>, session: ToSession, shared: &Shared) {
     let mut writer = Writer::<ToVehicle>::new(session);
     let (mut line, mut last_ping_s) = (Vec::new(), f64::NEG_INFINITY);
     loop {
         let message = shared.outbox.next(|| shared.now_s(), &mut last_ping_s);
+        if matches!(message, ToVehicle::Drive(_)) && !write.has_room() {
+            // The adapter has not read the motions before this one. A stop must not wait behind more of them.
+            continue;
+        }
         line.clear();
         if let Err(misfit) = writer.write(&message, &mut line) {
             // A command that does not fit the vehicle must not leave the one before it in effect.
             shared.inbox().close(format!("a command does not fit the vehicle: {misfit}"));
-            shared.outbox.command(None, true);
+            shared.outbox.command(None, 0);
             continue;
         }
         shared.inbox().sent(&message);

@@ -1,10 +1,18 @@
 //! The streams to an adapter: its two byte streams, and the handle that ends them.
 
 use crate::address::{Address, resolved};
+use rustix::{
+    event::{PollFd, PollFlags, Timespec, poll},
+    net::sockopt::set_socket_send_buffer_size,
+    pipe::fcntl_setpipe_size,
+};
 use std::{
     io::{self, Read, Write},
     net::{TcpStream, UdpSocket},
-    os::unix::{net::UnixStream, process::CommandExt},
+    os::{
+        fd::{AsFd, BorrowedFd},
+        unix::{net::UnixStream, process::CommandExt},
+    },
     process::{Child, Command, Stdio},
     thread,
     time::{Duration, Instant},
@@ -17,10 +25,28 @@ const LOOK_AGAIN: Duration = Duration::from_millis(100);
 /// How long an adapter that was started here may take to end by itself.
 const PATIENCE: Duration = Duration::from_secs(1);
 
+/// Bytes that may wait in this machine for an adapter: a stop must not wait behind many drives.
+const WAITING_BYTES: usize = 4096;
+
+/// The commands to an adapter.
+pub(crate) trait Outgoing: Write + Send {
+    /// Whether the stream has room for a motion. A pipe has if the adapter has read everything; a Unix socket, if only
+    /// a few messages are unread; a TCP socket, if the other machine takes bytes.
+    fn has_room(&self) -> bool;
+}
+
+impl<T: Write + AsFd + Send> Outgoing for T {
+    fn has_room(&self) -> bool {
+        let now = Timespec { tv_sec: 0, tv_nsec: 0 };
+        // A stream that has failed says so when it is written to.
+        poll(&mut [PollFd::new(self, PollFlags::OUT)], Some(&now)).is_ok_and(|ready| ready > 0)
+    }
+}
+
 /// A stream to an adapter.
 pub(crate) struct Stream {
     pub read: Box<dyn Read + Send>,
-    pub write: Box<dyn Write + Send>,
+    pub write: Box<dyn Outgoing>,
     pub end: End,
 }
 
@@ -37,12 +63,14 @@ impl Stream {
         match address {
             Address::Unix(path) => {
                 let stream = UnixStream::connect(path)?;
+                set_socket_send_buffer_size(&stream, WAITING_BYTES)?;
                 let (read, write) = (stream.try_clone()?, stream.try_clone()?);
                 Ok(Self { read: Box::new(read), write: Box::new(write), end: End::Unix(stream) })
             }
             Address::Tcp(at) => {
                 let stream = TcpStream::connect_timeout(&resolved(at, network)?, Duration::from_secs(5))?;
                 stream.set_nodelay(true)?;
+                set_socket_send_buffer_size(&stream, WAITING_BYTES)?;
                 let (read, write) = (stream.try_clone()?, stream.try_clone()?);
                 Ok(Self { read: Box::new(read), write: Box::new(write), end: End::Tcp(stream) })
             }
@@ -70,6 +98,7 @@ impl Stream {
                     .spawn()?;
                 let missing = || io::Error::other("the adapter has no stdin or stdout");
                 let write = child.stdin.take().ok_or_else(missing)?;
+                fcntl_setpipe_size(&write, WAITING_BYTES)?;
                 let read = child.stdout.take().ok_or_else(missing)?;
                 Ok(Self { read: Box::new(read), write: Box::new(write), end: End::Process(child) })
             }
@@ -119,6 +148,12 @@ impl Datagrams {
     }
 }
 
+impl AsFd for Datagrams {
+    fn as_fd(&self) -> BorrowedFd<'_> {
+        self.socket.as_fd()
+    }
+}
+
 impl Read for Datagrams {
     fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
         if self.left.is_empty() {
@@ -151,5 +186,32 @@ impl Write for Datagrams {
 
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn motions_find_no_room_behind_others_but_a_stop_does() {
+        let path = std::env::temp_dir().join(format!("tankops-room-{}", std::process::id()));
+        let listener = std::os::unix::net::UnixListener::bind(&path).unwrap();
+        let to_socket = Stream::open(&Address::Unix(path.clone()), false).unwrap();
+        let (mut adapter, _) = listener.accept().unwrap();
+        let to_pipe = Stream::open(&Address::Run("exec sleep 600".into()), false).unwrap();
+        let line = [b'x'; 150];
+        for mut write in [to_socket.write, to_pipe.write] {
+            let mut motions = 0;
+            while write.has_room() {
+                write.write_all(&line).unwrap();
+                motions += 1;
+            }
+            assert!((1..10).contains(&motions), "{motions} motions wait");
+            // Does not block.
+            write.write_all(&line).unwrap();
+        }
+        adapter.read_exact(&mut [0; 300]).unwrap();
+        std::fs::remove_file(path).unwrap();
     }
 }

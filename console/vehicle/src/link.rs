@@ -32,8 +32,10 @@ const LOST_S: f64 = 0.8;
 /// The same two limits in periods of the readings; they apply if readings are slow.
 const LATE_PERIODS: f64 = 2.0;
 const LOST_PERIODS: f64 = 3.0;
-/// The link is faulty above this number of messages in a second, as a multiple of the rate of readings; [`FLOOD_SLACK`]
-/// is added for other messages.
+/// A vehicle that has answered pings and has not answered one for this time takes no commands, seconds: longer than ten
+/// pings and their answers, of which a network may lose some.
+const DEAF_S: f64 = 2.0;
+/// Messages in a second that are a fault: this multiple of the rate of readings, plus some for other messages.
 const FLOOD_FACTOR: f64 = 10.0;
 const FLOOD_SLACK: f64 = 100.0;
 
@@ -46,7 +48,7 @@ pub enum State {
     Alive,
     /// The last readings are too old, but not yet so old that the link counts as lost.
     Late,
-    /// The connection has ended, or the last readings are too old. The vehicle stops when its lease lapses.
+    /// The connection has ended, the last readings are too old, or the vehicle does not answer. It stops by its lease.
     Lost,
     /// The vehicle cannot be trusted until it connects again.
     Fault,
@@ -64,6 +66,9 @@ pub struct Link {
     /// Arrival and stamp of the newest readings.
     newest: Option<(f64, f64)>,
     last_drive: Option<Drive>,
+    /// Whether pings are sent, and the time of sending of the newest one that was answered.
+    pings: bool,
+    answered_s: Option<f64>,
     closed: bool,
     fault: Option<String>,
     malformed_in_row: u32,
@@ -104,15 +109,19 @@ impl Link {
     fn message(&mut self, message: &FromVehicle, now_s: f64) {
         match message {
             FromVehicle::Hello(hello) => {
-                // The vehicle has restarted: the earlier state is void, except for a fault.
-                *self =
-                    Self { hello: Some(hello.as_ref().clone()), fault: self.fault.take(), ..Self::default() };
+                // The vehicle has started again: nothing of before holds, except a fault and the counts.
+                let mut sequence = std::mem::take(&mut self.sequence);
+                sequence.restart();
+                let fault = self.fault.take();
+                *self = Self { hello: Some(hello.as_ref().clone()), fault, sequence, ..Self::default() };
                 self.second = (now_s, 1);
             }
             FromVehicle::Readings(readings) => self.readings(readings, now_s),
             FromVehicle::Pong(pong) => {
                 if let Err(misfit) = self.clock.pong(pong, now_s) {
                     self.fault.get_or_insert_with(|| misfit.to_string());
+                } else {
+                    self.answered_s = Some(self.answered_s.map_or(pong.echo_s, |s| s.max(pong.echo_s)));
                 }
             }
             FromVehicle::State(_) => {}
@@ -145,10 +154,26 @@ impl Link {
         self.comparison.command(Some(drive));
     }
 
+    /// A stop was commanded, and will be sent as soon as the stream takes it.
+    pub fn must_stand(&mut self, now_s: f64) {
+        self.stopping.ask(now_s);
+    }
+
     /// A stop was sent, again or for the first time.
     pub fn stopped(&mut self, stop: &Stop) {
         self.stopping.ask(stop.stamp_s);
+        self.stopping.sent(stop.stamp_s);
         self.comparison.command(None);
+    }
+
+    /// A ping was sent.
+    pub fn pinged(&mut self) {
+        self.pings = true;
+    }
+
+    /// Whether the vehicle has stopped answering: commands wait somewhere on their way to it.
+    pub fn is_deaf(&self, now_s: f64) -> bool {
+        self.pings && self.answered_s.is_some_and(|answered_s| now_s - answered_s > DEAF_S)
     }
 
     /// The connection has ended.
@@ -165,7 +190,7 @@ impl Link {
             return State::Fault;
         }
         let (Some(hello), Some(age_s)) = (&self.hello, self.age_s(now_s)) else { return State::Connecting };
-        if age_s > LOST_S.max(LOST_PERIODS * hello.period_s) {
+        if age_s > LOST_S.max(LOST_PERIODS * hello.period_s) || self.is_deaf(now_s) {
             State::Lost
         } else if age_s > LATE_S.max(LATE_PERIODS * hello.period_s) {
             State::Late
@@ -202,6 +227,11 @@ impl Link {
         let Some(hello) = &self.hello else { return Hold::NotAsked };
         let trip_s = self.clock.at(now_s).map_or(0.0, |offset| 2.0 * offset.bound_s);
         self.stopping.state(now_s, Stopping::limit_s(hello, trip_s))
+    }
+
+    /// When the vehicle was commanded to stand, seconds; `None` while it may drive.
+    pub fn asked_to_stand_s(&self) -> Option<f64> {
+        self.stopping.asked_s()
     }
 
     /// The difference between commands and motion, if any.

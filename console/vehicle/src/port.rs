@@ -28,8 +28,13 @@ pub trait Vehicle: Send {
     /// The vehicle is not a simulation, or does not offer faults.
     fn inject(&mut self, fault: StationFault) -> Result<(), CannotInject>;
 
-    /// A handle that stops the vehicle at once, from any thread, without waiting for the next tick; `None` for vehicles
-    /// whose time passes with the ticks.
+    /// Whether readings have arrived. Until then, a vehicle in another process is not driven.
+    fn is_heard(&self) -> bool {
+        true
+    }
+
+    /// A handle that makes the vehicle stand at once, from any thread, without waiting for the next tick; `None` for
+    /// vehicles whose time passes with the ticks.
     fn brake(&self) -> Option<Brake> {
         None
     }
@@ -51,6 +56,17 @@ pub struct Live {
     pub stamps: Option<Stamps>,
     /// The state of the link, if it changed or is due.
     pub link: Option<LinkSeen>,
+    /// Whether a commanded stop is confirmed, if that was decided in this tick.
+    pub stood: Option<Stood>,
+}
+
+/// The result of a commanded stop, from readings that were taken after it was sent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stood {
+    /// Whether the readings show that the vehicle stands; if not, it still moves or is silent although it should stand.
+    pub confirmed: bool,
+    /// Time since the command, seconds; until the first of the readings without motion if the stop is confirmed.
+    pub after_s: f64,
 }
 
 /// When a reading was taken and when it arrived.
@@ -75,6 +91,8 @@ pub enum LinkState {
     Closed,
     /// Several messages in a row were faulty.
     Faulty,
+    /// The vehicle has started again; its clock, its frame and its commands of before do not count.
+    Restarted,
     /// A person drives the vehicle by hand.
     Manual,
     /// The emergency stop of the vehicle is pressed.
@@ -96,6 +114,7 @@ impl LinkState {
             Self::Lost => "lost",
             Self::Closed => "closed",
             Self::Faulty => "faulty",
+            Self::Restarted => "restarted",
             Self::Manual => "manual",
             Self::EmergencyStop => "emergency stop",
             Self::VehicleFault => "fault",
@@ -139,6 +158,7 @@ impl LinkSeen {
             LinkState::Lost => "the link to the vehicle is lost",
             LinkState::Closed => "the link to the vehicle is closed",
             LinkState::Faulty => "the vehicle sends faulty messages",
+            LinkState::Restarted => "the vehicle has restarted",
             LinkState::Manual => "a person drives the vehicle by hand",
             LinkState::EmergencyStop => "the emergency stop of the vehicle is pressed",
             LinkState::VehicleFault => "the vehicle reports a fault",
@@ -182,8 +202,9 @@ pub struct Command {
     /// The estimated heading of the robot, radians, with which a velocity in the tank frame is turned into the robot's
     /// frame.
     pub heading_rad: f64,
-    /// Whether the mission has carried out an order to hold or end in this tick, which releases the [`Brake`].
-    pub has_held: bool,
+    /// Number of orders that the mission has carried out in this tick and that pulled the [`Brake`] before. Each releases
+    /// the brake that it has pulled.
+    pub braking_orders: u32,
 }
 
 /// A fault of a station.
@@ -207,19 +228,28 @@ impl fmt::Display for CannotInject {
     }
 }
 
-/// Stops a vehicle at once, from any thread. Until the mission has carried out an order to hold, no motion is sent.
+/// Makes a vehicle stand at once, from any thread. No motion is sent until each pull has been released, by the order that
+/// pulled it: when the mission has carried it out ([`Command::braking_orders`]), or if the order is dropped.
 #[derive(Clone)]
-pub struct Brake(std::sync::Arc<dyn Fn() + Send + Sync>);
+pub struct Brake {
+    pull: std::sync::Arc<dyn Fn() + Send + Sync>,
+    release: std::sync::Arc<dyn Fn() + Send + Sync>,
+}
 
 impl Brake {
-    /// Creates a brake from its effect.
-    pub fn new(stop: impl Fn() + Send + Sync + 'static) -> Self {
-        Self(std::sync::Arc::new(stop))
+    /// Creates a brake from its effects.
+    pub fn new(pull: impl Fn() + Send + Sync + 'static, release: impl Fn() + Send + Sync + 'static) -> Self {
+        Self { pull: std::sync::Arc::new(pull), release: std::sync::Arc::new(release) }
     }
 
     /// Sends `stop`.
     pub fn pull(&self) {
-        (self.0)();
+        (self.pull)();
+    }
+
+    /// Releases one pull whose order was dropped, because the robot was held already.
+    pub fn release(&self) {
+        (self.release)();
     }
 }
 

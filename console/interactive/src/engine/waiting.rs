@@ -9,6 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 use tui::{Query, RunMsg};
+use vehicle::port::Brake;
 
 /// If more messages than this are waiting for the screen, the simulation waits.
 const MOST_BACKLOG: usize = 64;
@@ -50,7 +51,9 @@ impl EngineThread {
             };
             match request {
                 // The key thread and the screen both order a hold; the second order has nothing left to stop.
-                Ok(Request::Order(Order::Hold, _)) if orders.is_empty() && self.is_held_for_good() => {}
+                Ok(Request::Order(Order::Hold, _)) if orders.is_empty() && self.is_held_for_good() => {
+                    self.flight.brake().iter().for_each(Brake::release);
+                }
                 // An order that stops the robot does not wait for the next due tick: it triggers a tick immediately.
                 Ok(Request::Order(order @ (Order::Hold | Order::Abort), at)) => {
                     if self.flight.phase().may_move() {

@@ -8,9 +8,14 @@ use vehicle::wire::{
 
 fn inbox() -> Inbox {
     let mut inbox = Inbox::new([("A".to_owned(), StationId(1))].into());
+    inbox.take(hello(), 0.0);
+    inbox
+}
+
+fn hello() -> Heard<FromVehicle> {
     let limits =
         Limits { speed_m_per_s: 0.5, turn_rad_per_s: 1.0, acceleration_m_per_s2: 1.0, radius_m: 0.2 };
-    let hello = Hello {
+    Heard::Message(FromVehicle::Hello(Box::new(Hello {
         protocol: 1,
         name: "robot".into(),
         motion: MotionKind::Unicycle,
@@ -19,9 +24,8 @@ fn inbox() -> Inbox {
         period_s: 0.05,
         stop_time_s: 0.3,
         lease_max_s: 0.5,
-    };
-    inbox.take(Heard::Message(FromVehicle::Hello(Box::new(hello))), 0.0);
-    inbox
+        session: None,
+    })))
 }
 
 fn moved(seq: u64, forward_m: f64, turn_rad: f64) -> Readings {
@@ -131,6 +135,57 @@ fn each_trouble_is_a_state_of_the_link_with_its_reason() {
     assert!(state == LinkState::Faulty && why.ends_with(&misfit().to_string()), "{why}");
     inbox.close("the adapter has closed the link".into());
     assert_eq!(seen(&inbox, 1.0).0, LinkState::Closed);
+}
+
+#[test]
+fn a_vehicle_that_restarts_is_told_at_once_and_its_numbers_and_poses_begin_again() {
+    for first in [1, 700] {
+        let mut inbox = inbox();
+        let at = |seq, x_m| Readings {
+            pose: Some(Pose { x_m, y_m: 0.0, heading_rad: 0.0 }),
+            ..moved(seq, 0.0, 0.0)
+        };
+        say(&mut inbox, at(600, 5.0), 1.0);
+        inbox.sense(1.0);
+        inbox.take(hello(), 1.05);
+        assert!(!inbox.may_drive(), "the tick under way must not move it again");
+        say(&mut inbox, at(first, 0.0), 1.08);
+        let sensed = inbox.sense(1.1);
+        let trouble = sensed.live.and_then(|live| live.link).and_then(|link| link.trouble());
+        assert_eq!(trouble.as_deref(), Some("the vehicle has restarted"), "{first}");
+        assert_eq!(sensed.readings.odometry, world::Odometry::default(), "{first}: a new frame");
+        say(&mut inbox, at(first + 1, 0.1), 1.15);
+        let sensed = inbox.sense(1.2);
+        assert!((sensed.readings.odometry.forward_m - 0.1).abs() < 1e-12, "{first}");
+        let link = sensed.live.and_then(|live| live.link).expect("it changed");
+        assert_eq!((link.state, link.heard, link.missed), (LinkState::Up, 3, 0), "{first}");
+        assert!(inbox.may_drive());
+    }
+}
+
+#[test]
+fn a_stop_is_decided_by_readings_that_were_taken_after_it_was_sent() {
+    let mut inbox = inbox();
+    let stood = |inbox: &mut Inbox, now_s| inbox.sense(now_s).live.and_then(|live| live.stood);
+    say(&mut inbox, moved(1, 0.0, 0.0), 1.0);
+    inbox.take(Heard::Message(FromVehicle::Pong(Pong { echo_s: 1.0, stamp_s: 100.05 })), 1.0);
+    inbox.commanded(false, 1.02);
+    // The stream takes no bytes yet: a vehicle that stands so far proves nothing.
+    (2..=5).for_each(|seq| say(&mut inbox, moved(seq, 0.0, 0.0), 0.95 + 0.05 * seq as f64));
+    assert_eq!(stood(&mut inbox, 1.2), None);
+    inbox.sent(&ToVehicle::Stop(vehicle::wire::message::Stop { seq: 1, stamp_s: 1.2 }));
+    for seq in 6..=20_u64 {
+        let forward_m = if seq < 9 { 0.01 } else { 0.0 };
+        let now_s = 0.95 + 0.05 * seq as f64;
+        say(&mut inbox, moved(seq, forward_m, 0.0), now_s);
+        let expected = (seq == 11).then_some(true);
+        let found = stood(&mut inbox, now_s);
+        assert_eq!(found.map(|stood| stood.confirmed), expected, "{seq}");
+        assert!(found.is_none_or(|stood| (stood.after_s - 0.38).abs() < 1e-3), "{found:?}");
+    }
+    inbox.commanded(true, 2.0);
+    inbox.commanded(false, 2.0);
+    assert!(stood(&mut inbox, 2.0).is_some(), "the brake: no motion was sent in between");
 }
 
 #[test]

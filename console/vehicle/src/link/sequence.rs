@@ -62,6 +62,12 @@ impl Sequence {
         false
     }
 
+    /// The numbers begin again: the sender has restarted. The counts go on.
+    pub fn restart(&mut self) {
+        self.counts.restarts += u64::from(self.highest.is_some());
+        (self.highest, self.window) = (None, 0);
+    }
+
     /// The numbers so far.
     pub fn counts(&self) -> Counts {
         self.counts
@@ -83,6 +89,9 @@ mod tests {
         assert_eq!(sequence.counts(), counts);
         assert!(sequence.add(u64::MAX) && sequence.add(3));
         assert_eq!(sequence.counts(), Counts { received: 7, restarts: 2, ..counts });
+        sequence.restart();
+        assert!(sequence.add(2));
+        assert_eq!(sequence.counts(), Counts { received: 8, restarts: 3, ..counts });
     }
 
     proptest! {

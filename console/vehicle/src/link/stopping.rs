@@ -2,13 +2,15 @@
 
 use crate::wire::message::{Hello, Odometry};
 
-/// Rates, metres and radians per second, below which a vehicle stands still.
-const STILL_M_PER_S: f64 = 0.02;
-const STILL_RAD_PER_S: f64 = 0.05;
-/// Number of readings in a row without motion that confirm a standstill.
+/// A vehicle that moves no faster than this stands, metres and radians per second.
+const STILL_M_PER_S: f64 = 0.005;
+const STILL_RAD_PER_S: f64 = 0.02;
+/// Readings in a row without motion that confirm it.
 const STILL_READINGS: u32 = 3;
 /// Time that a vehicle may take to stop, as a multiple of its stop time.
 const STOP_TIMES: f64 = 2.0;
+/// The least time that a vehicle is given, seconds: its readings may arrive late.
+const STOP_LEAST_S: f64 = 0.5;
 
 /// The effect of a stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,7 +31,9 @@ pub enum Hold {
 /// Watches a stop.
 #[derive(Debug, Clone, Default)]
 pub struct Stopping {
+    /// When the stop was commanded, and when it was sent: a stream that takes no bytes delays it.
     asked_s: Option<f64>,
+    sent_s: Option<f64>,
     /// Readings in a row without motion, and the time of the first.
     still: u32,
     still_since_s: f64,
@@ -38,21 +42,34 @@ pub struct Stopping {
 }
 
 impl Stopping {
-    /// Records that a stop was sent. Of several stops in a row, only the first counts.
+    /// A stop was commanded; only the first one begins.
     pub fn ask(&mut self, now_s: f64) {
         if self.asked_s.is_none() {
             *self = Self { asked_s: Some(now_s), ..Self::default() };
         }
     }
 
-    /// Records that a drive was sent, which ends the check.
+    /// The commanded stop was sent. Only readings that were taken after this can show its effect.
+    pub fn sent(&mut self, now_s: f64) {
+        self.sent_s.get_or_insert(now_s);
+    }
+
+    /// When the stop was commanded, seconds.
+    pub fn asked_s(&self) -> Option<f64> {
+        self.asked_s
+    }
+
+    /// A drive was sent.
     pub fn release(&mut self) {
         *self = Self::default();
     }
 
     /// Takes a measured motion, at a time of the console's clock.
     pub fn moved(&mut self, motion: &Odometry, taken_s: f64) {
-        let Some(asked_s) = self.asked_s.filter(|asked_s| taken_s >= *asked_s) else { return };
+        let Some(asked_s) = self.asked_s.filter(|_| self.sent_s.is_some_and(|sent_s| taken_s >= sent_s))
+        else {
+            return;
+        };
         if !stands(motion) {
             self.still = 0;
             return;
@@ -61,7 +78,7 @@ impl Stopping {
             self.still_since_s = taken_s;
         }
         self.still = self.still.saturating_add(1);
-        if self.still >= STILL_READINGS && self.held_after_s.is_none() {
+        if self.still == STILL_READINGS {
             self.held_after_s = Some(self.still_since_s - asked_s);
         }
     }
@@ -70,7 +87,7 @@ impl Stopping {
     pub fn state(&self, now_s: f64, limit_s: f64) -> Hold {
         let Some(asked_s) = self.asked_s else { return Hold::NotAsked };
         match self.held_after_s {
-            Some(after_s) if self.still > 0 => Hold::Held { after_s },
+            Some(after_s) if self.still >= STILL_READINGS => Hold::Held { after_s },
             Some(_) => Hold::NotConfirmed,
             None if now_s - asked_s > limit_s => Hold::NotConfirmed,
             None => Hold::Stopping,
@@ -81,13 +98,13 @@ impl Stopping {
     /// readings need to show a standstill over a link with this round trip.
     pub fn limit_s(hello: &Hello, trip_s: f64) -> f64 {
         let told_s = f64::from(STILL_READINGS + 1) * hello.period_s + trip_s;
-        (STOP_TIMES * hello.stop_time_s).max(told_s)
+        (STOP_TIMES * hello.stop_time_s).max(told_s).max(STOP_LEAST_S)
     }
 }
 
 fn stands(motion: &Odometry) -> bool {
-    motion.forward_m.hypot(motion.sideways_m) < STILL_M_PER_S * motion.over_s
-        && motion.turn_rad.abs() < STILL_RAD_PER_S * motion.over_s
+    motion.forward_m.hypot(motion.sideways_m) <= STILL_M_PER_S * motion.over_s
+        && motion.turn_rad.abs() <= STILL_RAD_PER_S * motion.over_s
 }
 
 #[cfg(test)]
@@ -105,13 +122,16 @@ mod tests {
         stopping.moved(&motion(0.0, 0.0), 0.9);
         stopping.ask(1.0);
         stopping.ask(1.1);
-        stopping.moved(&motion(0.0, 0.0), 0.95);
-        for (taken_s, m_per_s) in [(1.1, 0.3), (1.2, 0.0), (1.3, 0.05), (1.4, 0.0), (1.5, 0.01)] {
+        // It waits in the console for 0.05 s; readings from before that may be from a vehicle that has not begun to move.
+        (0..3).for_each(|_| stopping.moved(&motion(0.0, 0.0), 1.04));
+        stopping.sent(1.05);
+        (0..3).for_each(|_| stopping.moved(&motion(0.0, 0.0), 1.04));
+        for (taken_s, m_per_s) in [(1.1, 0.3), (1.2, 0.0), (1.3, 0.006), (1.4, 0.0), (1.5, 0.004)] {
             stopping.moved(&motion(m_per_s, 0.0), taken_s);
         }
         assert_eq!(stopping.state(1.9, 1.0), Hold::Stopping);
         assert_eq!(stopping.state(2.1, 1.0), Hold::NotConfirmed);
-        stopping.moved(&motion(0.0, 0.04), 1.6);
+        stopping.moved(&motion(0.0, 0.019), 1.6);
         let Hold::Held { after_s } = stopping.state(9.0, 1.0) else { panic!("it stands") };
         assert!((after_s - 0.4).abs() < 1e-12);
         stopping.release();
@@ -122,11 +142,18 @@ mod tests {
     fn turning_on_the_spot_is_not_standing_and_moving_after_a_stop_is_named() {
         let mut stopping = Stopping::default();
         stopping.ask(0.0);
+        stopping.sent(0.0);
         (1..=9).for_each(|n| stopping.moved(&motion(0.0, 0.2), 0.1 * f64::from(n)));
         assert_eq!(stopping.state(1.1, 1.0), Hold::NotConfirmed);
         (1..=3).for_each(|n| stopping.moved(&motion(0.0, 0.0), 1.0 + 0.1 * f64::from(n)));
         assert!(matches!(stopping.state(1.3, 1.0), Hold::Held { .. }));
         stopping.moved(&motion(0.1, 0.0), 1.4);
         assert_eq!(stopping.state(1.4, 1.0), Hold::NotConfirmed);
+        for n in 5..=7 {
+            assert_eq!(stopping.state(1.4, 1.0), Hold::NotConfirmed, "{n}");
+            stopping.moved(&motion(0.0, 0.0), 1.0 + 0.1 * f64::from(n));
+        }
+        let Hold::Held { after_s } = stopping.state(1.7, 1.0) else { panic!("it stands again") };
+        assert!((after_s - 1.5).abs() < 1e-12);
     }
 }

@@ -21,6 +21,7 @@ fn hello() -> Heard<FromVehicle> {
         period_s: PERIOD_S,
         stop_time_s: 0.5,
         lease_max_s: 0.5,
+        session: None,
     })))
 }
 
@@ -53,6 +54,26 @@ fn a_silent_link_is_late_then_lost_within_a_second_and_alive_again_with_readings
     assert_eq!((link.state(5.0), link.counts().lost), (State::Alive, 99));
     link.closed();
     assert_eq!(link.state(5.0), State::Lost);
+}
+
+#[test]
+fn a_vehicle_that_sends_readings_but_takes_no_commands_is_lost() {
+    let mut link = connected();
+    for seq in 1..80_u64 {
+        let now_s = seq as f64 * PERIOD_S;
+        link.heard(&readings(seq, 0.0), now_s);
+        link.pinged();
+        if seq <= 20 {
+            link.heard(
+                &Heard::Message(FromVehicle::Pong(Pong { echo_s: now_s, stamp_s: 500.0 + now_s })),
+                now_s,
+            );
+        }
+        let expected = if seq <= 60 { State::Alive } else { State::Lost };
+        assert_eq!(link.state(now_s), expected, "{seq}");
+    }
+    link.heard(&Heard::Message(FromVehicle::Pong(Pong { echo_s: 3.95, stamp_s: 503.95 })), 3.95);
+    assert_eq!(link.state(3.95), State::Alive);
 }
 
 #[test]

@@ -49,7 +49,7 @@ pub enum Unknown {
 /// The number of lines of each sort.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counts {
-    /// Messages.
+    /// Messages, without repetitions.
     pub messages: u64,
     /// Malformed lines.
     pub malformed: u64,
@@ -75,6 +75,10 @@ pub trait Incoming: Sized {
     /// # Errors
     /// The first value that is out of bounds.
     fn check(&self, session: &mut Self::Session) -> Result<(), Misfit>;
+    /// Whether a message only repeats an earlier one, so that it is left out.
+    fn is_repeated(&self, _: &Self::Session) -> bool {
+        false
+    }
 }
 
 /// Reads one direction of the wire, however the bytes are divided. Keeps at most [`LINE_MAX`] bytes.
@@ -163,7 +167,7 @@ impl<M: Incoming> Reader<M> {
                 self.counts.malformed_in_row = 0;
                 heard.push(Heard::Message(message));
             }
-            Ok(None) => self.counts.unknown_kinds += 1,
+            Ok(None) => {}
             Err(misfit) => {
                 let malformed = self.malformed(misfit);
                 heard.push(malformed);
@@ -179,6 +183,7 @@ impl<M: Incoming> Reader<M> {
         }
         let head: Head = serde_json::from_str(line).map_err(|error| named("", line, &error))?;
         let Some((kind, known)) = self.kinds.iter().find(|(kind, _)| *kind == head.kind) else {
+            self.counts.unknown_kinds += 1;
             self.unknown(Unknown::Kind(shortened(&head.kind)), heard);
             return Ok(None);
         };
@@ -186,6 +191,9 @@ impl<M: Incoming> Reader<M> {
         let unknown: BTreeSet<&str> =
             keys(line).filter(|key| *key != "type" && !known.contains(key)).collect();
         let message = M::parse(kind, line).map_err(|error| named(kind, line, &error))?;
+        if message.is_repeated(&self.session) {
+            return Ok(None);
+        }
         message.check(&mut self.session)?;
         for key in unknown {
             self.unknown(Unknown::Key { kind, key: shortened(key) }, heard);
@@ -293,6 +301,10 @@ impl Incoming for FromVehicle {
 
     fn check(&self, session: &mut FromSession) -> Checked {
         session.check(self)
+    }
+
+    fn is_repeated(&self, session: &FromSession) -> bool {
+        session.is_repeated(self)
     }
 }
 

@@ -21,6 +21,7 @@ const COMMAND_SLACK: f64 = 1e-9;
 /// The messages of a vehicle so far.
 #[derive(Debug, Clone, Default)]
 pub struct FromSession {
+    is_of_datagrams: bool,
     hello: Option<Hello>,
     newest_s: Option<f64>,
     pose: Option<(f64, Pose)>,
@@ -34,7 +35,12 @@ pub struct ToSession {
 }
 
 impl FromSession {
-    /// The `hello` message of the vehicle, if it has arrived.
+    /// The messages of a vehicle that speaks in datagrams, which may arrive more than once.
+    pub fn of_datagrams() -> Self {
+        Self { is_of_datagrams: true, ..Self::default() }
+    }
+
+    /// The introduction of the vehicle.
     pub fn hello(&self) -> Option<&Hello> {
         self.hello.as_ref()
     }
@@ -43,8 +49,11 @@ impl FromSession {
         match message {
             FromVehicle::Hello(hello) => {
                 hello.check()?;
-                // A vehicle that introduces itself again has restarted: its clock and its frame are new.
-                *self = Self { hello: Some(hello.as_ref().clone()), newest_s: None, pose: None };
+                if self.is_of_datagrams && hello.session.is_none() {
+                    return misfit("hello.session", "is missing; over datagrams, it must tell each restart");
+                }
+                // A vehicle that introduces itself again has started again: its clock and its frame are new.
+                *self = Self { hello: Some(hello.as_ref().clone()), newest_s: None, pose: None, ..*self };
                 Ok(())
             }
             FromVehicle::Readings(readings) => {
@@ -72,6 +81,12 @@ impl FromSession {
                 runs_on("pong.stamp_s", &mut self.newest_s, pong.stamp_s)
             }
         }
+    }
+
+    /// Whether a message is the introduction again, without a restart.
+    pub(super) fn is_repeated(&self, message: &FromVehicle) -> bool {
+        let FromVehicle::Hello(hello) = message else { return false };
+        self.is_of_datagrams && hello.session.is_some() && self.hello.as_ref() == Some(hello)
     }
 
     fn greeted(&self, kind: &str) -> Result<&Hello, super::Misfit> {

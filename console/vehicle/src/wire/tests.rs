@@ -129,6 +129,25 @@ fn nothing_counts_before_hello_and_other_versions_are_refused() {
 }
 
 #[test]
+fn over_datagrams_an_introduction_with_its_session_is_a_repetition() {
+    let hello =
+        |session: &str| examples("From the vehicle")[0].replace(", \"session\": 1764322", session) + "\n";
+    let [first, second] = [", \"session\": 1", ", \"session\": 2"].map(hello);
+    let greetings = |mut reader: Reader<FromVehicle>, lines: [&str; 3]| {
+        let heard = lines.map(|line| reader.read(line.as_bytes()));
+        heard.map(|heard| heard.iter().filter(|heard| matches!(heard, Heard::Message(_))).count())
+    };
+    let datagrams = || Reader::<FromVehicle>::new(FromSession::of_datagrams());
+    assert_eq!(greetings(datagrams(), [&first, &first, &second]), [1, 0, 1]);
+    // On a stream, nothing is repeated: the vehicle has started again.
+    assert_eq!(greetings(Reader::new(FromSession::default()), [&first, &first, &second]), [1, 1, 1]);
+    let Some(Heard::Malformed(misfit)) = datagrams().read(hello("").as_bytes()).pop() else {
+        panic!("a restart could not be told")
+    };
+    assert_eq!(misfit.field, "hello.session");
+}
+
+#[test]
 fn what_is_unknown_is_told_once() {
     let mut reader = greeted();
     let line = br#"{"type": "pong", "echo_s": 1, "stamp_s": 5, "new": {"deep": [1]}}
