@@ -30,6 +30,7 @@ pub(crate) fn simulate(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
     let vehicle = Behind::new(&scenario);
     let vehicle = if args.lockstep { vehicle } else { vehicle.with_pose() };
+    let vehicle = if args.scanner { vehicle.with_scanner() } else { vehicle };
     let FromVehicle::Hello(hello) = vehicle.hello() else {
         anyhow::bail!("the simulated vehicle has no introduction")
     };
