@@ -20,6 +20,9 @@ mod carts;
 #[path = "acceptance/command_line.rs"]
 mod command_line;
 #[cfg(unix)]
+#[path = "acceptance/connecting.rs"]
+mod connecting;
+#[cfg(unix)]
 #[path = "acceptance/engines.rs"]
 mod engines;
 #[path = "acceptance/faults.rs"]

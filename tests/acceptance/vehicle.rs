@@ -26,13 +26,13 @@ const PATIENCE: Duration = Duration::from_mins(2);
 const HELLO: &str = r#"{"type": "hello", "protocol": 1, "name": "liar", "motion": "unicycle", "limits": {"speed_m_per_s": 0.5, "turn_rad_per_s": 2.0, "acceleration_m_per_s2": 1.0, "radius_m": 0.25}, "has": {"odometry": true, "contact": true, "ae": true}, "period_s": 0.1, "stop_time_s": 0.5, "lease_max_s": 1.0}"#;
 
 /// A simulator in a process of its own.
-struct Vehicle {
+pub(crate) struct Vehicle {
     process: Child,
-    at: String,
+    pub at: String,
 }
 
 impl Vehicle {
-    fn offer(bench: &Bench, scenario: &Path, more: &[&str]) -> Self {
+    pub(crate) fn offer(bench: &Bench, scenario: &Path, more: &[&str]) -> Self {
         let at = format!("unix:{}", bench.path().join("vehicle").display());
         let mut command = bench.command();
         command.args(["vehicle", "simulate"]).arg(scenario).args(["--listen", &at]).args(more);
@@ -78,7 +78,7 @@ fn fly(bench: &Bench, scenario: &Path, vehicle: &str) -> (Ended, PathBuf) {
     (flown, run)
 }
 
-fn begun(bench: &Bench, arguments: &[&str]) -> (Child, PathBuf) {
+pub(crate) fn begun(bench: &Bench, arguments: &[&str]) -> (Child, PathBuf) {
     let mut command = bench.command();
     let child = command.args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let moves = |run: &PathBuf| of_kind(&journal(run), "sent").iter().any(|sent| !sent["drive"].is_null());

@@ -10,7 +10,7 @@ mod logs;
 mod past;
 mod vehicle;
 
-pub(crate) use author::{Lang, NewPlannerArgs, ReplayWorkerArgs};
+pub(crate) use author::{Lang, NewPlannerArgs, NewVehicleArgs, ReplayWorkerArgs, VehicleLang};
 pub(crate) use campaign::{CampaignCommand, CompareArgs, Engine, OutArgs, RunCampaignArgs, WorkArgs};
 pub(crate) use changes::Changes;
 pub(crate) use console::{ConsoleArgs, ReplayArgs};
@@ -18,7 +18,7 @@ pub(crate) use files::{FindArg, ImportArgs, LocateArgs, MapArgs};
 pub(crate) use flight::{AccuracyArgs, PlanArgs, RunArgs, ShadowArgs};
 pub(crate) use logs::LogsArg;
 pub(crate) use past::{EventsArgs, ExportArgs, ReportArgs, RescanArgs};
-pub(crate) use vehicle::{SimulateArgs, VehicleArgs, VehicleCommand};
+pub(crate) use vehicle::{SimulateArgs, TrialArgs, VehicleArgs, VehicleCommand};
 
 use clap::{Parser, Subcommand};
 use command::arguments::{PluginArgs, ReproduceArgs, TuneArgs};
@@ -61,24 +61,28 @@ pub(crate) enum Command {
         #[arg(long)]
         json: bool,
     },
-    /// Validate scenario files, plugins and configuration files.
+    /// Create a folder for an adapter to a vehicle of your own, ready to run.
+    NewVehicle(NewVehicleArgs),
+    /// Validate scenario files, plugins and configuration files, or try a vehicle.
     Check {
         /// Scenario files (.toml), plugins (.so, .dylib, .dll), and files named config.toml or keys.toml.
-        #[arg(required = true, value_name = "FILE")]
+        #[arg(required_unless_present = "vehicle", value_name = "FILE")]
         files: Vec<PathBuf>,
         /// For plugins: check the planner contract, and compare each planner with the installed ones in N random tanks.
-        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000), group = "tried")]
         fly: Option<u64>,
         /// Seed of the first random tank; later tanks use the following seeds.
         #[arg(long, value_name = "SEED", default_value_t = 0, requires = "fly")]
         seed: u64,
-        /// Print the results of the trial runs as JSON, and nothing else on stdout.
-        #[arg(long, requires = "fly")]
+        /// Print the results of the trial runs or of the trial of a vehicle as JSON, and nothing else on stdout.
+        #[arg(long, requires = "tried")]
         json: bool,
         /// Save to this folder each tank in which a planner did not complete its mission, as a scenario that can be run
         /// again.
         #[arg(long, value_name = "DIR", requires = "fly")]
         keep: Option<PathBuf>,
+        #[command(flatten)]
+        trial: TrialArgs,
     },
     /// Reproduce a table or figure from a paper; show the printed values beside ours.
     Reproduce(ReproduceArgs),

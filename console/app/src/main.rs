@@ -12,6 +12,7 @@ mod locate;
 mod manual;
 mod map;
 mod new_planner;
+mod new_vehicle;
 mod output;
 mod past_runs;
 mod plan;
@@ -27,6 +28,7 @@ mod stop_signal;
 mod threads;
 mod trial;
 mod vehicle;
+mod vehicle_trial;
 mod waiting;
 
 use clap::Parser;
@@ -88,7 +90,11 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Import(args)) => import::import(&args, &plugins),
         Some(Command::NewPlanner(args)) => new_planner::create(&args),
         Some(Command::Planners { json }) => planners::list(&plugins, json),
-        Some(Command::Check { files, fly: Some(n), seed, json, keep }) => {
+        Some(Command::NewVehicle(args)) => new_vehicle::create(&args),
+        Some(Command::Check { json, trial, .. }) if trial.vehicle.is_some() => {
+            vehicle_trial::check(&trial, json)
+        }
+        Some(Command::Check { files, fly: Some(n), seed, json, keep, .. }) => {
             trial::fly(&files, &plugins, (n, seed), json, keep.as_deref())
         }
         Some(Command::Check { files, .. }) => planners::check(&files, &plugins),

@@ -23,31 +23,38 @@ const SCENARIO: &str = include_str!("../../../plugins/examples/scenario.toml");
 
 /// Runs `tankops new-planner`.
 pub(crate) fn create(args: &NewPlannerArgs) -> anyhow::Result<ExitCode> {
-    check_name(&args.name).map_err(bad_input)?;
+    check_name("planner", &args.name).map_err(bad_input)?;
     let folder = args.out.join(&args.name);
+    write_folder(&folder, files(&args.name, args.lang, &api(args.api.as_deref())?))?;
+    say(&next_steps(&folder, &args.name, args.lang))?;
+    Ok(ExitCode::from(COMPLETE))
+}
+
+/// Writes files, named from the folder, into a folder that does not exist yet.
+pub(crate) fn write_folder(folder: &Path, files: Vec<(String, String)>) -> anyhow::Result<()> {
     if folder.exists() {
         return Err(bad_input(format!(
             "{} already exists and is not overwritten; choose another name",
             folder.display()
         )));
     }
-    for (name, text) in files(&args.name, args.lang, &api(args.api.as_deref())?) {
+    for (name, text) in files {
         let file = folder.join(name);
-        fs::create_dir_all(file.parent().unwrap_or(&folder))
+        fs::create_dir_all(file.parent().unwrap_or(folder))
             .and_then(|()| fs::write(&file, text))
             .with_context(|| format!("writing {}", file.display()))?;
     }
-    say(&next_steps(&folder, &args.name, args.lang))?;
-    Ok(ExitCode::from(COMPLETE))
+    Ok(())
 }
 
-fn check_name(name: &str) -> Result<(), String> {
+/// Whether a text can name a `kind` of thing.
+pub(crate) fn check_name(kind: &str, name: &str) -> Result<(), String> {
     let is_of_id = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';
     let is_good = name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(is_of_id);
     if is_good && name.len() <= 32 {
         return Ok(());
     }
-    Err(format!("`{name}` is not a valid planner name: write a letter, then up to 31 of a-z, 0-9, _ and -"))
+    Err(format!("`{name}` is not a valid {kind} name: write a letter, then up to 31 of a-z, 0-9, _ and -"))
 }
 
 /// The dependency entry in `Cargo.toml` for the crate that a Rust planner needs.
@@ -140,9 +147,9 @@ mod tests {
     #[test]
     fn a_name_that_is_none_is_refused() {
         for bad in ["", "1st", "Mine", "a b", "../x", &"x".repeat(33)] {
-            assert!(check_name(bad).is_err(), "{bad}");
+            assert!(check_name("planner", bad).is_err(), "{bad}");
         }
-        assert_eq!(check_name("my-own_2"), Ok(()));
+        assert_eq!(check_name("planner", "my-own_2"), Ok(()));
     }
 
     #[test]

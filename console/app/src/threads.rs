@@ -35,6 +35,8 @@ pub(crate) fn needed(command: Option<&Command>) -> usize {
         // A coverage planner plans with one thread per core; these must not use up the threads that the recording
         // needs.
         Some(Command::Run(_)) => each::PLANNER + cores() - 1 + each::RUN + each::SIGNAL,
+        // Both connections of a trial, each with a thread.
+        Some(Command::Check { trial, .. }) if trial.vehicle.is_some() => each::SIGNAL + 2,
         Some(
             Command::Plan(_)
             | Command::Planners { .. }
@@ -56,6 +58,7 @@ pub(crate) fn needed(command: Option<&Command>) -> usize {
             | Command::Map(_)
             | Command::Import(_)
             | Command::NewPlanner(_)
+            | Command::NewVehicle(_)
             // A different program, which checks its own limits.
             | Command::Reproduce(_)
             | Command::Tune(_)

@@ -28,7 +28,13 @@ pub struct Behind {
     /// The dead-reckoned pose in the vehicle's own frame; `None` for a vehicle that sends odometry alone.
     reckoned: Option<message::Pose>,
     tick_s: f64,
+    /// Whether obstacles are reported by a scan instead of their outlines.
+    has_scanner: bool,
 }
+
+/// Rays of the scanner, and its range in metres.
+const RAYS: u32 = 360;
+const SCAN_MAX_M: f64 = 8.0;
 
 impl Behind {
     /// Creates a vehicle at rest at the start of a scenario. It sends odometry alone: a mission that loses no message
@@ -44,10 +50,24 @@ impl Behind {
             seq: 0,
             reckoned: None,
             tick_s: scenario.mission.tick_s,
+            has_scanner: false,
         }
     }
 
-    /// The same vehicle, but it also sends its dead-reckoned pose, so that lost messages lose no motion.
+    /// The same vehicle with a scanner of 360 rays instead of outlines of obstacles: what is not on the drawing is then
+    /// only in the scan.
+    #[must_use]
+    pub fn with_scanner(mut self) -> Self {
+        (self.hello.has.scan, self.has_scanner) = (true, true);
+        self
+    }
+
+    /// The true state of the simulated robot.
+    pub fn truth(&self) -> world::Truth {
+        self.simulator.truth()
+    }
+
+    /// The same vehicle, which also sends its dead-reckoned pose, so that lost messages lose no motion.
     #[must_use]
     pub fn with_pose(mut self) -> Self {
         self.hello.has.pose = true;
@@ -143,12 +163,26 @@ impl Behind {
         if let Some(pose) = &mut self.reckoned {
             *pose = reckoned(*pose, readings.odometry);
         }
-        FromVehicle::Readings(Box::new(message::Readings {
+        let mut told = message::Readings {
             seq: self.seq,
             stamp_s: now_s,
             pose: self.reckoned,
             ..told(&readings, &self.stations, self.tick_s)
-        }))
+        };
+        if self.has_scanner {
+            (told.outlines, told.scan) = (Vec::new(), Some(self.scan()));
+        }
+        FromVehicle::Readings(Box::new(told))
+    }
+
+    fn scan(&self) -> message::Scan {
+        message::Scan {
+            first_rad: 0.0,
+            step_rad: std::f64::consts::TAU / f64::from(RAYS),
+            range_max_m: SCAN_MAX_M,
+            sensor_m: [0.0; 2],
+            ranges_m: self.simulator.scan(RAYS, SCAN_MAX_M),
+        }
     }
 }
 

@@ -58,6 +58,12 @@ impl Forked {
     }
 }
 
+/// The part of a vehicle's stop time that braking by the scenario's deceleration does not explain, seconds.
+fn reaction_s(opened: &RunOpened, info: &VehicleInfo) -> f64 {
+    let braking_s = info.speed_max_m_per_s / opened.mission.limits.acceleration_m_per_s2;
+    (info.stop_s - braking_s).max(0.0)
+}
+
 impl Flight {
     /// Creates a flight that waits for its start; `attended` tells whether an operator is present.
     pub fn prepare(scenario: &Scenario, attended: bool) -> Self {
@@ -73,7 +79,9 @@ impl Flight {
     /// The same flight, before its first tick, with a real vehicle in place of the simulator.
     #[must_use]
     pub fn with_vehicle(self, scenario: &Scenario, vehicle: Box<dyn Vehicle>, info: VehicleInfo) -> Self {
-        let config = MissionConfig { live: true, ..self.opened.mission };
+        let guard_reaction_s =
+            info.has.iter().any(|part| part == "scan").then(|| reaction_s(&self.opened, &info));
+        let config = MissionConfig { live: true, guard_reaction_s, ..self.opened.mission };
         Self::of(scenario, config, Some((vehicle, info)))
     }
 

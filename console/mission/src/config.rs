@@ -220,6 +220,10 @@ pub struct MissionConfig {
     /// Whether the robot is a real vehicle and not the simulator: time cannot be stepped, and faults cannot be injected.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub live: bool,
+    /// For a real vehicle with a scan: the robot is guarded by the scan, and this is the time from a command until the
+    /// vehicle follows it, beyond a tick, seconds. `None`: no guard.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub guard_reaction_s: Option<f64>,
     /// What to do about a plan that is better than a repaired one.
     #[serde(default, skip_serializing_if = "BetterPlan::is_off")]
     pub better_plan: BetterPlan,

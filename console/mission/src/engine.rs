@@ -44,6 +44,7 @@ use crate::{
 pub use driving::Sending;
 use driving::{Driving, LeftPlan, Prepare};
 pub use fork::Fork;
+pub(crate) use governing::guarding::side;
 use happened::Happened;
 use known::Known;
 use planner_api::{Drive, Reason};
@@ -162,6 +163,7 @@ impl Mission {
         let located = self.known.locator.take(input.readings);
         self.happened.extend(located);
         self.happened.extend(self.known.take_pressure(input.readings.pressure_pa));
+        self.known.take_scan(input.readings);
         let map_changed = self.look_around(input.readings);
         self.known.scan_from(before, &mut self.happened);
         let reached = self.known.drag_tether(map_changed, input.readings.paid_out_m, &mut self.happened);
@@ -206,7 +208,7 @@ impl Mission {
         if matches!(self.known.phase, Phase::Waiting | Phase::Ended(_)) {
             return;
         }
-        if !readings.contact && self.hold_in_trouble() {
+        if !readings.contact && (self.hold_in_trouble() || self.hold_by_guard()) {
             return;
         }
         let here = self.known.position();
@@ -244,7 +246,10 @@ impl Mission {
             Phase::Running(_) => self.known.task.wait(self.known.config.tick_s * self.known.briskness()),
             Phase::Held(hold)
                 if hold.by.blames_planner()
-                    || matches!(hold.by, HoldReason::Stuck { .. } | HoldReason::Vehicle { .. }) =>
+                    || matches!(
+                        hold.by,
+                        HoldReason::Stuck { .. } | HoldReason::Vehicle { .. } | HoldReason::Guard { .. }
+                    ) =>
             {
                 self.replace_failed_planner();
             }

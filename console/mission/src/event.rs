@@ -531,6 +531,17 @@ pub enum EventKind {
         /// Time since the command to stand, seconds.
         after_s: f64,
     },
+    /// The guard by the scan of a real vehicle has limited a command, so that the robot can stop in time.
+    Guarded {
+        /// The speed before the guard, metres per second.
+        asked_m_per_s: f64,
+        /// The speed that was sent, metres per second.
+        sent_m_per_s: f64,
+        /// Distance of the scanned point from the hull, metres; negative inside the disc that contains the hull.
+        gap_m: f64,
+        /// Direction of the point in the robot frame, radians, counter-clockwise from straight ahead.
+        direction_rad: f64,
+    },
     /// The robot may move again.
     Resumed,
     /// The last event of every run that ended normally or by order.

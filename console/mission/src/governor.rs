@@ -5,6 +5,8 @@
 //! command that would violate the condition is executed more slowly or, as a last resort, not at all: the robot brakes.
 //! The path is computed for one tick with the robot's own acceleration and turn rate, from its current speed.
 
+pub(crate) mod guard;
+
 use geometry::{Braking, Drive, Limits, Motion, motion::at_most};
 use world::{Point, Pose, Vector};
 

@@ -9,7 +9,7 @@ use vehicle::{
     port::{LinkSeen, LinkState, Live, Sensed, Stamps, Stood},
     wire::{
         FromVehicle, Heard, ToVehicle,
-        message::{Commander, Hello, Mode, Odometry, Outline, Readings, State},
+        message::{Commander, Hello, Mode, Odometry, Outline, Readings, Scan, State},
     },
 };
 use world::{ObstacleId, RangeSet, Sighting, StationId};
@@ -160,6 +160,12 @@ impl Inbox {
         self.ages.add(age_s.unwrap_or(0.0));
         if let Some(moved) = self.motions.take(readings) {
             add(&mut self.readings.odometry, moved);
+            if let Some(scan) = &mut self.readings.scan {
+                add(&mut scan.since, moved);
+            }
+        }
+        if let Some(scan) = &readings.scan {
+            self.readings.scan = Some(scanned(scan));
         }
         self.readings.contact |= readings.contact.unwrap_or(false);
         if let Some(tether) = readings.tether {
@@ -287,6 +293,16 @@ fn add(sum: &mut world::Odometry, moved: Odometry) {
         sideways_m: sum.sideways_m + forward_m * sin + sideways_m * cos,
         turn_rad: sum.turn_rad + turn_rad,
     };
+}
+
+fn scanned(scan: &Scan) -> world::Scan {
+    world::Scan {
+        first_rad: scan.first_rad,
+        step_rad: scan.step_rad,
+        sensor_m: scan.sensor_m,
+        since: world::Odometry::default(),
+        ranges_mm: scan.ranges_m.iter().map(|range_m| world::Scan::stored(*range_m)).collect(),
+    }
 }
 
 fn rounded(s: f64) -> f64 {

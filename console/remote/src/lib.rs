@@ -14,7 +14,9 @@ mod remote;
 pub mod server;
 mod stream;
 mod taking;
+mod trial;
 
 pub use address::Address;
 pub use remote::{ConnectError, Remote};
 pub use taking::{Wanted, connected, fitting};
+pub use trial::{Trial, TrialOptions, try_vehicle};

@@ -52,6 +52,12 @@ struct Shared {
 #[derive(Debug)]
 pub struct ConnectError(String);
 
+impl ConnectError {
+    pub(crate) fn at(address: &Address, why: &dyn fmt::Display) -> Self {
+        Self(format!("cannot drive the vehicle at {address}: {why}"))
+    }
+}
+
 impl fmt::Display for ConnectError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)
@@ -80,8 +86,7 @@ impl Remote {
         network: bool,
         stations: &[Station],
     ) -> Result<(Self, Hello), ConnectError> {
-        let failed =
-            |why: &dyn fmt::Display| ConnectError(format!("cannot drive the vehicle at {address}: {why}"));
+        let failed = |why: &dyn fmt::Display| ConnectError::at(address, why);
         let Stream { read, write, end } = Stream::open(address, network).map_err(|error| failed(&error))?;
         let stations = stations.iter().map(|station| (station.name.clone(), station.id)).collect();
         let shared = Arc::new(Shared {

@@ -106,6 +106,17 @@ impl Stream {
     }
 }
 
+impl End {
+    /// Sends a signal to an adapter that was started here and to its children; other adapters do not get it.
+    pub(crate) fn signal(&self, signal: rustix::process::Signal) {
+        let Self::Process(child) = self else { return };
+        if let Some(group) = i32::try_from(child.id()).ok().and_then(rustix::process::Pid::from_raw) {
+            // The group may have ended in the meantime.
+            let _ = rustix::process::kill_process_group(group, signal);
+        }
+    }
+}
+
 impl Drop for End {
     fn drop(&mut self) {
         match self {
@@ -113,25 +124,28 @@ impl Drop for End {
             Self::Unix(stream) => drop(stream.shutdown(std::net::Shutdown::Both)),
             Self::Tcp(stream) => drop(stream.shutdown(std::net::Shutdown::Both)),
             Self::Datagrams => {}
-            Self::Process(child) => end_process(child),
+            Self::Process(child) => {
+                if !has_ended(child) {
+                    self.signal(rustix::process::Signal::KILL);
+                }
+                if let Self::Process(child) = self {
+                    let _ = child.wait();
+                }
+            }
         }
     }
 }
 
-/// Waits for an adapter to end after its stdin was closed, and ends it by force if it does not.
-fn end_process(child: &mut Child) {
+/// Waits for an adapter to end after its stdin was closed; returns whether it has.
+fn has_ended(child: &mut Child) -> bool {
     let began = Instant::now();
     while began.elapsed() < PATIENCE {
         if !matches!(child.try_wait(), Ok(None)) {
-            return;
+            return true;
         }
         thread::sleep(Duration::from_millis(10));
     }
-    if let Some(group) = i32::try_from(child.id()).ok().and_then(rustix::process::Pid::from_raw) {
-        // The group may have ended in the meantime.
-        let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
-    }
-    let _ = child.wait();
+    false
 }
 
 /// A socket for datagrams as a stream of lines.

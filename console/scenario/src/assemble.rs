@@ -125,6 +125,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         attended: false,
         start_names_plan: false,
         live: false,
+        guard_reaction_s: None,
         better_plan: rest.better_plan,
     };
     let tether_anchor = mission.tether.as_ref().map(|tether| tether.anchor);

@@ -9,6 +9,7 @@ mod motion;
 mod movers;
 mod random;
 mod ranging;
+mod scanner;
 mod sight;
 mod simulator;
 mod sweep;

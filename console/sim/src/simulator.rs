@@ -6,6 +6,7 @@ use crate::{
     movers::Movers,
     random::{RandomStreams, normal},
     ranging::Sounder,
+    scanner::scan,
     sight::sightings,
     sweep::sweep,
 };
@@ -89,7 +90,14 @@ impl Simulator {
             contact: self.in_contact,
             paid_out_m: self.cable.as_ref().map(Cable::length_m),
             pressure_pa,
+            scan: None,
         }
+    }
+
+    /// What a scanner at the robot's centre would measure now, without noise: distances along evenly spaced rays, metres,
+    /// counter-clockwise from straight ahead; `None` beyond `most_m`.
+    pub fn scan(&self, rays: u32, most_m: f64) -> Vec<Option<f64>> {
+        scan(&self.map, &self.config.world.boundary, &self.pose, rays, most_m)
     }
 
     /// Advances the true state by one tick.

@@ -29,6 +29,7 @@ pub fn name(cause: &Cause, of: &Run) -> String {
         Cause::Zone(zone) => format!("hull in zone {}", text::fit(zone, 18)),
         Cause::Link => "link to vehicle lost".into(),
         Cause::Vehicle => "vehicle cannot be driven".into(),
+        Cause::Guard => "guard stopped the robot".into(),
         Cause::StopNotConfirmed => "STOP NOT CONFIRMED".into(),
         Cause::Planner => "planner failed".into(),
         Cause::Stuck => "robot stuck".into(),
@@ -66,6 +67,7 @@ pub fn guide(cause: &Cause) -> Guide {
         Cause::Tether(word) => tether::guide(word),
         Cause::Link => vehicle::LINK,
         Cause::Vehicle => vehicle::VEHICLE,
+        Cause::Guard => vehicle::GUARD,
         Cause::StopNotConfirmed => vehicle::STOP_NOT_CONFIRMED,
         Cause::Certificate => Guide {
             cause: "If run to its end, the plan would exceed a tether limit, touch something, or finish \

@@ -1,6 +1,9 @@
 //! The sensor readings of a robot in one tick. They never include the truth.
 
-use crate::tank::{ObstacleId, StationId};
+use crate::{
+    scan::Scan,
+    tank::{ObstacleId, StationId},
+};
 use geometry::Shape;
 use serde::{Deserialize, Serialize};
 
@@ -58,4 +61,7 @@ pub struct Readings {
     /// Gauge pressure at the hull, pascals; `None` without a pressure sensor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure_pa: Option<f64>,
+    /// The last scan of the surroundings; `None` without a scanner, and in ticks without a scan.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scan: Option<Scan>,
 }

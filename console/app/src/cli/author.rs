@@ -1,4 +1,4 @@
-//! Commands for planner authors.
+//! Commands for authors of planners and adapters.
 
 use clap::Args;
 use std::path::PathBuf;
@@ -28,6 +28,27 @@ pub(crate) enum Lang {
     C,
     /// C++17, with the same header.
     Cpp,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct NewVehicleArgs {
+    /// Name of the vehicle: a letter, then up to 31 of a-z, 0-9, _ and -.
+    pub name: String,
+    /// Language of the adapter.
+    #[arg(long, value_name = "LANG", default_value = "python")]
+    pub lang: VehicleLang,
+    /// Folder in which to create the adapter's folder.
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    pub out: PathBuf,
+}
+
+/// The language of a new adapter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum VehicleLang {
+    /// Python 3.8 or later, without packages.
+    Python,
+    /// Rust, with the crate `serde_json`.
+    Rust,
 }
 
 #[derive(Debug, Args)]

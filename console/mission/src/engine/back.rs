@@ -107,11 +107,10 @@ impl Mission {
             return Drive::STILL;
         }
         let Some(wanted) = self.known.command_back() else { return Drive::STILL };
-        let sent = self.known.governed(wanted);
+        let (sent, limits) = self.known.made_safe(wanted);
         let asked = (sent != wanted).then_some(wanted);
         self.happened.push(EventKind::Commanded { ask: None, command: sent, asked });
-        let limited = self.known.note_limit(wanted, sent);
-        self.happened.extend(limited);
+        limits.into_iter().for_each(|limit| self.happened.extend(limit));
         sent.drive
     }
 

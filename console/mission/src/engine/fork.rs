@@ -26,7 +26,7 @@ impl Mission {
         let mut mission = self.clone();
         (mission.preparing, mission.shadow) = (None, None);
         // In the forecast the robot is simulated, and starts at rest.
-        mission.known.config.live = false;
+        (mission.known.config.live, mission.known.config.guard_reaction_s) = (false, None);
         mission.known.governor.stand();
         // No operator is present to take a better plan.
         if mission.known.config.better_plan == BetterPlan::Offer {

@@ -1,5 +1,6 @@
 //! Limits commands: the robot's speed as the mission knows it, and the reports about planners that are slowed down.
 
+pub(super) mod guarding;
 pub(super) mod state;
 
 use super::known::Known;
@@ -13,6 +14,8 @@ use world::{Medium, Mode};
 
 /// Ratio of the speed sent to the speed requested below which a command counts as limited.
 const LIMITED_SHARE: f64 = 0.9;
+/// A planner is reported after being slowed down for this long, seconds.
+const NAMED_AFTER_S: f64 = 2.0;
 
 impl Known {
     /// The robot's own speed, metres per second: the commanded speed, to the extent that the robot's acceleration has
@@ -21,8 +24,16 @@ impl Known {
         self.governor.momentum.speed_m_per_s()
     }
 
+    /// Returns a command as it is safe by the chart and by the scan, and what to report about it.
+    pub(super) fn made_safe(&mut self, wanted: Command) -> (Command, [Option<EventKind>; 2]) {
+        let governed = self.governed(wanted);
+        let sent = self.guarded(governed);
+        let limited = self.note_limit(wanted, governed);
+        (sent, [limited, self.note_guard(governed.drive, sent.drive)])
+    }
+
     /// Returns a command, slowed down so that the robot can stop after it.
-    pub(super) fn governed(&self, command: Command) -> Command {
+    fn governed(&self, command: Command) -> Command {
         let (here, momentum) = (self.as_governed(), &self.governor.momentum);
         let reach_m = governor::reach_m(momentum, command.drive, &here);
         let is_free = self.chart.is_free(here.pose.position, reach_m);
@@ -36,16 +47,17 @@ impl Known {
     }
 
     /// Reports a planner once it has been slowed down for long enough.
-    pub(super) fn note_limit(&mut self, asked: Command, sent: Command) -> Option<EventKind> {
+    fn note_limit(&mut self, asked: Command, sent: Command) -> Option<EventKind> {
         let (asked_m_per_s, sent_m_per_s) = (speed(asked.drive), speed(sent.drive));
         let is_limited = sent_m_per_s < LIMITED_SHARE * asked_m_per_s;
         let needs_m = Braking::of(&self.as_governed().limits).distance_m(asked_m_per_s);
-        let is_named = self.governor.limited.update(is_limited, self.config.tick_s);
+        let is_named = self.governor.limited.update(is_limited, self.config.tick_s, NAMED_AFTER_S);
         is_named.then_some(EventKind::SpeedLimited { asked_m_per_s, sent_m_per_s, needs_m })
     }
 
     /// Records the motion that is sent to the robot.
     pub(super) fn follow_drive(&mut self, drive: Drive) {
+        self.remember_sent(drive);
         let here = self.as_governed();
         self.governor.momentum = self.governor.momentum.after(drive, &here);
     }

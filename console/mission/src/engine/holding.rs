@@ -52,7 +52,7 @@ impl Mission {
         } else if resumes.is_never() && !self.known.config.attended && self.driving.prepare == Prepare::No {
             let (outcome, message) = match by {
                 // A planner that reports that no path exists has not failed.
-                HoldReason::Stuck { message } => (Outcome::Stuck, message),
+                HoldReason::Stuck { message } | HoldReason::Guard { message } => (Outcome::Stuck, message),
                 HoldReason::PlannerFault { message }
                 | HoldReason::PlanRefused { message }
                 | HoldReason::PlannerSilent { message }

@@ -1,6 +1,10 @@
 //! The state of a mission, apart from its planners.
 
-use super::{back::Back, floor::ScannedFloor, governing::state::Governor};
+use super::{
+    back::Back,
+    floor::ScannedFloor,
+    governing::{guarding::ScanGuard, state::Governor},
+};
 use crate::{
     chart::Chart,
     config::MissionConfig,
@@ -32,6 +36,8 @@ pub(super) struct Known {
     pub trail: Vec<Point>,
     /// State of the rule that limits commands.
     pub governor: Governor,
+    /// State of the guard by the raw scan.
+    pub scan_guard: ScanGuard,
     /// The command at the end of the last tick.
     pub last_drive: Drive,
     /// The drive back that was ordered, until the mission is resumed.
@@ -53,6 +59,7 @@ impl Known {
             tether: tether.and_then(|tether| Tether::new(tether, radius_m, &drawing, start).ok()),
             locator: Locator::new(&config, &drawing),
             governor: Governor::new(&config, &drawing.zones),
+            scan_guard: ScanGuard::default(),
             chart: Chart::new(drawing, &config, seed),
             task: Task::new(&config.task, start),
             floor: ScannedFloor::new(floor),

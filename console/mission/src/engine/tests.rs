@@ -5,6 +5,7 @@ mod better_plan;
 mod braking;
 mod caught;
 mod covering;
+mod guarding;
 mod returning;
 mod shadow;
 mod start;
@@ -271,6 +272,7 @@ fn config() -> MissionConfig {
         attended: true,
         start_names_plan: false,
         live: false,
+        guard_reaction_s: None,
         better_plan: BetterPlan::Offer,
     }
 }
@@ -306,6 +308,8 @@ struct Flight {
     closed: Vec<crate::WorkerId>,
     /// Why the vehicle cannot be driven.
     trouble: Option<&'static str>,
+    /// Discs that are seen only by a scanner, and whether it works; `None` without one.
+    scanner: Option<(Vec<(Point, f64)>, bool)>,
     /// What entered each tick.
     inputs: Vec<(Readings, Vec<Order>)>,
 }
@@ -334,6 +338,7 @@ impl Flight {
             open: vec![],
             closed: vec![],
             trouble: None,
+            scanner: None,
             inputs: vec![],
         }
     }
@@ -356,6 +361,7 @@ impl Flight {
             contact: false,
             paid_out_m: self.reel.as_ref().map(|cable| cable.length_m() + self.caught_m),
             pressure_pa: self.pressure_pa,
+            scan: self.scan(),
         };
         self.mission.sense(&Input { readings: &readings, orders, trouble: self.trouble });
         self.inputs.push((readings, orders.to_vec()));
@@ -377,6 +383,23 @@ impl Flight {
         self.moved = Odometry { forward_m: velocity.x * 0.1, sideways_m: velocity.y * 0.1, turn_rad: 0.0 };
         self.events.extend(step.events.clone());
         step.events.into_iter().map(|event| event.kind).collect()
+    }
+
+    /// What the scanner measures from the robot's place.
+    fn scan(&self) -> Option<world::Scan> {
+        let (discs, _) = self.scanner.as_ref().filter(|(_, works)| *works)?;
+        let step_rad = std::f64::consts::TAU / 360.0;
+        let ray = |n: u32| {
+            let (sin, cos) = (self.pose.heading_rad + f64::from(n) * step_rad).sin_cos();
+            let hit = |(center, radius_m): &(Point, f64)| {
+                let to = center - self.pose.position;
+                let along = to.dot(&Vector::new(cos, sin));
+                let rest = radius_m * radius_m - (to.norm_squared() - along * along);
+                (rest >= 0.0 && along > 0.0).then(|| along - rest.sqrt())
+            };
+            world::Scan::stored(discs.iter().filter_map(hit).min_by(f64::total_cmp))
+        };
+        Some(world::Scan { step_rad, ranges_mm: (0..360).map(ray).collect(), ..world::Scan::default() })
     }
 
     /// Answers what is due in this tick, and hands out what is asked.

@@ -4,6 +4,7 @@ use super::{
     Event, EventKind, OfferStage, TetherAlarm,
     severity::{self, Severity},
 };
+use crate::engine::side;
 use crate::{
     order::{Check, CheckOutcome, Injection, Note, Noted, Order, RangeFault},
     phase::{Outcome, StepTo},
@@ -136,6 +137,15 @@ impl Event {
                 Severity::Crit,
                 "vehicle",
                 format!("STOP NOT CONFIRMED: odometry does not show a stop {after_s:.2} s after the command"),
+            ),
+            EventKind::Guarded { sent_m_per_s, gap_m, direction_rad, .. } => line(
+                Severity::Watch,
+                "vehicle",
+                format!(
+                    "guard: speed limited to {sent_m_per_s:.2} m/s, the scan shows something {:.2} m from the hull, {}",
+                    gap_m.max(0.0),
+                    side(*direction_rad)
+                ),
             ),
             EventKind::Resumed => line(Severity::Info, "mission", "resumed".into()),
             EventKind::Ended { outcome, reason } => {

@@ -114,6 +114,9 @@ impl EventKind {
                 round_point(position);
                 [heading_rad, clearance_m].into_iter().for_each(round);
             }
+            Self::Guarded { asked_m_per_s, sent_m_per_s, gap_m, direction_rad } => {
+                [asked_m_per_s, sent_m_per_s, gap_m, direction_rad].into_iter().for_each(round);
+            }
             Self::SpeedLimited { asked_m_per_s, sent_m_per_s, needs_m } => {
                 [asked_m_per_s, sent_m_per_s, needs_m].into_iter().for_each(round);
             }

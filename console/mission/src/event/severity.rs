@@ -39,7 +39,9 @@ impl Fault {
 pub(super) fn of_hold(by: &HoldReason) -> Severity {
     match by {
         HoldReason::Operator | HoldReason::Stepped | HoldReason::PlannerReplaced => Severity::Info,
-        HoldReason::ZoneBreached { .. } | HoldReason::Vehicle { .. } => Severity::Crit,
+        HoldReason::ZoneBreached { .. } | HoldReason::Vehicle { .. } | HoldReason::Guard { .. } => {
+            Severity::Crit
+        }
         HoldReason::PositionLost
         | HoldReason::RangesInconsistent
         | HoldReason::PlannerFault { .. }

@@ -48,6 +48,11 @@ pub enum HoldReason {
         /// The reason, as a clause.
         message: String,
     },
+    /// The scan of the vehicle shows something in the robot's way, or the scan is missing.
+    Guard {
+        /// The reason, as a clause.
+        message: String,
+    },
     /// A single step is complete.
     Stepped,
     /// The planner that caused the hold was replaced; the operator decides when the robot moves again.
@@ -70,6 +75,7 @@ impl HoldReason {
             Self::PlanRefused { message: message() },
             Self::ZoneBreached { zone: message() },
             Self::Vehicle { message: message() },
+            Self::Guard { message: message() },
             Self::Stepped,
             Self::PlannerReplaced,
         ];
@@ -86,6 +92,7 @@ impl HoldReason {
                 | Self::PlanRefused { .. }
                 | Self::ZoneBreached { .. }
                 | Self::Vehicle { .. }
+                | Self::Guard { .. }
                 | Self::Stepped
                 | Self::PlannerReplaced => {}
             }
@@ -109,7 +116,8 @@ impl fmt::Display for HoldReason {
             | Self::PlannerSilent { message }
             | Self::Tether { message }
             | Self::PlanRefused { message }
-            | Self::Vehicle { message } => write!(f, "held: {message}"),
+            | Self::Vehicle { message }
+            | Self::Guard { message } => write!(f, "held: {message}"),
             Self::Stuck { message } => write!(f, "held: robot stuck, {message}"),
             Self::ZoneBreached { zone } => write!(f, "held: hull in zone {zone}"),
             Self::Stepped => f.write_str("held after single step"),

@@ -120,7 +120,7 @@ fn held(by: &HoldReason) -> &'static str {
         HoldReason::Tether { .. } => HELD_TETHER,
         HoldReason::PlanRefused { .. } => HELD_REFUSED,
         HoldReason::ZoneBreached { .. } => HELD_ZONE,
-        HoldReason::Vehicle { .. } => HELD_VEHICLE,
+        HoldReason::Vehicle { .. } | HoldReason::Guard { .. } => HELD_VEHICLE,
     }
 }
 

@@ -1,6 +1,7 @@
 //! The meaning of alarms about a real vehicle.
 
-use super::remedy::{END, Guide, HOLD, RESUME, wait};
+use super::remedy::{END, Guide, HOLD, RESUME, run, wait};
+use crate::actions::ActionId;
 
 pub(super) const LINK: Guide = Guide {
     cause: "The vehicle sends nothing, or only faulty messages: its adapter has ended, the network is cut, or the \
@@ -20,6 +21,18 @@ pub(super) const VEHICLE: Guide = Guide {
     reports a fault.",
     effect: "The robot is held until the operator resumes. Position, coverage and tether are still updated.",
     remedies: &[wait("Ask the person at the robot, and clear the cause there."), RESUME, END],
+};
+
+pub(super) const GUARD: Guide = Guide {
+    cause: "The scan of the vehicle shows something in the way of the hull that the plan does not avoid, or the scan is \
+    missing or too old.",
+    effect: "The robot is held until the operator resumes. The guard continues to limit it.",
+    remedies: &[
+        wait("Look at the place, and remove the object, or draw a no-go zone around it."),
+        RESUME,
+        run("Drive back to the anchor or the start. Asks first.", ActionId::DriveBack),
+        END,
+    ],
 };
 
 pub(super) const STOP_NOT_CONFIRMED: Guide = Guide {

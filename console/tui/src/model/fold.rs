@@ -113,6 +113,7 @@ impl Run {
             }
             EventKind::Resumed => {
                 self.clear(&Cause::Stuck);
+                self.clear(&Cause::Guard);
                 self.planner_works();
                 change.withdraw(Withdrawn::Resume);
             }
@@ -122,6 +123,7 @@ impl Run {
             | EventKind::Snapshotted { .. }
             | EventKind::Discarded { .. }
             | EventKind::SpeedLimited { .. }
+            | EventKind::Guarded { .. }
             | EventKind::MediumAwaited
             | EventKind::MediumKnown { .. }
             | EventKind::PlannerLogged { .. }

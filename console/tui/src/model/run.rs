@@ -117,6 +117,11 @@ pub struct Progress {
 }
 
 impl Run {
+    /// Whether the scan of a real vehicle guards the robot.
+    pub fn has_guard(&self) -> bool {
+        self.about.as_ref().is_some_and(|about| about.mission.guard_reaction_s.is_some())
+    }
+
     /// Whether the robot is a real vehicle.
     pub fn is_live(&self) -> bool {
         self.about.as_ref().is_some_and(|about| about.mission.live)

@@ -105,6 +105,7 @@ pub(crate) fn config() -> MissionConfig {
         attended: true,
         start_names_plan: true,
         live: false,
+        guard_reaction_s: None,
         better_plan: mission::BetterPlan::Offer,
     }
 }

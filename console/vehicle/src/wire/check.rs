@@ -172,6 +172,12 @@ impl Scan {
             return misfit("readings.scan.step_rad", "is 0");
         }
         above_zero("readings.scan.range_max_m", self.range_max_m, 1000.0)?;
+        for (axis, place_m) in self.sensor_m.iter().enumerate() {
+            within(&format!("readings.scan.sensor_m[{axis}]"), *place_m, -10.0..=10.0)?;
+        }
+        if self.ranges_m.is_empty() {
+            return misfit("readings.scan.ranges_m", "is empty; a ray without an echo is null");
+        }
         at_most("readings.scan.ranges_m", self.ranges_m.len(), RAYS_MAX)?;
         for (at, range_m) in self.ranges_m.iter().enumerate() {
             let Some(range_m) = range_m else { continue };

@@ -216,7 +216,12 @@ pub struct Difference {
     pub tdoa_s: f64,
 }
 
-/// A scan about the origin of the robot frame.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn is_origin(place: &[f64; 2]) -> bool {
+    *place == [0.0, 0.0]
+}
+
+/// A scan of the surroundings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Scan {
     /// Direction of the first ray, radians, counter-clockwise from straight ahead: at most 7 in size.
@@ -225,7 +230,10 @@ pub struct Scan {
     pub step_rad: f64,
     /// Largest distance that the sensor measures, metres: greater than 0, at most 1000.
     pub range_max_m: f64,
-    /// Distances, metres, from 0 to `range_max_m`; `null` for a ray without an echo. At most 4096 rays.
+    /// Place of the sensor in the robot frame, metres, each at most 10 from 0.
+    #[serde(default, skip_serializing_if = "is_origin")]
+    pub sensor_m: [f64; 2],
+    /// Distances from the sensor, metres, from 0 to `range_max_m`; `null` for a ray without an echo. 1 to 4096 rays.
     pub ranges_m: Vec<Option<f64>>,
 }
 

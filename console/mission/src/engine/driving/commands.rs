@@ -63,10 +63,10 @@ impl Driving {
             self.course.want_plan(reason);
         }
         let wanted = known.sending().as_sent(command);
-        let sent = known.governed(wanted);
+        let (sent, limits) = known.made_safe(wanted);
         let asked = (sent != wanted).then_some(wanted);
         happened.push(EventKind::Commanded { ask: Some(ask), command: sent, asked });
-        happened.extend(known.note_limit(wanted, sent));
+        limits.into_iter().for_each(|limit| happened.extend(limit));
         Some(sent.drive)
     }
 

@@ -3,9 +3,7 @@
 use crate::{config::MissionConfig, governor::Momentum};
 use world::{Medium, Mode, SensedMedium, Zone};
 
-/// Time, seconds, after which a planner that is being slowed down is reported.
-const NAMED_AFTER_S: f64 = 2.0;
-/// Time without slowing down, seconds, after which a planner can be reported again.
+/// A limit is reported again only after nothing was limited for this long, seconds.
 const NAMED_AGAIN_S: f64 = 10.0;
 /// State of the rule that limits commands.
 #[derive(Debug, Clone)]
@@ -19,7 +17,7 @@ pub(in crate::engine) struct Governor {
     pub(in crate::engine) limited: Limited,
 }
 
-/// How long a planner has been slowed down, or how long it has not been.
+/// How long commands have been limited, or how long they have not been.
 #[derive(Debug, Clone, Copy, Default)]
 pub(in crate::engine) struct Limited {
     for_s: f64,
@@ -28,8 +26,9 @@ pub(in crate::engine) struct Limited {
 }
 
 impl Limited {
-    /// Records one more command; returns whether it is time to report that the planner is being slowed down.
-    pub(in crate::engine) fn update(&mut self, is_limited: bool, tick_s: f64) -> bool {
+    /// Records one more command; returns whether it is time to report that commands are limited: after `named_after_s`
+    /// seconds.
+    pub(in crate::engine) fn update(&mut self, is_limited: bool, tick_s: f64, named_after_s: f64) -> bool {
         if !is_limited {
             self.for_s = 0.0;
             self.free_s += tick_s;
@@ -38,7 +37,7 @@ impl Limited {
         }
         self.free_s = 0.0;
         self.for_s += tick_s;
-        self.for_s >= NAMED_AFTER_S && !std::mem::replace(&mut self.is_named, true)
+        self.for_s >= named_after_s && !std::mem::replace(&mut self.is_named, true)
     }
 }
 

@@ -27,6 +27,8 @@ pub enum Cause {
     Link,
     /// The vehicle cannot be driven: by hand, emergency stop or fault.
     Vehicle,
+    /// The scan shows something in the robot's way, or is missing.
+    Guard,
     /// The vehicle moves although it should stand.
     StopNotConfirmed,
     /// The planner failed.
@@ -93,6 +95,7 @@ impl Cause {
             Self::Zone(zone) => format!("zone {zone}"),
             Self::Link => "link".into(),
             Self::Vehicle => "vehicle".into(),
+            Self::Guard => "guard".into(),
             Self::StopNotConfirmed => "stop_not_confirmed".into(),
             Self::Planner => "planner".into(),
             Self::Stuck => "stuck".into(),
@@ -113,6 +116,7 @@ impl Cause {
             HoldReason::RangesInconsistent => Some(Self::Contradiction),
             HoldReason::PlannerFault { .. } | HoldReason::PlannerSilent { .. } => Some(Self::Planner),
             HoldReason::Stuck { .. } => Some(Self::Stuck),
+            HoldReason::Guard { .. } => Some(Self::Guard),
             HoldReason::PlanRefused { .. } => Some(Self::Certificate),
             HoldReason::ZoneBreached { zone } => Some(Self::Zone(zone.clone())),
             HoldReason::Tether { .. }
@@ -137,6 +141,7 @@ impl Cause {
             Self::Zone("no-go 1".into()),
             Self::Link,
             Self::Vehicle,
+            Self::Guard,
             Self::StopNotConfirmed,
             Self::Planner,
             Self::Stuck,

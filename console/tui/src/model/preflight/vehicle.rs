@@ -28,6 +28,14 @@ impl Model {
             }
             None => (CheckOutcome::Failed, "odometry has not confirmed the stop yet; check again"),
         };
-        vec![link, check("standstill", stop.0, stop.1.into())]
+        let guard = if self.live.run.has_guard() {
+            (CheckOutcome::Passed, "on: the scan limits the robot to speeds from which it can stop in time")
+        } else {
+            (
+                CheckOutcome::Warning,
+                "off: the vehicle has no scan, so nothing stops it before an unknown object",
+            )
+        };
+        vec![link, check("standstill", stop.0, stop.1.into()), check("guard", guard.0, guard.1.into())]
     }
 }

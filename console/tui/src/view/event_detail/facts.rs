@@ -49,6 +49,7 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::PlannerLate { .. } => "planner late",
         EventKind::PlannerFailed { .. } => "planner failed",
         EventKind::SpeedLimited { .. } => "speed limited",
+        EventKind::Guarded { .. } => "guard by the scan",
         EventKind::MediumAwaited => "waiting for the pressure sensor",
         EventKind::MediumKnown { .. } => "floor medium detected",
         EventKind::Held { .. } => "mission held",
@@ -94,6 +95,12 @@ fn of_event(run: &Run, event: &Occurrence) -> Vec<Field> {
             ("requested", format!("{} m/s", text::number(*asked_m_per_s, 2))),
             ("sent", format!("{} m/s", text::number(*sent_m_per_s, 2))),
             ("to stop", format!("{} at the requested speed", metres(*needs_m))),
+        ],
+        EventKind::Guarded { asked_m_per_s, sent_m_per_s, gap_m, direction_rad } => vec![
+            ("requested", format!("{} m/s", text::number(*asked_m_per_s, 2))),
+            ("sent", format!("{} m/s", text::number(*sent_m_per_s, 2))),
+            ("gap", format!("{} between hull and scanned point", metres(*gap_m))),
+            ("direction", format!("{}° to the left", text::number(direction_rad.to_degrees(), 0))),
         ],
         EventKind::MediumKnown { medium, pressure_pa } => {
             vec![

@@ -62,9 +62,10 @@ fn held_for_good(by: &HoldReason) -> Vec<String> {
         HoldReason::Operator | HoldReason::PlannerReplaced | HoldReason::PlannerSilent { .. } => {
             (state(by), &[RESUME, PLANNER])
         }
-        HoldReason::Tether { .. } | HoldReason::ZoneBreached { .. } | HoldReason::Vehicle { .. } => {
-            (state(by), &[RESUME, "<end>: end mission."])
-        }
+        HoldReason::Tether { .. }
+        | HoldReason::ZoneBreached { .. }
+        | HoldReason::Vehicle { .. }
+        | HoldReason::Guard { .. } => (state(by), &[RESUME, "<end>: end mission."]),
         HoldReason::PlanRefused { .. } => (state(by), &[PLANNER, "<run-uncertified>: run it."]),
         HoldReason::PlannerFault { .. } | HoldReason::Stuck { .. } => (state(by), &[PLANNER, RETRY]),
     };
@@ -84,6 +85,7 @@ fn state(by: &HoldReason) -> &'static str {
         HoldReason::PlanRefused { .. } => "HELD: plan refused",
         HoldReason::ZoneBreached { .. } => "HELD: hull in a no-go zone",
         HoldReason::Vehicle { .. } => "HELD: vehicle cannot be driven",
+        HoldReason::Guard { .. } => "HELD by the guard",
         HoldReason::PlannerSilent { .. } => "HELD: planner silent",
         HoldReason::PlannerFault { .. } => "HELD: planner failed",
     }
@@ -97,7 +99,8 @@ fn message(by: &HoldReason) -> Option<String> {
         | HoldReason::Stuck { message }
         | HoldReason::Tether { message }
         | HoldReason::PlanRefused { message }
-        | HoldReason::Vehicle { message } => Some(format!("{}.", text::capitalized(message))),
+        | HoldReason::Vehicle { message }
+        | HoldReason::Guard { message } => Some(format!("{}.", text::capitalized(message))),
         _ => None,
     }
 }

@@ -1,0 +1,154 @@
+//! The guard by the raw scan of a real vehicle: the scanned points, and when the robot is held because of them.
+
+use super::{super::Mission, super::known::Known, speed, state::Limited};
+use crate::{
+    config::MissionConfig,
+    event::{EventKind, rounded_command},
+    governor::guard::{Guard, Guarded, Sent},
+    phase::{Hold, HoldReason, Resumes},
+};
+use geometry::{Braking, Drive};
+use planner_api::Command;
+use world::{Point, Readings, scan::carried};
+
+/// An older scan no longer guards the robot, seconds.
+const SCAN_MAX_AGE_S: f64 = 0.5;
+/// Points farther from the hull than the stopping distance at full speed plus this are not kept, metres: more than the
+/// robot travels until its scan is too old.
+const KEPT_M: f64 = 2.0;
+/// The robot is held if even braking may be too late in this many ticks in a row: a single one may be noise, and the
+/// robot brakes at once.
+const LATE_TICKS: u32 = 2;
+/// The robot is held if the guard has kept it from moving for this long, seconds.
+const BLOCKED_S: f64 = 2.0;
+/// Share of the requested speed below which the robot does not move.
+const BLOCKED_SHARE: f64 = 0.1;
+/// The guard is reported after it has limited the robot for this long, seconds.
+const NAMED_AFTER_S: f64 = 0.5;
+
+/// The state of the guard.
+#[derive(Debug, Clone, Default)]
+pub(in crate::engine) struct ScanGuard {
+    /// The points of the last scan, in the robot frame now.
+    points: Vec<Point>,
+    /// Age of the last scan, seconds; `None` before the first one.
+    age_s: Option<f64>,
+    /// The motion that the vehicle may still have to carry out, oldest first.
+    sent: Vec<Sent>,
+    /// The point that limits the robot: distance from the hull, metres, and direction, radians.
+    before: Option<(f64, f64)>,
+    late_ticks: u32,
+    blocked_s: f64,
+    limited: Limited,
+}
+
+impl Known {
+    /// Takes the scan of a tick.
+    pub(in crate::engine) fn take_scan(&mut self, readings: &Readings) {
+        if self.config.guard_reaction_s.is_none() {
+            return;
+        }
+        let far_m = reach_m(&self.config);
+        let guard = &mut self.scan_guard;
+        if let Some(scan) = &readings.scan {
+            guard.points = scan.points().filter(|point| point.coords.norm() <= far_m).collect();
+            guard.age_s = Some(0.0);
+            return;
+        }
+        for point in &mut guard.points {
+            *point = carried(*point, &readings.odometry);
+        }
+        guard.age_s = guard.age_s.map(|age_s| age_s + self.config.tick_s);
+    }
+
+    /// Limits a command by the scan; the robot must be able to stop before it touches any scanned point.
+    pub(in crate::engine) fn guarded(&mut self, command: Command) -> Command {
+        if self.config.guard_reaction_s.is_none() {
+            return command;
+        }
+        let here = self.as_governed();
+        let guard = Guard::new(&self.scan_guard.points, &here, &self.scan_guard.sent);
+        let Guarded { drive, before, is_late } = guard.guarded(&self.governor.momentum, command.drive);
+        let state = &mut self.scan_guard;
+        state.before = before;
+        state.late_ticks = if is_late { state.late_ticks + 1 } else { 0 };
+        let is_blocked = before.is_some() && speed(drive) < BLOCKED_SHARE * speed(command.drive);
+        state.blocked_s = if is_blocked { state.blocked_s + self.config.tick_s } else { 0.0 };
+        if before.is_some() { rounded_command(Command { drive, ..command }) } else { command }
+    }
+
+    /// Remembers the drive of a tick until the vehicle has certainly followed it.
+    pub(in crate::engine) fn remember_sent(&mut self, drive: Drive) {
+        let Some(reaction_s) = self.config.guard_reaction_s else { return };
+        let sent = Sent::of(&self.governor.momentum, drive, &self.as_governed());
+        let kept = (reaction_s / self.config.tick_s).ceil() as usize;
+        let state = &mut self.scan_guard;
+        state.sent.push(sent);
+        let over = state.sent.len().saturating_sub(kept);
+        state.sent.drain(..over);
+    }
+
+    /// Reports the guard once it has limited the robot for long enough, and at once if the robot must stop.
+    pub(in crate::engine) fn note_guard(&mut self, asked: Drive, sent: Drive) -> Option<EventKind> {
+        let state = &mut self.scan_guard;
+        let is_named = state.limited.update(state.before.is_some(), self.config.tick_s, NAMED_AFTER_S);
+        let (gap_m, direction_rad) = state.before.filter(|_| is_named || state.late_ticks == 1)?;
+        let (asked_m_per_s, sent_m_per_s) = (speed(asked), speed(sent));
+        Some(EventKind::Guarded { asked_m_per_s, sent_m_per_s, gap_m, direction_rad })
+    }
+
+    /// Why the guard stops the robot, as a clause.
+    fn guard_stop(&self) -> Option<String> {
+        self.config.guard_reaction_s?;
+        let guard = &self.scan_guard;
+        match guard.age_s {
+            None => return Some("the vehicle has not sent a scan yet, so the guard is blind".into()),
+            Some(age_s) if age_s > SCAN_MAX_AGE_S => {
+                return Some(format!("the last scan is {age_s:.1} s old, so the guard is blind"));
+            }
+            Some(_) => {}
+        }
+        let (gap_m, direction_rad) = guard.before?;
+        if guard.late_ticks < LATE_TICKS && guard.blocked_s < BLOCKED_S {
+            return None;
+        }
+        let (gap_m, side) = (gap_m.max(0.0), side(direction_rad));
+        Some(format!("the scan shows something {gap_m:.2} m from the hull, {side}"))
+    }
+}
+
+/// Distance from the robot's centre within which a point can matter until the next scan, metres.
+fn reach_m(config: &MissionConfig) -> f64 {
+    let fastest = config.limits.v_max_m_per_s;
+    let reaction_s = config.guard_reaction_s.unwrap_or_default();
+    config.limits.radius_m + Braking::of(&config.limits).distance_m(fastest) + fastest * reaction_s + KEPT_M
+}
+
+/// A direction in the robot frame in words.
+pub(crate) fn side(direction_rad: f64) -> &'static str {
+    match direction_rad.to_degrees() {
+        degrees if degrees.abs() <= 30.0 => "ahead",
+        degrees if degrees.abs() >= 150.0 => "behind",
+        degrees if degrees >= 120.0 => "behind on the left",
+        degrees if degrees <= -120.0 => "behind on the right",
+        degrees if degrees >= 60.0 => "on the left",
+        degrees if degrees <= -60.0 => "on the right",
+        degrees if degrees > 0.0 => "ahead on the left",
+        _ => "ahead on the right",
+    }
+}
+
+impl Mission {
+    /// Holds a moving robot that the guard has stopped; only an order ends that hold. Returns whether it has.
+    pub(in crate::engine) fn hold_by_guard(&mut self) -> bool {
+        if !self.known.phase.may_move() || !self.known.is_running() {
+            return false;
+        }
+        let Some(message) = self.known.guard_stop() else { return false };
+        self.known.scan_guard.late_ticks = 0;
+        self.known.scan_guard.blocked_s = 0.0;
+        self.hold(Hold { by: HoldReason::Guard { message }, resumes: Resumes::Never });
+        self.go_on_or_help();
+        true
+    }
+}

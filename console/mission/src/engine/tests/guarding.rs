@@ -1,0 +1,105 @@
+//! The guard by the raw scan of a real vehicle.
+
+use super::{Flight, config};
+use crate::{
+    MissionConfig,
+    event::EventKind,
+    order::Order,
+    phase::{HoldReason, Outcome, Phase},
+};
+use world::Point;
+
+fn guarded(config: MissionConfig) -> Flight {
+    let mut flight = Flight::new(MissionConfig { live: true, guard_reaction_s: Some(0.1), ..config });
+    flight.scanner = Some((Vec::new(), true));
+    flight
+}
+
+/// Distance between the hull and an object in the robot's way, metres.
+fn gap_m(flight: &Flight) -> f64 {
+    let (discs, _) = flight.scanner.as_ref().unwrap();
+    let gap_m = |(center, radius_m): &(Point, f64)| (center - flight.pose.position).norm() - radius_m - 0.25;
+    discs.iter().map(gap_m).fold(f64::INFINITY, f64::min)
+}
+
+/// A robot that drives, and an object that only the scan shows, ahead of it.
+fn before_an_object(config: MissionConfig) -> Flight {
+    let mut flight = guarded(config);
+    flight.tick(&[Order::Start]);
+    let from = flight.pose.position;
+    flight.fly(20);
+    let way = (flight.pose.position - from).normalize();
+    flight.scanner = Some((vec![(flight.pose.position + way * 1.2, 0.1)], true));
+    flight
+}
+
+#[test]
+fn an_object_that_only_the_scan_shows_is_not_hit_and_holds_the_robot() {
+    let mut flight = before_an_object(config());
+    let mut least_m = f64::INFINITY;
+    for _ in 0..3 {
+        for _ in 0..200 {
+            flight.tick(&[]);
+            least_m = least_m.min(gap_m(&flight));
+        }
+        let Some(HoldReason::Guard { message }) = flight.held_by() else {
+            panic!("{:?}", flight.mission.phase())
+        };
+        assert!(message.contains("from the hull"), "{message}");
+        flight.tick(&[Order::Resume]);
+    }
+    assert!(least_m > 0.0 && least_m < 0.1, "{least_m}");
+    let limited = |kind: &EventKind| matches!(kind, EventKind::Guarded { asked_m_per_s, sent_m_per_s, .. } if sent_m_per_s < asked_m_per_s);
+    assert!(flight.events.iter().any(|event| limited(&event.kind)));
+}
+
+#[test]
+fn an_unattended_run_ends_before_the_object() {
+    let mut flight = before_an_object(MissionConfig { attended: false, ..config() });
+    flight.fly(200);
+    assert_eq!(flight.ended(), Some(Outcome::Stuck));
+    assert!(gap_m(&flight) > 0.0);
+}
+
+#[test]
+fn without_a_guard_the_object_would_be_hit() {
+    let mut flight = before_an_object(config());
+    flight.mission.known.config.guard_reaction_s = None;
+    flight.fly(200);
+    assert!(
+        flight.held_by().is_none()
+            && !flight.events.iter().any(|event| matches!(event.kind, EventKind::Guarded { .. }))
+    );
+}
+
+#[test]
+fn an_open_floor_does_not_slow_the_robot() {
+    let mut one = guarded(config());
+    let mut other = Flight::new(config());
+    one.tick(&[Order::Start]);
+    other.tick(&[Order::Start]);
+    one.fly(100);
+    other.fly(100);
+    assert_eq!(one.pose, other.pose);
+}
+
+#[test]
+fn a_robot_whose_scan_stops_is_held() {
+    let mut flight = guarded(config());
+    flight.tick(&[Order::Start]);
+    flight.fly(20);
+    flight.scanner = Some((Vec::new(), false));
+    flight.fly(3);
+    assert!(matches!(flight.mission.phase(), Phase::Running(_)), "a scan may be late");
+    flight.fly(10);
+    let blind = |flight: &Flight| match flight.held_by() {
+        Some(HoldReason::Guard { message }) => message.contains("the guard is blind"),
+        _ => false,
+    };
+    assert!(blind(&flight), "{:?}", flight.mission.phase());
+    let mut never = guarded(config());
+    never.scanner = None;
+    never.tick(&[Order::Start]);
+    never.fly(3);
+    assert!(blind(&never), "{:?}", never.mission.phase());
+}

@@ -1,0 +1,124 @@
+//! A trial of a vehicle: listens to it and, if it may be moved, drives and stops it. The evaluation is in
+//! [`vehicle::trial`].
+
+mod connection;
+mod driving;
+mod log;
+
+use crate::{address::Address, remote::ConnectError};
+use connection::Connection;
+use driving::Driver;
+use std::time::Duration;
+use vehicle::{
+    port::LEASE_S,
+    trial::{self, Row, Verdict},
+    wire::message::Hello,
+};
+
+/// How long the vehicle is listened to.
+const LISTEN: Duration = Duration::from_secs(3);
+/// A vehicle stands at most this time after the lease of its last command, plus its own stop time, seconds.
+const LEASE_SLACK_S: f64 = 0.05;
+/// Distance and angle of the frame checks, and the speeds with which they are driven.
+const AHEAD_M: f64 = 0.2;
+const TURN_RAD: f64 = 20.0 * std::f64::consts::PI / 180.0;
+const AHEAD_M_PER_S: f64 = 0.2;
+const TURN_RAD_PER_S: f64 = 0.4;
+/// Longest time until a vehicle has reached a commanded speed, beyond what its acceleration needs, seconds.
+const REACH_S: f64 = 3.0;
+
+/// What a trial may do.
+#[derive(Debug, Clone, Copy)]
+pub struct TrialOptions {
+    /// Whether the adapter may be on another machine.
+    pub network: bool,
+    /// Whether the vehicle may be moved.
+    pub drive: bool,
+    /// Speed before each stop, metres per second; `None` for the vehicle's limit.
+    pub speed_m_per_s: Option<f64>,
+    /// Longest time of each stop, seconds; `None` for the time that the vehicle states, plus its lease.
+    pub stop_max_s: Option<f64>,
+}
+
+/// The result of a trial.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trial {
+    /// The introduction of the vehicle.
+    pub hello: Hello,
+    /// The checks.
+    pub rows: Vec<Row>,
+    /// Whether a signal ended the trial early.
+    pub interrupted: bool,
+}
+
+impl Trial {
+    /// Whether no check failed and the trial was not interrupted.
+    pub fn is_passed(&self) -> bool {
+        !self.interrupted && self.rows.iter().all(|row| row.verdict != Verdict::Fail)
+    }
+}
+
+/// Why a trial ended early.
+#[derive(Debug)]
+enum Early {
+    /// A signal asked for it.
+    Interrupted,
+    /// The connection ended.
+    Closed(String),
+}
+
+/// Tries a vehicle. `tell` receives what is about to happen, before anything moves; `is_stopped` ends the trial early.
+///
+/// # Errors
+/// The adapter cannot be reached, or does not introduce a vehicle.
+pub fn try_vehicle(
+    address: &Address,
+    options: &TrialOptions,
+    tell: &dyn Fn(&str),
+    is_stopped: &dyn Fn() -> bool,
+) -> Result<Trial, ConnectError> {
+    let log = log::RobotLog::new().ok();
+    let mut connection = Connection::open(address, options.network, log.as_ref())?;
+    let hello = connection.hello().clone();
+    let mut rows = vec![trial::introduction(&hello)];
+    tell(&format!("listening to {} for {} s; nothing moves", foreign::plain(&hello.name), LISTEN.as_secs()));
+    connection.await_readings(is_stopped);
+    let listened = connection.listen(LISTEN, is_stopped);
+    rows.extend([trial::messages(&listened), trial::state(&listened)]);
+    rows.extend(trial::readings(&hello, &listened));
+    rows.extend([trial::clock(&listened), trial::standstill(&listened)]);
+    let is_heard = hello.has.odometry || hello.has.pose;
+    let is_ready = rows.iter().all(|row| row.verdict != Verdict::Fail || row.check.starts_with("readings"));
+    let mut interrupted = is_stopped();
+    if !options.drive {
+        let why = "the vehicle was not moved; `--drive` allows this";
+        rows.extend(driving::CHECKS.iter().map(|check| Row::not_measured(check, why)));
+    } else if !is_ready || !is_heard {
+        let why = "the vehicle was not moved, because of the failures above";
+        rows.extend(driving::CHECKS.iter().map(|check| Row::not_measured(check, why)));
+    } else if !interrupted {
+        tell(&warning(&hello, options));
+        let mut driver = Driver { address, options, hello: &hello, log: log.as_ref(), is_stopped };
+        let early = driver.drive(connection, &mut rows, tell);
+        interrupted = matches!(early, Some(Early::Interrupted));
+        if let Some(Early::Closed(why)) = early {
+            rows.push(Row::fail("connection", Vec::new(), format!("it ended during the trial: {why}")));
+        }
+    }
+    Ok(Trial { hello, rows, interrupted })
+}
+
+/// What the vehicle is about to do.
+fn warning(hello: &Hello, options: &TrialOptions) -> String {
+    let speed = driving::speed_m_per_s(hello, options);
+    let limits = &hello.limits;
+    let reach_m = speed * speed / limits.acceleration_m_per_s2 + speed * (1.0 + LEASE_S + hello.stop_time_s);
+    format!(
+        "the vehicle now MOVES: {AHEAD_M} m ahead, {:.0} degrees to the left, then several stops from {speed} m/s, ahead \
+         and back in turn. Keep {:.1} m free ahead, {:.1} m behind and a hand on the emergency stop. Ctrl-C stops the \
+         vehicle.",
+        TURN_RAD.to_degrees(),
+        AHEAD_M + 2.0 * reach_m,
+        2.0 * reach_m,
+    )
+}

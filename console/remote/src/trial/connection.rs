@@ -1,0 +1,300 @@
+//! A connection for a trial: every message with the time of its arrival, and commands that are sent one by one.
+
+use super::log::RobotLog;
+use crate::{
+    address::Address,
+    remote::ConnectError,
+    stream::{End, Stream},
+};
+use std::{
+    io::{ErrorKind, Read, Write},
+    sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel},
+    thread,
+    time::{Duration, Instant},
+};
+use vehicle::{
+    link::{Clock, Motions, Sequence},
+    port::LEASE_S,
+    trial::{Listened, Sample},
+    wire::{
+        FromSession, FromVehicle, Heard, Misfit, Reader, ToSession, ToVehicle, Unknown, Writer,
+        message::{Bye, Drive, Hello, Odometry, Ping, Pose, Readings, Stop},
+    },
+};
+
+/// How long an adapter may take to introduce the vehicle.
+const HELLO_WITHIN: Duration = Duration::from_secs(10);
+/// How often something that is awaited is looked for.
+const LOOK_AGAIN: Duration = Duration::from_millis(50);
+const PING_EVERY: Duration = Duration::from_millis(250);
+/// Pieces of input that wait to be looked at; a faster adapter waits.
+const MOST_WAITING: usize = 4096;
+/// Readings that are kept at most.
+const MOST_KEPT: usize = 100_000;
+
+/// Input from the adapter with its time of arrival, seconds; `Err` at the end of the stream. A reader of datagrams sends
+/// empty pieces, too, to notice that nothing listens any more.
+type Piece = (f64, Result<Vec<Heard<FromVehicle>>, String>);
+
+/// A connection to an adapter.
+pub(super) struct Connection {
+    hello: Hello,
+    write: Option<(Box<dyn Write + Send>, Writer<ToVehicle>)>,
+    pieces: Receiver<Piece>,
+    began: Instant,
+    ping_due: Instant,
+    seq: u64,
+    clock: Clock,
+    motions: Motions,
+    sequence: Sequence,
+    /// Odometry and pose since [`Connection::forget`], each by itself.
+    pub odometry: Vec<Odometry>,
+    pub poses: Vec<Pose>,
+    pub heard: Listened,
+    closed: Option<String>,
+    pub end: End,
+}
+
+impl Connection {
+    /// Connects, and waits for the introduction. An adapter that is started here learns of the log.
+    pub(super) fn open(
+        address: &Address,
+        network: bool,
+        log: Option<&RobotLog>,
+    ) -> Result<Self, ConnectError> {
+        let failed = |why: String| ConnectError::at(address, &why);
+        let address = &log.map_or_else(|| address.clone(), |log| log.named_to(address));
+        let Stream { read, mut write, end } =
+            Stream::open(address, network).map_err(|error| failed(error.to_string()))?;
+        let (tell, pieces) = sync_channel(MOST_WAITING);
+        let began = Instant::now();
+        let spawned =
+            thread::Builder::new().name("vehicle in".into()).spawn(move || read_all(read, began, &tell));
+        spawned.map_err(|error| failed(error.to_string()))?;
+        let mut fault = String::new();
+        while began.elapsed() < HELLO_WITHIN {
+            if matches!(address, Address::Udp(_)) {
+                // Over datagrams, the adapter learns of this console by a ping.
+                let _ = write.write_all(b"{\"type\": \"ping\", \"stamp_s\": 0}\n");
+            }
+            match pieces.recv_timeout(LOOK_AGAIN) {
+                Ok((arrival_s, Ok(heard))) => {
+                    let mut heard = heard.into_iter();
+                    while let Some(one) = heard.next() {
+                        match one {
+                            Heard::Message(FromVehicle::Hello(hello)) => {
+                                let mut connection = Self::of(*hello, write, pieces, began, end);
+                                heard.for_each(|more| connection.take(arrival_s, more));
+                                return Ok(connection);
+                            }
+                            Heard::Malformed(misfit) => fault = format!("; it sent a faulty line: {misfit}"),
+                            Heard::Message(_) | Heard::Unknown(_) => {}
+                        }
+                    }
+                }
+                Ok((_, Err(why))) => {
+                    return Err(failed(format!("{why} before it introduced the vehicle{fault}")));
+                }
+                Err(_) => {}
+            }
+        }
+        Err(failed(format!("it did not introduce the vehicle within {} s{fault}", HELLO_WITHIN.as_secs())))
+    }
+
+    fn of(
+        hello: Hello,
+        write: Box<dyn Write + Send>,
+        pieces: Receiver<Piece>,
+        began: Instant,
+        end: End,
+    ) -> Self {
+        Self {
+            write: Some((write, Writer::new(ToSession::of(hello.clone())))),
+            hello,
+            pieces,
+            began,
+            ping_due: Instant::now(),
+            seq: 0,
+            clock: Clock::default(),
+            motions: Motions::default(),
+            sequence: Sequence::default(),
+            odometry: Vec::new(),
+            poses: Vec::new(),
+            heard: Listened::default(),
+            closed: None,
+            end,
+        }
+    }
+
+    pub(super) fn hello(&self) -> &Hello {
+        &self.hello
+    }
+
+    pub(super) fn now_s(&self) -> f64 {
+        self.began.elapsed().as_secs_f64()
+    }
+
+    /// Why the connection ended, once it has.
+    pub(super) fn closed(&self) -> Option<&str> {
+        self.closed.as_deref()
+    }
+
+    /// This moment on the vehicle's clock; `None` before anything is known about it.
+    pub(super) fn vehicle_now_s(&self) -> Option<f64> {
+        let now_s = self.now_s();
+        let by_pings = self.clock.at(now_s).map(|offset| now_s + offset.offset_s);
+        by_pings.or_else(|| {
+            let (arrival_s, readings) = self.heard.readings.last()?;
+            Some(readings.stamp_s + now_s - arrival_s)
+        })
+    }
+
+    /// Greatest error of [`Connection::vehicle_now_s`], seconds.
+    pub(super) fn clock_error_s(&self) -> f64 {
+        self.clock.at(self.now_s()).map_or(self.hello.period_s, |offset| offset.bound_s)
+    }
+
+    /// Waits for the first readings: a robot may start slowly.
+    pub(super) fn await_readings(&mut self, is_stopped: &dyn Fn() -> bool) {
+        let until = Instant::now() + HELLO_WITHIN;
+        while self.heard.readings.is_empty() && Instant::now() < until && !is_stopped() {
+            self.take_until(Instant::now() + LOOK_AGAIN);
+            if self.closed.is_some() {
+                return;
+            }
+        }
+    }
+
+    /// Only listens.
+    pub(super) fn listen(&mut self, time: Duration, is_stopped: &dyn Fn() -> bool) -> Listened {
+        let until = Instant::now() + time;
+        while Instant::now() < until && self.closed.is_none() && !is_stopped() {
+            self.take_until((Instant::now() + PING_EVERY).min(until));
+        }
+        self.heard.offset = self.clock.at(self.now_s());
+        self.heard.clone()
+    }
+
+    /// Drops what was heard so far, except for the clock.
+    pub(super) fn forget(&mut self) {
+        self.heard = Listened { state: self.heard.state.take(), ..Listened::default() };
+        (self.odometry, self.poses) = (Vec::new(), self.poses.last().copied().into_iter().collect());
+    }
+
+    /// Takes the messages that arrive until a moment, and sends the pings that are due.
+    pub(super) fn take_until(&mut self, until: Instant) {
+        loop {
+            if Instant::now() >= self.ping_due {
+                self.ping_due = Instant::now() + PING_EVERY;
+                self.heard.pings += 1;
+                self.send(&ToVehicle::Ping(Ping { stamp_s: self.now_s() }));
+            }
+            let wait = until.min(self.ping_due).saturating_duration_since(Instant::now());
+            match self.pieces.recv_timeout(wait) {
+                Ok((arrival_s, Ok(heard))) => heard.into_iter().for_each(|one| self.take(arrival_s, one)),
+                Ok((_, Err(why))) => {
+                    self.closed.get_or_insert(why);
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => thread::sleep(wait),
+            }
+            if Instant::now() >= until {
+                return;
+            }
+        }
+    }
+
+    fn take(&mut self, arrival_s: f64, heard: Heard<FromVehicle>) {
+        match heard {
+            Heard::Message(FromVehicle::Readings(readings)) => self.read(arrival_s, &readings),
+            Heard::Message(FromVehicle::State(state)) => self.heard.state = Some(state),
+            Heard::Message(FromVehicle::Pong(pong)) => match self.clock.pong(&pong, arrival_s) {
+                Ok(()) => self.heard.trips_s.push((arrival_s - pong.echo_s).max(0.0)),
+                Err(misfit) => self.malformed(&misfit),
+            },
+            Heard::Message(FromVehicle::Hello(_)) => {}
+            Heard::Unknown(Unknown::Kind(name) | Unknown::Key { key: name, .. }) => {
+                self.heard.unknown.push(foreign::plain(&name).into_owned());
+            }
+            Heard::Malformed(misfit) => self.malformed(&misfit),
+        }
+    }
+
+    fn malformed(&mut self, misfit: &Misfit) {
+        self.heard.malformed += 1;
+        self.heard.fault.get_or_insert_with(|| foreign::plain(&misfit.to_string()).into_owned());
+    }
+
+    fn read(&mut self, arrival_s: f64, readings: &Readings) {
+        if self.heard.readings.len() >= MOST_KEPT {
+            return;
+        }
+        self.heard.readings.push((arrival_s, readings.clone()));
+        if !self.sequence.add(readings.seq) {
+            return;
+        }
+        self.odometry.extend(readings.odometry);
+        self.poses.extend(readings.pose);
+        if let Some(Odometry { over_s, forward_m, sideways_m, turn_rad }) = self.motions.take(readings) {
+            let way_m = forward_m.hypot(sideways_m);
+            self.heard.samples.push(Sample { t_s: readings.stamp_s, over_s, way_m, turn_rad });
+        }
+    }
+
+    /// Sends a motion with the lease that a mission uses.
+    pub(super) fn drive(&mut self, forward_m_per_s: f64, turn_rad_per_s: f64) {
+        self.seq += 1;
+        let lease_s = LEASE_S.min(self.hello.lease_max_s);
+        let (seq, stamp_s) = (self.seq, self.now_s());
+        let drive = Drive { seq, stamp_s, lease_s, forward_m_per_s, sideways_m_per_s: 0.0, turn_rad_per_s };
+        self.send(&ToVehicle::Drive(drive));
+    }
+
+    pub(super) fn stop(&mut self) {
+        self.seq += 1;
+        self.send(&ToVehicle::Stop(Stop { seq: self.seq, stamp_s: self.now_s() }));
+    }
+
+    /// Closes the direction to the adapter. A process then reads the end of its stdin.
+    pub(super) fn close_write(&mut self) {
+        self.write = None;
+    }
+
+    fn send(&mut self, message: &ToVehicle) {
+        let Some((write, writer)) = &mut self.write else { return };
+        let mut line = Vec::new();
+        let sent = match writer.write(message, &mut line) {
+            Ok(()) => write.write_all(&line).and_then(|()| write.flush()).map_err(|error| error.to_string()),
+            Err(misfit) => Err(misfit.to_string()),
+        };
+        if let Err(why) = sent {
+            self.closed.get_or_insert(why);
+        }
+    }
+
+    /// Stops the vehicle and leaves.
+    pub(super) fn leave(mut self) {
+        self.stop();
+        self.send(&ToVehicle::Bye(Bye::default()));
+    }
+}
+
+fn read_all(mut read: Box<dyn Read + Send>, began: Instant, tell: &SyncSender<Piece>) {
+    let mut reader = Reader::<FromVehicle>::new(FromSession::default());
+    let mut chunk = vec![0; 1 << 16];
+    loop {
+        let piece = match read.read(&mut chunk) {
+            Ok(0) => Err("the adapter ended the connection".to_owned()),
+            Ok(n) => Ok(reader.read(&chunk[..n])),
+            Err(error) => match error.kind() {
+                ErrorKind::Interrupted | ErrorKind::WouldBlock | ErrorKind::TimedOut => Ok(Vec::new()),
+                _ => Err(format!("the link failed: {error}")),
+            },
+        };
+        let is_end = piece.is_err();
+        // If the connection was left, nothing listens any more.
+        if tell.send((began.elapsed().as_secs_f64(), piece)).is_err() || is_end {
+            return;
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! A scan of the surroundings by a range sensor on the robot, and its short form in journals.
+
+use crate::Odometry;
+use geometry::{Point, Vector};
+use nalgebra::Rotation2;
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+/// The distance of a ray without an echo, and of one that is longer than 65.534 m.
+pub const NO_ECHO: u16 = u16::MAX;
+
+/// Distances along rays from a sensor on the robot. In text, the distances are a string of about one character a ray.
+///
+/// ```
+/// use world::{NO_ECHO, Scan};
+/// let scan = Scan { first_rad: 0.0, step_rad: 0.5, ranges_mm: vec![2000, NO_ECHO], ..Scan::default() };
+/// assert_eq!(scan.points().map(|at| (at.x, at.y)).collect::<Vec<_>>(), [(2.0, 0.0)]);
+/// ```
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Scan {
+    /// Direction of the first ray in the robot frame, radians, counter-clockwise from straight ahead.
+    pub first_rad: f64,
+    /// Angle from one ray to the next, radians; negative for a scan that runs clockwise.
+    pub step_rad: f64,
+    /// Place of the sensor in the robot frame, metres.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub sensor_m: [f64; 2],
+    /// Motion of the robot from the scan to the end of the readings that it is part of.
+    #[serde(default, skip_serializing_if = "is_still")]
+    pub since: Odometry,
+    /// Distances, millimetres; [`NO_ECHO`] where no echo came back.
+    #[serde(serialize_with = "packed", deserialize_with = "unpacked")]
+    pub ranges_mm: Vec<u16>,
+}
+
+fn is_zero(place: &[f64; 2]) -> bool {
+    *place == [0.0, 0.0]
+}
+
+fn is_still(moved: &Odometry) -> bool {
+    *moved == Odometry::default()
+}
+
+impl Scan {
+    /// A distance in metres as it is stored.
+    pub fn stored(range_m: Option<f64>) -> u16 {
+        match range_m.map(|range_m| (range_m * 1000.0).round()) {
+            Some(mm) if (0.0..f64::from(NO_ECHO)).contains(&mm) => mm as u16,
+            _ => NO_ECHO,
+        }
+    }
+
+    /// The points that were hit, in the robot frame at the end of the readings.
+    pub fn points(&self) -> impl Iterator<Item = Point> + '_ {
+        let sensor = Vector::from(self.sensor_m);
+        (0_u32..).zip(&self.ranges_mm).filter(|(_, mm)| **mm != NO_ECHO).map(move |(n, mm)| {
+            let (sin, cos) = (self.first_rad + f64::from(n) * self.step_rad).sin_cos();
+            let range_m = f64::from(*mm) / 1000.0;
+            carried(Point::from(sensor + Vector::new(cos, sin) * range_m), &self.since)
+        })
+    }
+}
+
+/// A point of the robot frame, in the robot frame after a motion.
+pub fn carried(point: Point, moved: &Odometry) -> Point {
+    let left = Vector::new(moved.forward_m, moved.sideways_m);
+    Point::from(Rotation2::new(-moved.turn_rad) * (point.coords - left))
+}
+
+/// The characters of packed distances: those that need no escape in JSON.
+const DIGITS: usize = 93;
+/// A small difference is one digit; a medium one is a digit from here and a second one.
+const SMALL: usize = 80;
+const MEDIUM: usize = 11;
+/// A distance in three digits follows.
+const WHOLE: usize = SMALL + MEDIUM;
+/// No echo.
+const NONE: usize = WHOLE + 1;
+
+fn digit(value: usize) -> char {
+    let byte = b' ' + value as u8;
+    // Without the quotation mark and the backslash.
+    let byte = if byte >= b'"' { byte + 1 } else { byte };
+    char::from(if byte >= b'\\' { byte + 1 } else { byte })
+}
+
+fn value(byte: u8) -> Option<usize> {
+    let at = match byte {
+        b' '..=b'!' => byte - b' ',
+        b'#'..=b'[' => byte - b' ' - 1,
+        b']'..=b'~' => byte - b' ' - 2,
+        _ => return None,
+    };
+    Some(usize::from(at))
+}
+
+/// Differences between neighbours, so that a smooth wall takes one character a ray.
+fn text(ranges_mm: &[u16]) -> String {
+    let mut text = String::with_capacity(ranges_mm.len() * 2);
+    let mut before = 0_i32;
+    for &mm in ranges_mm {
+        if mm == NO_ECHO {
+            text.push(digit(NONE));
+            continue;
+        }
+        let change = i32::from(mm) - before;
+        before = i32::from(mm);
+        let folded = (2 * change.unsigned_abs() as usize).saturating_sub(usize::from(change < 0));
+        if folded < SMALL {
+            text.push(digit(folded));
+        } else if folded < SMALL + MEDIUM * DIGITS {
+            let rest = folded - SMALL;
+            text.extend([digit(SMALL + rest / DIGITS), digit(rest % DIGITS)]);
+        } else {
+            let mm = usize::from(mm);
+            text.extend([WHOLE, mm / (DIGITS * DIGITS), mm / DIGITS % DIGITS, mm % DIGITS].map(digit));
+        }
+    }
+    text
+}
+
+fn ranges(text: &str) -> Option<Vec<u16>> {
+    let mut digits = text.bytes().map(value);
+    let mut ranges = Vec::with_capacity(text.len());
+    let mut before = 0_i32;
+    while let Some(first) = digits.next() {
+        let mut next = || digits.next().flatten();
+        let folded = match first? {
+            NONE => {
+                ranges.push(NO_ECHO);
+                continue;
+            }
+            WHOLE => {
+                let mm = (next()? * DIGITS + next()?) * DIGITS + next()?;
+                before = i32::try_from(mm).ok()?;
+                ranges.push(u16::try_from(mm).ok().filter(|mm| *mm != NO_ECHO)?);
+                continue;
+            }
+            small if small < SMALL => small,
+            medium => SMALL + (medium - SMALL) * DIGITS + next()?,
+        };
+        let change = i32::try_from(folded.div_ceil(2)).ok()?;
+        before += if folded % 2 == 1 { -change } else { change };
+        ranges.push(u16::try_from(before).ok().filter(|mm| *mm != NO_ECHO)?);
+    }
+    Some(ranges)
+}
+
+fn packed<S: Serializer>(ranges_mm: &[u16], to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str(&text(ranges_mm))
+}
+
+fn unpacked<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<u16>, D::Error> {
+    let text = String::deserialize(from)?;
+    ranges(&text).ok_or_else(|| D::Error::custom("the distances of a scan are damaged"))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn digits_are_plain_and_different() {
+        let digits: Vec<char> = (0..DIGITS).map(digit).collect();
+        assert!(digits.iter().all(|digit| !matches!(digit, '"' | '\\') && (' '..='~').contains(digit)));
+        assert!((0..DIGITS).all(|n| value(digits[n] as u8) == Some(n)));
+        assert!(value(b'"').is_none() && value(b'\\').is_none() && value(0x7f).is_none());
+    }
+
+    proptest! {
+        #[test]
+        fn a_scan_is_read_as_it_is_written(
+            ranges_mm in prop::collection::vec(prop_oneof![any::<u16>(), 1990..2010_u16, Just(NO_ECHO)], 0..400),
+            first_rad in -7.0..7.0_f64, step_rad in 0.001..0.1_f64, turn_rad in -0.1..0.1_f64,
+        ) {
+            let since = Odometry { turn_rad, ..Odometry::default() };
+            let scan = Scan { first_rad, step_rad, since, ranges_mm, ..Scan::default() };
+            let text = serde_json::to_string(&scan).unwrap();
+            prop_assert_eq!(serde_json::from_str::<Scan>(&text).unwrap(), scan);
+        }
+
+        #[test]
+        fn damaged_text_gives_an_error_and_no_panic(text in "[ -~]{0,60}") {
+            if let Some(found) = ranges(&text) {
+                prop_assert!(found.len() <= text.len());
+            }
+        }
+    }
+
+    #[test]
+    fn a_wall_takes_about_a_character_a_ray() {
+        let wall: Vec<u16> =
+            (0..360).map(|n| 3000 + (f64::from(n) * 0.7).sin() as u16 * 10 + n % 7).collect();
+        assert!(text(&wall).len() < 366, "{}", text(&wall).len());
+        assert!(ranges("\u{7f}").is_none() && ranges("~").is_some() && ranges("|").is_none());
+    }
+
+    #[test]
+    fn points_are_where_they_are_after_the_motion() {
+        let since = Odometry { forward_m: 0.5, sideways_m: 0.0, turn_rad: std::f64::consts::FRAC_PI_2 };
+        let scan = Scan {
+            first_rad: 0.0,
+            step_rad: 0.1,
+            sensor_m: [0.2, 0.0],
+            since,
+            ranges_mm: vec![1000, NO_ECHO],
+        };
+        let points: Vec<Point> = scan.points().collect();
+        let [point] = points[..] else { panic!("{points:?}") };
+        assert!((point - Point::new(0.0, -0.7)).norm() < 1e-12, "{point}");
+        assert_eq!(
+            [Some(1.2345), Some(70.0), Some(f64::NAN), None].map(Scan::stored),
+            [1235, NO_ECHO, NO_ECHO, NO_ECHO]
+        );
+    }
+}

@@ -1,0 +1,181 @@
+//! An engineer who connects a robot: a new adapter, the trial of a vehicle, and the guard by its scan.
+
+use crate::{
+    bench::{Bench, Ended, first_of, journal, of_kind, scenario, workspace},
+    vehicle::{Vehicle, begun},
+};
+use serde_json::Value;
+use std::{path::Path, process::Command};
+
+/// A trial that passes on a machine of any speed, if it is repeated after a moment in which the machine was too busy.
+const TRIES: usize = 10;
+
+fn new_vehicle(bench: &Bench, lang: &str) {
+    let created = bench.tankops(&["new-vehicle", "my-own", "--lang", lang]);
+    assert_eq!(created.code, Some(0), "{created:?}");
+}
+
+/// The adapter in Python, after changes to its text.
+fn python(bench: &Bench, changes: &[(&str, &str)]) -> String {
+    new_vehicle(bench, "python");
+    let file = bench.path().join("my-own/adapter.py");
+    let mut text = std::fs::read_to_string(&file).unwrap();
+    for (old, new) in changes {
+        assert!(text.contains(old), "{old}");
+        text = text.replace(old, new);
+    }
+    std::fs::write(&file, text).unwrap();
+    format!("run:python3 {}", file.display())
+}
+
+fn check(bench: &Bench, vehicle: &str, more: &[&str]) -> Ended {
+    bench.tankops(&[&["check", "--vehicle", vehicle, "--json"], more].concat())
+}
+
+fn verdict<'a>(report: &'a Value, check: &str) -> (&'a str, &'a str) {
+    let rows = report["checks"].as_array().unwrap();
+    let row = rows.iter().find(|row| row["check"] == check).unwrap_or_else(|| panic!("{check}: {report}"));
+    (row["verdict"].as_str().unwrap(), row["says"].as_str().unwrap())
+}
+
+/// Tries a vehicle until it passes, and checks that everything was measured.
+fn passes(bench: &Bench, vehicle: &str, except: &[&str]) {
+    let mut last = None;
+    for _ in 0..TRIES {
+        let tried = check(bench, vehicle, &["--drive", "--stop-max", "30"]);
+        assert!(tried.err.contains("the vehicle now MOVES"), "{tried:?}");
+        if tried.code == Some(0) {
+            let report = tried.json();
+            assert!(report["passed"] == true && report["driven"] == true, "{report}");
+            for row in report["checks"].as_array().unwrap() {
+                let is_open = except.iter().any(|check| row["check"] == *check);
+                assert_eq!(row["verdict"], if is_open { "not_measured" } else { "pass" }, "{report}");
+            }
+            return;
+        }
+        last = Some(tried);
+    }
+    panic!("{last:?}");
+}
+
+#[test]
+fn a_new_adapter_in_python_passes_the_trial_at_once() {
+    let bench = Bench::new();
+    let vehicle = python(&bench, &[]);
+    passes(&bench, &vehicle, &[]);
+    let again = bench.tankops(&["new-vehicle", "my-own"]);
+    assert!(again.code == Some(2) && again.err.contains("already exists"), "{again:?}");
+}
+
+#[test]
+fn a_new_adapter_in_rust_passes_the_trial_at_once() {
+    let bench = Bench::new();
+    new_vehicle(&bench, "rust");
+    let folder = bench.path().join("my-own");
+    // The versions that were tested; the machine may be offline.
+    std::fs::copy(workspace().join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
+    let made = Command::new(env!("CARGO"))
+        .args(["build", "--release", "--offline"])
+        .current_dir(&folder)
+        .env("CARGO_TARGET_DIR", Path::new(env!("CARGO_TARGET_TMPDIR")).join("adapter"))
+        .env_remove("RUSTFLAGS")
+        .output()
+        .unwrap();
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join("adapter/release/my-own");
+    passes(&bench, &format!("run:{}", program.display()), &[]);
+}
+
+#[test]
+fn the_first_drive_of_a_new_adapter_is_completed() {
+    let bench = Bench::new();
+    let vehicle = python(&bench, &[]);
+    let flown = bench.fly(&bench.path().join("my-own/scenario.toml"), &["--vehicle", &vehicle]);
+    assert!(flown.code == Some(0) && flown.json()["outcome"] == "complete", "{flown:?}");
+}
+
+#[test]
+fn without_drive_nothing_moves() {
+    let bench = Bench::new();
+    let log = bench.path().join("robot.log");
+    let vehicle = python(
+        &bench,
+        &[("os.environ.get(\"ROBOT_LOG\", os.devnull)", &format!("{:?}", log.display().to_string()))],
+    );
+    let tried = check(&bench, &vehicle, &[]);
+    let report = tried.json();
+    assert_eq!(verdict(&report, "stop: commands end").0, "not_measured");
+    assert!(verdict(&report, "frames: ahead").1.contains("`--drive` allows this"), "{report}");
+    let rows = std::fs::read_to_string(log).unwrap();
+    assert!(rows.lines().count() > 10 && rows.lines().all(|row| row.ends_with(" 0.0 0.0")), "{rows}");
+    let table = bench.tankops(&["check", "--vehicle", &vehicle]);
+    assert!(table.out.contains("standstill") && table.out.contains("not measured"), "{table:?}");
+}
+
+#[test]
+fn a_robot_that_turns_the_wrong_way_and_keeps_no_lease_is_found_out() {
+    let bench = Bench::new();
+    let vehicle = python(
+        &bench,
+        &[
+            ("\"turn_rad\": turn}", "\"turn_rad\": -turn}"),
+            ("if now > until:", "if now > until + 1000 * has_adapter:"),
+        ],
+    );
+    let tried = check(&bench, &vehicle, &["--drive", "--stop-max", "3"]);
+    let report = tried.json();
+    assert_eq!(tried.code, Some(1), "{report}");
+    let (turn, says) = verdict(&report, "frames: turn by odometry");
+    assert!(turn == "fail" && says.contains("mirrored"), "{report}");
+    let (lease, says) = verdict(&report, "stop: commands end");
+    assert!(lease == "fail" && says.contains("keep the lease where the motors are"), "{report}");
+    assert_eq!(verdict(&report, "frames: ahead by odometry").0, "pass", "{report}");
+}
+
+#[test]
+fn a_vehicle_behind_a_socket_is_watched_by_a_second_connection() {
+    let bench = Bench::new();
+    let vehicle = Vehicle::offer(&bench, &scenario("goto-single-obstacle.toml"), &[]);
+    passes(&bench, &vehicle.at, &["stop: adapter stopped", "stop: adapter killed"]);
+}
+
+#[test]
+fn a_trial_needs_an_adapter_and_says_what_is_wrong() {
+    let bench = Bench::new();
+    for (arguments, why) in [
+        (&["check", "--vehicle", "unix:nowhere"][..], "cannot drive the vehicle at unix:nowhere"),
+        (&["check", "--vehicle", "run:true"], "before it introduced the vehicle"),
+        (&["check", "--vehicle", "loopback"], "is not tried"),
+        (&["check", "--vehicle", "unix:a", "--speed", "-1"], "--speed"),
+        (&["check", "--drive"], "--vehicle"),
+        (&["check"], "FILE"),
+        (&["new-vehicle", "My robot"], "is not a valid vehicle name"),
+    ] {
+        let refused = bench.tankops(arguments);
+        assert!(refused.code == Some(2) && refused.err.contains(why), "{why}: {refused:?}");
+    }
+}
+
+/// The scenario with a column in the robot's way that is not drawn.
+fn undrawn(bench: &Bench) -> std::path::PathBuf {
+    let text = std::fs::read_to_string(scenario("goto-single-obstacle.toml")).unwrap();
+    let text = text.replace("radius_m = 0.3\n", "radius_m = 0.3\nknown = false\n");
+    assert!(text.contains("known = false"));
+    bench.file("undrawn.toml", text)
+}
+
+#[test]
+fn a_column_that_only_the_scan_shows_is_not_hit() {
+    let bench = Bench::new();
+    let file = undrawn(&bench);
+    let vehicle = Vehicle::offer(&bench, &file, &["--scanner"]);
+    let (child, run) = begun(&bench, &["run", file.to_str().unwrap(), "--vehicle", &vehicle.at]);
+    let ended = Ended::from(child.wait_with_output().unwrap());
+    let events = journal(&run);
+    assert!(ended.code == Some(1) && ended.out.contains("the scan shows something"), "{ended:?}");
+    assert!(of_kind(&events, "sensed").iter().all(|sensed| sensed["readings"]["contact"] == false));
+    let guarded = first_of(&events, "guarded").unwrap();
+    let held = first_of(&events, "held").unwrap();
+    assert!(guarded < held && events[held]["by"]["guard"].is_object(), "{}", events[held]);
+    bench.prove(&run);
+}
