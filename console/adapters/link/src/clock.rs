@@ -10,6 +10,7 @@ const SET_BACK_S: f64 = 1.0;
 
 /// Converts stamps of a vehicle to the adapter's clock.
 #[derive(Debug, Clone, Default)]
+#[allow(clippy::struct_field_names, reason = "a name ends with its unit")]
 pub struct Clock {
     /// Start of the current window, and the least differences of arrival and stamp in it and in the one before.
     since_s: f64,

@@ -23,11 +23,8 @@ impl Velocity {
 pub enum Heard {
     /// A new velocity holds.
     Drive,
-    /// The vehicle must stand still. `is_first` tells whether a drive came before this stop.
-    Stop {
-        /// Whether this stop ends a motion.
-        is_first: bool,
-    },
+    /// The vehicle must stand still.
+    Stop,
     /// A ping to answer at once.
     Ping {
         /// `stamp_s` of the ping.
@@ -51,7 +48,6 @@ pub struct Commands {
     newest: Option<u64>,
     /// What holds, and until when.
     lease: Option<(Velocity, f64)>,
-    was_stopped: bool,
 }
 
 /// Tolerance for limits that were written and read as decimal numbers.
@@ -60,7 +56,7 @@ const SLACK: f64 = 1e-9;
 impl Commands {
     /// No command yet: the vehicle stands still.
     pub fn new(motion: Motion, limits: Limits, lease_max_s: f64) -> Self {
-        Self { motion, limits, lease_max_s, newest: None, lease: None, was_stopped: true }
+        Self { motion, limits, lease_max_s, newest: None, lease: None }
     }
 
     /// Takes a line from the console.
@@ -83,10 +79,12 @@ impl Commands {
             ToVehicle::Drive(drive) if self.is_new(drive.seq) => {
                 let velocity = self.checked(&drive)?;
                 self.lease = Some((velocity, now_s + drive.lease_s));
-                self.was_stopped = false;
                 Ok(Heard::Drive)
             }
-            ToVehicle::Stop { seq } if self.is_new(seq) => Ok(Heard::Stop { is_first: self.stand() }),
+            ToVehicle::Stop { seq } if self.is_new(seq) => {
+                self.stand();
+                Ok(Heard::Stop)
+            }
             ToVehicle::Ping { stamp_s } => Ok(Heard::Ping { stamp_s }),
             ToVehicle::Bye => {
                 self.stand();
@@ -126,18 +124,14 @@ impl Commands {
         })
     }
 
-    /// Ends the lease; tells whether the vehicle was under way.
-    pub fn stand(&mut self) -> bool {
+    /// Ends the lease.
+    pub fn stand(&mut self) {
         self.lease = None;
-        !std::mem::replace(&mut self.was_stopped, true)
     }
 
-    /// The velocity that holds: zero without a lease.
-    pub fn velocity(&self, now_s: f64) -> Velocity {
-        match self.lease {
-            Some((velocity, until_s)) if now_s < until_s => velocity,
-            _ => Velocity::ZERO,
-        }
+    /// The velocity that holds. `None` without a lease: the vehicle must stand still.
+    pub fn velocity(&self, now_s: f64) -> Option<Velocity> {
+        self.lease.filter(|(_, until_s)| now_s < *until_s).map(|(velocity, _)| velocity)
     }
 
     /// The time at which the lease lapses, if there is one.
@@ -165,21 +159,20 @@ mod tests {
     #[test]
     fn a_drive_holds_until_its_lease_lapses() {
         let mut commands = commands();
-        assert_eq!(commands.velocity(10.0), Velocity::ZERO);
+        assert_eq!(commands.velocity(10.0), None);
         assert_eq!(commands.hear(&drive(1, 0.3), 10.0), Heard::Drive);
-        assert_eq!(commands.velocity(10.2).forward_m_per_s, 0.3);
+        assert_eq!(commands.velocity(10.2).map(|v| v.forward_m_per_s), Some(0.3));
         assert_eq!(commands.lease_until_s(), Some(10.25));
-        assert_eq!(commands.velocity(10.25), Velocity::ZERO);
+        assert_eq!(commands.velocity(10.25), None);
     }
 
     #[test]
     fn a_late_drive_does_not_undo_a_stop() {
         let mut commands = commands();
         commands.hear(&drive(5, 0.3), 0.0);
-        assert_eq!(commands.hear(r#"{"type": "stop", "seq": 7}"#, 0.1), Heard::Stop { is_first: true });
+        assert_eq!(commands.hear(r#"{"type": "stop", "seq": 7}"#, 0.1), Heard::Stop);
         assert_eq!(commands.hear(&drive(6, 0.3), 0.1), Heard::Nothing);
-        assert_eq!(commands.velocity(0.1), Velocity::ZERO);
-        assert_eq!(commands.hear(r#"{"type": "stop", "seq": 8}"#, 0.2), Heard::Stop { is_first: false });
+        assert_eq!(commands.velocity(0.1), None);
     }
 
     #[test]
@@ -199,7 +192,7 @@ mod tests {
             commands.hear(&drive(1, 0.3), 0.0);
             let heard = commands.hear(&line, 0.1);
             assert!(matches!(&heard, Heard::Bad(text) if text.contains(why)), "{line}: {heard:?}");
-            assert_eq!(commands.velocity(0.1), Velocity::ZERO, "{line}");
+            assert_eq!(commands.velocity(0.1), None, "{line}");
         }
     }
 
@@ -209,9 +202,9 @@ mod tests {
         commands.hear(&drive(1, 0.3), 0.0);
         assert_eq!(commands.hear(r#"{"type": "ping", "stamp_s": 4.5}"#, 0.1), Heard::Ping { stamp_s: 4.5 });
         assert_eq!(commands.hear(r#"{"type": "lights", "on": true}"#, 0.1), Heard::Nothing);
-        assert_eq!(commands.velocity(0.1).forward_m_per_s, 0.3);
+        assert_eq!(commands.velocity(0.1).map(|v| v.forward_m_per_s), Some(0.3));
         assert_eq!(commands.hear(r#"{"type": "bye"}"#, 0.1), Heard::Bye);
-        assert_eq!(commands.velocity(0.1), Velocity::ZERO);
+        assert_eq!(commands.velocity(0.1), None);
     }
 
     #[test]
@@ -220,6 +213,6 @@ mod tests {
         commands.motion = Motion::Omni;
         let line = drive(1, 0.3).replace("\"turn", "\"sideways_m_per_s\": -0.1, \"turn");
         assert_eq!(commands.hear(&line, 0.0), Heard::Drive);
-        assert_eq!(commands.velocity(0.1).sideways_m_per_s, -0.1);
+        assert_eq!(commands.velocity(0.1).map(|v| v.sideways_m_per_s), Some(-0.1));
     }
 }
