@@ -6,6 +6,7 @@ pub mod clock;
 pub mod commands;
 pub mod console;
 pub mod message;
+pub mod pilot;
 pub mod readings;
 pub mod settings;
 pub mod status;

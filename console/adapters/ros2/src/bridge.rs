@@ -7,10 +7,9 @@ use crate::{
 };
 use tankops_adapter::{
     clock::Clock,
-    commands::{Commands, Heard, Velocity},
-    message::{FromVehicle, Mode, Tether},
+    message::{FromVehicle, Tether},
+    pilot::{Order, Pilot},
     readings::Assembly,
-    status::Status,
 };
 
 mod condition;
@@ -59,58 +58,24 @@ pub(crate) enum Input {
     Tick,
 }
 
-/// What the shell must do.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Output {
-    /// To the console.
-    Say(FromVehicle),
-    /// To the topic of commands.
-    Publish(Velocity),
-    /// Call the stop service.
-    CallStop,
-    /// To standard error.
-    Note(String),
-    /// The adapter has done its work.
-    End,
-}
-
-/// Longest time to wait for the robot before `hello`, seconds: the console waits for 10.
-const GREET_WITHIN_S: f64 = 5.0;
 /// How long a message that cannot be right, or a command of another program, is a fault, seconds.
 const FAULT_FOR_S: f64 = 2.0;
-/// How long zero is published after the console has left, seconds.
-const LEAVE_AFTER_S: f64 = 0.5;
-
 /// The adapter's state.
 pub(crate) struct Bridge {
     config: Config,
-    commands: Commands,
+    pilot: Pilot,
     clock: Clock,
     readings: Assembly,
-    status: Status,
-    started_s: f64,
-    has_greeted: bool,
-    leaves_s: Option<f64>,
-    publishes_s: f64,
-    /// Whether the velocity that was published last had a lease.
-    was_driven: bool,
     condition: Condition,
 }
 
 impl Bridge {
     /// Nothing has been heard yet.
     pub(crate) fn new(config: Config, now_s: f64) -> Self {
-        let vehicle = &config.vehicle;
         Self {
-            commands: Commands::new(vehicle.motion, vehicle.limits(), vehicle.lease_max_s),
+            pilot: Pilot::new(&config.vehicle, config.has(), config.command.period_s, now_s),
             clock: Clock::default(),
-            readings: Assembly::new(vehicle.period_s),
-            status: Status::default(),
-            started_s: now_s,
-            has_greeted: false,
-            leaves_s: None,
-            publishes_s: now_s,
-            was_driven: false,
+            readings: Assembly::new(config.vehicle.period_s),
             condition: Condition::default(),
             config,
         }
@@ -118,16 +83,14 @@ impl Bridge {
 
     /// The time at which the bridge must be called at the latest.
     pub(crate) fn wakes_s(&self) -> f64 {
-        let lease_s = self.commands.lease_until_s().filter(|_| self.was_driven);
-        lease_s.map_or(self.publishes_s, |lease_s| lease_s.min(self.publishes_s))
+        self.pilot.wakes_s()
     }
 
     /// Takes what has arrived.
-    pub(crate) fn take(&mut self, input: Input, now_s: f64) -> Vec<Output> {
+    pub(crate) fn take(&mut self, input: Input, now_s: f64) -> Vec<Order> {
         let mut out = Vec::new();
         match input {
-            Input::Console(Some(line)) => self.console(&line, now_s, &mut out),
-            Input::Console(None) => self.leave(now_s),
+            Input::Console(line) => self.pilot.hear(line.as_deref(), now_s, &mut out),
             Input::Odometry(odometry) => self.odometry(&odometry, now_s, &mut out),
             Input::Tf(tf) => self.tf(&tf, now_s, &mut out),
             Input::Scan(scan) => self.scan(&scan, now_s),
@@ -154,29 +117,9 @@ impl Bridge {
             Input::StopAnswered(answer) => self.condition.stop_trouble = answer.err(),
             Input::Tick => {}
         }
-        self.act(now_s, &mut out);
+        let state = self.condition.state(&self.config, now_s);
+        self.pilot.act(state, now_s, &mut out);
         out
-    }
-
-    fn console(&mut self, line: &str, now_s: f64, out: &mut Vec<Output>) {
-        match self.commands.hear(line, now_s) {
-            Heard::Drive | Heard::Stop => self.publishes_s = now_s,
-            Heard::Ping { stamp_s } => {
-                out.push(Output::Say(FromVehicle::Pong { echo_s: stamp_s, stamp_s: now_s }));
-            }
-            Heard::Bye => self.leave(now_s),
-            Heard::Nothing => {}
-            Heard::Bad(why) => {
-                self.publishes_s = now_s;
-                out.push(Output::Note(format!("stopped by a bad line: {why}")));
-            }
-        }
-    }
-
-    fn leave(&mut self, now_s: f64) {
-        self.commands.stand();
-        self.publishes_s = now_s;
-        self.leaves_s.get_or_insert(now_s + LEAVE_AFTER_S);
     }
 
     /// The part of a message, or none if the message cannot be right.
@@ -191,7 +134,7 @@ impl Bridge {
         }
     }
 
-    fn odometry(&mut self, odometry: &Odometry, now_s: f64, out: &mut Vec<Output>) {
+    fn odometry(&mut self, odometry: &Odometry, now_s: f64, out: &mut Vec<Order>) {
         let Some(source) = &self.config.odometry else { return };
         let fits = fits("header.frame_id", &odometry.header.frame_id, source.frame.as_ref())
             .and_then(|()| fits("child_frame_id", &odometry.child_frame_id, source.child_frame.as_ref()));
@@ -200,7 +143,7 @@ impl Bridge {
         }
     }
 
-    fn tf(&mut self, tf: &TFMessage, now_s: f64, out: &mut Vec<Output>) {
+    fn tf(&mut self, tf: &TFMessage, now_s: f64, out: &mut Vec<Order>) {
         let Some(source) = &self.config.tf else { return };
         let is_ours = |frame: &str, child: &str| frame == source.frame && child == source.child_frame;
         let ours = tf.transforms.iter().rfind(|of| is_ours(&of.header.frame_id, &of.child_frame_id));
@@ -209,14 +152,14 @@ impl Bridge {
         }
     }
 
-    fn pose(&mut self, pose: &Pose, stamp: Time, now_s: f64, out: &mut Vec<Output>) {
+    fn pose(&mut self, pose: &Pose, stamp: Time, now_s: f64, out: &mut Vec<Order>) {
         let topic = Some(self.config.pose_topic().to_owned());
         let Some(pose) = self.right(topic, convert::pose(pose), now_s) else { return };
         self.condition.pose_s = Some(now_s);
         let measured_s = self.clock.measured_s(stamp.seconds(), now_s);
         // Nothing before the introduction.
-        if self.has_greeted {
-            out.extend(self.readings.pose(pose, measured_s).map(FromVehicle::Readings).map(Output::Say));
+        if self.pilot.has_greeted() {
+            out.extend(self.readings.pose(pose, measured_s).map(FromVehicle::Readings).map(Order::Say));
         }
     }
 
@@ -234,37 +177,6 @@ impl Bridge {
             is_right.then_some(Tether { paid_out_m }).ok_or(format!("data: {paid_out_m} is not a length"));
         let topic = self.config.tether.as_ref().map(|of| of.topic.clone());
         self.readings.parts.tether = self.right(topic, part, now_s);
-    }
-
-    /// What is due now, after each message and each tick.
-    fn act(&mut self, now_s: f64, out: &mut Vec<Output>) {
-        let state = self.condition.state(&self.config, now_s);
-        self.greet(state.mode, now_s, out);
-        let velocity = self.commands.velocity(now_s).filter(|_| state.mode == Mode::Ready);
-        let lapsed = self.was_driven && velocity.is_none();
-        if lapsed || now_s >= self.publishes_s {
-            out.push(Output::Publish(velocity.unwrap_or_default()));
-            self.publishes_s = now_s + self.config.command.period_s;
-            self.was_driven = velocity.is_some();
-        }
-        if lapsed && self.config.stop.is_some() {
-            out.push(Output::CallStop);
-        }
-        if self.has_greeted {
-            out.extend(self.status.say(state).map(FromVehicle::State).map(Output::Say));
-        }
-        if self.leaves_s.is_some_and(|leaves_s| now_s >= leaves_s) {
-            out.push(Output::End);
-        }
-    }
-
-    /// The introduction, once the robot can be driven, or later than expected.
-    fn greet(&mut self, mode: Mode, now_s: f64, out: &mut Vec<Output>) {
-        let is_due = mode != Mode::Fault || now_s - self.started_s >= GREET_WITHIN_S;
-        if !self.has_greeted && is_due {
-            self.has_greeted = true;
-            out.push(Output::Say(FromVehicle::Hello(self.config.vehicle.hello(self.config.has()))));
-        }
     }
 }
 

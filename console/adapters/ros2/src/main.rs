@@ -7,7 +7,7 @@ mod convert;
 mod dds;
 mod types;
 
-use bridge::{Bridge, Input, Output};
+use bridge::{Bridge, Input};
 use config::Config;
 use dds::Robot;
 use std::{
@@ -17,7 +17,10 @@ use std::{
     sync::mpsc::{Receiver, SyncSender, sync_channel},
     time::{Duration, Instant},
 };
-use tankops_adapter::console::{Speaker, listen};
+use tankops_adapter::{
+    console::{Speaker, listen},
+    pilot::Order,
+};
 
 /// Messages that wait to be taken; then the threads that read them wait, and DDS drops the oldest.
 const WAITING_MAX: usize = 256;
@@ -64,15 +67,15 @@ fn serve(config: Config, mut robot: Robot, arrived: &Receiver<Input>) {
             looked = Some(Instant::now());
             inputs.extend(robot.news());
         }
-        // An output can cause an input: the answer of a service.
+        // An order can cause an input: the answer of a service.
         while let Some(input) = inputs.pop() {
-            for output in bridge.take(input, started.elapsed().as_secs_f64()) {
-                match output {
-                    Output::Say(message) => speaker.say(message),
-                    Output::Publish(velocity) => robot.publish(velocity).unwrap_or_else(|why| note(&why)),
-                    Output::CallStop => inputs.extend(robot.call_stop()),
-                    Output::Note(text) => note(&text),
-                    Output::End => return,
+            for order in bridge.take(input, started.elapsed().as_secs_f64()) {
+                match order {
+                    Order::Say(message) => speaker.say(message),
+                    Order::Move(velocity) => robot.publish(velocity).unwrap_or_else(|why| note(&why)),
+                    Order::Halt => inputs.extend(robot.call_stop()),
+                    Order::Note(text) => note(&text),
+                    Order::End => return,
                 }
             }
         }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::types::{Header, PoseWithCovariance, Quaternion, TransformStamped, TwistWithCovariance, Vector3};
-use tankops_adapter::message::{Commander, State};
+use tankops_adapter::message::{Commander, Mode, State};
 
 fn config() -> Config {
     toml::from_str(include_str!("../../trial/robot.toml")).unwrap()
@@ -41,29 +41,17 @@ fn ready() -> Bridge {
     bridge
 }
 
-fn published(out: &[Output]) -> Vec<f64> {
-    let forward = |of: &Output| match of {
-        Output::Publish(velocity) => Some(velocity.forward_m_per_s),
+fn published(out: &[Order]) -> Vec<f64> {
+    let forward = |of: &Order| match of {
+        Order::Move(velocity) => Some(velocity.forward_m_per_s),
         _ => None,
     };
     out.iter().filter_map(forward).collect()
 }
 
-fn state(out: &[Output]) -> Option<&State> {
-    let state = |of| if let &Output::Say(FromVehicle::State(ref state)) = of { Some(state) } else { None };
+fn state(out: &[Order]) -> Option<&State> {
+    let state = |of| if let &Order::Say(FromVehicle::State(ref state)) = of { Some(state) } else { None };
     out.iter().rev().find_map(state)
-}
-
-#[test]
-fn the_introduction_waits_for_a_robot_that_can_be_driven() {
-    let mut bridge = Bridge::new(config(), 0.0);
-    let is_hello = |out: &[Output]| out.iter().any(|of| matches!(of, Output::Say(FromVehicle::Hello(_))));
-    let out = bridge.take(odometry(0.0, 1000.0), 0.1);
-    assert!(!is_hello(&out) && !out.iter().any(|of| matches!(of, Output::Say(_))));
-    let out = bridge.take(Input::Matched { subscriptions: 1, publishers: 0 }, 0.2);
-    assert!(is_hello(&out));
-    assert_eq!(state(&out).unwrap().mode, Mode::Ready);
-    assert!(!is_hello(&bridge.take(odometry(0.0, 1000.1), 0.3)), "only once");
 }
 
 #[test]
@@ -71,53 +59,13 @@ fn without_a_robot_the_introduction_says_what_is_missing() {
     let mut bridge = Bridge::new(config(), 0.0);
     assert_eq!(state(&bridge.take(Input::Tick, 4.9)), None);
     let out = bridge.take(Input::Tick, 5.0);
-    assert!(matches!(out[0], Output::Say(FromVehicle::Hello(_))));
+    assert!(matches!(out[0], Order::Say(FromVehicle::Hello(_))));
     let said = state(&out).unwrap();
     assert_eq!(said.mode, Mode::Fault);
     assert_eq!(said.text.as_deref(), Some("no pose arrives on /odom: check topic, type and QoS"));
     let out = bridge.take(odometry(0.0, 1.0), 5.1);
     let text = state(&out).unwrap().text.clone();
     assert_eq!(text.as_deref(), Some("the robot does not listen to /cmd_vel: check topic, type and QoS"));
-}
-
-#[test]
-fn a_drive_is_published_at_once_and_again_until_its_lease_lapses_then_zero_again_and_again() {
-    let mut bridge = ready();
-    assert_eq!(published(&bridge.take(drive(1), 0.01)), [0.3]);
-    assert_eq!(published(&bridge.take(Input::Tick, 0.03)), [0.0; 0]);
-    assert_eq!(published(&bridge.take(Input::Tick, 0.061)), [0.3]);
-    bridge.take(odometry(0.0, 1000.2), 0.23);
-    assert_eq!(bridge.wakes_s(), 0.26, "the lease ends before the next period");
-    let out = bridge.take(Input::Tick, 0.26);
-    assert_eq!(published(&out), [0.0]);
-    assert!(out.contains(&Output::CallStop));
-    let out = bridge.take(Input::Tick, 0.31);
-    assert_eq!(published(&out), [0.0]);
-    assert!(!out.contains(&Output::CallStop), "once");
-    assert_eq!(published(&bridge.take(Input::Tick, 0.40)), [0.0]);
-}
-
-#[test]
-fn a_stop_a_bad_line_and_the_end_stop_at_once() {
-    let lines =
-        [Some(r#"{"type": "stop", "seq": 2, "stamp_s": 1}"#), Some("{"), Some(r#"{"type": "bye"}"#), None];
-    for line in lines {
-        let mut bridge = ready();
-        bridge.take(drive(1), 0.01);
-        let out = bridge.take(Input::Console(line.map(str::to_owned)), 0.02);
-        assert_eq!(published(&out), [0.0], "{line:?}");
-        assert!(out.contains(&Output::CallStop), "{line:?}");
-    }
-}
-
-#[test]
-fn after_the_end_zero_is_published_for_a_while_and_no_drive_moves_the_robot() {
-    let mut bridge = ready();
-    bridge.take(Input::Console(None), 0.1);
-    let out = bridge.take(Input::Tick, 0.3);
-    assert_eq!(published(&out), [0.0]);
-    assert!(!out.contains(&Output::End));
-    assert!(bridge.take(Input::Tick, 0.6).contains(&Output::End));
 }
 
 #[test]
@@ -138,7 +86,7 @@ fn readings_carry_what_was_measured_since_the_last_ones() {
         0.14,
     );
     let out = bridge.take(odometry(0.02, 1000.2), 0.25);
-    let Output::Say(FromVehicle::Readings(readings)) = &out[0] else { panic!("{out:?}") };
+    let Order::Say(FromVehicle::Readings(readings)) = &out[0] else { panic!("{out:?}") };
     assert!((readings.stamp_s - 0.2).abs() < 1e-6, "measured before it arrived: {}", readings.stamp_s);
     assert_eq!(readings.pose.unwrap().x_m, 0.02);
     assert_eq!(readings.tether.unwrap().paid_out_m, 3.5);
@@ -161,7 +109,7 @@ fn poses_can_come_from_transforms() {
     let transforms = vec![transform("odom", "base_link", 1.5), transform("base_link", "laser", 9.0)];
     bridge.take(Input::Tf(TFMessage { transforms: transforms.clone() }), 0.1);
     let out = bridge.take(Input::Tf(TFMessage { transforms }), 0.2);
-    let Output::Say(FromVehicle::Readings(readings)) = &out[0] else { panic!("{out:?}") };
+    let Order::Say(FromVehicle::Readings(readings)) = &out[0] else { panic!("{out:?}") };
     assert_eq!(readings.pose.unwrap().x_m, 1.5);
 }
 
@@ -240,10 +188,4 @@ fn a_pose_that_is_too_old_stops_the_robot() {
         Some("no pose arrives on /odom: check topic, type and QoS")
     );
     assert_eq!(published(&out), [0.0]);
-}
-
-#[test]
-fn pings_are_answered_on_the_clock_of_the_readings() {
-    let out = ready().take(Input::Console(Some(r#"{"type": "ping", "stamp_s": 7.5}"#.to_owned())), 0.25);
-    assert_eq!(out[0], Output::Say(FromVehicle::Pong { echo_s: 7.5, stamp_s: 0.25 }));
 }
