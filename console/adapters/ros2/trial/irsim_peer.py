@@ -69,7 +69,7 @@ class Robot:
         if now > self.until:
             self.to_v = self.to_w = 0.0
 
-    def step(self, dt, now):
+    def step(self, dt, now, wall):
         limits = self.world["limits"]
         change = limits["acceleration_m_per_s2"] * dt
         v = max(-limits["speed_m_per_s"], min(limits["speed_m_per_s"], self.to_v))
@@ -83,11 +83,9 @@ class Robot:
         self.x += odometry["forward_m"] * math.cos(middle)
         self.y += odometry["forward_m"] * math.sin(middle)
         self.heading += odometry["turn_rad"]
-        self.publish(readings)
+        self.publish(readings, ros.Time(wall // 1_000_000_000, wall % 1_000_000_000))
 
-    def publish(self, readings):
-        wall = time.time_ns()
-        stamp = ros.Time(wall // 1_000_000_000, wall % 1_000_000_000)
+    def publish(self, readings, stamp):
         turned = ros.Quaternion(0.0, 0.0, math.sin(self.heading / 2), math.cos(self.heading / 2))
         odom = ros.Header(stamp, "odom")
         if self.by_tf:
@@ -129,9 +127,10 @@ def main():
     before = time.monotonic()
     while True:
         time.sleep(max(0.0, before + irsim_robot.PERIOD_S - time.monotonic()))
-        now = time.monotonic()
+        # The stamp is the time of the measurement, not of its publication.
+        now, wall = time.monotonic(), time.time_ns()
         robot.hear(now)
-        robot.step(now - before, now)
+        robot.step(now - before, now, wall)
         before = now
 
 
