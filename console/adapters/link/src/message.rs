@@ -134,7 +134,7 @@ pub struct Readings {
     /// The result of a cycle of ranging.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ae: Option<Ae>,
-    /// A scan about the origin of the robot frame.
+    /// A scan of the surroundings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scan: Option<Scan>,
     /// Whether the bumper is pressed.
@@ -172,7 +172,7 @@ pub struct StationRanges {
     pub ranges_m: Vec<f64>,
 }
 
-/// A scan about the origin of the robot frame.
+/// A scan of the surroundings.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Scan {
     /// Direction of the first ray, radians from straight ahead.
@@ -181,7 +181,9 @@ pub struct Scan {
     pub step_rad: f64,
     /// Largest distance that is measured, metres.
     pub range_max_m: f64,
-    /// Distances, metres; none for a ray without an echo.
+    /// Place of the sensor in the robot frame, metres ahead and to the left.
+    pub sensor_m: [f64; 2],
+    /// Distances from the sensor, metres; none for a ray without an echo, 0 for something too near to be measured.
     pub ranges_m: Vec<Option<f64>>,
 }
 

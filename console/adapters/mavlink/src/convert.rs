@@ -67,7 +67,7 @@ pub(crate) fn command(velocity: Velocity, config: &Config, time_boot_ms: u32) ->
     })
 }
 
-/// The sectors of `OBSTACLE_DISTANCE`, as a scan.
+/// The sectors of `OBSTACLE_DISTANCE`, as a scan. Something nearer than the least distance is too near to be measured.
 pub(crate) fn scan(sectors: &OBSTACLE_DISTANCE_DATA) -> Result<Scan, String> {
     let increment_deg = if sectors.increment_f == 0.0 {
         f64::from(sectors.increment)
@@ -86,12 +86,16 @@ pub(crate) fn scan(sectors: &OBSTACLE_DISTANCE_DATA) -> Result<Scan, String> {
     if sectors.frame != MavFrame::MAV_FRAME_BODY_FRD {
         return Err(format!("frame: {:?} is not MAV_FRAME_BODY_FRD", sectors.frame));
     }
-    let echo = |cm: &u16| (*cm >= sectors.min_distance && *cm <= sectors.max_distance).then(|| metres(*cm));
+    let echo = |cm: &u16| match *cm {
+        near if near < sectors.min_distance => Some(0.0),
+        cm => (cm <= sectors.max_distance).then(|| metres(cm)),
+    };
     let used = (360.0 / increment_deg.abs()).floor().min(72.0) as usize;
     Ok(Scan {
         first_rad: -offset_deg.to_radians(),
         step_rad: -increment_deg.to_radians(),
         range_max_m: metres(sectors.max_distance),
+        sensor_m: [0.0, 0.0],
         ranges_m: sectors.distances[..used].iter().map(echo).collect(),
     })
 }

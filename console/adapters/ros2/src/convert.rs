@@ -35,7 +35,7 @@ pub(crate) fn pose(pose: &types::Pose) -> Result<Pose, String> {
     Ok(Pose { x_m: pose.position.x, y_m: pose.position.y, heading_rad })
 }
 
-/// A scan about the origin of the robot frame.
+/// A scan. A range of minus infinity is something too near to be measured (REP 117).
 pub(crate) fn scan(scan: &LaserScan, mounted: &ScanSource) -> Result<Scan, String> {
     let (first, step) = (f64::from(scan.angle_min), f64::from(scan.angle_increment));
     let range_max_m = f64::from(scan.range_max);
@@ -45,36 +45,25 @@ pub(crate) fn scan(scan: &LaserScan, mounted: &ScanSource) -> Result<Scan, Strin
     if !(range_max_m > 0.0 && range_max_m <= RANGE_MAX_M) {
         return Err(format!("range_max: {range_max_m} is not above 0 and at most {RANGE_MAX_M}"));
     }
-    if scan.ranges.len() > RAYS_MAX {
-        return Err(format!("ranges: {} rays; at most {RAYS_MAX} are allowed", scan.ranges.len()));
+    if !(1..=RAYS_MAX).contains(&scan.ranges.len()) {
+        return Err(format!("ranges: {} rays; 1 to {RAYS_MAX} are allowed", scan.ranges.len()));
     }
     let sign = if mounted.upside_down { -1.0 } else { 1.0 };
     let (first_rad, step_rad) = (sign * first + mounted.turned_deg.to_radians(), sign * step);
-    let least = scan.range_min.max(0.0);
     let millimetres = |range: f32| ((f64::from(range) * 1e3).round() / 1e3).min(range_max_m);
-    let echo = |range: &f32| (*range >= least && *range <= scan.range_max).then(|| millimetres(*range));
-    let ranges_m: Vec<Option<f64>> = scan.ranges.iter().map(echo).collect();
-    let turns = (first_rad / TAU).trunc() * TAU;
-    let scan = Scan { first_rad: first_rad - turns, step_rad, range_max_m, ranges_m };
-    Ok(if mounted.ahead_m == 0.0 && mounted.left_m == 0.0 { scan } else { about_centre(&scan, mounted) })
-}
-
-/// The echoes of a sensor beside the centre, sorted into rays about the centre with the same step: the nearest echo of
-/// each ray counts. A ray that no echo falls into is `None`, as one without an echo.
-fn about_centre(scan: &Scan, mounted: &ScanSource) -> Scan {
-    let sectors = (TAU / scan.step_rad.abs()).round().clamp(1.0, RAYS_MAX as f64) as usize;
-    let step_rad = TAU / sectors as f64;
-    let mut ranges_m = vec![None; sectors];
-    for (ray, range_m) in scan.ranges_m.iter().enumerate() {
-        let Some(range_m) = range_m else { continue };
-        let angle = scan.first_rad + ray as f64 * scan.step_rad;
-        let (x, y) = (mounted.ahead_m + range_m * angle.cos(), mounted.left_m + range_m * angle.sin());
-        let sector = (y.atan2(x).rem_euclid(TAU) / step_rad).round() as usize % sectors;
-        let far = x.hypot(y);
-        ranges_m[sector] = Some(ranges_m[sector].map_or(far, |nearest: f64| nearest.min(far)));
-    }
-    let range_max_m = scan.range_max_m + mounted.ahead_m.hypot(mounted.left_m);
-    Scan { first_rad: 0.0, step_rad, range_max_m, ranges_m }
+    let echo = |range: &f32| match *range {
+        f32::NEG_INFINITY => Some(0.0),
+        range => {
+            (range > 0.0 && range >= scan.range_min && range <= scan.range_max).then(|| millimetres(range))
+        }
+    };
+    Ok(Scan {
+        first_rad: first_rad - (first_rad / TAU).trunc() * TAU,
+        step_rad,
+        range_max_m,
+        sensor_m: [mounted.ahead_m, mounted.left_m],
+        ranges_m: scan.ranges.iter().map(echo).collect(),
+    })
 }
 
 /// Ranges to stations: a dimension per station with its name as label and the number of its ranges as size; the ranges

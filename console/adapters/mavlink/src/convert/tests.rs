@@ -55,7 +55,7 @@ fn sectors_are_a_clockwise_scan() {
     let scan = scan(&OBSTACLE_DISTANCE_DATA { angle_offset: 10.0, ..sectors() }).unwrap();
     assert!((scan.first_rad + PI / 18.0).abs() < 1e-9 && (scan.step_rad + PI / 36.0).abs() < 1e-9);
     assert_eq!((scan.range_max_m, scan.ranges_m.len()), (8.0, 72));
-    assert_eq!(scan.ranges_m[..4], [Some(1.5), None, None, None]);
+    assert_eq!(scan.ranges_m[..4], [Some(1.5), Some(0.0), None, None]);
     let wide = OBSTACLE_DISTANCE_DATA { increment_f: 22.5, ..sectors() };
     assert_eq!(super::scan(&wide).unwrap().ranges_m.len(), 16, "once around");
 }
