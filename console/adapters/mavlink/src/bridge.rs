@@ -1,0 +1,271 @@
+//! The adapter without its sockets: messages of the console and of the rover in, messages to both out.
+
+mod condition;
+#[cfg(test)]
+mod tests;
+
+use crate::{
+    config::{Config, PoseFrom},
+    convert,
+};
+use condition::Condition;
+use mavlink::{
+    MavHeader,
+    dialects::common::{
+        ATTITUDE_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd, MavMessage, MavModeFlag,
+        MavState, MavType, NAMED_VALUE_FLOAT_DATA,
+    },
+};
+use tankops_adapter::{
+    clock::Clock,
+    message::{FromVehicle, Tether},
+    pilot::{Order, Pilot},
+    readings::Assembly,
+};
+
+/// What arrives.
+#[derive(Debug, Clone)]
+pub(crate) enum Input {
+    /// A line from the console; `None` at the end of the connection.
+    Console(Option<String>),
+    /// A message of MAVLink.
+    Message(MavHeader, Box<MavMessage>),
+    /// Only time has passed.
+    Tick,
+}
+
+/// What the shell must do.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Output {
+    /// To the console.
+    Say(FromVehicle),
+    /// To the rover.
+    Send(Box<MavMessage>),
+    /// To standard error.
+    Note(String),
+    /// The adapter has done its work.
+    End,
+}
+
+/// Time between two heartbeats of the adapter, seconds.
+const HEARTBEAT_S: f64 = 1.0;
+/// Heartbeats between two requests for the rates of messages: requests get lost, too.
+const REQUEST_EVERY: u32 = 5;
+/// An attitude that is older than this does not belong to the position, seconds.
+const ATTITUDE_MAX_AGE_S: f64 = 0.5;
+/// Stamps that go back by more than this are those of a rover that has started again, seconds.
+const RESTART_S: f64 = 1.0;
+
+/// The adapter's state.
+pub(crate) struct Bridge {
+    config: Config,
+    pilot: Pilot,
+    clock: Clock,
+    readings: Assembly,
+    condition: Condition,
+    attitude: Option<ATTITUDE_DATA>,
+    /// Stamp of the newest pose, seconds of the rover's clock.
+    newest_s: Option<f64>,
+    beats_s: f64,
+    beats: u32,
+}
+
+impl Bridge {
+    /// Nothing has been heard yet.
+    pub(crate) fn new(config: Config, now_s: f64) -> Self {
+        Self {
+            pilot: Pilot::new(&config.vehicle, config.has(), config.command_period_s, now_s),
+            clock: Clock::default(),
+            readings: Assembly::new(config.vehicle.period_s),
+            condition: Condition::default(),
+            attitude: None,
+            newest_s: None,
+            beats_s: now_s,
+            beats: 0,
+            config,
+        }
+    }
+
+    /// The time at which the bridge must be called at the latest.
+    pub(crate) fn wakes_s(&self) -> f64 {
+        self.pilot.wakes_s().min(self.beats_s)
+    }
+
+    /// Takes what has arrived.
+    pub(crate) fn take(&mut self, input: Input, now_s: f64) -> Vec<Output> {
+        let mut orders = Vec::new();
+        match input {
+            Input::Console(line) => self.pilot.hear(line.as_deref(), now_s, &mut orders),
+            Input::Message(header, message) => self.message(header, *message, now_s, &mut orders),
+            Input::Tick => {}
+        }
+        self.pilot.act(self.condition.state(now_s), now_s, &mut orders);
+        let mut out: Vec<Output> = orders.into_iter().filter_map(|order| self.output(order, now_s)).collect();
+        self.beat(now_s, &mut out);
+        out
+    }
+
+    fn output(&self, order: Order, now_s: f64) -> Option<Output> {
+        match order {
+            Order::Say(message) => Some(Output::Say(message)),
+            Order::Move(velocity) => {
+                // The counter of milliseconds starts again after 49 days.
+                let time_boot_ms = (now_s * 1e3) as u64 as u32;
+                Some(Output::Send(Box::new(convert::command(velocity, &self.config, time_boot_ms))))
+            }
+            // The zero that was sent with it is all that MAVLink has for a stop in mode GUIDED.
+            Order::Halt => None,
+            Order::Note(text) => Some(Output::Note(text)),
+            Order::End => Some(Output::End),
+        }
+    }
+
+    /// The adapter's heartbeat: a rover holds when its ground station is silent, if it is set up so.
+    fn beat(&mut self, now_s: f64, out: &mut Vec<Output>) {
+        if now_s < self.beats_s {
+            return;
+        }
+        self.beats_s = now_s + HEARTBEAT_S;
+        out.push(Output::Send(Box::new(MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+            mavtype: MavType::MAV_TYPE_GCS,
+            autopilot: MavAutopilot::MAV_AUTOPILOT_INVALID,
+            base_mode: MavModeFlag::empty(),
+            system_status: MavState::MAV_STATE_ACTIVE,
+            mavlink_version: 3,
+            custom_mode: 0,
+        }))));
+        if self.beats.is_multiple_of(REQUEST_EVERY) {
+            let requests = self.wanted().iter().map(|id| self.request(*id));
+            out.extend(requests.map(Box::new).map(Output::Send));
+        }
+        self.beats = self.beats.wrapping_add(1);
+    }
+
+    /// The numbers of the messages that poses come from.
+    fn wanted(&self) -> &'static [f32] {
+        match self.config.pose {
+            PoseFrom::LocalPosition => &[32.0, 30.0],
+            PoseFrom::Odometry => &[331.0],
+        }
+    }
+
+    fn request(&self, id: f32) -> MavMessage {
+        MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
+            param1: id,
+            param2: (self.config.vehicle.period_s * 1e6) as f32,
+            command: MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
+            target_system: self.config.rover.system,
+            target_component: self.config.rover.component,
+            ..COMMAND_LONG_DATA::default()
+        })
+    }
+
+    fn message(&mut self, from: MavHeader, message: MavMessage, now_s: f64, orders: &mut Vec<Order>) {
+        let rover = self.config.rover;
+        if from.system_id != u32::from(rover.system) {
+            self.other(from, &message, now_s);
+            return;
+        }
+        match message {
+            MavMessage::HEARTBEAT(beat) if from.component_id == rover.component => {
+                self.condition.heartbeat(&beat, now_s);
+            }
+            MavMessage::BATTERY_STATUS(battery) => {
+                let charge = battery.battery_remaining;
+                self.condition.battery = (0..=100).contains(&charge).then(|| f64::from(charge) / 100.0);
+            }
+            MavMessage::ATTITUDE(attitude) if from.component_id == rover.component => {
+                self.attitude = Some(attitude);
+            }
+            MavMessage::LOCAL_POSITION_NED(at) if self.config.pose == PoseFrom::LocalPosition => {
+                let stamp_s = f64::from(at.time_boot_ms) / 1e3;
+                let Some(yaw) = self.yaw(stamp_s) else { return };
+                self.pose(convert::pose(at.x, at.y, yaw), "LOCAL_POSITION_NED", stamp_s, now_s, orders);
+            }
+            MavMessage::ODOMETRY(at) if self.config.pose == PoseFrom::Odometry => {
+                let pose = convert::yaw(at.q).and_then(|yaw| convert::pose(at.x, at.y, yaw));
+                self.pose(pose, "ODOMETRY", at.time_usec as f64 / 1e6, now_s, orders);
+            }
+            MavMessage::OBSTACLE_DISTANCE(sectors) if self.config.scan => {
+                self.readings.parts.scan = self.right("OBSTACLE_DISTANCE", convert::scan(&sectors), now_s);
+            }
+            MavMessage::DEBUG_FLOAT_ARRAY(array) => {
+                let Some(ranging) = &self.config.ae else { return };
+                if array.name.to_str() == Ok(&ranging.name) {
+                    let part = convert::ranges(&array, ranging);
+                    self.readings.parts.ae = self.right("DEBUG_FLOAT_ARRAY", part, now_s);
+                }
+            }
+            MavMessage::NAMED_VALUE_FLOAT(named) => self.named(&named, now_s),
+            _ => {}
+        }
+    }
+
+    /// A message of a third participant, which a router has passed on: commands of another ground station matter.
+    fn other(&mut self, from: MavHeader, message: &MavMessage, now_s: f64) {
+        let is_command = matches!(
+            message,
+            MavMessage::SET_POSITION_TARGET_LOCAL_NED(_)
+                | MavMessage::SET_POSITION_TARGET_GLOBAL_INT(_)
+                | MavMessage::SET_ATTITUDE_TARGET(_)
+                | MavMessage::MANUAL_CONTROL(_)
+                | MavMessage::RC_CHANNELS_OVERRIDE(_)
+        );
+        if is_command && from.system_id != u32::from(self.config.own.system) {
+            self.condition.other_command = Some((from.system_id, now_s));
+        }
+    }
+
+    /// The yaw at a time, from the newest attitude and its rate.
+    fn yaw(&self, at_s: f64) -> Option<f64> {
+        let attitude = self.attitude.as_ref()?;
+        let since_s = at_s - f64::from(attitude.time_boot_ms) / 1e3;
+        let yaw = f64::from(attitude.yaw) + f64::from(attitude.yawspeed) * since_s;
+        (since_s.abs() <= ATTITUDE_MAX_AGE_S).then_some(yaw)
+    }
+
+    fn pose(
+        &mut self,
+        pose: Result<tankops_adapter::message::Pose, String>,
+        kind: &str,
+        stamp_s: f64,
+        now_s: f64,
+        orders: &mut Vec<Order>,
+    ) {
+        let Some(pose) = self.right(kind, pose, now_s) else { return };
+        // Doubled or overtaken: its motion is in a pose that has been taken already.
+        let is_old =
+            self.newest_s.is_some_and(|newest_s| stamp_s <= newest_s && newest_s - stamp_s <= RESTART_S);
+        if is_old {
+            return;
+        }
+        self.newest_s = Some(stamp_s);
+        self.condition.pose_s = Some(now_s);
+        let measured_s = self.clock.measured_s(Some(stamp_s), now_s);
+        if self.pilot.has_greeted() {
+            orders.extend(self.readings.pose(pose, measured_s).map(FromVehicle::Readings).map(Order::Say));
+        }
+    }
+
+    fn named(&mut self, named: &NAMED_VALUE_FLOAT_DATA, now_s: f64) {
+        let Ok(name) = named.name.to_str() else { return };
+        let value = f64::from(named.value);
+        let is = |of: &Option<String>| of.as_deref() == Some(name);
+        if is(&self.config.tether) {
+            let part = if (0.0..=1e4).contains(&value) {
+                Ok(Tether { paid_out_m: value })
+            } else {
+                Err(format!("{name}: {value} is not a length"))
+            };
+            self.readings.parts.tether = self.right("NAMED_VALUE_FLOAT", part, now_s);
+        } else if is(&self.config.contact) {
+            let parts = &mut self.readings.parts;
+            parts.contact = Some(parts.contact.unwrap_or(false) || value != 0.0);
+        }
+    }
+
+    /// The part of a message, or none if the message cannot be right.
+    fn right<T>(&mut self, kind: &str, part: Result<T, String>, now_s: f64) -> Option<T> {
+        part.map_err(|why| self.condition.trouble(format!("{kind}: {why}"), now_s)).ok()
+    }
+}

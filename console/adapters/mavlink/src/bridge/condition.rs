@@ -1,0 +1,119 @@
+//! What the rover has told about whether it can be driven.
+
+use mavlink::dialects::common::{HEARTBEAT_DATA, MavModeFlag, MavState};
+use tankops_adapter::message::{Commander, Mode, State};
+
+/// Longest silence between two heartbeats, seconds: three of them may be lost in a row.
+const HEARTBEAT_MAX_AGE_S: f64 = 4.5;
+/// Poses older than this are a fault, seconds.
+const POSE_MAX_AGE_S: f64 = 1.0;
+/// How long a message that cannot be right, or a command of another ground station, is a fault, seconds.
+const FAULT_FOR_S: f64 = 2.0;
+
+/// The mode in which ArduRover obeys velocities.
+const GUIDED: u32 = 15;
+/// The other modes of ArduRover.
+const MODES: [(u32, &str); 15] = [
+    (0, "MANUAL"),
+    (1, "ACRO"),
+    (3, "STEERING"),
+    (4, "HOLD"),
+    (5, "LOITER"),
+    (6, "FOLLOW"),
+    (7, "SIMPLE"),
+    (8, "DOCK"),
+    (9, "CIRCLE"),
+    (10, "AUTO"),
+    (11, "RTL"),
+    (12, "SMART_RTL"),
+    (GUIDED, "GUIDED"),
+    (16, "INITIALISING"),
+    (2, "LEARNING"),
+];
+/// The modes in which a person drives.
+const MANUAL: [u32; 4] = [0, 1, 3, 7];
+
+/// The condition of the rover.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Condition {
+    /// Arrival of the newest pose.
+    pub(super) pose_s: Option<f64>,
+    /// Charge, 0 to 1.
+    pub(super) battery: Option<f64>,
+    /// System number and time of the newest command of another ground station.
+    pub(super) other_command: Option<(u32, f64)>,
+    heartbeat: Option<Heartbeat>,
+    /// What is wrong with a message, and until when it counts.
+    trouble: Option<(String, f64)>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Heartbeat {
+    arrived_s: f64,
+    mode: u32,
+    is_armed: bool,
+    system: MavState,
+}
+
+impl Condition {
+    /// The rover's autopilot is alive.
+    pub(super) fn heartbeat(&mut self, beat: &HEARTBEAT_DATA, now_s: f64) {
+        self.heartbeat = Some(Heartbeat {
+            arrived_s: now_s,
+            mode: beat.custom_mode,
+            is_armed: beat.base_mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED),
+            system: beat.system_status,
+        });
+    }
+
+    /// A message could not be right.
+    pub(super) fn trouble(&mut self, why: String, now_s: f64) {
+        self.trouble = Some((why, now_s + FAULT_FOR_S));
+    }
+
+    /// The state to say.
+    pub(super) fn state(&self, now_s: f64) -> State {
+        let other = self.other_command.filter(|(_, at_s)| now_s - at_s < FAULT_FOR_S);
+        let (mode, text) = match self.mode(other.map(|(system, _)| system), now_s) {
+            Ok(()) => (Mode::Ready, None),
+            Err((mode, why)) => (mode, Some(why)),
+        };
+        let commander = if other.is_some() { Commander::OtherProgram } else { Commander::You };
+        State { stamp_s: now_s, mode, text, battery: self.battery, commander }
+    }
+
+    fn mode(&self, other: Option<u32>, now_s: f64) -> Result<(), (Mode, String)> {
+        let fault = |why: String| Err((Mode::Fault, why));
+        let is_alive = |beat: &Heartbeat| now_s - beat.arrived_s <= HEARTBEAT_MAX_AGE_S;
+        let Some(beat) = self.heartbeat.filter(is_alive) else {
+            return fault("no heartbeat of the rover arrives: check address and system number".to_owned());
+        };
+        if MANUAL.contains(&beat.mode) {
+            return Err((Mode::Manual, format!("mode {}", name(beat.mode))));
+        }
+        if let Some(system) = other {
+            return fault(format!("ground station {system} commands the rover, too"));
+        }
+        if beat.mode != GUIDED {
+            return fault(format!("the rover is in mode {}; switch it to GUIDED", name(beat.mode)));
+        }
+        if !beat.is_armed {
+            return fault("the rover is disarmed; arm it".to_owned());
+        }
+        if !matches!(beat.system, MavState::MAV_STATE_ACTIVE | MavState::MAV_STATE_STANDBY) {
+            return fault(format!("the autopilot reports {:?}", beat.system));
+        }
+        if let Some((why, _)) = self.trouble.as_ref().filter(|(_, until_s)| now_s < *until_s) {
+            return fault(why.clone());
+        }
+        if self.pose_s.is_none_or(|pose_s| now_s - pose_s > POSE_MAX_AGE_S) {
+            return fault("no pose arrives: check the rates of its messages".to_owned());
+        }
+        Ok(())
+    }
+}
+
+fn name(mode: u32) -> String {
+    let known = MODES.iter().find(|(number, _)| *number == mode);
+    known.map_or(format!("{mode}"), |(_, name)| (*name).to_owned())
+}
