@@ -52,7 +52,7 @@ impl Planner for ApfDwa {
     const ABOUT: &'static str = "A potential field with virtual goals steers a dynamic window with \
                                  separate limits on land and under water, after Yang et al. 2021. Evades \
                                  moving obstacles.";
-    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL);
+    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] = parameters::PARAMS;
 
     fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
@@ -69,6 +69,16 @@ impl Planner for ApfDwa {
             stall: Stall::default(),
             used: 0,
         })
+    }
+
+    fn reconfigure(&mut self, config: &Config<'_>, _: &Ctx<'_>) -> Result<()> {
+        let keep_m = parameters::keep_m(config, self.limits.radius_m, self.clearance_m);
+        let wall_gain = config.float("wall_gain");
+        self.settings.keep(keep_m, wall_gain);
+        self.hybrid.keep(keep_m, wall_gain);
+        self.evades = config.flag("evade");
+        self.stuck_s = config.float("stuck_s");
+        Ok(())
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {

@@ -34,6 +34,14 @@ pub struct HybridSettings {
     pub steps_max: usize,
 }
 
+impl HybridSettings {
+    /// Changes the distance that the robot's centre keeps from solids, metres, and the push from the wall.
+    pub fn keep(&mut self, keep_m: f64, wall_gain: f64) {
+        (self.window.keep_m, self.field.keep_m) = (keep_m, keep_m);
+        self.field.push.wall_gain = wall_gain;
+    }
+}
+
 /// The robot's position and motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State {
@@ -80,6 +88,12 @@ impl Hybrid {
     /// Sets the time for which a command takes effect, seconds.
     pub fn set_tick(&mut self, tick_s: f64) {
         self.settings.window.dt_s = tick_s;
+    }
+
+    /// Changes the distance that the robot's centre keeps from solids, metres, and the push from the wall; everything
+    /// else stays as it is.
+    pub fn keep(&mut self, keep_m: f64, wall_gain: f64) {
+        self.settings.keep(keep_m, wall_gain);
     }
 
     /// The guide and its virtual goals.

@@ -119,7 +119,7 @@ const SPARE_M: f64 = 0.02;
 
 /// Reads the settings for a site.
 pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>) -> HybridSettings {
-    let keep_m = site.limits.radius_m + config.float("guard_m").max(site.clearance_m) + SPARE_M;
+    let keep_m = keep_m(config, site.limits.radius_m, site.clearance_m);
     let square = SquareLaw {
         k_att: config.float("k_att"),
         d_0_m: config.float("d_0_m"),
@@ -154,6 +154,11 @@ pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>) -> HybridSettings {
         field: Field { square, push, by, keep_m },
         steps_max: config.int("steps_max") as usize,
     }
+}
+
+/// Distance that the robot's centre keeps from solids, metres, for its hull and the mission's clearance.
+pub(crate) fn keep_m(config: &Config<'_>, hull_m: f64, clearance_m: f64) -> f64 {
+    hull_m + config.float("guard_m").max(clearance_m) + SPARE_M
 }
 
 /// The configured limits on land and under water, none of them above the robot's own.

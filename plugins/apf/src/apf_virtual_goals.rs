@@ -71,7 +71,7 @@ impl Planner for ApfVirtualGoals {
     const ABOUT: &'static str = "Leaves local minima toward virtual goals on a square around the goal and \
                                  keeps its pull near the goal, after Yang et al. 2021. Evades moving \
                                  obstacles.";
-    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL);
+    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] = &[
         K_ATT,
         K_REP,
@@ -96,6 +96,12 @@ impl Planner for ApfVirtualGoals {
         let law = law(config);
         let flight = GoalFlight::new(site, config, law.repulsion.rho_m);
         Ok(Self { law, flight, goals: VirtualGoals::default() })
+    }
+
+    fn reconfigure(&mut self, config: &Config<'_>, _: &Ctx<'_>) -> Result<()> {
+        self.law = law(config);
+        self.flight.set(config);
+        Ok(())
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {

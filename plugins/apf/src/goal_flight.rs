@@ -37,6 +37,13 @@ impl GoalFlight {
         Self { nearby: Nearby::new(reach_m + map.hull_m), map, flight, evades, pilot }
     }
 
+    /// Applies new values of the live parameters; the map stays, and a change of `evade` applies to it from the next
+    /// plan.
+    pub(crate) fn set(&mut self, config: &Config<'_>) {
+        self.flight = params::flight(config);
+        self.evades = config.flag("evade");
+    }
+
     /// Loads the map of a request and checks start and goal. `id` names the planner in messages.
     ///
     /// # Errors

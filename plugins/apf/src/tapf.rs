@@ -60,7 +60,7 @@ impl Planner for Tapf {
     const NAME: &'static str = "Tangent potential field";
     const ABOUT: &'static str = "Attraction, repulsion and a tangent force, after Xu et al. 2022. Gets \
                                  stuck in half-closed traps. Evades moving obstacles.";
-    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL);
+    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] = &[
         p::K_ATT,
         K_REP,
@@ -80,19 +80,7 @@ impl Planner for Tapf {
     ];
 
     fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
-        let law = GoalLaw {
-            pull: Pull::Linear { k: config.float("k_att") },
-            k_rep: config.float("k_rep"),
-            push: o::goal_push_form(config),
-            rho_m: config.float("rho_0_m"),
-            tangent: match config.choice("tangent") {
-                "off" => TangentUse::Off,
-                "always" => TangentUse::Always,
-                _ => TangentUse::Blocking,
-            },
-            tangent_weight: config.float("tangent_weight"),
-            wall_gain: config.float("wall_gain"),
-        };
+        let law = law(config);
         Ok(Self {
             law,
             step_m: config.float("goto_step_m"),
@@ -100,6 +88,12 @@ impl Planner for Tapf {
             flight: GoalFlight::new(site, config, law.rho_m),
             sides: Sides::default(),
         })
+    }
+
+    fn reconfigure(&mut self, config: &Config<'_>, _: &Ctx<'_>) -> Result<()> {
+        self.law = law(config);
+        self.flight.set(config);
+        Ok(())
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
@@ -118,6 +112,22 @@ impl Planner for Tapf {
         let k_att = law.pull.strength(1.0);
         self.flight
             .step(sensed, ctx, k_att, |at, map, nearby| law.forces(at, sensed.target, map, nearby, sides))
+    }
+}
+
+fn law(config: &Config<'_>) -> GoalLaw {
+    GoalLaw {
+        pull: Pull::Linear { k: config.float("k_att") },
+        k_rep: config.float("k_rep"),
+        push: o::goal_push_form(config),
+        rho_m: config.float("rho_0_m"),
+        tangent: match config.choice("tangent") {
+            "off" => TangentUse::Off,
+            "always" => TangentUse::Always,
+            _ => TangentUse::Blocking,
+        },
+        tangent_weight: config.float("tangent_weight"),
+        wall_gain: config.float("wall_gain"),
     }
 }
 

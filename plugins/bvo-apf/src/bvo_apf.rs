@@ -57,7 +57,7 @@ impl Planner for BvoApf {
     const ABOUT: &'static str = "Backs out of traps, seals them with virtual obstacles and goes around \
                                  them, after Xu et al. 2022. By default the detour begins before the robot \
                                  enters the trap. Evades moving obstacles.";
-    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL);
+    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] = parameters::PARAMS;
 
     fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
@@ -69,6 +69,16 @@ impl Planner for BvoApf {
             map: KnownMap::standing(site),
             flying: None,
         })
+    }
+
+    fn reconfigure(&mut self, config: &Config<'_>, _: &Ctx<'_>) -> Result<()> {
+        self.flight = p::flight(config);
+        let wall_gain = config.float("wall_gain");
+        self.settings.law.wall_gain = wall_gain;
+        if let Some(flying) = &mut self.flying {
+            flying.machine.settings.law.wall_gain = wall_gain;
+        }
+        Ok(())
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {

@@ -46,7 +46,7 @@ impl Planner for Boustrophedon {
     const ABOUT: &'static str = "Traditional: parallel lanes over the whole floor, one after another, \
                                  passing columns on the shorter side. Ignores the tether and treats moving \
                                  obstacles as stationary.";
-    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::COVERAGE);
+    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::COVERAGE).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] =
         &[DIRECTION, SHELL_LAP, CELL, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
 
@@ -57,6 +57,11 @@ impl Planner for Boustrophedon {
             cell_m: config.float("cell_m"),
             follow: Follow::new(config, site),
         })
+    }
+
+    fn reconfigure(&mut self, config: &Config<'_>, _: &Ctx<'_>) -> Result<()> {
+        self.follow.set(config);
+        Ok(())
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {

@@ -31,6 +31,8 @@ const PILOT_SPARE_M: f64 = 0.02;
 /// Follows the path. Stops in front of obstacles discovered on it, so that the mission replans.
 pub(crate) struct Follow {
     flight: Flight,
+    /// The mission's clearance, metres.
+    clearance_m: f64,
     pilot: Pilot,
     wall: Boundary,
     keep_m: f64,
@@ -58,11 +60,12 @@ impl Cut {
 impl Follow {
     /// Creates a follower for a site.
     pub(crate) fn new(config: &Config<'_>, site: &Site<'_>) -> Self {
-        let flight = p::flight(config);
-        let guard_m = flight.guard_m.min(GUARD_SHARE * site.clearance_m);
+        let flight = flight(config, site.clearance_m);
+        let clearance_m = flight.guard_m - PILOT_SPARE_M;
         Self {
-            flight: Flight { guard_m, ..flight },
-            pilot: Pilot::pursuing(&Site { clearance_m: guard_m - PILOT_SPARE_M, ..*site }),
+            flight,
+            clearance_m: site.clearance_m,
+            pilot: Pilot::pursuing(&Site { clearance_m, ..*site }),
             wall: site.boundary.to_owned(),
             keep_m: site.limits.radius_m,
             cuts: Vec::new(),
@@ -70,6 +73,12 @@ impl Follow {
             seen_at: None,
             has_reported: false,
         }
+    }
+
+    /// Applies new values of the live parameters; the plan, its cuts and the progress along it stay.
+    pub(crate) fn set(&mut self, config: &Config<'_>) {
+        self.flight = flight(config, self.clearance_m);
+        self.pilot.keep_clear(self.flight.guard_m - PILOT_SPARE_M);
     }
 
     /// Adopts the cuts of a new plan. If the plan begins with a return path, they apply from the end of that path.
@@ -148,6 +157,12 @@ impl Follow {
         }
         Command::still(Status::Stuck)
     }
+}
+
+/// The flight settings, with the guard limited to its share of the mission's clearance, metres.
+fn flight(config: &Config<'_>, clearance_m: f64) -> Flight {
+    let flight = p::flight(config);
+    Flight { guard_m: flight.guard_m.min(GUARD_SHARE * clearance_m), ..flight }
 }
 
 /// The point to aim at, slightly ahead on the path; at corners the robot drives to the corner before turning.

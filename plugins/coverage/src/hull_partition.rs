@@ -54,7 +54,7 @@ impl Planner for HullPartition {
     const ABOUT: &'static str = "Pan 2025: convex cells between the hull rings of the columns, visited \
                                  with backtracking in an order found by a genetic algorithm. Treats moving \
                                  obstacles as stationary.";
-    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::COVERAGE);
+    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::COVERAGE).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] =
         &[BACKTRACKING, ORDER, CELL, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
 
@@ -65,6 +65,11 @@ impl Planner for HullPartition {
             cell_m: config.float("cell_m"),
             follow: Follow::new(config, site),
         })
+    }
+
+    fn reconfigure(&mut self, config: &Config<'_>, _: &Ctx<'_>) -> Result<()> {
+        self.follow.set(config);
+        Ok(())
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {

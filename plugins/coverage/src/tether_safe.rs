@@ -42,12 +42,17 @@ impl Planner for TetherSafe {
                                  always be reeled in. Orders the lanes of a simply connected domain by \
                                  local search and certifies the plan. Treats moving obstacles as \
                                  stationary.";
-    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::COVERAGE);
+    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::COVERAGE).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] = parameters::ALL;
 
     fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
         let preferences = Preferences::of(config, site);
         Ok(Self { preferences, follow: Follow::new(config, site), is_preferred: true })
+    }
+
+    fn reconfigure(&mut self, config: &Config<'_>, _: &Ctx<'_>) -> Result<()> {
+        self.follow.set(config);
+        Ok(())
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {

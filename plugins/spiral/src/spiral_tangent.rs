@@ -37,6 +37,8 @@ const STEP: ParamSpec = float("step_m", "Longest move", "m", 0.01, 0.3, 0.1)
 /// path out, given everything sensed so far. It never enters places where hull and clearance do not fit.
 pub struct SpiralTangent {
     clearance_m: f64,
+    /// The hull radius and the mission's clearance, metres.
+    site: (f64, f64),
     range_m: f64,
     step_m: f64,
     pursuit: Pursuit,
@@ -48,29 +50,29 @@ impl Planner for SpiralTangent {
     const ABOUT: &'static str = "Reactive: follows a preset path or a plan according to what the robot \
                                  senses, and passes obstacles along their tangents, with clearance and \
                                  wall as hard limits. Treats moving obstacles as stationary.";
-    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL);
+    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] =
         &[p::CLEARANCE, RANGE, STEP, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
 
     fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
         course::check_numbers(config, Self::PARAMS)?;
-        let clearance_m = config.float("clearance_m");
         let hull_m = site.limits.radius_m;
         let range_m = config.float("range_m").min(site.limits.sensing_range_m + hull_m);
-        let least_m = hull_m + clearance_m.max(site.clearance_m) + LEAST_SIGHT_M;
-        if range_m < least_m {
-            let message = format!(
-                "a sensing range of {range_m:.2} m is too short for hull and clearance; it must be at \
-                 least {least_m:.2} m, or the clearance must be smaller"
-            );
-            return Err(PlannerError::new(Code::Config, message));
-        }
+        let clearance_m = clearance_m(config, (hull_m, site.clearance_m), range_m)?;
         Ok(Self {
             clearance_m,
+            site: (hull_m, site.clearance_m),
             range_m,
             step_m: config.float("step_m").max(0.005),
             pursuit: Pursuit::new(p::flight(config), clearance_m, site),
         })
+    }
+
+    fn reconfigure(&mut self, config: &Config<'_>, _: &Ctx<'_>) -> Result<()> {
+        course::check_numbers(config, Self::PARAMS)?;
+        self.clearance_m = clearance_m(config, self.site, self.range_m)?;
+        self.pursuit.set(p::flight(config), self.clearance_m);
+        Ok(())
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
@@ -99,6 +101,20 @@ impl Planner for SpiralTangent {
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         self.pursuit.step(sensed, ctx)
     }
+}
+
+/// The clearance that a plan keeps, metres, if the robot sees far enough for it.
+fn clearance_m(config: &Config<'_>, (hull_m, demanded_m): (f64, f64), range_m: f64) -> Result<f64> {
+    let clearance_m = config.float("clearance_m");
+    let least_m = hull_m + clearance_m.max(demanded_m) + LEAST_SIGHT_M;
+    if range_m < least_m {
+        let message = format!(
+            "a sensing range of {range_m:.2} m is too short for hull and clearance; it must be at \
+             least {least_m:.2} m, or the clearance must be smaller"
+        );
+        return Err(PlannerError::new(Code::Config, message));
+    }
+    Ok(clearance_m)
 }
 
 #[cfg(test)]

@@ -141,6 +141,11 @@ impl Pilot {
         Command::velocity(evade::evade(decision.velocity, &tick.pose, &around))
     }
 
+    /// Changes the mission's clearance that the guard keeps, metres; everything else stays as it is.
+    pub fn keep_clear(&mut self, clearance_m: f64) {
+        self.clearance_m = clearance_m;
+    }
+
     /// The motion limits of the robot.
     pub fn limits(&self) -> &Limits {
         &self.limits

@@ -8,6 +8,7 @@
 #![forbid(unsafe_code)]
 
 pub mod amphibious;
+pub mod changed;
 pub mod crossing;
 pub mod discs;
 pub mod entanglement;
@@ -22,6 +23,7 @@ pub mod traps;
 pub mod walk;
 
 pub use amphibious::AmphibiousLayout;
+pub use changed::{Changed, changed};
 pub use crossing::{Crossing, cross};
 pub use entanglement::Entanglement;
 pub use flight::{Outcome, Robot, fly};

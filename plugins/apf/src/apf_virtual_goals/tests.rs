@@ -84,3 +84,9 @@ fn what_crosses_its_way_is_met_where_it_will_be_unless_it_counts_as_standing() {
     // An obstacle that is evaded is given 0.15 m of clearance.
     assert!(taken_as_standing.iter().any(|crossing| crossing.clearance_m < 0.05), "{taken_as_standing:?}");
 }
+
+#[test]
+fn a_change_of_live_parameters_acts_like_a_new_planner() {
+    let changed = trials::changed::<ApfVirtualGoals>(&[], &[("slow_m", 3.0)]);
+    assert!(changed.after == changed.anew && changed.after != changed.before, "{changed:?}");
+}

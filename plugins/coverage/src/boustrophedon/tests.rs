@@ -63,3 +63,9 @@ fn between_walls_a_lap_is_driven_along_all_of_them() {
     assert!(plan.complete && scan.coverage_reachable > 0.99, "{}", scan.coverage_reachable);
     assert_eq!(scan.certificate.collisions, 0, "{:?}", scan.certificate.reasons);
 }
+
+#[test]
+fn a_change_of_live_parameters_acts_like_a_new_planner() {
+    let changed = trials::changed::<Boustrophedon>(&[], &[("slow_m", 3.0)]);
+    assert!(changed.after == changed.anew && changed.after != changed.before, "{changed:?}");
+}

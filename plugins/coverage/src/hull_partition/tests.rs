@@ -72,3 +72,9 @@ fn a_floor_without_columns_is_one_cell() {
     assert!(plan.cuts.is_empty());
     assert!(tank.score(&plan.path, &[], CELL_M).unwrap().coverage_reachable > 0.98);
 }
+
+#[test]
+fn a_change_of_live_parameters_acts_like_a_new_planner() {
+    let changed = trials::changed::<HullPartition>(&[], &[("slow_m", 3.0)]);
+    assert!(changed.after == changed.anew && changed.after != changed.before, "{changed:?}");
+}
