@@ -20,6 +20,8 @@ fn replanning(fault: &str) -> Session {
     session.press(":");
     session.see("Tab complete");
     session.press("no-go 2,2 3,3\r");
+    session.see("It closes");
+    session.agree();
     session.see("Planning (faulty)");
     session
 }

@@ -128,13 +128,10 @@ fn a_mission_that_takes_long_to_show_starts_when_that_is_confirmed() {
 #[test]
 fn a_command_that_the_mission_refuses_fails_at_its_line() {
     let cases = [
-        (
-            "theme dark\nno-go 90,90 95,95\ntheme light\n",
-            "mission.txt:2: order refused: the zone lies outside the tank",
-        ),
+        ("theme dark\nno-go 90,90 95,95\ntheme light\n", "mission.txt:2: the zone lies outside the tank"),
         (
             "speed max\nstart\nkey enter\nwait until phase running\nno-go 90,90 95,95\nwait until phase ended\n",
-            "mission.txt:5: order refused: the zone lies outside the tank",
+            "mission.txt:5: the zone lies outside the tank",
         ),
     ];
     for (script, line) in cases {

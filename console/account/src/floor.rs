@@ -11,7 +11,7 @@ mod zone;
 
 pub use areas::{Area, Cause, Explained, Slivers, area_of, areas, together};
 pub use evidence::{Evidence, Solid};
-pub use left_out::LeftOut;
+pub use left_out::{LeftOut, Resumption};
 pub use measure::Measure;
 pub use reason::{MissReason, OutOfReach};
 pub use reasons::Reasons;

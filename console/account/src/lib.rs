@@ -39,8 +39,8 @@ pub use extremes::{Extreme, Worst};
 pub use figures::{Figure, FigureId, Figures, Limit};
 pub use floor::{
     Account, Area, Cause, CriticalZone, Evidence, Explained, LeftOut, Measure, MissReason, OutOfReach,
-    Percent, PlateAccount, Reasons, Shares, Slivers, Solid, ZoneArc, ZoneOfPlate, account, area_of, areas,
-    plate_map, together, updated_floor,
+    Percent, PlateAccount, Reasons, Resumption, Shares, Slivers, Solid, ZoneArc, ZoneOfPlate, account,
+    area_of, areas, plate_map, together, updated_floor,
 };
 pub use fold::Fold;
 pub use inspection::{Date, Inspection, is_placeholder, says_nothing};

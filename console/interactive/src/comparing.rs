@@ -79,7 +79,7 @@ fn plan(
         .as_ref()
         .map(|tether| certify_from_start(tether, mission, &plan.path, &plan.cuts, &drawing).certified);
     let estimate = Estimate::new(mission, &drawing, &plan.path, plan.complete);
-    Ok(GhostPlan { path: tui::model::Trail::thinned(&plan.path), estimate, certified })
+    Ok(GhostPlan::new(mission, &plan.path, &plan.legs, estimate, certified))
 }
 
 /// Sends an ask and waits for its answer, unless the comparison is cancelled.

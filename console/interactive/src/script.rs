@@ -224,6 +224,10 @@ impl Runner {
             self.hear_until(ANSWERING, |model| !model.live.preflight.is_starting)?;
             self.accepted()?;
         }
+        if self.session.model.is_pricing_zone() {
+            self.hear_until(ANSWERING, |model| !model.is_pricing_zone())?;
+            self.accepted()?;
+        }
         let end = Instant::now() + ANSWERING;
         while self.answers.is_waiting() && !self.is_left {
             let next = self.session.next(Some(end));

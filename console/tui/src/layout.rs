@@ -100,7 +100,7 @@ pub(crate) fn plan(area: Rect, (width, height): (u16, u16), pane: Pane) -> Vec<(
     let arrangement = Arrangement::of(width, height);
     if arrangement == Arrangement::Paged {
         return match pane {
-            Pane::Promise => stack(area, &[wish(Pane::Promise, 10, 11), wish(Pane::Plan, 3, 20)]),
+            Pane::Promise => stack(area, &[wish(Pane::Promise, 10, 12), wish(Pane::Plan, 3, 20)]),
             Pane::LeftOut | Pane::Parameters | Pane::Checks => vec![(pane, area)],
             _ => vec![(Pane::Map, area)],
         };
@@ -110,7 +110,7 @@ pub(crate) fn plan(area: Rect, (width, height): (u16, u16), pane: Pane) -> Vec<(
     let side = side.max(if arrangement == Arrangement::Wide { PLAN_SIDE.1 } else { PLAN_SIDE.0 });
     let [map, side] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(side)]).areas(area);
     let mut placed = vec![(Pane::Map, map)];
-    let promise = wish(Pane::Promise, 10, 11);
+    let promise = wish(Pane::Promise, 10, 12);
     if arrangement == Arrangement::Narrow {
         placed.extend(match pane {
             Pane::LeftOut | Pane::Checks | Pane::Parameters => {

@@ -25,11 +25,12 @@ pub mod replay;
 pub mod review;
 pub mod run;
 pub mod shadow;
-pub mod sketch;
+
 pub mod tether;
 pub mod trail;
 pub mod ui;
 pub mod what_if;
+pub mod zone_draft;
 
 pub use crate::screens::Screen;
 pub use alarms::{Alarm, Alarms, Cause};
@@ -45,7 +46,7 @@ pub use line_edit::LineEdit;
 pub use live::{Access, Busy, Live, RunId, RunResult, Source};
 pub use log::{Entry, Log};
 pub use palette::Palette;
-pub use planning::{Offer, PlanShown, Planning};
+pub use planning::{Lane, Offer, PlanShown, Planning};
 pub use plans::{Ghost, GhostPlan, Plans};
 pub use position::Position;
 pub use preflight::Preflight;
@@ -54,11 +55,12 @@ pub use replay::Replay;
 pub use review::Review;
 pub use run::{About, Clock, Progress, Run, VehicleSeen};
 pub use shadow::Shadow;
-pub use sketch::Sketch;
+
 pub use tether::Tether;
 pub use trail::Trail;
 pub use ui::{Overlay, Pane, Ui};
 pub use what_if::{Candidate, Forecast, WhatIf};
+pub use zone_draft::ZoneDraft;
 
 use mission::{PlannerChoice, PlannerInfo, Severity};
 use serde::{Deserialize, Serialize};
@@ -94,6 +96,12 @@ pub struct Model {
 }
 
 impl Model {
+    /// Whether the open question waits for the cost of a no-go zone.
+    pub fn is_pricing_zone(&self) -> bool {
+        let is_asked = matches!(self.ui.overlay, Overlay::Confirm(ui::Ask::DrawZone(_)));
+        is_asked && self.live.zone_cost.is_none()
+    }
+
     /// Creates a console that opens on the plan of a mission; the home screen is one key away.
     pub fn opened(id: RunId, source: Source, speed: Speed) -> Self {
         let live = Live { id, source: Some(source), is_opening: true, speed, ..Live::default() };

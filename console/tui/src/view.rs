@@ -28,7 +28,7 @@ mod readable;
 pub(crate) mod result;
 pub(crate) mod review;
 mod shadow;
-mod sketch;
+mod small_map;
 mod stations;
 mod strip;
 pub(crate) mod table;

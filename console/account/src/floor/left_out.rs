@@ -4,7 +4,18 @@ use super::{Area, Evidence, MissReason, Slivers, areas, plate_map};
 use crate::estimate::scanned_along;
 use mission::{TaskConfig, event::RunOpened};
 use serde::{Deserialize, Serialize};
-use world::Point;
+use world::{Point, Pose, polyline};
+
+/// Where a plan that continues earlier runs begins to scan, and what it scans a second time.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Resumption {
+    /// The point of the path from which on it scans requested floor, metres, tank frame.
+    pub at: Point,
+    /// Length of the path up to that point, metres.
+    pub after_m: f64,
+    /// Reachable floor that was not requested, but that the plan scans, square metres.
+    pub again_m2: f64,
+}
 
 /// The reachable floor that was requested but that a plan leaves out.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -17,6 +28,9 @@ pub struct LeftOut {
     pub areas: Vec<Area<MissReason>>,
     /// Areas that are too small to be listed.
     pub slivers: Slivers<MissReason>,
+    /// Where the scan resumes; `None` if all of the floor was requested, or if the plan scans none of it.
+    #[serde(default)]
+    pub resumption: Option<Resumption>,
 }
 
 impl LeftOut {
@@ -39,13 +53,14 @@ impl LeftOut {
         let plates = plate_map(run, floor);
         let (areas, slivers) =
             areas(floor, plates.as_ref(), why, |why, cells| reasons.measure(&grid, why, cells));
+        let is_part = !evidence.asks_for_everything();
+        let resumption = resumes(run, path, &is_requested).filter(|_| is_part).map(|(at, after_m)| {
+            let is_again = |cell: &usize| floor.is_reachable(*cell) && !evidence.is_asked(*cell);
+            let again = (0..floor.len()).filter(is_again).filter(|cell| grid.is_covered(*cell)).count();
+            Resumption { at, after_m, again_m2: again as f64 * floor.cell_m2() }
+        });
         let requested = (0..floor.len()).filter(|cell| is_requested(*cell)).count();
-        Some(Self {
-            requested_m2: requested as f64 * floor.cell_m2(),
-            is_part: !evidence.asks_for_everything(),
-            areas,
-            slivers,
-        })
+        Some(Self { requested_m2: requested as f64 * floor.cell_m2(), is_part, areas, slivers, resumption })
     }
 
     /// The floor that the plan leaves out, square metres.
@@ -57,6 +72,18 @@ impl LeftOut {
     pub fn scanned(&self) -> f64 {
         if self.requested_m2 > 0.0 { 1.0 - self.area_m2() / self.requested_m2 } else { 1.0 }
     }
+}
+
+/// The point of a path from which on it scans requested floor, and the length of the path up to there, metres.
+fn resumes(run: &RunOpened, path: &[Point], is_requested: &dyn Fn(usize) -> bool) -> Option<(Point, f64)> {
+    let fine = polyline::resampled(path, run.mission.cell_m);
+    let scans = |pair: &[Point]| {
+        let way = pair[1] - pair[0];
+        let at = |position| Pose { position, heading_rad: way.y.atan2(way.x) };
+        run.floor.cells_under(run.mission.tool(), at(pair[0]), at(pair[1])).into_iter().any(is_requested)
+    };
+    let first = fine.windows(2).position(scans)?;
+    Some((fine[first], polyline::length_m(&fine[..=first])))
 }
 
 #[cfg(test)]
@@ -79,6 +106,21 @@ mod tests {
         let largest = &left_out.areas[0];
         assert_eq!(largest.reason, MissReason::NotPlanned);
         assert!(largest.area_m2 >= left_out.areas.last().map_or(0.0, |area| area.area_m2));
+    }
+
+    #[test]
+    fn a_plan_for_a_part_of_the_floor_says_where_the_scan_resumes_and_what_it_scans_again() {
+        let mut run = round_tank(0.05);
+        let TaskConfig::Cover { regions, .. } = &mut run.mission.task else { panic!("the task is to scan") };
+        *regions =
+            vec![[(1.0, -2.0), (3.0, -2.0), (3.0, 2.0), (1.0, 2.0)].map(|(x, y)| Point::new(x, y)).to_vec()];
+        let left_out = LeftOut::of(&run, &lane(0.0), &[], true).expect("the task is to scan");
+        let resumption = left_out.resumption.expect("a part was requested");
+        assert!((resumption.at.x - 1.0).abs() < 0.15, "{resumption:?}");
+        assert!((resumption.after_m - (resumption.at.x + 3.0)).abs() < 1e-6);
+        assert!((resumption.again_m2 - 4.0 * 0.6).abs() < 0.4, "{resumption:?}");
+        let whole = LeftOut::of(&round_tank(0.05), &lane(0.0), &[], true).expect("the task is to scan");
+        assert_eq!(whole.resumption, None);
     }
 
     #[test]

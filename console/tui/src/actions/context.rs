@@ -101,7 +101,7 @@ pub fn contexts(model: &Model) -> Vec<Context> {
         }
         Overlay::Parameters { edit: None, .. } => &[Context::List, Context::Rows, Context::Parameters],
         Overlay::WhatIf => &[Context::WhatIf, Context::Map],
-        Overlay::Sketch(_) => &[Context::Drawing, Context::Pan],
+        Overlay::ZoneDraft(_) => &[Context::Drawing, Context::Pan],
         Overlay::Preflight { .. } => &[Context::List, Context::Rows, Context::Preflight],
         Overlay::Remedies { .. } => &[Context::List, Context::Rows, Context::Remedies],
         Overlay::Planners { .. }

@@ -1,14 +1,20 @@
 //! The planner as shown on the screen.
 
-use super::Trail;
+use super::{Progress, Trail};
 use mission::event::{Effort, PlanScans};
-use mission::{AskId, PlannerChoice, PlannerInfo, WorkerId, planner::Fault};
+use mission::{AskId, MissionConfig, PlannerChoice, PlannerInfo, WorkerId, planner::Fault};
 use planner_api::{Command, Drawing, Leg, LegTag};
 use serde::{Deserialize, Serialize};
 use world::{Point, coverage::percent_text, polyline};
 
 /// How far the heading may turn within a lane that the planner did not state, radians.
 const STRAIGHT_RAD: f64 = 0.03;
+
+/// Points of a path are at most this far apart, metres, so that a place on it is close to one of them; further on paths
+/// that are longer than [`LONG_M`].
+const SPACING_M: f64 = 0.5;
+/// Length of a path above which its points are further apart, metres.
+const LONG_M: f64 = 1000.0;
 
 /// A lane of a plan: the first and the last index of its points in [`PlanShown::path`].
 pub type Lane = (usize, usize);
@@ -30,9 +36,18 @@ pub struct PlanShown {
     pub complete: bool,
     /// Mission time at which the plan was made, seconds.
     pub t_s: f64,
+    /// The distance driven along earlier plans when this one was made, metres.
+    #[serde(default)]
+    pub driven_m: f64,
 }
 
 impl PlanShown {
+    /// The length from which a straight stretch of a path is a lane if the planner states none, metres: three passes of
+    /// the tool.
+    pub fn least_lane_m(mission: &MissionConfig) -> f64 {
+        3.0 * mission.swath_m
+    }
+
     /// The lanes of a path; `thin` contains evenly picked points of it. Stretches shorter than `least_m`, metres, are
     /// not lanes.
     pub fn lanes_of(path: &[Point], thin: &[Point], legs: &[Leg], least_m: f64) -> Vec<Lane> {
@@ -48,16 +63,27 @@ impl PlanShown {
         straights(thin).into_iter().filter(long).collect()
     }
 
-    /// The length of the path from the point nearest to a place on, metres.
-    pub fn rest_m(&self, from: Point) -> f64 {
-        polyline::length_m(&self.path[self.nearest(from).min(self.path.len())..])
+    /// The length of the path that is left, metres.
+    pub fn rest_m(&self, progress: &Progress) -> f64 {
+        polyline::length_m(&self.path[self.reached(progress)..])
     }
 
-    /// The index of the path point nearest to a place; 0 if the path is empty.
-    pub fn nearest(&self, place: Point) -> usize {
-        let distance = |point: &Point| (point - place).norm_squared();
-        let points = self.path.iter().enumerate();
-        points.min_by(|a, b| distance(a.1).total_cmp(&distance(b.1))).map_or(0, |(index, _)| index)
+    /// The index of the path point at the robot's next target; 0 if the path is empty. Where the path passes the target
+    /// several times, the distance driven so far decides.
+    pub fn reached(&self, progress: &Progress) -> usize {
+        let away_m = |point: &Point| (point - progress.target).norm();
+        let nearest_m = self.path.iter().map(away_m).fold(f64::INFINITY, f64::min);
+        let along_m = self.along_m(progress.done);
+        let points = self.path.iter().zip(polyline::stations_m(&self.path)).enumerate();
+        let near = points.filter(|(_, (point, _))| away_m(point) <= nearest_m + SPACING_M);
+        near.map(|(index, (point, at_m))| (index, (at_m - along_m).abs() + away_m(point)))
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .map_or(0, |(index, _)| index)
+    }
+
+    /// The distance driven along this plan, metres, for a share of the task that is done.
+    pub fn along_m(&self, done: f64) -> f64 {
+        done * (self.driven_m + self.length_m) - self.driven_m
     }
 
     /// The lane on which a point of the path lies, or the stretch between two lanes: first and last index. A path
@@ -75,6 +101,20 @@ impl PlanShown {
             None => (before, end),
         }
     }
+}
+
+/// A path for drawing, with its lanes: thinned where its points are too many, with more points where they are far apart.
+pub fn shown(path: &[Point], legs: &[Leg], least_lane_m: f64) -> (Vec<Point>, Vec<Lane>) {
+    let thin = Trail::thinned(path);
+    let lanes = PlanShown::lanes_of(path, &thin, legs, least_lane_m);
+    let spacing_m = SPACING_M * (polyline::length_m(&thin) / LONG_M).max(1.0);
+    let mut dense: Vec<Point> = thin.first().copied().into_iter().collect();
+    let mut index = vec![0];
+    for pair in thin.windows(2) {
+        dense.extend(polyline::resampled(pair, spacing_m).into_iter().skip(1));
+        index.push(dense.len() - 1);
+    }
+    (dense, lanes.into_iter().map(|(first, last)| (index[first], index[last])).collect())
 }
 
 /// The stretches of a path on which its heading stays nearly the same.
@@ -116,6 +156,9 @@ pub struct Offer {
     /// The points of its path, thinned for drawing.
     #[serde(default)]
     pub path: Vec<Point>,
+    /// The lanes of the path.
+    #[serde(default)]
+    pub lanes: Vec<Lane>,
     /// Whether the mission will switch to the better plan at the point where that plan begins, because the operator or
     /// the scenario says so.
     pub is_taken: bool,
@@ -179,7 +222,8 @@ mod tests {
     }
 
     fn shown(lanes: Vec<Lane>) -> PlanShown {
-        PlanShown { ask: None, path: meander(), lanes, length_m: 32.0, complete: true, t_s: 0.0 }
+        let (path, length_m) = (meander(), 32.0);
+        PlanShown { ask: None, path, lanes, length_m, complete: true, t_s: 0.0, driven_m: 0.0 }
     }
 
     #[test]
@@ -208,6 +252,57 @@ mod tests {
         assert_eq!([plan.leg_at(0), plan.leg_at(9), plan.leg_at(10)], [(0, 10), (0, 10), (10, 11)]);
         assert_eq!([plan.leg_at(11), plan.leg_at(32)], [(11, 21), (32, 32)]);
         assert_eq!(shown(Vec::new()).leg_at(5), (5, 5));
-        assert!((plan.rest_m(Point::new(3.1, 0.0)) - 29.0).abs() < 1e-9);
+    }
+
+    fn progress(target: Point, done: f64) -> Progress {
+        let (covered_reachable, covered_whole) = (done, done);
+        Progress {
+            t_s: 0.0,
+            done,
+            along_m: None,
+            cross_track_m: None,
+            target,
+            covered_reachable,
+            covered_whole,
+        }
+    }
+
+    /// A plan of two points for each of its long lanes, which returns past its first lane.
+    fn long_lanes() -> PlanShown {
+        let corners = [
+            (0.0, 0.0),
+            (20.0, 0.0),
+            (20.0, 0.5),
+            (0.0, 0.5),
+            (0.0, 1.0),
+            (10.0, 1.0),
+            (10.0, 0.1),
+            (0.0, 0.1),
+        ];
+        let path: Vec<Point> = corners.iter().map(|(x, y)| Point::new(*x, *y)).collect();
+        let legs = [(0, 1), (2, 3), (4, 5)].map(|(first, last)| Leg { tag: LegTag::Swath, first, last });
+        let length_m = polyline::length_m(&path);
+        let (path, lanes) = super::shown(&path, &legs, 2.0);
+        PlanShown { ask: None, path, lanes, length_m, complete: true, t_s: 0.0, driven_m: 0.0 }
+    }
+
+    #[test]
+    fn a_place_on_a_long_lane_is_found_where_the_robot_drives_it() {
+        let plan = long_lanes();
+        let length_m = plan.length_m;
+        // The target is far from both ends of its lane, and the way back passes close to it.
+        let at = plan.reached(&progress(Point::new(9.6, 0.0), 9.6 / length_m));
+        assert_eq!(plan.leg_at(at), plan.lanes[0]);
+        assert!(
+            (plan.rest_m(&progress(Point::new(9.6, 0.0), 9.6 / length_m)) - (length_m - 9.6)).abs() < 0.3
+        );
+        let back = plan.reached(&progress(Point::new(9.6, 0.1), 1.0 - 9.6 / length_m));
+        assert!(back > plan.lanes[2].1, "on the way back");
+    }
+
+    #[test]
+    fn the_distance_along_a_plan_counts_from_its_beginning() {
+        let plan = PlanShown { driven_m: 8.0, ..shown(Vec::new()) };
+        assert!((plan.along_m(0.5) - 12.0).abs() < 1e-9);
     }
 }

@@ -1,7 +1,9 @@
 //! The plan before the start, with its estimate, and a second plan for comparison.
 
+use super::{Lane, PlanShown, planning};
 use account::{Estimate, LeftOut};
-use mission::{AskId, PlannerChoice};
+use mission::{AskId, MissionConfig, PlannerChoice};
+use planner_api::Leg;
 use serde::{Deserialize, Serialize};
 use world::Point;
 
@@ -33,10 +35,27 @@ pub struct Ghost {
 /// A plan that is shown but does not run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GhostPlan {
-    /// The points of the path.
+    /// The points of the path, thinned for drawing.
     pub path: Vec<Point>,
+    /// The lanes of the path.
+    #[serde(default)]
+    pub lanes: Vec<Lane>,
     /// The estimate for the plan.
     pub estimate: Estimate,
     /// Whether the plan is certified for the tether; `None` without a tether.
     pub certified: Option<bool>,
+}
+
+impl GhostPlan {
+    /// The plan of a planner for a mission, from the points and legs of its path.
+    pub fn new(
+        mission: &MissionConfig,
+        path: &[Point],
+        legs: &[Leg],
+        estimate: Estimate,
+        certified: Option<bool>,
+    ) -> Self {
+        let (path, lanes) = planning::shown(path, legs, PlanShown::least_lane_m(mission));
+        Self { path, lanes, estimate, certified }
+    }
 }

@@ -1,7 +1,9 @@
 //! A run reconstructed from its events; live runs and replays use the same fold.
 
 use super::{Alarms, History, Log, Planning, Position, Raster, Shadow, Tether, Trail, log::What};
-use mission::{FoldedStanding, MissionConfig, Phase, PlannerInfo, TaskConfig, WayBack};
+use mission::{
+    EventKind, FoldedStanding, MissionConfig, Phase, PlannerInfo, TaskConfig, WayBack, event::TetherAlarm,
+};
 use positioning::AccuracyMap;
 use serde::{Deserialize, Serialize};
 use vehicle::port::LinkSeen;
@@ -161,7 +163,7 @@ impl Run {
     fn rest(&self) -> Option<&[Point]> {
         let (plan, progress) =
             (self.planning.plan.as_ref()?, self.progress.as_ref().filter(|_| self.has_ended())?);
-        plan.path.get(plan.nearest(progress.target)..)
+        plan.path.get(plan.reached(progress)..)
     }
 
     /// Whether the rest of the plan led to each cell of the floor; empty before the end, and without a rest.
@@ -219,7 +221,24 @@ impl Run {
     /// The position that a log line is about, metres, tank frame.
     pub fn place_of(&self, what: &What) -> Option<Point> {
         let station = |id| self.stations().iter().find(|station| station.id == id);
-        what.place(|id| station(id).map(|station| station.position))
+        let place = || what.place(|id| station(id).map(|station| station.position));
+        what.event().and_then(|event| self.wound(&event.kind)).or_else(place)
+    }
+
+    /// Where the tether is wound, according to an alarm: the obstacle that it names or, for the total, the largest wrap.
+    fn wound(&self, kind: &EventKind) -> Option<Point> {
+        let EventKind::TetherAlarmRaised { alarm, .. } = kind else { return None };
+        let contacts = self.tether.as_ref().map_or(&[][..], |tether| &tether.contacts);
+        match alarm {
+            TetherAlarm::Wrap { on, .. } => {
+                let obstacles = self.about.iter().flat_map(|about| &about.world.obstacles);
+                let named = obstacles.into_iter().find(|obstacle| obstacle.name == *on);
+                let contact = || contacts.iter().find(|contact| contact.on == *on).map(|contact| contact.at);
+                named.map(|obstacle| obstacle.shape.center()).or_else(contact)
+            }
+            TetherAlarm::WrapTotal { .. } => Some(self.tether.as_ref()?.largest()?.at),
+            _ => None,
+        }
     }
 
     /// The name of a station.

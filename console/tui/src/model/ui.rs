@@ -2,7 +2,7 @@
 
 use super::line_edit::LineEdit;
 use super::palette::Palette;
-use super::{Cause, EventList, Sketch};
+use super::{Cause, EventList, ZoneDraft};
 use crate::screens::Screen;
 use crate::theme::ThemeName;
 use mission::{Order, ParamValue, PlanId, PlannerChoice};
@@ -265,7 +265,7 @@ pub enum Overlay {
         selected: usize,
     },
     /// A no-go zone being drawn on the map.
-    Sketch(Sketch),
+    ZoneDraft(ZoneDraft),
     /// The history of messages, newest first.
     Messages {
         /// The index of the selected line.

@@ -194,7 +194,7 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
         Value::Duration(for_s) => return shelve(model, for_s, values),
         Value::Corner(corner) => {
             let corners = zones::corners(corner, values);
-            return corners.map_or_else(Vec::new, |corners| give(model, Order::DrawZone(corners)));
+            return corners.map_or_else(Vec::new, |corners| zones::propose(model, corners));
         }
         Value::Station(station) => {
             let order = stations::order(model, action.id, station, values);

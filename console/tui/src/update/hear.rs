@@ -97,7 +97,7 @@ fn take(model: &mut Model, event: &Event) {
         EventKind::Ended { .. } => {
             (model.live.asked, model.live.hold_asked) = (None, false);
             // A zone that is being drawn ends with its mission.
-            if matches!(model.ui.overlay, Overlay::Sketch(_)) {
+            if matches!(model.ui.overlay, Overlay::ZoneDraft(_)) {
                 model.ui.overlay = Overlay::None;
             }
         }

@@ -70,7 +70,7 @@ pub(crate) fn accept(model: &mut Model) -> Vec<Effect> {
         Overlay::Preset { name, choice, .. } => take_preset(model, &name, choice),
         Overlay::WhatIf => what_if::choose(model),
         Overlay::Finish { selected } => finish::choose(model, selected),
-        Overlay::Sketch(_) => zones::set(model),
+        Overlay::ZoneDraft(_) => zones::set(model),
         Overlay::Preflight { .. } => preflight::tick(model),
         // The filter is in effect already, and the selected message is shown in full.
         Overlay::Filter(_) | Overlay::Messages { .. } => open(model, Overlay::None),
@@ -265,7 +265,7 @@ pub(super) fn select(model: &mut Model, by: isize) {
         | Overlay::Confirm(_)
         | Overlay::Stepping
         | Overlay::Quit
-        | Overlay::Sketch(_)
+        | Overlay::ZoneDraft(_)
         | Overlay::WhatIf
         | Overlay::Filter(_)
         | Overlay::Shelve(_)

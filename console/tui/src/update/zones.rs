@@ -5,9 +5,9 @@ use super::message::{Effect, Query};
 use super::offer::{accepted, demand, refuse};
 use super::overlay::ask;
 use super::unseen;
-use crate::model::sketch::Form;
 use crate::model::ui::Ask;
-use crate::model::{Model, Overlay, Sketch};
+use crate::model::zone_draft::Form;
+use crate::model::{Model, Overlay, ZoneDraft};
 use mission::{Order, ZoneCost, outline};
 use world::Point;
 
@@ -63,28 +63,28 @@ pub(crate) fn can_draw(model: &Model) -> Result<(), String> {
 /// Begins a zone at the cursor.
 pub(crate) fn draw(model: &mut Model) -> Vec<Effect> {
     if let Some(cursor) = model.ui.cursor {
-        model.ui.overlay = Overlay::Sketch(Sketch::begun(cursor));
+        model.ui.overlay = Overlay::ZoneDraft(ZoneDraft::begun(cursor));
     }
     Vec::new()
 }
 
 /// The zone being drawn and the cursor.
-fn sketch(model: &mut Model) -> Option<(&mut Sketch, Point)> {
+fn draft(model: &mut Model) -> Option<(&mut ZoneDraft, Point)> {
     let cursor = model.ui.cursor?;
     match &mut model.ui.overlay {
-        Overlay::Sketch(sketch) => Some((sketch, cursor)),
+        Overlay::ZoneDraft(draft) => Some((draft, cursor)),
         _ => None,
     }
 }
 
 /// Handles Enter: sets the corner at the cursor. The second point of a box or circle completes it.
 pub(super) fn set(model: &mut Model) -> Vec<Effect> {
-    let Some((sketch, cursor)) = sketch(model) else { return Vec::new() };
-    if sketch.form != Form::Polygon {
+    let Some((draft, cursor)) = draft(model) else { return Vec::new() };
+    if draft.form != Form::Polygon {
         return close(model);
     }
-    if !sketch.points.contains(&cursor) {
-        sketch.points.push(cursor);
+    if !draft.points.contains(&cursor) {
+        draft.points.push(cursor);
     }
     Vec::new()
 }
@@ -92,7 +92,7 @@ pub(super) fn set(model: &mut Model) -> Vec<Effect> {
 /// Checks that the polygon has an area.
 pub(crate) fn can_close(model: &Model) -> Result<(), String> {
     let corners = drawn(model).map_or(0, |corners| corners.len());
-    let is_polygon = matches!(&model.ui.overlay, Overlay::Sketch(sketch) if sketch.form == Form::Polygon);
+    let is_polygon = matches!(&model.ui.overlay, Overlay::ZoneDraft(draft) if draft.form == Form::Polygon);
     demand(is_polygon && corners >= 3, "a polygon needs three corners; <accept>: set a corner")
 }
 
@@ -106,15 +106,15 @@ pub(crate) fn close(model: &mut Model) -> Vec<Effect> {
 
 /// Changes the form of the zone.
 pub(crate) fn reshape(model: &mut Model) {
-    if let Some((sketch, _)) = sketch(model) {
-        sketch.reshape();
+    if let Some((draft, _)) = draft(model) {
+        draft.reshape();
     }
 }
 
 /// Checks that a corner can be removed.
 pub(crate) fn can_undo(model: &Model) -> Result<(), String> {
     let corners = match &model.ui.overlay {
-        Overlay::Sketch(sketch) => sketch.points.len(),
+        Overlay::ZoneDraft(draft) => draft.points.len(),
         _ => 0,
     };
     demand(corners > 1, "only the first corner is set; <cancel>: cancel")
@@ -122,14 +122,14 @@ pub(crate) fn can_undo(model: &Model) -> Result<(), String> {
 
 /// Removes the last corner of a polygon.
 pub(crate) fn undo(model: &mut Model) {
-    if let Some((sketch, _)) = sketch(model) {
-        sketch.points.pop();
+    if let Some((draft, _)) = draft(model) {
+        draft.points.pop();
     }
 }
 
 /// Puts the cursor at a clicked point while a zone is being drawn; returns whether one is.
 pub(super) fn point_at(model: &mut Model, place: Point) -> bool {
-    let is_drawing = matches!(model.ui.overlay, Overlay::Sketch(_));
+    let is_drawing = matches!(model.ui.overlay, Overlay::ZoneDraft(_));
     if is_drawing {
         super::map::read(model, place);
     }
@@ -138,21 +138,28 @@ pub(super) fn point_at(model: &mut Model, place: Point) -> bool {
 
 /// Draws a box or circle with the mouse: it begins where the drag began; returns whether a zone is being drawn.
 pub(super) fn drag(model: &mut Model, from: Point, to: Point) -> bool {
-    let Some((sketch, cursor)) = sketch(model) else { return false };
+    let Some((draft, cursor)) = draft(model) else { return false };
     // The steps of one drag follow one another.
     let goes_on = cursor == from;
-    if !goes_on && sketch.form != Form::Polygon {
-        sketch.points = vec![from];
+    if !goes_on && draft.form != Form::Polygon {
+        draft.points = vec![from];
     }
     super::map::read(model, to);
     true
 }
 
+/// The corners of the zone in the open question.
+pub(crate) fn asked(model: &Model) -> Option<Vec<Point>> {
+    match &model.ui.overlay {
+        Overlay::Confirm(Ask::DrawZone(corners)) => Some(corners.clone()),
+        _ => None,
+    }
+}
+
 /// The outline to show on the map: of the zone being drawn or of the zone in the open question.
 pub(crate) fn drawn(model: &Model) -> Option<Vec<Point>> {
     match &model.ui.overlay {
-        Overlay::Sketch(sketch) => Some(sketch.corners(model.ui.cursor?)),
-        Overlay::Confirm(Ask::DrawZone(corners)) => Some(corners.clone()),
-        _ => None,
+        Overlay::ZoneDraft(draft) => Some(draft.corners(model.ui.cursor?)),
+        _ => asked(model),
     }
 }

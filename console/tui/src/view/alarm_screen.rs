@@ -9,7 +9,7 @@ pub(super) use actions::list as action_list;
 
 use super::charts::{self, Series};
 use super::look::{Look, fill};
-use super::sketch::{self, Sketch};
+use super::small_map::{self, SmallMap};
 use super::{events, text};
 use crate::model::history::HISTORY_S;
 use crate::model::ui::Arrangement;
@@ -147,17 +147,17 @@ fn draw_chart(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
 
 /// The place of an alarm on a small map.
 fn draw_place(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
-    let Some(sketch) = Sketch::of_run(look.run) else { return };
+    let Some(map) = SmallMap::of_run(look.run) else { return };
     let robot = look.run.position.pose.as_ref().map(|pose| pose.position);
-    let sketch = robot.into_iter().fold(sketch, |sketch, at| sketch.marked(at, Role::Robot, "@"));
-    let (sketch, title) = match alarm.place {
-        Some(place) => (sketch.marked(place, Role::Warn, "X"), format!("Place  X {}", text::place(place))),
-        None => (sketch, "Tank".to_owned()),
+    let map = robot.into_iter().fold(map, |map, at| map.marked(at, Role::Robot, "@"));
+    let (map, title) = match alarm.place {
+        Some(place) => (map.marked(place, Role::Warn, "X"), format!("Place  X {}", text::place(place))),
+        None => (map, "Tank".to_owned()),
     };
     let block = look.block(Role::Border, &format!("{title}, robot @"), "");
     let inner = block.inner(area);
     frame.render_widget(block, area);
-    sketch::draw(look, frame, inner, &sketch);
+    small_map::draw(look, frame, inner, &map);
 }
 
 /// The last log lines about an alarm, newest first.

@@ -7,10 +7,11 @@ use super::look::Look;
 use super::next::{self, Clauses};
 use super::{coverage, text};
 use crate::guide;
-use crate::model::sketch::Form;
 use crate::model::ui::{Ask, Shelving};
+use crate::model::zone_draft::Form;
 use crate::model::{LineEdit, Model, Offer, Overlay, log::clock, parameter};
 use crate::theme::Role;
+use account::Resumption;
 use mission::WayBack;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -116,9 +117,13 @@ fn asked(model: &Model) -> Option<Vec<String>> {
                 format!("Start ({speed})? <accept>: start, <cancel>: cancel."),
                 format!("The robot will move: {}.", promised(model)),
             ]
+            .into_iter()
+            .chain(model.live.left_out().and_then(|left_out| left_out.resumption).map(|at| resumes(&at)))
+            .collect()
         }
         Overlay::Confirm(Ask::Resume) => {
-            vec!["Resume? <accept>: resume, <cancel>: stay held.".into(), moves()]
+            let clauses = ["Resume? <accept>: resume, <cancel>: stay held.".into(), moves()];
+            clauses.into_iter().chain(continues(model)).collect()
         }
         Overlay::Confirm(Ask::FlyUncertified) => vec![
             "Run uncertified plan? <accept>: run, <cancel>: stay held.".into(),
@@ -157,7 +162,7 @@ fn asked(model: &Model) -> Option<Vec<String>> {
         Overlay::Confirm(Ask::DrawZone(_)) => {
             vec!["Close this floor? <accept>: close, <cancel>: cancel.".into(), zone_cost(model)]
         }
-        Overlay::Sketch(sketch) => vec![drawing(sketch.form), "Mouse: drag.".into()],
+        Overlay::ZoneDraft(draft) => vec![drawing(draft.form), "Mouse: drag.".into()],
         Overlay::Confirm(Ask::Set { key, value }) => {
             let change =
                 parameter::change(model.planner(), model.live.run.planning.choice.as_ref(), key, value);
@@ -202,6 +207,26 @@ fn asked(model: &Model) -> Option<Vec<String>> {
 pub(super) fn finish_way(way: &WayBack) -> String {
     let (length, clearance) = (text::number(way.length_m, 1), text::number(way.clearance_m, 2));
     format!("To the {}, {length} m, clearance {clearance} m", way.to.word())
+}
+
+/// Where the plan of a re-scan begins to scan, and what it scans a second time, as a sentence.
+pub(super) fn resumes(resumption: &Resumption) -> String {
+    let (after_m, again_m2) = (text::number(resumption.after_m, 1), text::number(resumption.again_m2, 1));
+    format!(
+        "The scan resumes at {}, after {after_m} m; {again_m2} m² are scanned a second time.",
+        text::place(resumption.at)
+    )
+}
+
+/// Where a held robot continues, and how much of the plan is left, as a sentence.
+fn continues(model: &Model) -> Option<String> {
+    let run = &model.live.run;
+    let progress = run.progress.as_ref()?;
+    let rest = run.planning.plan.as_ref().filter(|plan| !plan.path.is_empty());
+    let rest = rest.map_or_else(String::new, |plan| {
+        format!(", {} m of the plan left", text::number(plan.rest_m(progress), 1))
+    });
+    Some(format!("It continues at {} (×){rest}.", text::place(progress.target)))
 }
 
 /// What the zone in the question costs, as sentences.

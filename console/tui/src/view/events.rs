@@ -1,7 +1,7 @@
 //! Events, newest first: the pane of the mission screen, and the events screen.
 
 use super::look::{Look, Parts, fill};
-use super::sketch::{self, Sketch};
+use super::small_map::{self, SmallMap};
 use super::{event_detail, table, text};
 use crate::model::log::filter::{Filter, without_least};
 use crate::model::log::matches::Listed;
@@ -64,17 +64,17 @@ pub(crate) fn screen(look: &Look, frame: &mut Frame, area: Rect, arrangement: Ar
 /// Draws the place of an event on a small map if there is room for one; returns the remaining area.
 fn place(look: &Look, frame: &mut Frame, area: Rect, number: Option<u64>) -> Rect {
     let entry = number.and_then(|number| look.run.log.get(number));
-    let sketch = Sketch::of_run(look.run).filter(|_| area.width >= BESIDE.0 && area.height >= BESIDE.1);
-    let Some((sketch, entry)) = sketch.zip(entry) else { return area };
+    let map = SmallMap::of_run(look.run).filter(|_| area.width >= BESIDE.0 && area.height >= BESIDE.1);
+    let Some((map, entry)) = map.zip(entry) else { return area };
     let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(MAP)]).areas(area);
-    let (sketch, title) = match look.run.place_of(&entry.what) {
-        Some(at) => (sketch.marked(at, role(entry.severity), "X"), format!("Place  X {}", text::place(at))),
-        None => (sketch, "This event has no place".to_owned()),
+    let (map, title) = match look.run.place_of(&entry.what) {
+        Some(at) => (map.marked(at, role(entry.severity), "X"), format!("Place  X {}", text::place(at))),
+        None => (map, "This event has no place".to_owned()),
     };
     let block = look.block(Role::Border, &title, &format!("T+{}", text::clock(entry.t_s)));
     let inner = block.inner(right);
     frame.render_widget(block, right);
-    sketch::draw(look, frame, inner, &sketch);
+    small_map::draw(look, frame, inner, &map);
     left
 }
 

@@ -8,7 +8,7 @@ use crate::actions::{
 };
 use crate::keys::Key;
 use crate::model::replay::Jump;
-use crate::model::sketch::Form;
+use crate::model::zone_draft::Form;
 use crate::model::{Model, Overlay, Screen, ui::Arrangement};
 use crate::theme::Role;
 use crate::update::{is_typing, offered};
@@ -194,13 +194,13 @@ fn label(action: &Action, model: &Model) -> String {
         (ActionId::Accept, Overlay::Messages { .. }) => "",
         (ActionId::Accept, Overlay::Finish { selected: 0 }) => "end here",
         (ActionId::Accept, Overlay::Finish { .. }) => "drive back",
-        (ActionId::Accept, Overlay::Sketch(sketch)) if sketch.form == Form::Polygon => "set corner",
+        (ActionId::Accept, Overlay::ZoneDraft(draft)) if draft.form == Form::Polygon => "set corner",
         (ActionId::Accept, Overlay::Layers { .. }) => "show/hide",
         (ActionId::Accept, Overlay::Parameters { edit: None, .. }) => "edit",
         (ActionId::Accept, Overlay::Parameters { edit: Some(_), .. }) => "send",
         (ActionId::Accept, Overlay::Filter(_)) => "keep",
         (ActionId::Accept, Overlay::Shelve(_)) => "shelve",
-        (ActionId::Accept, Overlay::Bookmark(_) | Overlay::Sketch(_)) => "set",
+        (ActionId::Accept, Overlay::Bookmark(_) | Overlay::ZoneDraft(_)) => "set",
         (ActionId::Accept, Overlay::Stepping) => "step",
         (ActionId::Cancel, Overlay::Filter(_)) => "clear",
         (

@@ -12,19 +12,21 @@ mod readout;
 mod shade;
 mod shadow;
 mod shapes;
-mod sketch;
+mod thin;
+mod zone;
 
+pub(super) use ink::TRAIL;
 pub(super) use pattern::Pattern;
+pub(super) use pen::Pen;
 pub(super) use plates::{Key as PlateKey, PlateDrawing};
 pub(super) use shade::{Key as ShadeKey, Shades};
-pub(super) use shapes::{Filled, Stroke, Window, ellipse};
+pub(super) use shapes::{Stroke, Window};
 
 use super::look::Look;
 use super::text;
 use crate::model::{Model, Overlay, Pane, Screen};
 use crate::theme::Role;
 use mission::Severity;
-use pen::Pen;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
@@ -133,15 +135,17 @@ fn window(look: &Look, area: Rect) -> Option<Window> {
 }
 
 fn draw_floor(look: &Look, frame: &mut Frame, area: Rect, window: Window) {
+    let Some(world) = look.run.about.as_ref().map(|about| &about.world) else { return };
     let pen = Pen { look: *look, window };
     let marker = pen.marker();
     let canvas = Canvas::default().marker(marker).x_bounds(window.x).y_bounds(window.y).paint(|ctx| {
         pen.plates(ctx);
-        pen.zones(ctx);
-        pen.sketch(ctx);
+        pen.no_go(ctx, world);
+        pen.zone(ctx);
         pen.paths(ctx);
+        pen.blocked(ctx);
         pen.drawings(ctx);
-        pen.solid(ctx);
+        pen.solids(ctx, world);
         pen.tether(ctx);
         pen.shadow(ctx);
         pen.robot(ctx);

@@ -16,7 +16,7 @@ pub(super) type Clauses = (Role, Vec<String>);
 pub(super) fn clauses(model: &Model) -> Clauses {
     let (role, mut clauses) = by_phase(model);
     // While a question is open, other keys do not do what they usually do.
-    if model.ui.overlay.is_question() || matches!(model.ui.overlay, Overlay::Sketch(_)) {
+    if model.ui.overlay.is_question() || matches!(model.ui.overlay, Overlay::ZoneDraft(_)) {
         clauses.retain(|clause| !clause.contains(['<', '>']));
         clauses.truncate(1);
     }

@@ -2,7 +2,7 @@
 
 use super::fields::{self, Field};
 use super::look::{Look, Parts, fill};
-use super::sketch::{self, Sketch};
+use super::small_map::{self, SmallMap};
 use super::text;
 use crate::guide;
 use crate::model::ui::Arrangement;
@@ -32,19 +32,19 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, run: &PastRun) {
     let inner = block.inner(area);
     frame.render_widget(block, area);
     let glimpse = look.model.home.glimpses.of(&run.name).and_then(|found| found.as_ref().ok());
-    let sketch = glimpse.and_then(|glimpse| sketch(glimpse));
-    let beside = sketch.is_some() && inner.width >= BESIDE;
+    let map = glimpse.and_then(|glimpse| map(glimpse));
+    let beside = map.is_some() && inner.width >= BESIDE;
     let figures = if beside { FIGURES } else { inner.width };
     let lines = lines(look, run, usize::from(figures));
     let [left, right] = Layout::horizontal([Constraint::Length(figures), Constraint::Fill(1)]).areas(inner);
     let rows = (lines.len() as u16).min(left.height);
     let [text, below] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(left);
     fill(frame, text, ratatui::widgets::Block::new(), lines);
-    if let Some(sketch) = sketch {
+    if let Some(map) = map {
         if beside {
-            sketch::draw(look, frame, right, &sketch);
+            small_map::draw(look, frame, right, &map);
         } else if below.height >= BELOW {
-            sketch::draw(look, frame, below, &sketch);
+            small_map::draw(look, frame, below, &map);
         }
     }
 }
@@ -188,15 +188,15 @@ fn events(run: &Run, summary: Option<&Summary>) -> Vec<Field> {
 }
 
 /// The map of a run with its largest missed areas.
-fn sketch(glimpse: &Glimpse) -> Option<Sketch<'_>> {
-    let mut sketch = Sketch::of_run(&glimpse.run)?;
+fn map(glimpse: &Glimpse) -> Option<SmallMap<'_>> {
+    let mut map = SmallMap::of_run(&glimpse.run)?;
     let floor = glimpse.summary.as_ref().and_then(|summary| summary.floor.as_ref());
     let missed = floor.into_iter().flat_map(|floor| &floor.missed);
     let listed = missed.filter(|area| area.reason != MissReason::NotAsked).take(MARKED);
     for (index, area) in listed.enumerate() {
-        sketch = sketch.marked(area.at, Role::Missed, &(index + 1).to_string());
+        map = map.marked(area.at, Role::Missed, &(index + 1).to_string());
     }
-    Some(sketch)
+    Some(map)
 }
 
 fn wrapped(role: Role, words: &str, columns: usize) -> impl Iterator<Item = Parts> + use<> {

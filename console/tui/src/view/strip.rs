@@ -112,5 +112,5 @@ fn wrapped(look: &Look, (role, clauses): &Clauses, columns: usize) -> Vec<Line<'
 
 /// Whether a question about moving or about quitting is open.
 fn asks(model: &Model) -> bool {
-    model.ui.overlay.is_question() || matches!(model.ui.overlay, Overlay::Sketch(_))
+    model.ui.overlay.is_question() || matches!(model.ui.overlay, Overlay::ZoneDraft(_))
 }

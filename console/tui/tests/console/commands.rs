@@ -2,13 +2,13 @@
 
 use crate::fixture::{RICH, Screen, choice, listed};
 use crate::screens::{drawn, text};
-use mission::{Injection, Order, ParamValue, RangeFault, Severity};
+use mission::{Injection, Order, ParamValue, RangeFault, Severity, ZoneCost};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use tui::model::ui::{Ask, MapLayer};
 use tui::model::{Overlay, Palette, PastRun, Screen as Name, home::Found};
 use tui::update::{Choice, choices};
-use tui::{Effect, Job, Key, Msg, RunId, Source, Speed, ThemeName};
+use tui::{Effect, Job, Key, Msg, Query, RunId, RunMsg, Source, Speed, ThemeName};
 use world::{Point, StationId};
 
 /// A screen with scenarios and runs.
@@ -252,8 +252,15 @@ fn tab_completes_names_and_values() {
 fn a_no_go_zone_is_a_box_between_two_corners() {
     let mut screen = Screen::running();
     let corners = [(-1.5, 0.5), (2.0, 0.5), (2.0, 3.0), (-1.5, 3.0)].map(|(x, y)| Point::new(x, y));
-    let drawn = run(&mut screen, "no-go 2,0.5 -1.5,3");
-    assert_eq!(drawn, [Effect::Order(Order::DrawZone(corners.to_vec()))]);
+    let asked = run(&mut screen, "no-go 2,0.5 -1.5,3");
+    assert_eq!(asked, [Effect::Ask(Query::ZoneCost(corners.to_vec()))], "its cost comes first");
+    assert_eq!(screen.press([Key::Enter]), [], "the cost is not known yet");
+    run(&mut screen, "no-go 2,0.5 -1.5,3");
+    let cost = ZoneCost { path_m: 12.34, closed_m2: 6.1, lost_m2: 4.2, drops_offer: false };
+    screen.hear(RunMsg::ZoneCost(corners.to_vec(), Ok(cost)));
+    let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+    assert!(shown.contains("Close this floor?") && shown.contains("12.3 m of the plan"), "{shown}");
+    assert_eq!(screen.press([Key::Enter]), [Effect::Order(Order::DrawZone(corners.to_vec()))]);
 }
 
 #[test]

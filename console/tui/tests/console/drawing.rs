@@ -3,7 +3,7 @@
 use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};
 use mission::{Order, Outcome, ZoneCost};
-use tui::model::{Overlay, sketch::Form, ui::Ask};
+use tui::model::{Overlay, ui::Ask, zone_draft::Form};
 use tui::{Effect, Key, Mouse, Msg, Query, RunMsg, Target};
 use world::Point;
 
@@ -15,7 +15,7 @@ pub(crate) fn begun(at: Point) -> Screen {
     screen.type_text("i");
     screen.model.ui.cursor = Some(at);
     screen.type_text("d");
-    assert!(matches!(screen.model.ui.overlay, Overlay::Sketch(_)));
+    assert!(matches!(screen.model.ui.overlay, Overlay::ZoneDraft(_)));
     screen
 }
 
@@ -114,8 +114,8 @@ fn a_zone_being_drawn_ends_with_its_mission_and_with_esc() {
 fn hold_works_while_a_zone_is_drawn_and_the_drawing_stays() {
     let mut screen = begun(Point::new(2.0, 1.0));
     assert_eq!(screen.press([Key::Char(' ')]), [Effect::Order(Order::Hold)]);
-    let Overlay::Sketch(sketch) = &screen.model.ui.overlay else { panic!("the drawing stays") };
-    assert_eq!((sketch.form, sketch.points.len()), (Form::Box, 1));
+    let Overlay::ZoneDraft(draft) = &screen.model.ui.overlay else { panic!("the drawing stays") };
+    assert_eq!((draft.form, draft.points.len()), (Form::Box, 1));
 }
 
 #[test]

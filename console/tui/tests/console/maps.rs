@@ -1,14 +1,15 @@
 //! The plan and the mission screen of a scan on a tether: lanes, marks, legend, what is promised and what is left out.
 
-use crate::fixture::{ASCII, PLAIN, RICH, Screen, ScriptedMission, tether};
+use crate::fixture::{ASCII, PLAIN, RICH, Screen, ScriptedMission, choice, tether};
 use crate::screens::{drawn, roles, text};
 use account::estimate::{TetherEstimate, Worst};
-use account::{Estimate, LeftOut};
+use account::{Estimate, LeftOut, Resumption};
 use mission::{
     AskId, CheckOutcome, Event, EventKind, HoldReason, Order, Outcome, Resumes, TaskConfig, WorkerId,
 };
 use planner_api::{Leg, LegTag, Reason};
 use ratatui::style::Color;
+use tui::model::GhostPlan;
 use tui::{Key, Msg, RunMsg};
 use world::Point;
 
@@ -18,9 +19,14 @@ const LANE_M: f64 = 1.2;
 
 /// Lanes from south to north and back through a round tank, each resampled, with their legs.
 fn lanes() -> (Vec<Point>, Vec<Leg>) {
+    lanes_every(LANE_M, 16)
+}
+
+/// A number of such lanes at a distance from each other, metres.
+fn lanes_every(lane_m: f64, n: u32) -> (Vec<Point>, Vec<Leg>) {
     let (mut path, mut legs) = (Vec::new(), Vec::new());
-    for lane in 0..16 {
-        let x = 9.0 - LANE_M * f64::from(lane);
+    for lane in 0..n {
+        let x = 9.0 - lane_m * f64::from(lane);
         let half_m = (9.4_f64.powi(2) - x * x).max(0.0).sqrt();
         let north_m = if lane % 2 == 0 { half_m } else { -half_m };
         let ends = [Point::new(x, -north_m), Point::new(x, north_m)];
@@ -69,6 +75,16 @@ fn left_out() -> LeftOut {
         "requested_m2": 290.0, "is_part": false, "areas": areas, "slivers": { "count": 4, "area_m2": 0.03 }
     }))
     .unwrap()
+}
+
+/// A re-scan: the scan resumes at a place on the way.
+fn rescan() -> Screen {
+    let mut screen = planned();
+    let ask = Some(AskId { worker: WorkerId(0), n: 2 });
+    let resumption = Resumption { at: Point::new(4.2, -3.0), after_m: 12.34, again_m2: 5.6 };
+    let part = LeftOut { is_part: true, resumption: Some(resumption), ..left_out() };
+    screen.hear(RunMsg::LeftOut(ask, Box::new(part)));
+    screen
 }
 
 /// A scan on a tether that waits for its start, with its plan certified and estimated.
@@ -165,6 +181,57 @@ fn nothing_on_either_screen_is_cut() {
     }
 }
 
+/// A plan whose lanes are closer than the columns of the map, and beside it the plan of a different planner.
+fn dense() -> Screen {
+    let mut screen = Screen::idle();
+    let (path, legs) = lanes_every(0.5, 37);
+    if let Some(about) = &mut screen.model.live.run.about {
+        (about.mission.swath_m, about.mission.scan.overlap_m) = (0.6, 0.1);
+    }
+    let ask = Some(AskId { worker: WorkerId(0), n: 2 });
+    let length_m = world::polyline::length_m(&path);
+    let planned = EventKind::Planned {
+        ask,
+        return_path: 0,
+        planner: "rpf".into(),
+        reason: Reason::Start,
+        path,
+        length_m,
+        complete: true,
+        legs,
+        cuts: vec![],
+    };
+    let planned = screen.mission.now(planned);
+    screen.hear(RunMsg::Events(vec![planned]));
+    screen.hear(RunMsg::Estimated(ask, Box::new(estimate(length_m))));
+    screen.type_text("2");
+    screen
+}
+
+/// The same, beside the plan of a different planner: lanes from west to east.
+fn dense_compared() -> Screen {
+    let mut screen = dense();
+    screen.type_text("c");
+    screen.press([Key::Enter]);
+    let (path, legs) = lanes_every(0.5, 37);
+    let turned: Vec<Point> = path.iter().map(|at| Point::new(at.y, at.x)).collect();
+    let mission = screen.model.live.run.about.as_ref().unwrap().mission.clone();
+    let length_m = world::polyline::length_m(&turned);
+    let plan = GhostPlan::new(&mission, &turned, &legs, estimate(length_m), None);
+    screen.hear(RunMsg::Compared(choice("spiral-tangent"), Ok(Box::new(plan))));
+    screen
+}
+
+#[test]
+fn a_plan_with_close_lanes_is_drawn_as_lines() {
+    store("plan_of_close_lanes", &mut dense());
+}
+
+#[test]
+fn two_plans_with_close_lanes_can_be_told_apart() {
+    store("plans_of_close_lanes", &mut dense_compared());
+}
+
 #[test]
 fn what_the_plan_leaves_out_is_shown_on_the_map() {
     let mut screen = planned();
@@ -175,6 +242,22 @@ fn what_the_plan_leaves_out_is_shown_on_the_map() {
     screen.press([Key::Enter]);
     assert_eq!(screen.model.ui.cursor, Some(Point::new(-4.6, 3.1)));
     assert_eq!(screen.model.ui.screen, tui::model::Screen::Plan);
+}
+
+#[test]
+fn the_place_where_a_re_scan_resumes_is_marked_and_named_in_the_question() {
+    let mut screen = rescan();
+    for (width, height) in SIZES {
+        screen.send(Msg::Resize { width, height });
+        let shown = text(&drawn(&screen.model, PLAIN, (width, height)));
+        assert!(shown.contains("R   scan resumes"), "{shown}");
+    }
+    screen.send(Msg::Resize { width: 120, height: 36 });
+    screen.type_text("S");
+    let shown = text(&drawn(&screen.model, PLAIN, (120, 36)));
+    let flat = shown.split_whitespace().collect::<Vec<_>>().join(" ");
+    let words = "The scan resumes at 4.20, -3.00 m, after 12.3 m; 5.6 m² are scanned a second time.";
+    assert!(flat.contains(words), "{shown}");
 }
 
 #[test]

@@ -199,7 +199,7 @@ fn plan() {
     screen.type_text("2c");
     screen.press([tui::Key::Enter]);
     let path = vec![Point::new(9.4, 0.0), Point::new(0.0, 0.0)];
-    let ghost = GhostPlan { path, estimate: estimate(391.2), certified: None };
+    let ghost = GhostPlan { path, lanes: Vec::new(), estimate: estimate(391.2), certified: None };
     screen.hear(RunMsg::Compared(choice("spiral-tangent"), Ok(Box::new(ghost))));
     store("plan", &mut screen);
 }

@@ -59,7 +59,7 @@ fn overlays() -> Vec<Overlay> {
         Overlay::Confirm(Ask::Set { key: "order".into(), value: ParamValue::Int(1) }),
         Overlay::Finish { selected: 0 },
         Overlay::Finish { selected: 1 },
-        Overlay::Sketch(tui::model::Sketch::begun(world::Point::origin())),
+        Overlay::ZoneDraft(tui::model::ZoneDraft::begun(world::Point::origin())),
         Overlay::Messages { selected: 0 },
         Overlay::Stepping,
         Overlay::Quit,
@@ -94,7 +94,7 @@ fn overlays() -> Vec<Overlay> {
                 | Ask::Set { .. },
             )
             | Overlay::Finish { .. }
-            | Overlay::Sketch(_)
+            | Overlay::ZoneDraft(_)
             | Overlay::Messages { .. }
             | Overlay::Stepping
             | Overlay::Quit

@@ -1,6 +1,6 @@
 //! Folds planner events into a run.
 
-use crate::model::{Cause, Change, Offer, PlanShown, Run, Trail, Withdrawn};
+use crate::model::{Cause, Change, Offer, PlanShown, Run, Withdrawn, planning};
 use mission::{
     BetterPlan, During, Event, EventKind, Phase, PlannerChoice, PlannerInfo, Severity, event::late_text,
 };
@@ -27,10 +27,10 @@ impl Run {
                 if self.planning.proposed {
                     return;
                 }
-                let thin = Trail::thinned(path);
-                let lanes = PlanShown::lanes_of(path, &thin, legs, self.least_lane_m());
-                let (ask, path, length_m, complete) = (*ask, thin, *length_m, *complete);
-                self.planning.plan = Some(PlanShown { ask, path, lanes, length_m, complete, t_s: event.t_s });
+                let (path, lanes) = planning::shown(path, legs, self.least_lane_m());
+                let driven_m = self.driven_m();
+                let (ask, length_m, complete, t_s) = (*ask, *length_m, *complete, event.t_s);
+                self.planning.plan = Some(PlanShown { ask, path, lanes, length_m, complete, t_s, driven_m });
                 self.planner_works();
             }
             EventKind::Commanded { command, .. } => self.command(event.t_s, *command),
@@ -53,7 +53,7 @@ impl Run {
             EventKind::PlannerLate { planner, ticks } => {
                 change.say(Severity::Watch, late_text(planner, *ticks));
             }
-            EventKind::BetterPlanned { path, flown, better, scans, objection, .. } => {
+            EventKind::BetterPlanned { path, legs, flown, better, scans, objection, .. } => {
                 self.planning.candidate = None;
                 if objection.is_none() {
                     let (flown, better, scans, begins) = (*flown, *better, *scans, path.first().copied());
@@ -61,8 +61,8 @@ impl Run {
                         .about
                         .as_ref()
                         .is_some_and(|about| about.mission.better_plan == BetterPlan::Take);
-                    let path = Trail::thinned(path);
-                    let offer = Offer { flown, better, scans, begins, path, is_taken };
+                    let (path, lanes) = planning::shown(path, legs, self.least_lane_m());
+                    let offer = Offer { flown, better, scans, begins, path, lanes, is_taken };
                     let next = if is_taken { "Change-over where it begins" } else { "<take-plan>: take" };
                     change.say(Severity::Watch, format!("{}. {next}", offer.sentence()));
                     self.planning.offer = Some(offer);
@@ -90,9 +90,15 @@ impl Run {
         }
     }
 
-    /// The minimum length of a straight stretch that counts as a lane, metres: three passes of the tool.
+    /// The distance driven along the plans so far, metres.
+    fn driven_m(&self) -> f64 {
+        let driven = self.planning.plan.as_ref().zip(self.progress.as_ref());
+        driven.map_or(0.0, |(plan, progress)| progress.done * (plan.driven_m + plan.length_m))
+    }
+
+    /// The minimum length of a straight stretch that counts as a lane, metres.
     fn least_lane_m(&self) -> f64 {
-        self.about.as_ref().map_or(0.0, |about| 3.0 * about.mission.swath_m)
+        self.about.as_ref().map_or(0.0, |about| PlanShown::least_lane_m(&about.mission))
     }
 
     /// Makes a different planner active.

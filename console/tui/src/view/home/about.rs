@@ -6,7 +6,7 @@ use crate::model::home::{Found, HomeList};
 use crate::theme::Role;
 use crate::view::fields::{self, Field};
 use crate::view::look::{Look, Parts, fill};
-use crate::view::sketch::{self, Sketch};
+use crate::view::small_map::{self, SmallMap};
 use crate::view::{past_run, text};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -53,7 +53,7 @@ fn scenario(look: &Look, frame: &mut Frame, area: Rect, entry: &ScenarioEntry) {
     let [text, below] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(inner);
     fill(frame, text, ratatui::widgets::Block::new(), lines);
     if let Some(world) = &entry.world {
-        sketch::draw(look, frame, below, &Sketch::of(world));
+        small_map::draw(look, frame, below, &SmallMap::of(world));
     }
 }
 

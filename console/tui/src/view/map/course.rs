@@ -3,59 +3,61 @@
 use super::ink::{self, Ink};
 use super::pen::{Pen, within};
 use super::shapes::Window;
-use crate::model::{Overlay, PlanShown, Screen, WhatIf, ui::MapLayer};
+use super::thin::{Thin, Thinning};
+use crate::model::{Lane, Overlay, Screen, WhatIf, ui::MapLayer};
 use crate::view::look::Look;
 use ratatui::widgets::canvas::Context;
 use world::Point;
 
 /// All passes of the trail are drawn if a pass of the tool is at least this many columns wide.
 const PASS_COLUMNS: f64 = 2.0;
-/// The lanes of a plan are drawn as lines if they are at least this many columns apart, and all of them as dashes if
-/// they are [`PASS_COLUMNS`] apart.
-const LANE_COLUMNS: f64 = 1.2;
-/// How much of the trail and of the plan is drawn if they are not drawn completely, columns.
-const REACH_COLUMNS: f64 = 40.0;
+/// How much of the trail is drawn if its passes would merge, columns.
+const REACH_COLUMNS: f64 = 20.0;
 
-/// The plan on the map, in three parts, of which each begins where the one before ends.
+/// A path with its lanes.
+#[derive(Clone, Copy)]
+pub(super) struct Track<'a> {
+    pub path: &'a [Point],
+    pub lanes: &'a [Lane],
+}
+
+/// The plan on the map, in three parts, each from one index of its points to another; each part begins where the one
+/// before ends.
 pub(super) struct Course<'a> {
     /// The part that has been driven; empty before the start.
-    pub driven: &'a [Point],
+    pub driven: Lane,
     /// The rest of the lane on which the robot is, or of the way to the next one; empty if nothing is being driven.
-    pub leg: &'a [Point],
+    pub leg: Lane,
     /// The rest of the plan.
-    pub ahead: &'a [Point],
-    /// The index of the first point ahead.
-    pub from: usize,
+    pub ahead: Lane,
     /// The whole plan.
-    pub plan: &'a PlanShown,
+    pub track: Track<'a>,
 }
 
 /// The plan, if it is shown.
 pub(super) fn course<'a>(look: &Look<'a>) -> Option<Course<'a>> {
     let run = look.run;
     let plan = run.planning.plan.as_ref().filter(|_| look.model.ui.layers.shows(MapLayer::Plan))?;
-    let path = plan.path.as_slice();
-    let Some(progress) = run.progress.as_ref().filter(|_| !path.is_empty()) else {
-        return Some(Course { driven: &[], leg: &[], ahead: path, from: 0, plan });
+    let track = Track { path: &plan.path, lanes: &plan.lanes };
+    let last = plan.path.len().checked_sub(1)?;
+    let Some(progress) = &run.progress else {
+        return Some(Course { driven: (0, 0), leg: (0, 0), ahead: (0, last), track });
     };
-    let at = plan.nearest(progress.target);
-    let end = if run.has_ended() { at } else { plan.leg_at(at).1.clamp(at, path.len() - 1) };
-    Some(Course { driven: &path[..=at], leg: &path[at..=end], ahead: &path[end..], from: end, plan })
+    let at = plan.reached(progress);
+    let end = if run.has_ended() { at } else { plan.leg_at(at).1.clamp(at, last) };
+    Some(Course { driven: (0, at), leg: (at, end), ahead: (end, last), track })
 }
 
-/// How the plan is drawn: as lines before the start and as dashes afterwards; where its lanes would merge, as dots.
-pub(super) fn plan_ink(look: &Look, window: Window) -> Ink {
-    match (look.run.progress.is_some(), are_lanes_apart(look, window, LANE_COLUMNS)) {
-        (true, _) => ink::AHEAD,
-        (false, true) => ink::PLAN,
-        (false, false) => ink::PLAN_CLOSE,
-    }
+/// How the plan is drawn: as lines before the start and as dashes afterwards.
+pub(super) fn plan_ink(look: &Look) -> Ink {
+    if look.run.progress.is_some() { ink::AHEAD } else { ink::PLAN }
 }
 
-/// Whether the lanes of a plan can be told apart on the map.
-fn are_lanes_apart(look: &Look, window: Window, columns: f64) -> bool {
+/// Which lanes of the plan are drawn, and which of a second plan beside it.
+pub(super) fn thinnings(look: &Look, window: Window) -> [Thinning; 2] {
     let lane_m = look.run.about.as_ref().map_or(0.0, |about| about.mission.lane_m());
-    lane_m >= columns * window.column_m
+    let paths = 1 + usize::from(offer(look).or_else(|| compared(look)).is_some());
+    [0, 1].map(|which| Thinning::new(lane_m, window, (which.min(paths - 1), paths)))
 }
 
 /// Whether the map shows the robot's trail; on the plan screen, the plan shows what has been driven.
@@ -64,57 +66,74 @@ pub(super) fn shows_trail(look: &Look) -> bool {
     ui.layers.shows(MapLayer::Trail) && ui.screen != Screen::Plan && !look.run.trail.points().is_empty()
 }
 
-/// The path of a better plan that is on offer or was taken, during the mission.
-pub(super) fn offer<'a>(look: &Look<'a>) -> Option<&'a [Point]> {
+/// A better plan that is on offer or was taken, during the mission.
+pub(super) fn offer<'a>(look: &Look<'a>) -> Option<Track<'a>> {
     let offer = look.run.planning.offer.as_ref().filter(|_| look.model.ui.layers.shows(MapLayer::Plan))?;
-    Some(offer.path.as_slice())
+    Some(Track { path: &offer.path, lanes: &offer.lanes })
+}
+
+/// The place at which the better plan begins, metres, tank frame.
+pub(super) fn change_over(look: &Look) -> Option<Point> {
+    offer(look)?;
+    look.run.planning.offer.as_ref()?.begins
 }
 
 /// The plan or forecast of a different planner, for comparison.
-pub(super) fn compared<'a>(look: &Look<'a>) -> Option<&'a [Point]> {
+pub(super) fn compared<'a>(look: &Look<'a>) -> Option<Track<'a>> {
     let (live, ui) = (&look.model.live, &look.model.ui);
-    let path = match (&ui.overlay, ui.screen) {
+    match (&ui.overlay, ui.screen) {
         (Overlay::WhatIf, _) => {
-            &live.what_if.as_ref().and_then(WhatIf::candidate)?.made.as_ref()?.as_ref().ok()?.path
+            let made = live.what_if.as_ref().and_then(WhatIf::candidate)?.made.as_ref()?.as_ref().ok()?;
+            Some(Track { path: &made.path, lanes: &[] })
         }
-        (_, Screen::Plan) => &live.plans.ghost.as_ref()?.made.as_ref()?.as_ref().ok()?.path,
-        _ => return None,
-    };
-    Some(path)
+        (_, Screen::Plan) => {
+            let plan = live.plans.ghost.as_ref()?.made.as_ref()?.as_ref().ok()?;
+            Some(Track { path: &plan.path, lanes: &plan.lanes })
+        }
+        _ => None,
+    }
 }
 
 impl Pen<'_> {
     pub(super) fn paths(&self, ctx: &mut Context<'_>) {
         self.others(ctx);
-        if let Some(course) = course(&self.look) {
-            let (look, window) = (&self.look, self.window);
-            let on_plan = look.model.ui.screen == Screen::Plan;
-            let reach_m = Some(REACH_COLUMNS * window.column_m)
-                .filter(|_| !on_plan && !are_lanes_apart(look, window, PASS_COLUMNS));
-            if on_plan {
-                self.draw(ctx, course.driven, ink::DRIVEN);
+        let course = course(&self.look);
+        if let Some(course) = &course {
+            let [thinning, _] = thinnings(&self.look, self.window);
+            let thin = Thin::new(course.track.path, course.track.lanes, thinning);
+            if self.look.model.ui.screen == Screen::Plan {
+                self.pieces(ctx, &thin, course.driven, ink::DRIVEN);
             }
-            let ahead = reach_m.map_or(course.ahead, |reach_m| within(course.ahead, reach_m));
-            self.draw(ctx, ahead, plan_ink(look, window));
-            self.draw(ctx, course.leg, ink::LEG);
+            self.pieces(ctx, &thin, course.ahead, plan_ink(&self.look));
         }
         if shows_trail(&self.look) {
             self.trail(ctx, self.look.run.trail.points(), ink::TRAIL);
+        }
+        if let Some(course) = course {
+            let (from, to) = course.leg;
+            self.draw(ctx, &course.track.path[from..=to], ink::LEG);
         }
     }
 
     /// The other plans, and the run with which a replay is compared.
     fn others(&self, ctx: &mut Context<'_>) {
         let look = &self.look;
-        if let Some(path) = compared(look) {
-            self.draw(ctx, path, ink::OTHER);
-        }
-        if let Some(path) = offer(look) {
-            self.draw(ctx, path, ink::OFFER);
+        let [_, thinning] = thinnings(look, self.window);
+        for (track, ink) in [(compared(look), ink::OTHER), (offer(look), ink::OFFER)] {
+            if let Some(track) = track.filter(|track| track.path.len() > 1) {
+                let thin = Thin::new(track.path, track.lanes, thinning);
+                self.pieces(ctx, &thin, (0, track.path.len() - 1), ink);
+            }
         }
         let other = look.model.live.replay.as_ref().and_then(|replay| replay.other.as_ref());
         if let Some(other) = other.filter(|_| look.model.ui.screen == Screen::Mission) {
             self.trail(ctx, other.run.trail.points(), ink::OTHER);
+        }
+    }
+
+    fn pieces(&self, ctx: &mut Context<'_>, thin: &Thin, part: Lane, ink: Ink) {
+        for line in thin.lines(part) {
+            self.draw(ctx, &line, ink);
         }
     }
 

@@ -6,7 +6,7 @@ use crate::theme::Role;
 /// How a kind of line is drawn. Where lines of two kinds can be on the map together, their patterns differ, so that
 /// they can be told apart without colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Ink {
+pub(in crate::view) struct Ink {
     pub role: Role,
     pub pattern: Pattern,
     /// The letter that replaces the dots.
@@ -20,13 +20,11 @@ const fn ink(role: Role, pattern: Pattern, letter: char) -> Ink {
 /// The wall.
 pub(super) const WALL: Ink = ink(Role::Wall, Pattern::Solid, 'o');
 /// The robot's trail.
-pub(super) const TRAIL: Ink = ink(Role::Trail, Pattern::Solid, '.');
+pub(in crate::view) const TRAIL: Ink = ink(Role::Trail, Pattern::Solid, '.');
 /// The part of the plan that has been driven.
-pub(super) const DRIVEN: Ink = ink(Role::Dim, Pattern::Dotted, '.');
+pub(super) const DRIVEN: Ink = ink(Role::Dim, Pattern::Solid, '.');
 /// The lane on which the robot is, or the way to the next one.
-pub(super) const LEG: Ink = ink(Role::Target, Pattern::Solid, ';');
-/// The plan where its lanes would merge.
-pub(super) const PLAN_CLOSE: Ink = ink(Role::Plan, Pattern::Dotted, ',');
+pub(super) const LEG: Ink = ink(Role::Target, Pattern::Thick, '*');
 /// The plan before the start.
 pub(super) const PLAN: Ink = ink(Role::Plan, Pattern::Solid, ',');
 /// The plan ahead of the robot.
@@ -34,9 +32,11 @@ pub(super) const AHEAD: Ink = ink(Role::Plan, Pattern::Dashed, ',');
 /// A better plan that is on offer.
 pub(super) const OFFER: Ink = ink(Role::Watch, Pattern::Dotted, '=');
 /// The plan or the forecast of a different planner, or the trail of a different run.
-pub(super) const OTHER: Ink = ink(Role::Ghost, Pattern::DashDot, ';');
+pub(super) const OTHER: Ink = ink(Role::Ghost, Pattern::Ticked, ':');
 /// The plan of the planner in shadow.
 pub(super) const SHADOW: Ink = ink(Role::Ghost, Pattern::Sparse, ';');
+/// The part of the plan that a zone blocks.
+pub(super) const BLOCKED: Ink = ink(Role::NoGo, Pattern::Thick, 'x');
 /// The tether.
 pub(super) const TETHER: Ink = ink(Role::Tether, Pattern::Double, '~');
 /// The planner's drawings.
@@ -49,13 +49,13 @@ mod tests {
     #[test]
     fn lines_that_are_on_the_map_together_differ_without_colours() {
         let together: [&[Ink]; 3] = [
-            &[TRAIL, AHEAD, OFFER, SHADOW, TETHER, OTHER],
-            &[PLAN, DRIVEN, OTHER],
-            &[PLAN_CLOSE, OTHER, LEG],
+            &[TRAIL, LEG, AHEAD, OFFER, SHADOW, TETHER, OTHER],
+            &[PLAN, OTHER, OFFER],
+            &[DRIVEN, LEG, AHEAD, OFFER, SHADOW, OTHER],
         ];
         for inks in together {
             for (index, one) in inks.iter().enumerate() {
-                let differs = |other: &Ink| other.pattern != one.pattern;
+                let differs = |other: &Ink| other.pattern != one.pattern && other.letter != one.letter;
                 assert!(inks[index + 1..].iter().all(differs), "{one:?} in {inks:?}");
             }
         }

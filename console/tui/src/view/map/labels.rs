@@ -1,7 +1,9 @@
 //! The letters on the map: names, marks, numbers of lanes. A label that is less important gives way.
 
-use super::course;
+use super::course::{self, Track};
+use super::ink::{self, Ink};
 use super::shapes::Window;
+use super::thin::{Thin, Thinning};
 use crate::caps::Glyphs;
 use crate::model::{Screen, ui::MapLayer};
 use crate::theme::Role;
@@ -11,7 +13,7 @@ use account::Estimate;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
-use world::{Obstacle, Point, Vector};
+use world::{Obstacle, Point, Vector, polyline};
 
 /// The maximum number of missed areas that are numbered on the map: first when the whole tank is shown, then when only
 /// a part of it is.
@@ -22,6 +24,14 @@ const NAME: usize = 4;
 const LANE_COLUMNS: f64 = 8.0;
 /// The distance between the arrows of a path without lanes, columns.
 const ARROW_COLUMNS: f64 = 30.0;
+
+/// The mark of the place at which a re-scan resumes.
+pub(super) const RESUMES: &str = "R";
+
+/// The mark of the largest wrap of the tether.
+pub(super) const WOUND: &str = "w";
+/// The smallest wrap that is marked, degrees.
+const WOUND_DEG: f64 = 1.0;
 
 /// The labels of a map that is drawn in `area` of `buffer`.
 struct Board<'a, 'b> {
@@ -39,6 +49,8 @@ pub(super) fn draw(look: &Look, window: Window, area: Rect, buffer: &mut Buffer)
     board.robots();
     board.solids();
     board.places();
+    board.change_over();
+    board.wound();
     board.stations();
     board.missed();
     board.targets();
@@ -97,8 +109,26 @@ impl Board<'_, '_> {
         if let Some(at) = look.model.left_out_at() {
             self.always(at, Role::Selected, "◎");
         }
+        if let Some(resumption) = look.model.live.left_out().and_then(|left_out| left_out.resumption) {
+            self.always(resumption.at, Role::Title, RESUMES);
+        }
         for (letter, at) in look.model.live.promised().into_iter().flat_map(worst_places) {
             self.beside(at, Role::Watch, letter);
+        }
+    }
+
+    /// The obstacle round which the tether is wound most.
+    fn wound(&mut self) {
+        if let Some(at) = wound(&self.look) {
+            self.beside(at, Role::Tether, WOUND);
+        }
+    }
+
+    /// The place at which a better plan begins.
+    fn change_over(&mut self) {
+        let look = self.look;
+        if let Some(at) = course::change_over(&look) {
+            self.always(at, Role::Watch, "◇");
         }
     }
 
@@ -129,44 +159,62 @@ impl Board<'_, '_> {
         }
     }
 
-    /// The order and the direction of the lanes ahead.
+    /// The order and the direction of the lanes ahead, then the directions of a second plan.
     fn lanes(&mut self) {
         let look = self.look;
-        let Some(course) = course::course(&look).filter(|_| !look.run.has_ended()) else { return };
-        let plan = course.plan;
-        if plan.lanes.is_empty() {
-            let every_m = ARROW_COLUMNS * self.window.column_m;
-            return self.arrows(course.ahead, every_m);
+        let [thinning, second] = course::thinnings(&look, self.window);
+        if let Some(course) = course::course(&look).filter(|_| !look.run.has_ended()) {
+            self.lanes_of(course.track, course.ahead.0, thinning, Arrow::PLAN);
         }
-        let least_m = LANE_COLUMNS * self.window.column_m;
-        let ahead = plan.lanes.iter().enumerate().filter(|(_, lane)| lane.0 >= course.from);
-        for (index, (first, last)) in ahead {
-            let lane = &plan.path[*first..=*last];
-            let length_m = world::polyline::length_m(lane);
-            if length_m < least_m {
-                continue;
+        let others = [(course::offer(&look), Arrow::OFFER), (course::compared(&look), Arrow::OTHER)];
+        for (track, arrow) in others {
+            if let Some(track) = track {
+                self.lanes_of(track, 0, second, arrow);
             }
-            if let Some((at, _)) = along(lane, 0.25 * length_m) {
-                self.if_free(at, Role::Title, &(index + 1).to_string(), 1);
-            }
-            self.arrow(along(lane, 0.5 * length_m));
         }
     }
 
-    fn arrows(&mut self, path: &[Point], every_m: f64) {
+    /// The labels of the lanes of a path that are drawn and begin at an index of its points or later.
+    fn lanes_of(&mut self, track: Track, from: usize, thinning: Thinning, arrow: Arrow) {
+        let thin = Thin::new(track.path, track.lanes, thinning);
+        if track.lanes.is_empty() {
+            let every_m = ARROW_COLUMNS * self.window.column_m;
+            for line in thin.lines((from, track.path.len().saturating_sub(1))) {
+                self.arrows(&line, every_m, arrow);
+            }
+            return;
+        }
+        let least_m = LANE_COLUMNS * self.window.column_m;
+        let ahead = thin.lanes.iter().map(|index| (*index, track.lanes[*index]));
+        for (index, (first, last)) in ahead.filter(|(_, lane)| lane.0 >= from) {
+            let lane = &track.path[first..=last];
+            let length_m = polyline::length_m(lane);
+            if length_m < least_m {
+                continue;
+            }
+            let number = along(lane, 0.25 * length_m).filter(|_| arrow.is_numbered);
+            if let Some((at, _)) = number {
+                self.if_free(at, Role::Title, &(index + 1).to_string(), 1);
+            }
+            self.arrow(along(lane, arrow.at * length_m), arrow);
+        }
+    }
+
+    fn arrows(&mut self, path: &[Point], every_m: f64, arrow: Arrow) {
         let mut walked_m = 0.0;
         for pair in path.windows(2) {
             walked_m += (pair[1] - pair[0]).norm();
             if walked_m >= every_m {
                 walked_m = 0.0;
-                self.arrow(Some((pair[1], pair[1] - pair[0])));
+                self.arrow(Some((pair[1], pair[1] - pair[0])), arrow);
             }
         }
     }
 
-    fn arrow(&mut self, place: Option<(Point, Vector)>) {
+    fn arrow(&mut self, place: Option<(Point, Vector)>, arrow: Arrow) {
         if let Some((at, way)) = place {
-            self.if_free(at, Role::Plan, direction(self.look.caps.glyphs, way.y.atan2(way.x)), 1);
+            let sign = arrow.along(self.look.caps.glyphs, way.y.atan2(way.x));
+            self.if_free(at, arrow.role, sign, 1);
         }
     }
 
@@ -214,6 +262,13 @@ impl Board<'_, '_> {
     }
 }
 
+/// Where the tether is wound most during a mission, metres, tank frame; `None` while it is straight.
+pub(super) fn wound(look: &Look) -> Option<Point> {
+    let most = look.run.tether.as_ref().filter(|tether| !tether.is_snagged)?.largest()?;
+    let is_plan = look.model.ui.screen == Screen::Plan;
+    (!is_plan && most.wrap_rad.abs().to_degrees() >= WOUND_DEG).then_some(most.at)
+}
+
 /// Whether the name of an obstacle is written on the map.
 fn is_named(obstacle: &Obstacle) -> bool {
     obstacle.known && (1..=NAME).contains(&text::width(&obstacle.name))
@@ -252,12 +307,54 @@ fn robot(glyphs: Glyphs, heading_rad: f64) -> &'static str {
     if glyphs == Glyphs::Ascii || !heading_rad.is_finite() { "@" } else { ROBOT[eighth(heading_rad)] }
 }
 
-/// An arrow along a path.
-fn direction(glyphs: Glyphs, heading_rad: f64) -> &'static str {
-    const ARROWS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
-    const LETTERS: [&str; 8] = [">", "^", "^", "^", "<", "v", "v", "v"];
-    let arrows = if glyphs == Glyphs::Ascii { LETTERS } else { ARROWS };
-    arrows[eighth(heading_rad)]
+/// The arrows along a kind of path.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Arrow {
+    role: Role,
+    /// The arrows to the east and, in steps of 45°, to the other directions.
+    signs: [&'static str; 8],
+    /// The place of the arrow on a lane, as a share of the lane.
+    at: f64,
+    /// Whether the lanes are numbered.
+    is_numbered: bool,
+}
+
+impl Arrow {
+    const PLAN: Self = Self {
+        role: Role::Plan,
+        signs: ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"],
+        at: 0.5,
+        is_numbered: true,
+    };
+    const OFFER: Self = Self {
+        role: Role::Watch,
+        signs: ["⇒", "⇗", "⇑", "⇖", "⇐", "⇙", "⇓", "⇘"],
+        at: 0.6,
+        is_numbered: false,
+    };
+    const OTHER: Self = Self {
+        role: Role::Ghost,
+        signs: ["⇢", "⇡", "⇡", "⇡", "⇠", "⇣", "⇣", "⇣"],
+        at: 0.6,
+        is_numbered: false,
+    };
+
+    fn along(self, glyphs: Glyphs, heading_rad: f64) -> &'static str {
+        const LETTERS: [&str; 8] = [">", "^", "^", "^", "<", "v", "v", "v"];
+        let signs = if glyphs == Glyphs::Ascii { LETTERS } else { self.signs };
+        signs[eighth(heading_rad)]
+    }
+
+    /// The arrow of a kind of line in the legend; `None` if lines of the kind have no arrows.
+    pub(super) fn of(ink: Ink) -> Option<&'static str> {
+        let arrow = match ink {
+            ink::PLAN | ink::AHEAD => Self::PLAN,
+            ink::OFFER => Self::OFFER,
+            ink::OTHER => Self::OTHER,
+            _ => return None,
+        };
+        Some(arrow.signs[0])
+    }
 }
 
 fn eighth(heading_rad: f64) -> usize {
@@ -279,9 +376,11 @@ mod tests {
 
     #[test]
     fn directions_are_the_nearest_of_eight() {
-        let at = |degrees: f64| direction(Glyphs::Braille, degrees.to_radians());
+        let at = |degrees: f64| Arrow::PLAN.along(Glyphs::Braille, degrees.to_radians());
         assert_eq!([at(0.0), at(40.0), at(-91.0), at(359.0)], ["→", "↗", "↓", "→"]);
-        assert_eq!(direction(Glyphs::Ascii, -2.0), "v");
+        assert_eq!(Arrow::OFFER.along(Glyphs::Ascii, -2.0), "v");
+        let all = [Arrow::PLAN, Arrow::OFFER, Arrow::OTHER].map(|arrow| arrow.along(Glyphs::Braille, 0.0));
+        assert_eq!(all, ["→", "⇒", "⇢"], "told apart without colours");
         assert_eq!(robot(Glyphs::Braille, std::f64::consts::FRAC_PI_2), "▲");
     }
 }

@@ -5,13 +5,14 @@ use super::pattern::braille;
 use super::shade::{Shade, compared};
 use super::shapes::Window;
 use super::{course, drawn, labels, plates};
-use crate::model::{Raster, Screen, ui::MapLayer};
+use crate::model::{Lane, Raster, Screen, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::{Look, Parts};
 use crate::view::text;
 use account::Shares;
 use ratatui::Frame;
 use ratatui::layout::Rect;
+use std::borrow::Cow;
 use world::{Boundary, FloorClass, Point, ZoneKind};
 
 /// Width of a mark, columns.
@@ -20,6 +21,8 @@ const MARK: usize = 3;
 const BESIDE: (f64, f64) = (1.0, 3.0);
 /// Rows of the map for each line of the legend below the floor.
 const ROWS_PER_LINE: u16 = 5;
+/// The trail of the run with which a replay is compared.
+const RUN_B: &str = "run B";
 /// Blanks between entries in a line.
 const GAP: &str = "  ";
 
@@ -28,12 +31,12 @@ const GAP: &str = "  ";
 pub(super) struct Entry {
     role: Role,
     mark: String,
-    word: &'static str,
+    word: Cow<'static, str>,
 }
 
 impl Entry {
     fn width(&self) -> usize {
-        MARK + 1 + text::width(self.word)
+        MARK + 1 + text::width(&self.word)
     }
 
     fn parts(&self) -> Parts {
@@ -151,7 +154,7 @@ fn floor(look: &Look) -> Vec<Entry> {
     let entry = |(shade, word): (Shade, &'static str)| Entry {
         role: shade.role(),
         mark: shade.glyph().to_string().repeat(2),
-        word,
+        word: word.into(),
     };
     if compared(look).is_some() {
         let shades =
@@ -184,16 +187,17 @@ fn lines_shown(look: &Look, window: Window) -> Vec<Entry> {
     let run = look.run;
     let on_plan = look.model.ui.screen == Screen::Plan;
     let course = course::course(look);
-    let some = |part: fn(&course::Course) -> usize| course.as_ref().is_some_and(|course| part(course) > 1);
+    let some =
+        |part: fn(&course::Course) -> Lane| course.as_ref().map(part).is_some_and(|(from, to)| from < to);
     let other_run = look.model.live.replay.as_ref().is_some_and(|replay| replay.other.is_some());
     let lines = [
         (course::shows_trail(look), ink::TRAIL, "trail"),
-        (on_plan && some(|course| course.driven.len()), ink::DRIVEN, "driven"),
-        (some(|course| course.leg.len()), ink::LEG, "this leg"),
-        (some(|course| course.ahead.len()), course::plan_ink(look, window), "plan"),
+        (on_plan && some(|course| course.driven), ink::DRIVEN, "driven"),
+        (some(|course| course.leg), ink::LEG, "this leg"),
+        (some(|course| course.ahead), course::plan_ink(look), "plan"),
         (course::offer(look).is_some(), ink::OFFER, "better plan"),
         (course::compared(look).is_some(), ink::OTHER, "compared"),
-        (other_run && look.model.ui.screen == Screen::Mission, ink::OTHER, "run B"),
+        (other_run && look.model.ui.screen == Screen::Mission, ink::OTHER, RUN_B),
         (run.shadow.is_some() && run.is_running(), ink::SHADOW, "shadow"),
         (
             run.tether.as_ref().is_some_and(|tether| tether.line.windows(2).any(|pair| pair[0] != pair[1])),
@@ -208,9 +212,21 @@ fn lines_shown(look: &Look, window: Window) -> Vec<Entry> {
     });
     let lines = lines.into_iter().filter(|(shown, ..)| *shown).map(|(_, ink, word)| (ink, word));
     let has_dots = look.caps.glyphs.has_dots();
-    let mark =
-        |ink: Ink| if has_dots { ink.pattern.sample(MARK as u16) } else { ink.letter.to_string().repeat(2) };
-    lines.chain(drawn).map(|(ink, word)| Entry { role: ink.role, mark: mark(ink), word }).collect()
+    let mark = |ink: Ink, word: &str| match labels::Arrow::of(ink) {
+        _ if !has_dots => ink.letter.to_string().repeat(2),
+        // The trail of a run has no arrows.
+        Some(arrow) if word != RUN_B => format!("{}{arrow}", ink.pattern.sample(MARK as u16 - 1)),
+        _ => ink.pattern.sample(MARK as u16),
+    };
+    let every = course::thinnings(look, window)[0].every;
+    let word = |ink: Ink, word: &'static str| {
+        let is_plan = matches!(ink, ink::PLAN | ink::AHEAD);
+        if is_plan && every > 1 { format!("{word}, 1 lane in {every}").into() } else { Cow::from(word) }
+    };
+    lines
+        .chain(drawn)
+        .map(|(ink, name)| Entry { role: ink.role, mark: mark(ink, name), word: word(ink, name) })
+        .collect()
 }
 
 /// The marks that are drawn.
@@ -228,6 +244,8 @@ fn marks(look: &Look, window: Window) -> Vec<Entry> {
     let station = ui.layers.shows(MapLayer::Stations)
         && about.world.stations.iter().any(|station| seen(station.position));
     let target = run.progress.as_ref().is_some_and(|progress| !run.has_ended() && seen(progress.target));
+    let wound = labels::wound(look).is_some_and(seen);
+    let change_over = course::change_over(look).is_some_and(seen);
     let marks = [
         (obstacle(true), Role::Obstacle, "#".to_owned(), "obstacle"),
         (obstacle(false), Role::Found, "?".into(), "found"),
@@ -235,9 +253,11 @@ fn marks(look: &Look, window: Window) -> Vec<Entry> {
         (plates::plates(look, window).is_some(), Role::Plate, outline, "plate"),
         (station, Role::Station, stations(look), "station"),
         (target, Role::Target, "×".into(), "target"),
+        (wound, Role::Tether, labels::WOUND.into(), "largest wrap"),
+        (change_over, Role::Watch, "◇".into(), "change-over"),
     ];
     let marks = marks.into_iter().filter(|(shown, ..)| *shown);
-    let marks = marks.map(|(_, role, mark, word)| Entry { role, mark, word });
+    let marks = marks.map(|(_, role, mark, word)| Entry { role, mark, word: word.into() });
     marks.chain(places(look, window)).collect()
 }
 
@@ -263,13 +283,19 @@ fn places(look: &Look, window: Window) -> Vec<Entry> {
         _ => "wrap",
     };
     let entries =
-        seen.map(|(letter, _)| Entry { role: Role::Watch, mark: letter.into(), word: word(letter) });
+        seen.map(|(letter, _)| Entry { role: Role::Watch, mark: letter.into(), word: word(letter).into() });
     let left_out = look.model.left_out_at().filter(|_| on_plan).map(|_| Entry {
         role: Role::Selected,
         mark: "◎".into(),
-        word: "left out",
+        word: "left out".into(),
     });
-    entries.chain(left_out).collect()
+    let resumption = look.model.live.left_out().filter(|_| on_plan).and_then(|left_out| left_out.resumption);
+    let resumes = resumption.map(|_| Entry {
+        role: Role::Title,
+        mark: labels::RESUMES.into(),
+        word: "scan resumes".into(),
+    });
+    entries.chain(left_out).chain(resumes).collect()
 }
 
 #[cfg(test)]
@@ -288,7 +314,7 @@ mod tests {
 
     #[test]
     fn entries_fill_lines_and_none_is_cut() {
-        let entry = |word| Entry { role: Role::Dim, mark: "▒▒".into(), word };
+        let entry = |word| Entry { role: Role::Dim, mark: "▒▒".into(), word: Cow::from(word) };
         let entries = ["scanned", "partial", "missed"].map(entry);
         let columns: Vec<usize> = lines(&entries, 30).iter().map(Vec::len).collect();
         assert_eq!(columns, [2, 1]);

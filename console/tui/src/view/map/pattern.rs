@@ -2,6 +2,9 @@
 
 use super::pen::DOTS;
 
+/// Dots of a line from one stroke across it to the next.
+const TICK_DOTS: usize = 5;
+
 /// How the dots of a line are set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::view) enum Pattern {
@@ -11,8 +14,10 @@ pub(in crate::view) enum Pattern {
     Dashed,
     /// Every third dot.
     Dotted,
-    /// A dash and a dot in turn.
-    DashDot,
+    /// A line with short strokes across it.
+    Ticked,
+    /// Two dots wide.
+    Thick,
     /// Every fifth dot.
     Sparse,
     /// Two lines side by side.
@@ -20,20 +25,46 @@ pub(in crate::view) enum Pattern {
 }
 
 impl Pattern {
+    /// The pattern of a line of letters, which is one letter wide.
+    pub(super) fn in_letters(self) -> Self {
+        match self {
+            Self::Double | Self::Thick | Self::Ticked => Self::Solid,
+            narrow => narrow,
+        }
+    }
+
     /// Whether the dot at a distance along the line is set.
     pub(super) fn is_on(self, step: usize) -> bool {
         match self {
-            Self::Solid | Self::Double => true,
+            Self::Solid | Self::Double | Self::Thick | Self::Ticked => true,
             Self::Dashed => step % 7 < 4,
             Self::Dotted => step.is_multiple_of(3),
-            Self::DashDot => matches!(step % 8, 0..=3 | 5),
             Self::Sparse => step.is_multiple_of(5),
         }
     }
 
-    /// The dots that stand for one dot of the line.
-    pub(super) fn dots(self, (x, y): (usize, usize), is_flat: bool, mut set: impl FnMut(usize, usize)) {
+    /// The dots that stand for one dot of the line, which is `step` dots along it.
+    pub(super) fn dots(
+        self,
+        (x, y): (usize, usize),
+        (step, is_flat): (usize, bool),
+        mut set: impl FnMut(usize, usize),
+    ) {
         match (self, is_flat) {
+            (Self::Thick, true) => {
+                set(x, y);
+                set(x, y + 1);
+            }
+            (Self::Thick, false) => {
+                set(x, y);
+                set(x + 1, y);
+            }
+            (Self::Ticked, true) if step % TICK_DOTS == TICK_DOTS / 2 => {
+                (y.saturating_sub(1)..=y + 1).for_each(|y| set(x, y));
+            }
+            (Self::Ticked, false) if step % TICK_DOTS == TICK_DOTS / 2 => {
+                (x.saturating_sub(1)..=x + 1).for_each(|x| set(x, y));
+            }
             (Self::Double, true) => {
                 set(x, y.saturating_sub(1));
                 set(x, y + 1);
@@ -50,7 +81,7 @@ impl Pattern {
     pub(super) fn sample(self, columns: u16) -> String {
         let mut set = std::collections::BTreeSet::new();
         for x in (0..usize::from(columns * DOTS.0)).filter(|x| self.is_on(*x)) {
-            self.dots((x, 2), true, |x, y| {
+            self.dots((x, 2), (x, true), |x, y| {
                 set.insert((x, y));
             });
         }
@@ -86,11 +117,12 @@ mod tests {
             Pattern::Solid,
             Pattern::Dashed,
             Pattern::Dotted,
-            Pattern::DashDot,
+            Pattern::Ticked,
+            Pattern::Thick,
             Pattern::Sparse,
             Pattern::Double,
         ];
         let samples = all.map(|pattern| pattern.sample(4));
-        assert_eq!(samples, ["⠤⠤⠤⠤", "⠤⠤ ⠠", "⠄⠠ ⠄", "⠤⠤⠠ ", "⠄ ⠠ ", "⣒⣒⣒⣒"].map(str::to_owned));
+        assert_eq!(samples, ["⠤⠤⠤⠤", "⠤⠤ ⠠", "⠄⠠ ⠄", "⠤⡦⠤⢴", "⣤⣤⣤⣤", "⠄ ⠠ ", "⣒⣒⣒⣒"].map(str::to_owned));
     }
 }

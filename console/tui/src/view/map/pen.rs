@@ -13,7 +13,7 @@ use planner_api::Drawing;
 use ratatui::symbols::Marker;
 use ratatui::text::Line;
 use ratatui::widgets::canvas::Context;
-use world::{Boundary, Point, ZoneKind};
+use world::{Boundary, Point, World, ZoneKind};
 
 /// The number of segments in a round wall.
 const WALL_PIECES: u32 = 256;
@@ -21,7 +21,7 @@ const WALL_PIECES: u32 = 256;
 pub(super) const DOTS: (u16, u16) = (2, 4);
 
 /// Draws the model on the canvas.
-pub(super) struct Pen<'a> {
+pub(in crate::view) struct Pen<'a> {
     pub look: Look<'a>,
     pub window: Window,
 }
@@ -34,11 +34,10 @@ impl Pen<'_> {
         }
     }
 
-    /// Draws a line of a kind. Letters tell the kinds apart, so that a double line of letters is a single one.
-    pub(super) fn draw(&self, ctx: &mut Context<'_>, points: &[Point], ink: Ink) {
+    /// Draws a line of a kind. Letters tell the kinds apart, so that a line of letters is one letter wide.
+    pub(in crate::view) fn draw(&self, ctx: &mut Context<'_>, points: &[Point], ink: Ink) {
         self.take_up(ctx, ink.letter);
-        let is_double = ink.pattern == Pattern::Double && !self.look.caps.glyphs.has_dots();
-        let pattern = if is_double { Pattern::Solid } else { ink.pattern };
+        let pattern = if self.look.caps.glyphs.has_dots() { ink.pattern } else { ink.pattern.in_letters() };
         self.stroke(ctx, points, ink.role, pattern);
     }
 
@@ -48,7 +47,7 @@ impl Pen<'_> {
     }
 
     /// The markers of the map: dots if the terminal has them.
-    pub(super) fn marker(&self) -> Marker {
+    pub(in crate::view) fn marker(&self) -> Marker {
         if self.look.caps.glyphs == Glyphs::Octant { Marker::Octant } else { Marker::Braille }
     }
 
@@ -61,10 +60,10 @@ impl Pen<'_> {
         }
     }
 
-    pub(super) fn zones(&self, ctx: &mut Context<'_>) {
-        let Some(about) = &self.look.run.about else { return };
+    /// The no-go zones of a tank.
+    pub(in crate::view) fn no_go(&self, ctx: &mut Context<'_>, world: &World) {
         self.take_up(ctx, 'x');
-        for zone in about.world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo) {
+        for zone in world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo) {
             let color = self.look.theme.color(Role::NoGo);
             ctx.draw(&Filled { shape: &zone.shape, window: self.window, hatched: true, color });
         }
@@ -82,9 +81,9 @@ impl Pen<'_> {
         }
     }
 
-    pub(super) fn solid(&self, ctx: &mut Context<'_>) {
-        let Some(about) = &self.look.run.about else { return };
-        let wall = match &about.world.boundary {
+    /// The wall and the obstacles of a tank.
+    pub(in crate::view) fn solids(&self, ctx: &mut Context<'_>, world: &World) {
+        let wall = match &world.boundary {
             Boundary::Circle { radius_m } => {
                 ellipse(Point::origin(), (*radius_m, *radius_m), 0.0, WALL_PIECES)
             }
@@ -92,7 +91,7 @@ impl Pen<'_> {
         };
         self.draw(ctx, &wall, ink::WALL);
         self.take_up(ctx, '#');
-        for obstacle in &about.world.obstacles {
+        for obstacle in &world.obstacles {
             let color = self.look.theme.color(if obstacle.known { Role::Obstacle } else { Role::Found });
             ctx.draw(&Filled { shape: &obstacle.shape, window: self.window, hatched: false, color });
         }

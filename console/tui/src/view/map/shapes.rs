@@ -110,7 +110,7 @@ impl Shape for Stroke<'_> {
                 if self.pattern.is_on(walked + step) {
                     let x = (a.0 as f64 + dx * share).round() as usize;
                     let y = (a.1 as f64 + dy * share).round() as usize;
-                    self.pattern.dots((x, y), is_flat, |x, y| {
+                    self.pattern.dots((x, y), (walked + step, is_flat), |x, y| {
                         // A dot beyond the edge would appear in the next row.
                         if x < usize::from(DOTS.0 * self.window.size.0) {
                             painter.paint(x, y, self.color);

@@ -5,7 +5,7 @@ use crate::theme::Role;
 use crate::update::Rows;
 use crate::view::look::{Look, Parts, fill};
 use crate::view::{table, text};
-use account::{Area, LeftOut, MissReason};
+use account::{Area, Cause, LeftOut, Measure, MissReason};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
@@ -61,35 +61,75 @@ fn keys(look: &Look, columns: usize) -> String {
 fn row(area: &Area<MissReason>, place: usize, columns: usize) -> Parts {
     let room = columns.saturating_sub(AREA + 2);
     let place = text::column(&text::place(area.at), place);
-    let [whole, brief, word] = [area.reason.plainly(), area.reason.briefly(), in_a_word(area.reason)];
-    let words = [whole, brief, word].map(|reason| format!("{place} {reason}"));
-    let [whole, brief, short] = words;
-    let words = text::wording([whole, brief, short, word.to_owned()], room);
+    let [whole, brief, word] = reason(area.reason, &area.causes);
+    let [whole, brief, short] = [whole, brief, word.clone()].map(|reason| format!("{place} {reason}"));
+    let words = text::wording([whole, brief, short, word], room);
     vec![(Role::Text, format!("{:>AREA$} ", square_metres(area.area_m2))), (Role::Text, words)]
 }
 
-/// The reason in a word or two, below the title that says that the area is left out.
-fn in_a_word(reason: MissReason) -> &'static str {
-    match reason {
-        MissReason::Clearance => "clearance",
-        MissReason::Wrap => "tether",
-        MissReason::BeyondReel => "beyond the reel",
-        MissReason::Narrow => "outside lanes",
-        reason => reason.briefly(),
-    }
+/// The reason, from the longest wording to the shortest. The title says that the floor is left out.
+fn reason(reason: MissReason, causes: &[Cause<MissReason>]) -> [String; 3] {
+    let measure = causes.iter().find(|cause| cause.reason == reason).and_then(|cause| cause.measure.as_ref());
+    let words: [&str; 3] = match reason {
+        MissReason::NotPlanned => return beside_lanes(measure),
+        MissReason::Clearance => {
+            ["too little room for hull and clearance", "no room for hull and clearance", "clearance"]
+        }
+        MissReason::Wrap => ["a lane here would wind the tether", "would wind the tether", "tether"],
+        MissReason::BeyondReel => {
+            ["beyond the reel's length of tether", "beyond the reel", "beyond the reel"]
+        }
+        MissReason::Narrow => ["outside the outermost lane", "outside the outermost lane", "outside lanes"],
+        reason => [reason.plainly(), reason.briefly(), reason.briefly()],
+    };
+    words.map(str::to_owned)
 }
 
+/// Why floor between or beside the lanes is left out: too narrow for a lane of its own, or the planner leads no lane
+/// there.
+fn beside_lanes(measure: Option<&Measure>) -> [String; 3] {
+    let Some(measure) = measure else {
+        return ["the planner leads no lane here", "no lane leads here", "no lane"].map(str::to_owned);
+    };
+    let wide_m = text::number(measure.value_m, 2);
+    if measure.limit_m.is_some_and(|lane_m| measure.value_m < lane_m / 2.0) {
+        let gap = format!("{wide_m} m beside a lane");
+        return [format!("{gap}, too narrow for its own"), gap, "beside a lane".into()];
+    }
+    let far = format!("no lane within {wide_m} m");
+    [format!("the planner leads {far}"), far, "no lane".into()]
+}
+
+/// The areas that are too small to be listed, with the reason for most of them.
 fn smaller(left_out: &LeftOut, columns: usize) -> Option<Parts> {
     let slivers = &left_out.slivers;
-    let words = [format!("in {} smaller areas", slivers.count), format!("{} smaller", slivers.count)];
-    (slivers.count > 0).then(|| {
-        vec![
-            (Role::Dim, format!("{:>AREA$} ", square_metres(slivers.area_m2))),
-            (Role::Dim, text::wording(words, columns.saturating_sub(AREA + 2))),
-        ]
-    })
+    let counted = format!("{} smaller", slivers.count);
+    let room = columns.saturating_sub(AREA + 2);
+    let words = match slivers.causes.first() {
+        Some(cause) => {
+            let [whole, brief, word] =
+                reason(cause.reason, &slivers.causes).map(|why| format!("{counted}, most: {why}"));
+            text::wording([whole, brief, word, counted], room)
+        }
+        None => text::wording([format!("in {counted} areas"), counted], room),
+    };
+    (slivers.count > 0)
+        .then(|| vec![(Role::Dim, format!("{:>AREA$} ", square_metres(slivers.area_m2))), (Role::Dim, words)])
 }
 
 fn square_metres(area_m2: f64) -> String {
     format!("{} m²", text::number(area_m2, 2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn floor_without_a_lane_says_whether_it_is_too_narrow_for_one() {
+        let measure = |value_m| Measure { value_m, to_m: None, limit_m: Some(0.5), near: None };
+        assert_eq!(beside_lanes(Some(&measure(0.08)))[1], "0.08 m beside a lane");
+        assert_eq!(beside_lanes(Some(&measure(2.3)))[0], "the planner leads no lane within 2.30 m");
+        assert_eq!(beside_lanes(None)[2], "no lane");
+    }
 }

@@ -11,8 +11,8 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 
 /// Width of a label, of a figure and of a limit, columns.
-const LABEL: usize = 10;
-const VALUE: usize = 11;
+const LABEL: usize = 12;
+const VALUE: usize = 9;
 const LIMIT: usize = 8;
 /// Width from which limits stand beside two columns of figures, columns.
 const WITH_LIMIT: usize = 42;
@@ -30,14 +30,18 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         second.as_ref().map(|second| head(look, second, &widths)).into_iter().collect();
     let cell = |figure: Figure, estimate: Option<&Estimate>, (role, room): (Role, usize)| {
         let limit = (figure.limit)(mission);
-        estimate.and_then(figure.promised).map_or((role, "-".into()), |found| {
-            let role = if found.is_beyond(figure, limit) { Role::Warn } else { role };
-            (role, found.words(figure, limit, room))
-        })
+        estimate.and_then(|estimate| (figure.promised)(estimate, look.run)).map_or(
+            (role, "-".into()),
+            |found| {
+                let role = if found.is_beyond(figure, limit) { Role::Warn } else { role };
+                (role, found.words(figure, limit, room))
+            },
+        )
     };
     let estimate = look.model.live.promised();
     // A figure that the estimate of this mission cannot have, such as a tether's, has no row.
-    let has = |figure: &Figure| estimate.is_none_or(|estimate| (figure.promised)(estimate).is_some());
+    let has =
+        |figure: &Figure| estimate.is_none_or(|estimate| (figure.promised)(estimate, look.run).is_some());
     for figure in FIGURES.into_iter().filter(has) {
         let mut mine = cell(figure, estimate, (Role::Text, widths.first));
         let lanes = look.run.planning.plan.as_ref().map_or(0, |plan| plan.lanes.len());
@@ -80,7 +84,7 @@ pub(super) fn in_a_line(look: &Look, columns: usize) -> String {
     let mission = look.run.about.as_ref().map(|about| &about.mission);
     let mut figures: Vec<(bool, String)> = Vec::new();
     for figure in FIGURES {
-        let Some(found) = (figure.promised)(estimate) else { continue };
+        let Some(found) = (figure.promised)(estimate, look.run) else { continue };
         let limit = mission.and_then(figure.limit);
         let is_beyond = found.is_beyond(figure, limit);
         let over = limit
@@ -153,7 +157,7 @@ struct Figure {
     /// The text in front of the value, and the unit behind it.
     around: (&'static str, &'static str),
     decimals: usize,
-    promised: fn(&Estimate) -> Option<Found>,
+    promised: fn(&Estimate, &Run) -> Option<Found>,
     limit: fn(&MissionConfig) -> Option<f64>,
     /// Whether the figure must not be below its limit, instead of above it.
     is_least: bool,
@@ -191,10 +195,18 @@ impl Found {
         let mark = if self.is_beyond(figure, limit) { "!" } else { "" };
         let value = format!("{}{mark}", figure.said(self.value));
         let padded = text::column(&value, VALUE.max(text::width(&value) + 1));
-        let place = self.at.map(|at| format!("{padded}{} {}", figure.letter, text::place(at)));
         let noted = format!("{value}{}", self.note);
-        let lettered = self.at.map(|_| format!("{padded}{}", figure.letter));
-        text::wording([place.unwrap_or(noted), lettered.unwrap_or_else(|| value.clone()), value], room)
+        let place = self.at.map(|at| {
+            format!(
+                "{}{} {}",
+                text::column(&noted, VALUE.max(text::width(&noted) + 1)),
+                figure.letter,
+                text::place(at)
+            )
+        });
+        let lettered = self.at.filter(|_| self.note.is_empty()).map(|_| format!("{padded}{}", figure.letter));
+        let short = lettered.unwrap_or_else(|| noted.clone());
+        text::wording([place.unwrap_or(noted), short, value], room)
     }
 }
 
@@ -216,7 +228,7 @@ const fn figure(label: &'static str, letter: &'static str, unit: &'static str, d
         letter,
         around: ("", unit),
         decimals,
-        promised: |_| None,
+        promised: |_, _| None,
         limit: |_| None,
         is_least: false,
         now: |_| None,
@@ -224,44 +236,45 @@ const fn figure(label: &'static str, letter: &'static str, unit: &'static str, d
 }
 
 /// The figures in table order.
-const FIGURES: [Figure; 8] = [
+const FIGURES: [Figure; 9] = [
     Figure {
-        promised: |e| Some(Found::of(e.time_s)),
+        promised: |e, _| Some(Found::of(e.time_s)),
         limit: |m| Some(m.time_limit_s),
         now: |run| Some(left(text::clock(run.left_s()?))),
         ..figure("time", "", "clock", 0)
     },
     Figure {
-        promised: |e| Some(Found::of(e.length_m)),
+        promised: |e, _| Some(Found::of(e.length_m)),
         now: |run| {
             let plan = run.planning.plan.as_ref()?;
-            Some(left(format!("{} m", text::number(plan.rest_m(run.progress.as_ref()?.target), 1))))
+            Some(left(format!("{} m", text::number(plan.rest_m(run.progress.as_ref()?), 1))))
         },
         ..figure("path", "", " m", 1)
     },
     Figure {
-        promised: |e| Some(Found { note: " of reachable".into(), ..Found::of(e.reachable?) }),
+        promised: |e, _| Some(Found { note: " of reachable".into(), ..Found::of(e.reachable?) }),
         now: |run| Some(alike(format!("{} %", text::percent(run.progress.as_ref()?.covered_reachable)))),
         ..figure("scanned", "", "%", 1)
     },
     Figure {
-        promised: |e| Some(Found::worst(e.clearance_min?)),
+        promised: |e, _| Some(Found::worst(e.clearance_min?)),
         limit: |m| Some(m.clearance_m),
         is_least: true,
         ..figure("gap", "c", " m", 2)
     },
     Figure {
-        promised: |e| Some(Found::worst(e.tether.as_ref()?.length_max)),
+        promised: |e, _| Some(Found::worst(e.tether.as_ref()?.length_max)),
         limit: |m| Some(m.tether.as_ref()?.limits.reel_length_m),
         now: |run| Some(alike(format!("{} m", text::number(run.tether.as_ref()?.length_m, 1)))),
         ..figure("tether", "t", " m", 1)
     },
     Figure {
-        promised: |e| {
+        promised: |e, _| {
             let tether = e.tether.as_ref()?;
             let on =
                 if tether.wrapped.is_empty() { String::new() } else { format!(" on {}", tether.wrapped) };
-            Some(Found { note: on, ..Found::of(tether.wrap_max.value.to_degrees()) })
+            let at = (tether.wrap_max.value > 0.0).then_some(tether.wrap_max.at);
+            Some(Found { note: on, at, ..Found::of(tether.wrap_max.value.to_degrees()) })
         },
         limit: |m| Some(m.tether.as_ref()?.limits.wrap_max_rad.to_degrees()),
         now: |run| {
@@ -272,14 +285,21 @@ const FIGURES: [Figure; 8] = [
     },
     Figure {
         around: ("±", " m"),
-        promised: |e| Some(Found::worst(e.accuracy_worst?)),
+        promised: |e, _| Some(Found::worst(e.accuracy_worst?)),
         limit: |m| Some(m.position_limit_m),
         now: |run| Some(alike(format!("±{} m", text::number(run.position.error_m()?, 2)))),
         ..figure("AE error", "e", " m", 2)
     },
     Figure {
-        promised: |e| Some(Found { note: " of path".into(), ..Found::of(e.without_fix_m) }),
+        promised: |e, _| Some(Found { note: " of path".into(), ..Found::of(e.without_fix_m) }),
         ..figure("no fix on", "", " m", 1)
+    },
+    Figure {
+        promised: |_, run| {
+            let whole = run.coverage.as_ref().filter(|_| run.covers())?.whole();
+            Some(Found { note: " of the floor".into(), ..Found::of(whole.unreachable + whole.margin) })
+        },
+        ..figure("unreachable", "", "%", 1)
     },
 ];
 

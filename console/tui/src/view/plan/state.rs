@@ -3,7 +3,7 @@
 use crate::model::{Cause, Pane};
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
-use crate::view::text;
+use crate::view::{confirm, text};
 use mission::Phase;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -22,6 +22,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         return fill(frame, area, block, vec![line]);
     }
     let mut rows = wrapped(progress(look), columns);
+    rows.extend(resumption(look).into_iter().flat_map(|words| wrapped((Role::Text, words), columns)));
     rows.extend(certificate(look, columns).map(one));
     rows.push(one((Role::Text, text::wording(planner(look), columns))));
     let ghost = ghost(look, columns);
@@ -91,6 +92,12 @@ fn ready(look: &Look, is_complete: bool) -> (Role, String) {
         None => format!("{state} PARTIAL: the plan achieves only part of the task."),
     };
     (role, words)
+}
+
+/// Where the plan of a re-scan begins to scan, and what it scans a second time.
+fn resumption(look: &Look) -> Option<String> {
+    let resumption = look.model.live.left_out()?.resumption?;
+    Some(format!("R {}", text::capitalized(&confirm::resumes(&resumption))))
 }
 
 fn certificate(look: &Look, columns: usize) -> Option<(Role, String)> {

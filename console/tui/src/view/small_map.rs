@@ -2,26 +2,22 @@
 //! places.
 
 use super::look::Look;
-use super::map::{Filled, Pattern, Stroke, Window, ellipse};
-use crate::caps::Glyphs;
+use super::map::{Pen, TRAIL, Window};
 use crate::model::{Raster, Run};
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
-use ratatui::symbols::Marker;
 use ratatui::text::Line;
 use ratatui::widgets::canvas::{Canvas, Context};
-use world::{Boundary, FloorClass, Point, World, ZoneKind};
+use world::{FloorClass, Point, World};
 
 /// Margin around the tank, as a factor of its size.
 const MARGIN: f64 = 1.06;
-/// The number of segments in a round wall.
-const WALL_PIECES: u32 = 128;
 /// Smallest area in which a tank is recognisable, columns and rows.
 const LEAST: (u16, u16) = (16, 6);
 
 /// The contents of a small map.
-pub(super) struct Sketch<'a> {
+pub(super) struct SmallMap<'a> {
     pub world: &'a World,
     /// The scanned floor, and whether unscanned floor counts as missed.
     pub scanned: Option<(&'a Raster, bool)>,
@@ -30,7 +26,7 @@ pub(super) struct Sketch<'a> {
     pub marks: Vec<(Point, Role, String)>,
 }
 
-impl<'a> Sketch<'a> {
+impl<'a> SmallMap<'a> {
     /// The tank alone.
     pub(super) fn of(world: &'a World) -> Self {
         Self { world, scanned: None, trail: &[], marks: Vec::new() }
@@ -52,16 +48,18 @@ impl<'a> Sketch<'a> {
 }
 
 /// Draws a small map; draws nothing if the area is too small for one.
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, sketch: &Sketch) {
-    let Some(window) = window(sketch.world, area) else { return };
-    let marker = if look.caps.glyphs == Glyphs::Octant { Marker::Octant } else { Marker::Braille };
-    let canvas = Canvas::default().marker(marker).x_bounds(window.x).y_bounds(window.y).paint(|ctx| {
-        lines(look, ctx, window, sketch);
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, map: &SmallMap) {
+    let Some(window) = window(map.world, area) else { return };
+    let pen = Pen { look: *look, window };
+    let canvas = Canvas::default().marker(pen.marker()).x_bounds(window.x).y_bounds(window.y).paint(|ctx| {
+        pen.no_go(ctx, map.world);
+        pen.draw(ctx, map.trail, TRAIL);
+        pen.solids(ctx, map.world);
         ctx.layer();
-        signs(look, ctx, sketch);
+        signs(look, ctx, map);
     });
     frame.render_widget(canvas, area);
-    if let Some((raster, has_ended)) = sketch.scanned {
+    if let Some((raster, has_ended)) = map.scanned {
         shade(look, frame, area, (window, raster, has_ended));
     }
 }
@@ -76,43 +74,15 @@ fn window(world: &World, area: Rect) -> Option<Window> {
         .then(|| Window::new(nalgebra::center(&low, &high), column_m, (area.width, area.height)))
 }
 
-fn lines(look: &Look, ctx: &mut Context<'_>, window: Window, sketch: &Sketch) {
-    // Without braille, each kind of line has its own character.
-    let has_dots = look.caps.glyphs.has_dots();
-    let take_up = |ctx: &mut Context<'_>, plain: char| {
-        if !has_dots {
-            ctx.marker(Marker::Custom(plain));
-        }
-    };
-    let color = |role| look.theme.color(role);
-    take_up(ctx, 'x');
-    for zone in sketch.world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo) {
-        ctx.draw(&Filled { shape: &zone.shape, window, hatched: true, color: color(Role::NoGo) });
-    }
-    take_up(ctx, '.');
-    ctx.draw(&Stroke { points: sketch.trail, window, pattern: Pattern::Solid, color: color(Role::Trail) });
-    take_up(ctx, 'o');
-    let wall = match &sketch.world.boundary {
-        Boundary::Circle { radius_m } => ellipse(Point::origin(), (*radius_m, *radius_m), 0.0, WALL_PIECES),
-        Boundary::Polygon { vertices } => vertices.iter().chain(vertices.first()).copied().collect(),
-    };
-    ctx.draw(&Stroke { points: &wall, window, pattern: Pattern::Solid, color: color(Role::Wall) });
-    take_up(ctx, '#');
-    for obstacle in &sketch.world.obstacles {
-        let role = if obstacle.known { Role::Obstacle } else { Role::Found };
-        ctx.draw(&Filled { shape: &obstacle.shape, window, hatched: false, color: color(role) });
-    }
-}
-
-fn signs(look: &Look, ctx: &mut Context<'_>, sketch: &Sketch) {
+fn signs(look: &Look, ctx: &mut Context<'_>, map: &SmallMap) {
     let mut print = |at: Point, role: Role, text: &str| {
         ctx.print(at.x, at.y, Line::styled(text.to_owned(), look.theme.style(role)));
     };
-    for station in &sketch.world.stations {
+    for station in &map.world.stations {
         let name = if station.name.chars().count() <= 2 { &station.name } else { "S" };
         print(station.position, Role::Station, name);
     }
-    for (at, role, text) in &sketch.marks {
+    for (at, role, text) in &map.marks {
         print(*at, *role, text);
     }
 }

@@ -33,14 +33,14 @@ impl Form {
 
 /// A no-go zone being drawn. The map cursor is its next point.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Sketch {
+pub struct ZoneDraft {
     /// The form of the zone.
     pub form: Form,
     /// The points that are set, metres, tank frame: a corner or the centre, and for a polygon every corner so far.
     pub points: Vec<Point>,
 }
 
-impl Sketch {
+impl ZoneDraft {
     /// A zone with its first point.
     pub fn begun(at: Point) -> Self {
         Self { form: Form::default(), points: vec![at] }
@@ -82,18 +82,18 @@ mod tests {
     #[test]
     fn the_cursor_completes_each_form() {
         let cursor = Point::new(3.0, 2.0);
-        let mut sketch = Sketch::begun(Point::new(1.0, 1.0));
-        assert_eq!(sketch.corners(cursor).len(), 4);
-        assert_eq!(sketch.corners(Point::new(3.0, 1.0)).len(), 2, "a box without area");
-        sketch.reshape();
-        let circle = sketch.corners(cursor);
-        let far = circle.iter().all(|corner| (corner - sketch.points[0]).norm() >= 5.0_f64.sqrt() - 1e-9);
+        let mut draft = ZoneDraft::begun(Point::new(1.0, 1.0));
+        assert_eq!(draft.corners(cursor).len(), 4);
+        assert_eq!(draft.corners(Point::new(3.0, 1.0)).len(), 2, "a box without area");
+        draft.reshape();
+        let circle = draft.corners(cursor);
+        let far = circle.iter().all(|corner| (corner - draft.points[0]).norm() >= 5.0_f64.sqrt() - 1e-9);
         assert!(circle.len() > 8 && far, "the circle goes through the cursor");
-        sketch.reshape();
-        sketch.points.push(Point::new(3.0, 1.0));
-        assert_eq!(sketch.corners(cursor), [Point::new(1.0, 1.0), Point::new(3.0, 1.0), cursor]);
-        assert_eq!(sketch.corners(Point::new(3.0, 1.0)).len(), 2, "the cursor is on the last corner");
-        sketch.reshape();
-        assert_eq!((sketch.form, sketch.points.len()), (Form::Box, 1));
+        draft.reshape();
+        draft.points.push(Point::new(3.0, 1.0));
+        assert_eq!(draft.corners(cursor), [Point::new(1.0, 1.0), Point::new(3.0, 1.0), cursor]);
+        assert_eq!(draft.corners(Point::new(3.0, 1.0)).len(), 2, "the cursor is on the last corner");
+        draft.reshape();
+        assert_eq!((draft.form, draft.points.len()), (Form::Box, 1));
     }
 }

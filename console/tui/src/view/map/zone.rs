@@ -1,0 +1,38 @@
+//! The no-go zone that the operator is drawing or is asked about, and the part of the plan that it blocks.
+
+use super::ink;
+use super::pattern::Pattern;
+use super::pen::Pen;
+use crate::theme::Role;
+use crate::update::zones;
+use ratatui::widgets::canvas::Context;
+use world::{Point, Shape, polyline, shape::ring_area_m2};
+
+/// Distance between the points at which the plan is compared with the zone, metres.
+const PIECE_M: f64 = 0.1;
+
+impl Pen<'_> {
+    /// Draws the outline; two points are only a line.
+    pub(super) fn zone(&self, ctx: &mut Context<'_>) {
+        let Some(corners) = zones::drawn(self.look.model) else { return };
+        self.take_up(ctx, 'x');
+        let ring: Vec<Point> = corners.iter().chain(corners.first()).copied().collect();
+        self.stroke(ctx, &ring, Role::NoGo, Pattern::Solid);
+    }
+
+    /// Draws the part of the plan ahead that the zone in the question blocks.
+    pub(super) fn blocked(&self, ctx: &mut Context<'_>) {
+        let Some(mut vertices) = zones::asked(self.look.model) else { return };
+        let Some(course) = super::course::course(&self.look) else { return };
+        let Some(about) = &self.look.run.about else { return };
+        if ring_area_m2(&vertices) < 0.0 {
+            vertices.reverse();
+        }
+        let (shape, room_m) = (Shape::Polygon { vertices }, about.mission.room_m());
+        let ahead = polyline::resampled(&course.track.path[course.leg.0..=course.ahead.1], PIECE_M);
+        let is_blocked = |at: &Point| shape.distance_m(*at) < room_m;
+        for part in ahead.split(|at| !is_blocked(at)).filter(|part| part.len() > 1) {
+            self.draw(ctx, part, ink::BLOCKED);
+        }
+    }
+}
