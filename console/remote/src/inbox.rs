@@ -12,7 +12,7 @@ use vehicle::{
         message::{Commander, Hello, Mode, Odometry, Outline, Readings, Scan, State},
     },
 };
-use world::{ObstacleId, RangeSet, Sighting, StationId};
+use world::{ObstacleId, RangeSet, Sighting, StationId, scan::RangesMm};
 
 /// Longest time until the first readings of a vehicle, seconds.
 const FIRST_WITHIN_S: f64 = 2.0;
@@ -296,12 +296,13 @@ fn add(sum: &mut world::Odometry, moved: Odometry) {
 }
 
 fn scanned(scan: &Scan) -> world::Scan {
+    let ranges_mm = scan.ranges_m.iter().map(|range_m| world::Scan::stored(*range_m)).collect();
     world::Scan {
         first_rad: scan.first_rad,
         step_rad: scan.step_rad,
         sensor_m: scan.sensor_m,
         since: world::Odometry::default(),
-        ranges_mm: scan.ranges_m.iter().map(|range_m| world::Scan::stored(*range_m)).collect(),
+        ranges_mm: RangesMm(ranges_mm),
     }
 }
 

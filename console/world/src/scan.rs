@@ -3,16 +3,17 @@
 use crate::Odometry;
 use geometry::{Point, Vector};
 use nalgebra::Rotation2;
-use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+use serde::{Deserialize, Serialize};
 
 /// The distance of a ray without an echo, and of one that is longer than 65.534 m.
 pub const NO_ECHO: u16 = u16::MAX;
 
-/// Distances along rays from a sensor on the robot. In text, the distances are a string of about one character a ray.
+/// Distances along rays from a sensor on the robot.
 ///
 /// ```
-/// use world::{NO_ECHO, Scan};
-/// let scan = Scan { first_rad: 0.0, step_rad: 0.5, ranges_mm: vec![2000, NO_ECHO], ..Scan::default() };
+/// use world::{NO_ECHO, Scan, scan::RangesMm};
+/// let ranges_mm = RangesMm(vec![2000, NO_ECHO]);
+/// let scan = Scan { first_rad: 0.0, step_rad: 0.5, ranges_mm, ..Scan::default() };
 /// assert_eq!(scan.points().map(|at| (at.x, at.y)).collect::<Vec<_>>(), [(2.0, 0.0)]);
 /// ```
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -27,9 +28,27 @@ pub struct Scan {
     /// Motion of the robot from the scan to the end of the readings that it is part of.
     #[serde(default, skip_serializing_if = "is_still")]
     pub since: Odometry,
-    /// Distances, millimetres; [`NO_ECHO`] where no echo came back.
-    #[serde(serialize_with = "packed", deserialize_with = "unpacked")]
-    pub ranges_mm: Vec<u16>,
+    /// Distances, one per ray.
+    pub ranges_mm: RangesMm,
+}
+
+/// Distances in millimetres, each [`NO_ECHO`] where no echo came back; in text, a string of about a character a ray.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
+pub struct RangesMm(pub Vec<u16>);
+
+impl From<RangesMm> for String {
+    fn from(ranges: RangesMm) -> Self {
+        text(&ranges.0)
+    }
+}
+
+impl TryFrom<String> for RangesMm {
+    type Error = &'static str;
+
+    fn try_from(text: String) -> Result<Self, Self::Error> {
+        ranges(&text).map(Self).ok_or("the distances of a scan are damaged")
+    }
 }
 
 fn is_zero(place: &[f64; 2]) -> bool {
@@ -52,7 +71,7 @@ impl Scan {
     /// The points that were hit, in the robot frame at the end of the readings.
     pub fn points(&self) -> impl Iterator<Item = Point> + '_ {
         let sensor = Vector::from(self.sensor_m);
-        (0_u32..).zip(&self.ranges_mm).filter(|(_, mm)| **mm != NO_ECHO).map(move |(n, mm)| {
+        (0_u32..).zip(&self.ranges_mm.0).filter(|(_, mm)| **mm != NO_ECHO).map(move |(n, mm)| {
             let (sin, cos) = (self.first_rad + f64::from(n) * self.step_rad).sin_cos();
             let range_m = f64::from(*mm) / 1000.0;
             carried(Point::from(sensor + Vector::new(cos, sin) * range_m), &self.since)
@@ -145,15 +164,6 @@ fn ranges(text: &str) -> Option<Vec<u16>> {
     Some(ranges)
 }
 
-fn packed<S: Serializer>(ranges_mm: &[u16], to: S) -> Result<S::Ok, S::Error> {
-    to.serialize_str(&text(ranges_mm))
-}
-
-fn unpacked<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<u16>, D::Error> {
-    let text = String::deserialize(from)?;
-    ranges(&text).ok_or_else(|| D::Error::custom("the distances of a scan are damaged"))
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
@@ -176,7 +186,7 @@ mod tests {
             first_rad in -7.0..7.0_f64, step_rad in 0.001..0.1_f64, turn_rad in -0.1..0.1_f64,
         ) {
             let since = Odometry { turn_rad, ..Odometry::default() };
-            let scan = Scan { first_rad, step_rad, since, ranges_mm, ..Scan::default() };
+            let scan = Scan { first_rad, step_rad, since, ranges_mm: RangesMm(ranges_mm), ..Scan::default() };
             let text = serde_json::to_string(&scan).unwrap();
             prop_assert_eq!(serde_json::from_str::<Scan>(&text).unwrap(), scan);
         }
@@ -205,7 +215,7 @@ mod tests {
             step_rad: 0.1,
             sensor_m: [0.2, 0.0],
             since,
-            ranges_mm: vec![1000, NO_ECHO],
+            ranges_mm: RangesMm(vec![1000, NO_ECHO]),
         };
         let points: Vec<Point> = scan.points().collect();
         let [point] = points[..] else { panic!("{points:?}") };

@@ -399,7 +399,11 @@ impl Flight {
             };
             world::Scan::stored(discs.iter().filter_map(hit).min_by(f64::total_cmp))
         };
-        Some(world::Scan { step_rad, ranges_mm: (0..360).map(ray).collect(), ..world::Scan::default() })
+        Some(world::Scan {
+            step_rad,
+            ranges_mm: world::scan::RangesMm((0..360).map(ray).collect()),
+            ..world::Scan::default()
+        })
     }
 
     /// Answers what is due in this tick, and hands out what is asked.

@@ -4,14 +4,12 @@
 //! distance, in directions between its heading now and its heading when it stands. A scanned point that is nearer to this
 //! sector than the hull's radius may be touched. Points move with the robot's odometry from scan to scan.
 
-use super::{Here, Momentum, ROOM_SHARE, TOUCH_M};
-use geometry::{Drive, Motion, Point, Vector};
+use super::{HALVINGS, Here, Momentum, ROOM_SHARE, TOUCH_M};
+use geometry::{Drive, Motion, Point};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Clearance to keep from scanned points, metres: more than the noise of usual scanners.
 const SCAN_ROOM_M: f64 = 0.03;
-/// Number of bisection steps in the search for the highest safe speed.
-const HALVINGS: u32 = 6;
 
 /// A scanned point in the robot frame.
 #[derive(Debug, Clone, Copy)]
@@ -195,7 +193,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
 
     use super::*;
-    use geometry::{Limits, Pose};
+    use geometry::{Limits, Pose, Vector};
     use proptest::prelude::*;
     use world::{Odometry, scan::carried};
 

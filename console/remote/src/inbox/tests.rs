@@ -72,6 +72,26 @@ fn a_pose_makes_up_for_lost_messages() {
 }
 
 #[test]
+fn a_scan_is_carried_to_the_end_of_its_tick() {
+    let mut inbox = inbox();
+    let scan = |range_m: f64| Scan {
+        first_rad: 0.0,
+        step_rad: 0.1,
+        range_max_m: 80.0,
+        sensor_m: [0.1, 0.0],
+        ranges_m: vec![Some(range_m), None, Some(70.0)],
+    };
+    say(&mut inbox, Readings { scan: Some(scan(9.0)), ..moved(1, 0.5, 0.0) }, 0.1);
+    say(&mut inbox, Readings { scan: Some(scan(2.0)), ..moved(2, 0.5, 0.0) }, 0.15);
+    say(&mut inbox, moved(3, 0.25, 0.0), 0.2);
+    say(&mut inbox, moved(4, 0.25, 0.0), 0.2);
+    let points: Vec<_> = inbox.sense(0.2).readings.scan.iter().flat_map(world::Scan::points).collect();
+    let [point] = points[..] else { panic!("{points:?}") };
+    assert!((point - world::Point::new(1.6, 0.0)).norm() < 1e-12, "{point}");
+    assert_eq!(inbox.sense(0.3).readings.scan, None);
+}
+
+#[test]
 fn readings_keep_the_last_cycle_the_contact_and_the_tether() {
     let mut inbox = inbox();
     let ranges = |station: &str| StationRanges { station: station.into(), ranges_m: vec![4.2] };

@@ -141,7 +141,7 @@ pub(crate) fn side(direction_rad: f64) -> &'static str {
 impl Mission {
     /// Holds a moving robot that the guard has stopped; only an order ends that hold. Returns whether it has.
     pub(in crate::engine) fn hold_by_guard(&mut self) -> bool {
-        if !self.known.phase.may_move() || !self.known.is_running() {
+        if !self.known.is_running() {
             return false;
         }
         let Some(message) = self.known.guard_stop() else { return false };
