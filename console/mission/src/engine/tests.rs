@@ -141,7 +141,7 @@ impl Straight {
 
     fn reconfigure(&self) -> Result<(), Fault> {
         let cause = Cause::Planner(api::Code::Unsupported);
-        if self.has_stiff_gain { Err(self.fault(During::Configure, cause)) } else { Ok(()) }
+        if self.has_stiff_gain { Err(self.fault(During::Reconfigure, cause)) } else { Ok(()) }
     }
 
     fn plan(&mut self, request: &PlanAsk) -> Plan {
