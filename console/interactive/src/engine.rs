@@ -6,6 +6,8 @@
 
 mod estimating;
 mod keeping;
+mod newest;
+mod querying;
 mod waiting;
 
 use super::{
@@ -22,6 +24,7 @@ use flight::{
     remains,
 };
 use mission::{AskId, Awaits, Event, Hold, HoldReason, Order, Phase};
+use newest::Newest;
 use planner_host::{Host, PluginDirs, Progress};
 use runs::{CLOSE_TIMEOUT, Closed, RunLog};
 use scenario::Scenario;
@@ -77,6 +80,8 @@ impl Engine {
             reported,
             shown_work: None,
             has_estimated: false,
+            estimates: Newest::default(),
+            queries: Newest::default(),
             asked,
             screen,
             speed,
@@ -120,6 +125,10 @@ struct EngineThread {
     shown_work: Option<Work>,
     /// Whether an estimate for a plan was sent to the screen.
     has_estimated: bool,
+    /// The estimates of plans that are being computed.
+    estimates: Newest,
+    /// The queries that are being answered.
+    queries: Newest,
     asked: Receiver<Request>,
     screen: RunOutbox,
     speed: Speed,
@@ -201,6 +210,7 @@ impl EngineThread {
         let failing = self.drill == Some(Drill::PanicEngine) && events.iter().any(|event| event.tick > 5);
         assert!(!failing, "drill: the engine fails on purpose");
         self.send_work();
+        self.outdate_queries(&events);
         self.estimate(&events);
         let printed = std::mem::take(&mut self.printed);
         self.send(RunMsg::Events(events.into_iter().chain(printed).collect()));
