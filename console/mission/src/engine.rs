@@ -143,7 +143,7 @@ impl Mission {
             phase: &self.known.phase,
             position: self.known.position_trust(),
             planner: self.driving.worker.seen(),
-            shadow: self.shadow.as_ref().map(|shadow| shadow.tally),
+            shadow: self.shadow.as_ref().map(Shadow::standing),
             offer: self.offer_stage(),
             readiness: self.driving.readiness(&self.known),
             trouble: self.known.trouble.as_deref(),

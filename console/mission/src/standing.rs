@@ -47,6 +47,15 @@ pub enum Readiness<'a> {
     Plan(PlanId),
 }
 
+/// What decides whether the planner in shadow can take over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct InShadow {
+    /// Its record.
+    pub tally: ShadowTally,
+    /// Whether it has made a plan.
+    pub has_planned: bool,
+}
+
 /// Everything that decides whether an order is accepted. Both the mission and the screen can compute it.
 #[derive(Debug, Clone, Copy)]
 pub struct Standing<'a> {
@@ -56,8 +65,8 @@ pub struct Standing<'a> {
     pub position: PositionTrust,
     /// The active planner, as last opened.
     pub planner: Option<&'a PlannerInfo>,
-    /// The record of the planner in shadow; `None` without one.
-    pub shadow: Option<ShadowTally>,
+    /// The planner in shadow; `None` without one.
+    pub shadow: Option<InShadow>,
     /// The better plan that is offered or accepted; `None` without one.
     pub offer: Option<OfferStage>,
     /// The plan with which a start would begin the mission.
@@ -132,6 +141,8 @@ pub enum Refusal {
     OfferAccepted,
     /// No planner runs in shadow.
     NoShadow,
+    /// The planner in shadow has not made a plan yet.
+    ShadowHasNoPlan,
     /// The planner in shadow has not answered enough steps in a row yet.
     ShadowNotReady {
         /// Number of steps that it has answered in a row.
@@ -183,6 +194,7 @@ impl fmt::Display for Refusal {
                 f.write_str("the better plan has been accepted; the robot changes over where that plan begins")
             }
             Self::NoShadow => f.write_str("no planner runs in shadow"),
+            Self::ShadowHasNoPlan => f.write_str("the planner in shadow has not made a plan yet"),
             Self::ShadowNotReady { in_row } => write!(
                 f,
                 "the planner in shadow has answered {in_row} steps in a row; taking over requires {READY_AFTER}"
@@ -294,12 +306,20 @@ impl Standing<'_> {
         }
     }
 
-    /// The promoted planner's plan is certified from the robot's position.
+    /// The promoted planner's plan is certified from the robot's position. While the robot is held, no steps are asked,
+    /// and a planner that takes over moves nothing: its plan is enough, as for any other change of planner.
     fn can_promote(&self) -> Result<(), Refusal> {
         match self.shadow {
             None => Err(Refusal::NoShadow),
-            Some(ShadowTally { in_row, .. }) if in_row < READY_AFTER => {
-                Err(Refusal::ShadowNotReady { in_row })
+            Some(InShadow { has_planned, .. }) if matches!(self.phase, Phase::Held(_)) => {
+                if has_planned {
+                    self.can_move()
+                } else {
+                    Err(Refusal::ShadowHasNoPlan)
+                }
+            }
+            Some(InShadow { tally, .. }) if !tally.is_ready() => {
+                Err(Refusal::ShadowNotReady { in_row: tally.in_row })
             }
             Some(_) => self.can_move(),
         }
