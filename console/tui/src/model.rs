@@ -102,6 +102,15 @@ impl Model {
         model
     }
 
+    /// Whether the mission still owes the figures of the open question, without which the question cannot be answered.
+    pub fn awaits_figures(&self) -> bool {
+        match &self.ui.overlay {
+            Overlay::Confirm(ui::Ask::DriveBack) | Overlay::Finish { .. } => self.live.way_back.is_none(),
+            Overlay::Confirm(ui::Ask::DrawZone(_)) => self.live.zone_cost.is_none(),
+            _ => false,
+        }
+    }
+
     /// Creates a console that only watches the run in a folder.
     pub fn looking_on(id: RunId, folder: String) -> Self {
         let mut model = Self::opened(id, Source::File(folder), Speed::default());

@@ -96,7 +96,9 @@ fn return_asks_with_length_and_clearance() {
     screen.type_text(":return");
     assert_eq!(screen.press([Key::Enter]), [Effect::Ask(Query::WayBack)]);
     assert_eq!(screen.model.ui.overlay, Overlay::Confirm(Ask::DriveBack));
+    assert!(screen.model.awaits_figures());
     screen.hear(RunMsg::WayBack(Ok(way())));
+    assert!(!screen.model.awaits_figures());
     let asked = shown(&screen, (80, 24)).split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(asked.contains("To the anchor, 13.1 m, clearance 0.12 m."), "{asked}");
     assert_eq!(screen.press([Key::Enter]), [Effect::Order(Order::DriveBack)]);
