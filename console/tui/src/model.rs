@@ -29,6 +29,7 @@ pub mod sketch;
 pub mod tether;
 pub mod trail;
 pub mod ui;
+mod way_left;
 pub mod what_if;
 
 pub use crate::screens::Screen;
