@@ -154,18 +154,27 @@ impl EngineThread {
         let mut pace = Pace::from(Instant::now());
         loop {
             pace.rest(self.rests());
-            let (orders, close) = self.wait_for(&pace);
+            let (mut orders, close) = self.wait_for(&pace);
             while pace.makes_up(Instant::now()) {
                 self.tick(Vec::new());
             }
             if let Some(hurry) = close {
                 return self.close(orders, hurry);
             }
+            orders.extend(self.planner_check());
             if !orders.is_empty() || self.is_under_way() {
                 pace.tick_flown(Instant::now(), self.flight.tick_length(), self.speed, self.waits());
                 self.tick(orders);
             }
         }
+    }
+
+    /// The order to check the planner of a held robot, whose process has ended. A planner that drives is asked in every
+    /// tick anyway.
+    fn planner_check(&mut self) -> Option<Order> {
+        let worker =
+            self.flight.mission().idle_worker().filter(|_| matches!(self.flight.phase(), Phase::Held(_)))?;
+        self.host.has_ended_idle(worker).then_some(Order::CheckPlanner)
     }
 
     /// Whether ticks pass without orders: the mission is under way, a planner is being prepared, or a real vehicle has not

@@ -34,6 +34,7 @@ mod workers;
 mod zones;
 
 use crate::{
+    ask::WorkerId,
     config::MissionConfig,
     event::{Event, EventKind, TetherAlarm},
     order::Order,
@@ -135,6 +136,11 @@ impl Mission {
     /// The conversion that a command would now undergo on its way to the robot.
     pub fn sending(&self) -> Sending {
         self.known.sending()
+    }
+
+    /// The worker of the active planner while it has nothing to do; the console watches its process.
+    pub fn idle_worker(&self) -> Option<WorkerId> {
+        self.driving.worker.idle()
     }
 
     /// Everything that decides whether an order is accepted now.

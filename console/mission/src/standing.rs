@@ -225,7 +225,7 @@ impl Standing<'_> {
             )
             | (Order::Plan | Order::NoteChecks(_), Phase::Waiting)
             | (Order::Hold | Order::Inject(_), Phase::Running(_) | Phase::Held(_))
-            | (Order::Shadow(_) | Order::NoteOutlooks(_), Phase::Held(_))
+            | (Order::Shadow(_) | Order::NoteOutlooks(_) | Order::CheckPlanner, Phase::Held(_))
             | (Order::ChoosePlanner(_) | Order::SetParameter { .. }, Phase::Waiting | Phase::Held(_)) => {
                 Ok(())
             }
@@ -246,6 +246,7 @@ impl Standing<'_> {
                 | Order::StepTo(_)
                 | Order::DriveBack
                 | Order::NoteOutlooks(_)
+                | Order::CheckPlanner
                 | Order::Inject(_)
                 | Order::Shadow(_)
                 | Order::Promote
@@ -257,7 +258,9 @@ impl Standing<'_> {
             | (Order::FlyUncertified, Phase::Held(Hold { by: HoldReason::PlanRefused { .. }, .. })) => {
                 self.can_move()
             }
-            (Order::Resume | Order::NoteOutlooks(_), Phase::Running(_)) => Err(Refusal::AlreadyMoving),
+            (Order::Resume | Order::NoteOutlooks(_) | Order::CheckPlanner, Phase::Running(_)) => {
+                Err(Refusal::AlreadyMoving)
+            }
             (Order::Step | Order::StepTo(_), Phase::Running(_)) => Err(Refusal::StepNeedsHold),
             (Order::DriveBack, Phase::Running(Gait::Back)) => Err(Refusal::DrivingBack),
             (Order::DriveBack, Phase::Running(_)) => Err(Refusal::BackNeedsHold),

@@ -68,6 +68,8 @@ struct Straight {
     wasteful_plans: usize,
     /// From this plan on it leaves out the last lane.
     scans_less_from_plan: Option<usize>,
+    /// Its process has ended while it had nothing to do.
+    has_died: bool,
     /// It has a live parameter `gain` that it cannot change under way.
     has_stiff_gain: bool,
     /// It ends with a lap along the wall.
@@ -104,6 +106,7 @@ impl Straight {
                 Err(self.fault(During::Step, Cause::Died))
             }
             What::Step(sensed) => self.step(&sensed).map(Given::Command),
+            What::Snapshot if self.has_died => Err(self.fault(During::Step, Cause::Died)),
             What::Snapshot => Ok(Given::State { bytes: 1 }),
             What::Close => return None,
         };
@@ -303,7 +306,7 @@ struct Flight {
     delay: Delay,
     /// Asks without an answer, with the tick in which they get one.
     open: Vec<(u64, Ask)>,
-    closed: Vec<crate::WorkerId>,
+    closed: Vec<WorkerId>,
     /// Why the vehicle cannot be driven.
     trouble: Option<&'static str>,
     /// What entered each tick.

@@ -35,6 +35,7 @@ fn orders() -> Vec<Order> {
         Order::DriveBack,
         Order::FlyUncertified,
         Order::Abort,
+        Order::CheckPlanner,
         Order::ChoosePlanner(choice.clone()),
         Order::Shadow(choice),
         Order::Promote,

@@ -17,6 +17,8 @@ pub(crate) enum Phase {
     Plan,
     /// Saving or restoring private state.
     State,
+    /// Nothing: the planner waits for a request.
+    Idle,
     /// A step with this tick number.
     Step(u64),
 }
@@ -28,7 +30,7 @@ impl Phase {
             Self::Configure => During::Configure,
             Self::Reconfigure => During::Reconfigure,
             Self::Plan => During::Plan,
-            Self::State | Self::Step(_) => During::Step,
+            Self::State | Self::Idle | Self::Step(_) => During::Step,
         }
     }
 }
@@ -41,6 +43,7 @@ impl fmt::Display for Phase {
             Self::Reconfigure => f.write_str("the change of its parameters"),
             Self::Plan => f.write_str("plan"),
             Self::State => f.write_str("saving its state"),
+            Self::Idle => f.write_str("a pause between two requests"),
             Self::Step(tick) => write!(f, "step {tick}"),
         }
     }

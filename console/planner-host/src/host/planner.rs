@@ -187,6 +187,17 @@ impl Planner {
         self.ask(id, Doing::Step(sensed.tick), kind::STEP, config.step_deadline, write)
     }
 
+    /// Whether the process has ended although the planner was asked for nothing.
+    pub(super) fn has_ended_idle(&mut self) -> bool {
+        self.worker.as_mut().is_some_and(Worker::has_ended_idle)
+    }
+
+    /// Checks that the process has not ended since the last request.
+    pub(super) fn check_alive(&mut self) -> Result<(), Fault> {
+        let end = self.worker.as_mut().and_then(Worker::take_idle_end);
+        end.map_or(Ok(()), |failure| Err(self.fault(failure, Phase::Idle)))
+    }
+
     /// Whether the planner can save its state.
     pub(super) fn saves_state(&self) -> bool {
         self.ready.as_ref().is_some_and(|ready| ready.loaded.info.snapshots)
