@@ -101,22 +101,29 @@ fn a_planner_is_checked_and_flown_beside_others() {
 }
 
 #[test]
-fn a_planner_that_uses_a_clock_or_crashes_fails_its_checks() {
+fn a_planner_that_breaks_a_rule_fails_its_checks() {
     let bench = Bench::new();
     let plugin = built(&bench, "c");
     let source = bench.path().join("my-own/my_own.c");
     let good = std::fs::read_to_string(&source).unwrap();
-    let with = |by: &str| {
-        let step = "const direct *self = instance;";
-        std::fs::write(&source, good.replacen(&format!("  {step}"), &format!("  {step}\n  {by}"), 1))
-            .unwrap();
+    let checked = |what: &str, by: &str| {
+        std::fs::write(&source, good.replacen(what, by, 1)).unwrap();
         let plugin = rebuilt(&plugin);
         bench.tankops(&["check", plugin.to_str().unwrap(), "--fly", "1"])
+    };
+    let with = |by: &str| {
+        let step = "  const direct *self = instance;";
+        checked(step, &format!("{step}\n  {by}"))
     };
     let crashes = with("if (in->tick == 7) abort();");
     assert!(
         crashes.code == Some(1) && crashes.out.contains("FAIL  gives valid answers in every tank"),
         "{crashes:?}"
+    );
+    let stiff = checked("step, reconfigure, NULL", "step, NULL, NULL");
+    assert!(
+        stiff.code == Some(1) && stiff.out.contains("FAIL  accepts changes of its live parameters"),
+        "{stiff:?}"
     );
     let clock = "static double noise; noise += (double)(size_t)in / 1e18; host->scalar(host->ctx, (tp_str)TP_STR(\"n\"), \
                  (double)(size_t)&noise, (tp_str)TP_STR(\"\"));";

@@ -196,3 +196,15 @@ fn completions_and_manual_pages_are_printed() {
     assert!(page.code == Some(0) && page.out.contains(".TH tankops-console 1"), "{page:?}");
     assert_eq!(bench.tankops(&["man", "worker"]).code, Some(2));
 }
+
+#[test]
+fn a_script_waits_for_the_way_back_before_it_answers() {
+    let bench = Bench::new();
+    let ended = scripted(
+        &bench,
+        "start\nkey enter\nwait until phase running\nhold\nreturn\nkey enter\nspeed max\n\
+         wait until phase aborted within 2m\n",
+    );
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    bench.prove(&bench.runs()[0]);
+}

@@ -13,6 +13,8 @@ use std::{
 };
 
 const PATIENCE: Duration = Duration::from_mins(1);
+/// After this time, a key that had no effect is pressed again.
+const AGAIN: Duration = Duration::from_secs(5);
 
 /// A shell in a pseudo terminal that notes `stty -a` before and after `tankops`.
 pub(crate) struct Session {
@@ -91,15 +93,20 @@ impl Session {
     }
 
     pub(crate) fn until(&self, what: &str, is_so: impl Fn(&Self) -> bool) {
-        let until = Instant::now() + PATIENCE;
+        let is_so = self.is_within(PATIENCE, is_so);
+        assert!(is_so, "timed out waiting for {what}; the screen shows:\n{}", self.text());
+    }
+
+    /// Waits until something is so, but no longer than this; returns whether it is.
+    fn is_within(&self, patience: Duration, is_so: impl Fn(&Self) -> bool) -> bool {
+        let until = Instant::now() + patience;
         while !is_so(self) {
-            assert!(
-                Instant::now() < until,
-                "timed out waiting for {what}; the screen shows:\n{}",
-                self.text()
-            );
+            if Instant::now() >= until {
+                return false;
+            }
             std::thread::sleep(Duration::from_millis(20));
         }
+        true
     }
 
     pub(crate) fn press(&mut self, keys: &str) {
@@ -115,8 +122,25 @@ impl Session {
     /// Answers a question that is on the screen with Enter. A question must be read before it can be answered, and
     /// Enter immediately after Enter would count as a key that is held down.
     pub(crate) fn agree(&mut self) {
-        std::thread::sleep(Duration::from_millis(400));
-        self.press("\r");
+        let text = self.text();
+        let asked = text.lines().rev().find_map(|line| Some(&line[line.find("Enter:")?..]));
+        // What follows may contain figures that change.
+        let asked = asked.and_then(|asked| asked.split("Esc").next()).expect("a question is on the screen");
+        self.agree_until("the answer", |session| !session.text().contains(asked));
+    }
+
+    /// The same, for a question that stays on the screen after the answer. A busy console may take Enter for one that was
+    /// pressed too early; Enter is then pressed again.
+    pub(crate) fn agree_until(&mut self, what: &str, is_answered: impl Fn(&Self) -> bool) {
+        let until = Instant::now() + PATIENCE;
+        while Instant::now() < until {
+            std::thread::sleep(Duration::from_millis(400));
+            self.press("\r");
+            if self.is_within(AGAIN, &is_answered) {
+                return;
+            }
+        }
+        self.until(what, is_answered);
     }
 
     /// Presses a key until the screen shows a word; on a busy machine the search for planners may still be running.
@@ -124,7 +148,7 @@ impl Session {
         let until = Instant::now() + PATIENCE;
         while !self.text().contains(word) && Instant::now() < until {
             self.press(key);
-            std::thread::sleep(Duration::from_millis(500));
+            self.is_within(AGAIN, |session| session.text().contains(word));
         }
         self.see(word);
     }
@@ -136,8 +160,12 @@ impl Session {
             if self.text().contains(&chosen) {
                 break;
             }
+            let marked = |session: &Self| -> Vec<String> {
+                session.text().lines().filter(|line| line.contains('>')).map(str::to_owned).collect()
+            };
+            let before = marked(self);
             self.press("\x1b[B");
-            std::thread::sleep(Duration::from_millis(100));
+            self.until("the next entry", |session| marked(session) != before);
         }
         self.see(&chosen);
         self.press("\r");

@@ -75,8 +75,7 @@ fn a_held_key_moves_nothing() {
         of_kind(&events, "ordered").iter().filter(|event| event["order"] == "step").count()
     };
     assert_eq!(steps(&session), 0);
-    session.agree();
-    session.until("the step", |session| steps(session) == 1);
+    session.agree_until("the step", |session| steps(session) == 1);
     session.press("\x1b");
     session.until("the closed line", |session| !session.text().contains("Step?"));
     session.press("1q");

@@ -116,7 +116,9 @@ impl Fold {
             }
             EventKind::PlannerFailed { fault, .. } => {
                 // A planner that the console refused to load or to activate was not running, so it has not failed.
-                let refused = matches!(fault.cause, Cause::Refused | Cause::Quarantined);
+                // Nor has one that continues with its old parameters.
+                let refused =
+                    matches!(fault.cause, Cause::Refused | Cause::Quarantined) || fault.refuses_change();
                 // A planner that reports that no path exists has not failed either.
                 if !fault.is_no_way() {
                     self.known.planner_faults += u64::from(!refused);

@@ -6,6 +6,7 @@ use flight::hosts;
 use mission::{
     Cause, EventKind, Order, ParamInfo, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo, What,
 };
+use planner_api::Code;
 use planner_host::{Host, HostConfig, PluginDirs};
 use scenario::Scenario;
 use serde::Serialize;
@@ -80,6 +81,7 @@ pub(crate) fn all(subject: &Subject<'_>, flown: &[Flown], first_seed: u64) -> Ve
         check("answers steps in time", in_time(flown)),
         check("repeats its mission exactly", subject.twice()),
         check("works at the limits of its parameters", subject.extremes()),
+        check("accepts changes of its live parameters", subject.changes()),
         check("stops planning when it is asked to", subject.stops()),
         check("takes over during a mission", subject.takes_over()),
     ];
@@ -155,6 +157,29 @@ impl Subject<'_> {
             let _ = (0..LOOK_FOR).try_for_each(|_| pilot.tick(&[]).map(|_| ()));
             let which = if greatest { "maximum" } else { "minimum" };
             pilot.misbehaved().map(|why| format!("with all parameters at the {which}: {why}"))
+        })
+    }
+
+    /// Sends every live parameter's extremes to a planner in use; it may refuse a value, but not every change.
+    fn changes(&self) -> Option<String> {
+        let mut player = self.player(hosts::config(&self.tank.mission));
+        let open = self.tape().into_iter().next().filter(|what| matches!(what, What::Open { .. }))?;
+        player.ask(0, open).1.ok()?;
+        self.planner.parameters.iter().filter(|info| info.live).find_map(|info| {
+            [false, true].into_iter().find_map(|greatest| {
+                let values = Parameters::from([(info.key.clone(), extreme(info, greatest))]);
+                let choice = PlannerChoice { id: self.planner.id.clone(), parameters: values };
+                let fault = player.ask(0, What::Reconfigure(choice.parameters)).1.err()?;
+                Some(match fault.cause {
+                    Cause::Planner(Code::Unsupported) => format!(
+                        "parameter `{}` is declared live, but `reconfigure` refuses every change: implement it, \
+                         or do not declare the parameter live",
+                        info.key
+                    ),
+                    Cause::Planner(_) => return None,
+                    _ => fault.message,
+                })
+            })
         })
     }
 

@@ -73,6 +73,8 @@ pub(super) enum Request {
     Look,
     /// Read the details of a past run.
     Glimpse(RunKey),
+    /// Abandon reading the details of a past run.
+    StopGlimpsing,
     /// Run a job on a past run.
     Do(Job),
     /// Write a handover page.
@@ -219,6 +221,7 @@ impl Desk {
                 Request::Look => self.look(),
                 Request::Combine(runs) => self.combine(runs),
                 Request::Glimpse(key) => self.glimpsing.ask(key),
+                Request::StopGlimpsing => self.glimpsing.stop(),
                 Request::Do(job) => jobs::begin(job, &self.tools),
                 Request::HandOver { file, page, overwrite } => {
                     handover::begin(&file, page, overwrite, &self.tools.outbox);

@@ -6,6 +6,8 @@
 
 mod estimating;
 mod keeping;
+mod newest;
+mod querying;
 mod waiting;
 
 use super::{
@@ -22,6 +24,7 @@ use flight::{
     remains,
 };
 use mission::{AskId, Awaits, Event, Hold, HoldReason, Order, Phase};
+use newest::Newest;
 use planner_host::{Host, PluginDirs, Progress};
 use runs::{CLOSE_TIMEOUT, Closed, RunLog};
 use scenario::Scenario;
@@ -77,6 +80,8 @@ impl Engine {
             reported,
             shown_work: None,
             has_estimated: false,
+            estimates: Newest::default(),
+            queries: Newest::default(),
             asked,
             screen,
             speed,
@@ -120,6 +125,10 @@ struct EngineThread {
     shown_work: Option<Work>,
     /// Whether an estimate for a plan was sent to the screen.
     has_estimated: bool,
+    /// The estimates of plans that are being computed.
+    estimates: Newest,
+    /// The queries that are being answered.
+    queries: Newest,
     asked: Receiver<Request>,
     screen: RunOutbox,
     speed: Speed,
@@ -145,18 +154,27 @@ impl EngineThread {
         let mut pace = Pace::from(Instant::now());
         loop {
             pace.rest(self.rests());
-            let (orders, close) = self.wait_for(&pace);
+            let (mut orders, close) = self.wait_for(&pace);
             while pace.makes_up(Instant::now()) {
                 self.tick(Vec::new());
             }
             if let Some(hurry) = close {
                 return self.close(orders, hurry);
             }
+            orders.extend(self.planner_check());
             if !orders.is_empty() || self.is_under_way() {
                 pace.tick_flown(Instant::now(), self.flight.tick_length(), self.speed, self.waits());
                 self.tick(orders);
             }
         }
+    }
+
+    /// The order to check the planner of a held robot, whose process has ended. A planner that drives is asked in every
+    /// tick anyway.
+    fn planner_check(&mut self) -> Option<Order> {
+        let worker =
+            self.flight.mission().idle_worker().filter(|_| matches!(self.flight.phase(), Phase::Held(_)))?;
+        self.host.has_ended_idle(worker).then_some(Order::CheckPlanner)
     }
 
     /// Whether ticks pass without orders: the mission is under way, a planner is being prepared, or a real vehicle has not
@@ -201,6 +219,7 @@ impl EngineThread {
         let failing = self.drill == Some(Drill::PanicEngine) && events.iter().any(|event| event.tick > 5);
         assert!(!failing, "drill: the engine fails on purpose");
         self.send_work();
+        self.outdate_queries(&events);
         self.estimate(&events);
         let printed = std::mem::take(&mut self.printed);
         self.send(RunMsg::Events(events.into_iter().chain(printed).collect()));

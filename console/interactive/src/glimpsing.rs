@@ -30,6 +30,27 @@ pub(super) struct Glimpsing {
 struct Wanted {
     next: Option<RunKey>,
     is_reading: bool,
+    /// Whether the run that is being read is no longer wanted.
+    is_given_up: bool,
+}
+
+impl Wanted {
+    /// Whether the run that is being read is still the one to read.
+    fn goes_on(&self) -> bool {
+        self.next.is_none() && !self.is_given_up
+    }
+
+    /// Takes the run to read next; without one, the reader ends.
+    fn take(&mut self) -> Option<RunKey> {
+        let next = self.next.take();
+        (self.is_reading, self.is_given_up) = (next.is_some(), false);
+        next
+    }
+
+    /// Gives up the run that is being read and the one to read next.
+    fn give_up(&mut self) {
+        (self.next, self.is_given_up) = (None, true);
+    }
 }
 
 impl Glimpsing {
@@ -52,21 +73,20 @@ impl Glimpsing {
         }
     }
 
+    /// Abandons reading: the processor and the disk are left to the mission.
+    pub(super) fn stop(&self) {
+        self.wanted().give_up();
+    }
+
     fn work(&self) {
-        while let Some(key) = self.next() {
+        loop {
+            let Some(key) = self.wanted().take() else { return };
             let found = runs::find(key.0.as_ref(), &self.logs).map_err(|error| error.to_string());
-            let found = found.and_then(|folder| glimpse(&folder, || self.wanted().next.is_none()));
+            let found = found.and_then(|folder| glimpse(&folder, || self.wanted().goes_on()));
             if let Some(found) = found.transpose() {
                 self.outbox.send(Msg::Glimpsed(key, found.map(Box::new)));
             }
         }
-    }
-
-    fn next(&self) -> Option<RunKey> {
-        let mut wanted = self.wanted();
-        let next = wanted.next.take();
-        wanted.is_reading = next.is_some();
-        next
     }
 
     fn wanted(&self) -> MutexGuard<'_, Wanted> {
@@ -94,5 +114,25 @@ fn summary(folder: &Path) -> Option<Box<Summary>> {
     match standing(folder) {
         Standing::Ended(summary) | Standing::NotRecorded(summary, _) => Some(summary),
         Standing::Running | Standing::JournalOnly { .. } => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_run_is_given_up_for_another_one_or_for_the_mission() {
+        let key = |name: &str| Some((name.to_owned(), String::new()));
+        let mut wanted = Wanted { next: key("first"), ..Wanted::default() };
+        assert!(wanted.take() == key("first") && wanted.goes_on());
+        wanted.next = key("second");
+        assert!(!wanted.goes_on() && wanted.take() == key("second") && wanted.goes_on());
+        wanted.next = key("third");
+        wanted.give_up();
+        assert!(!wanted.goes_on(), "neither the second nor the third");
+        assert!(wanted.take().is_none() && !wanted.is_reading);
+        wanted.next = key("fourth");
+        assert!(wanted.take() == key("fourth") && wanted.goes_on());
     }
 }

@@ -153,14 +153,18 @@ impl Runner {
             Step::Command(line) => {
                 self.see_opened()?;
                 let first = line.split(' ').next().unwrap_or_default();
-                self.see_plan(find::named(first).map(|action| action.id))?;
+                let action = find::named(first).map(|action| action.id);
+                self.see_plan(action)?;
+                self.see_question(action)?;
                 self.order(Msg::Line(line.clone()))
             }
             Step::Key(key) => {
                 self.see_opened()?;
                 let model = &self.session.model;
                 let action = find::action_for(&model.console.keys, *key, &contexts(model));
-                self.see_plan(action.map(|action| action.id))?;
+                let action = action.map(|action| action.id);
+                self.see_plan(action)?;
+                self.see_question(action)?;
                 self.order(Msg::Key((*key).into()))
             }
             Step::Wait(condition, within_s) => {
@@ -204,6 +208,14 @@ impl Runner {
         let is_planning = |model: &Model| model.live.waits() && readiness(model) == Some(true);
         while is_planning(&self.session.model) && !self.is_left {
             self.hear_until(LOOK_AGAIN, |model| !is_planning(model))?;
+        }
+        Ok(())
+    }
+
+    /// Waits for the figures of an open question, as an operator would before an answer. HOLD does not wait.
+    fn see_question(&mut self, action: Option<ActionId>) -> Result<(), String> {
+        if action != Some(ActionId::Hold) {
+            self.hear_until(ANSWERING, |model| !model.awaits_figures())?;
         }
         Ok(())
     }

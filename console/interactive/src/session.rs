@@ -92,6 +92,7 @@ impl Session {
             Effect::Survey => self.desk.request(Request::Survey),
             Effect::Look => self.desk.request(Request::Look),
             Effect::Glimpse(key) => self.desk.request(Request::Glimpse(key)),
+            Effect::StopGlimpsing => self.desk.request(Request::StopGlimpsing),
             Effect::Do(job) => self.desk.request(Request::Do(job)),
             Effect::HandOver { file, page, overwrite } => {
                 self.desk.request(Request::HandOver { file, page, overwrite });

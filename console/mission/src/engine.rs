@@ -34,6 +34,7 @@ mod workers;
 mod zones;
 
 use crate::{
+    ask::WorkerId,
     config::MissionConfig,
     event::{Event, EventKind, TetherAlarm},
     order::Order,
@@ -138,13 +139,18 @@ impl Mission {
         self.known.sending()
     }
 
+    /// The worker of the active planner while it has nothing to do; the console watches its process.
+    pub fn idle_worker(&self) -> Option<WorkerId> {
+        self.driving.worker.idle()
+    }
+
     /// Everything that decides whether an order is accepted now.
     pub fn standing(&self) -> Standing<'_> {
         Standing {
             phase: &self.known.phase,
             position: self.known.position_trust(),
             planner: self.driving.worker.seen(),
-            shadow: self.shadow.as_ref().map(|shadow| shadow.tally),
+            shadow: self.shadow.as_ref().map(Shadow::standing),
             offer: self.offer_stage(),
             readiness: self.driving.readiness(&self.known),
             trouble: self.known.trouble.as_deref(),

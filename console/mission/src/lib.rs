@@ -46,6 +46,6 @@ pub use planner::{
     RefusedPlugin, Sandbox,
 };
 pub use preview::preview;
-pub use standing::{FoldedStanding, PositionTrust, Readiness, Refusal, Standing};
+pub use standing::{FoldedStanding, InShadow, PositionTrust, Readiness, Refusal, Standing};
 pub use way_back::{Home, WayBack};
 pub use zone_cost::ZoneCost;

@@ -40,6 +40,9 @@ pub enum Order {
     Abort,
     /// End the mission because its process received a signal to exit.
     Terminate,
+    /// While held: ask the planner for its state, because the console has noticed that its process has ended. The fault of
+    /// the process is then the answer.
+    CheckPlanner,
     /// While held or waiting: change to a different planner.
     ChoosePlanner(PlannerChoice),
     /// Start a planner in shadow: it plans and commands in parallel with the active one, without effect on the robot.

@@ -171,6 +171,8 @@ pub enum During {
     Load,
     /// Creating the planner.
     Configure,
+    /// Changing live parameters while the planner is in use.
+    Reconfigure,
     /// Planning.
     Plan,
     /// Computing a step.
@@ -182,6 +184,7 @@ impl fmt::Display for During {
         f.write_str(match self {
             Self::Load => "load",
             Self::Configure => "configure",
+            Self::Reconfigure => "change of parameters",
             Self::Plan => "plan",
             Self::Step => "step",
         })
@@ -279,6 +282,12 @@ impl Fault {
         use planner_api::Code::{GoalOccupied, GoalOutside, NoPath, StartOccupied, StartOutside};
         let says = |code| matches!(code, NoPath | GoalOccupied | GoalOutside | StartOccupied | StartOutside);
         matches!(self.cause, Cause::Planner(code) if says(code))
+    }
+
+    /// Whether new values of live parameters were refused, by the planner or by the host. The planner continues with its
+    /// old values.
+    pub fn refuses_change(&self) -> bool {
+        self.during == During::Reconfigure && matches!(self.cause, Cause::Planner(_) | Cause::Refused)
     }
 }
 

@@ -47,6 +47,15 @@ pub enum Readiness<'a> {
     Plan(PlanId),
 }
 
+/// What decides whether the planner in shadow can take over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct InShadow {
+    /// Its record.
+    pub tally: ShadowTally,
+    /// Whether it has made a plan.
+    pub has_planned: bool,
+}
+
 /// Everything that decides whether an order is accepted. Both the mission and the screen can compute it.
 #[derive(Debug, Clone, Copy)]
 pub struct Standing<'a> {
@@ -56,8 +65,8 @@ pub struct Standing<'a> {
     pub position: PositionTrust,
     /// The active planner, as last opened.
     pub planner: Option<&'a PlannerInfo>,
-    /// The record of the planner in shadow; `None` without one.
-    pub shadow: Option<ShadowTally>,
+    /// The planner in shadow; `None` without one.
+    pub shadow: Option<InShadow>,
     /// The better plan that is offered or accepted; `None` without one.
     pub offer: Option<OfferStage>,
     /// The plan with which a start would begin the mission.
@@ -132,6 +141,8 @@ pub enum Refusal {
     OfferAccepted,
     /// No planner runs in shadow.
     NoShadow,
+    /// The planner in shadow has not made a plan yet.
+    ShadowHasNoPlan,
     /// The planner in shadow has not answered enough steps in a row yet.
     ShadowNotReady {
         /// Number of steps that it has answered in a row.
@@ -183,6 +194,7 @@ impl fmt::Display for Refusal {
                 f.write_str("the better plan has been accepted; the robot changes over where that plan begins")
             }
             Self::NoShadow => f.write_str("no planner runs in shadow"),
+            Self::ShadowHasNoPlan => f.write_str("the planner in shadow has not made a plan yet"),
             Self::ShadowNotReady { in_row } => write!(
                 f,
                 "the planner in shadow has answered {in_row} steps in a row; taking over requires {READY_AFTER}"
@@ -213,7 +225,7 @@ impl Standing<'_> {
             )
             | (Order::Plan | Order::NoteChecks(_), Phase::Waiting)
             | (Order::Hold | Order::Inject(_), Phase::Running(_) | Phase::Held(_))
-            | (Order::Shadow(_) | Order::NoteOutlooks(_), Phase::Held(_))
+            | (Order::Shadow(_) | Order::NoteOutlooks(_) | Order::CheckPlanner, Phase::Held(_))
             | (Order::ChoosePlanner(_) | Order::SetParameter { .. }, Phase::Waiting | Phase::Held(_)) => {
                 Ok(())
             }
@@ -234,6 +246,7 @@ impl Standing<'_> {
                 | Order::StepTo(_)
                 | Order::DriveBack
                 | Order::NoteOutlooks(_)
+                | Order::CheckPlanner
                 | Order::Inject(_)
                 | Order::Shadow(_)
                 | Order::Promote
@@ -245,7 +258,9 @@ impl Standing<'_> {
             | (Order::FlyUncertified, Phase::Held(Hold { by: HoldReason::PlanRefused { .. }, .. })) => {
                 self.can_move()
             }
-            (Order::Resume | Order::NoteOutlooks(_), Phase::Running(_)) => Err(Refusal::AlreadyMoving),
+            (Order::Resume | Order::NoteOutlooks(_) | Order::CheckPlanner, Phase::Running(_)) => {
+                Err(Refusal::AlreadyMoving)
+            }
             (Order::Step | Order::StepTo(_), Phase::Running(_)) => Err(Refusal::StepNeedsHold),
             (Order::DriveBack, Phase::Running(Gait::Back)) => Err(Refusal::DrivingBack),
             (Order::DriveBack, Phase::Running(_)) => Err(Refusal::BackNeedsHold),
@@ -294,12 +309,20 @@ impl Standing<'_> {
         }
     }
 
-    /// The promoted planner's plan is certified from the robot's position.
+    /// The promoted planner's plan is certified from the robot's position. While the robot is held, no steps are asked,
+    /// and a planner that takes over moves nothing: its plan is enough, as for any other change of planner.
     fn can_promote(&self) -> Result<(), Refusal> {
         match self.shadow {
             None => Err(Refusal::NoShadow),
-            Some(ShadowTally { in_row, .. }) if in_row < READY_AFTER => {
-                Err(Refusal::ShadowNotReady { in_row })
+            Some(InShadow { has_planned, .. }) if matches!(self.phase, Phase::Held(_)) => {
+                if has_planned {
+                    self.can_move()
+                } else {
+                    Err(Refusal::ShadowHasNoPlan)
+                }
+            }
+            Some(InShadow { tally, .. }) if !tally.is_ready() => {
+                Err(Refusal::ShadowNotReady { in_row: tally.in_row })
             }
             Some(_) => self.can_move(),
         }

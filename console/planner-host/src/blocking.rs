@@ -80,7 +80,7 @@ impl BlockingHost {
     /// # Errors
     /// A value is out of range, a parameter is unknown or not live, or the planner failed.
     pub fn reconfigure(&mut self, parameters: &Parameters) -> Result<(), Fault> {
-        let worker = self.active(During::Configure)?;
+        let worker = self.active(During::Reconfigure)?;
         let (_, said) = self.ask(worker, &Wanted::Reconfigure(parameters))?;
         self.unheard.extend(said.logs);
         Ok(())

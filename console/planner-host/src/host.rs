@@ -213,8 +213,12 @@ impl Host {
             Wanted::Reconfigure(values) => planner.reconfigure(id, values, config),
             Wanted::Plan(request) => planner.plan(id, request, config),
             Wanted::Step(sensed) => planner.step(id, sensed, config),
-            Wanted::Snapshot if planner.saves_state() => planner.snapshot(id, config),
+            Wanted::Snapshot if planner.saves_state() => {
+                planner.check_alive()?;
+                planner.snapshot(id, config)
+            }
             Wanted::Snapshot => {
+                planner.check_alive()?;
                 self.answer(id, Ok((Given::State { bytes: 0 }, Said::default())));
                 Ok(())
             }
@@ -257,6 +261,12 @@ impl Host {
     /// Whether a planner still owes an answer.
     pub fn is_asked(&self) -> bool {
         self.planners.iter().any(|planner| planner.asked.is_some())
+    }
+
+    /// Whether the process of a planner has ended although the planner was asked for nothing. The next [`What::Snapshot`]
+    /// returns the reason.
+    pub fn has_ended_idle(&mut self, id: WorkerId) -> bool {
+        self.planners.iter_mut().any(|planner| planner.id == id && planner.has_ended_idle())
     }
 
     /// Waits until something happens or the time limit is reached, and then does what is due. Returns whether the host

@@ -29,6 +29,7 @@ pub mod shadow;
 pub mod tether;
 pub mod trail;
 pub mod ui;
+mod way_left;
 pub mod what_if;
 pub mod zone_draft;
 
@@ -108,6 +109,15 @@ impl Model {
         let mut model = Self { live, first_speed: speed, ..Self::default() };
         model.ui.go(Screen::Plan);
         model
+    }
+
+    /// Whether the mission still owes the figures of the open question, without which the question cannot be answered.
+    pub fn awaits_figures(&self) -> bool {
+        match &self.ui.overlay {
+            Overlay::Confirm(ui::Ask::DriveBack) | Overlay::Finish { .. } => self.live.way_back.is_none(),
+            Overlay::Confirm(ui::Ask::DrawZone(_)) => self.live.zone_cost.is_none(),
+            _ => false,
+        }
     }
 
     /// Creates a console that only watches the run in a folder.

@@ -2,13 +2,12 @@
 
 use super::{EngineThread, keeping::HEALTH_PERIOD};
 use crate::{line::Request, pace::Pace};
-use mission::{Mission, Order};
+use mission::Order;
 use runs::RunLog;
 use std::{
     sync::mpsc::{RecvTimeoutError, TryRecvError},
     time::{Duration, Instant},
 };
-use tui::{Query, RunMsg};
 use vehicle::port::Brake;
 
 /// If more messages than this are waiting for the screen, the simulation waits.
@@ -18,17 +17,6 @@ const LOOK_AGAIN: Duration = Duration::from_millis(1);
 /// The interval at which ending workers are checked while no ticks pass, and at which requests are checked while a
 /// planner owes an answer.
 const LOOK_AFTER: Duration = Duration::from_millis(20);
-
-/// The answer of the mission to a query; nothing changes.
-fn answer(mission: &Mission, query: Query) -> RunMsg {
-    match query {
-        Query::WayBack => RunMsg::WayBack(mission.way_back()),
-        Query::ZoneCost(corners) => {
-            let cost = mission.zone_cost(&corners);
-            RunMsg::ZoneCost(corners, cost)
-        }
-    }
-}
 
 impl EngineThread {
     /// Waits for the next tick or, while no ticks pass, for a request. Returns the orders received; the second value is
@@ -65,7 +53,7 @@ impl EngineThread {
                 Ok(Request::Order(order, _)) => orders.push(order),
                 Ok(Request::Speed(_)) if self.flight.is_live() => {}
                 Ok(Request::Speed(speed)) => self.speed = speed,
-                Ok(Request::Ask(query)) => self.send(answer(self.flight.mission(), query)),
+                Ok(Request::Ask(query)) => self.query(query),
                 Ok(Request::Fork(answer)) => {
                     let _ = answer.send(self.flight.forked());
                 }

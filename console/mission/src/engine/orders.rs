@@ -45,6 +45,7 @@ impl Mission {
             Order::DriveBack => self.drive_back(),
             Order::Abort => self.end(Outcome::Aborted, "ended by operator".into()),
             Order::Terminate => self.end(Outcome::Aborted, "ended by a signal to the process".into()),
+            Order::CheckPlanner => self.driving.snapshot_due = self.driving.worker.is_ready(),
             Order::ChoosePlanner(choice) => {
                 if self.driving.takes_live(choice) {
                     self.stay_held();

@@ -16,6 +16,7 @@ use crate::{
     ask::{Ask, What},
     event::{EventKind, ShadowTally},
     planner::PlannerChoice,
+    standing::InShadow,
     task::Task,
 };
 use geometry::PathFollower;
@@ -40,6 +41,8 @@ pub(super) struct Shadow {
     /// The progress of the task along the planner's own plan.
     pub task: Task,
     plan: Plan,
+    /// Whether the planner has made a plan.
+    has_planned: bool,
     /// Whether the plan begins at the anchor because the plan from the robot's position was refused for the tether.
     from_anchor: bool,
     /// Number of points in the path driven when the planner's plan was requested.
@@ -107,6 +110,7 @@ impl Shadow {
             tally: ShadowTally::default(),
             task: known.task.clone(),
             plan: Plan::default(),
+            has_planned: false,
             from_anchor: false,
             n_flown: known.trail.len(),
             asked_at_s: known.now_s(),
@@ -131,6 +135,11 @@ impl Shadow {
                 self.course.want_plan(Reason::Swap { from: driving.to_owned() });
             }
         }
+    }
+
+    /// What decides whether the planner can take over.
+    pub(super) fn standing(&self) -> InShadow {
+        InShadow { tally: self.tally, has_planned: self.has_planned }
     }
 
     fn advance(&mut self, here: Point, known: &Known) {

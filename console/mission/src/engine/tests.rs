@@ -69,6 +69,8 @@ struct Straight {
     wasteful_plans: usize,
     /// From this plan on it leaves out the last lane.
     scans_less_from_plan: Option<usize>,
+    /// Its process has ended while it had nothing to do.
+    has_died: bool,
     /// It has a live parameter `gain` that it cannot change under way.
     has_stiff_gain: bool,
     /// It ends with a lap along the wall.
@@ -105,6 +107,7 @@ impl Straight {
                 Err(self.fault(During::Step, Cause::Died))
             }
             What::Step(sensed) => self.step(&sensed).map(Given::Command),
+            What::Snapshot if self.has_died => Err(self.fault(During::Step, Cause::Died)),
             What::Snapshot => Ok(Given::State { bytes: 1 }),
             What::Close => return None,
         };
@@ -142,7 +145,7 @@ impl Straight {
 
     fn reconfigure(&self) -> Result<(), Fault> {
         let cause = Cause::Planner(api::Code::Unsupported);
-        if self.has_stiff_gain { Err(self.fault(During::Configure, cause)) } else { Ok(()) }
+        if self.has_stiff_gain { Err(self.fault(During::Reconfigure, cause)) } else { Ok(()) }
     }
 
     fn plan(&mut self, request: &PlanAsk) -> Plan {
@@ -305,7 +308,7 @@ struct Flight {
     delay: Delay,
     /// Asks without an answer, with the tick in which they get one.
     open: Vec<(u64, Ask)>,
-    closed: Vec<crate::WorkerId>,
+    closed: Vec<WorkerId>,
     /// Why the vehicle cannot be driven.
     trouble: Option<&'static str>,
     /// Discs that are seen only by a scanner, and whether it works; `None` without one.

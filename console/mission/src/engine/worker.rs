@@ -78,6 +78,11 @@ impl Worker {
             && !matches!(&self.pending, Some(pending) if pending.kind == PendingKind::Open)
     }
 
+    /// The running instance, if it owes no answer.
+    pub(super) fn idle(&self) -> Option<WorkerId> {
+        self.instance.filter(|_| self.pending.is_none())
+    }
+
     /// Whether the planner is being opened or is making a plan.
     pub(super) fn is_being_prepared(&self) -> bool {
         matches!(&self.pending, Some(Pending { kind: PendingKind::Open | PendingKind::Plan(_), .. }))

@@ -24,11 +24,11 @@ pub enum Severity {
 }
 
 impl Fault {
-    /// The severity of a fault. A late answer may be due to the machine, a refused planner was never active, and "no path
-    /// exists" is an answer rather than a fault.
+    /// The severity of a fault. A late answer may be due to the machine, a refused planner was never active, a planner
+    /// that refuses new values continues with its old ones, and "no path exists" is an answer rather than a fault.
     pub fn severity(&self) -> Severity {
         match self.cause {
-            _ if self.is_no_way() => Severity::Warn,
+            _ if self.is_no_way() || self.refuses_change() => Severity::Warn,
             Cause::Late | Cause::Starved | Cause::Refused => Severity::Warn,
             _ => Severity::Crit,
         }

@@ -2,10 +2,10 @@
 
 mod ready;
 
-use super::{PositionTrust, Readiness, Standing};
+use super::{InShadow, PositionTrust, Readiness, Standing};
 use crate::{
     config::BetterPlan,
-    event::{EventKind, OfferStage, ShadowTally},
+    event::{EventKind, OfferStage},
     order::Order,
     phase::{Gait, Hold, Phase},
     plan_id::PlanId,
@@ -27,9 +27,9 @@ pub struct FoldedStanding {
     is_alarmed: bool,
     /// The active planner, as last opened.
     planner: Option<Box<PlannerInfo>>,
-    /// The record of the planner in shadow; `None` without one.
+    /// The planner in shadow; `None` without one.
     #[serde(default)]
-    shadow: Option<ShadowTally>,
+    shadow: Option<InShadow>,
     /// The better plan that is offered or accepted; `None` without one.
     #[serde(default)]
     offer: Option<OfferStage>,
@@ -60,7 +60,7 @@ impl FoldedStanding {
             EventKind::Ordered { order } if order.is_start() => self.phase = Phase::Running(Gait::Steady),
             EventKind::Ordered { order } => {
                 if matches!(order, Order::Shadow(_)) {
-                    self.shadow = Some(ShadowTally::default());
+                    self.shadow = Some(InShadow::default());
                 }
                 if *order == Order::TakePlan {
                     self.offer = Some(OfferStage::Accepted);
@@ -92,7 +92,11 @@ impl FoldedStanding {
             EventKind::Promoted { .. } | EventKind::ShadowEnded { .. } => self.shadow = None,
             _ => {}
         }
-        self.shadow.iter_mut().for_each(|shadow| shadow.apply(event));
+        if let Some(shadow) = &mut self.shadow {
+            shadow.tally.apply(event);
+            shadow.has_planned |=
+                matches!(event, EventKind::Shadowed { of } if matches!(**of, EventKind::Planned { .. }));
+        }
         if self.phase == Phase::Waiting {
             self.ready.apply(event, self.planner.as_deref());
         }

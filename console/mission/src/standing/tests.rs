@@ -35,6 +35,7 @@ fn orders() -> Vec<Order> {
         Order::DriveBack,
         Order::FlyUncertified,
         Order::Abort,
+        Order::CheckPlanner,
         Order::ChoosePlanner(choice.clone()),
         Order::Shadow(choice),
         Order::Promote,
@@ -56,7 +57,7 @@ fn standing(phase: &Phase, position: PositionTrust) -> Standing<'_> {
         phase,
         position,
         planner: None,
-        shadow: Some(shadow),
+        shadow: Some(InShadow { tally: shadow, has_planned: true }),
         offer: Some(OfferStage::Offered),
         readiness: Readiness::Unseen,
         trouble: None,
@@ -119,10 +120,24 @@ fn the_whole_table() {
 #[test]
 fn a_planner_takes_over_from_shadow_only_after_it_has_answered_some_steps_in_a_row() {
     let running = Phase::Running(Gait::Steady);
-    let promote =
-        |shadow| Standing { shadow, ..standing(&running, PositionTrust::Good) }.allows(&Order::Promote);
+    let promote = |tally: Option<ShadowTally>| {
+        let shadow = tally.map(|tally| InShadow { tally, has_planned: true });
+        Standing { shadow, ..standing(&running, PositionTrust::Good) }.allows(&Order::Promote)
+    };
     assert_eq!(promote(None), Err(Refusal::NoShadow));
     let fresh = ShadowTally { in_row: READY_AFTER - 1, ..ShadowTally::default() };
     assert_eq!(promote(Some(fresh)), Err(Refusal::ShadowNotReady { in_row: READY_AFTER - 1 }));
     assert_eq!(promote(Some(ShadowTally { in_row: READY_AFTER, ..fresh })), Ok(()));
+}
+
+#[test]
+fn while_the_robot_is_held_a_planner_takes_over_from_shadow_as_soon_as_it_has_a_plan() {
+    let held = Phase::Held(Hold { by: HoldReason::Operator, resumes: Resumes::Never });
+    let promote = |has_planned, position| {
+        let shadow = Some(InShadow { has_planned, ..InShadow::default() });
+        Standing { shadow, ..standing(&held, position) }.allows(&Order::Promote)
+    };
+    assert_eq!(promote(false, PositionTrust::Good), Err(Refusal::ShadowHasNoPlan));
+    assert_eq!(promote(true, PositionTrust::Good), Ok(()));
+    assert_eq!(promote(true, PositionTrust::Alarmed), Err(Refusal::RangesInconsistent));
 }

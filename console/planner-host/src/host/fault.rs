@@ -13,9 +13,12 @@ use std::fmt;
 pub(crate) enum Phase {
     Load,
     Configure,
+    Reconfigure,
     Plan,
     /// Saving or restoring private state.
     State,
+    /// Nothing: the planner waits for a request.
+    Idle,
     /// A step with this tick number.
     Step(u64),
 }
@@ -25,8 +28,9 @@ impl Phase {
         match self {
             Self::Load => During::Load,
             Self::Configure => During::Configure,
+            Self::Reconfigure => During::Reconfigure,
             Self::Plan => During::Plan,
-            Self::State | Self::Step(_) => During::Step,
+            Self::State | Self::Idle | Self::Step(_) => During::Step,
         }
     }
 }
@@ -36,8 +40,10 @@ impl fmt::Display for Phase {
         match self {
             Self::Load => f.write_str("load"),
             Self::Configure => f.write_str("configure"),
+            Self::Reconfigure => f.write_str("the change of its parameters"),
             Self::Plan => f.write_str("plan"),
             Self::State => f.write_str("saving its state"),
+            Self::Idle => f.write_str("a pause between two requests"),
             Self::Step(tick) => write!(f, "step {tick}"),
         }
     }
@@ -48,9 +54,9 @@ pub(super) fn new(planner: &str, during: During, cause: Cause, message: String) 
     Fault { planner: planner.to_owned(), during, cause, message, partial: Vec::new(), plugin_sha256: None }
 }
 
-/// Creates the fault for parameter values that a planner does not accept.
-pub(super) fn of_parameters(planner: &str, message: String) -> Fault {
-    new(planner, During::Configure, Cause::Refused, message)
+/// Creates the fault for parameter values that a planner does not accept in this phase.
+pub(super) fn of_parameters(planner: &str, phase: Phase, message: String) -> Fault {
+    new(planner, phase.during(), Cause::Refused, message + kept(phase))
 }
 
 /// Creates the fault for an answer that no robot can follow; `what` completes a sentence that begins with the planner's
@@ -127,7 +133,7 @@ fn of_refusal(refusal: Refusal, planner: &str, phase: Phase) -> Fault {
         Some(code) => {
             let is_finite = |point: &Point2<f64>| point.x.is_finite() && point.y.is_finite();
             let partial = if partial.iter().all(is_finite) { partial } else { Vec::new() };
-            let message = format!("planner {planner} gave up {}: {message}", gave_up(phase));
+            let message = format!("planner {planner} {}: {message}{}", gave_up(phase), kept(phase));
             Fault { partial, ..fault(Cause::Planner(code), message) }
         }
         None if code == BAD_OUTPUT => bad_output(planner, phase, &message),
@@ -135,10 +141,16 @@ fn of_refusal(refusal: Refusal, planner: &str, phase: Phase) -> Fault {
     }
 }
 
+/// What a refusal in this phase leaves as it was.
+fn kept(phase: Phase) -> &'static str {
+    if phase == Phase::Reconfigure { "; its old values stay in effect" } else { "" }
+}
+
 fn gave_up(phase: Phase) -> String {
     match phase {
-        Phase::Step(tick) => format!("at step {tick}"),
-        other => format!("during {other}"),
+        Phase::Step(tick) => format!("gave up at step {tick}"),
+        Phase::Reconfigure => "refused the changed parameters".to_owned(),
+        other => format!("gave up during {other}"),
     }
 }
 
@@ -164,6 +176,17 @@ mod tests {
         let fault = refused(Code::NoPath as i32, "walled in");
         assert_eq!(fault.message, "planner apf gave up at step 12: walled in");
         assert_eq!((fault.cause, fault.partial.len()), (Cause::Planner(Code::NoPath), 1));
+    }
+
+    #[test]
+    fn a_planner_that_refuses_new_values_has_not_given_up() {
+        let refusal = Refusal { code: Code::Unsupported as i32, message: "too late".into(), partial: vec![] };
+        let fault = of(Failure::Planner(refusal), "apf", Phase::Reconfigure);
+        assert_eq!(
+            fault.message,
+            "planner apf refused the changed parameters: too late; its old values stay in effect"
+        );
+        assert!(fault.refuses_change());
     }
 
     #[test]

@@ -35,7 +35,7 @@ pub(crate) enum Wanted<'a> {
 impl Wanted<'_> {
     pub(super) fn phase(&self) -> Phase {
         match self {
-            Self::Reconfigure(_) => Phase::Configure,
+            Self::Reconfigure(_) => Phase::Reconfigure,
             Self::Plan(_) => Phase::Plan,
             Self::Step(sensed) => Phase::Step(sensed.tick),
             Self::Snapshot => Phase::State,
@@ -66,7 +66,7 @@ impl Doing {
     pub(super) fn phase(&self) -> Phase {
         match self {
             Self::Open(_, stage) => stage.phase(),
-            Self::Reconfigure(_) => Phase::Configure,
+            Self::Reconfigure(_) => Phase::Reconfigure,
             Self::Snapshot => Phase::State,
             Self::Plan(_) => Phase::Plan,
             Self::Step(tick) => Phase::Step(*tick),
@@ -95,7 +95,7 @@ impl Ready {
     /// The mission always sends all values that were set by the user, so most of them are unchanged.
     fn merged(&self, changed: &Parameters) -> Result<Parameters, Fault> {
         let info = &self.loaded.info;
-        let refuse = |message| fault::of_parameters(&info.id, message);
+        let refuse = |message| fault::of_parameters(&info.id, Phase::Reconfigure, message);
         let new = changed.iter().filter(|(key, value)| self.parameters.get(*key) != Some(*value));
         for (key, _) in new {
             let param = parameters::find(info, key).map_err(refuse)?;
@@ -149,11 +149,11 @@ impl Planner {
         changed: &Parameters,
         config: &HostConfig,
     ) -> Result<(), Fault> {
-        let Some(ready) = &self.ready else { return Err(self.fault(Failure::Gone, Phase::Configure)) };
+        let Some(ready) = &self.ready else { return Err(self.fault(Failure::Gone, Phase::Reconfigure)) };
         let merged = ready.merged(changed).map_err(|fault| self.blamed(fault))?;
         let info = &ready.loaded.info;
         let values = parameters::numbers(info, &merged)
-            .map_err(|message| self.blamed(fault::of_parameters(&info.id, message)))?;
+            .map_err(|message| self.blamed(fault::of_parameters(&info.id, Phase::Reconfigure, message)))?;
         let write = |w: &mut Writer| {
             w.put(&values);
         };
@@ -187,6 +187,17 @@ impl Planner {
         self.ask(id, Doing::Step(sensed.tick), kind::STEP, config.step_deadline, write)
     }
 
+    /// Whether the process has ended although the planner was asked for nothing.
+    pub(super) fn has_ended_idle(&mut self) -> bool {
+        self.worker.as_mut().is_some_and(Worker::has_ended_idle)
+    }
+
+    /// Checks that the process has not ended since the last request.
+    pub(super) fn check_alive(&mut self) -> Result<(), Fault> {
+        let end = self.worker.as_mut().and_then(Worker::take_idle_end);
+        end.map_or(Ok(()), |failure| Err(self.fault(failure, Phase::Idle)))
+    }
+
     /// Whether the planner can save its state.
     pub(super) fn saves_state(&self) -> bool {
         self.ready.as_ref().is_some_and(|ready| ready.loaded.info.snapshots)
@@ -210,7 +221,7 @@ impl Planner {
     /// Processes the answer to new parameter values.
     pub(super) fn reconfigured(&mut self, outcome: Result<(), Failure>, values: Parameters) -> Outcome {
         let answer = self.read(outcome, whole::<Answered<()>>);
-        let Answered { said, .. } = answer.map_err(|failure| self.fault(failure, Phase::Configure))?;
+        let Answered { said, .. } = answer.map_err(|failure| self.fault(failure, Phase::Reconfigure))?;
         if let Some(ready) = &mut self.ready {
             ready.parameters = values;
         }

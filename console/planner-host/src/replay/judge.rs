@@ -69,6 +69,7 @@ impl Judge {
             kind::PLAN => Phase::Plan,
             kind::STEP => Phase::Step(self.tick),
             kind::RESTORE => Phase::State,
+            kind::RECONFIGURE => Phase::Reconfigure,
             _ => Phase::Configure,
         }
     }

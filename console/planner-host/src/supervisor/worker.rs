@@ -7,6 +7,7 @@ mod guard;
 mod scale;
 mod state;
 
+use super::ending::{how_it_ended, last_line};
 use super::load::memory_of;
 use super::process::Process;
 use super::ready::{Ready, Source, Watched};
@@ -132,6 +133,22 @@ impl Worker {
     /// Whether the worker can accept a request.
     pub(crate) fn is_idle(&self) -> bool {
         matches!(self.state, State::Idle)
+    }
+
+    /// Whether the process has ended although it was asked for nothing.
+    pub(crate) fn has_ended_idle(&mut self) -> bool {
+        self.is_idle() && self.process.reap().is_some()
+    }
+
+    /// Takes the end of a process that ended although it was asked for nothing.
+    pub(crate) fn take_idle_end(&mut self) -> Option<Failure> {
+        if !self.has_ended_idle() {
+            return None;
+        }
+        self.process.read_output();
+        self.state = State::Gone;
+        let last_output = last_line(self.process.tail());
+        Some(Failure::Died { how: how_it_ended(self.process.reap()), last_output })
     }
 
     /// Sends a request; [`Self::advance`] returns the outcome.

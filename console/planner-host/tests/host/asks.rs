@@ -95,15 +95,35 @@ fn stopped_and_computing_workers_hang_in_their_own_time() {
     }
 }
 
-#[test]
-fn a_worker_that_died_between_asks_is_reported_at_the_next_ask() {
+/// A planner whose process ends soon after its first step.
+fn dies_between_asks() -> String {
     let late = "if (++c->in_this_process >= 30) abort();";
     let leaves_thread =
         "pthread_t thread; if (!c->in_this_process++) pthread_create(&thread, NULL, soon, NULL);";
     let head = "#define _DEFAULT_SOURCE\n#include <pthread.h>\n#include <signal.h>\n#include <unistd.h>\n\
                 static void *soon(void *p) { usleep(1000); kill(getpid(), SIGALRM); return p; }";
-    let source = format!("{head}\n{}", COUNTER.replace(late, leaves_thread));
-    let (_folder, dirs) = folder_with("counter", &source);
+    format!("{head}\n{}", COUNTER.replace(late, leaves_thread))
+}
+
+#[test]
+fn a_worker_that_died_between_asks_is_noticed_before_the_next_ask() {
+    let (_folder, dirs) = folder_with("counter", &dies_between_asks());
+    let mut desk = Desk::new(&dirs, config());
+    desk.ask(ONE, opening("counter", &Parameters::new(), None)).unwrap();
+    assert!(!desk.host.has_ended_idle(ONE));
+    desk.ask(ONE, step(0)).unwrap();
+    while !desk.host.has_ended_idle(ONE) {
+        std::thread::yield_now();
+    }
+    let fault = desk.ask(ONE, What::Snapshot).unwrap_err();
+    let how = "was killed by SIGALRM (an alarm that it had set) during a pause between two requests";
+    assert_eq!((fault.cause, fault.message), (Cause::Died, format!("planner counter {how}")));
+    assert!(!desk.host.has_ended_idle(ONE), "once");
+}
+
+#[test]
+fn a_worker_that_died_between_asks_is_reported_at_the_next_ask() {
+    let (_folder, dirs) = folder_with("counter", &dies_between_asks());
     let mut desk = Desk::new(&dirs, config());
     desk.ask(ONE, opening("counter", &Parameters::new(), None)).unwrap();
     desk.ask(ONE, step(0)).unwrap();

@@ -216,17 +216,22 @@ fn calls_are_counted_and_timed() {
 fn parameters_are_checked_before_a_planner_sees_them() {
     let mut host = host(config());
     let at_step = |value| Parameters::from([("at_step".to_owned(), value)]);
-    let refused = |fault: Fault| {
-        assert_eq!((fault.during, fault.cause), (During::Configure, Cause::Refused));
+    let refused_during = |during, fault: Fault| {
+        assert_eq!((fault.during, fault.cause), (during, Cause::Refused));
         fault.message
     };
+    let refused = |fault| refused_during(During::Configure, fault);
     let message = refused(choose(&mut host, "faulty", &words(&[("falt", "none")])).unwrap_err());
     assert_eq!(message, "planner faulty has no parameter `falt`; did you mean `fault`?");
     let message = refused(choose(&mut host, "faulty", &at_step(ParamValue::Int(-1))).unwrap_err());
     assert_eq!(message, "parameter `at_step` of planner faulty takes 0 to 1000000, not -1");
     choose(&mut host, "faulty", &Parameters::new()).unwrap();
-    let message = refused(host.reconfigure(&at_step(ParamValue::Int(3))).unwrap_err());
-    assert_eq!(message, "parameter `at_step` of planner faulty cannot change during a mission");
+    let fault = host.reconfigure(&at_step(ParamValue::Int(3))).unwrap_err();
+    let message = refused_during(During::Reconfigure, fault);
+    assert_eq!(
+        message,
+        "parameter `at_step` of planner faulty cannot change during a mission; its old values stay in effect"
+    );
     assert_eq!(host.stats().faults, 3);
 }
 

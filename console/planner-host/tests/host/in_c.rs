@@ -77,7 +77,10 @@ fn a_live_value_may_change_beside_a_fixed_one_that_was_set_before() {
     choose(&mut host, "direct-c", &values(0.1, 1.0)).unwrap();
     host.reconfigure(&values(0.1, 0.5)).expect("the fixed parameter keeps its value");
     let fault = host.reconfigure(&values(0.2, 0.5)).unwrap_err();
-    assert_eq!(fault.message, "parameter `speed` of planner direct-c cannot change during a mission");
+    assert_eq!(
+        fault.message,
+        "parameter `speed` of planner direct-c cannot change during a mission; its old values stay in effect"
+    );
 }
 
 #[test]

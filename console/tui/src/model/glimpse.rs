@@ -44,6 +44,11 @@ impl Glimpses {
         true
     }
 
+    /// Forgets the run that was requested; returns whether one was being read.
+    pub(crate) fn give_up(&mut self) -> bool {
+        self.asked.take().is_some()
+    }
+
     /// Records the details of a run.
     pub(crate) fn take(&mut self, key: RunKey, found: Result<Box<Glimpse>, String>) {
         self.known.retain(|((name, _), _)| *name != key.0);
@@ -66,6 +71,7 @@ mod tests {
         let mut glimpses = Glimpses::default();
         let key = |end: &str| ("run".to_owned(), end.to_owned());
         assert!(glimpses.ask(key("RUNNING")) && !glimpses.ask(key("RUNNING")), "once");
+        assert!(glimpses.give_up() && !glimpses.give_up() && glimpses.ask(key("RUNNING")), "again");
         glimpses.take(key("RUNNING"), Err("no journal".into()));
         assert!(!glimpses.ask(key("RUNNING")) && glimpses.ask(key("complete")));
         glimpses.take(key("complete"), Ok(Box::default()));

@@ -198,8 +198,11 @@ impl Run {
         self.position.speed_m_per_s().filter(|_| !self.has_ended())
     }
 
-    /// Estimated remaining mission time at the average pace so far, seconds.
+    /// Estimated remaining mission time, seconds: at the average pace so far, or at full speed if the robot drives back.
     pub fn left_s(&self) -> Option<f64> {
+        if self.standing.phase.is_return() {
+            return self.way_left_s();
+        }
         let done = self.progress.as_ref()?.done;
         let known = self.clock.moving_s > SETTLED_S && done > 0.01 && done <= 1.0 && !self.has_ended();
         known.then(|| self.clock.moving_s * (1.0 - done) / done)

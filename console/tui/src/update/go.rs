@@ -157,9 +157,12 @@ pub(crate) fn run_at_home(model: &Model) -> Option<String> {
 }
 
 /// Requests what is known about the selected run, if there is room to show it. While the robot moves, the disk and the
-/// processor are left to the mission.
+/// processor are left to the mission: a run that is being read is given up.
 pub(super) fn glimpse(model: &mut Model) -> Option<Effect> {
-    if model.ui.arrangement() != Arrangement::Wide || model.live.may_move() {
+    if model.live.may_move() {
+        return model.home.glimpses.give_up().then_some(Effect::StopGlimpsing);
+    }
+    if model.ui.arrangement() != Arrangement::Wide {
         return None;
     }
     let run = match model.ui.screen {

@@ -327,6 +327,8 @@ pub enum Effect {
     Look,
     /// Read the details of a past run; replaces an earlier request that has not been answered.
     Glimpse(RunKey),
+    /// Abandon reading the details of a past run.
+    StopGlimpsing,
     /// Start a background job.
     Do(Job),
     /// Write a handover page.

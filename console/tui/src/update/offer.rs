@@ -216,6 +216,7 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         | Refusal::Vehicle { .. }
         | Refusal::StepOfVehicle
         | Refusal::FaultOfVehicle
+        | Refusal::ShadowHasNoPlan
         | Refusal::ShadowNotReady { .. } => None,
     }
 }

@@ -7,7 +7,6 @@ use crate::guide;
 use crate::model::{Busy, Model, Offer, Overlay, Replay, Screen};
 use crate::theme::Role;
 use mission::{Outcome, Phase, Readiness, Severity};
-use world::{Point, polyline};
 
 /// The role of the line, and its clauses, most important first.
 pub(super) type Clauses = (Role, Vec<String>);
@@ -230,22 +229,12 @@ fn running(model: &Model) -> Clauses {
 /// The drive back to the anchor or the start.
 fn driving_back(model: &Model) -> Vec<String> {
     let stop = "<hold>: HOLD.".to_owned();
-    let Some(way) = &model.live.run.way_back else { return vec!["Driving back.".into(), stop] };
-    let here = model.live.run.position.pose.map(|pose| pose.position);
-    let left_m = here.map_or(way.length_m, |here| left_m(&way.path, here));
+    let run = &model.live.run;
+    let (Some(way), Some(left_m)) = (&run.way_back, run.way_left_m()) else {
+        return vec!["Driving back.".into(), stop];
+    };
     let left = format!("Driving back to the {}: {} m left.", way.to.word(), text::number(left_m, 1));
     vec![left, stop, format!("Clearance {} m.", text::number(way.clearance_m, 2))]
-}
-
-/// The length of a path from the point nearest to `here` on, metres.
-fn left_m(path: &[Point], here: Point) -> f64 {
-    let nearest = |pair: &[Point]| polyline::nearest_on_segment(pair[0], pair[1], here);
-    let off_m = |pair: &[Point]| (nearest(pair) - here).norm();
-    let pairs = path.windows(2).enumerate();
-    let closest = pairs.min_by(|(_, one), (_, other)| off_m(one).total_cmp(&off_m(other)));
-    closest.map_or(0.0, |(index, pair)| {
-        (pair[1] - nearest(pair)).norm() + polyline::length_m(&path[index + 1..])
-    })
 }
 
 /// A better plan that is on offer or will be taken.
@@ -262,15 +251,6 @@ fn better_plan(offer: &Offer) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn what_is_left_of_a_way_is_counted_from_the_place_next_to_the_robot() {
-        let path = [Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 3.0)];
-        for (here, left) in [((0.0, 0.2), 7.0), ((3.0, -0.1), 4.0), ((4.2, 2.0), 1.0), ((4.0, 3.0), 0.0)] {
-            assert!((left_m(&path, Point::new(here.0, here.1)) - left).abs() < 1e-9, "{here:?}");
-        }
-        assert!(left_m(&[], Point::origin()).abs() < 1e-9);
-    }
 
     #[test]
     fn clauses_that_do_not_fit_are_left_out_whole() {

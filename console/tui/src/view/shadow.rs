@@ -4,12 +4,12 @@
 use super::text;
 use crate::model::{Run, Shadow, shadow::GHOST_S};
 use crate::theme::Role;
-use mission::event::READY_AFTER;
+use mission::{Phase, event::READY_AFTER};
 
 /// The rows for the planner pane, each with its rank; empty without a planner in shadow.
 pub(super) fn rows(run: &Run, room: usize) -> Vec<(u8, &'static str, (Role, String))> {
     let Some(shadow) = &run.shadow else { return Vec::new() };
-    let mut rows = vec![(2, "shadow", (Role::Ghost, text::wording(state(shadow), room)))];
+    let mut rows = vec![(2, "shadow", (Role::Ghost, text::wording(state(shadow, run), room)))];
     if let Some(by) = run.shadow_differences() {
         let speed = signed(by.speed_m_per_s, 2);
         let turn = signed(by.turn_rad_per_s.to_degrees(), 0);
@@ -34,13 +34,16 @@ fn signed(value: f64, decimals: usize) -> String {
 
 /// Whether the planner is ready to take over, and how many steps it has missed, from the longest wording to the
 /// shortest.
-fn state(shadow: &Shadow) -> [String; 4] {
+fn state(shadow: &Shadow, run: &Run) -> [String; 4] {
+    let is_held = matches!(run.standing.phase, Phase::Held(_));
     let (id, tally) = (&shadow.choice.id, &shadow.tally);
     let state = match &shadow.info {
         None => "opening".to_owned(),
         Some(_) if shadow.is_promoted => "taking over".to_owned(),
         Some(_) if tally.is_ready() => "ready".to_owned(),
         Some(_) if shadow.path.is_empty() => "planning".to_owned(),
+        // While the robot is held, a plan is enough.
+        Some(_) if is_held => "ready".to_owned(),
         Some(_) if tally.answered == 0 => "planned".to_owned(),
         Some(_) => format!("{} of {READY_AFTER} steps", tally.in_row),
     };

@@ -32,6 +32,22 @@ pub(crate) fn driving_back() -> Screen {
     screen
 }
 
+#[test]
+fn the_time_left_of_a_drive_back_is_that_of_the_way_and_not_of_the_plan() {
+    let mut screen = Screen::tethered();
+    let of_plan_s = screen.model.live.run.left_s().expect("the plan has a pace");
+    screen = driving_back();
+    let run = &screen.model.live.run;
+    let (left_m, speed) =
+        (run.way_left_m().expect("it drives back"), run.about.as_ref().unwrap().mission.limits.v_max_m_per_s);
+    let left_s = run.left_s().expect("the way has a length");
+    assert!((left_s - left_m / speed).abs() < 1e-9 && (left_s - of_plan_s).abs() > 60.0, "{left_s}");
+    // Held on the way, the mission may resume its plan.
+    let held = screen.mission.obeyed(Order::Hold);
+    screen.hear(RunMsg::Events(held));
+    assert_eq!(screen.model.live.run.left_s(), Some(of_plan_s));
+}
+
 fn shown(screen: &Screen, size: (u16, u16)) -> String {
     text(&drawn(&screen.model, RICH, size))
 }
@@ -96,7 +112,9 @@ fn return_asks_with_length_and_clearance() {
     screen.type_text(":return");
     assert_eq!(screen.press([Key::Enter]), [Effect::Ask(Query::WayBack)]);
     assert_eq!(screen.model.ui.overlay, Overlay::Confirm(Ask::DriveBack));
+    assert!(screen.model.awaits_figures());
     screen.hear(RunMsg::WayBack(Ok(way())));
+    assert!(!screen.model.awaits_figures());
     let asked = shown(&screen, (80, 24)).split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(asked.contains("To the anchor, 13.1 m, clearance 0.12 m."), "{asked}");
     assert_eq!(screen.press([Key::Enter]), [Effect::Order(Order::DriveBack)]);

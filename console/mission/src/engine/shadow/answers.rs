@@ -84,7 +84,7 @@ impl Shadow {
         self.task.take_plan(&plan);
         self.course.take(&plan);
         self.from_anchor = asked.from_anchor;
-        self.plan = plan;
+        (self.plan, self.has_planned) = (plan, true);
         // The robot has moved on in the meantime, perhaps along this plan.
         for flown in &known.trail[self.n_flown..self.now.n_flown] {
             self.advance(*flown, known);

@@ -234,3 +234,25 @@ proptest! {
         prop_assert_eq!(replay(config.clone(), &shadowed), shadowed.events);
     }
 }
+
+#[test]
+fn a_shadow_that_began_during_a_hold_takes_over_during_it_and_moves_nothing() {
+    for config in [rounds(1), covering()] {
+        let mut flight = Flight::new(config.clone());
+        flight.tick(&[Order::Start]);
+        flight.fly(100);
+        flight.tick(&[Order::Hold]);
+        let events = flight.tick(&[shadow("other"), Order::Promote]);
+        assert!(refusal(&events).is_some_and(|why| why.contains("has not made a plan")), "{events:?}");
+        flight.fly(3);
+        let before = flight.pose.position;
+        flight.tick(&[Order::Promote]);
+        assert_eq!((promotions(&flight), flight.mission.driving.id()), (1, "other"));
+        flight.fly(30);
+        assert_eq!(flight.pose.position, before, "only an order moves the robot");
+        flight.tick(&[Order::Resume]);
+        flight.fly(30);
+        assert!(flight.pose.position != before);
+        assert_eq!(replay(config, &flight), flight.events);
+    }
+}

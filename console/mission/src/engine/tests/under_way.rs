@@ -1,7 +1,11 @@
 //! What planners are given of a plan that is being flown, or that they made a moment ago.
 
 use super::*;
-use super::{arrivals::replay_asking, covering::covering};
+use super::{
+    arrivals::{replay, replay_asking},
+    covering::covering,
+};
+use crate::event::Severity;
 use world::polyline;
 
 /// A flight over the floor that was held on the way.
@@ -92,6 +96,51 @@ fn a_planner_that_begins_again_with_other_live_values_keeps_to_its_plan() {
     flight.fly(2);
     assert_eq!((flight.planner.chosen.len(), kept_m(&flight)), (2, vec![None, left_m]));
     assert_eq!(flight.mission.driving.worker.choice.parameters["gain"], ParamValue::Float(2.0));
+}
+
+#[test]
+fn a_planner_that_dies_while_the_robot_is_held_is_reported_at_once_and_starts_again_at_the_next_resume() {
+    let mut flight = Flight::new(covering());
+    flight.tick(&[Order::Start]);
+    flight.fly(100);
+    assert!(refusal(&flight.tick(&[Order::CheckPlanner])).is_some(), "a planner that drives is asked anyway");
+    flight.tick(&[Order::Hold]);
+    flight.fly(5);
+    assert!(flight.mission.idle_worker().is_some());
+    flight.planner.has_died = true;
+    flight.tick(&[Order::CheckPlanner]);
+    assert_eq!((last_fault(&flight).cause, last_fault(&flight).severity()), (Cause::Died, Severity::Crit));
+    assert!(flight.mission.idle_worker().is_none(), "it is checked once");
+    flight.fly(20);
+    assert_eq!(flight.planner.chosen.len(), 1);
+    let before = flight.pose.position;
+    flight.tick(&[Order::Resume]);
+    flight.fly(20);
+    assert_eq!(flight.planner.chosen.len(), 2);
+    assert!(flight.pose.position != before);
+    assert_eq!(replay(covering(), &flight), flight.events);
+}
+
+fn last_fault(flight: &Flight) -> &Fault {
+    let mut faults = flight.events.iter().rev().filter_map(|event| match &event.kind {
+        EventKind::PlannerFailed { fault, .. } => Some(fault),
+        _ => None,
+    });
+    faults.next().expect("a fault was reported")
+}
+
+#[test]
+fn a_change_that_a_planner_refuses_under_way_is_a_warning_and_its_old_values_stay() {
+    let mut flight = Flight::new(covering());
+    flight.planner.has_stiff_gain = true;
+    flight.tick(&[Order::Start]);
+    flight.fly(200);
+    flight.tick(&[Order::SetParameter { key: "gain".into(), value: ParamValue::Float(2.0) }]);
+    flight.fly(2);
+    let fault = last_fault(&flight);
+    assert!(fault.refuses_change(), "{fault}");
+    assert_eq!(fault.severity(), Severity::Warn);
+    assert!(flight.mission.known.is_running() && flight.mission.driving.worker.choice.parameters.is_empty());
 }
 
 #[test]

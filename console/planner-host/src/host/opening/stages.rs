@@ -170,7 +170,7 @@ impl Host {
     ) -> Result<(), Fault> {
         let info = &loaded.info;
         let values = parameters::numbers(info, &opening.parameters);
-        let values = values.map_err(|message| fault::of_parameters(&info.id, message));
+        let values = values.map_err(|message| fault::of_parameters(&info.id, Phase::Configure, message));
         let values = match values {
             Ok(values) => values,
             Err(fault) => return self.part(worker, loaded.blamed(fault)),

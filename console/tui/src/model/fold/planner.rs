@@ -38,6 +38,10 @@ impl Run {
             EventKind::Scalars { scalars } => {
                 self.planning.scalars = scalars.iter().take(MAX_SCALARS).cloned().collect();
             }
+            // The planner works on with its old values.
+            EventKind::PlannerFailed { fault, .. } if fault.refuses_change() => {
+                change.say(fault.severity(), fault.message.clone());
+            }
             EventKind::PlannerFailed { fault, .. } => {
                 // A refused planner does not replace the active one.
                 if self.planner_id() == Some(fault.planner.as_str()) {
