@@ -215,6 +215,24 @@ fn hold_is_heard_behind_whatever_the_terminal_sends() {
 }
 
 #[test]
+fn a_command_with_a_space_in_one_burst_is_text_and_a_space_after_it_holds() {
+    let mut session = Session::open(&goto(), 120, 36);
+    session.start();
+    session.see("▶ RUN");
+    for speed in ["2", "0.5", "4", "1"] {
+        session.send(format!(":speed {speed}\r").as_bytes());
+        session.see(&format!("×{speed}"));
+    }
+    let is_held = |session: &Session| kinds(&session.run()).iter().any(|kind| kind == "held");
+    assert!(!is_held(&session) && session.text().contains("▶ RUN"), "{}", session.text());
+    session.send(b":speed 0.5\r ");
+    session.see("‖ HOLD");
+    session.until("the hold in the journal", is_held);
+    session.press("1q");
+    assert_eq!(session.agree_to_leave(), "code=1");
+}
+
+#[test]
 fn a_light_background_gets_the_light_theme_and_a_late_answer_is_no_key() {
     let answer = b"\x1b]11;rgb:fdfd/f6f6/e3e3\x1b\\";
     let light = b"\x1b[38;2;31;35;40";

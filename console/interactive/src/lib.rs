@@ -25,6 +25,7 @@ mod replaying;
 mod screen;
 mod script;
 mod session;
+mod typing;
 mod viewing;
 mod watch;
 
@@ -293,7 +294,8 @@ fn show(
     if asks_background && let Some(background) = reader.background(BACKGROUND_WITHIN) {
         screen.suit(background);
     }
-    watch::keys(&outbox, current.clone(), reader, places)?;
+    let openers = screen.model().console.keys.line_openers();
+    watch::keys(&outbox, current.clone(), reader, (places, openers))?;
     watch::sizes(&outbox)?;
     let foreground = Foreground::new();
     watch::signals(&outbox, current.clone(), foreground.clone())?;

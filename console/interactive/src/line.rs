@@ -1,5 +1,6 @@
 //! The request channel to the engine's thread, used by every thread that may have to stop the robot.
 
+use super::typing::Reports;
 use flight::Forked;
 use mission::Order;
 use planner_host::Waker;
@@ -42,14 +43,12 @@ pub(super) struct EngineHandle {
     brake: Option<Brake>,
     /// Whether the robot moves or may start to move, as last reported by the screen.
     may_move: Arc<AtomicBool>,
-    /// Whether the operator is typing text, as last reported by the screen.
-    is_typing: Arc<AtomicBool>,
 }
 
 /// Creates a channel to an engine; `waker` interrupts its waits for planners.
 pub(super) fn line(waker: Waker, brake: Option<Brake>) -> (EngineHandle, Receiver<Request>) {
     let (requests, asked) = mpsc::channel();
-    (EngineHandle { requests, waker, brake, may_move: Arc::default(), is_typing: Arc::default() }, asked)
+    (EngineHandle { requests, waker, brake, may_move: Arc::default() }, asked)
 }
 
 impl EngineHandle {
@@ -68,15 +67,9 @@ impl EngineHandle {
         self.may_move.load(Ordering::Relaxed)
     }
 
-    /// Whether the operator is typing text, as last reported by the screen.
-    pub(super) fn is_typing(&self) -> bool {
-        self.is_typing.load(Ordering::Relaxed)
-    }
-
-    /// Records whether the robot may move and whether the operator is typing text, as reported by the screen.
-    pub(super) fn report(&self, may_move: bool, is_typing: bool) {
+    /// Records whether the robot may move, as reported by the screen.
+    pub(super) fn report(&self, may_move: bool) {
         self.may_move.store(may_move, Ordering::Relaxed);
-        self.is_typing.store(is_typing, Ordering::Relaxed);
     }
 
     /// Sends a query to the mission; the answer goes to the screen.
@@ -120,16 +113,20 @@ impl EngineHandle {
 
 /// The engine of the open run, if any, for the threads that may have to stop the robot.
 #[derive(Clone, Default)]
-pub(super) struct Current(Arc<Mutex<Option<EngineHandle>>>);
+pub(super) struct Current {
+    engine: Arc<Mutex<Option<EngineHandle>>>,
+    /// Whether the operator is typing text, as reported by the screen.
+    pub typing: Reports,
+}
 
 impl Current {
     /// Replaces the engine of the open run; `None` if no run is open.
     pub(super) fn set(&self, engine: Option<EngineHandle>) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = engine;
+        *self.engine.lock().unwrap_or_else(PoisonError::into_inner) = engine;
     }
 
     /// The engine of the open run.
     pub(super) fn get(&self) -> Option<EngineHandle> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        self.engine.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 }

@@ -116,7 +116,7 @@ mod tests {
             matches!(report, Some(Measured::Screen { response_ms: Some(response_ms), .. }) if *response_ms > 33.0)
         });
         let slow_s = (slow.count() - 1) as f64;
-        assert!(slow_s < tui::model::health::RESPONSE_MS.on_delay_s, "{slow_s} s");
+        assert!(slow_s < tui::model::health::RESPONSE_MS.moving.on_delay_s, "{slow_s} s");
     }
 
     #[test]

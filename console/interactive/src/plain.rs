@@ -20,11 +20,12 @@ use std::{
 };
 use tui::{
     Effect, Key, Model, Msg, Signal,
-    plain::{Said, no_question, status},
+    plain::{Said, help, no_question, status},
 };
 
 /// The lines that are not commands of the console.
 const STATUS: &str = "status";
+const HELP: [&str; 2] = ["help", ":help"];
 const YES: &str = "yes";
 const NO: &str = "no";
 
@@ -74,6 +75,7 @@ pub(super) fn speak(mut session: Session, outbox: &Outbox, engine: &Current) -> 
 fn answered(model: &Model, msg: &Msg) -> Option<Vec<String>> {
     match msg {
         Msg::Line(line) if line == STATUS => Some(status(model)),
+        Msg::Line(line) if HELP.contains(&line.as_str()) => Some(help(model)),
         Msg::Line(line) if line == YES || line == NO => Some(vec![no_question(model)?.to_owned()]),
         _ => None,
     }
@@ -94,7 +96,8 @@ fn fault(model: &Model) -> Option<String> {
     palette.fault.as_ref().map(|fault| format!("Refused: {}.", fault.what))
 }
 
-/// Reads commands from stdin: `yes` and `no` answer a question, `status` prints the state, `key NAME` presses a key, and
+/// Reads commands from stdin: `yes` and `no` answer a question, `status` prints the state, `help`
+/// prints the commands, `key NAME` presses a key, and
 /// everything else is a command line. `is_over` becomes true at the end of stdin.
 fn listen(outbox: &Outbox, is_over: Arc<AtomicBool>) -> anyhow::Result<()> {
     let outbox = outbox.clone();

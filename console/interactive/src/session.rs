@@ -5,6 +5,7 @@ use super::{
     history,
     inbox::Inbox,
     line::Current,
+    typing,
 };
 use mission::Order;
 use std::time::{Duration, Instant, SystemTime};
@@ -56,6 +57,7 @@ impl Session {
 
     /// Takes a message and carries out its effects. Returns the effects that concern the terminal.
     pub(super) fn take(&mut self, msg: Msg) -> Vec<Effect> {
+        let is_input = typing::is_input(&msg);
         let effects = update(&mut self.model, msg);
         if let (Some(kept), Some(line)) = (&mut self.kept, self.model.console.history.last())
             && kept != line
@@ -64,8 +66,9 @@ impl Session {
             self.desk.request(Request::Remember(line.clone()));
         }
         if let Some(engine) = self.engine.get() {
-            engine.report(self.model.live.may_move(), is_typing(&self.model));
+            engine.report(self.model.live.may_move());
         }
+        self.engine.typing.report(is_input, is_typing(&self.model));
         self.sent.clear();
         effects.into_iter().filter_map(|effect| self.carry_out(effect)).collect()
     }

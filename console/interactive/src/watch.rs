@@ -5,6 +5,7 @@ use super::{
     inbox::Outbox,
     line::{Current, EngineHandle},
     reading::Reader,
+    typing::Follower,
 };
 use anyhow::Context;
 use mission::Order;
@@ -84,14 +85,15 @@ impl SharedPlaces {
 }
 
 /// Listens for keys, mouse and pastes. A key that stops the robot takes effect from this thread, whatever the screen is
-/// doing.
+/// doing. `openers` are the keys that open an input line.
 pub(super) fn keys(
     outbox: &Outbox,
     engine: Current,
     mut reader: Reader,
-    places: SharedPlaces,
+    (places, openers): (SharedPlaces, Vec<Key>),
 ) -> anyhow::Result<()> {
     let outbox = outbox.clone();
+    let mut follower = Follower::new(engine.typing.clone(), openers);
     spawn("keys", move || {
         let (mut pointer, mut keyboard) = (Pointer::default(), Keyboard::default());
         while let Some((input, seen)) = reader.next() {
@@ -103,7 +105,9 @@ pub(super) fn keys(
                 Input::Background(_) | Input::Kind => None,
             };
             let Some(msg) = msg else { continue };
-            let stops = is_stop_key(&msg, engine.get().is_some_and(|engine| engine.is_typing()));
+            let now = Instant::now();
+            let stops = is_stop_key(&msg, follower.is_typing(now));
+            follower.sends(&msg, now);
             if !send_and_hold(&outbox, &engine, msg, stops) {
                 return;
             }
@@ -177,9 +181,6 @@ fn send_and_hold(outbox: &Outbox, engine: &Current, msg: Msg, stops: bool) -> bo
 }
 
 /// Whether a key stops a moving robot. While text is being typed, the space key enters a space.
-///
-/// The screen's report may be one key late. A space typed right after the key that opens a text line may hold the
-/// robot; a space typed right after the key that closes the line is left to the screen.
 fn is_stop_key(msg: &Msg, is_typing: bool) -> bool {
     match msg {
         Msg::Key(press) if !press.repeat => {

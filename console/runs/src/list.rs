@@ -17,7 +17,8 @@ use comfy_table::{
     CellAlignment::{Left, Right},
     Table, presets,
 };
-use recording::journal_of;
+use mission::EventKind;
+use recording::{JournalReader, journal_of};
 use report::document::Recovered;
 use serde::{Serialize, Serializer};
 use std::path::{Path, PathBuf};
@@ -135,7 +136,7 @@ fn look_at(folder: &Path, budget: &Budget) -> Listed {
             let note = format!("outcome {}, but not kept: {why}", word(&summary));
             listed(folder, "RECORDING FAILED", Some(&summary), Some(note))
         }
-        Standing::Running => listed(folder, "RUNNING", None, None),
+        Standing::Running => running(folder),
         Standing::JournalOnly { doubt, failure } => by_journal(folder, doubt.as_deref(), failure, budget),
     }
 }
@@ -164,6 +165,21 @@ fn listed(folder: &Path, end: &str, summary: Option<&Summary>, note: Option<Stri
 
 fn word(summary: &Summary) -> &'static str {
     summary.outcome.map_or("unknown", mission::Outcome::word)
+}
+
+/// A run that another process is recording: its scenario and planner, from the first event of its journal.
+fn running(folder: &Path) -> Listed {
+    let first = JournalReader::open(&journal_of(folder)).ok().and_then(|mut events| events.next()?.ok());
+    let opened = first.and_then(|event| match event.kind {
+        EventKind::RunOpened(run) => Some(run),
+        _ => None,
+    });
+    Listed {
+        scenario: opened.as_ref().map(|run| run.scenario.clone()),
+        planner: opened.as_ref().map(|run| run.mission.planner.id.clone()),
+        seed: opened.as_ref().map(|run| run.seed),
+        ..listed(folder, "RUNNING", None, None)
+    }
 }
 
 /// A run with no report, or with one that is not trusted: its entry is built from the journal.
@@ -201,5 +217,11 @@ mod tests {
         let folder = Path::new(OsStr::from_bytes(b"logs/run\xff"));
         let json = serde_json::to_value(listed(folder, "CRASHED", None, None)).expect("it is listed");
         assert_eq!(json["folder"], "logs/run\u{fffd}");
+    }
+
+    #[test]
+    fn a_run_without_a_readable_journal_is_still_listed_as_running() {
+        let listed = running(Path::new("logs/20261122T040049Z-demo-rpf-42"));
+        assert_eq!((listed.end.as_str(), listed.scenario), ("RUNNING", None));
     }
 }

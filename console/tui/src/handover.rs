@@ -4,7 +4,7 @@ use crate::guide;
 use crate::model::{
     Alarm, Model,
     alarms::State,
-    log::{Entry, clock, severity_word},
+    log::{Entry, What, clock, severity_word},
 };
 use crate::view::{by_command, shares};
 use mission::{EventKind, Order, TaskConfig};
@@ -23,7 +23,7 @@ pub fn page(model: &Model) -> String {
         ("No-go zones", zones(model)),
         ("Clearance", clearance(model)),
         ("Work done", done(model)),
-        ("Starts, holds and ends", entries(model, is_hold)),
+        ("Starts, holds and ends", holds(model)),
         ("Decisions of the operator", entries(model, is_decision)),
     ];
     for (title, lines) in sections {
@@ -61,6 +61,7 @@ fn state(model: &Model) -> Vec<String> {
     }
     let recording = match (&live.health.recording, &live.result) {
         (_, Some(result)) => result.kept.clone(),
+        (crate::model::Recording::On, None) if run.has_ended() => "The run is being closed and kept".into(),
         (crate::model::Recording::On, None) => "Recording is on".into(),
         (crate::model::Recording::Off, None) => "Nothing is recorded".into(),
         (crate::model::Recording::Failed(why), None) => format!("RECORDING FAILED: {why}"),
@@ -74,8 +75,14 @@ fn next(model: &Model) -> Vec<String> {
     if let Some(progress) = &model.live.run.progress {
         lines.push(format!("Path {:.0} % done", 100.0 * progress.done));
     }
+    let is_on_task = !model.live.run.phase().is_return();
     lines.extend(
-        model.live.run.left_s().map(|left_s| format!("About {} of mission time left", clock(left_s))),
+        model
+            .live
+            .run
+            .left_s()
+            .filter(|_| is_on_task)
+            .map(|left_s| format!("About {} of mission time left", clock(left_s))),
     );
     lines
 }
@@ -146,16 +153,38 @@ fn done(model: &Model) -> Vec<String> {
 
 /// The log lines about certain events, oldest first.
 fn entries(model: &Model, is_listed: fn(&EventKind) -> bool) -> Vec<String> {
+    listed(model, is_listed).map(line).collect()
+}
+
+fn listed(model: &Model, is_listed: fn(&EventKind) -> bool) -> impl Iterator<Item = &Entry> {
     let log = &model.live.run.log;
     let lines = (log.oldest()..log.end()).filter_map(|number| log.get(number));
-    let listed = |entry: &&Entry| entry.what.event().is_some_and(|event| is_listed(&event.kind));
-    lines.filter(listed).map(|entry| format!("T+{} {}", clock(entry.t_s), entry.text)).collect()
+    lines.filter(move |entry| entry.what.event().is_some_and(|event| is_listed(&event.kind)))
+}
+
+fn line(entry: &Entry) -> String {
+    format!("T+{} {}", clock(entry.t_s), entry.text)
+}
+
+/// The starts, holds and ends. A drive back begins with its order, not with the task being resumed.
+fn holds(model: &Model) -> Vec<String> {
+    let back: Vec<u64> = listed(model, |kind| matches!(kind, EventKind::Ordered { order: Order::DriveBack }))
+        .map(|entry| entry.tick)
+        .collect();
+    let is_of_drive_back = |entry: &&Entry| {
+        let is_resumed = |what: &What| what.event().is_some_and(|event| event.kind == EventKind::Resumed);
+        back.contains(&entry.tick) && is_resumed(&entry.what)
+    };
+    listed(model, is_hold).filter(|entry| !is_of_drive_back(entry)).map(line).collect()
 }
 
 fn is_hold(kind: &EventKind) -> bool {
     match kind {
-        EventKind::Held { .. } | EventKind::Resumed | EventKind::Ended { .. } => true,
-        EventKind::Ordered { order } => order.is_start(),
+        EventKind::Held { .. }
+        | EventKind::Resumed
+        | EventKind::ReturnBegan { .. }
+        | EventKind::Ended { .. } => true,
+        EventKind::Ordered { order } => order.is_start() || *order == Order::DriveBack,
         _ => false,
     }
 }

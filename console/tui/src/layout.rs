@@ -42,13 +42,15 @@ pub(crate) struct Shown {
     pub missed: bool,
     /// The number of AE stations.
     pub stations: u16,
+    /// Whether the operator has turned to the table of the stations, which then takes the place of other panes.
+    pub table: bool,
 }
 
 impl Shown {
     /// What the layout must show for a run.
     pub(crate) fn of(run: &Run, missed: bool) -> Self {
         let stations = run.about.as_ref().map_or(0, |about| about.world.stations.len() as u16);
-        Self { tether: run.tether.is_some(), missed, stations }
+        Self { tether: run.tether.is_some(), missed, stations, table: false }
     }
 }
 
@@ -75,7 +77,13 @@ pub(crate) fn mission(area: Rect, (width, height): (u16, u16), shown: Shown) -> 
         let mut wishes = first(shown, arrangement == Arrangement::Wide);
         // A shorter screen names the stations in a row of the position pane.
         let has_table = width >= 100 && side.height >= TABLE_ROWS && shown.stations > 0;
-        wishes.extend(has_table.then_some(wish(Pane::Stations, 6, shown.stations + 3)));
+        let table = wish(Pane::Stations, 6, 2 * shown.stations + 3);
+        if has_table {
+            wishes.push(wish(Pane::Stations, 6, shown.stations + 3));
+        } else if shown.table && arrangement == Arrangement::Wide {
+            wishes.retain(|wish| matches!(wish.pane, Pane::Position | Pane::Tether));
+            wishes.insert(1, table);
+        }
         placed.extend(stack(side, &wishes));
     } else {
         let [one, two] = Layout::horizontal([Constraint::Fill(1); 2]).areas(side);
@@ -142,7 +150,7 @@ pub(crate) fn page(area: Rect, pane: Pane, shown: Shown) -> Vec<(Pane, Rect)> {
 /// The panes beside the map. Whatever can end a mission comes first.
 fn first(shown: Shown, wide: bool) -> Vec<Wish> {
     let rows = |full: u16, short: u16| if wide { full } else { short };
-    let tether = shown.tether.then_some(wish(Pane::Tether, 5, rows(8, 6)));
+    let tether = shown.tether.then_some(wish(Pane::Tether, 5, rows(10, 6)));
     [wish(Pane::Position, 4, rows(8, 5))]
         .into_iter()
         .chain(tether)
@@ -242,7 +250,7 @@ mod tests {
     fn every_shown() -> impl Iterator<Item = Shown> {
         [(false, false), (true, false), (false, true), (true, true)]
             .into_iter()
-            .map(|(tether, missed)| Shown { tether, missed, stations: 6 })
+            .map(|(tether, missed)| Shown { tether, missed, stations: 6, table: false })
     }
 
     #[test]
@@ -266,7 +274,7 @@ mod tests {
 
     #[test]
     fn large_screens_have_two_stacks_ten_events_and_charts() {
-        let shown = Shown { tether: true, missed: false, stations: 6 };
+        let shown = Shown { tether: true, missed: false, stations: 6, table: false };
         let place = |size: (u16, u16), pane| {
             placed(size.0, size.1, shown)
                 .into_iter()

@@ -15,6 +15,7 @@ pub mod live;
 pub mod log;
 pub mod palette;
 pub mod parameter;
+pub mod planner_list;
 pub mod planning;
 pub mod plans;
 pub mod plugins;

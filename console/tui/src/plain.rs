@@ -1,10 +1,12 @@
 //! The console as sentences, one per line, for screen readers and logs.
 
+use crate::actions::{Action, find};
 use crate::model::{
     Alarm, Entry, Model, Overlay, Recording, Screen,
     log::{clock, severity_word},
     what_if::{Candidate, Forecast},
 };
+use crate::update::offered;
 use crate::view::text;
 use crate::view::{by_command, question, shares, standing};
 use mission::Outcome;
@@ -40,7 +42,9 @@ impl Said {
         lines.extend(newly(&mut self.question, question(model)));
         let standing = standing(model);
         if standing != self.standing {
-            lines.push(standing.clone());
+            // A log line that has just been printed may begin the sentence about the state.
+            let said = entries.iter().find_map(|entry| standing.strip_prefix(&format!("{}. ", entry.text)));
+            lines.push(said.unwrap_or(&standing).to_owned());
             self.standing = standing;
         }
         lines.extend(self.coverage(model));
@@ -112,6 +116,16 @@ pub fn status(model: &Model) -> Vec<String> {
     }));
     lines.extend(question(model));
     lines
+}
+
+/// The answer to `help`: the commands that can be given now, one in a line, and how to learn more.
+pub fn help(model: &Model) -> Vec<String> {
+    let now = find::commands().filter(|action| offered(model, action.id).is_ok());
+    let mut keys = model.console.keys.clone();
+    keys.spells_commands = true;
+    let line = |action: &'static Action| format!("{}: {}.", action.usage(), keys.spelled(action.about));
+    let rest = ["status: Print the state.", "yes, no: Answer a question.", "key NAME: Press a key."];
+    now.map(line).chain(rest.map(str::to_owned)).collect()
 }
 
 /// The answer to `yes` and `no` if no question is open.

@@ -147,7 +147,8 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
     if typing::press(model, press.key) {
         return Vec::new();
     }
-    if press.key == Key::Esc && (events::close(model) || go::close_text(model)) {
+    if press.key == Key::Esc && (events::close(model) || go::close_text(model) || typing::clear_filter(model))
+    {
         return Vec::new();
     }
     let Some(action) = find::action_for(&model.console.keys, press.key, &contexts(model)) else {
@@ -178,7 +179,7 @@ fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
     match model.ui.overlay {
         Overlay::None => {
             let help = model.console.keys.spelled("<help>: keys");
-            model.hint(format!("{key} does nothing here; {help}"));
+            model.hint(format!("key {key} does nothing here; {help}"));
         }
         ref overlay if overlay.is_question() => {
             let was_stepping = model.ui.overlay == Overlay::Stepping;
@@ -218,13 +219,21 @@ fn take_planners(model: &mut Model, found: Vec<PlannerInfo>, refused: Vec<Refuse
 
 /// Writes a message about the console to the log and to the line above the keys; a critical message becomes an alarm.
 fn news(model: &mut Model, cause: &Cause, severity: Severity, text: String) {
-    model.live.run.log.add(model.live.run.clock.t_s, severity, "console", text.clone());
     if severity == Severity::Crit {
-        let run = &mut model.live.run;
-        run.alarms.raise(cause.clone(), severity, text.clone(), run.clock.t_s);
-        run.alarms.note(cause, run.log.newest().unwrap_or_default(), None);
+        raise(model, cause, text.clone());
+    } else {
+        model.live.run.log.add(model.live.run.clock.t_s, severity, "console", text.clone());
     }
     model.say(severity, text);
+}
+
+/// Raises a critical alarm about the console, and writes its text to the log.
+fn raise(model: &mut Model, cause: &Cause, text: String) {
+    let run = &mut model.live.run;
+    let t_s = run.clock.t_s;
+    run.log.add(t_s, Severity::Crit, "console", text.clone());
+    run.alarms.raise(cause.clone(), Severity::Crit, text, t_s);
+    run.alarms.note(cause, run.log.newest().unwrap_or_default(), None);
 }
 
 fn obey_signal(model: &mut Model, signal: Signal) -> Vec<Effect> {

@@ -53,6 +53,13 @@ impl Keymap {
         self.changed.get(action.name).map_or(action.keys, Vec::as_slice)
     }
 
+    /// The keys that open an input line on a screen without an overlay.
+    pub fn line_openers(&self) -> Vec<Key> {
+        let opens =
+            |action: &&Action| matches!(action.id, ActionId::Commands | ActionId::Help | ActionId::Filter);
+        ACTIONS.iter().filter(opens).flat_map(|action| self.of(action)).copied().collect()
+    }
+
     /// The keys of an action as text.
     pub fn text(&self, action: &Action) -> String {
         self.of(action).iter().map(Key::to_string).collect::<Vec<_>>().join(" ")

@@ -37,6 +37,12 @@ pub struct Position {
     /// How often each station was rejected.
     #[serde(default)]
     pub rejections: BTreeMap<StationId, u32>,
+    /// The number of fixes.
+    #[serde(default)]
+    pub fixes: u32,
+    /// The number of fixes in which each station was not used.
+    #[serde(default)]
+    pub unused: BTreeMap<StationId, u32>,
     /// Whether the position is lost.
     pub lost: bool,
     /// The history of the 95 % error, metres.
@@ -73,6 +79,10 @@ impl Position {
     /// Records a fix.
     pub fn fixed(&mut self, t_s: f64, fix: &Fix) {
         (self.fix, self.fix_t_s, self.failure) = (Some(fix.clone()), t_s, None);
+        self.fixes += 1;
+        for (station, _) in &fix.excluded {
+            *self.unused.entry(*station).or_default() += 1;
+        }
         if let Some(rms_m) = self.residual_rms_m() {
             self.residual_history_mm.add(t_s, 1000.0 * rms_m);
         }
@@ -84,6 +94,12 @@ impl Position {
         for (station, residual_m) in used.chain(rejected) {
             self.station_history_mm.entry(station).or_default().add(t_s, 1000.0 * residual_m.abs());
         }
+    }
+
+    /// The share of the fixes in which a station was not used, 0 to 1; `None` before the first fix.
+    pub fn unused_share(&self, station: StationId) -> Option<f64> {
+        let unused = self.unused.get(&station).copied().unwrap_or(0);
+        (self.fixes > 0).then(|| f64::from(unused) / f64::from(self.fixes))
     }
 
     /// The 95 % error of the pose, metres.

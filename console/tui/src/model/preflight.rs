@@ -5,6 +5,7 @@ mod vehicle;
 use super::{Model, ui::Arrangement};
 use mission::{Check, CheckOutcome, PlanId, Readiness};
 use serde::{Deserialize, Serialize};
+use world::coverage::percent_text;
 
 /// The minimum number of stations for a position fix.
 const LEAST_STATIONS: usize = 2;
@@ -132,7 +133,13 @@ impl Model {
                 check("plan", CheckOutcome::Passed, format!("{:.1} m, the whole task", plan.length_m))
             }
             (Some(plan), None) => {
-                check("plan", CheckOutcome::Warning, format!("{:.1} m, only part of the task", plan.length_m))
+                let what = match self.live.left_out() {
+                    Some(left_out) => {
+                        format!("scans {} % of the requested floor", percent_text(left_out.scanned(), 1))
+                    }
+                    None => "only part of the task".to_owned(),
+                };
+                check("plan", CheckOutcome::Warning, format!("{:.1} m, {what}", plan.length_m))
             }
             (None, None) => check("plan", CheckOutcome::Failed, "none; `:plan-again` makes one".into()),
         }

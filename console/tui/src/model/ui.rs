@@ -235,6 +235,9 @@ pub enum Overlay {
         purpose: Purpose,
         /// The index of the selected line.
         selected: usize,
+        /// Whether the planners that cannot run the mission are listed one by one.
+        #[serde(default)]
+        is_unfolded: bool,
     },
     /// The parameters of the active planner.
     Parameters {
@@ -331,8 +334,6 @@ pub enum Ask {
     Resume,
     /// Run a plan that was refused because of the tether.
     FlyUncertified,
-    /// End the mission.
-    Abort,
     /// Change the active planner.
     Swap(PlannerChoice),
     /// Promote the planner in shadow.
@@ -359,7 +360,6 @@ impl Ask {
             Self::Start(plan) => plan.map_or(Order::Start, Order::StartPlan),
             Self::Resume => Order::Resume,
             Self::FlyUncertified => Order::FlyUncertified,
-            Self::Abort => Order::Abort,
             Self::Swap(choice) => Order::ChoosePlanner(choice.clone()),
             Self::Promote => Order::Promote,
             Self::TakePlan => Order::TakePlan,
@@ -468,7 +468,8 @@ impl Ui {
             _ => return &[],
         }
         match self.arrangement() {
-            Arrangement::Wide | Arrangement::Narrow => &[Pane::Map, Pane::Events],
+            Arrangement::Wide => &[Pane::Map, Pane::Events, Pane::Stations],
+            Arrangement::Narrow => &[Pane::Map, Pane::Events],
             Arrangement::Paged => &Pane::PAGES,
             Arrangement::Strip => &[],
         }

@@ -7,6 +7,7 @@ use super::overlay::{self, ask, open};
 use super::send::{hold_now, send};
 use super::{palette, remedies, replay};
 use crate::actions::{ActionId, Deed, find};
+use crate::model::planner_list::PlannerLine;
 use crate::model::plugins::plugins;
 use crate::model::ui::{Ask, Purpose};
 use crate::model::{Model, Overlay, Pane, Screen, Speed};
@@ -43,13 +44,18 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
 
 /// Opens the list of planners, with one that suits the purpose selected.
 pub(crate) fn choose(model: &mut Model, purpose: Purpose) -> Vec<Effect> {
-    let driving = driving(model);
+    let active = model.live.run.planner_id();
+    let lines = model.planner_lines(false);
+    let is_active = |line: &PlannerLine| matches!(line, PlannerLine::Planner(planner) if Some(planner.id.as_str()) == active);
+    let at = lines.iter().position(is_active).unwrap_or(0);
     // For any other purpose, the operator wants a planner other than the active one.
-    let others = (1..model.console.planners.len()).map(|by| (driving + by) % model.console.planners.len());
-    let other = others
-        .filter(|_| purpose != Purpose::Drive)
-        .find(|index| model.live.run.cannot_fly(&model.console.planners[*index]).is_none());
-    open(model, Overlay::Planners { purpose, selected: other.unwrap_or(driving) })
+    let mut others = (1..lines.len()).map(|by| (at + by) % lines.len());
+    let other = others.find(|index| {
+        let can = matches!(lines[*index], PlannerLine::Planner(planner) if model.live.run.cannot_fly(planner).is_none());
+        purpose != Purpose::Drive && can
+    });
+    let selected = other.unwrap_or(at);
+    open(model, Overlay::Planners { purpose, selected, is_unfolded: false })
 }
 
 /// Stops the robot, or asks whether to resume if it is held. In a replay, plays or pauses.
@@ -158,11 +164,6 @@ pub(crate) fn toggle_mouse(model: &mut Model) -> Vec<Effect> {
     };
     model.say(Severity::Info, news);
     vec![Effect::Mouse(model.ui.mouse)]
-}
-
-fn driving(model: &Model) -> usize {
-    let id = model.live.run.planner_id();
-    model.console.planners.iter().position(|planner| Some(planner.id.as_str()) == id).unwrap_or(0)
 }
 
 /// Moves the focus by `by` panes; on the home screen, switches between the lists.

@@ -2,9 +2,9 @@
 
 use crate::model::alarms::{
     Reading,
-    limit::{Edge, Limit, Watch},
+    limit::{Edge, Watch},
 };
-use crate::model::{Cause, Measured, Model, Watches, health};
+use crate::model::{Cause, Measured, Model, Watches, health, health::ByMotion};
 use mission::Severity;
 
 /// Takes a measurement of the console itself.
@@ -29,7 +29,7 @@ pub(super) fn take_lag(model: &mut Model, ticks: u64) {
 struct Figure {
     cause: Cause,
     severity: Severity,
-    limit: Limit,
+    limit: ByMotion,
     unit: &'static str,
     watch: fn(&mut Watches) -> &mut Watch,
     text: &'static str,
@@ -70,6 +70,7 @@ const DISK: Figure = Figure {
 
 fn compare(model: &mut Model, figure: &Figure, value: f64) {
     let Figure { cause, severity, limit, unit, watch, text } = figure;
+    let limit = limit.of(model.live.may_move());
     let t_s = model.live.run.clock.t_s;
     let now_s = model.console.now.mono_s;
     let watch = watch(&mut model.console.watches);

@@ -1,6 +1,6 @@
 //! Handles messages about the open run.
 
-use super::{Effect, RunMsg, finish, go, health, news, preflight, replay, what_if, zones};
+use super::{Effect, RunMsg, finish, go, health, news, preflight, raise, replay, what_if, zones};
 use crate::model::{
     Busy, Cause, Change, Health, Live, Model, Overlay, Recording, RunId, RunResult, Screen, Withdrawn,
     ui::Ask,
@@ -61,8 +61,8 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
         }
         RunMsg::WriterGone => {
             model.live.is_cut_off = true;
-            let text = "CONSOLE LOST: the run was not closed; these are the last known values";
-            news(model, &Cause::Writer, Severity::Crit, text.into());
+            // The state line says so, too.
+            raise(model, &Cause::Writer, "CONSOLE LOST: the run was not closed".into());
         }
         RunMsg::Health(health) => take_health(model, health),
         RunMsg::OrderFailed { order, why } => {

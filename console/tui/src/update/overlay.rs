@@ -11,7 +11,7 @@ use super::send::{send, set_parameter};
 use super::{finish, palette, remedies, shadow, typing, what_if, zones};
 use crate::actions::ActionId;
 use crate::model::ui::{Ask, Edit, MapLayer, Purpose};
-use crate::model::{Ghost, Model, Overlay, Palette, parameter, preset};
+use crate::model::{Ghost, Model, Overlay, Palette, parameter, planner_list::PlannerLine, preset};
 use mission::{Order, ParamValue, Parameters, PlannerChoice, PlannerInfo, Severity};
 
 /// Opens an overlay.
@@ -58,7 +58,9 @@ pub(crate) fn accept(model: &mut Model) -> Vec<Effect> {
         Overlay::Confirm(ask) => agree(model, &ask),
         Overlay::Quit => quit(model),
         Overlay::Commands(palette) => palette::accept(model, palette),
-        Overlay::Planners { purpose, selected } => choose_planner(model, purpose, selected),
+        Overlay::Planners { purpose, selected, is_unfolded } => {
+            choose_planner(model, purpose, (selected, is_unfolded))
+        }
         Overlay::Parameters { selected, edit: Some(edit) } => take_value(model, selected, edit),
         Overlay::Parameters { edit: None, .. } => edit(model),
         Overlay::Layers { selected } => {
@@ -113,7 +115,6 @@ fn agree(model: &mut Model, ask: &Ask) -> Vec<Effect> {
         Ask::Start(_) => ActionId::Start,
         Ask::Resume => ActionId::Resume,
         Ask::FlyUncertified => ActionId::FlyUncertified,
-        Ask::Abort => ActionId::Abort,
         Ask::Swap(_) => ActionId::ChoosePlanner,
         Ask::Promote => ActionId::Promote,
         Ask::TakePlan => ActionId::TakePlan,
@@ -141,9 +142,19 @@ fn quit(model: &mut Model) -> Vec<Effect> {
     end.into_iter().chain([Effect::Quit { signal: None }]).collect()
 }
 
-/// Takes the selected planner. Checks again first: the mission continued while the list was open.
-fn choose_planner(model: &mut Model, purpose: Purpose, selected: usize) -> Vec<Effect> {
-    let Some(planner) = model.console.planners.get(selected).cloned() else { return Vec::new() };
+/// Takes the selected planner, or unfolds the list. Checks again first: the mission continued while the list was open.
+fn choose_planner(
+    model: &mut Model,
+    purpose: Purpose,
+    (selected, is_unfolded): (usize, bool),
+) -> Vec<Effect> {
+    let planner = match model.planner_lines(is_unfolded).get(selected) {
+        Some(PlannerLine::Planner(planner)) => (*planner).clone(),
+        Some(PlannerLine::Others(_)) => {
+            return open(model, Overlay::Planners { purpose, selected, is_unfolded: true });
+        }
+        None => return Vec::new(),
+    };
     let id = match purpose {
         Purpose::Drive => ActionId::ChoosePlanner,
         Purpose::Compare => ActionId::Compare,
@@ -186,9 +197,13 @@ pub(crate) fn cancel_plan(model: &mut Model) -> Vec<Effect> {
         preflight::cancel(model);
         return Vec::new();
     }
-    if model.live.plans.ghost.take().is_some() {
+    if let Some(ghost) = model.live.plans.ghost.take() {
+        let news = if ghost.made.is_some() { "second plan removed" } else { "comparison cancelled" };
+        model.say(Severity::Info, news);
         return vec![Effect::StopComparing];
     }
+    let news = model.console.keys.spelled("planning cancelled; <plan-again>: plan again");
+    model.say(Severity::Watch, news);
     // Restarting the same planner does not request a plan.
     let choice = model.live.run.planning.choice.clone();
     choice.into_iter().map(|choice| Effect::Order(Order::ChoosePlanner(choice))).collect()
@@ -250,7 +265,7 @@ fn take_value(model: &mut Model, selected: usize, edit: Edit) -> Vec<Effect> {
 pub(super) fn select(model: &mut Model, by: isize) {
     let lines = match &model.ui.overlay {
         Overlay::Commands(palette) => palette::choices(model, palette).len(),
-        Overlay::Planners { .. } => model.console.planners.len(),
+        Overlay::Planners { is_unfolded, .. } => model.planner_lines(*is_unfolded).len(),
         Overlay::Parameters { .. } => model.edited().map_or(0, |(info, _)| info.parameters.len()),
         Overlay::Preset { choice, .. } => {
             let now = model.live.run.planning.choice.as_ref();

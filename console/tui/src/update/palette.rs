@@ -38,7 +38,11 @@ pub fn choices(model: &Model, palette: &Palette) -> Vec<Choice> {
     let aliases = aliases.map(|(name, line)| Choice::Alias(name.clone(), line.clone()));
     let (exact, others): (Vec<_>, Vec<_>) =
         aliases.partition(|alias| matches!(alias, Choice::Alias(name, _) if name == typed));
-    exact.into_iter().chain(ranked(model, typed).into_iter().map(Choice::Command)).chain(others).collect()
+    exact
+        .into_iter()
+        .chain(ranked(model, palette, typed).into_iter().map(Choice::Command))
+        .chain(others)
+        .collect()
 }
 
 /// The group of a command in the list of all commands: those of this screen come first, the screens last.
@@ -61,9 +65,11 @@ pub fn values(model: &Model, action: &Action) -> Vec<String> {
 }
 
 /// The commands that match the typed text, best first; if nothing is typed, in groups.
-fn ranked(model: &Model, typed: &str) -> Vec<&'static Action> {
+fn ranked(model: &Model, palette: &Palette, typed: &str) -> Vec<&'static Action> {
     if typed.is_empty() {
-        let mut all: Vec<&Action> = find::commands().collect();
+        // The list of keys shows what works here.
+        let is_listed = |action: &&Action| !palette.help || offered(model, action.id).is_ok();
+        let mut all: Vec<&Action> = find::commands().filter(is_listed).collect();
         all.sort_by_key(|action| group(model, action));
         return all;
     }

@@ -35,12 +35,25 @@ pub(crate) fn steps(model: &Model, cause: &Cause) -> Vec<Step> {
     let remedies = guide(cause).remedies.iter();
     let of_guide = remedies.filter_map(|remedy| Some((remedy.text, remedy.action?)));
     let of_guide = of_guide.map(|(text, action)| Step { text: text.to_owned(), deed: Deed::Act(action) });
+    if model.live.is_cut_off {
+        // No console gives orders to this run any more; what remains is to look.
+        return of_guide.filter(|step| can(model, &step.deed).is_ok()).take(MOST).collect();
+    }
     let alarm = model.live.run.alarms.get(cause);
     let acknowledge = alarm.filter(|alarm| alarm.is_unacknowledged()).map(|_| Step {
         text: "Acknowledge (<acknowledge>).".to_owned(),
         deed: Deed::Act(ActionId::Acknowledge),
     });
     of_guide.chain(station(model, cause)).chain(acknowledge).take(MOST).collect()
+}
+
+/// What the operator can do about an alarm that no action does.
+pub(crate) fn advice(model: &Model, cause: &Cause) -> Vec<&'static str> {
+    if model.live.is_cut_off && *cause != Cause::Writer {
+        return vec!["No console controls this run any more. Check the robot on site."];
+    }
+    let remedies = guide(cause).remedies.iter().filter(|remedy| remedy.action.is_none());
+    remedies.map(|remedy| remedy.text).collect()
 }
 
 /// Excluding the station that an alarm is about, or using it again.

@@ -3,7 +3,7 @@
 use super::offer::demand;
 use super::palette;
 use crate::keys::Key;
-use crate::model::{LineEdit, Model, Overlay};
+use crate::model::{LineEdit, Model, Overlay, Pane, Screen};
 use mission::{ParamKind, Severity};
 
 /// Whether an input line is open, where letters and spaces are text.
@@ -95,6 +95,24 @@ fn changed(model: &mut Model) {
 /// The filter text for the screen's list.
 pub(super) fn filtered(model: &Model) -> &str {
     model.ui.screen.row().filter.map_or(model.ui.needle.as_str(), |(text, _)| text(model))
+}
+
+/// Clears the filter of the list on the screen; returns whether there was one.
+pub(super) fn clear_filter(model: &mut Model) -> bool {
+    let is_free = model.ui.overlay == Overlay::None && model.ui.cursor.is_none();
+    let has_filter = has_list(model) && !filtered(model).is_empty();
+    if is_free && has_filter {
+        filter(model, "");
+        model.hint("filter cleared");
+    }
+    is_free && has_filter
+}
+
+/// Whether the screen shows a list that is filtered.
+fn has_list(model: &Model) -> bool {
+    model.ui.screen.row().filter.is_some()
+        || model.ui.screen == Screen::Events
+        || model.ui.screen == Screen::Mission && model.ui.shows(Pane::Events)
 }
 
 /// Filters the list on the screen.

@@ -25,6 +25,8 @@ const DETAIL: u16 = 72;
 const EVENTS: u16 = 5;
 /// Minimum rows of the table, including the frame.
 const TABLE: u16 = 7;
+/// Maximum rows of the table on a small screen, including the frame: two alarms.
+const PAGED_TABLE: u16 = 6;
 /// Minimum and preferred rows of the chart, including the frame.
 const CHART: (u16, u16) = (7, 16);
 /// Columns and rows of the screen from which everything about an alarm is beside the table.
@@ -37,8 +39,21 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
         }
         (Some(alarm), Arrangement::Wide) => wide(look, frame, area, alarm),
         (Some(alarm), Arrangement::Narrow) => narrow(look, frame, area, alarm),
+        (Some(alarm), Arrangement::Paged) => paged(look, frame, area, alarm),
         _ => table::draw(look, frame, area, arrangement),
     }
+}
+
+/// On a small screen, the actions and the cause of the selected alarm are below the table.
+fn paged(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
+    let rows = table::rows(look, Arrangement::Paged).min(PAGED_TABLE);
+    let [list, below] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(area);
+    table::draw(look, frame, list, Arrangement::Paged);
+    let columns = usize::from(below.width) - 2;
+    let mut lines = detail::cause(look, alarm, columns);
+    lines.extend(actions::lines(look, alarm, columns));
+    let title = detail::title(look, alarm);
+    fill(frame, below, look.block(Role::Border, &title, &look.keys("<accept> actions")), lines);
 }
 
 /// Whether the screen itself shows the actions, so that no overlay is needed.

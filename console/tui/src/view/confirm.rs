@@ -108,8 +108,7 @@ pub(crate) fn question(model: &Model) -> Option<String> {
 
 /// The clauses of the open question. The first one contains the question and its keys, and is never left out.
 fn asked(model: &Model) -> Option<Vec<String>> {
-    let moves =
-        || format!("The robot will move (planner {}).", model.live.run.planner_id().unwrap_or("unknown"));
+    let drives = format!("Planner {}.", model.live.run.planner_id().unwrap_or("unknown"));
     let clauses = match &model.ui.overlay {
         Overlay::Confirm(Ask::Start(_)) => {
             let speed = text::speed(model.live.speed);
@@ -122,18 +121,14 @@ fn asked(model: &Model) -> Option<Vec<String>> {
             .collect()
         }
         Overlay::Confirm(Ask::Resume) => {
-            let clauses = ["Resume? <accept>: resume, <cancel>: stay held.".into(), moves()];
-            clauses.into_iter().chain(continues(model)).collect()
+            let question = "Resume? The robot will move. <accept>: resume, <cancel>: cancel.".into();
+            [question, drives].into_iter().chain(continues(model)).collect()
         }
         Overlay::Confirm(Ask::FlyUncertified) => vec![
             "Run uncertified plan? <accept>: run, <cancel>: stay held.".into(),
             "Tether may stay out after return.".into(),
             "Applies to later plans too, until planning fails.".into(),
         ],
-        Overlay::Confirm(Ask::Abort) => {
-            let scanned = format!("{} % of reachable floor scanned.", coverage::shares(&model.live.run).0);
-            vec!["End the mission? <accept>: end, <cancel>: cancel. It cannot be resumed.".into(), scanned]
-        }
         Overlay::Confirm(Ask::Swap(choice)) => {
             let next = text::fit(&choice.id, 18);
             let question = match (choice.parameters.len(), model.live.run.planner_id()) {

@@ -32,12 +32,17 @@ const LIST: u16 = 7;
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let ui = &look.model.ui;
     let needle = without_least(&ui.needle);
-    let filter = if needle.is_empty() { String::new() } else { format!(", `{}`", text::fit(&needle, 16)) };
+    let filter =
+        if needle.is_empty() { String::new() } else { format!(", filter `{}`", text::fit(&needle, 16)) };
     let newer = ui.events.newer();
     let back = if newer > 0 { format!(", {newer} newer") } else { String::new() };
     let least = severity_word(ui.events.matches.filter().least());
     let title = format!("Events, {least} and above{filter}{back}");
-    let note = if area.width >= 60 { "<severity> severity  <filter> filter" } else { "" };
+    let note = match area.width {
+        60.. if !ui.needle.is_empty() => "<severity> severity  <cancel> clear filter",
+        60.. => "<severity> severity  <filter> filter",
+        _ => "",
+    };
     let block = look.pane(Pane::Events, &title, &look.keys(note));
     let inner = block.inner(area);
     let listed = ui.events.matches.newest(&look.run.log, newer).take(usize::from(inner.height));
@@ -123,7 +128,8 @@ fn filter_lines(look: &Look, columns: usize) -> Vec<Line<'static>> {
         return Vec::new();
     }
     let filter = ui.events.matches.filter();
-    let mut line = look.line([(Role::Key, look.keys(" <filter> "))]);
+    let clear = if is_typed { "" } else { "<cancel>: clear  " };
+    let mut line = look.line([(Role::Key, look.keys(&format!(" filter  {clear}")))]);
     line.spans.extend(pieces(&ui.needle, filter).into_iter().map(|(is_bad, piece)| {
         let span = look.span(if is_bad { Role::Warn } else { Role::Title }, piece);
         if is_bad { span.patch_style(Modifier::UNDERLINED) } else { span }

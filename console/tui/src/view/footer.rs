@@ -7,6 +7,7 @@ use crate::actions::{
     context::{Context, contexts},
 };
 use crate::keys::Key;
+use crate::model::planner_list::PlannerLine;
 use crate::model::replay::Jump;
 use crate::model::zone_draft::Form;
 use crate::model::{Model, Overlay, Screen, ui::Arrangement};
@@ -18,7 +19,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 /// The actions that are dropped first if space is short.
-const DISPENSABLE: [ActionId; 22] = [
+const DISPENSABLE: [ActionId; 25] = [
     ActionId::Difference,
     ActionId::Align,
     ActionId::Jump(Jump::Minute),
@@ -34,6 +35,9 @@ const DISPENSABLE: [ActionId; 22] = [
     ActionId::Jump(Jump::Tick),
     ActionId::ChoosePlanner,
     ActionId::Acknowledge,
+    ActionId::PreviousMissed,
+    ActionId::NextMissed,
+    ActionId::Again,
     ActionId::Commands,
     ActionId::Step,
     ActionId::View,
@@ -141,6 +145,8 @@ fn place(model: &Model, action: &Action) -> u8 {
     let is_over = model.ui.overlay != Overlay::None;
     match action.id {
         ActionId::Hold if model.live.may_move() => 0,
+        // What Enter does is not in any list.
+        ActionId::Accept if !is_over => 1,
         id if !is_over && model.ui.screen.row().first == id => 1,
         _ => 2,
     }
@@ -188,6 +194,11 @@ fn label(action: &Action, model: &Model) -> String {
         (ActionId::Accept, Overlay::None) => (model.ui.screen.row().opens)(model).unwrap_or_default(),
         (ActionId::Back, _) if model.ui.screen == Screen::Home => "quit",
         (ActionId::Accept, Overlay::Commands(_) | Overlay::Remedies { .. }) => "run",
+        (ActionId::Accept, Overlay::Planners { selected, is_unfolded, .. })
+            if matches!(model.planner_lines(*is_unfolded).get(*selected), Some(PlannerLine::Others(_))) =>
+        {
+            "unfold"
+        }
         (ActionId::Accept, Overlay::Planners { .. } | Overlay::WhatIf) => "choose",
         (ActionId::Accept, Overlay::Preflight { .. }) => "tick",
         (ActionId::Accept, Overlay::Preset { .. }) => "take",

@@ -92,7 +92,7 @@ fn note(look: &Look, list: HomeList) -> String {
     match look.model.home.filter.as_str() {
         _ if look.model.home.list != list => look.keys("<next-pane> list"),
         "" => look.keys("<filter> filter"),
-        filter => format!("`{}`", text::fit(filter, 20)),
+        filter => look.keys(&format!("filter `{}`  <cancel> clear", text::fit(filter, 20))),
     }
 }
 

@@ -44,7 +44,9 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let columns = area.width.min(widest);
     let list = match &look.model.ui.overlay {
         Overlay::Commands(palette) => commands::list(look, palette, columns),
-        Overlay::Planners { purpose, selected } => planners::list(look, *purpose, *selected, columns),
+        Overlay::Planners { purpose, selected, is_unfolded } => {
+            planners::list(look, *purpose, (*selected, *is_unfolded), columns)
+        }
         Overlay::Parameters { selected, edit } => parameters::list(look, *selected, edit.as_ref(), columns),
         Overlay::Preset { name, choice, selected } => preset::list(look, name, choice, *selected, columns),
         Overlay::Preflight { selected } => preflight::list(look, *selected, columns),

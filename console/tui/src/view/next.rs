@@ -4,7 +4,7 @@ mod held;
 
 use super::{confirm, events, text};
 use crate::guide;
-use crate::model::{Busy, Model, Offer, Overlay, Replay, Screen};
+use crate::model::{Busy, Model, Offer, Overlay, Replay, Screen, ui::Ask};
 use crate::theme::Role;
 use mission::{Outcome, Phase, Readiness, Severity};
 
@@ -18,6 +18,10 @@ pub(super) fn clauses(model: &Model) -> Clauses {
     if model.ui.overlay.is_question() || matches!(model.ui.overlay, Overlay::ZoneDraft(_)) {
         clauses.retain(|clause| !clause.contains(['<', '>']));
         clauses.truncate(1);
+    }
+    // The question contains the figures of the plan.
+    if matches!(model.ui.overlay, Overlay::Confirm(Ask::Start(_))) {
+        clauses = vec!["Ready. The robot does not move yet.".into()];
     }
     // No console gives orders to a run whose console is gone.
     if model.live.is_look_only() && !model.live.is_cut_off {

@@ -132,11 +132,12 @@ fn figures(summary: &Summary) -> Vec<Field> {
     let metres = |m: f64, decimals| format!("{} m", text::number(m, decimals));
     let mut fields: Vec<Field> = Vec::new();
     fields.extend(summary.path_length_m.map(|m| ("path", metres(m, 1))));
-    fields.extend(summary.clearance_min_m.map(|m| ("clearance", format!("{} at least", metres(m, 2)))));
+    fields.extend(summary.clearance_min_m.map(|m| ("clearance", format!("{} at least, true", metres(m, 2)))));
     if let Some(accuracy) = &summary.accuracy {
         let (p95, most, limit) =
             (metres(accuracy.p95_m, 2), metres(accuracy.max_m, 2), metres(accuracy.limit_m, 2));
-        fields.push(("95 % error", format!("p95 {p95}, worst {most}, limit {limit}")));
+        let what = if summary.floor.is_some() { "scan limit" } else { "limit" };
+        fields.push(("95 % error", format!("p95 {p95}, worst {most}, {what} {limit}")));
     }
     if let Some(tether) = &summary.tether {
         let wrap = text::number(tether.wrap_max_rad.to_degrees(), 0);
@@ -162,15 +163,9 @@ fn counted(n: usize, what: &str) -> String {
 fn events(run: &Run, summary: Option<&Summary>) -> Vec<Field> {
     let mut fields: Vec<Field> = Vec::new();
     if let Some(summary) = summary {
-        let faults = summary.planner_faults;
-        fields.push((
-            "holds",
-            format!(
-                "{}, collisions {}, planner faults {faults}",
-                summary.holds,
-                summary.collisions.unwrap_or(0)
-            ),
-        ));
+        let (holds, faults) = (summary.holds, summary.planner_faults);
+        let collisions = summary.collisions.map_or_else(|| "not known".to_owned(), |n| n.to_string());
+        fields.push(("holds", format!("{holds}, collisions {collisions}, planner faults {faults}")));
         fields.extend(
             (summary.obstacles_found > 0)
                 .then(|| ("found", counted(summary.obstacles_found as usize, "obstacle"))),

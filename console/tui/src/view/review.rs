@@ -64,7 +64,7 @@ fn runs(look: &Look, frame: &mut Frame, area: Rect) {
     let filter = if review.filter.is_empty() {
         look.keys("<filter> filter")
     } else {
-        format!("`{}`", text::fit(&review.filter, 20))
+        look.keys(&format!("filter `{}`  <cancel> clear", text::fit(&review.filter, 20)))
     };
     let note = format!("{filter}  {} {}", look.keys("<sort> sort:"), review.sort.word());
     let inner = look.block(Role::Focus, "", "").inner(area);

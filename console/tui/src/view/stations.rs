@@ -12,13 +12,15 @@ use world::{Station, StationId};
 
 /// The table columns: heading, width and rank; if space is short, columns with the highest rank numbers are dropped
 /// first.
-const TABLE: [(&str, usize, u8); 6] = [
+const TABLE: [(&str, usize, u8); 8] = [
     ("station", 7, 0),
     ("range", 8, 2),
     ("residual", 8, 0),
     ("limit", 7, 3),
+    ("spread", 7, 3),
     ("state", 8, 0),
-    ("rejected", 8, 1),
+    ("unused", 6, 1),
+    ("rejected", 8, 4),
 ];
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
@@ -27,11 +29,17 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let stations = look.run.about.as_ref().map_or(&[][..], |about| &about.world.stations);
     let head = vec![(Role::Dim, format!(" {}", laid_out(TABLE.map(|(head, ..)| head.to_owned()), columns)))];
     let has_history = usize::from(block.inner(area).height) > 2 * stations.len();
+    let none = stations.is_empty().then(|| vec![(Role::Dim, " No AE stations.".to_owned())]);
     let rows = stations.iter().flat_map(|station| {
         let history = has_history.then(|| history(look, station.id, columns));
         std::iter::once(row(look, station, columns)).chain(history)
     });
-    fill(frame, area, block, std::iter::once(head).chain(rows).map(|parts| look.line(parts)).collect());
+    fill(
+        frame,
+        area,
+        block,
+        std::iter::once(head).chain(none).chain(rows).map(|parts| look.line(parts)).collect(),
+    );
 }
 
 fn row(look: &Look, station: &Station, columns: usize) -> Parts {
@@ -49,7 +57,12 @@ fn row(look: &Look, station: &Station, columns: usize) -> Parts {
         range,
         millimetres(residual_m),
         millimetres(limit_m),
+        // The repetitions of one ranging cycle show how clear the signal is.
+        millimetres(ranged.map(|ranging| ranging.most_m - ranging.least_m)),
         state.to_owned(),
+        position
+            .unused_share(station.id)
+            .map_or_else(|| "-".into(), |share| format!("{} %", text::number(100.0 * share, 0))),
         rejected.to_string(),
     ];
     let (role, words) = marked(position::is_fix_stale(look), (role, laid_out(cells, columns)));
@@ -68,11 +81,11 @@ fn history(look: &Look, station: StationId, columns: usize) -> Parts {
 }
 
 /// The cells of a row that fit; words are left-aligned, figures right-aligned.
-fn laid_out(cells: [String; 6], columns: usize) -> String {
+fn laid_out(cells: [String; 8], columns: usize) -> String {
     let width = |most: u8| -> usize {
         TABLE.iter().filter(|(.., rank)| *rank <= most).map(|(_, width, _)| width + 1).sum()
     };
-    let most = (0..=3).rev().find(|most| width(*most) <= columns).unwrap_or(0);
+    let most = (0..=4).rev().find(|most| width(*most) <= columns).unwrap_or(0);
     let shown = TABLE.iter().zip(cells).filter(|((.., rank), _)| *rank <= most);
     let cells: Vec<String> = shown
         .map(|((head, width, _), cell)| match *head {

@@ -2,6 +2,7 @@
 
 use super::look::{Look, Parts, fill, marked, ranked};
 use super::text;
+use crate::model::history::{HISTORY_S, SLOT_S};
 use crate::model::{Pane, Tether};
 use crate::theme::Role;
 use mission::Phase;
@@ -51,10 +52,22 @@ fn wide_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> 
         row(4, "contacts", (Role::Text, contacts(tether))),
         row(0, "return path", home(tether)),
     ];
+    lines.push((6, trend(look, tether, columns)));
+    lines.push((7, vec![(Role::Dim, format!(" {:<12} no pull sensor", "tension"))]));
     if look.run.has_ended() {
         lines.push(row(5, "at end", (Role::Text, still_out)));
     }
     lines
+}
+
+/// The curve of the length out over the last minutes, up to the length of the reel.
+fn trend(look: &Look, tether: &Tether, columns: usize) -> Parts {
+    let longest = tether.length_history_m.last(HISTORY_S).fold(0.0, f64::max);
+    let top_m = limits(look).map_or(longest, |limits| limits.reel_length_m);
+    let note = format!(" {} min, 0-{} m", HISTORY_S / 60, text::number(top_m, 0));
+    let room = columns.saturating_sub(text::width(&note) + 2);
+    let curve = text::sparkline(tether.length_history_m.last(HISTORY_S), top_m, room, HISTORY_S / SLOT_S);
+    vec![(Role::Watch, format!(" {curve}")), (Role::Dim, note)]
 }
 
 fn narrow_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> {

@@ -318,10 +318,12 @@ fn what_the_console_measures_of_itself_becomes_an_alarm_after_its_delay() {
     };
     let slow = |response_ms| Msg::Measured(Measured::Screen { response_ms, skipped: 0 });
     screen.send(slow(Some(40.0)));
+    assert_eq!(screen.model.wakes_at_mono_s(), None, "quick enough while the robot stands");
+    screen.send(slow(Some(140.0)));
     assert!(!active(&screen, Cause::Response));
     assert!(screen.model.wakes_at_mono_s().is_some(), "it is looked at again");
     screen.pass(2.5);
-    screen.send(slow(Some(40.0)));
+    screen.send(slow(Some(140.0)));
     assert!(active(&screen, Cause::Response));
     for _ in 0..2 {
         screen.pass(6.0);
@@ -331,7 +333,7 @@ fn what_the_console_measures_of_itself_becomes_an_alarm_after_its_delay() {
     assert_eq!(screen.model.wakes_at_mono_s(), None);
     screen.send(Msg::Measured(Measured::Disk(100 << 20)));
     assert!(active(&screen, Cause::Disk));
-    screen.send(Msg::Measured(Measured::Screen { response_ms: None, skipped: 99 }));
+    screen.send(Msg::Measured(Measured::Screen { response_ms: None, skipped: 199 }));
     assert!(active(&screen, Cause::Frames));
     let lag =
         |recorder_lag| RunMsg::Health(Health { recording: Recording::On, recorder_lag, ..Health::default() });
@@ -339,6 +341,19 @@ fn what_the_console_measures_of_itself_becomes_an_alarm_after_its_delay() {
     screen.pass(1.5);
     screen.hear(lag(5000));
     assert!(active(&screen, Cause::RecorderLag));
+}
+
+#[test]
+fn a_limit_is_stricter_while_the_robot_moves() {
+    let mut screen = Screen::running();
+    let slow = Msg::Measured(Measured::Screen { response_ms: Some(40.0), skipped: 50 });
+    screen.send(slow.clone());
+    screen.pass(2.5);
+    screen.send(slow);
+    for cause in [Cause::Response, Cause::Frames] {
+        let alarm = screen.model.live.run.alarms.get(&cause);
+        assert!(alarm.is_some_and(tui::model::Alarm::is_active), "{cause:?}");
+    }
 }
 
 #[test]

@@ -81,7 +81,10 @@ fn a_field_that_is_not_understood_is_marked_and_explained_while_it_is_typed() {
     screen.send(Msg::Resize { width: 80, height: 24 });
     screen.type_text("/station sevv>=warn");
     let text = shown(&screen, (80, 24));
-    assert!(text.contains("/ station sevv>=warn ") && text.contains("^ unknown field `sevv`"), "{text}");
+    assert!(
+        text.contains("filter  station sevv>=warn ") && text.contains("^ unknown field `sevv`"),
+        "{text}"
+    );
     assert!(text.contains("5 of "), "the rest filters\n{text}");
     let underlined =
         |cell: &&ratatui::buffer::Cell| cell.modifier.contains(ratatui::style::Modifier::UNDERLINED);

@@ -56,7 +56,10 @@ fn status_tells_state_alarms_and_the_open_question_with_commands() {
     assert!(lines[0].starts_with("HELD by operator. `resume`: resume."), "{lines:#?}");
     assert!(lines[1].starts_with("tank-07, planner rpf, T+00:16:07, speed ×1."), "{lines:#?}");
     assert!(lines.iter().any(|line| line.starts_with("WATCH: new obstacle")), "{lines:#?}");
-    assert!(lines.last().unwrap().starts_with("Resume? `yes`: resume, `no`: stay held."), "{lines:#?}");
+    assert!(
+        lines.last().unwrap().starts_with("Resume? The robot will move. `yes`: resume, `no`: cancel."),
+        "{lines:#?}"
+    );
     assert_eq!(plain::no_question(&screen.model), None);
     assert!(plain::no_question(&Screen::running().model).is_some());
 }
@@ -70,4 +73,13 @@ fn a_mission_without_alarms_says_so() {
     assert!(matches!(event.kind, EventKind::Ended { .. }));
     ended.hear(RunMsg::Events(vec![event]));
     assert!(page(&ended.model).contains("ended by operator"));
+}
+
+#[test]
+fn a_drive_back_is_listed_as_such_and_not_as_resumed() {
+    let mut screen = held();
+    let events = screen.mission.obeyed(mission::Order::DriveBack);
+    screen.hear(RunMsg::Events(events));
+    let page = page(&screen.model);
+    assert!(page.contains("drive back") && !page.contains("resumed"), "{page}");
 }

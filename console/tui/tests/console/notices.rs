@@ -37,7 +37,7 @@ fn a_question_stays_while_something_is_said() {
         let text = "planner rpf answered 3 ticks late".to_owned();
         screen.send(Msg::Notice { severity: mission::Severity::Watch, text });
         let shown = shown(&screen, size);
-        assert!(shown.contains("Resume? Enter: resume"), "{size:?}\n{shown}");
+        assert!(shown.contains("Resume? The robot will move. Enter:"), "{size:?}\n{shown}");
         assert!(shown.contains("Planner rpf answered 3 ticks late"), "{size:?}\n{shown}");
     }
 }

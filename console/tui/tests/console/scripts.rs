@@ -208,7 +208,7 @@ fn another_planner_drives_only_when_held_and_agreed() {
     screen.type_text("P");
     assert_eq!(
         screen.model.ui.overlay,
-        Overlay::Planners { purpose: Purpose::Drive, selected: 1 },
+        Overlay::Planners { purpose: Purpose::Drive, selected: 1, is_unfolded: false },
         "the active one is selected"
     );
     assert_eq!(screen.press([Key::Down, Key::Enter]), []);
@@ -223,11 +223,14 @@ fn a_planner_that_covers_no_floor_is_marked_and_not_asked_to() {
         mission::TaskConfig::Cover { anchor: world::Point::origin(), regions: Vec::new(), tolerance_m: 0.2 };
     let planners = screen.model.console.planners.clone();
     assert_eq!(screen.model.live.run.cannot_fly(&planners[0]), Some("does not support coverage missions"));
-    screen.press([Key::Char('P'), Key::Up, Key::Up, Key::Up, Key::Enter]);
+    screen.press([Key::Char('P'), Key::Down]);
+    assert!(shown(&screen).contains("+ 2 planners that cannot run this mission"), "{}", shown(&screen));
+    assert_eq!(screen.press([Key::Enter]), [], "the list unfolds");
+    screen.press([Key::Enter]);
     assert_eq!(notice(&screen), format!("planner {} does not support coverage missions", planners[0].id));
     assert!(matches!(screen.model.ui.overlay, Overlay::Planners { .. }), "no question is asked");
     screen.model.console.planners[0].covers = true;
-    screen.press([Key::Enter]);
+    screen.press([Key::Up, Key::Enter]);
     assert!(matches!(screen.model.ui.overlay, Overlay::Confirm(_)));
 }
 
@@ -875,4 +878,56 @@ fn a_key_that_is_no_answer_cancels_the_question_so_that_enter_cannot_agree_to_it
         assert_eq!(notice(&screen), "cancelled: key P is not an answer");
         assert_eq!(screen.press([Key::Enter]), [], "{question:?}: Enter agrees to nothing");
     }
+}
+
+#[test]
+fn a_filter_shows_where_it_acts_and_escape_clears_it() {
+    let mut screen = Screen::held();
+    screen.type_text("/station");
+    screen.press([Key::Enter]);
+    assert!(shown(&screen).contains("filter `station`"), "{}", shown(&screen));
+    assert_eq!(screen.press([Key::Esc]), []);
+    assert_eq!((screen.model.ui.needle.as_str(), notice(&screen)), ("", "filter cleared"));
+    assert!(!shown(&screen).contains("filter `"), "{}", shown(&screen));
+}
+
+#[test]
+fn the_table_of_stations_is_a_pane_at_120x36() {
+    let mut screen = Screen::running();
+    assert!(!shown(&screen).contains("─ Stations"), "{}", shown(&screen));
+    screen.press([Key::Tab, Key::Tab]);
+    let text = shown(&screen);
+    assert!(text.contains("▸ Stations") && text.contains("unused") && text.contains("100 %"), "{text}");
+    screen.press([Key::Tab]);
+    assert!(!shown(&screen).contains("─ Stations"), "{}", shown(&screen));
+}
+
+#[test]
+fn planning_that_is_cancelled_says_so() {
+    let mut screen = Screen::idle();
+    screen.press([Key::Char('2')]);
+    screen.hear(RunMsg::Busy(Some(("Planning".into(), None))));
+    screen.press([Key::Esc]);
+    assert!(notice(&screen).starts_with("planning cancelled; "), "{}", notice(&screen));
+}
+
+#[test]
+fn a_run_without_its_console_offers_only_what_can_still_be_done() {
+    let mut screen = Screen::held();
+    screen.model.live.access = tui::model::Access::LookOnly;
+    screen.hear(RunMsg::WriterGone);
+    let said: Vec<String> = tui::plain::Said::default().next(&screen.model);
+    assert_eq!(said.iter().filter(|line| line.contains("CONSOLE LOST")).count(), 1, "{said:#?}");
+    assert_eq!(screen.model.notice(), None, "the state line says it");
+    screen.press([Key::Char('4')]);
+    let text = shown(&screen);
+    assert!(text.contains("Check the robot on site") && !text.contains("HOLD the robot"), "{text}");
+}
+
+#[test]
+fn help_in_sentences_lists_the_commands_that_can_be_given() {
+    let screen = Screen::held();
+    let lines = tui::plain::help(&screen.model);
+    assert!(lines.iter().any(|line| line.starts_with("resume: ")), "{lines:#?}");
+    assert!(!lines.iter().any(|line| line.starts_with("take-plan: ")), "{lines:#?}");
 }

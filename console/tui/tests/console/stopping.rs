@@ -50,7 +50,6 @@ fn overlays() -> Vec<Overlay> {
         Overlay::Confirm(Ask::Start(None)),
         Overlay::Confirm(Ask::Resume),
         Overlay::Confirm(Ask::FlyUncertified),
-        Overlay::Confirm(Ask::Abort),
         Overlay::Confirm(Ask::Swap(choice("apf"))),
         Overlay::Confirm(Ask::Promote),
         Overlay::Confirm(Ask::TakePlan),
@@ -65,7 +64,7 @@ fn overlays() -> Vec<Overlay> {
         Overlay::Quit,
         commands(false),
         commands(true),
-        Overlay::Planners { purpose: Purpose::Drive, selected: 0 },
+        Overlay::Planners { purpose: Purpose::Drive, selected: 0, is_unfolded: false },
         Overlay::Parameters { selected: 0, edit: None },
         Overlay::Parameters { selected: 0, edit },
         Overlay::Layers { selected: 0 },
@@ -85,7 +84,6 @@ fn overlays() -> Vec<Overlay> {
                 Ask::Start(_)
                 | Ask::Resume
                 | Ask::FlyUncertified
-                | Ask::Abort
                 | Ask::Swap(_)
                 | Ask::Promote
                 | Ask::TakePlan

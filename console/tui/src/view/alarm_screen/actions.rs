@@ -47,8 +47,7 @@ pub(super) fn keys(look: &Look, cause: &Cause) -> Option<String> {
 
 /// What the operator can do that no key does.
 fn advice(look: &Look, cause: &Cause) -> Vec<String> {
-    let remedies = guide(cause).remedies.iter().filter(|remedy| remedy.action.is_none());
-    remedies.map(|remedy| look.keys(remedy.text)).collect()
+    remedies::advice(look.model, cause).into_iter().map(|words| look.keys(words)).collect()
 }
 
 /// The actions as an overlay list, with advice, cause and effect.

@@ -21,6 +21,11 @@ pub(super) fn lines(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'sta
     fields::lines(look, &fields_of(look, alarm), NAMES, columns)
 }
 
+/// The cause of an alarm, wrapped.
+pub(super) fn cause(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'static>> {
+    fields::lines(look, &[("Cause", guide(&alarm.cause).cause.into())], NAMES, columns)
+}
+
 fn fields_of(look: &Look, alarm: &Alarm) -> Vec<Field> {
     let guide = guide(&alarm.cause);
     let mut fields: Vec<Field> = vec![("Cause", guide.cause.into()), ("Effect", guide.effect.into())];

@@ -28,7 +28,7 @@ pub(super) fn list(look: &Look, palette: &Palette, columns: u16) -> List {
     let (above, cursor) = line(palette, found.len(), room);
     List {
         title: if palette.help { "Keys and commands" } else { "Commands" }.into(),
-        note: "type to filter".into(),
+        note: if palette.help { "what works here" } else { "type to filter" }.into(),
         above,
         rows,
         selected,

@@ -28,14 +28,20 @@ pub(in crate::view) struct List {
 
 impl List {
     pub(super) fn draw(self, look: &Look, frame: &mut Frame, area: Rect) {
-        let block = look.list_block(&self.title, &self.note);
-        let inner = block.inner(area);
+        let inner = look.list_block("", "").inner(area);
         let room = usize::from(inner.height).saturating_sub(self.above.len());
         // The selected line takes precedence over anything below the list.
         let below =
             self.below.len().min(room.saturating_sub(3).max(self.needed_below)).min(room.saturating_sub(1));
         let chosen = self.selected..self.selected + self.selected_rows.max(1);
         let shown = table::window(chosen.end - 1, self.rows.len(), room - below);
+        // A list that is cut says where it is.
+        let place = if shown.len() < self.rows.len() {
+            format!("  {}", table::counted(&shown, self.rows.len()))
+        } else {
+            String::new()
+        };
+        let block = look.list_block(&format!("{}{place}", self.title), &self.note);
         let above = self.above.len();
         let mut lines: Vec<Line> = self.above.into_iter().map(|row| look.line(row)).collect();
         for (index, row) in self.rows.into_iter().enumerate() {

@@ -1,34 +1,33 @@
 //! The list of planners and of refused plugins.
 
 use super::list::{List, hint, paragraph};
+use crate::model::planner_list::PlannerLine;
 use crate::model::ui::Purpose;
 use crate::theme::Role;
 use crate::view::look::{Look, Parts as Row};
 use crate::view::text::{self, wrap};
 
-pub(super) fn list(look: &Look, purpose: Purpose, selected: usize, columns: u16) -> List {
+pub(super) fn list(
+    look: &Look,
+    purpose: Purpose,
+    (selected, is_unfolded): (usize, bool),
+    columns: u16,
+) -> List {
     let (title, enter) = match purpose {
         Purpose::Drive => ("Planners", " <accept>: change planner (asks first); coverage is kept."),
         Purpose::Compare => ("Compare with", " <accept>: have it plan alongside the active planner."),
         Purpose::Shadow => ("Run in shadow", " <accept>: run it in shadow; it does not move the robot."),
         Purpose::WhatIf => ("Forecast with", " <accept>: add it to the forecasts."),
     };
-    let driving = look.run.planner_id();
-    let rows = look.model.console.planners.iter().map(|planner| {
-        let drives = Some(planner.id.as_str()) == driving;
-        vec![
-            (Role::Title, text::column(&planner.id, 18)),
-            (Role::Text, text::column(&planner.version, 8)),
-            match look.run.cannot_fly(planner) {
-                _ if drives => (Role::Good, "active".into()),
-                Some(why) => (Role::Dim, why.into()),
-                None => (Role::Good, String::new()),
-            },
-        ]
-    });
+    let lines = look.model.planner_lines(is_unfolded);
+    let (about, enter) = match lines.get(selected) {
+        Some(PlannerLine::Planner(planner)) => (planner.about.as_str(), enter),
+        Some(PlannerLine::Others(_)) => {
+            ("They do not support the task of this mission.", " <accept>: list them with the reasons.")
+        }
+        None => ("No planner was found.", ""),
+    };
     let room = usize::from(columns).saturating_sub(2 + 1);
-    let about =
-        look.model.console.planners.get(selected).map(|planner| planner.about.as_str()).unwrap_or_default();
     let about = paragraph(Role::Text, about, room);
     let refused = look.model.console.refused.iter().flat_map(|plugin| {
         let name = vec![(Role::Warn, text::fit(&format!(" REFUSED {}", plugin.plugin), room))];
@@ -37,7 +36,7 @@ pub(super) fn list(look: &Look, purpose: Purpose, selected: usize, columns: u16)
     });
     List {
         title: title.into(),
-        rows: rows.collect(),
+        rows: lines.iter().map(|line| row(look, line)).collect(),
         selected,
         below: [Row::new()]
             .into_iter()
@@ -47,4 +46,24 @@ pub(super) fn list(look: &Look, purpose: Purpose, selected: usize, columns: u16)
             .collect(),
         ..List::default()
     }
+}
+
+fn row(look: &Look, line: &PlannerLine) -> Row {
+    let planner = match line {
+        PlannerLine::Planner(planner) => planner,
+        PlannerLine::Others(n) => {
+            let plural = if *n == 1 { "" } else { "s" };
+            return vec![(Role::Dim, format!("+ {n} planner{plural} that cannot run this mission"))];
+        }
+    };
+    let drives = Some(planner.id.as_str()) == look.run.planner_id();
+    vec![
+        (Role::Title, text::column(&planner.id, 18)),
+        (Role::Text, text::column(&planner.version, 8)),
+        match look.run.cannot_fly(planner) {
+            _ if drives => (Role::Good, "active".into()),
+            Some(why) => (Role::Dim, why.into()),
+            None => (Role::Good, String::new()),
+        },
+    ]
 }

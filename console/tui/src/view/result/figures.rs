@@ -5,11 +5,13 @@ use crate::model::RunResult;
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
 use crate::view::text;
-use account::FigureId;
+use account::{FigureId, Summary};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
+/// Width of the names in the table, columns.
+const LABEL: usize = 11;
 /// Width from which the worst values are shown with time and place, columns.
 const WORST: usize = 52;
 /// The figures whose worst values are shown, and the width of their names, columns.
@@ -44,6 +46,7 @@ fn lines(look: &Look, result: &RunResult, columns: usize) -> Vec<Line<'static>> 
     };
     let reason = result.summary.reason.as_deref().unwrap_or("cut off");
     let mut lines = wrapped(role(result), reason);
+    lines.extend(requested(look).iter().flat_map(|words| wrapped(Role::Text, words)));
     for violation in result.summary.violations.iter().flatten() {
         lines.extend(wrapped(Role::Warn, &format!("! {violation}")));
     }
@@ -63,6 +66,8 @@ fn lines(look: &Look, result: &RunResult, columns: usize) -> Vec<Line<'static>> 
             (Role::Dim, format!("{limit:>width$}", width = width.saturating_sub(1))),
         ])
     }));
+    let notes = scan_limit(look, result).into_iter().chain(true_error(result));
+    lines.extend(notes.flat_map(|words| wrapped(Role::Text, &words)));
     lines.extend(worst(result, columns).into_iter().map(|parts| look.line(parts)));
     lines.extend(trouble(look, result, columns).into_iter().map(|parts| look.line(parts)));
     lines
@@ -70,7 +75,7 @@ fn lines(look: &Look, result: &RunResult, columns: usize) -> Vec<Line<'static>> 
 
 /// The widths of a label and of a value.
 fn widths(columns: usize) -> (usize, usize) {
-    let label = 11.min(columns / 3);
+    let label = LABEL.min(columns.saturating_sub(2) / 3);
     (label, columns.saturating_sub(label + 2) / 3)
 }
 
@@ -115,12 +120,12 @@ fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {
             [promised.map(|p| p.time_s), moving_s, mission.map(|mission| mission.time_limit_s)],
         ),
         at_most("path", metres(1), [promised.map(|p| p.length_m), summary.path_length_m, None]),
-        at_least(
-            "clearance",
-            metres(2),
-            [clearance, summary.clearance_min_m, mission.map(|mission| mission.clearance_m)],
-        ),
     ];
+    let required = mission.map(|mission| mission.clearance_m);
+    figures.push(match summary.clearance_min_m {
+        Some(true_m) => at_least("gap (true)", metres(2), [clearance, Some(true_m), required]),
+        None => at_least("gap (est.)", metres(2), [clearance, estimated_clearance(summary), required]),
+    });
     if let Some(tether) = &summary.tether {
         let estimate = promised.and_then(|p| p.tether.as_ref());
         let limits = mission.and_then(|m| m.tether.as_ref()).map(|tether| tether.limits);
@@ -150,10 +155,56 @@ fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {
         [
             promised.and_then(|p| p.accuracy_worst).map(|worst| worst.value),
             accuracy.map(|accuracy| accuracy.max_m),
-            accuracy.map(|accuracy| accuracy.limit_m),
+            mission.map(|mission| mission.position_limit_m),
         ],
     ));
     figures
+}
+
+/// The smallest clearance at the estimated position, metres.
+fn estimated_clearance(summary: &Summary) -> Option<f64> {
+    let figure = summary.extremes.iter().find(|figure| figure.id == FigureId::Clearance)?;
+    figure.worst.map(|worst| worst.value)
+}
+
+/// The scanned share of the requested floor, and why the share of the whole is smaller.
+fn requested(look: &Look) -> Option<String> {
+    let live = &look.model.live;
+    let ((area_m2, scanned), reachable) = live.requested().zip(live.floor().map(|floor| floor.reachable))?;
+    Some(format!(
+        "Scanned {} % of the requested {} m². That is {} % of all reachable floor; the rest was not requested.",
+        text::percent(scanned),
+        text::number(area_m2, 1),
+        text::percent(reachable.scanned)
+    ))
+}
+
+/// The error against the true position.
+fn true_error(result: &RunResult) -> Option<String> {
+    let error = result.summary.positioning.as_ref()?;
+    let metres = |m: f64| text::number(m, 3);
+    Some(format!(
+        "Error against the true position: mean {}, median {}, p95 {}, worst {} m.",
+        metres(error.mean_error_m),
+        metres(error.p50_m),
+        metres(error.p95_m),
+        metres(error.max_m)
+    ))
+}
+
+/// The limit above which floor does not count as scanned, if it is not the limit of the position, and where it was
+/// exceeded.
+fn scan_limit(look: &Look, result: &RunResult) -> Option<String> {
+    let mission = &look.run.about.as_ref()?.mission;
+    let (accuracy, _) = (result.summary.accuracy.as_ref()?, result.summary.floor.as_ref()?);
+    let limit_m = mission.scan_limit_m();
+    (limit_m < mission.position_limit_m).then(|| {
+        format!(
+            "Floor counts as scanned up to a 95 % error of {} m; the error was above it on {} % of the path.",
+            text::number(limit_m, 2),
+            text::percent(accuracy.over_limit)
+        )
+    })
 }
 
 /// A figure that must not exceed its limit; `values` are the estimate, the achieved value and the limit.
@@ -188,10 +239,11 @@ fn trouble(look: &Look, result: &RunResult, columns: usize) -> Vec<Parts> {
     let summary = &result.summary;
     let alarms = look.run.alarms.open().count();
     let words = format!(
-        "Holds {}, collisions {}, planner faults {}, alarms open {alarms}.",
+        "Holds {}, {}planner faults {}, alarms open {alarms}.{}",
         summary.holds,
-        summary.collisions.unwrap_or(0),
-        summary.planner_faults
+        summary.collisions.map_or_else(String::new, |n| format!("collisions {n}, ")),
+        summary.planner_faults,
+        if summary.collisions.is_none() { " Collisions are not known: no true position." } else { "" },
     );
     let lines = text::wrap(&words, columns.saturating_sub(1)).into_iter();
     lines.map(|line| vec![(Role::Text, format!(" {line}"))]).collect()
