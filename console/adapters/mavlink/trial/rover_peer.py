@@ -9,7 +9,7 @@ It calls the adapter at HOST:PORT, 127.0.0.1:14550 by default. The world, its no
 SET_POSITION_TARGET_LOCAL_NED with velocity and yaw rate in the order of arrival, as ArduRover does, and sends HEARTBEAT,
 LOCAL_POSITION_NED and ATTITUDE (by its own odometry), BATTERY_STATUS, OBSTACLE_DISTANCE, a DEBUG_FLOAT_ARRAY `ae` with 11
 ranges per station, and NAMED_VALUE_FLOAT `tether` and `bumper`. Its own watchdog stops it when no command has arrived for
-0.3 s (ArduRover waits for about 3 s). With ROBOT_LOG=FILE it writes a line with time, speed and turn rate in each period.
+0.25 s (ArduRover waits for about 3 s). With ROBOT_LOG=FILE it writes a line with time, speed and turn rate in each period.
 """
 import math
 import os
@@ -24,7 +24,7 @@ sys.path[:0] = [str(HERE.parent.parent / "python"), str(HERE.parent.parent)]
 import irsim_robot
 from pymavlink import mavutil
 
-WATCHDOG_S = 0.3
+WATCHDOG_S = 0.25
 REPETITIONS = 11
 GUIDED = 15
 VELOCITY_AND_YAW_RATE = 0x05C7

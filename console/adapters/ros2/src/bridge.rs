@@ -49,6 +49,8 @@ pub(crate) enum Input {
         subscriptions: usize,
         /// Publishers beside the adapter.
         publishers: usize,
+        /// The type of a subscription that cannot read the commands, if there is one.
+        wrong_type: Option<String>,
     },
     /// The answer of the stop service, or why it did not answer.
     StopAnswered(Result<(), String>),
@@ -110,8 +112,10 @@ impl Bridge {
             Input::EmergencyStop(is_pressed) => self.condition.is_stopped = is_pressed,
             Input::Manual(is_manual) => self.condition.is_manual = is_manual,
             Input::OtherCommand => self.condition.other_command_s = Some(now_s),
-            Input::Matched { subscriptions, publishers } => {
-                (self.condition.subscriptions, self.condition.publishers) = (subscriptions, publishers);
+            Input::Matched { subscriptions, publishers, wrong_type } => {
+                self.condition.subscriptions = subscriptions;
+                self.condition.publishers = publishers;
+                self.condition.wrong_type = wrong_type;
             }
             Input::Unreadable(why) => self.condition.trouble(why, now_s),
             Input::StopAnswered(answer) => self.condition.stop_trouble = answer.err(),

@@ -7,7 +7,6 @@ mod stop;
 use crate::{bridge::Input, config::Config, types::Time};
 use commands::Commands;
 use joined::Joined;
-use ros2_client::Node;
 use std::{
     fmt::Display,
     sync::mpsc::SyncSender,
@@ -18,7 +17,7 @@ use tankops_adapter::commands::Velocity;
 
 /// The robot, as the shell sees it.
 pub(crate) struct Robot {
-    node: Node,
+    joined: Joined,
     commands: Commands,
     stop: Option<Stop>,
 }
@@ -33,7 +32,7 @@ impl Robot {
         let commands = Commands::create(&mut joined, &config.command)?;
         joined.subscribe_all(config, inputs)?;
         let stop = config.stop.as_ref().map(|stop| Stop::create(&mut joined.node, stop)).transpose()?;
-        Ok(Self { node: joined.node, commands, stop })
+        Ok(Self { joined, commands, stop })
     }
 
     /// Publishes a command.
@@ -51,7 +50,7 @@ impl Robot {
 
     /// What must be asked for from time to time.
     pub(crate) fn news(&mut self) -> Vec<Input> {
-        let mut news = self.commands.news(&self.node);
+        let mut news = self.commands.news(&self.joined);
         news.extend(self.stop.as_mut().and_then(Stop::answer));
         news
     }

@@ -6,7 +6,7 @@
 
 The world, its noise and its environment variables (IRSIM_TRUTH, IRSIM_SEED) are those of irsim_robot.py. The robot moves
 by /cmd_vel (Twist, or TwistStamped with --stamped) and publishes /odom (or /tf with --tf), /scan, /ae/ranges,
-/tether/paid_out, /bumper and /battery_state. Its own watchdog stops it when no command has arrived for 0.3 s. With
+/tether/paid_out, /bumper and /battery_state. Its own watchdog stops it when no command has arrived for 0.25 s. With
 ROBOT_LOG=FILE it writes a line with time, speed and turn rate in each period.
 """
 import math
@@ -26,7 +26,7 @@ from cyclonedds.pub import DataWriter
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 
-WATCHDOG_S = 0.3
+WATCHDOG_S = 0.25
 RELIABLE = Qos(Policy.Reliability.Reliable(10_000_000), Policy.Durability.Volatile, Policy.History.KeepLast(10))
 BEST_EFFORT = Qos(Policy.Reliability.BestEffort, Policy.Durability.Volatile, Policy.History.KeepLast(5))
 

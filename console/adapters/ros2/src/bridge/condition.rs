@@ -14,6 +14,8 @@ pub(crate) struct Condition {
     pub(crate) pose_s: Option<f64>,
     /// Subscriptions of the robot that get the commands.
     pub(crate) subscriptions: usize,
+    /// The type of a subscription that cannot read the commands.
+    pub(crate) wrong_type: Option<String>,
     /// Publishers of commands beside the adapter.
     pub(crate) publishers: usize,
     /// Arrival of the newest command of another program.
@@ -64,8 +66,10 @@ impl Condition {
         if self.pose_s.is_none_or(|pose_s| now_s - pose_s > POSE_MAX_AGE_S) {
             return Some(format!("no pose arrives on {}: check topic, type and QoS", config.pose_topic()));
         }
-        (self.subscriptions == 0)
-            .then(|| format!("the robot does not listen to {topic}: check topic, type and QoS"))
+        (self.subscriptions == 0).then(|| match &self.wrong_type {
+            Some(kind) => format!("the robot listens to {topic} for {kind}: change command.type"),
+            None => format!("the robot does not listen to {topic}: check topic, type and QoS"),
+        })
     }
 
     /// What a person should know although the vehicle obeys.

@@ -33,10 +33,14 @@ fn drive(seq: u64) -> Input {
     )))
 }
 
+fn matched(subscriptions: usize, publishers: usize) -> Input {
+    Input::Matched { subscriptions, publishers, wrong_type: None }
+}
+
 /// A bridge whose robot is there, at time 0.
 fn ready() -> Bridge {
     let mut bridge = Bridge::new(config(), 0.0);
-    bridge.take(Input::Matched { subscriptions: 1, publishers: 0 }, 0.0);
+    bridge.take(matched(1, 0), 0.0);
     bridge.take(odometry(0.0, 1000.0), 0.0);
     bridge
 }
@@ -100,7 +104,7 @@ fn poses_can_come_from_transforms() {
     config.tf = Some(toml::from_str("frame = \"odom\"\nchild_frame = \"base_link\"").unwrap());
     config.odometry = None;
     let mut bridge = Bridge::new(config, 0.0);
-    bridge.take(Input::Matched { subscriptions: 1, publishers: 0 }, 0.0);
+    bridge.take(matched(1, 0), 0.0);
     let transform = |frame: &str, child: &str, x| TransformStamped {
         header: header(frame, 1000.0),
         child_frame_id: child.to_owned(),
@@ -128,9 +132,21 @@ fn another_commander_is_a_fault_that_stops_the_robot() {
 }
 
 #[test]
+fn a_robot_that_expects_another_type_of_command_is_named() {
+    let mut bridge = ready();
+    let kind = "geometry_msgs::msg::dds_::TwistStamped_".to_owned();
+    let out = bridge.take(Input::Matched { subscriptions: 0, publishers: 0, wrong_type: Some(kind) }, 0.1);
+    let text = state(&out).unwrap().text.clone().unwrap();
+    assert_eq!(
+        text,
+        "the robot listens to /cmd_vel for geometry_msgs::msg::dds_::TwistStamped_: change command.type"
+    );
+}
+
+#[test]
 fn a_silent_publisher_is_mentioned() {
     let mut bridge = ready();
-    let out = bridge.take(Input::Matched { subscriptions: 1, publishers: 1 }, 0.1);
+    let out = bridge.take(matched(1, 1), 0.1);
     let said = state(&out).unwrap();
     assert_eq!(said.mode, Mode::Ready);
     assert_eq!(said.text.as_deref(), Some("another program could publish on /cmd_vel"));

@@ -6,7 +6,7 @@ use crate::{
     config::{self, CommandType},
     types::{Header, Twist, TwistStamped, Typed, Vector3},
 };
-use ros2_client::{Node, Publisher, Subscription};
+use ros2_client::{MessageTypeName, Publisher, Subscription};
 use tankops_adapter::commands::Velocity;
 
 /// The topic of commands, by its type.
@@ -37,16 +37,17 @@ impl Commands {
         }
     }
 
-    pub(super) fn news(&self, node: &Node) -> Vec<Input> {
+    pub(super) fn news(&self, joined: &Joined) -> Vec<Input> {
         match self {
-            Self::Plain(both) => both.news(node),
-            Self::Stamped(both, _) => both.news(node),
+            Self::Plain(both) => both.news(joined),
+            Self::Stamped(both, _) => both.news(joined),
         }
     }
 }
 
 /// Both ends of a topic of commands.
 pub(super) struct Both<M: Typed> {
+    name: String,
     publisher: Publisher<M>,
     subscription: Subscription<M>,
 }
@@ -59,18 +60,24 @@ impl<M: Typed + 'static> Both<M> {
         // One that matches every publisher.
         let topic = joined.topic::<M>(name, config::Qos::of_sensors())?;
         let subscription = joined.node.create_subscription(&topic, None).map_err(about(name))?;
-        Ok(Self { publisher, subscription })
+        Ok(Self { name: name.clone(), publisher, subscription })
     }
 
     fn publish(&self, message: M) -> Result<(), String> {
         self.publisher.publish(message).map_err(|error| format!("a command was not published: {error}"))
     }
 
-    fn news(&self, node: &Node) -> Vec<Input> {
-        // The adapter's own ends match each other, too.
+    fn news(&self, joined: &Joined) -> Vec<Input> {
+        let (node, (package, kind)) = (&joined.node, M::TYPE);
+        let expected = MessageTypeName::new(package, kind).dds_msg_type();
+        let types = joined.types_of_readers(&self.name, self.publisher.guid());
+        let wrong_type = types.iter().find(|kind| **kind != expected).cloned();
+        // The middleware matches by name and QoS only. The adapter's own ends match each other, too.
+        let matched = self.publisher.get_subscription_count(node).saturating_sub(1);
         let mut news = vec![Input::Matched {
-            subscriptions: self.publisher.get_subscription_count(node).saturating_sub(1),
+            subscriptions: types.iter().filter(|kind| **kind == expected).count().min(matched),
             publishers: self.subscription.get_publisher_count(node).saturating_sub(1),
+            wrong_type,
         }];
         let ours = self.publisher.gid();
         while let Ok(Some((_, info))) = self.subscription.take() {

@@ -7,7 +7,7 @@ use crate::{
     types::{Bool, Float64, Typed},
 };
 use futures::{StreamExt, executor::block_on};
-use ros2_client::dds::rustdds::Topic;
+use ros2_client::dds::rustdds::{GUID, Topic};
 use ros2_client::{
     Context, ContextOptions, MessageTypeName, Name, Node, NodeName, NodeOptions, QosProfile, Subscription,
     qos::{self, History, WhenFull},
@@ -20,6 +20,7 @@ const FULL_FOR: Duration = Duration::from_millis(5);
 /// A node in the domain.
 pub(super) struct Joined {
     pub(super) node: Node,
+    context: Context,
 }
 
 impl Joined {
@@ -31,7 +32,16 @@ impl Joined {
         let mut node = context.new_node(name, options).map_err(about("the ROS node"))?;
         let spinner = node.spinner().map_err(about("the ROS node"))?;
         thread::spawn(|| block_on(spinner.spin()));
-        Ok(Self { node })
+        Ok(Self { node, context })
+    }
+
+    /// The types, as DDS spells them, of the subscriptions to a topic, except those of the participant `ours`.
+    pub(super) fn types_of_readers(&self, name: &str, ours: GUID) -> Vec<String> {
+        let (ours, name) = (ours.prefix, format!("rt{name}"));
+        let readers = self.context.domain_participant().discovered_readers();
+        let data = readers.iter().map(|reader| &reader.subscription_topic_data);
+        let of_others = data.filter(|data| data.key().prefix != ours && *data.topic_name() == name);
+        of_others.map(|data| data.type_name().clone()).collect()
     }
 
     pub(super) fn topic<M: Typed>(&self, name: &str, qos: Qos) -> Result<Topic, String> {
