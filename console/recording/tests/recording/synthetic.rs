@@ -374,6 +374,7 @@ fn opened() -> RunOpened {
             fallback: None,
             attended: false,
             start_names_plan: false,
+            guard_reaction_s: None,
             live: false,
             better_plan: mission::BetterPlan::Off,
         },

@@ -241,6 +241,7 @@ mod tests {
             has: Has { odometry: true, ..Has::default() },
             period_s: 0.05,
             stop_time_s: 0.9,
+            session: None,
             lease_max_s: 0.5,
         }
     }

@@ -142,6 +142,7 @@ impl Cause {
             Self::Link,
             Self::Vehicle,
             Self::Guard,
+            Self::Guard,
             Self::StopNotConfirmed,
             Self::Planner,
             Self::Stuck,
@@ -170,6 +171,7 @@ impl Cause {
                 | Self::Zone(_)
                 | Self::Link
                 | Self::Vehicle
+                | Self::Guard
                 | Self::StopNotConfirmed
                 | Self::Planner
                 | Self::Stuck
