@@ -170,6 +170,7 @@ impl Cause {
                 | Self::Zone(_)
                 | Self::Link
                 | Self::Vehicle
+                | Self::Guard
                 | Self::StopNotConfirmed
                 | Self::Planner
                 | Self::Stuck
