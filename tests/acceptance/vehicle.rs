@@ -391,7 +391,9 @@ fn a_vehicle_that_speaks_only_after_a_command_is_not_driven_before_its_first_rea
                 kind => {
                     before.extend((number == 0).then(|| kind.to_owned()));
                     number += u64::from(before.len() >= 5);
-                    stream.write_all(&(1..=number).next_back().map_or(Vec::new(), |n| readings(n, still))).unwrap();
+                    stream
+                        .write_all(&(1..=number).next_back().map_or(Vec::new(), |n| readings(n, still)))
+                        .unwrap();
                 }
             }
         }
@@ -400,7 +402,10 @@ fn a_vehicle_that_speaks_only_after_a_command_is_not_driven_before_its_first_rea
     let ended = bench.fly(&short(&bench), &["--vehicle", &format!("unix:{}", path.display())]);
     assert_eq!(shy.join().unwrap(), ["stop"; 5], "{ended:?}");
     let run = bench.runs().pop().unwrap();
-    assert!(ended.json()["reason"].as_str().unwrap().contains("the link to the vehicle is closed"), "{ended:?}");
+    assert!(
+        ended.json()["reason"].as_str().unwrap().contains("the link to the vehicle is closed"),
+        "{ended:?}"
+    );
     bench.prove(&run);
 }
 
