@@ -253,6 +253,7 @@ fn hello(scenario: &Scenario) -> Hello {
             tether: scenario.mission.tether.is_some(),
             ae: scenario.sim.ae.is_some(),
             pressure: scenario.mission.pressure.is_some(),
+            drawn_ids: true,
             ..Has::default()
         },
         period_s: *tick_s,

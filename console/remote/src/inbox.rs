@@ -1,18 +1,20 @@
 //! The messages of a vehicle, folded into the input of a tick. It holds one tick of readings, however many arrive.
 
 mod ages;
+mod outlines;
 
 use ages::Ages;
+use outlines::Outlines;
 use std::collections::BTreeMap;
 use vehicle::{
     link::{Hold, Link, Motions, Sequence, State as Reached},
     port::{LinkSeen, LinkState, Live, Sensed, Stamps, Stood},
     wire::{
         FromVehicle, Heard, ToVehicle,
-        message::{Commander, Hello, Mode, Odometry, Outline, Readings, Scan, State},
+        message::{Commander, Hello, Mode, Odometry, Readings, Scan, State},
     },
 };
-use world::{ObstacleId, RangeSet, Sighting, StationId, scan::RangesMm};
+use world::{RangeSet, StationId, scan::RangesMm};
 
 /// Longest time until the first readings of a vehicle, seconds.
 const FIRST_WITHIN_S: f64 = 2.0;
@@ -44,6 +46,7 @@ pub(crate) struct Inbox {
     fault: String,
     closed: Option<String>,
     ages: Ages,
+    outlines: Outlines,
     /// The last report and its time.
     told: Option<(LinkState, String, f64)>,
     /// Whether the last report about a commanded stop was that it is confirmed; `None` without such a report.
@@ -67,6 +70,7 @@ impl Inbox {
             fault: String::new(),
             closed: None,
             ages: Ages::default(),
+            outlines: Outlines::default(),
             told: None,
             told_stood: None,
         }
@@ -137,6 +141,7 @@ impl Inbox {
         (self.motions, self.state, self.unread_since_s) = (Motions::default(), None, None);
         self.told_stood = None;
         self.sequence.restart();
+        self.outlines.greet(hello.has.drawn_ids);
         self.hello = Some(hello);
     }
 
@@ -172,7 +177,7 @@ impl Inbox {
             self.readings.paid_out_m = Some(tether.paid_out_m);
         }
         self.readings.pressure_pa = readings.pressure_pa.or(self.readings.pressure_pa);
-        self.readings.sightings = readings.outlines.iter().map(sighting).collect();
+        self.readings.sightings = self.outlines.sightings(&readings.outlines);
         if let Some(ae) = readings.ae.as_ref().filter(|_| age_s.is_none_or(|age_s| age_s <= RANGES_MAX_AGE_S))
         {
             self.readings.ranging_cycle = true;
@@ -260,6 +265,9 @@ impl Inbox {
             }
             Reached::Connecting | Reached::Late | Reached::Alive => {}
         }
+        if let Some(fault) = self.outlines.fault() {
+            return (LinkState::Faulty, fault);
+        }
         if let Some(finding) = self.link.finding() {
             return (LinkState::Faulty, finding.to_string());
         }
@@ -308,17 +316,6 @@ fn scanned(scan: &Scan) -> world::Scan {
 
 fn rounded(s: f64) -> f64 {
     (s * STAMP_STEPS).round() / STAMP_STEPS + 0.0
-}
-
-fn sighting(outline: &Outline) -> Sighting {
-    let Outline { id, points_m, radius_m, closed } = outline;
-    let points: Vec<world::Point> = points_m.iter().map(|[x, y]| world::Point::new(*x, *y)).collect();
-    let shape_in_robot = match (points.as_slice(), closed) {
-        ([center], _) => world::Shape::Disc { center: *center, radius_m: *radius_m },
-        (_, true) => world::Shape::Polygon { vertices: points },
-        (_, false) => world::Shape::Polyline { points, half_width_m: *radius_m },
-    };
-    Sighting { id: ObstacleId(*id), shape_in_robot }
 }
 
 #[cfg(test)]

@@ -142,7 +142,7 @@ fn misfits(scenario: &Scenario, hello: &Hello) -> Vec<String> {
 }
 
 fn info(hello: &Hello, address: &Address) -> VehicleInfo {
-    let Has { odometry, pose, scan, contact, tether, ae, pressure } = hello.has;
+    let Has { odometry, pose, scan, contact, tether, ae, pressure, .. } = hello.has;
     let parts = [
         (odometry, "odometry"),
         (pose, "pose"),

@@ -106,6 +106,10 @@ pub struct Has {
     /// `pressure_pa`.
     #[serde(default)]
     pub pressure: bool,
+    /// Whether the ids in `outlines` are those of the obstacles of the scenario, so that the tracker recognizes the drawn
+    /// ones. The ids of any other tracker are its own.
+    #[serde(default)]
+    pub drawn_ids: bool,
 }
 
 /// The readings of the vehicle's sensors. A part that was not measured is absent.
