@@ -19,6 +19,8 @@ const PLAN_SIDE: (u16, u16, u16) = (34, 50, 80);
 const MAP: (u16, u16) = (2, 22);
 /// Rows beside the map from which a single stack has a table of the stations.
 const TABLE_ROWS: u16 = 32;
+/// Rows of the plan screen from which it has room for a curve.
+const TALL: u16 = 45;
 /// Rows of the map that show no floor: the frame and the readout.
 const MAP_FRAME: u16 = 3;
 
@@ -118,7 +120,8 @@ pub(crate) fn plan(area: Rect, (width, height): (u16, u16), pane: Pane) -> Vec<(
     let side = side.max(if arrangement == Arrangement::Wide { PLAN_SIDE.1 } else { PLAN_SIDE.0 });
     let [map, side] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(side)]).areas(area);
     let mut placed = vec![(Pane::Map, map)];
-    let promise = wish(Pane::Promise, 10, 12);
+    // On a tall screen, a curve stands below the figures.
+    let promise = wish(Pane::Promise, 10, if area.height >= TALL { 24 } else { 12 });
     if arrangement == Arrangement::Narrow {
         placed.extend(match pane {
             Pane::LeftOut | Pane::Checks | Pane::Parameters => {
@@ -132,7 +135,7 @@ pub(crate) fn plan(area: Rect, (width, height): (u16, u16), pane: Pane) -> Vec<(
         promise,
         wish(Pane::Plan, 5, 8),
         wish(Pane::LeftOut, 4, 12),
-        wish(Pane::Checks, 4, 14),
+        wish(Pane::Checks, 4, 8),
         wish(Pane::Parameters, 3, 14),
     ];
     placed.extend(stack(side, &panes));

@@ -99,20 +99,34 @@ fn series<'a>(look: &Look<'a>, chart: Chart) -> Option<Series<'a>> {
 
 fn plot(look: &Look, frame: &mut Frame, area: Rect, series: &Series<'_>) {
     let values: Vec<f64> = series.values.last(HISTORY_S).collect();
-    let largest = values.iter().copied().filter(|value| value.is_finite()).fold(0.0, f64::max);
-    let limit = series.limit.filter(|limit| limit.is_finite() && *limit > 0.0);
-    let top = HEADROOM * largest.max(limit.unwrap_or(0.0));
-    let top = if top > 0.0 && top.is_finite() { top } else { 1.0 };
-    let plot = Rect { x: area.x + LABELS, width: area.width - LABELS, ..area };
     // The curve grows to the right and shifts left once a minute, so most frames change little and are cheap to
     // draw.
     let newest_s = series.values.newest_s();
     let end_s = ((newest_s / PAGE_S).floor() + 1.0) * PAGE_S;
-    let x = [end_s - HISTORY_S as f64, end_s];
-    let window = Window { x, y: [0.0, top], column_m: 1.0, size: (plot.width, plot.height) };
     let at_s = |index: usize| newest_s - ((values.len() - 1 - index) * SLOT_S) as f64;
-    let points: Vec<Point> =
-        values.iter().enumerate().map(|(index, value)| Point::new(at_s(index), *value)).collect();
+    let points = values.iter().enumerate().map(|(index, value)| Point::new(at_s(index), *value)).collect();
+    let x = [end_s - HISTORY_S as f64, end_s];
+    curve(look, frame, area, &Curve { points, x, limit: series.limit, decimals: series.decimals });
+}
+
+/// A curve with its limit.
+pub(super) struct Curve {
+    /// The points: the abscissa, and the value.
+    pub points: Vec<Point>,
+    /// The abscissas at the left and at the right edge.
+    pub x: [f64; 2],
+    pub limit: Option<f64>,
+    pub decimals: usize,
+}
+
+/// Draws a curve with the largest value and the limit beside it.
+pub(super) fn curve(look: &Look, frame: &mut Frame, area: Rect, curve: &Curve) {
+    let largest = curve.points.iter().map(|at| at.y).filter(|value| value.is_finite()).fold(0.0, f64::max);
+    let limit = curve.limit.filter(|limit| limit.is_finite() && *limit > 0.0);
+    let top = HEADROOM * largest.max(limit.unwrap_or(0.0));
+    let top = if top > 0.0 && top.is_finite() { top } else { 1.0 };
+    let plot = Rect { x: area.x + LABELS, width: area.width - LABELS, ..area };
+    let window = Window { x: curve.x, y: [0.0, top], column_m: 1.0, size: (plot.width, plot.height) };
     let marker = if look.caps.glyphs.has_dots() { Marker::Braille } else { Marker::Custom('*') };
     let canvas = Canvas::default().marker(marker).x_bounds(window.x).y_bounds(window.y).paint(|ctx| {
         let mut stroke = |points: &[Point], role, pattern| {
@@ -125,21 +139,22 @@ fn plot(look: &Look, frame: &mut Frame, area: Rect, series: &Series<'_>) {
                 Pattern::Dotted,
             );
         }
-        stroke(&points, Role::Watch, Pattern::Solid);
+        stroke(&curve.points, Role::Watch, Pattern::Solid);
     });
     frame.render_widget(canvas, plot);
-    label(look, frame, area, series, top, 0.0);
+    let mut label = |value: f64| label(look, frame, area, (value, curve.decimals), top);
+    label(0.0);
     if limit.is_some() {
-        label(look, frame, area, series, top, largest);
+        label(largest);
     }
-    label(look, frame, area, series, top, limit.unwrap_or(largest));
+    label(limit.unwrap_or(largest));
 }
 
-/// Writes a value beside the curve, at its height.
-fn label(look: &Look, frame: &mut Frame, area: Rect, series: &Series<'_>, top: f64, value: f64) {
+/// Writes a value with its decimals beside the curve, at its height.
+fn label(look: &Look, frame: &mut Frame, area: Rect, (value, decimals): (f64, usize), top: f64) {
     let share = (value / top).clamp(0.0, 1.0);
     let up = (share * f64::from(area.height - 1)).round() as u16;
     let place = Rect { y: area.bottom() - 1 - up, height: 1, width: LABELS - 1, ..area };
-    let value = text::number(value, series.decimals);
+    let value = text::number(value, decimals);
     frame.render_widget(Line::from(look.span(Role::Dim, value)).right_aligned(), place);
 }

@@ -1,6 +1,7 @@
 //! The plan screen: the path on the map, what the plan promises and what it leaves out, its parameters, the pre-flight
 //! checks, and a different planner's plan alongside.
 
+mod along;
 mod checks;
 mod left_out;
 mod parameters;

@@ -27,7 +27,7 @@ pub(super) const ROWS: &[Action] = &[
         .when(alarms::can_shelve).does(alarms::shelve),
     action(ActionId::Inject, "inject", "Inject a station fault (training)", &[], &[Context::Screen]).args(&[must("station", Kind::Station), must("fault", Kind::Fault), must("time", Kind::Duration)]).reaches(Reach::Mission)
         .when(|m| stations::can(m, ActionId::Inject)),
-    action(ActionId::DrawZone, "no-go", "Draw a no-go zone between two corners (asks)", &[], &[Context::Screen]).args(&[must("corner", Kind::Corner), must("opposite", Kind::Corner)]).reaches(Reach::Mission)
+    action(ActionId::DrawZone, "no-go", "Draw a no-go zone between two corners", &[], &[Context::Screen]).args(&[must("corner", Kind::Corner), must("opposite", Kind::Corner)]).reaches(Reach::Mission)
         .when(zones::can),
     action(ActionId::Draw, "draw-zone", "Draw a no-go zone from the cursor", &[Key::Char('d')], &[Context::Cursor]).label("no-go").reaches(Reach::Mission)
         .when(zones::can_draw).does(zones::draw),

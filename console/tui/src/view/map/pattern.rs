@@ -37,7 +37,7 @@ impl Pattern {
     pub(super) fn is_on(self, step: usize) -> bool {
         match self {
             Self::Solid | Self::Double | Self::Thick | Self::Ticked => true,
-            Self::Dashed => step % 7 < 4,
+            Self::Dashed => step % 8 < 5,
             Self::Dotted => step.is_multiple_of(3),
             Self::Sparse => step.is_multiple_of(5),
         }
@@ -123,6 +123,6 @@ mod tests {
             Pattern::Double,
         ];
         let samples = all.map(|pattern| pattern.sample(4));
-        assert_eq!(samples, ["⠤⠤⠤⠤", "⠤⠤ ⠠", "⠄⠠ ⠄", "⠤⡦⠤⢴", "⣤⣤⣤⣤", "⠄ ⠠ ", "⣒⣒⣒⣒"].map(str::to_owned));
+        assert_eq!(samples, ["⠤⠤⠤⠤", "⠤⠤⠄ ", "⠄⠠ ⠄", "⠤⡦⠤⢴", "⣤⣤⣤⣤", "⠄ ⠠ ", "⣒⣒⣒⣒"].map(str::to_owned));
     }
 }

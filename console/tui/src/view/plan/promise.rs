@@ -1,6 +1,7 @@
 //! What a plan promises, beside the limits of the mission; beside it what a second plan promises or, during a mission,
 //! what holds now.
 
+use super::along;
 use crate::model::{Pane, Run};
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
@@ -8,7 +9,7 @@ use crate::view::text;
 use account::{Estimate, estimate::Worst};
 use mission::{MissionConfig, Phase};
 use ratatui::Frame;
-use ratatui::layout::Rect;
+use ratatui::layout::{Constraint, Layout, Rect};
 
 /// Width of a label, of a figure and of a limit, columns.
 const LABEL: usize = 12;
@@ -58,7 +59,10 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         let limit = (figure.limit)(mission).map_or_else(String::new, |limit| figure.said(limit));
         rows.push(row(figure.label, &mine, second, &limit, &widths));
     }
+    let [_, below] = Layout::vertical([Constraint::Length(rows.len() as u16 + 1), Constraint::Fill(1)])
+        .areas(block.inner(area));
     fill(frame, area, block, rows.into_iter().map(|parts| look.line(parts)).collect());
+    along::draw(look, frame, below);
 }
 
 /// What stands beside the promise.
