@@ -210,7 +210,7 @@ fn a_planner_that_gives_up_in_every_tank_fails_and_the_tanks_are_kept() {
     let checked = tried(&["--keep", "lost"]);
     let line = "FAIL  does not always give up: tank with seed 7: planner hostile gave up at step 0";
     assert!(checked.code == Some(1) && checked.out.contains(line), "{checked:?}");
-    assert!(checked.out.contains("not completed: tank with seed 8, "), "{checked:?}");
+    assert!(checked.out.contains("tank with seed 8: mission not completed ("), "{checked:?}");
     assert!(!checked.out.contains("continues from its saved state"), "it saves none: {checked:?}");
     for seed in [7, 8] {
         let kept = bench.path().join(format!("lost/hostile-goto-{seed}.toml"));

@@ -179,7 +179,7 @@ fn a_journal_of_another_version_is_refused_by_every_command_that_reads_it() {
         for command in commands {
             let refused = bench.tankops(&[command, &[run.file_name().unwrap().to_str().unwrap()]].concat());
             assert_eq!(refused.code, Some(2), "{command:?} {refused:?}");
-            let is_clear = refused.err.contains(&format!("the journal has version {version}"))
+            let is_clear = refused.err.contains(&format!(" has version {version}, but this tankops"))
                 && refused.err.contains(&format!("reads version {JOURNAL_VERSION}"));
             assert!(is_clear && refused.err.trim().lines().count() == 1, "{command:?} {refused:?}");
         }

@@ -71,7 +71,10 @@ fn read(args: &ImportArgs, input: &Input) -> anyhow::Result<FloorPlan> {
 fn no_scenario(errors: &ScenarioErrors) -> String {
     let told = errors.problems.iter().take(LISTED).map(|problem| {
         let help = problem.what.help().map(|help| format!("; {help}")).unwrap_or_default();
-        format!("{}: cannot be made into a scenario; nothing was written: {problem}{help}", errors.shown_name)
+        format!(
+            "{}: nothing was written, because the floor does not make a valid scenario: {problem}{help}",
+            errors.shown_name
+        )
     });
     told.collect::<Vec<_>>().join("\n")
 }

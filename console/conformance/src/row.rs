@@ -91,7 +91,7 @@ impl InTank {
         let ended = self.outcome.map_or("did not end", Outcome::word).replace('_', " ");
         let after = self.time_s.map(|s| format!(" after {s:.1} s")).unwrap_or_default();
         let why = self.failure.as_ref().map(|why| format!(": {why}")).unwrap_or_default();
-        format!("not completed: tank with seed {}, {ended}{after}{why}\n", self.seed)
+        format!("tank with seed {}: mission not completed ({ended}{after}){why}\n", self.seed)
     }
 }
 

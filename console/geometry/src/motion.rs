@@ -4,8 +4,8 @@ use crate::{Amphibious, Point, Pose, Vector, unit_vector, wrap_angle_rad};
 
 /// Heading error above which a unicycle turns on the spot before it drives, radians.
 pub const TURN_FIRST_RAD: f64 = 1.0;
-/// Heading error above which a unicycle turns on the spot on lanes that are followed exactly, radians: a wide curve at
-/// the end of a lane would take the robot into the wall.
+/// Heading error above which a unicycle turns on the spot while it follows lanes exactly, radians: a wide curve at the
+/// end of a lane would take the robot into the wall.
 pub const TURN_FIRST_IN_LANES_RAD: f64 = 0.25;
 /// Turn rate per unit of heading error, 1/s: an error of 0.5 rad decays in about a second.
 const HEADING_GAIN_PER_S: f64 = 2.5;

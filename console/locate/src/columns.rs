@@ -73,7 +73,7 @@ pub(crate) struct Columns {
     names: Vec<String>,
     /// The position of each of [`COLUMNS`], and its factor.
     at: [Option<(usize, f64)>; COLUMNS.len()],
-    /// Metres per second; used for files of times.
+    /// Speed of sound, metres per second; used for files that contain times instead of distances.
     sound_speed_m_s: f64,
     stations: HashMap<String, StationId>,
     station_names: String,
@@ -301,7 +301,7 @@ impl Columns {
         let number = number.ok_or_else(|| self.problem(line, column, format!("`{text}` is not a number")))?;
         if factor <= DATED {
             let what = format!(
-                "`{text}` has no unit; name the column t_s, t_ms or t_us, or write dates, such as {}",
+                "`{text}` has no unit; name the column t_s, t_ms or t_us, or write date, time and zone, such as {}",
                 clock::EXAMPLE
             );
             return Err(self.problem(line, column, what));

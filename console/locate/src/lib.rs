@@ -1,6 +1,6 @@
 //! Turns readings of other systems, for example of an acoustic-emission system on a real robot, into fixes and a track.
-//! It uses the same estimator as a mission and produces the events of a run, so journal, recording and report are made
-//! as for any other run.
+//! It uses the same estimator as a mission and produces the events of a run, so the journal, the recording and the
+//! report are made as for any other run.
 //!
 //! A file is read row by row, once to check it and once to locate; memory use does not grow with the length of the
 //! file. To estimate clock and sound errors, the file is read more often.

@@ -45,11 +45,11 @@ pub struct Task<'a> {
     pub shown: &'a str,
     /// Stations, tank, start and noise.
     pub scenario: &'a Scenario,
-    /// Metres per second; used for files of times.
+    /// Speed of sound, metres per second; used for files that contain times instead of distances.
     pub sound_speed_m_s: Option<f64>,
     /// Whether to estimate the speed of sound of this session.
     pub finds_sound_speed: bool,
-    /// Whether to estimate the offset between the clocks of robot and stations.
+    /// Whether to estimate the offset between the clocks of the robot and the stations.
     pub finds_clock_offset: bool,
     /// Whether to leave out bad rows instead of refusing the file.
     pub skips_bad_rows: bool,

@@ -5,7 +5,7 @@ use crate::moments::Moment;
 use positioning::{RangeNoise, Timing, scatter_limit};
 use world::StationId;
 
-/// Maximum weight of a squared difference, in variances, so that a few far outliers do not make a session suspect.
+/// Maximum weight of a squared difference, in variances, so that a few extreme outliers do not make a session suspect.
 const MOST_SQUARES: f64 = 16.0;
 /// Ratio of the variance of the scatter to that of the noise below which the scatter does no harm.
 const HARMLESS: f64 = 1.3;

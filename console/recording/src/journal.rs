@@ -92,7 +92,7 @@ pub enum JournalError {
     },
     /// The journal was written by a tankops with a different journal version.
     #[error(
-        "the journal has version {theirs}, and this tankops reads version {ours}; use the tankops that wrote it: {}",
+        "the journal {} has version {theirs}, but this tankops reads version {ours}; use the tankops that wrote it",
         path.display()
     )]
     OtherVersion {

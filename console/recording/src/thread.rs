@@ -1,4 +1,4 @@
-//! The thread that writes journal and recording while the mission continues.
+//! The thread that writes the journal and the recording while the mission continues.
 
 mod shared;
 mod sync;
@@ -81,7 +81,7 @@ pub struct Finished {
     pub error: Option<String>,
 }
 
-/// Writes journal and recording of a run in a separate thread.
+/// Writes the journal and the recording of a run in a separate thread.
 ///
 /// [`RunRecorder::send`] hands over events and returns immediately, unless 8192 batches are waiting. In that case the
 /// simulation waits for the disk, and no data is lost. An error affects only its own file and appears in
@@ -102,7 +102,8 @@ pub struct RunRecorder {
 }
 
 impl RunRecorder {
-    /// Starts journal and recording in the folder of a run, which must exist; the folder name is the name of the run.
+    /// Starts the journal and the recording in the folder of a run, which must exist; the folder name is the name of the
+    /// run.
     ///
     /// # Errors
     /// A file exists or cannot be created.

@@ -70,7 +70,7 @@ impl FloorFacts {
 }
 
 /// Compares an inspector's facts with the scenario of the run; returns a sentence for the first contradiction about
-/// the floor. A fact that only one of the two states is not a contradiction.
+/// the floor. A fact that is missing on one side is not a contradiction.
 pub(crate) fn contradiction(facts: &Inspection, flown: &Inspection) -> Option<String> {
     let (facts, flown) = (FloorFacts::of(facts), FloorFacts::of(flown));
     let flown = flown.or(&facts);

@@ -46,7 +46,7 @@ struct Findings {
     difference: Option<Difference>,
     /// A doubt about the files as a whole.
     doubt: Option<String>,
-    /// Whether a report contains the digests of journal and recording.
+    /// Whether a report contains the digests of the journal and the recording.
     is_reported: bool,
     /// The recovery of the run, if its recording process was killed.
     recovered: Option<Recovered>,
@@ -107,12 +107,12 @@ fn verify_located(folder: &Path, Measured { file, sha256, .. }: &Measured) -> an
     let mut lines: Vec<String> =
         past.files.doubts.iter().map(|doubt| format!("different: {doubt}")).collect();
     if past.files.are_as_reported == Some(true) {
-        lines.push("equal: journal and recording have the SHA-256 stated in report.json".into());
+        lines.push("equal: the journal and the recording have the SHA-256 stated in report.json".into());
     }
     if past.files.are_as_reported.is_none() {
         lines.push(
-            "note: report.json is missing or does not state the digests of journal and recording, so the \
-             files were not checked"
+            "note: report.json is missing or does not state the digests of the journal and the recording, \
+             so the files were not checked"
                 .into(),
         );
     }
@@ -192,8 +192,8 @@ fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
     let mut lines = Vec::new();
     if !findings.is_reported && no_end.is_none() {
         lines.push(
-            "note: report.json is missing or does not state the digests of journal and recording, so the \
-             recording was not checked"
+            "note: report.json is missing or does not state the digests of the journal and the recording, \
+             so the recording was not checked"
                 .into(),
         );
     }

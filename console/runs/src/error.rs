@@ -36,7 +36,7 @@ pub enum RunError {
     /// The journal cannot be read.
     #[error(transparent)]
     Journal(#[from] JournalError),
-    /// Journal and recording cannot be created.
+    /// The journal and the recording cannot be created.
     #[error(transparent)]
     Recording(#[from] RecordingError),
     /// No free name was found for the folder of the run.

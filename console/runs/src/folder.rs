@@ -63,7 +63,7 @@ impl RunFolder {
         match lock.try_lock() {
             Ok(()) => Ok(Self { path: path.to_owned(), _lock: lock }),
             Err(TryLockError::WouldBlock) => Err(RunError::Refused(format!(
-                "the run is still being written; first end it, or end the process that is writing it: {}",
+                "the run in {} is still being written; first end it, or end the process that is writing it",
                 path.display()
             ))),
             Err(TryLockError::Error(error)) => Err(RunError::during(locking())(error)),

@@ -1,9 +1,9 @@
 //! Runs on disk: the folder of each run, the files written to it, whether the run was kept, and the contents of past
 //! runs.
 //!
-//! Every run is written by a [`RunLog`] into its own [`RunFolder`]: journal and recording while the run is in progress,
-//! the report at its end. The journal is authoritative. The report is derived from the journal, and is trusted only as
-//! long as it agrees with the journal ([`standing()`]).
+//! Every run is written by a [`RunLog`] into its own [`RunFolder`]: the journal and the recording while the run is in
+//! progress, the report at its end. The journal is authoritative. The report is derived from the journal, and is trusted
+//! only as long as it agrees with the journal ([`standing()`]).
 
 mod beside;
 mod budget;

@@ -1,4 +1,4 @@
-//! Writes a run while its mission runs: journal and recording and, at its end, the report.
+//! Writes the journal and the recording of a run while its mission runs, and the report at its end.
 
 use crate::{beside::Beside, error::RunError, folder::RunFolder, kept::Kept};
 use account::{Expect, Logs, PlannerCalls, Stops, Summary};

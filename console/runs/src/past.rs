@@ -86,7 +86,7 @@ impl Past {
 }
 
 /// Passes every event in a journal to the caller, in order. One thread reads ahead; a second one computes the digests of
-/// journal and recording meanwhile. Returns these digests.
+/// the journal and the recording meanwhile. Returns these digests.
 fn each_event(
     reader: &mut JournalReader,
     folder: &Path,

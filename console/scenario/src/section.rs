@@ -428,7 +428,10 @@ impl<'a> Section<'a> {
         let Kind::Tables(keys) = self.key(name).kind else {
             panic!("{name} is not declared as a list of tables")
         };
-        let remedy = format!("write [[{}]] in double brackets and its keys below", self.path_of(name));
+        let remedy = format!(
+            "write [[{}]] in double brackets, and its keys on the lines below it",
+            self.path_of(name)
+        );
         let list = self.list(name, "a list of tables", &remedy).unwrap_or_default();
         if list.len() > MOST_ENTRIES {
             self.complain(name, Complaint::TooMany { have: list.len(), most: MOST_ENTRIES });

@@ -59,7 +59,7 @@ pub(crate) struct Knot {
 pub(crate) struct Patience {
     /// The maximum number of sets of rows.
     pub sets: usize,
-    /// Growth of the penalties from one set to the next while a limit is violated.
+    /// Factor by which the penalties grow from one set to the next while a limit is violated.
     pub growth: f64,
     /// The share of the turn limit to aim for.
     pub turn_share: f64,

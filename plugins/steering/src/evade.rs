@@ -25,7 +25,7 @@ const SHARES: [f64; 3] = [1.0, 0.6, 0.3];
 /// Extra distance from a moving obstacle, in addition to the clearance, metres: kept if possible, and preferred.
 const ROOM_M: f64 = 0.1;
 const LIKED_M: f64 = 0.8;
-/// Growth of the uncertainty of a moving obstacle's predicted position, metres per second.
+/// Growth rate of the uncertainty of a moving obstacle's predicted position, metres per second.
 const DOUBT_M_PER_S: f64 = 0.04;
 /// Cost of each metre by which the extra distance falls short, expressed as deviation from the desired velocity, metres
 /// per second.

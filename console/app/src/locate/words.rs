@@ -60,10 +60,14 @@ pub(super) fn human(
             format!("the first fix is {off_m:.2} m from robot.start_m of the scenario: {note}"),
         );
     }
-    tally.failed.iter().for_each(|(why, count)| text.line("no fix", format!("{count} times: {why}")));
+    for (why, count) in &tally.failed {
+        let times = if *count == 1 { "once".to_owned() } else { format!("{count} times") };
+        text.line("no fix", format!("{times}: {why}"));
+    }
     for (id, count) in &tally.left_out {
         let name = name_of(scenario, *id);
-        text.line("left out", format!("station {name} from {count} fixes: residual exceeded the gate"));
+        let fixes = if *count == 1 { "fix" } else { "fixes" };
+        text.line("left out", format!("station {name} from {count} {fixes}: residual exceeded the gate"));
     }
     let metres = |[mean_m, most_m]: [f64; 2]| format!("{mean_m:.3} m mean, {most_m:.3} m maximum");
     let figures = [

@@ -26,7 +26,7 @@ const COARSEST_M: f64 = 0.05;
 /// Distance from south to north, in metres, below which the centres of plates form a row.
 const ROW_M: f64 = 0.25;
 
-/// A text of the drawing.
+/// A piece of text in the drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Label {
     pub at: Point,

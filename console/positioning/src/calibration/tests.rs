@@ -84,7 +84,7 @@ fn a_session_finds_where_the_stations_are() {
         station.position += Vector::new(draws.bell(), draws.bell()) * 0.1;
     }
     let mut calibration =
-        // If the speed of sound were free as well, a large array could not be distinguished from slow sound.
+        // If the speed of sound were free as well, a large array could not be distinguished from a low speed of sound.
         Calibration::new(&surveyed, Unknowns { survey_sigma_m: 0.1, sound_sigma_ratio: 0.0, offset_sigma_m: 0.0 });
     for _ in 0..400 {
         let truth = draws.on_disc();

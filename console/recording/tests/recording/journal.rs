@@ -159,7 +159,7 @@ fn a_journal_of_another_version_is_refused_with_advice() {
         let error = read_journal(&path).expect_err("another version");
         assert!(matches!(error, JournalError::OtherVersion { theirs, .. } if theirs == other), "{error}");
         assert!(
-            error.to_string().contains(&format!("version {other}, and this tankops reads version")),
+            error.to_string().contains(&format!("version {other}, but this tankops reads version")),
             "{error}"
         );
     }

@@ -137,7 +137,7 @@ impl<'a> Layers<'a> {
         self.classes[cell].is_scanned()
     }
 
-    /// Whether a cell is of a class.
+    /// Whether a cell belongs to a class.
     pub(crate) fn is(&self, cell: usize, class: FloorClass) -> bool {
         self.classes[cell] == class
     }

@@ -259,7 +259,7 @@ pub(super) fn track(layers: &Layers<'_>, record: &Record) -> Option<Figure> {
         end.y,
         colour::INK
     ));
-    let caption = "Track according to the estimated position; the dot marks the end".into();
+    let caption = "Estimated track; the dot marks its end".into();
     Some(Figure { caption, svg: sheet.svg("Track of the robot", "half"), legend: Vec::new() })
 }
 

@@ -3,8 +3,8 @@
 use account::Summary;
 use report::first_difference;
 
-/// The first figure that differs between report and journal, with both values. Data that is not in the events is not
-/// compared.
+/// The first figure that differs between the report and the journal, with both values. Data that is not in the events
+/// is not compared.
 pub(super) fn difference(reported: Summary, computed: &Summary) -> Option<String> {
     let mut computed = Summary {
         wall_time_s: reported.wall_time_s,

@@ -58,8 +58,10 @@ impl Reasons<'_> {
             reasons.push(format!("total tether wrap {total:.0}° at {place}, limit {limit:.0}°"));
         }
         reasons.extend(self.left_out(certificate));
-        if certificate.cut_crossings > 0 {
-            reasons.push(format!("the path crosses cuts {} times", certificate.cut_crossings));
+        match certificate.cut_crossings {
+            0 => {}
+            1 => reasons.push("the path crosses a cut".to_owned()),
+            n => reasons.push(format!("the path crosses cuts {n} times")),
         }
         if let Some(sealed) = self.sealed {
             reasons.push(format!("cuts seal off {:.2} m² of floor at {}", sealed.area_m2, place(sealed.at)));

@@ -29,7 +29,7 @@ impl Guard {
         Self { uncounted: Uncounted::of(memory_limit_bytes), ..Self::default() }
     }
 
-    /// Returns the worker's report on its sandbox and the file.
+    /// Returns the worker's report on its sandbox and on the plugin file, once it has arrived.
     pub(super) fn sealed(&self) -> Option<&Sealed> {
         self.sealed.as_ref()
     }

@@ -78,9 +78,8 @@ pub(in crate::document) fn limitations(document: &Document) -> Vec<Block> {
             number(100.0 * floor.cell_m, 1),
             floor.swath_m
         ),
-        "\u{201c}Guaranteed\u{201d} takes account of the position error according to the covariance. That \
-         error does not include errors in the heading, in the station survey, in the speed of sound, or in \
-         the tool's offset on the robot."
+        "\u{201c}Guaranteed\u{201d} allows for the position error given by the covariance, but not for errors \
+         in the heading, in the station survey, in the speed of sound, or in the tool's offset on the robot."
             .to_owned(),
         "The critical zone is evaluated every 25 mm along the shell as drawn, in 15 layers of 5 mm."
             .to_owned(),

@@ -58,7 +58,7 @@ fn a_path_round_a_column_is_refused_with_its_name() {
     assert!(certificate.end_length_m.is_some_and(|left_m| left_m > 7.9));
     let words = certificate.reasons.join("; ");
     assert!(
-        words.contains("still out on return, hooked around C0") && words.contains("crosses cuts 1"),
+        words.contains("still out on return, hooked around C0") && words.contains("crosses a cut"),
         "{words}"
     );
     // A mission that need not return may end anywhere.
