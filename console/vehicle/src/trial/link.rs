@@ -68,7 +68,7 @@ pub fn introduction(hello: &Hello) -> Row {
 }
 
 fn parts(has: &Has) -> Vec<&'static str> {
-    let Has { odometry, pose, scan, contact, tether, ae, pressure } = *has;
+    let Has { odometry, pose, scan, contact, tether, ae, pressure, drawn_ids } = *has;
     let parts = [
         (odometry, "odometry"),
         (pose, "pose"),
@@ -77,6 +77,7 @@ fn parts(has: &Has) -> Vec<&'static str> {
         (tether, "tether"),
         (ae, "ae"),
         (pressure, "pressure"),
+        (drawn_ids, "ids of the drawing"),
     ];
     parts.into_iter().filter(|(has, _)| *has).map(|(_, part)| part).collect()
 }
