@@ -1,6 +1,7 @@
 //! Answers that arrive late, are cut short or never arrive: the run continues or ends, and can still be verified.
 
 use crate::bench::{Bench, Ended, first_of, journal, of_kind, scenario};
+use crate::looking_on::Console;
 use rustix::process::{Pid, Signal, kill_process};
 use std::{
     path::PathBuf,
@@ -44,15 +45,8 @@ impl Flying {
         }
     }
 
-    /// Processes of planners that this run has started.
     fn workers(&self) -> Vec<i32> {
-        let threads = std::fs::read_dir(format!("/proc/{}/task", self.child.id())).into_iter().flatten();
-        let children = threads
-            .filter_map(|thread| std::fs::read_to_string(thread.unwrap().path().join("children")).ok());
-        let pids: Vec<i32> = children
-            .flat_map(|pids| pids.split_whitespace().map(|pid| pid.parse().unwrap()).collect::<Vec<_>>())
-            .collect();
-        pids.into_iter().filter(|pid| is_worker(*pid)).collect()
+        workers_of(self.child.id())
     }
 
     /// Sends a signal to the active planner.
@@ -67,6 +61,17 @@ impl Flying {
         let output = self.child.wait_with_output().unwrap();
         (self.bench, Ended::from(output))
     }
+}
+
+/// Processes of planners that a process has started.
+fn workers_of(process: u32) -> Vec<i32> {
+    let threads = std::fs::read_dir(format!("/proc/{process}/task")).into_iter().flatten();
+    let children =
+        threads.filter_map(|thread| std::fs::read_to_string(thread.unwrap().path().join("children")).ok());
+    let pids: Vec<i32> = children
+        .flat_map(|pids| pids.split_whitespace().map(|pid| pid.parse().unwrap()).collect::<Vec<_>>())
+        .collect();
+    pids.into_iter().filter(|pid| is_worker(*pid)).collect()
 }
 
 fn is_worker(pid: i32) -> bool {
@@ -211,4 +216,32 @@ fn without_them_the_same_planners_are_waited_for() {
         assert_eq!(of_kind(&events, "planned")[0]["tick"], 0);
         bench.prove(&bench.runs()[0]);
     }
+}
+
+#[test]
+fn a_planner_that_is_killed_during_a_hold_is_reported_during_the_hold() {
+    let bench = Bench::new();
+    let file = scenario("goto-single-obstacle.toml");
+    let mut console = Console::open(bench.command(), &[file.to_str().unwrap()]);
+    console.hear("Enter `start` to start");
+    console.order("start\nyes\n");
+    console.hear("Mission running");
+    console.order("hold\n");
+    console.hear("held");
+    let workers = workers_of(console.pid());
+    assert_eq!(workers.len(), 1, "{workers:?}");
+    signal_it(workers[0], Signal::KILL);
+    console.hear("was killed by SIGKILL");
+    console.order("resume\nyes\n");
+    console.hear("resumed");
+    console.order("hold\n");
+    console.hear("held");
+    console.order("end\nyes\n");
+    console.hear("Screen 7: Result.");
+    assert_eq!(console.leave(), Some(0));
+    let run = bench.runs().remove(0);
+    let events = journal(&run);
+    let failed = first_of(&events, "planner_failed").expect("the fault");
+    assert!(failed < first_of(&events, "resumed").expect("the resumption"), "noticed during the hold");
+    bench.prove(&run);
 }

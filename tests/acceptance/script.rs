@@ -202,9 +202,25 @@ fn a_script_waits_for_the_way_back_before_it_answers() {
     let bench = Bench::new();
     let ended = scripted(
         &bench,
-        "start\nkey enter\nwait until phase running\nhold\nreturn\nkey enter\nspeed max\n\
-         wait until phase aborted within 2m\n",
+        "start\nkey enter\nwait until phase running\nhold\nreturn\nkey enter\n\
+         wait until phase aborted within 10m\n",
     );
     assert_eq!(ended.code, Some(0), "{ended:?}");
     bench.prove(&bench.runs()[0]);
+}
+
+#[test]
+fn a_coverage_planner_takes_a_new_slow_zone_under_way() {
+    let bench = Bench::new();
+    let script = "start\nkey enter\nwait until phase running within 10m\nset slow_m=0.6\nkey enter\nhold\n\
+                  wait until phase held\nassert not alarm planner\nend\nkey enter\nwait until phase aborted\n";
+    let file = bench.file("mission.txt", script);
+    let cover = scenario("cover-circle.toml");
+    let ended = bench.tankops(&["console", cover.to_str().unwrap(), "--script", file.to_str().unwrap()]);
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    let run = bench.runs().remove(0);
+    let events = crate::bench::journal(&run);
+    let changed = crate::bench::of_kind(&events, "parameters_changed");
+    assert_eq!(changed[0]["choice"]["parameters"]["slow_m"], 0.6, "{changed:?}");
+    bench.prove(&run);
 }

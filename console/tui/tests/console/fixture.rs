@@ -425,6 +425,12 @@ impl ScriptedMission {
         self.fails(During::Step, Cause::Panic, "planner rpf panicked during step")
     }
 
+    /// The planner refuses new values of its live parameters and drives on.
+    pub(crate) fn change_refused(&self) -> Event {
+        let message = "planner rpf refused the changed parameters: too late; its old values stay in effect";
+        self.fails(During::Reconfigure, Cause::Planner(planner_api::Code::Unsupported), message).remove(0)
+    }
+
     /// The planner finds no plan and the robot is held.
     pub(crate) fn planning_fails(&self) -> Vec<Event> {
         let cause = Cause::Planner(planner_api::Code::NoPath);

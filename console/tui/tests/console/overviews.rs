@@ -150,6 +150,11 @@ fn past_runs_at_home() {
     let key = ("20261122T040049Z-cover-circle".to_owned(), "complete".to_owned());
     assert_eq!(asked, [Effect::Glimpse(key.clone())]);
     assert!(offered(&screen));
+    // A robot that may move needs processor and disk; afterwards, the run is read again.
+    let resumed = screen.mission.obeyed(Order::Resume);
+    assert_eq!(screen.hear(RunMsg::Events(resumed)), [Effect::StopGlimpsing]);
+    let held = screen.mission.obeyed(Order::Hold);
+    assert_eq!(screen.hear(RunMsg::Events(held)), [Effect::Glimpse(key.clone())]);
     let known = glimpse(&screen);
     screen.send(Msg::Glimpsed(key.clone(), Ok(Box::new(known))));
     sizes::store("home_runs", &mut screen, |_| false);
