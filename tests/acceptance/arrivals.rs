@@ -238,7 +238,7 @@ fn a_planner_that_is_killed_during_a_hold_is_reported_during_the_hold() {
     console.hear("held");
     console.order("end\nyes\n");
     console.hear("Screen 7: Result.");
-    assert_eq!(console.leave(), Some(0));
+    assert_eq!(console.leave(), Some(1), "the operator ended the mission");
     let run = bench.runs().remove(0);
     let events = journal(&run);
     let failed = first_of(&events, "planner_failed").expect("the fault");

@@ -59,7 +59,7 @@ fn a_refused_change_of_parameters_is_a_warning_and_no_alarm() {
     let refused = screen.mission.change_refused();
     screen.hear(RunMsg::Events(vec![refused]));
     let notice = screen.model.notice().expect("the operator is told");
-    assert_eq!(notice.severity, mission::Severity::Warn);
+    assert_eq!(notice.severity, Severity::Warn);
     assert!(notice.text.ends_with("old values stay in effect"), "{}", notice.text);
     let run = &screen.model.live.run;
     assert!(run.alarms.get(&Cause::Planner).is_none() && run.planning.fault.is_none());
