@@ -13,6 +13,8 @@ use world::{Point, Readings, scan::carried};
 
 /// An older scan no longer guards the robot, seconds.
 const SCAN_MAX_AGE_S: f64 = 0.5;
+/// The robot has moved on since its readings by at most this many ticks.
+const READING_TICKS: usize = 1;
 /// Longest time until the first scan, seconds; until then the robot stands.
 const FIRST_WITHIN_S: f64 = 2.0;
 /// Points farther from the hull than the stopping distance at full speed plus this are not kept, metres: more than the
@@ -88,7 +90,7 @@ impl Known {
     pub(in crate::engine) fn remember_sent(&mut self, drive: Drive) {
         let Some(reaction_s) = self.config.guard_reaction_s else { return };
         let sent = Sent::of(&self.governor.momentum, drive, &self.as_governed());
-        let kept = (reaction_s / self.config.tick_s).ceil() as usize;
+        let kept = (reaction_s / self.config.tick_s).ceil() as usize + READING_TICKS;
         let state = &mut self.scan_guard;
         state.sent.push(sent);
         let over = state.sent.len().saturating_sub(kept);
