@@ -146,7 +146,7 @@ fn a_trial_needs_an_adapter_and_says_what_is_wrong() {
         (&["check", "--vehicle", "unix:nowhere"][..], "cannot drive the vehicle at unix:nowhere"),
         (&["check", "--vehicle", "run:true"], "before it introduced the vehicle"),
         (&["check", "--vehicle", "loopback"], "is not tried"),
-        (&["check", "--vehicle", "unix:a", "--speed", "-1"], "--speed"),
+        (&["check", "--vehicle", "unix:a", "--drive", "--speed", "0"], "greater than 0"),
         (&["check", "--drive"], "--vehicle"),
         (&["check"], "FILE"),
         (&["new-vehicle", "My robot"], "is not a valid vehicle name"),

@@ -81,6 +81,6 @@ mod tests {
     #[test]
     fn the_first_drive_fits_the_robot() {
         let scenario = scenario::Scenario::parse(SCENARIO, "scenario.toml").unwrap();
-        assert!(scenario.sim.ae.is_none() && scenario.vehicle.without_ranges);
+        assert!(scenario.vehicle.without_ranges && scenario.vehicle.without_contact);
     }
 }

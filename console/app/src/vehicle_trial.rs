@@ -86,7 +86,7 @@ fn lines(row: &Row, width: usize) -> String {
 
 fn figure(Figure { name, value, unit, at_most }: &Figure) -> String {
     let number = |value: f64| {
-        let places = if value == value.round() || value.abs() >= 100.0 { 0 } else { 3 };
+        let places = if value.fract() == 0.0 || value.abs() >= 100.0 { 0 } else { 3 };
         format!("{value:.places$}")
     };
     let space = if unit.is_empty() { "" } else { " " };

@@ -50,7 +50,7 @@ impl Figure {
     }
 
     fn exceeds(&self) -> bool {
-        self.at_most.is_some_and(|most| !(self.value <= most))
+        self.at_most.is_some_and(|most| self.value > most || self.value.is_nan())
     }
 }
 

@@ -124,27 +124,35 @@ impl<'a> Guard<'a> {
     /// The nearest point that a robot may come too close to if it follows a command for one tick and then brakes.
     fn in_the_way(&self, momentum: &Momentum, drive: Drive) -> Option<(f64, f64)> {
         let hull_m = self.here.limits.radius_m;
-        let kept_m = |room_m: f64| {
-            if room_m > 0.0 { SCAN_ROOM_M.min(ROOM_SHARE * room_m) } else { room_m - TOUCH_M }
+        // A hull that passes beside a point may come closer to it than one that drives towards it: a robot along a wall
+        // must not be stopped by the wall.
+        let kept_m = |room_m: f64, is_on_course: bool| match room_m {
+            _ if is_on_course && room_m > 0.0 => SCAN_ROOM_M,
+            _ if room_m > 0.0 => SCAN_ROOM_M.min(ROOM_SHARE * room_m),
+            _ => room_m - TOUCH_M,
         };
-        self.nearest(momentum, drive, |echo| hull_m + kept_m(echo.distance_m - hull_m))
+        self.nearest(momentum, drive, |echo, sector| {
+            let is_on_course = Sector { way_m: f64::MAX, ..*sector }.distance_m(echo) < hull_m;
+            hull_m + kept_m(echo.distance_m - hull_m, is_on_course)
+        })
     }
 
     /// Whether the hull may touch a point although the robot brakes as hard as it can.
     fn touches(&self, momentum: &Momentum) -> bool {
         let hull_m = self.here.limits.radius_m;
-        self.nearest(momentum, Drive::STILL, |echo| hull_m.min(echo.distance_m - TOUCH_M)).is_some()
+        self.nearest(momentum, Drive::STILL, |echo, _| hull_m.min(echo.distance_m - TOUCH_M)).is_some()
     }
 
     fn nearest(
         &self,
         momentum: &Momentum,
         drive: Drive,
-        needed_m: impl Fn(&Echo) -> f64,
+        needed_m: impl Fn(&Echo, &Sector) -> f64,
     ) -> Option<(f64, f64)> {
         let sectors = self.sectors(momentum, drive);
-        let is_in_the_way =
-            |echo: &&Echo| sectors.iter().flatten().any(|sector| sector.distance_m(echo) < needed_m(echo));
+        let is_in_the_way = |echo: &&Echo| {
+            sectors.iter().flatten().any(|sector| sector.distance_m(echo) < needed_m(echo, sector))
+        };
         let found = self.echoes.iter().filter(is_in_the_way);
         let nearest = found.min_by(|one, other| one.distance_m.total_cmp(&other.distance_m))?;
         Some((nearest.distance_m - self.here.limits.radius_m, nearest.direction_rad))
@@ -297,6 +305,18 @@ mod tests {
         assert!((gap_m + 0.01).abs() < 1e-12 && direction_rad == 0.0);
         let Drive::Twist { v_m_per_s, .. } = drive else { panic!("{drive:?}") };
         assert!(v_m_per_s < 0.01, "{v_m_per_s}");
+    }
+
+    #[test]
+    fn a_robot_stops_short_of_what_is_ahead_and_does_not_creep_on() {
+        let mut robot = Robot::new(limits(Motion::Unicycle, 0.5), 2);
+        let column: Vec<Point> = (-20..20).map(|k| Point::new(1.5, f64::from(k) * 0.01)).collect();
+        for _ in 0..600 {
+            let drive = robot.guard(&column, ahead(0.4)).drive;
+            robot.follow(drive);
+        }
+        let gap_m = 1.5 - robot.here.pose.position.x - 0.2;
+        assert!((SCAN_ROOM_M..2.0 * SCAN_ROOM_M).contains(&gap_m), "{gap_m}");
     }
 
     #[test]

@@ -62,13 +62,13 @@ pub fn introduction(hello: &Hello) -> Row {
         let says = format!("`lease_max_s` is {lease_max_s}; the console needs leases of {LEASE_S} s");
         return Row::fail(check, figures, says);
     }
-    let says = format!("{name} has {}", parts(has).join(", "));
+    let says = format!("{name} has {}", parts(*has).join(", "));
     let failed = format!("`period_s` is {period_s}; the console needs readings at least every {LEASE_S} s");
     Row::judged(check, figures, &says, &failed)
 }
 
-fn parts(has: &Has) -> Vec<&'static str> {
-    let Has { odometry, pose, scan, contact, tether, ae, pressure, drawn_ids } = *has;
+fn parts(has: Has) -> Vec<&'static str> {
+    let Has { odometry, pose, scan, contact, tether, ae, pressure, drawn_ids } = has;
     let parts = [
         (odometry, "odometry"),
         (pose, "pose"),
@@ -119,7 +119,7 @@ pub fn readings(hello: &Hello, listened: &Listened) -> Vec<Row> {
         Figure::new("lost", 100.0 * lost, "%").at_most(100.0 * LOST_SHARE),
     ];
     let missing: Vec<&str> =
-        parts(&hello.has).into_iter().filter(|part| !is_sent(part, &listened.readings)).collect();
+        parts(hello.has).into_iter().filter(|part| !is_sent(part, &listened.readings)).collect();
     let says = format!("{count} readings, one every {median_s:.3} s");
     let failed = format!("{says}; `period_s` is {period_s}: correct it or the rate, and number all readings");
     let of_rate = if median_s * RATE_FACTOR < period_s {

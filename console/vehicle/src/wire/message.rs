@@ -220,7 +220,6 @@ pub struct Difference {
     pub tdoa_s: f64,
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
 fn is_origin(place: &[f64; 2]) -> bool {
     *place == [0.0, 0.0]
 }

@@ -13,6 +13,10 @@ use world::{Point, Readings, scan::carried};
 
 /// An older scan no longer guards the robot, seconds.
 const SCAN_MAX_AGE_S: f64 = 0.5;
+/// The robot has moved on since its readings by at most this many ticks.
+const READING_TICKS: usize = 1;
+/// Longest time until the first scan, seconds; until then the robot stands.
+const FIRST_WITHIN_S: f64 = 2.0;
 /// Points farther from the hull than the stopping distance at full speed plus this are not kept, metres: more than the
 /// robot travels until its scan is too old.
 const KEPT_M: f64 = 2.0;
@@ -31,8 +35,10 @@ const NAMED_AFTER_S: f64 = 0.5;
 pub(in crate::engine) struct ScanGuard {
     /// The points of the last scan, in the robot frame now.
     points: Vec<Point>,
-    /// Age of the last scan, seconds; `None` before the first one.
-    age_s: Option<f64>,
+    /// Whether a scan has arrived.
+    has_scan: bool,
+    /// Age of the last scan, or of the mission before the first one, seconds.
+    age_s: f64,
     /// The motion that the vehicle may still have to carry out, oldest first.
     sent: Vec<Sent>,
     /// The point that limits the robot: distance from the hull, metres, and direction, radians.
@@ -52,19 +58,22 @@ impl Known {
         let guard = &mut self.scan_guard;
         if let Some(scan) = &readings.scan {
             guard.points = scan.points().filter(|point| point.coords.norm() <= far_m).collect();
-            guard.age_s = Some(0.0);
+            (guard.has_scan, guard.age_s) = (true, 0.0);
             return;
         }
         for point in &mut guard.points {
             *point = carried(*point, &readings.odometry);
         }
-        guard.age_s = guard.age_s.map(|age_s| age_s + self.config.tick_s);
+        guard.age_s += self.config.tick_s;
     }
 
     /// Limits a command by the scan; the robot must be able to stop before it touches any scanned point.
     pub(in crate::engine) fn guarded(&mut self, command: Command) -> Command {
         if self.config.guard_reaction_s.is_none() {
             return command;
+        }
+        if !self.scan_guard.has_scan {
+            return Command { drive: Drive::STILL, ..command };
         }
         let here = self.as_governed();
         let guard = Guard::new(&self.scan_guard.points, &here, &self.scan_guard.sent);
@@ -81,7 +90,7 @@ impl Known {
     pub(in crate::engine) fn remember_sent(&mut self, drive: Drive) {
         let Some(reaction_s) = self.config.guard_reaction_s else { return };
         let sent = Sent::of(&self.governor.momentum, drive, &self.as_governed());
-        let kept = (reaction_s / self.config.tick_s).ceil() as usize;
+        let kept = (reaction_s / self.config.tick_s).ceil() as usize + READING_TICKS;
         let state = &mut self.scan_guard;
         state.sent.push(sent);
         let over = state.sent.len().saturating_sub(kept);
@@ -101,12 +110,12 @@ impl Known {
     fn guard_stop(&self) -> Option<String> {
         self.config.guard_reaction_s?;
         let guard = &self.scan_guard;
-        match guard.age_s {
-            None => return Some("the vehicle has not sent a scan yet, so the guard is blind".into()),
-            Some(age_s) if age_s > SCAN_MAX_AGE_S => {
-                return Some(format!("the last scan is {age_s:.1} s old, so the guard is blind"));
-            }
-            Some(_) => {}
+        let age_s = guard.age_s;
+        if guard.has_scan && age_s > SCAN_MAX_AGE_S {
+            return Some(format!("the last scan is {age_s:.1} s old, so the guard is blind"));
+        }
+        if !guard.has_scan && age_s > FIRST_WITHIN_S {
+            return Some("the vehicle has not sent a scan yet, so the guard is blind".into());
         }
         let (gap_m, direction_rad) = guard.before?;
         if guard.late_ticks < LATE_TICKS && guard.blocked_s < BLOCKED_S {

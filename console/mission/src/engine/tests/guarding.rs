@@ -99,7 +99,9 @@ fn a_robot_whose_scan_stops_is_held() {
     assert!(blind(&flight), "{:?}", flight.mission.phase());
     let mut never = guarded(config());
     never.scanner = None;
+    let start = never.pose;
     never.tick(&[Order::Start]);
-    never.fly(3);
+    never.fly(30);
+    assert_eq!(never.pose, start, "nothing moves before the first scan");
     assert!(blind(&never), "{:?}", never.mission.phase());
 }
