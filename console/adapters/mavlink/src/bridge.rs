@@ -77,7 +77,7 @@ impl Bridge {
             pilot: Pilot::new(&config.vehicle, config.has(), config.command_period_s, now_s),
             clock: Clock::default(),
             readings: Assembly::new(config.vehicle.period_s),
-            condition: Condition::default(),
+            condition: Condition::new(config.scan),
             attitude: None,
             newest_s: None,
             beats_s: now_s,
@@ -188,6 +188,7 @@ impl Bridge {
             }
             MavMessage::OBSTACLE_DISTANCE(sectors) if self.config.scan => {
                 self.readings.parts.scan = self.right("OBSTACLE_DISTANCE", convert::scan(&sectors), now_s);
+                self.condition.scan_s = Some(now_s);
             }
             MavMessage::DEBUG_FLOAT_ARRAY(array) => {
                 let Some(ranging) = &self.config.ae else { return };

@@ -173,6 +173,7 @@ impl Bridge {
             .and_then(|()| convert::scan(scan, source));
         let topic = Some(source.topic.clone());
         self.readings.parts.scan = self.right(topic, part, now_s);
+        self.condition.scan_s = Some(now_s);
     }
 
     fn tether(&mut self, paid_out_m: f64, now_s: f64) {

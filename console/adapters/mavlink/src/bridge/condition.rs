@@ -7,6 +7,8 @@ use tankops_adapter::message::{Commander, Mode, State};
 const HEARTBEAT_MAX_AGE_S: f64 = 4.5;
 /// Poses older than this are a fault, seconds.
 const POSE_MAX_AGE_S: f64 = 1.0;
+/// Scans older than this are a fault, seconds, if the rover has any.
+const SCAN_MAX_AGE_S: f64 = 1.0;
 /// How long a message that cannot be right, or a command of another ground station, is a fault, seconds.
 const FAULT_FOR_S: f64 = 2.0;
 
@@ -38,6 +40,10 @@ const MANUAL: [u32; 4] = [0, 1, 3, 7];
 pub(super) struct Condition {
     /// Arrival of the newest pose.
     pub(super) pose_s: Option<f64>,
+    /// Whether the rover is expected to scan.
+    has_scan: bool,
+    /// Arrival of the newest scan.
+    pub(super) scan_s: Option<f64>,
     /// Charge, 0 to 1.
     pub(super) battery: Option<f64>,
     /// System number and time of the newest command of another ground station.
@@ -56,6 +62,11 @@ struct Heartbeat {
 }
 
 impl Condition {
+    /// Nothing has been heard yet.
+    pub(super) fn new(has_scan: bool) -> Self {
+        Self { has_scan, ..Self::default() }
+    }
+
     /// The rover's autopilot is alive.
     pub(super) fn heartbeat(&mut self, beat: &HEARTBEAT_DATA, now_s: f64) {
         self.heartbeat = Some(Heartbeat {
@@ -108,6 +119,9 @@ impl Condition {
         }
         if self.pose_s.is_none_or(|pose_s| now_s - pose_s > POSE_MAX_AGE_S) {
             return fault("no pose arrives: check the rates of its messages".to_owned());
+        }
+        if self.has_scan && self.scan_s.is_none_or(|scan_s| now_s - scan_s > SCAN_MAX_AGE_S) {
+            return fault("no scan arrives: check OBSTACLE_DISTANCE".to_owned());
         }
         Ok(())
     }

@@ -1,6 +1,7 @@
 use super::*;
 use mavlink::dialects::common::{
-    BATTERY_STATUS_DATA, DEBUG_FLOAT_ARRAY_DATA, LOCAL_POSITION_NED_DATA, MANUAL_CONTROL_DATA, ODOMETRY_DATA,
+    BATTERY_STATUS_DATA, DEBUG_FLOAT_ARRAY_DATA, LOCAL_POSITION_NED_DATA, MANUAL_CONTROL_DATA, MavFrame,
+    OBSTACLE_DISTANCE_DATA, ODOMETRY_DATA,
 };
 use tankops_adapter::message::{Commander, Mode, Readings, State};
 
@@ -47,10 +48,23 @@ fn drive(seq: u64) -> Input {
     )))
 }
 
+fn sectors() -> Input {
+    from(
+        1,
+        MavMessage::OBSTACLE_DISTANCE(OBSTACLE_DISTANCE_DATA {
+            distances: [150; 72],
+            max_distance: 800,
+            increment: 5,
+            frame: MavFrame::MAV_FRAME_BODY_FRD,
+            ..OBSTACLE_DISTANCE_DATA::default()
+        }),
+    )
+}
+
 /// A bridge whose rover is ready, at time 0.
 fn ready() -> Bridge {
     let mut bridge = Bridge::new(config(), 0.0);
-    for input in [armed(15), attitude(5000, 0.0, 0.0), position(5000, 0.0)] {
+    for input in [armed(15), sectors(), attitude(5000, 0.0, 0.0), position(5000, 0.0)] {
         bridge.take(input, 0.0);
     }
     bridge
@@ -116,6 +130,10 @@ fn a_silent_rover_is_named() {
     let mut bridge = ready();
     let out = bridge.take(Input::Tick, 1.2);
     assert!(state(&out).text.unwrap().starts_with("no pose arrives"));
+    let out = bridge.take(attitude(6200, 0.0, 0.0), 1.21);
+    assert!(out.is_empty());
+    let out = bridge.take(position(6200, 0.0), 1.21);
+    assert!(state(&out).text.unwrap().starts_with("no scan arrives"));
 }
 
 #[test]
@@ -142,7 +160,7 @@ fn doubled_and_overtaken_poses_are_dropped_and_a_restart_is_not() {
 
 #[test]
 fn poses_can_come_from_odometry() {
-    let mut bridge = Bridge::new(Config { pose: PoseFrom::Odometry, ..config() }, 0.0);
+    let mut bridge = Bridge::new(Config { pose: PoseFrom::Odometry, scan: false, ..config() }, 0.0);
     bridge.take(armed(15), 0.0);
     let odometry = |usec, x| {
         let at = ODOMETRY_DATA { time_usec: usec, x, q: [1.0, 0.0, 0.0, 0.0], ..ODOMETRY_DATA::default() };

@@ -6,12 +6,16 @@ use tankops_adapter::message::{Commander, Mode, State};
 
 /// Poses older than this are a fault, seconds.
 const POSE_MAX_AGE_S: f64 = 1.0;
+/// Scans older than this are a fault, seconds, if the robot has any.
+const SCAN_MAX_AGE_S: f64 = 1.0;
 
 /// The condition of the robot.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Condition {
     /// Arrival of the newest pose.
     pub(crate) pose_s: Option<f64>,
+    /// Arrival of the newest scan.
+    pub(crate) scan_s: Option<f64>,
     /// Subscriptions of the robot that get the commands.
     pub(crate) subscriptions: usize,
     /// The type of a subscription that cannot read the commands.
@@ -65,6 +69,10 @@ impl Condition {
         }
         if self.pose_s.is_none_or(|pose_s| now_s - pose_s > POSE_MAX_AGE_S) {
             return Some(format!("no pose arrives on {}: check topic, type and QoS", config.pose_topic()));
+        }
+        let is_old = self.scan_s.is_none_or(|scan_s| now_s - scan_s > SCAN_MAX_AGE_S);
+        if let Some(scan) = config.scan.as_ref().filter(|_| is_old) {
+            return Some(format!("no scan arrives on {}: check topic, type and QoS", scan.topic));
         }
         (self.subscriptions == 0).then(|| match &self.wrong_type {
             Some(kind) => format!("the robot listens to {topic} for {kind}: change command.type"),

@@ -37,10 +37,21 @@ fn matched(subscriptions: usize, publishers: usize) -> Input {
     Input::Matched { subscriptions, publishers, wrong_type: None }
 }
 
+fn scan() -> Input {
+    Input::Scan(Box::new(LaserScan {
+        header: header("base_link", 1000.1),
+        angle_increment: 0.1,
+        range_max: 5.0,
+        ranges: vec![1.0],
+        ..LaserScan::default()
+    }))
+}
+
 /// A bridge whose robot is there, at time 0.
 fn ready() -> Bridge {
     let mut bridge = Bridge::new(config(), 0.0);
     bridge.take(matched(1, 0), 0.0);
+    bridge.take(scan(), 0.0);
     bridge.take(odometry(0.0, 1000.0), 0.0);
     bridge
 }
@@ -69,6 +80,9 @@ fn without_a_robot_the_introduction_says_what_is_missing() {
     assert_eq!(said.text.as_deref(), Some("no pose arrives on /odom: check topic, type and QoS"));
     let out = bridge.take(odometry(0.0, 1.0), 5.1);
     let text = state(&out).unwrap().text.clone();
+    assert_eq!(text.as_deref(), Some("no scan arrives on /scan: check topic, type and QoS"));
+    let out = bridge.take(scan(), 5.2);
+    let text = state(&out).unwrap().text.clone();
     assert_eq!(text.as_deref(), Some("the robot does not listen to /cmd_vel: check topic, type and QoS"));
 }
 
@@ -79,16 +93,7 @@ fn readings_carry_what_was_measured_since_the_last_ones() {
     bridge.take(Input::Tether(3.5), 0.11);
     bridge.take(Input::Contact(true), 0.12);
     bridge.take(Input::Contact(false), 0.13);
-    bridge.take(
-        Input::Scan(Box::new(LaserScan {
-            header: header("base_link", 1000.1),
-            angle_increment: 0.1,
-            range_max: 5.0,
-            ranges: vec![1.0],
-            ..LaserScan::default()
-        })),
-        0.14,
-    );
+    bridge.take(scan(), 0.14);
     let out = bridge.take(odometry(0.02, 1000.2), 0.25);
     let Order::Say(FromVehicle::Readings(readings)) = &out[0] else { panic!("{out:?}") };
     assert!((readings.stamp_s - 0.2).abs() < 1e-6, "measured before it arrived: {}", readings.stamp_s);
@@ -105,6 +110,7 @@ fn poses_can_come_from_transforms() {
     config.odometry = None;
     let mut bridge = Bridge::new(config, 0.0);
     bridge.take(matched(1, 0), 0.0);
+    bridge.take(scan(), 0.0);
     let transform = |frame: &str, child: &str, x| TransformStamped {
         header: header(frame, 1000.0),
         child_frame_id: child.to_owned(),
@@ -127,6 +133,7 @@ fn another_commander_is_a_fault_that_stops_the_robot() {
     assert_eq!(said.text.as_deref(), Some("another program publishes commands on /cmd_vel"));
     assert_eq!(published(&out), [0.0]);
     assert_eq!(published(&bridge.take(drive(2), 0.05)), [0.0]);
+    bridge.take(scan(), 2.0);
     bridge.take(odometry(0.0, 1002.0), 2.0);
     assert_eq!(state(&bridge.take(Input::Tick, 2.1)).unwrap().mode, Mode::Ready);
 }
