@@ -96,7 +96,11 @@ impl Remote {
         let spawned =
             thread::Builder::new().name("vehicle in".into()).spawn(move || read_all(read, session, &reading));
         spawned.map_err(|error| failed(&error))?;
-        let (hello, write) = greeted(&shared, address, write).map_err(|why| failed(&why))?;
+        let (hello, write) = greeted(&shared, address, write).map_err(|why| {
+            // The thread that reads datagrams has no end of its own.
+            shared.is_closing.store(true, Ordering::Release);
+            failed(&why)
+        })?;
         let (writing, session) = (Arc::clone(&shared), ToSession::of(hello.clone()));
         let spawned = thread::Builder::new()
             .name("vehicle out".into())
