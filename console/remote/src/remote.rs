@@ -4,6 +4,7 @@ use crate::{
     address::Address,
     inbox::Inbox,
     outbox::Outbox,
+    said::Said,
     stream::{End, Outgoing, Stream},
 };
 use geometry::Drive;
@@ -82,7 +83,8 @@ impl Remote {
     ) -> Result<(Self, Hello), ConnectError> {
         let failed =
             |why: &dyn fmt::Display| ConnectError(format!("cannot drive the vehicle at {address}: {why}"));
-        let Stream { read, write, end } = Stream::open(address, network).map_err(|error| failed(&error))?;
+        let Stream { read, write, said, end } =
+            Stream::open(address, network).map_err(|error| failed(&error))?;
         let stations = stations.iter().map(|station| (station.name.clone(), station.id)).collect();
         let shared = Arc::new(Shared {
             inbox: Mutex::new(Inbox::new(stations)),
@@ -93,8 +95,9 @@ impl Remote {
         });
         let (reading, is_of_datagrams) = (Arc::clone(&shared), matches!(address, Address::Udp(_)));
         let session = if is_of_datagrams { FromSession::of_datagrams() } else { FromSession::default() };
-        let spawned =
-            thread::Builder::new().name("vehicle in".into()).spawn(move || read_all(read, session, &reading));
+        let spawned = thread::Builder::new()
+            .name("vehicle in".into())
+            .spawn(move || read_all(read, session, &said, &reading));
         spawned.map_err(|error| failed(&error))?;
         let (hello, write) = greeted(&shared, address, write).map_err(|why| {
             // The thread that reads datagrams has no end of its own.
@@ -217,7 +220,7 @@ fn greeted(
     })
 }
 
-fn read_all(mut read: Box<dyn Read + Send>, session: FromSession, shared: &Shared) {
+fn read_all(mut read: Box<dyn Read + Send>, session: FromSession, said: &Said, shared: &Shared) {
     let mut reader = Reader::<FromVehicle>::new(session);
     let mut chunk = vec![0; CHUNK_BYTES];
     let why = loop {
@@ -240,6 +243,7 @@ fn read_all(mut read: Box<dyn Read + Send>, session: FromSession, shared: &Share
             },
         }
     };
+    let why = said.at_end().map_or(why.clone(), |text| format!("{why}; it wrote: {text}"));
     shared.inbox().close(why);
 }
 
