@@ -14,6 +14,9 @@ use vehicle::wire::{
 };
 use world::{Point, Readings, Shape, Sighting, Station};
 
+/// The longest range that the protocol allows, metres. Noise can make a simulated range impossible.
+const RANGE_MAX_M: f64 = 1000.0;
+
 /// A simulated vehicle that speaks the protocol. Its time passes with [`Behind::step`].
 pub struct Behind {
     simulator: Simulator,
@@ -190,7 +193,9 @@ impl Behind {
 fn told(readings: &Readings, stations: &[Station], tick_s: f64) -> message::Readings {
     let name = |id| stations.iter().find(|station| station.id == id).map(|station| station.name.clone());
     let ranges = readings.ranges.iter().filter_map(|set| {
-        Some(StationRanges { station: name(set.station)?, ranges_m: set.ranges_m.clone() })
+        let possible =
+            set.ranges_m.iter().copied().filter(|range_m| *range_m > 0.0 && *range_m <= RANGE_MAX_M);
+        Some(StationRanges { station: name(set.station)?, ranges_m: possible.collect() })
     });
     let world::Odometry { forward_m, sideways_m, turn_rad } = readings.odometry;
     message::Readings {

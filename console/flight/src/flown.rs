@@ -120,7 +120,10 @@ impl Flight {
 
     /// Copies the mission in its current state, for forecasts.
     pub fn forked(&self) -> Forked {
-        Forked { fork: self.mission.fork(), opened: self.opened.clone(), tick_s: self.tick_s }
+        // A forecast is a simulation, even of a real vehicle's run.
+        let mission = MissionConfig { live: false, ..self.opened.mission.clone() };
+        let opened = RunOpened { vehicle: None, mission, ..self.opened.clone() };
+        Forked { fork: self.mission.fork(), opened, tick_s: self.tick_s }
     }
 
     /// The first event of the run.

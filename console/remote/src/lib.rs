@@ -11,6 +11,7 @@ mod inbox;
 mod loopback;
 mod outbox;
 mod remote;
+mod said;
 pub mod server;
 mod stream;
 mod taking;

@@ -4,6 +4,7 @@ use crate::{
     address::Address,
     inbox::Inbox,
     outbox::Outbox,
+    said::Said,
     stream::{End, Outgoing, Stream},
 };
 use geometry::Drive;
@@ -87,7 +88,8 @@ impl Remote {
         stations: &[Station],
     ) -> Result<(Self, Hello), ConnectError> {
         let failed = |why: &dyn fmt::Display| ConnectError::at(address, why);
-        let Stream { read, write, end } = Stream::open(address, network).map_err(|error| failed(&error))?;
+        let Stream { read, write, said, end } =
+            Stream::open(address, network).map_err(|error| failed(&error))?;
         let stations = stations.iter().map(|station| (station.name.clone(), station.id)).collect();
         let shared = Arc::new(Shared {
             inbox: Mutex::new(Inbox::new(stations)),
@@ -98,10 +100,15 @@ impl Remote {
         });
         let (reading, is_of_datagrams) = (Arc::clone(&shared), matches!(address, Address::Udp(_)));
         let session = if is_of_datagrams { FromSession::of_datagrams() } else { FromSession::default() };
-        let spawned =
-            thread::Builder::new().name("vehicle in".into()).spawn(move || read_all(read, session, &reading));
+        let spawned = thread::Builder::new()
+            .name("vehicle in".into())
+            .spawn(move || read_all(read, session, &said, &reading));
         spawned.map_err(|error| failed(&error))?;
-        let (hello, write) = greeted(&shared, address, write).map_err(|why| failed(&why))?;
+        let (hello, write) = greeted(&shared, address, write).map_err(|why| {
+            // The thread that reads datagrams has no end of its own.
+            shared.is_closing.store(true, Ordering::Release);
+            failed(&why)
+        })?;
         let (writing, session) = (Arc::clone(&shared), ToSession::of(hello.clone()));
         let spawned = thread::Builder::new()
             .name("vehicle out".into())
@@ -218,7 +225,7 @@ fn greeted(
     })
 }
 
-fn read_all(mut read: Box<dyn Read + Send>, session: FromSession, shared: &Shared) {
+fn read_all(mut read: Box<dyn Read + Send>, session: FromSession, said: &Said, shared: &Shared) {
     let mut reader = Reader::<FromVehicle>::new(session);
     let mut chunk = vec![0; CHUNK_BYTES];
     let why = loop {
@@ -241,6 +248,7 @@ fn read_all(mut read: Box<dyn Read + Send>, session: FromSession, shared: &Share
             },
         }
     };
+    let why = said.at_end().map_or(why.clone(), |text| format!("{why}; it wrote: {text}"));
     shared.inbox().close(why);
 }
 

@@ -9,20 +9,22 @@ use std::{
     path::Path,
     sync::{
         Arc,
+        atomic::{AtomicUsize, Ordering},
         mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel},
     },
     thread,
     time::{Duration, Instant},
 };
 use vehicle::wire::{
-    FromSession, FromVehicle, Heard, Misfit, Reader, ToSession, ToVehicle, Writer, message::Hello,
+    FromSession, FromVehicle, Heard, Misfit, Reader, ToSession, ToVehicle, Writer,
+    message::{Commander, Hello, Mode, State},
 };
 
 /// Messages that wait for a console; a console that is farther behind misses messages.
 const MOST_WAITING: usize = 64;
 /// Messages that wait for the vehicle; further ones wait in the sockets.
 const MOST_ASKED: usize = 256;
-/// Connections at a time.
+/// Connections at a time: the console that is obeyed, and those that look on.
 const MOST_CLIENTS: usize = 8;
 /// A console that speaks in datagrams has left after this time without one.
 const SILENT: Duration = Duration::from_secs(3);
@@ -152,10 +154,11 @@ type Tell = SyncSender<(ClientId, Did)>;
 
 fn accept_unix(listener: UnixListener, tell: Tell, hello: Arc<Hello>) -> io::Result<()> {
     let accept = move || {
+        let open = Arc::default();
         for (number, stream) in (0..).zip(listener.incoming()) {
             let Ok(stream) = stream else { continue };
             let Ok(write) = stream.try_clone() else { continue };
-            connected(ClientId(number), stream, write, &tell, &hello);
+            connected(ClientId(number), (stream, write), (&tell, &open), &hello);
         }
     };
     thread::Builder::new().name("accept".into()).spawn(accept).map(|_| ())
@@ -163,25 +166,63 @@ fn accept_unix(listener: UnixListener, tell: Tell, hello: Arc<Hello>) -> io::Res
 
 fn accept_tcp(listener: TcpListener, tell: Tell, hello: Arc<Hello>) -> io::Result<()> {
     let accept = move || {
+        let open = Arc::default();
         for (number, stream) in (0..).zip(listener.incoming()) {
             let Ok(stream) = stream else { continue };
             // Without this, a command may wait for a confirmation of the one before it.
             let _ = stream.set_nodelay(true);
             let Ok(write) = stream.try_clone() else { continue };
-            connected(ClientId(number), stream, write, &tell, &hello);
+            connected(ClientId(number), (stream, write), (&tell, &open), &hello);
         }
     };
     thread::Builder::new().name("accept".into()).spawn(accept).map(|_| ())
 }
 
+/// An open connection, counted.
+struct Open(Arc<AtomicUsize>);
+
+impl Open {
+    /// Counts a connection; `None` if it is one too many.
+    fn of(count: &Arc<AtomicUsize>) -> Option<Self> {
+        // Only the thread that accepts connections adds to the count.
+        let is_free = count.load(Ordering::Acquire) < MOST_CLIENTS;
+        is_free.then(|| {
+            count.fetch_add(1, Ordering::AcqRel);
+            Self(count.clone())
+        })
+    }
+}
+
+impl Drop for Open {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::AcqRel);
+    }
+}
+
+/// Introduces the vehicle to a console that cannot be served, with the reason.
+fn refuse(mut write: impl Write, hello: &Hello) {
+    let mut client = Writer::<FromVehicle>::new(FromSession::default());
+    let text = Some(format!("{MOST_CLIENTS} consoles are connected already; close one of them"));
+    let commander = Commander::OtherConsole;
+    let state = State { stamp_s: 0.0, mode: Mode::Fault, text, battery: None, commander };
+    let mut lines = Vec::new();
+    for message in [FromVehicle::Hello(Box::new(hello.clone())), FromVehicle::State(state)] {
+        if client.write(&message, &mut lines).is_err() {
+            return;
+        }
+    }
+    // The console may have left.
+    let _ = write.write_all(&lines);
+}
+
 /// Serves one connection with two threads, which end with it.
 fn connected(
     id: ClientId,
-    mut read: impl Read + Send + 'static,
-    mut write: impl Write + Send + 'static,
-    tell: &Tell,
+    (mut read, mut write): (impl Read + Send + 'static, impl Write + Send + 'static),
+    (tell, count): (&Tell, &Arc<AtomicUsize>),
     hello: &Arc<Hello>,
 ) {
+    let Some(open) = Open::of(count) else { return refuse(write, hello) };
     let (lines, waiting) = sync_channel::<Vec<u8>>(MOST_WAITING);
     let (tell, hello) = (tell.clone(), hello.clone());
     let writing = move || {
@@ -192,6 +233,7 @@ fn connected(
         }
     };
     let reading = move || {
+        let _open = open;
         let mut reader = Reader::<ToVehicle>::new(ToSession::of((*hello).clone()));
         let mut buffer = vec![0; 1 << 14];
         if tell.send((id, Did::Joined(Client::new(lines)))).is_err() {
@@ -309,5 +351,33 @@ impl Datagrams {
             }
         }
         Some(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::{BufRead, BufReader};
+
+    #[test]
+    fn one_console_too_many_is_refused_with_the_reason() {
+        let hello = r#"{"protocol": 1, "name": "robot", "motion": "unicycle", "limits": {"speed_m_per_s": 1, "turn_rad_per_s": 1, "acceleration_m_per_s2": 1, "radius_m": 0.2}, "period_s": 0.1, "stop_time_s": 0.5, "lease_max_s": 1}"#;
+        let address = "tcp:127.0.0.1:0".parse().unwrap();
+        let server = Server::listen(&address, serde_json::from_str(hello).unwrap(), false).unwrap();
+        let Address::Tcp(at) = server.at() else { panic!("{}", server.at()) };
+        let joined = || {
+            let console = std::net::TcpStream::connect(at).unwrap();
+            let (_, Did::Joined(client)) = server.next(Instant::now() + Duration::from_mins(2)).unwrap()
+            else {
+                panic!("it did not join")
+            };
+            (console, client)
+        };
+        let mut consoles: Vec<_> = (0..MOST_CLIENTS).map(|_| joined()).collect();
+        let refused = BufReader::new(std::net::TcpStream::connect(at).unwrap());
+        let lines: Vec<String> = refused.lines().map(Result::unwrap).collect();
+        assert!(lines.len() == 2 && lines[1].contains("8 consoles are connected already"), "{lines:?}");
+        consoles.pop();
+        assert!(matches!(server.next(Instant::now() + Duration::from_mins(2)), Some((_, Did::Left))));
     }
 }

@@ -1,6 +1,9 @@
 //! The streams to an adapter: its two byte streams, and the handle that ends them.
 
-use crate::address::{Address, resolved};
+use crate::{
+    address::{Address, resolved},
+    said::Said,
+};
 use rustix::{
     event::{PollFd, PollFlags, Timespec, poll},
     net::sockopt::set_socket_send_buffer_size,
@@ -47,6 +50,8 @@ impl<T: Write + AsFd + Send> Outgoing for T {
 pub(crate) struct Stream {
     pub read: Box<dyn Read + Send>,
     pub write: Box<dyn Outgoing>,
+    /// The texts of an adapter that was started here.
+    pub said: Said,
     pub end: End,
 }
 
@@ -65,14 +70,24 @@ impl Stream {
                 let stream = UnixStream::connect(path)?;
                 set_socket_send_buffer_size(&stream, WAITING_BYTES)?;
                 let (read, write) = (stream.try_clone()?, stream.try_clone()?);
-                Ok(Self { read: Box::new(read), write: Box::new(write), end: End::Unix(stream) })
+                Ok(Self {
+                    read: Box::new(read),
+                    write: Box::new(write),
+                    said: Said::default(),
+                    end: End::Unix(stream),
+                })
             }
             Address::Tcp(at) => {
                 let stream = TcpStream::connect_timeout(&resolved(at, network)?, Duration::from_secs(5))?;
                 stream.set_nodelay(true)?;
                 set_socket_send_buffer_size(&stream, WAITING_BYTES)?;
                 let (read, write) = (stream.try_clone()?, stream.try_clone()?);
-                Ok(Self { read: Box::new(read), write: Box::new(write), end: End::Tcp(stream) })
+                Ok(Self {
+                    read: Box::new(read),
+                    write: Box::new(write),
+                    said: Said::default(),
+                    end: End::Tcp(stream),
+                })
             }
             Address::Udp(at) => {
                 let peer = resolved(at, network)?;
@@ -84,6 +99,7 @@ impl Stream {
                 Ok(Self {
                     read: Box::new(Datagrams::new(socket)),
                     write: Box::new(write),
+                    said: Said::default(),
                     end: End::Datagrams,
                 })
             }
@@ -94,13 +110,15 @@ impl Stream {
                     .args(["-c", command])
                     .stdin(Stdio::piped())
                     .stdout(Stdio::piped())
+                    .stderr(Stdio::piped())
                     .process_group(0)
                     .spawn()?;
-                let missing = || io::Error::other("the adapter has no stdin or stdout");
+                let missing = || io::Error::other("the adapter has no standard streams");
                 let write = child.stdin.take().ok_or_else(missing)?;
                 fcntl_setpipe_size(&write, WAITING_BYTES)?;
                 let read = child.stdout.take().ok_or_else(missing)?;
-                Ok(Self { read: Box::new(read), write: Box::new(write), end: End::Process(child) })
+                let said = Said::listen(child.stderr.take().ok_or_else(missing)?)?;
+                Ok(Self { read: Box::new(read), write: Box::new(write), said, end: End::Process(child) })
             }
         }
     }

@@ -209,6 +209,14 @@ fn a_stop_is_decided_by_readings_that_were_taken_after_it_was_sent() {
 }
 
 #[test]
+fn the_last_fault_of_a_vehicle_is_the_reason_for_the_end_of_its_link() {
+    let mut inbox = inbox();
+    inbox.take(state(Mode::Fault, Commander::You), 1.0);
+    inbox.close("the adapter ended the connection".into());
+    assert_eq!(inbox.closed(), Some("the adapter ended the connection; it had reported: left track"));
+}
+
+#[test]
 fn the_link_is_reported_when_it_changes_and_every_ten_seconds() {
     let mut inbox = inbox();
     let mut reports = Vec::new();

@@ -176,7 +176,10 @@ impl Comparison {
         let found = least_wrong(&self.forward, Axis::Forward, NEEDED_M);
         let found = found.or_else(|| least_wrong(&self.turn, Axis::Turn, NEEDED_RAD));
         self.current = found.map(|found| match self.current {
-            Some((before, lasted_s)) if is_same(before, found) => (found, lasted_s + over_s),
+            // Once reported, the same finding keeps its ratio: each change would be another report.
+            Some((before, lasted_s)) if is_same(before, found) => {
+                (if lasted_s >= LASTING_S { before } else { found }, lasted_s + over_s)
+            }
             _ => (found, 0.0),
         });
     }
@@ -267,6 +270,21 @@ mod tests {
         assert!(told(found(&round, 0, turned(57.3))).ends_with("degrees instead of radians?"));
         let swapped = |honest: Odometry| Odometry { forward_m: 0.0, sideways_m: honest.forward_m, ..honest };
         assert_eq!(found(&ahead, 4, swapped), Some(Finding::Swapped));
+    }
+
+    #[test]
+    fn a_finding_that_lasts_stays_the_same() {
+        let mut comparison = Comparison::default();
+        let mut found = Vec::new();
+        for n in 0..200 {
+            comparison.command(Some(&drive(0.3, 0.0)));
+            let forward_m = 0.3 * OVER_S * (2.0 + f64::from(n) / 100.0);
+            comparison
+                .moved(&Odometry { over_s: OVER_S, forward_m, sideways_m: 0.0, turn_rad: 0.0 }, &LIMITS);
+            found.extend(comparison.finding().map(|finding| finding.to_string()));
+        }
+        found.dedup();
+        assert_eq!(found.len(), 1, "{found:?}");
     }
 
     proptest! {

@@ -19,6 +19,8 @@ use std::collections::BTreeSet;
 const UNKNOWN_MAX: usize = 64;
 /// Maximum number of characters of an unknown key or kind that are kept.
 const UNKNOWN_CHARS: usize = 64;
+/// Characters of the reason for a malformed line that are kept: it may quote the line.
+const REASON_CHARS: usize = 160;
 
 /// The meaning of a line.
 #[derive(Debug, Clone, PartialEq)]
@@ -235,7 +237,7 @@ fn named(kind: &str, line: &str, error: &serde_json::Error) -> Misfit {
         Some(number) if error.is_syntax() => format!("{number} is not a finite number"),
         _ if said == "number out of range" => "the number is too large".into(),
         _ if error.is_eof() => "the line ends here, before the object is complete".into(),
-        _ => said.to_owned(),
+        _ => said.chars().take(REASON_CHARS).collect(),
     };
     Misfit { field, what }
 }

@@ -95,6 +95,18 @@ fn a_wrong_line_is_named_by_its_field() {
 }
 
 #[test]
+fn the_reason_for_a_malformed_line_is_short() {
+    let long = "x".repeat(10_000);
+    for line in [
+        format!(r#"{{"type": "state", "stamp_s": "{long}", "mode": "ready"}}"#),
+        format!(r#"{{"type": "state", "stamp_s": 1, "mode": "{long}"}}"#),
+    ] {
+        let said = told(&[&line]);
+        assert!(said.starts_with("state.") && said.len() < 200, "{said}");
+    }
+}
+
+#[test]
 fn stamps_and_poses_must_fit_the_messages_before() {
     let at = |stamp: f64, x: f64| {
         format!(

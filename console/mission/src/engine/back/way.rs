@@ -30,10 +30,13 @@ impl Known {
 
     /// Whether the rest of the way back is free.
     pub(super) fn is_way_back_free(&self) -> bool {
+        self.is_free_from_here(self.back.as_ref().map_or(&[][..], |back| back.follower.remaining()))
+    }
+
+    fn is_free_from_here(&self, way: &[Point]) -> bool {
         let room_m = self.config.limits.radius_m - DOUBT_M;
-        let rest = self.back.as_ref().map_or(&[][..], |back| back.follower.remaining());
         // The robot may be leaving a place without room.
-        let mut ahead = rest.iter().skip_while(|at| !self.chart.has_room(**at, room_m));
+        let mut ahead = way.iter().skip_while(|at| !self.chart.has_room(**at, room_m));
         ahead.all(|at| self.chart.has_room(*at, room_m))
     }
 
@@ -46,8 +49,12 @@ impl Known {
             let mut there = tether.clone();
             there.drag_to(out);
             let is_caught = tether.is_snagged();
-            let home =
-                if is_caught { there.way_out(&fenced, room_m) } else { there.return_path(&fenced, room_m) }?;
+            let home = if is_caught {
+                // A no-go zone may have been drawn on the path driven since then.
+                there.way_out(&fenced, room_m).filter(|way| self.is_free_from_here(way))
+            } else {
+                there.return_path(&fenced, room_m)
+            }?;
             Some(self.led_from_here(home))
         };
         self.widest(along)
