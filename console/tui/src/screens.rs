@@ -108,7 +108,7 @@ const ROWS: &[Row] = &[
             &[&[On(Screen::Mission), Map, Pan], &[On(Screen::Mission), Map, Rows], &[On(Screen::Mission), Map],
               &[On(Screen::Mission), Map, Pan, Cursor],
               &[Replay, Map, Pan], &[Replay, Map, Rows], &[Replay, Map], &[Replay, Map, Pan, Cursor]], view::mission) },
-    Row { first: ActionId::Acknowledge, opens: |_| Some("actions"), enter: alarms::open_actions, select: alarms::select,
+    Row { first: ActionId::Acknowledge, opens: |m| m.selected_alarm().map(|_| "actions"), enter: alarms::open_actions, select: alarms::select,
         ..row(shows(Screen::Alarms, "alarms", "Screen 4: what is wrong, what to do", &[Key::Char('4')]), "Alarms",
             &[&[On(Screen::Alarms), Rows]], view::alarm_screen::draw) },
     Row { opens: |m| Some(if m.ui.events.is_open { "close detail" } else { "detail" }), enter: events::enter,

@@ -1,10 +1,11 @@
 //! The planner as shown on the screen.
 
-use super::{Progress, Trail};
+use super::{History, Progress, Trail};
 use mission::event::{Effort, PlanScans};
 use mission::{AskId, MissionConfig, PlannerChoice, PlannerInfo, WorkerId, planner::Fault};
 use planner_api::{Command, Drawing, Leg, LegTag};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use world::{Point, coverage::percent_text, polyline};
 
 /// How far the heading may turn within a lane that the planner did not state, radians.
@@ -195,6 +196,9 @@ pub struct Planning {
     pub drawings_tick: u64,
     /// The last figures: name, value, unit.
     pub scalars: Vec<(String, f64, String)>,
+    /// The history of each of these figures, by name.
+    #[serde(default)]
+    pub scalar_history: BTreeMap<String, History>,
     /// The last fault; cleared when the planner is active again.
     pub fault: Option<Fault>,
     /// The worker of a candidate; its plans do not run yet.

@@ -27,6 +27,8 @@ const EVENTS: u16 = 5;
 const TABLE: u16 = 7;
 /// Maximum rows of the table on a small screen, including the frame: two alarms.
 const PAGED_TABLE: u16 = 6;
+/// Maximum rows of the cause on a small screen.
+const PAGED_CAUSE: usize = 2;
 /// Minimum and preferred rows of the chart, including the frame.
 const CHART: (u16, u16) = (7, 16);
 /// Columns and rows of the screen from which everything about an alarm is beside the table.
@@ -50,10 +52,10 @@ fn paged(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
     let [list, below] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(area);
     table::draw(look, frame, list, Arrangement::Paged);
     let columns = usize::from(below.width) - 2;
-    let mut lines = detail::cause(look, alarm, columns);
-    lines.extend(actions::lines(look, alarm, columns));
+    let mut lines = detail::cause(look, alarm, columns, PAGED_CAUSE);
+    lines.extend(actions::briefly(look, alarm, columns));
     let title = detail::title(look, alarm);
-    fill(frame, below, look.block(Role::Border, &title, &look.keys("<accept> actions")), lines);
+    fill(frame, below, look.block(Role::Border, &title, &look.keys("<accept> all")), lines);
 }
 
 /// Whether the screen itself shows the actions, so that no overlay is needed.

@@ -2,6 +2,7 @@
 
 use super::look::{Look, fill, marked, ranked};
 use super::{shadow, text};
+use crate::model::history::{HISTORY_S, SLOT_S};
 use crate::model::{Offer, Pane, Run};
 use crate::theme::Role;
 use planner_api::{Drive, Status};
@@ -13,6 +14,9 @@ use ratatui::text::Line;
 const FAULT_ROWS: usize = 2;
 /// Width of the name of a planner's figure, columns.
 const SCALAR: usize = 22;
+/// Width of a planner's figure before its curve, and the minimum width of the curve, columns.
+const FIGURE: usize = 14;
+const CURVE: usize = 8;
 /// Minimum width, in columns, at which labels are written out in full.
 const WIDE: usize = 40;
 
@@ -158,12 +162,29 @@ fn scalars(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>> {
         .map(|(name, value, unit)| {
             let label = text::column(&format!(" {name}"), SCALAR.min(columns / 2 + 2));
             let room = columns.saturating_sub(text::width(&label) + 1);
+            let figure = figure(*value, unit);
+            let curve = curve(look, name, room.saturating_sub(FIGURE.max(text::width(&figure) + 1)));
+            let width = if curve.is_empty() { room } else { FIGURE.max(text::width(&figure) + 1) };
             look.line([
                 (Role::Dim, format!("{label} ")),
-                (Role::Text, text::fit(&figure(*value, unit), room)),
+                (Role::Text, text::column(&text::fit(&figure, room), width)),
+                (Role::Watch, curve),
             ])
         })
         .collect()
+}
+
+/// The curve of a figure over the last minutes, up to its largest value; empty if there is no room, or for a figure
+/// with negative values.
+fn curve(look: &Look, name: &str, room: usize) -> String {
+    let history = look.run.planning.scalar_history.get(name).filter(|_| room >= CURVE);
+    let Some(history) = history else { return String::new() };
+    let largest = history.last(HISTORY_S).fold(0.0, f64::max);
+    let is_drawn = largest > 0.0 && history.last(HISTORY_S).all(|value| value >= 0.0);
+    if !is_drawn {
+        return String::new();
+    }
+    text::sparkline(history.last(HISTORY_S), largest, room, HISTORY_S / SLOT_S)
 }
 
 /// A figure of the planner; a count has no decimals.

@@ -49,10 +49,10 @@ fn wide_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> 
         row(1, "paid out", (out_role(look, tether), out)),
         row(2, "wrap", (wrap_role(look, tether), worst(look, tether, room))),
         row(3, "total wrap", (Role::Text, total(tether))),
-        row(4, "contacts", (Role::Text, contacts(tether))),
+        row(5, "contacts", (Role::Text, contacts(tether))),
         row(0, "return path", home(tether)),
     ];
-    lines.push((6, trend(look, tether, columns)));
+    lines.push((4, trend(look, tether, columns)));
     lines.push((7, vec![(Role::Dim, format!(" {:<12} no pull sensor", "tension"))]));
     if look.run.has_ended() {
         lines.push(row(5, "at end", (Role::Text, still_out)));

@@ -839,6 +839,8 @@ fn panes_follow_the_size_of_the_screen() {
     screen.send(Msg::Resize { width: 120, height: 36 });
     assert_eq!(screen.model.ui.pane, Pane::Map);
     screen.press([Key::BackTab]);
+    assert_eq!(screen.model.ui.pane, Pane::Stations);
+    screen.press([Key::BackTab]);
     assert_eq!(screen.model.ui.pane, Pane::Events);
 }
 
@@ -894,6 +896,7 @@ fn a_filter_shows_where_it_acts_and_escape_clears_it() {
 #[test]
 fn the_table_of_stations_is_a_pane_at_120x36() {
     let mut screen = Screen::running();
+    screen.send(Msg::Resize { width: 120, height: 36 });
     assert!(!shown(&screen).contains("─ Stations"), "{}", shown(&screen));
     screen.press([Key::Tab, Key::Tab]);
     let text = shown(&screen);

@@ -37,6 +37,12 @@ impl Run {
             EventKind::Drawn { drawings } => self.draw(event.tick, drawings),
             EventKind::Scalars { scalars } => {
                 self.planning.scalars = scalars.iter().take(MAX_SCALARS).cloned().collect();
+                let shown = self.planning.scalars.iter();
+                let histories = &mut self.planning.scalar_history;
+                histories.retain(|name, _| shown.clone().any(|(other, ..)| other == name));
+                for (name, value, _) in shown {
+                    histories.entry(name.clone()).or_default().add(event.t_s, *value);
+                }
             }
             // The planner works on with its old values.
             EventKind::PlannerFailed { fault, .. } if fault.refuses_change() => {
@@ -113,6 +119,7 @@ impl Run {
         }
         (self.planning.choice, self.planning.info) = (Some(choice.clone()), Some(info.clone()));
         self.planning.scalars.clear();
+        self.planning.scalar_history.clear();
         self.planning.drawings.clear();
         self.planner_works();
     }

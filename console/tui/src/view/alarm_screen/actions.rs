@@ -34,6 +34,21 @@ pub(super) fn lines(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'sta
     numbered.chain(advice).map(|(row, is_selected)| table::row(look, row, is_selected, columns)).collect()
 }
 
+/// The actions and the advice, each in one line.
+pub(super) fn briefly(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'static>> {
+    let room = columns.saturating_sub(3);
+    let steps = remedies::steps(look.model, &alarm.cause);
+    let numbered = steps
+        .iter()
+        .enumerate()
+        .map(|(index, step)| (format!(" {} ", number(look, index)), role(look, step), look.keys(&step.text)));
+    let advice = advice(look, &alarm.cause).into_iter().map(|words| (" · ".to_owned(), Role::Text, words));
+    let row = |(mark, role, words): (String, Role, String)| {
+        look.line([(Role::Key, mark), (role, text::fit(&words, room))])
+    };
+    numbered.chain(advice).map(row).collect()
+}
+
 /// The keys that run the actions: `1-3`; `None` if there is only advice.
 pub(super) fn keys(look: &Look, cause: &Cause) -> Option<String> {
     let steps = remedies::steps(look.model, cause).len();

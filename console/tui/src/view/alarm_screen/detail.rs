@@ -4,6 +4,7 @@ use crate::guide::{guide, name};
 use crate::model::alarms::State;
 use crate::model::log::severity_word;
 use crate::model::{Alarm, Cause};
+use crate::theme::Role;
 use crate::view::fields::{self, Field};
 use crate::view::look::Look;
 use crate::view::text;
@@ -21,9 +22,11 @@ pub(super) fn lines(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'sta
     fields::lines(look, &fields_of(look, alarm), NAMES, columns)
 }
 
-/// The cause of an alarm, wrapped.
-pub(super) fn cause(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'static>> {
-    fields::lines(look, &[("Cause", guide(&alarm.cause).cause.into())], NAMES, columns)
+/// The cause of an alarm in a few lines.
+pub(super) fn cause(look: &Look, alarm: &Alarm, columns: usize, rows: usize) -> Vec<Line<'static>> {
+    let columns = columns.saturating_sub(2);
+    let lines = text::first_lines(text::wrap(guide(&alarm.cause).cause, columns), rows, columns);
+    lines.into_iter().map(|line| look.line([(Role::Text, format!(" {line}"))])).collect()
 }
 
 fn fields_of(look: &Look, alarm: &Alarm) -> Vec<Field> {

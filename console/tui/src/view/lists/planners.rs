@@ -57,13 +57,11 @@ fn row(look: &Look, line: &PlannerLine) -> Row {
         }
     };
     let drives = Some(planner.id.as_str()) == look.run.planner_id();
-    vec![
-        (Role::Title, text::column(&planner.id, 18)),
-        (Role::Text, text::column(&planner.version, 8)),
-        match look.run.cannot_fly(planner) {
-            _ if drives => (Role::Good, "active".into()),
-            Some(why) => (Role::Dim, why.into()),
-            None => (Role::Good, String::new()),
-        },
-    ]
+    let name = (Role::Title, text::column(&planner.id, 18));
+    // The reason needs the room of the version.
+    if let Some(why) = look.run.cannot_fly(planner).filter(|_| !drives) {
+        return vec![name, (Role::Dim, why.into())];
+    }
+    let version = (Role::Text, text::column(&planner.version, 8));
+    vec![name, version, (Role::Good, if drives { "active" } else { "" }.into())]
 }

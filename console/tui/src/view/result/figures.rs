@@ -66,10 +66,10 @@ fn lines(look: &Look, result: &RunResult, columns: usize) -> Vec<Line<'static>> 
             (Role::Dim, format!("{limit:>width$}", width = width.saturating_sub(1))),
         ])
     }));
+    lines.extend(trouble(look, result, columns).into_iter().map(|parts| look.line(parts)));
     let notes = scan_limit(look, result).into_iter().chain(true_error(result));
     lines.extend(notes.flat_map(|words| wrapped(Role::Text, &words)));
     lines.extend(worst(result, columns).into_iter().map(|parts| look.line(parts)));
-    lines.extend(trouble(look, result, columns).into_iter().map(|parts| look.line(parts)));
     lines
 }
 
