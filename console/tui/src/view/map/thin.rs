@@ -196,7 +196,7 @@ mod tests {
         let (path, lanes) = meander(6);
         let thin = Thin::new(&path, &lanes, Thinning::new(0.5, window(0.25), (0, 1)));
         assert_eq!(thin.lanes.len(), 6);
-        assert_eq!(thin.lines((0, 125)).collect::<Vec<_>>(), [path.clone()]);
+        assert_eq!(thin.lines((0, 125)).collect::<Vec<_>>(), std::slice::from_ref(&path));
     }
 
     #[test]
