@@ -64,7 +64,7 @@ impl Connection {
     ) -> Result<Self, ConnectError> {
         let failed = |why: String| ConnectError::at(address, &why);
         let address = &log.map_or_else(|| address.clone(), |log| log.named_to(address));
-        let Stream { read, mut write, end } =
+        let Stream { read, mut write, said, end } =
             Stream::open(address, network).map_err(|error| failed(error.to_string()))?;
         let (tell, pieces) = sync_channel(MOST_WAITING);
         let began = Instant::now();
@@ -93,7 +93,8 @@ impl Connection {
                     }
                 }
                 Ok((_, Err(why))) => {
-                    return Err(failed(format!("{why} before it introduced the vehicle{fault}")));
+                    let wrote = said.at_end().map(|text| format!("; it wrote: {text}")).unwrap_or_default();
+                    return Err(failed(format!("{why} before it introduced the vehicle{fault}{wrote}")));
                 }
                 Err(_) => {}
             }
