@@ -142,7 +142,6 @@ impl Cause {
             Self::Link,
             Self::Vehicle,
             Self::Guard,
-            Self::Guard,
             Self::StopNotConfirmed,
             Self::Planner,
             Self::Stuck,
