@@ -110,7 +110,7 @@ impl Mission {
         let (sent, limits) = self.known.made_safe(wanted);
         let asked = (sent != wanted).then_some(wanted);
         self.happened.push(EventKind::Commanded { ask: None, command: sent, asked });
-        limits.into_iter().for_each(|limit| self.happened.extend(limit));
+        self.happened.extend(limits.into_iter().flatten());
         sent.drive
     }
 

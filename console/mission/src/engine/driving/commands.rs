@@ -66,7 +66,7 @@ impl Driving {
         let (sent, limits) = known.made_safe(wanted);
         let asked = (sent != wanted).then_some(wanted);
         happened.push(EventKind::Commanded { ask: Some(ask), command: sent, asked });
-        limits.into_iter().for_each(|limit| happened.extend(limit));
+        happened.extend(limits.into_iter().flatten());
         Some(sent.drive)
     }
 
