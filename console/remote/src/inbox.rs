@@ -97,10 +97,11 @@ impl Inbox {
     }
 
     /// The stream has ended. If the vehicle has given a reason before, it counts.
-    pub(crate) fn close(&mut self, why: String) {
+    pub(crate) fn close(&mut self, mut why: String) {
         let last = self.state.as_ref().filter(|state| state.mode == Mode::Fault);
-        let text = last.and_then(|state| state.text.as_deref()).map(foreign::plain);
-        let why = text.map_or(why.clone(), |text| format!("{why}; it had reported: {text}"));
+        if let Some(text) = last.and_then(|state| state.text.as_deref()) {
+            why = format!("{why}; it had reported: {}", foreign::plain(text));
+        }
         self.closed.get_or_insert(why);
         self.link.closed();
     }
