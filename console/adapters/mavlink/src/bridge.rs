@@ -18,7 +18,7 @@ use mavlink::{
 };
 use tankops_adapter::{
     clock::Clock,
-    message::{FromVehicle, Tether},
+    message::{FromVehicle, Pose, Tether},
     pilot::{Order, Pilot},
     readings::Assembly,
 };
@@ -63,6 +63,8 @@ pub(crate) struct Bridge {
     clock: Clock,
     readings: Assembly,
     condition: Condition,
+    /// The newest pose and its time, until it is said: nothing is, before the introduction.
+    pose: Option<(Pose, f64)>,
     attitude: Option<ATTITUDE_DATA>,
     /// Stamp of the newest pose, seconds of the rover's clock.
     newest_s: Option<f64>,
@@ -78,6 +80,7 @@ impl Bridge {
             clock: Clock::default(),
             readings: Assembly::new(config.vehicle.period_s),
             condition: Condition::new(config.scan),
+            pose: None,
             attitude: None,
             newest_s: None,
             beats_s: now_s,
@@ -96,10 +99,13 @@ impl Bridge {
         let mut orders = Vec::new();
         match input {
             Input::Console(line) => self.pilot.hear(line.as_deref(), now_s, &mut orders),
-            Input::Message(header, message) => self.message(header, *message, now_s, &mut orders),
+            Input::Message(header, message) => self.message(header, *message, now_s),
             Input::Tick => {}
         }
         self.pilot.act(self.condition.state(now_s), now_s, &mut orders);
+        if let Some((pose, at_s)) = self.pose.take_if(|_| self.pilot.has_greeted()) {
+            orders.extend(self.readings.pose(pose, at_s).map(FromVehicle::Readings).map(Order::Say));
+        }
         let mut out: Vec<Output> = orders.into_iter().filter_map(|order| self.output(order, now_s)).collect();
         self.beat(now_s, &mut out);
         out
@@ -160,7 +166,7 @@ impl Bridge {
         })
     }
 
-    fn message(&mut self, from: MavHeader, message: MavMessage, now_s: f64, orders: &mut Vec<Order>) {
+    fn message(&mut self, from: MavHeader, message: MavMessage, now_s: f64) {
         let rover = self.config.rover;
         if from.system_id != u32::from(rover.system) {
             self.other(from, &message, now_s);
@@ -180,11 +186,11 @@ impl Bridge {
             MavMessage::LOCAL_POSITION_NED(at) if self.config.pose == PoseFrom::LocalPosition => {
                 let stamp_s = f64::from(at.time_boot_ms) / 1e3;
                 let Some(yaw) = self.yaw(stamp_s) else { return };
-                self.pose(convert::pose(at.x, at.y, yaw), "LOCAL_POSITION_NED", stamp_s, now_s, orders);
+                self.pose(convert::pose(at.x, at.y, yaw), "LOCAL_POSITION_NED", stamp_s, now_s);
             }
             MavMessage::ODOMETRY(at) if self.config.pose == PoseFrom::Odometry => {
                 let pose = convert::yaw(at.q).and_then(|yaw| convert::pose(at.x, at.y, yaw));
-                self.pose(pose, "ODOMETRY", at.time_usec as f64 / 1e6, now_s, orders);
+                self.pose(pose, "ODOMETRY", at.time_usec as f64 / 1e6, now_s);
             }
             MavMessage::OBSTACLE_DISTANCE(sectors) if self.config.scan => {
                 self.readings.parts.scan = self.right("OBSTACLE_DISTANCE", convert::scan(&sectors), now_s);
@@ -225,14 +231,7 @@ impl Bridge {
         (since_s.abs() <= ATTITUDE_MAX_AGE_S).then_some(yaw)
     }
 
-    fn pose(
-        &mut self,
-        pose: Result<tankops_adapter::message::Pose, String>,
-        kind: &str,
-        stamp_s: f64,
-        now_s: f64,
-        orders: &mut Vec<Order>,
-    ) {
+    fn pose(&mut self, pose: Result<Pose, String>, kind: &str, stamp_s: f64, now_s: f64) {
         let Some(pose) = self.right(kind, pose, now_s) else { return };
         // Doubled or overtaken: its motion is in a pose that has been taken already.
         let is_old =
@@ -243,9 +242,7 @@ impl Bridge {
         self.newest_s = Some(stamp_s);
         self.condition.pose_s = Some(now_s);
         let measured_s = self.clock.measured_s(Some(stamp_s), now_s);
-        if self.pilot.has_greeted() {
-            orders.extend(self.readings.pose(pose, measured_s).map(FromVehicle::Readings).map(Order::Say));
-        }
+        self.pose = Some((pose, measured_s));
     }
 
     fn named(&mut self, named: &NAMED_VALUE_FLOAT_DATA, now_s: f64) {

@@ -7,7 +7,7 @@ use crate::{
 };
 use tankops_adapter::{
     clock::Clock,
-    message::{FromVehicle, Tether},
+    message::{self, FromVehicle, Tether},
     pilot::{Order, Pilot},
     readings::Assembly,
 };
@@ -69,6 +69,8 @@ pub(crate) struct Bridge {
     clock: Clock,
     readings: Assembly,
     condition: Condition,
+    /// The newest pose and its time, until it is said: nothing is, before the introduction.
+    pose: Option<(message::Pose, f64)>,
 }
 
 impl Bridge {
@@ -79,6 +81,7 @@ impl Bridge {
             clock: Clock::default(),
             readings: Assembly::new(config.vehicle.period_s),
             condition: Condition::default(),
+            pose: None,
             config,
         }
     }
@@ -93,8 +96,8 @@ impl Bridge {
         let mut out = Vec::new();
         match input {
             Input::Console(line) => self.pilot.hear(line.as_deref(), now_s, &mut out),
-            Input::Odometry(odometry) => self.odometry(&odometry, now_s, &mut out),
-            Input::Tf(tf) => self.tf(&tf, now_s, &mut out),
+            Input::Odometry(odometry) => self.odometry(&odometry, now_s),
+            Input::Tf(tf) => self.tf(&tf, now_s),
             Input::Scan(scan) => self.scan(&scan, now_s),
             Input::Ranges(array) => {
                 let topic = self.config.ae.as_ref().map(|of| of.topic.clone());
@@ -123,6 +126,9 @@ impl Bridge {
         }
         let state = self.condition.state(&self.config, now_s);
         self.pilot.act(state, now_s, &mut out);
+        if let Some((pose, at_s)) = self.pose.take_if(|_| self.pilot.has_greeted()) {
+            out.extend(self.readings.pose(pose, at_s).map(FromVehicle::Readings).map(Order::Say));
+        }
         out
     }
 
@@ -138,33 +144,30 @@ impl Bridge {
         }
     }
 
-    fn odometry(&mut self, odometry: &Odometry, now_s: f64, out: &mut Vec<Order>) {
+    fn odometry(&mut self, odometry: &Odometry, now_s: f64) {
         let Some(source) = &self.config.odometry else { return };
         let fits = fits("header.frame_id", &odometry.header.frame_id, source.frame.as_ref())
             .and_then(|()| fits("child_frame_id", &odometry.child_frame_id, source.child_frame.as_ref()));
         if self.right(Some(source.topic.clone()), fits, now_s).is_some() {
-            self.pose(&odometry.pose.pose, odometry.header.stamp, now_s, out);
+            self.pose(&odometry.pose.pose, odometry.header.stamp, now_s);
         }
     }
 
-    fn tf(&mut self, tf: &TFMessage, now_s: f64, out: &mut Vec<Order>) {
+    fn tf(&mut self, tf: &TFMessage, now_s: f64) {
         let Some(source) = &self.config.tf else { return };
         let is_ours = |frame: &str, child: &str| frame == source.frame && child == source.child_frame;
         let ours = tf.transforms.iter().rfind(|of| is_ours(&of.header.frame_id, &of.child_frame_id));
         if let Some(of) = ours {
-            self.pose(&of.transform, of.header.stamp, now_s, out);
+            self.pose(&of.transform, of.header.stamp, now_s);
         }
     }
 
-    fn pose(&mut self, pose: &Pose, stamp: Time, now_s: f64, out: &mut Vec<Order>) {
+    fn pose(&mut self, pose: &Pose, stamp: Time, now_s: f64) {
         let topic = Some(self.config.pose_topic().to_owned());
         let Some(pose) = self.right(topic, convert::pose(pose), now_s) else { return };
         self.condition.pose_s = Some(now_s);
         let measured_s = self.clock.measured_s(stamp.seconds(), now_s);
-        // Nothing before the introduction.
-        if self.pilot.has_greeted() {
-            out.extend(self.readings.pose(pose, measured_s).map(FromVehicle::Readings).map(Order::Say));
-        }
+        self.pose = Some((pose, measured_s));
     }
 
     fn scan(&mut self, scan: &LaserScan, now_s: f64) {

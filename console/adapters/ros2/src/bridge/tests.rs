@@ -1,6 +1,6 @@
 use super::*;
 use crate::types::{Header, PoseWithCovariance, Quaternion, TransformStamped, TwistWithCovariance, Vector3};
-use tankops_adapter::message::{Commander, Mode, State};
+use tankops_adapter::message::{Commander, Mode, Readings, State};
 
 fn config() -> Config {
     toml::from_str(include_str!("../../trial/robot.toml")).unwrap()
@@ -64,6 +64,14 @@ fn published(out: &[Order]) -> Vec<f64> {
     out.iter().filter_map(forward).collect()
 }
 
+fn readings(out: &[Order]) -> Option<&Readings> {
+    let readings = |of| match of {
+        &Order::Say(FromVehicle::Readings(ref readings)) => Some(readings),
+        _ => None,
+    };
+    out.iter().find_map(readings)
+}
+
 fn state(out: &[Order]) -> Option<&State> {
     let state = |of| if let &Order::Say(FromVehicle::State(ref state)) = of { Some(state) } else { None };
     out.iter().rev().find_map(state)
@@ -95,12 +103,23 @@ fn readings_carry_what_was_measured_since_the_last_ones() {
     bridge.take(Input::Contact(false), 0.13);
     bridge.take(scan(), 0.14);
     let out = bridge.take(odometry(0.02, 1000.2), 0.25);
-    let Order::Say(FromVehicle::Readings(readings)) = &out[0] else { panic!("{out:?}") };
+    let readings = readings(&out).unwrap();
     assert!((readings.stamp_s - 0.2).abs() < 1e-6, "measured before it arrived: {}", readings.stamp_s);
     assert_eq!(readings.pose.unwrap().x_m, 0.02);
     assert_eq!(readings.tether.unwrap().paid_out_m, 3.5);
     assert_eq!(readings.contact, Some(true), "a short contact is not lost");
     assert_eq!(readings.scan.as_ref().unwrap().ranges_m, [Some(1.0)]);
+}
+
+#[test]
+fn the_introduction_is_followed_by_readings_with_a_scan() {
+    let mut bridge = Bridge::new(config(), 0.0);
+    bridge.take(odometry(0.5, 1000.0), 0.0);
+    bridge.take(scan(), 0.1);
+    let out = bridge.take(matched(1, 0), 0.2);
+    assert!(matches!(out[0], Order::Say(FromVehicle::Hello(_))));
+    let readings = readings(&out).unwrap();
+    assert!(readings.scan.is_some() && readings.stamp_s == 0.0, "{readings:?}");
 }
 
 #[test]
@@ -117,9 +136,8 @@ fn poses_can_come_from_transforms() {
         transform: at(x),
     };
     let transforms = vec![transform("odom", "base_link", 1.5), transform("base_link", "laser", 9.0)];
-    bridge.take(Input::Tf(TFMessage { transforms: transforms.clone() }), 0.1);
-    let out = bridge.take(Input::Tf(TFMessage { transforms }), 0.2);
-    let Order::Say(FromVehicle::Readings(readings)) = &out[0] else { panic!("{out:?}") };
+    let out = bridge.take(Input::Tf(TFMessage { transforms }), 0.1);
+    let readings = readings(&out).unwrap();
     assert_eq!(readings.pose.unwrap().x_m, 1.5);
 }
 
