@@ -156,13 +156,13 @@ impl Flight {
         self.watch.is_some()
     }
 
-    /// Whether odometry has not yet shown whether a real vehicle carried out a commanded stop.
+    /// Whether a commanded stop of a real vehicle is still open: odometry has neither confirmed nor disproved it yet.
     pub fn awaits_stop(&self) -> bool {
         self.watch.as_ref().is_some_and(LiveWatch::awaits_stop)
     }
 
-    /// Whether the vehicle can be driven as far as its readings are concerned: some have arrived, or it is in trouble
-    /// without them, so that a start is refused with the reason.
+    /// Whether a start order can be decided: readings of the vehicle have arrived, or a problem with the vehicle is
+    /// known, and a start is refused with that reason.
     pub fn hears_vehicle(&self) -> bool {
         self.vehicle.is_heard() || self.watch.as_ref().is_some_and(|watch| watch.trouble().is_some())
     }

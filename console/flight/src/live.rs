@@ -20,7 +20,7 @@ impl LiveWatch {
         self.link.trouble()
     }
 
-    /// Whether odometry has not yet shown whether the vehicle carried out a commanded stop.
+    /// Whether a commanded stop is still open: odometry has neither confirmed nor disproved it yet.
     pub(crate) fn awaits_stop(&self) -> bool {
         self.must_stand && !self.is_decided
     }

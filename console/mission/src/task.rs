@@ -86,7 +86,7 @@ impl Task {
         }
     }
 
-    /// The next targets, over a few metres.
+    /// The next targets, up to this distance along the path.
     pub(crate) fn targets_ahead(&self, length_m: f64) -> &[Point] {
         match self {
             Self::Goto(goto) => std::slice::from_ref(&goto.goal),

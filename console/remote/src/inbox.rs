@@ -1,4 +1,5 @@
-//! The messages of a vehicle, folded into the input of a tick. It holds one tick of readings, however many arrive.
+//! The inbox folds the messages of a vehicle into the input of a tick. Its memory does not grow with the number of
+//! messages.
 
 mod ages;
 mod outlines;
@@ -18,11 +19,11 @@ use world::{RangeSet, StationId, scan::RangesMm};
 
 /// Longest time until the first readings of a vehicle, seconds.
 const FIRST_WITHIN_S: f64 = 2.0;
-/// Longest time in which no readings count because their numbers are not new, seconds.
+/// Longest time, seconds, for which all readings may be ignored because their numbers are not new.
 const UNREAD_S: f64 = 0.8;
 /// Ranges that are older than this are dropped: the robot has moved on since then.
 const RANGES_MAX_AGE_S: f64 = 0.5;
-/// The figures of the link are reported at this interval, seconds.
+/// Interval at which the figures of the link are reported, seconds.
 const FIGURES_EVERY_S: f64 = 10.0;
 /// Stamps are rounded to this many steps a second.
 const STAMP_STEPS: f64 = 1e4;
@@ -37,7 +38,7 @@ pub(crate) struct Inbox {
     link: Link,
     motions: Motions,
     sequence: Sequence,
-    /// Since when the numbers of all readings have not been new, seconds.
+    /// The time since which no readings have had new numbers, seconds.
     unread_since_s: Option<f64>,
     /// The readings since the last tick, and their stamps.
     readings: world::Readings,
@@ -96,7 +97,7 @@ impl Inbox {
         self.sequence.counts().received
     }
 
-    /// The stream has ended. If the vehicle has given a reason before, it counts.
+    /// The stream has ended. A reason that the vehicle gave earlier takes precedence.
     pub(crate) fn close(&mut self, why: String) {
         let last = self.state.as_ref().filter(|state| state.mode == Mode::Fault);
         let text = last.and_then(|state| state.text.as_deref()).map(foreign::plain);

@@ -1,4 +1,4 @@
-//! The newest command that has not been written yet. A stream that takes no bytes holds back one command, not a queue.
+//! The newest command that has not been written yet. If the adapter reads nothing, one command waits here, not a queue.
 
 use std::{
     sync::{Condvar, Mutex, PoisonError},

@@ -61,7 +61,7 @@ impl Trial {
 /// Why a trial ended early.
 #[derive(Debug)]
 enum Early {
-    /// A signal asked for it.
+    /// A signal requested it.
     Interrupted,
     /// The connection ended.
     Closed(String),
