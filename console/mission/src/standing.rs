@@ -174,7 +174,7 @@ impl fmt::Display for Refusal {
             Self::DrivingBack => f.write_str("the robot is driving back; HOLD first"),
             Self::SwapNeedsHold => f.write_str("changing the planner requires HOLD first"),
             Self::NotLive { key } => {
-                write!(f, "parameter `{key}` cannot be changed while running; HOLD first")
+                write!(f, "parameter `{key}` cannot be changed while the mission is running; HOLD first")
             }
             Self::PositionLost { limit_m } => {
                 write!(f, "the position is lost (95 % error limit {limit_m:.2} m); resuming requires a fix")

@@ -253,7 +253,7 @@ impl Inbox {
         }
         match self.link.state(now_s) {
             Reached::Lost if self.link.is_deaf(now_s) => {
-                return (LinkState::Lost, "it takes no commands: its answers stopped".into());
+                return (LinkState::Lost, "it has stopped answering, so it may not receive commands".into());
             }
             Reached::Lost => return (LinkState::Lost, "its readings stopped".into()),
             Reached::Connecting if now_s > FIRST_WITHIN_S => {
@@ -262,7 +262,7 @@ impl Inbox {
             Reached::Late | Reached::Alive
                 if self.unread_since_s.is_some_and(|since_s| now_s - since_s > UNREAD_S) =>
             {
-                return (LinkState::Lost, "its readings are numbered like earlier ones".into());
+                return (LinkState::Lost, "its readings repeat the numbers of earlier ones".into());
             }
             Reached::Fault => {
                 let fault = self.link.fault().unwrap_or_default();
@@ -281,7 +281,7 @@ impl Inbox {
         match (state.mode, state.commander) {
             (Mode::Ready, Commander::You) => (LinkState::Up, String::new()),
             (Mode::Ready, Commander::OtherConsole) => {
-                (LinkState::VehicleFault, "it obeys another console; this one only looks on".into())
+                (LinkState::VehicleFault, "it obeys another console; this one can only watch".into())
             }
             (Mode::Ready, Commander::OtherProgram) => {
                 (LinkState::VehicleFault, "another program sends commands to it".into())

@@ -91,7 +91,7 @@ pub enum LinkState {
     Closed,
     /// Several messages in a row were faulty.
     Faulty,
-    /// The vehicle has started again; its clock, its frame and its commands of before do not count.
+    /// The vehicle has started again; its earlier clock, frame and commands do not count any more.
     Restarted,
     /// A person drives the vehicle by hand.
     Manual,
@@ -218,7 +218,7 @@ pub struct StationFault {
     pub excess_range_m: Option<f64>,
 }
 
-/// A vehicle does not offer faults.
+/// The error of a vehicle that does not offer faults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CannotInject;
 

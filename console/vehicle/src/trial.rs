@@ -15,11 +15,11 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// It does.
+    /// The vehicle passes.
     Pass,
-    /// It does not.
+    /// The vehicle fails.
     Fail,
-    /// This was not measured.
+    /// The check gave no result.
     NotMeasured,
 }
 

@@ -130,7 +130,7 @@ impl Driver<'_> {
             let check = if is_ahead { "frames: ahead by pose" } else { "frames: turn by pose" };
             rows.push(match by_pose(&connection.poses) {
                 Some(moved) => row(check, moved),
-                None => Row::fail(check, Vec::new(), "no pose arrived, which `hello.has` promises"),
+                None => Row::fail(check, Vec::new(), "no pose arrived, although `hello.has` promises one"),
             });
         }
         Ok(rows)
@@ -200,7 +200,7 @@ impl Driver<'_> {
                 "let the adapter send readings to a second connection, too"
             }
             (_, Some(_)) => "let the robot write `time speed turn_rate` lines to the file named in ROBOT_LOG",
-            (_, None) => "the folder for temporary files takes no log",
+            (_, None) => "the log cannot be written to the folder for temporary files",
         };
         Row { says: format!("{}; {how}", row.says), ..row }
     }

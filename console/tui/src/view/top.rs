@@ -26,7 +26,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let room = columns.saturating_sub(sum(&alarms));
     let scenario = text::fit(&names.scenario, room);
     let mut room = room - text::width(&scenario);
-    // What does not fit beside the scenario is left out whole.
+    // An item that does not fit beside the scenario is left out completely.
     let mut fits = |columns: usize| {
         let fits = columns <= room;
         room -= if fits { columns } else { 0 };

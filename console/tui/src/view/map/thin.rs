@@ -9,7 +9,7 @@ use world::{Point, polyline};
 const APART_COLUMNS: f64 = 1.6;
 /// The distance between the lanes drawn if not all are, columns.
 const THINNED_COLUMNS: f64 = 2.0;
-/// The largest number of lanes for one that is drawn.
+/// Maximum number of lanes of which one is drawn.
 const MOST: usize = 99;
 /// A way between two lanes that is longer than this many lane widths leads to a different part of the floor.
 const TRANSIT_LANES: f64 = 8.0;
@@ -21,7 +21,8 @@ const LINK: f64 = 2.5;
 /// Which lanes of a path are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Thinning {
-    /// One lane is drawn of this odd number of lanes, so that the lanes drawn alternate in direction as all lanes do.
+    /// One lane in this many is drawn. The number is odd, so that the lanes drawn alternate in direction as all lanes
+    /// do.
     pub every: usize,
     /// The index of the first lane drawn in each part of the floor.
     first: usize,
@@ -41,7 +42,7 @@ impl Thinning {
     }
 }
 
-/// A part of a thinned path, from one index of its points to another.
+/// A piece of a thinned path, from one index of its points to another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Piece {
     from: usize,
@@ -50,7 +51,7 @@ struct Piece {
     is_link: bool,
 }
 
-/// What is drawn of a path.
+/// The part of a path that is drawn.
 pub(super) struct Thin<'a> {
     path: &'a [Point],
     pieces: Vec<Piece>,
