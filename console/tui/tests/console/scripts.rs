@@ -464,7 +464,7 @@ fn a_value_is_checked_again_when_it_is_sent() {
     let Overlay::Parameters { edit: Some(edit), .. } = &screen.model.ui.overlay else {
         panic!("still typing")
     };
-    assert!(edit.refusal.as_ref().is_some_and(|why| why.contains("while running")));
+    assert!(edit.refusal.as_ref().is_some_and(|why| why.contains("while the mission is running")));
 }
 
 #[test]
