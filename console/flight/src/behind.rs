@@ -189,7 +189,7 @@ impl Behind {
     }
 }
 
-/// Converts the readings of a simulator to a message, without number and stamp.
+/// Converts the readings of a simulator to a message, without its number and stamp.
 fn told(readings: &Readings, stations: &[Station], tick_s: f64) -> message::Readings {
     let name = |id| stations.iter().find(|station| station.id == id).map(|station| station.name.clone());
     let ranges = readings.ranges.iter().filter_map(|set| {

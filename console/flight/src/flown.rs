@@ -1,4 +1,4 @@
-//! One flight: vehicle and mission, tick by tick.
+//! One flight: the vehicle and the mission, tick by tick.
 
 use crate::{
     answers::Answers,
@@ -65,7 +65,7 @@ fn reaction_s(opened: &RunOpened, info: &VehicleInfo) -> f64 {
 }
 
 impl Flight {
-    /// Creates a flight that waits for its start; `attended` tells whether an operator is present.
+    /// Creates a flight that waits for its start; `attended` states whether an operator is present.
     pub fn prepare(scenario: &Scenario, attended: bool) -> Self {
         Self::of(scenario, MissionConfig { attended, ..scenario.mission.clone() }, None)
     }

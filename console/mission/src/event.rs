@@ -1,7 +1,8 @@
 //! The events of a run: everything that is known about it.
 //!
-//! Journal, recording, screen and report are all derived from this one enum. Events are in the past tense and
-//! self-contained. They do not contain the wall-clock time or anything else that would differ between two equal runs.
+//! The journal, the recording, the screen and the report are all derived from this one enum. Events are in the past
+//! tense and self-contained. They do not contain the wall-clock time or anything else that would differ between two
+//! equal runs.
 
 mod effort;
 mod log_line;

@@ -309,8 +309,8 @@ impl Standing<'_> {
         }
     }
 
-    /// The promoted planner's plan is certified from the robot's position. While the robot is held, no steps are asked,
-    /// and a planner that takes over moves nothing: its plan is enough, as for any other change of planner.
+    /// The promoted planner's plan is certified from the robot's position. While the robot is held, no steps are
+    /// requested, and a planner that takes over moves nothing: its plan is enough, as for any other change of planner.
     fn can_promote(&self) -> Result<(), Refusal> {
         match self.shadow {
             None => Err(Refusal::NoShadow),

@@ -25,7 +25,7 @@ const UNREAD_S: f64 = 0.8;
 const RANGES_MAX_AGE_S: f64 = 0.5;
 /// Interval at which the figures of the link are reported, seconds.
 const FIGURES_EVERY_S: f64 = 10.0;
-/// Stamps are rounded to this many steps a second.
+/// Stamps are rounded to this many steps per second.
 const STAMP_STEPS: f64 = 1e4;
 
 /// The messages that arrived.

@@ -190,7 +190,7 @@ impl Drop for Remote {
     }
 }
 
-/// Waits for the introduction. Over datagrams, the adapter learns of the console by a ping, which may get lost.
+/// Waits for the introduction. Over datagrams, a ping announces the console to the adapter; the ping may get lost.
 fn greeted(
     shared: &Shared,
     address: &Address,

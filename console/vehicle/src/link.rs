@@ -240,7 +240,7 @@ impl Link {
         self.comparison.finding()
     }
 
-    /// Offset and delay.
+    /// Offset and delay of the vehicle's clock.
     pub fn clock(&self) -> &Clock {
         &self.clock
     }

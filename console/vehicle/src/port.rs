@@ -11,7 +11,7 @@ use world::{Readings, StationId, Truth};
 /// Time for which a vehicle may carry out a `drive` without a further message, seconds; then it must stand still.
 pub const LEASE_S: f64 = 0.25;
 
-/// A vehicle: its sensors in, its commands out.
+/// A vehicle: it delivers the readings of its sensors and takes commands.
 pub trait Vehicle: Send {
     /// The readings since the last tick. Never waits.
     fn sense(&mut self) -> Sensed;

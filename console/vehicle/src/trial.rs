@@ -1,5 +1,5 @@
-//! The evaluation of a trial of a vehicle: messages, stops and frames, each as a row with figures and a verdict. A shell
-//! connects, drives and collects; `tankops check --vehicle` prints the rows.
+//! The evaluation of a trial of a vehicle: messages, stops and frames, each as a row with figures and a verdict. The
+//! caller connects to the vehicle, drives it and collects its messages; `tankops check --vehicle` prints the rows.
 
 mod frames;
 mod link;

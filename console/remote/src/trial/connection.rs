@@ -74,7 +74,7 @@ impl Connection {
         let mut fault = String::new();
         while began.elapsed() < HELLO_WITHIN {
             if matches!(address, Address::Udp(_)) {
-                // Over datagrams, the adapter learns of this console by a ping.
+                // Over datagrams, a ping announces this console to the adapter.
                 let _ = write.write_all(b"{\"type\": \"ping\", \"stamp_s\": 0}\n");
             }
             match pieces.recv_timeout(LOOK_AGAIN) {

@@ -168,7 +168,7 @@ impl Driver<'_> {
     fn stop(&self, slot: &mut Option<Connection>, cause: Cause, speed: f64) -> Result<Row, Early> {
         let connection = slot.as_mut().ok_or_else(closed)?;
         let is_socket = !matches!(connection.end, End::Process(_));
-        // A second connection to the adapter looks on.
+        // A second connection to the adapter only listens.
         let mut onlooker = if cause == Cause::Cut && is_socket { self.connect().ok() } else { None };
         self.reach(connection, speed)?;
         let limits = self.limits(cause, connection, speed);

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use vehicle::port::LinkSeen;
 use world::{PlateLayout, Point, Pose, Station, StationId, World};
 
-/// The time under way before which the average pace says nothing about the rest, seconds.
+/// Time under way, seconds, before which the average pace does not allow an estimate of the remaining time.
 const SETTLED_S: f64 = 30.0;
 
 /// A run reconstructed from its events.
@@ -55,7 +55,7 @@ pub struct Run {
     pub log: Log,
 }
 
-/// The subject of a run: scenario, tank and mission.
+/// The subject of a run: its scenario, its tank and its mission.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct About {
     /// The name of the scenario.

@@ -63,7 +63,7 @@ fn right_of(area: Rect, width: u16) -> Rect {
     Rect { x: area.right() - width, width, ..area }
 }
 
-/// The names of scenario and planner.
+/// The names of the scenario and the planner.
 struct Names {
     scenario: String,
     /// The size of the tank, after the scenario; empty for a tank that is not round.

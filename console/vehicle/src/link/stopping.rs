@@ -9,7 +9,7 @@ const STILL_RAD_PER_S: f64 = 0.02;
 const STILL_READINGS: u32 = 3;
 /// Time that a vehicle may take to stop, as a multiple of the stop time that it states.
 const STOP_TIMES: f64 = 2.0;
-/// The least time that a vehicle is given, seconds: its readings may arrive late.
+/// Minimum time that a vehicle is given to stop, seconds, because its readings may arrive late.
 const STOP_LEAST_S: f64 = 0.5;
 
 /// The effect of a stop.

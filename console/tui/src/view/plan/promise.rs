@@ -186,7 +186,7 @@ impl Found {
     }
 
     fn is_beyond(&self, figure: Figure, limit: Option<f64>) -> bool {
-        // The planner keeps to the limit exactly, so that rounding must not turn it into a fault.
+        // The planner keeps exactly to the limit, so rounding must not make the value appear to violate it.
         let slack = 0.5 * 10.0_f64.powi(-(figure.decimals as i32));
         limit.is_some_and(|limit| {
             let by = if figure.is_least { limit - self.value } else { self.value - limit };
