@@ -105,7 +105,10 @@ fn without_drive_nothing_moves() {
     let tried = check(&bench, &vehicle, &[]);
     let report = tried.json();
     assert_eq!(verdict(&report, "stop: commands end").0, "not_measured");
-    assert!(verdict(&report, "frames: ahead").1.contains("`--drive` allows this"), "{report}");
+    assert!(
+        verdict(&report, "frames: ahead").1.contains("`--drive` allows the check to move it"),
+        "{report}"
+    );
     let rows = std::fs::read_to_string(log).unwrap();
     assert!(rows.lines().count() > 10 && rows.lines().all(|row| row.ends_with(" 0.0 0.0")), "{rows}");
     let table = bench.tankops(&["check", "--vehicle", &vehicle]);

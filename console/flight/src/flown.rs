@@ -167,7 +167,7 @@ impl Flight {
         self.vehicle.is_heard() || self.watch.as_ref().is_some_and(|watch| watch.trouble().is_some())
     }
 
-    /// A handle that makes a real vehicle stand at once; `None` in a simulation.
+    /// A handle that stops a real vehicle at once; `None` in a simulation.
     pub fn brake(&self) -> Option<Brake> {
         self.vehicle.brake()
     }
@@ -195,8 +195,8 @@ impl Flight {
         first.into_iter().chain(step.events).map(Event::rounded).collect()
     }
 
-    /// Sends the command of this tick to the vehicle. A robot that must not move gets a command to stand, not a drive
-    /// at speed 0: a real vehicle then stands still without further commands.
+    /// Sends the command of this tick to the vehicle. A robot that must not move gets a command to stand still, not a
+    /// drive at speed 0: a real vehicle then stands still without further commands.
     fn act(&mut self, drive: Drive, orders: &[Order], events: &mut Vec<Event>) {
         let may_drive = matches!(self.mission.phase(), Phase::Running(_)) || drive != Drive::STILL;
         let drive = may_drive.then_some(drive);

@@ -30,7 +30,7 @@ struct Waiting {
     seq: u64,
 }
 
-/// A motion in the robot frame: metres per second ahead and to the left, radians per second. `None`: stand.
+/// A motion in the robot frame: metres per second ahead and to the left, radians per second. `None`: stand still.
 type Motion = Option<[f64; 3]>;
 
 impl Outbox {

@@ -26,7 +26,7 @@ const MOST_WAITING: usize = 64;
 const MOST_ASKED: usize = 256;
 /// Maximum number of connections at a time: the console that the vehicle obeys, and consoles that only watch.
 const MOST_CLIENTS: usize = 8;
-/// Time without a datagram after which a console that speaks in datagrams counts as having left.
+/// Time without a datagram after which a console that uses datagrams counts as having left.
 const SILENT: Duration = Duration::from_secs(3);
 const LOOK_AGAIN: Duration = Duration::from_millis(200);
 
@@ -268,7 +268,7 @@ fn did(heard: Heard<ToVehicle>) -> Option<Did> {
     }
 }
 
-/// Consoles that speak in datagrams.
+/// Consoles that use datagrams.
 struct Datagrams {
     socket: Arc<UdpSocket>,
     tell: Tell,

@@ -2,7 +2,7 @@
 //! time of the console's clock, which also stamps its commands.
 //!
 //! [`Link`] folds received and sent messages; its parts can also be used alone: [`Clock`] (offset and delay),
-//! [`Sequence`] (loss), [`Motions`] (motion from odometry or poses), [`Stopping`] (whether the vehicle stands),
+//! [`Sequence`] (loss), [`Motions`] (motion from odometry or poses), [`Stopping`] (whether the vehicle stands still),
 //! [`Comparison`] (whether it moves as commanded).
 
 mod clock;
@@ -230,7 +230,7 @@ impl Link {
         self.stopping.state(now_s, Stopping::limit_s(hello, trip_s))
     }
 
-    /// When the vehicle was commanded to stand, seconds; `None` while it may drive.
+    /// When the vehicle was commanded to stand still, seconds; `None` while it may drive.
     pub fn asked_to_stand_s(&self) -> Option<f64> {
         self.stopping.asked_s()
     }

@@ -33,8 +33,8 @@ pub trait Vehicle: Send {
         true
     }
 
-    /// A handle that makes the vehicle stand at once, from any thread, without waiting for the next tick; `None` for
-    /// vehicles whose time passes with the ticks.
+    /// A handle that stops the vehicle at once, from any thread, without waiting for the next tick; `None` for vehicles
+    /// whose time passes with the ticks.
     fn brake(&self) -> Option<Brake> {
         None
     }
@@ -63,7 +63,8 @@ pub struct Live {
 /// The result of a commanded stop, from readings that were taken after it was sent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stood {
-    /// Whether the readings show that the vehicle stands; if not, it still moves or is silent although it should stand.
+    /// Whether the readings show that the vehicle stands still; if not, it still moves or is silent although it should
+    /// stand.
     pub confirmed: bool,
     /// Time since the command, seconds; until the first of the readings without motion if the stop is confirmed.
     pub after_s: f64,
@@ -228,7 +229,7 @@ impl fmt::Display for CannotInject {
     }
 }
 
-/// Makes a vehicle stand at once, from any thread. No motion is sent until each pull has been released, by the order that
+/// Stops a vehicle at once, from any thread. No motion is sent until each pull has been released, by the order that
 /// pulled it: when the mission has carried it out ([`Command::braking_orders`]), or if the order is dropped.
 #[derive(Clone)]
 pub struct Brake {

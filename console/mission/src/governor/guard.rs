@@ -1,8 +1,8 @@
 //! Braking by the raw scan, whatever the chart says: the robot must be able to stop before it touches any scanned
 //! point.
 //!
-//! Until the robot stands, its centre stays within a sector of its present surroundings: it travels at most the
-//! stopping distance, in directions between its heading now and its heading when it stands. The hull may touch a
+//! Until the robot stands still, its centre stays within a sector of its present surroundings: it travels at most the
+//! stopping distance, in directions between its heading now and its heading at the standstill. The hull may touch a
 //! scanned point that is closer to this sector than the hull's radius. Between two scans, the points are moved by the
 //! robot's odometry.
 
@@ -20,8 +20,8 @@ struct Echo {
     direction_rad: f64,
 }
 
-/// The places that the centre of the robot can reach until it stands: up to a distance, in directions within `spread_rad`
-/// on both sides of a middle one, robot frame.
+/// The places that the centre of the robot can reach until it stands still: up to a distance, in directions within
+/// `spread_rad` on both sides of a middle one, robot frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Sector {
     way_m: f64,

@@ -136,7 +136,7 @@ impl Driver<'_> {
         Ok(rows)
     }
 
-    /// Stops the vehicle and waits until it stands.
+    /// Stops the vehicle and waits until it stands still.
     fn stand(&self, connection: &mut Connection) -> Result<(), Early> {
         let until = self.patience(self.hello.stop_time_s);
         connection.stop();
@@ -310,7 +310,8 @@ impl Driver<'_> {
     }
 
     /// Follows the rest of the stream and the log of a robot whose adapter has lost its console or has ended, until the
-    /// robot stands. A robot process may end as soon as the robot stands; its log then ends with a standing robot.
+    /// robot stands still. A robot process may end as soon as the robot stands still; its log then ends with a
+    /// standstill.
     fn until_silent(&self, connection: &mut Connection, cause_s: Option<f64>, until: Instant) -> Vec<Sample> {
         let mut grown = (0, Instant::now());
         loop {

@@ -119,7 +119,7 @@ pub(super) fn state(model: &Model) -> Parts {
     vec![(Role::Title, format!("{who} ")), (role, word.into())]
 }
 
-/// Whether a held vehicle really stands.
+/// Whether a held vehicle really stands still.
 fn stands(model: &Model) -> Option<bool> {
     model.live.run.vehicle.as_ref().and_then(|vehicle| vehicle.stands)
 }

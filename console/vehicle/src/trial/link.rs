@@ -42,7 +42,7 @@ pub struct Listened {
     pub offset: Option<Offset>,
 }
 
-/// What the vehicle says about itself.
+/// Checks the introduction of the vehicle.
 pub fn introduction(hello: &Hello) -> Row {
     let check = "introduction";
     let Hello { name, limits, period_s, stop_time_s, lease_max_s, has, .. } = hello;
@@ -219,7 +219,7 @@ pub fn standstill(listened: &Listened) -> Row {
         Figure::new("turn", turn_rad.abs().to_degrees(), "deg").at_most(STILL_RAD.to_degrees()),
     ];
     let failed = "the vehicle moves, or reports motion, without a command";
-    Row::judged(check, figures, "stands without a command", failed)
+    Row::judged(check, figures, "stands still without a command", failed)
 }
 
 #[cfg(test)]

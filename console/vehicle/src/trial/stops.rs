@@ -71,7 +71,7 @@ impl Cause {
         match self {
             Self::Stop => "correct `stop_time_s` in `hello`, or make the vehicle brake harder",
             Self::Lease => {
-                "keep the lease where the motors are: stand when no `drive` arrives within `lease_s`"
+                "keep the lease where the motors are: stand still when no `drive` arrives within `lease_s`"
             }
             Self::Cut => "stand still when the connection ends",
             Self::Stopped | Self::Killed => {
@@ -86,7 +86,7 @@ impl Cause {
 pub struct Limits {
     /// Commanded speed before the stop, metres per second.
     pub commanded_m_per_s: f64,
-    /// Longest time from the cause until the vehicle stands, seconds.
+    /// Longest time from the cause until the vehicle stands still, seconds.
     pub time_s: f64,
 }
 

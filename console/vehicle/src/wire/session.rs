@@ -35,7 +35,7 @@ pub struct ToSession {
 }
 
 impl FromSession {
-    /// The messages of a vehicle that speaks in datagrams, which may arrive more than once.
+    /// The messages of a vehicle that uses datagrams; a datagram may arrive more than once.
     pub fn of_datagrams() -> Self {
         Self { is_of_datagrams: true, ..Self::default() }
     }

@@ -15,7 +15,7 @@ use world::{Point, Readings, scan::carried};
 const SCAN_MAX_AGE_S: f64 = 0.5;
 /// Maximum number of ticks for which the robot has moved since its readings were taken.
 const READING_TICKS: usize = 1;
-/// Longest time until the first scan, seconds; until then the robot stands.
+/// Longest time until the first scan, seconds; until then the robot stands still.
 const FIRST_WITHIN_S: f64 = 2.0;
 /// Distance, metres, that is added to the stopping distance at full speed; points farther from the hull than the sum
 /// are dropped. It is longer than the robot travels before its scan is too old.
