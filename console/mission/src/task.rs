@@ -67,8 +67,8 @@ impl Task {
         }
     }
 
-    /// Updates the robot's position. `has_room` tells whether the robot can be at a point: points of a preset path at
-    /// which it cannot be are skipped.
+    /// Updates the robot's position. `has_room` tells whether the robot can be at a point: points of a preset path
+    /// without room for the robot are skipped.
     pub(crate) fn advance(&mut self, position: Point, map: &ObstacleMap, has_room: impl Fn(Point) -> bool) {
         match self {
             Self::Goto(goto) => goto.position = position,

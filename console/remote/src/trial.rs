@@ -17,8 +17,8 @@ use vehicle::{
 
 /// How long the vehicle is listened to.
 const LISTEN: Duration = Duration::from_secs(3);
-/// Time, seconds, after which a vehicle must stand still, counted from the end of the lease of its last command plus
-/// its own stop time.
+/// Time, seconds, that is added to the lease of the last command and the vehicle's own stop time; after the sum, the
+/// vehicle must stand still.
 const LEASE_SLACK_S: f64 = 0.05;
 /// Distance and angle of the frame checks, and the speeds with which they are driven.
 const AHEAD_M: f64 = 0.2;

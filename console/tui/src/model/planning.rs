@@ -82,7 +82,7 @@ impl PlanShown {
             .map_or(0, |(index, _)| index)
     }
 
-    /// The distance driven along this plan, metres, for a share of the task that is done.
+    /// The distance driven along this plan, metres, given the share of the task that is done.
     pub fn along_m(&self, done: f64) -> f64 {
         done * (self.driven_m + self.length_m) - self.driven_m
     }
@@ -160,8 +160,8 @@ pub struct Offer {
     /// The lanes of the path.
     #[serde(default)]
     pub lanes: Vec<Lane>,
-    /// Whether the mission will switch to the better plan at the point where that plan begins, because the operator or
-    /// the scenario says so.
+    /// Whether the mission will switch to the better plan at the point where that plan begins, by order of the operator
+    /// or because of a setting of the scenario.
     pub is_taken: bool,
 }
 

@@ -166,7 +166,8 @@ impl Run {
         plan.path.get(plan.reached(progress)..)
     }
 
-    /// Whether the rest of the plan led to each cell of the floor; empty before the end, and without a rest.
+    /// For each cell of the floor, whether the rest of the plan led there. Empty before the end of the mission, and if
+    /// the whole plan was driven.
     pub fn not_reached(&self) -> Vec<bool> {
         let Some((coverage, about)) = self.coverage.as_ref().zip(self.about.as_ref()) else {
             return Vec::new();

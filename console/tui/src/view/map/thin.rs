@@ -31,8 +31,8 @@ pub(super) struct Thinning {
 }
 
 impl Thinning {
-    /// The thinning of `paths` paths that are on the map together, with lanes `lane_m` metres apart, of which this is
-    /// the one with the index `which`: equal paths are drawn on different lanes.
+    /// The thinning of the path with the index `which`, one of `paths` paths that are on the map together. Their lanes
+    /// are `lane_m` metres apart. Equal paths are drawn on different lanes.
     pub(super) fn new(lane_m: f64, window: Window, (which, paths): (usize, usize)) -> Self {
         let lane_columns = lane_m / window.column_m / paths.max(1) as f64;
         let is_apart = !lane_columns.is_finite() || lane_columns <= 0.0 || lane_columns >= APART_COLUMNS;
@@ -149,7 +149,7 @@ fn apart(path: &[Point], gap_m: f64) -> Vec<Lane> {
     stretches
 }
 
-/// Stretches in which those that touch are joined, without those that are single points.
+/// The stretches, joined where they touch, without stretches of a single point.
 fn joined(stretches: Vec<Lane>) -> Vec<Lane> {
     let mut joined: Vec<Lane> = Vec::new();
     for (from, to) in stretches {

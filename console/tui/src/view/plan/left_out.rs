@@ -57,7 +57,7 @@ fn keys(look: &Look, columns: usize) -> String {
     }
 }
 
-/// An area, its place in a column of a width, and the reason.
+/// An area, its place in a column of the given width, and the reason.
 fn row(area: &Area<MissReason>, place: usize, columns: usize) -> Parts {
     let room = columns.saturating_sub(AREA + 2);
     let place = text::column(&text::place(area.at), place);
