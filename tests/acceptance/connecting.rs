@@ -105,7 +105,10 @@ fn without_drive_nothing_moves() {
     let tried = check(&bench, &vehicle, &[]);
     let report = tried.json();
     assert_eq!(verdict(&report, "stop: commands end").0, "not_measured");
-    assert!(verdict(&report, "frames: ahead").1.contains("`--drive` allows this"), "{report}");
+    assert!(
+        verdict(&report, "frames: ahead").1.contains("`--drive` allows the check to move it"),
+        "{report}"
+    );
     let rows = std::fs::read_to_string(log).unwrap();
     assert!(rows.lines().count() > 10 && rows.lines().all(|row| row.ends_with(" 0.0 0.0")), "{rows}");
     let table = bench.tankops(&["check", "--vehicle", &vehicle]);
@@ -145,7 +148,7 @@ fn a_trial_needs_an_adapter_and_says_what_is_wrong() {
     for (arguments, why) in [
         (&["check", "--vehicle", "unix:nowhere"][..], "cannot drive the vehicle at unix:nowhere"),
         (&["check", "--vehicle", "run:true"], "before it introduced the vehicle"),
-        (&["check", "--vehicle", "loopback"], "is not tried"),
+        (&["check", "--vehicle", "loopback"], "cannot be tried"),
         (&["check", "--vehicle", "unix:a", "--drive", "--speed", "0"], "greater than 0"),
         (&["check", "--drive"], "--vehicle"),
         (&["check"], "FILE"),

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Cuts the link to a driven vehicle at random times, and measures when the vehicle stands: `cuts.py TANKOPS SCENARIO [N] [SEED]`.
 
-The robot of adapter.py runs in a separate process and keeps the lease. This program lies between console and adapter, and cuts the
-link in one of four ways: the socket is closed, the adapter is killed, the adapter is stopped (SIGSTOP), or bytes are dropped both
-ways. Each run must hold the vehicle within the lease and its own braking, must tell the lost link within 1 s, must not move the
+The robot of adapter.py runs in a separate process and keeps the lease. This program is between the console and the adapter, and cuts
+the link in one of four ways: the socket is closed, the adapter is killed, the adapter is stopped (SIGSTOP), or bytes are dropped both
+ways. Each run must hold the vehicle within the lease and its own braking, must report the lost link within 1 s, must not move the
 vehicle again, and must keep its journal. Prints a JSON line for each cut and one with the summary; ends with 1 if a rule is broken.
 Environment: TANKOPS_OPTIONS, global options of tankops, separated by spaces; SET, more options of `run`; JOBS, number of runs at a
 time (1).

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A robot in ir-sim (`pip install ir-sim==2.12.0`) behind adapter.py: `--vehicle "run:python3 irsim_robot.py SCENARIO.toml"`.
 
-The tank, the columns, the robot, the stations and the tether come from the scenario; this program adds the rest: the motion
+The tank, the columns, the robot, the stations and the tether come from the scenario; this program adds the motion
 of ir-sim with slip, the noise of encoders, gyro and stations, the lidar, and the taut tether. Environment variables:
 IRSIM_TRUTH=FILE writes the true state at each step; IRSIM_SEED=N seeds the noise. `irsim_robot.py --account SCENARIO.toml FILE`
 evaluates such a file: it prints coverage, collisions, clearance and tether from the true states, as JSON.
@@ -29,7 +29,7 @@ CORNERS = 48  # of a column, for the tether
 
 
 def scenario(path):
-    """The parts of a scenario that make its world."""
+    """The parts of a scenario that define its world."""
     with open(path, "rb") as file:
         whole = tomllib.load(file)
     circles = [o for o in whole.get("obstacles", []) if o["kind"] == "circle"]
@@ -113,7 +113,7 @@ class Tether:
             self.bends.pop()
 
     def first_corner(self, before, end):
-        """The corner in the triangle of the last bend and two places of the end that the line meets first."""
+        """The corner that the line meets first in the triangle of the last bend and two places of its end."""
         bx, by, _ = self.bends[-1]
         p, q, to = (before[0] - bx, before[1] - by), (end[0] - bx, end[1] - by), self.corners - (bx, by)
         turn = p[0] * q[1] - p[1] * q[0]
@@ -245,7 +245,7 @@ def main():
     if "--account" in sys.argv:
         print(json.dumps(account(world, arguments[1])))
     elif "robot" in sys.argv:
-        # ir-sim writes to standard output, which belongs to the messages.
+        # ir-sim writes to standard output, which is reserved for the messages.
         messages = os.dup(1)
         os.dup2(2, 1)
         body = Robot(world)

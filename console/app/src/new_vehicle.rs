@@ -56,7 +56,7 @@ fn next_steps(folder: &Path, name: &str, lang: VehicleLang) -> String {
         "created {folder} with an adapter and its own small robot; try the robot, first without moving it, then drive \
          it:\n\n    cd {folder}\n{build}    tankops check --vehicle \"run:{command}\"\n    tankops check --vehicle \
          \"run:{command}\" --drive\n    tankops console scenario.toml --vehicle \"run:{command}\"\n\nThen replace `Disc` \
-         by your robot. Guide: connect-a-robot.md\n",
+         with your robot. Guide: connect-a-robot.md\n",
         folder = folder.display(),
     )
 }

@@ -32,7 +32,7 @@ pub(crate) fn check(args: &TrialArgs, json: bool) -> anyhow::Result<ExitCode> {
     let Some(at) = &args.vehicle else { return Err(bad_input("--vehicle has no address")) };
     if *at == Address::Loopback {
         return Err(bad_input(
-            "the simulator inside the console is not tried; write unix:PATH, tcp:HOST:PORT, \
+            "the simulator inside the console cannot be tried; write unix:PATH, tcp:HOST:PORT, \
                               udp:HOST:PORT or run:COMMAND",
         ));
     }

@@ -57,8 +57,8 @@ impl Behind {
         }
     }
 
-    /// The same vehicle with a scanner of 360 rays instead of outlines of obstacles: what is not on the drawing is then
-    /// only in the scan.
+    /// The same vehicle with a scanner of 360 rays instead of outlines of obstacles: an object that is not on the
+    /// drawing then appears only in the scan.
     #[must_use]
     pub fn with_scanner(mut self) -> Self {
         (self.hello.has.scan, self.has_scanner) = (true, true);
@@ -70,7 +70,7 @@ impl Behind {
         self.simulator.truth()
     }
 
-    /// The same vehicle, which also sends its dead-reckoned pose, so that lost messages lose no motion.
+    /// The same vehicle, which also sends its dead-reckoned pose, so that a lost message does not lose motion.
     #[must_use]
     pub fn with_pose(mut self) -> Self {
         self.hello.has.pose = true;
@@ -78,7 +78,7 @@ impl Behind {
         self
     }
 
-    /// The same vehicle, whose introduction tells this start from others.
+    /// The same vehicle; its introduction distinguishes this start from other starts.
     #[must_use]
     pub fn with_session(mut self, session: u64) -> Self {
         self.hello.session = Some(session);
@@ -189,7 +189,7 @@ impl Behind {
     }
 }
 
-/// Converts the readings of a simulator to a message, without number and stamp.
+/// Converts the readings of a simulator to a message, without its number and stamp.
 fn told(readings: &Readings, stations: &[Station], tick_s: f64) -> message::Readings {
     let name = |id| stations.iter().find(|station| station.id == id).map(|station| station.name.clone());
     let ranges = readings.ranges.iter().filter_map(|set| {

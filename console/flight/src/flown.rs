@@ -1,4 +1,4 @@
-//! One flight: vehicle and mission, tick by tick.
+//! One flight: the vehicle and the mission, tick by tick.
 
 use crate::{
     answers::Answers,
@@ -65,7 +65,7 @@ fn reaction_s(opened: &RunOpened, info: &VehicleInfo) -> f64 {
 }
 
 impl Flight {
-    /// Creates a flight that waits for its start; `attended` tells whether an operator is present.
+    /// Creates a flight that waits for its start; `attended` states whether an operator is present.
     pub fn prepare(scenario: &Scenario, attended: bool) -> Self {
         Self::of(scenario, MissionConfig { attended, ..scenario.mission.clone() }, None)
     }
@@ -156,18 +156,18 @@ impl Flight {
         self.watch.is_some()
     }
 
-    /// Whether odometry has not yet shown whether a real vehicle carried out a commanded stop.
+    /// Whether a commanded stop of a real vehicle is still open: odometry has neither confirmed nor disproved it yet.
     pub fn awaits_stop(&self) -> bool {
         self.watch.as_ref().is_some_and(LiveWatch::awaits_stop)
     }
 
-    /// Whether the vehicle can be driven as far as its readings are concerned: some have arrived, or it is in trouble
-    /// without them, so that a start is refused with the reason.
+    /// Whether a start order can be decided: readings of the vehicle have arrived, or a problem with the vehicle is
+    /// known, and a start is refused with that reason.
     pub fn hears_vehicle(&self) -> bool {
         self.vehicle.is_heard() || self.watch.as_ref().is_some_and(|watch| watch.trouble().is_some())
     }
 
-    /// A handle that makes a real vehicle stand at once; `None` in a simulation.
+    /// A handle that stops a real vehicle at once; `None` in a simulation.
     pub fn brake(&self) -> Option<Brake> {
         self.vehicle.brake()
     }
@@ -195,8 +195,8 @@ impl Flight {
         first.into_iter().chain(step.events).map(Event::rounded).collect()
     }
 
-    /// Sends the command of this tick to the vehicle. A robot that must not move gets a command to stand, not a drive
-    /// at speed 0: a real vehicle then stands still without further commands.
+    /// Sends the command of this tick to the vehicle. A robot that must not move gets a command to stand still, not a
+    /// drive at speed 0: a real vehicle then stands still without further commands.
     fn act(&mut self, drive: Drive, orders: &[Order], events: &mut Vec<Event>) {
         let may_drive = matches!(self.mission.phase(), Phase::Running(_)) || drive != Drive::STILL;
         let drive = may_drive.then_some(drive);

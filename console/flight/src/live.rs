@@ -8,9 +8,9 @@ use world::Readings;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LiveWatch {
     link: LinkSeen,
-    /// Whether the last command was to stand.
+    /// Whether the last command was to stand still.
     must_stand: bool,
-    /// Whether readings have confirmed or disproved that it stands, since the last motion was commanded.
+    /// Whether readings have confirmed or disproved a standstill since the last motion was commanded.
     is_decided: bool,
 }
 
@@ -20,7 +20,7 @@ impl LiveWatch {
         self.link.trouble()
     }
 
-    /// Whether odometry has not yet shown whether the vehicle carried out a commanded stop.
+    /// Whether a commanded stop is still open: odometry has neither confirmed nor disproved it yet.
     pub(crate) fn awaits_stop(&self) -> bool {
         self.must_stand && !self.is_decided
     }

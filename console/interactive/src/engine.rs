@@ -177,8 +177,8 @@ impl EngineThread {
         self.host.has_ended_idle(worker).then_some(Order::CheckPlanner)
     }
 
-    /// Whether ticks pass without orders: the mission is under way, a planner is being prepared, or a real vehicle has not
-    /// shown yet that it stands.
+    /// Whether ticks pass without orders: the mission is under way, a planner is being prepared, or the standstill of a
+    /// real vehicle is not confirmed yet.
     fn is_under_way(&self) -> bool {
         match self.flight.phase() {
             Phase::Waiting => self.flight.mission().awaits() != Awaits::Nothing || self.flight.awaits_stop(),

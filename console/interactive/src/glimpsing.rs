@@ -99,7 +99,7 @@ fn glimpse(folder: &Path, goes_on: impl Fn() -> bool) -> Result<Option<Glimpse>,
     let mut reader = JournalReader::open(&journal_of(folder)).map_err(|error| error.to_string())?;
     let mut run = Run::default();
     for number in 1.. {
-        // What precedes damage in a journal can be shown.
+        // The part of a journal before the damage can be shown.
         let Ok(Some(line)) = reader.next_line() else { break };
         run.fold(&line.event);
         if number % CHECK_EVENTS == 0 && !goes_on() {

@@ -241,7 +241,7 @@ impl Opening {
     }
 }
 
-/// Refuses a run whose journal has a different version: a replay has nothing to show of it.
+/// Refuses a run whose journal has a different version: a replay cannot show it.
 fn check_version(folder: &Path) -> anyhow::Result<()> {
     match Ticks::open(&journal_of(folder)) {
         Err(error @ JournalError::OtherVersion { .. }) => Err(error.into()),

@@ -39,7 +39,7 @@ pub(super) enum Request {
 pub(super) struct EngineHandle {
     requests: Sender<Request>,
     waker: Waker,
-    /// Makes a real vehicle stand before the mission has processed the order; `None` for the simulator.
+    /// Stops a real vehicle before the mission has processed the order; `None` for the simulator.
     brake: Option<Brake>,
     /// Whether the robot moves or may start to move, as last reported by the screen.
     may_move: Arc<AtomicBool>,

@@ -18,7 +18,7 @@ use std::{
 use tui::terminal::{Decoder, Input};
 
 /// Asks for the background colour (OSC 11), and then for the kind of the terminal (DA1), which every terminal answers:
-/// its answer tells that no answer about the background will come.
+/// once it has answered this second question, an answer about the background will not come.
 const ASK_BACKGROUND: &[u8] = b"\x1b]11;?\x1b\\\x1b[c";
 /// The pause after the system has refused to read, because another process has the terminal.
 const REFUSED: Duration = Duration::from_millis(100);

@@ -140,7 +140,7 @@ impl Runner {
 
     fn step(&mut self, step: &Step) -> Result<(), String> {
         if self.is_left {
-            return Err("an earlier line left the console".into());
+            return Err("an earlier line closed the console".into());
         }
         match step {
             Step::Size((width, height)) => self.take(Msg::Resize { width: *width, height: *height }),

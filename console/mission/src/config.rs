@@ -199,7 +199,7 @@ pub struct MissionConfig {
     /// The conditions under which floor counts as scanned.
     #[serde(default)]
     pub scan: ScanConfig,
-    /// The pressure sensor that tells an amphibious robot whether it is under water. Without a sensor, the zone at the
+    /// The pressure sensor that shows whether an amphibious robot is under water. Without a sensor, the zone at the
     /// estimated position decides.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure: Option<PressureSensor>,

@@ -1,7 +1,8 @@
 //! The events of a run: everything that is known about it.
 //!
-//! Journal, recording, screen and report are all derived from this one enum. Events are in the past tense and
-//! self-contained. They do not contain the wall-clock time or anything else that would differ between two equal runs.
+//! The journal, the recording, the screen and the report are all derived from this one enum. Events are in the past
+//! tense and self-contained. They do not contain the wall-clock time or anything else that would differ between two
+//! equal runs.
 
 mod effort;
 mod log_line;
@@ -516,9 +517,9 @@ pub enum EventKind {
     },
     /// The state of the link to a real vehicle changed, or its periodic figures are due.
     Link(LinkSeen),
-    /// A command was sent to a real vehicle; of several commands to stand in a row, only the first is reported.
+    /// A command was sent to a real vehicle; of several commands to stand still in a row, only the first is reported.
     Sent {
-        /// The motion; absent for a command to stand.
+        /// The motion; absent for a command to stand still.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         drive: Option<Drive>,
         /// Time for which the vehicle may carry out the motion without a further command, seconds.
@@ -528,7 +529,7 @@ pub enum EventKind {
     Stood {
         /// Whether the stop is confirmed; if not, the vehicle still moves although it should stand still by now.
         confirmed: bool,
-        /// Time since the command to stand, seconds.
+        /// Time since the command to stand still, seconds.
         after_s: f64,
     },
     /// The guard by the scan of a real vehicle has limited a command, so that the robot can stop in time.

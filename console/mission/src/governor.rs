@@ -161,8 +161,8 @@ impl<'a> Surroundings<'a> {
         Self { solids: solids.iter().map(to).collect() }
     }
 
-    /// Smallest margin between a position of the hull's centre and the solids, metres: the distance minus the required
-    /// distance; negative where the centre must not be.
+    /// Margin of a position of the hull's centre, metres: its distance from an obstacle minus the distance required
+    /// from that obstacle, for the obstacle with the smallest difference. Negative where the centre must not be.
     fn spare_m(&self, at: Point) -> f64 {
         self.solids
             .iter()

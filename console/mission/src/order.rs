@@ -73,11 +73,11 @@ pub enum Order {
         station: StationId,
         /// Whether the ranges from the station are used.
         used: bool,
-        /// The person who gave the order, if the console knows.
+        /// The name of the person who gave the order, if the console knows it.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         by: Option<String>,
     },
-    /// Record an action of the operator at the console; the record affects neither robot nor planner.
+    /// Record an action of the operator at the console; the record affects neither the robot nor the planner.
     Note(Note),
 }
 
@@ -86,7 +86,7 @@ pub enum Order {
 pub struct Note {
     /// The action.
     pub what: Noted,
-    /// The person who carried out the action, if the console knows.
+    /// The name of the person who carried out the action, if the console knows it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
 }
@@ -181,7 +181,7 @@ pub struct Injection {
     pub fault: RangeFault,
     /// Duration, counted from the next tick, seconds of mission time.
     pub for_s: f64,
-    /// The person who injected the fault, if the console knows.
+    /// The name of the person who injected the fault, if the console knows it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
 }

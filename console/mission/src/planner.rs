@@ -254,8 +254,8 @@ impl Cause {
 
 /// A planner's failure, in words that tell an operator what happened.
 ///
-/// `message` names planner, cause and step. It contains no figures that differ between two equal runs (no milliseconds,
-/// no process ids), because it is written to the journal, which must repeat byte for byte.
+/// `message` names the planner, the cause and the step. It contains no figures that differ between two equal runs (no
+/// milliseconds, no process ids), because it is written to the journal, which must repeat byte for byte.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, thiserror::Error)]
 #[error("{message}")]
 pub struct Fault {

@@ -174,7 +174,7 @@ impl fmt::Display for Refusal {
             Self::DrivingBack => f.write_str("the robot is driving back; HOLD first"),
             Self::SwapNeedsHold => f.write_str("changing the planner requires HOLD first"),
             Self::NotLive { key } => {
-                write!(f, "parameter `{key}` cannot be changed while running; HOLD first")
+                write!(f, "parameter `{key}` cannot be changed while the mission is running; HOLD first")
             }
             Self::PositionLost { limit_m } => {
                 write!(f, "the position is lost (95 % error limit {limit_m:.2} m); resuming requires a fix")
@@ -309,8 +309,8 @@ impl Standing<'_> {
         }
     }
 
-    /// The promoted planner's plan is certified from the robot's position. While the robot is held, no steps are asked,
-    /// and a planner that takes over moves nothing: its plan is enough, as for any other change of planner.
+    /// The promoted planner's plan is certified from the robot's position. While the robot is held, no steps are
+    /// requested, and a planner that takes over moves nothing: its plan is enough, as for any other change of planner.
     fn can_promote(&self) -> Result<(), Refusal> {
         match self.shadow {
             None => Err(Refusal::NoShadow),

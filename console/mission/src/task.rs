@@ -67,8 +67,8 @@ impl Task {
         }
     }
 
-    /// Updates the robot's position. `has_room` tells whether the robot can be at a point: points of a preset path at
-    /// which it cannot be are skipped.
+    /// Updates the robot's position. `has_room` tells whether the robot can be at a point: points of a preset path
+    /// without room for the robot are skipped.
     pub(crate) fn advance(&mut self, position: Point, map: &ObstacleMap, has_room: impl Fn(Point) -> bool) {
         match self {
             Self::Goto(goto) => goto.position = position,
@@ -86,7 +86,7 @@ impl Task {
         }
     }
 
-    /// The next targets, over a few metres.
+    /// The next targets, up to this distance along the path.
     pub(crate) fn targets_ahead(&self, length_m: f64) -> &[Point] {
         match self {
             Self::Goto(goto) => std::slice::from_ref(&goto.goal),

@@ -2,13 +2,13 @@
 //!
 //! Scatter of the position estimate does not wind the cable: if the estimate moves and then moves back, the two moves
 //! cancel. As long as the error of the estimate is less than the radius of a column plus the radius of the hull, the
-//! straight line between estimate and truth never crosses the middle of a column, so the paths of both pass every
-//! column on the same side (`world::tether`, module `sidestep`). If the position counts as lost, the cable is not moved
-//! at all: it takes one straight move when the position is recovered.
+//! straight line between the estimated and the true position never crosses the middle of a column. The estimated and
+//! the true path therefore pass every column on the same side (`world::tether`, module `sidestep`). If the position
+//! counts as lost, the cable is not moved at all: it takes one straight move when the position is recovered.
 //!
-//! An obstacle that is found later may lie across the taut line. The path driven then determines on which side the cable
-//! passes the obstacle. For this purpose the path is stored, and it is driven again in simulation among all obstacles
-//! known now.
+//! An obstacle that is found later may lie across the taut line. The path driven then determines on which side the
+//! cable passes the obstacle. For this purpose the path is stored, and it is driven again in simulation among all
+//! obstacles known now.
 
 mod alarms;
 mod certifying;
@@ -252,7 +252,7 @@ impl Tether {
         certified(&self.config, 0.0, Some(&self.cable), rest, &[], world, returns).certified
     }
 
-    /// Evaluates a plan, starting with the current geometry of the cable; `returns` tells whether the cable must be
+    /// Evaluates a plan, starting with the current geometry of the cable; `returns` states whether the cable must be
     /// reeled in at the end of the plan.
     ///
     /// If a plan first returns to the anchor along the cable, its cuts apply only from there on.

@@ -7,14 +7,14 @@ use std::{
     str::FromStr,
 };
 
-/// The address of an adapter, or of a vehicle that is offered.
+/// The address at which an adapter is reached, or at which a vehicle is offered.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Address {
     /// A Unix socket.
     Unix(PathBuf),
     /// A TCP connection.
     Tcp(String),
-    /// UDP, with one message a datagram.
+    /// UDP, with one message per datagram.
     Udp(String),
     /// A command, started by the shell, that speaks on its stdin and stdout.
     Run(String),

@@ -1,4 +1,5 @@
-//! The messages of a vehicle, folded into the input of a tick. It holds one tick of readings, however many arrive.
+//! The inbox folds the messages of a vehicle into the input of a tick. Its memory does not grow with the number of
+//! messages.
 
 mod ages;
 mod outlines;
@@ -18,13 +19,13 @@ use world::{RangeSet, StationId, scan::RangesMm};
 
 /// Longest time until the first readings of a vehicle, seconds.
 const FIRST_WITHIN_S: f64 = 2.0;
-/// Longest time in which no readings count because their numbers are not new, seconds.
+/// Longest time, seconds, for which all readings may be ignored because their numbers are not new.
 const UNREAD_S: f64 = 0.8;
 /// Ranges that are older than this are dropped: the robot has moved on since then.
 const RANGES_MAX_AGE_S: f64 = 0.5;
-/// The figures of the link are reported at this interval, seconds.
+/// Interval at which the figures of the link are reported, seconds.
 const FIGURES_EVERY_S: f64 = 10.0;
-/// Stamps are rounded to this many steps a second.
+/// Stamps are rounded to this many steps per second.
 const STAMP_STEPS: f64 = 1e4;
 
 /// The messages that arrived.
@@ -37,7 +38,7 @@ pub(crate) struct Inbox {
     link: Link,
     motions: Motions,
     sequence: Sequence,
-    /// Since when the numbers of all readings have not been new, seconds.
+    /// The time since which no readings have had new numbers, seconds.
     unread_since_s: Option<f64>,
     /// The readings since the last tick, and their stamps.
     readings: world::Readings,
@@ -96,7 +97,7 @@ impl Inbox {
         self.sequence.counts().received
     }
 
-    /// The stream has ended. If the vehicle has given a reason before, it counts.
+    /// The stream has ended. A reason that the vehicle gave earlier is added.
     pub(crate) fn close(&mut self, mut why: String) {
         let last = self.state.as_ref().filter(|state| state.mode == Mode::Fault);
         if let Some(text) = last.and_then(|state| state.text.as_deref()) {
@@ -253,7 +254,7 @@ impl Inbox {
         }
         match self.link.state(now_s) {
             Reached::Lost if self.link.is_deaf(now_s) => {
-                return (LinkState::Lost, "it takes no commands: its answers stopped".into());
+                return (LinkState::Lost, "it has stopped answering, so it may not receive commands".into());
             }
             Reached::Lost => return (LinkState::Lost, "its readings stopped".into()),
             Reached::Connecting if now_s > FIRST_WITHIN_S => {
@@ -262,7 +263,7 @@ impl Inbox {
             Reached::Late | Reached::Alive
                 if self.unread_since_s.is_some_and(|since_s| now_s - since_s > UNREAD_S) =>
             {
-                return (LinkState::Lost, "its readings are numbered like earlier ones".into());
+                return (LinkState::Lost, "its readings repeat the numbers of earlier ones".into());
             }
             Reached::Fault => {
                 let fault = self.link.fault().unwrap_or_default();
@@ -281,7 +282,7 @@ impl Inbox {
         match (state.mode, state.commander) {
             (Mode::Ready, Commander::You) => (LinkState::Up, String::new()),
             (Mode::Ready, Commander::OtherConsole) => {
-                (LinkState::VehicleFault, "it obeys another console; this one only looks on".into())
+                (LinkState::VehicleFault, "it obeys another console; this one can only watch".into())
             }
             (Mode::Ready, Commander::OtherProgram) => {
                 (LinkState::VehicleFault, "another program sends commands to it".into())

@@ -1,4 +1,4 @@
-//! The newest command that has not been written yet. A stream that takes no bytes holds back one command, not a queue.
+//! The newest command that has not been written yet. If the adapter reads nothing, one command waits here, not a queue.
 
 use std::{
     sync::{Condvar, Mutex, PoisonError},
@@ -30,7 +30,7 @@ struct Waiting {
     seq: u64,
 }
 
-/// A motion in the robot frame: metres per second ahead and to the left, radians per second. `None`: stand.
+/// A motion in the robot frame: metres per second ahead and to the left, radians per second. `None`: stand still.
 type Motion = Option<[f64; 3]>;
 
 impl Outbox {

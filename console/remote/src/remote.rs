@@ -26,11 +26,11 @@ use world::{Station, Truth};
 
 /// How long an adapter may take to introduce the vehicle.
 const HELLO_WITHIN: Duration = Duration::from_secs(10);
-/// How often the introduction is looked for and, over datagrams, asked for.
+/// Interval at which the console checks for the introduction and, over datagrams, requests it.
 const LOOK_AGAIN: Duration = Duration::from_millis(50);
-/// How long the last commands may take to leave.
+/// Time limit for sending the last commands.
 const LEAVE_WITHIN: Duration = Duration::from_millis(300);
-/// Bytes that are read together.
+/// Maximum number of bytes read at once.
 const CHUNK_BYTES: usize = 1 << 16;
 
 /// A vehicle behind an adapter process.
@@ -105,7 +105,7 @@ impl Remote {
             .spawn(move || read_all(read, session, &said, &reading));
         spawned.map_err(|error| failed(&error))?;
         let (hello, write) = greeted(&shared, address, write).map_err(|why| {
-            // The thread that reads datagrams has no end of its own.
+            // The thread that reads datagrams does not end by itself.
             shared.is_closing.store(true, Ordering::Release);
             failed(&why)
         })?;
@@ -177,8 +177,8 @@ impl Vehicle for Remote {
 }
 
 impl Drop for Remote {
-    /// Stops the vehicle and tells the adapter that the console leaves; an adapter that takes no bytes stops the vehicle
-    /// by its lease.
+    /// Stops the vehicle and tells the adapter that the console leaves. If the adapter reads nothing, the vehicle stops
+    /// when its lease lapses.
     fn drop(&mut self) {
         self.shared.outbox.command(None, 0);
         self.shared.outbox.close();
@@ -190,7 +190,7 @@ impl Drop for Remote {
     }
 }
 
-/// Waits for the introduction. Over datagrams, the adapter learns of the console by a ping, which may get lost.
+/// Waits for the introduction. Over datagrams, a ping announces the console to the adapter; the ping may get lost.
 fn greeted(
     shared: &Shared,
     address: &Address,
@@ -201,7 +201,7 @@ fn greeted(
         if matches!(address, Address::Udp(_)) {
             let ping = ToVehicle::Ping(Ping { stamp_s: shared.now_s() });
             if let Ok(line) = serde_json::to_vec(&ping) {
-                // Before the introduction, nothing is known about the vehicle that a message would have to fit.
+                // Before the introduction, the limits that a message must keep to are not known.
                 let _ = write.write_all(&[line, b"\n".to_vec()].concat());
             }
         }

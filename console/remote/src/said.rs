@@ -1,5 +1,5 @@
-//! The last lines that an adapter wrote to its standard error. They must not reach the terminal, which the console draws
-//! on, and they say why an adapter has ended.
+//! The last lines that an adapter wrote to its standard error. They must not reach the terminal, because the console
+//! draws on it. They show why an adapter has ended.
 
 use std::{
     collections::VecDeque,
@@ -9,9 +9,9 @@ use std::{
     time::Duration,
 };
 
-/// Lines that are kept.
+/// Maximum number of lines kept.
 const MOST_LINES: usize = 3;
-/// Bytes of a line that are kept.
+/// Maximum number of bytes kept of a line.
 const LINE_BYTES: usize = 160;
 /// How long the last lines may take after the end of the adapter's messages.
 const LAST_WITHIN: Duration = Duration::from_millis(300);
@@ -30,7 +30,7 @@ struct Lines {
 }
 
 impl Said {
-    /// Reads in a thread of its own, until the stream ends.
+    /// Reads on a separate thread until the stream ends.
     pub(crate) fn listen(mut stderr: impl Read + Send + 'static) -> std::io::Result<Self> {
         let said = Self::default();
         said.with(|lines| lines.is_open = true);

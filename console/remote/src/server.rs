@@ -20,21 +20,21 @@ use vehicle::wire::{
     message::{Commander, Hello, Mode, State},
 };
 
-/// Messages that wait for a console; a console that is farther behind misses messages.
+/// Maximum number of messages that wait for a console; a console that is farther behind misses messages.
 const MOST_WAITING: usize = 64;
-/// Messages that wait for the vehicle; further ones wait in the sockets.
+/// Maximum number of messages that wait for the vehicle; further messages wait in the sockets.
 const MOST_ASKED: usize = 256;
-/// Connections at a time: the console that is obeyed, and those that look on.
+/// Maximum number of connections at a time: the console that the vehicle obeys, and consoles that only watch.
 const MOST_CLIENTS: usize = 8;
-/// A console that speaks in datagrams has left after this time without one.
+/// Time without a datagram after which a console that uses datagrams counts as having left.
 const SILENT: Duration = Duration::from_secs(3);
 const LOOK_AGAIN: Duration = Duration::from_millis(200);
 
-/// A connection, numbered in the order of their beginnings.
+/// A connection; connections are numbered in the order in which they begin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ClientId(u64);
 
-/// An action of a connection.
+/// An event on a connection.
 #[derive(Debug)]
 pub enum Did {
     /// It began.
@@ -115,12 +115,12 @@ impl Server {
         Ok(Self { did, at })
     }
 
-    /// Where the server listens.
+    /// The address at which the server listens.
     pub fn at(&self) -> &Address {
         &self.at
     }
 
-    /// The next thing that a connection does; `None` if nothing happens before `until`.
+    /// The next event on a connection; `None` if none occurs before `until`.
     pub fn next(&self, until: Instant) -> Option<(ClientId, Did)> {
         match self.did.recv_timeout(until.saturating_duration_since(Instant::now())) {
             Ok(did) => Some(did),
@@ -178,7 +178,7 @@ fn accept_tcp(listener: TcpListener, tell: Tell, hello: Arc<Hello>) -> io::Resul
     thread::Builder::new().name("accept".into()).spawn(accept).map(|_| ())
 }
 
-/// An open connection, counted.
+/// An open connection, which counts towards the maximum.
 struct Open(Arc<AtomicUsize>);
 
 impl Open {
@@ -268,7 +268,7 @@ fn did(heard: Heard<ToVehicle>) -> Option<Did> {
     }
 }
 
-/// Consoles that speak in datagrams.
+/// Consoles that use datagrams.
 struct Datagrams {
     socket: Arc<UdpSocket>,
     tell: Tell,

@@ -23,25 +23,25 @@ use std::{
 
 /// The largest datagram, bytes.
 const DATAGRAM_BYTES: usize = 65_536;
-/// How often a reader of datagrams looks whether it should end.
+/// Interval at which a reader of datagrams checks whether it should end.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
 /// How long an adapter that was started here may take to end by itself.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Bytes that may wait in this machine for an adapter: a stop must not wait behind many drives.
+/// Maximum number of bytes that wait on this machine for an adapter, so that a stop does not wait behind many drives.
 const WAITING_BYTES: usize = 4096;
 
 /// The commands to an adapter.
 pub(crate) trait Outgoing: Write + Send {
-    /// Whether the stream has room for a motion. A pipe has if the adapter has read everything; a Unix socket, if only
-    /// a few messages are unread; a TCP socket, if the other machine takes bytes.
+    /// Whether the stream has room for a motion. A pipe has room if the adapter has read everything, a Unix socket if
+    /// only a few messages are unread, and a TCP socket if the other machine accepts bytes.
     fn has_room(&self) -> bool;
 }
 
 impl<T: Write + AsFd + Send> Outgoing for T {
     fn has_room(&self) -> bool {
         let now = Timespec { tv_sec: 0, tv_nsec: 0 };
-        // A stream that has failed says so when it is written to.
+        // A failed stream reports its failure when it is written to.
         poll(&mut [PollFd::new(self, PollFlags::OUT)], Some(&now)).is_ok_and(|ready| ready > 0)
     }
 }
@@ -50,12 +50,12 @@ impl<T: Write + AsFd + Send> Outgoing for T {
 pub(crate) struct Stream {
     pub read: Box<dyn Read + Send>,
     pub write: Box<dyn Outgoing>,
-    /// The texts of an adapter that was started here.
+    /// The last lines on the standard error of an adapter that was started here.
     pub said: Said,
     pub end: End,
 }
 
-/// What ends a stream; the reader and the writer then fail.
+/// The handle that ends a stream; the reader and the writer then fail.
 pub(crate) enum End {
     Unix(UnixStream),
     Tcp(TcpStream),

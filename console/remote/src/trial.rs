@@ -17,7 +17,8 @@ use vehicle::{
 
 /// How long the vehicle is listened to.
 const LISTEN: Duration = Duration::from_secs(3);
-/// A vehicle stands at most this time after the lease of its last command, plus its own stop time, seconds.
+/// Time, seconds, that is added to the lease of the last command and the vehicle's own stop time; after the sum, the
+/// vehicle must stand still.
 const LEASE_SLACK_S: f64 = 0.05;
 /// Distance and angle of the frame checks, and the speeds with which they are driven.
 const AHEAD_M: f64 = 0.2;
@@ -27,7 +28,7 @@ const TURN_RAD_PER_S: f64 = 0.4;
 /// Longest time until a vehicle has reached a commanded speed, beyond what its acceleration needs, seconds.
 const REACH_S: f64 = 3.0;
 
-/// What a trial may do.
+/// The permissions and the limits of a trial.
 #[derive(Debug, Clone, Copy)]
 pub struct TrialOptions {
     /// Whether the adapter may be on another machine.
@@ -61,7 +62,7 @@ impl Trial {
 /// Why a trial ended early.
 #[derive(Debug)]
 enum Early {
-    /// A signal asked for it.
+    /// A signal requested it.
     Interrupted,
     /// The connection ended.
     Closed(String),
@@ -91,7 +92,7 @@ pub fn try_vehicle(
     let is_ready = rows.iter().all(|row| row.verdict != Verdict::Fail || row.check.starts_with("readings"));
     let mut interrupted = is_stopped();
     if !options.drive {
-        let why = "the vehicle was not moved; `--drive` allows this";
+        let why = "the vehicle was not moved; `--drive` allows the check to move it";
         rows.extend(driving::CHECKS.iter().map(|check| Row::not_measured(check, why)));
     } else if !is_ready || !is_heard {
         let why = "the vehicle was not moved, because of the failures above";
@@ -108,15 +109,15 @@ pub fn try_vehicle(
     Ok(Trial { hello, rows, interrupted })
 }
 
-/// What the vehicle is about to do.
+/// The warning before the vehicle moves.
 fn warning(hello: &Hello, options: &TrialOptions) -> String {
     let speed = driving::speed_m_per_s(hello, options);
     let limits = &hello.limits;
     let reach_m = speed * speed / limits.acceleration_m_per_s2 + speed * (1.0 + LEASE_S + hello.stop_time_s);
     format!(
         "the vehicle now MOVES: {AHEAD_M} m ahead, {:.0} degrees to the left, then several stops from {speed} m/s, ahead \
-         and back in turn. Keep {:.1} m free ahead, {:.1} m behind and a hand on the emergency stop. Ctrl-C stops the \
-         vehicle.",
+         and back in turn. Keep {:.1} m free ahead and {:.1} m behind, and keep a hand on the emergency stop. Ctrl-C \
+         stops the vehicle.",
         TURN_RAD.to_degrees(),
         AHEAD_M + 2.0 * reach_m,
         2.0 * reach_m,

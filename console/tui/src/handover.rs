@@ -63,7 +63,7 @@ fn state(model: &Model) -> Vec<String> {
         (_, Some(result)) => result.kept.clone(),
         (crate::model::Recording::On, None) if run.has_ended() => "The run is being closed and kept".into(),
         (crate::model::Recording::On, None) => "Recording is on".into(),
-        (crate::model::Recording::Off, None) => "Nothing is recorded".into(),
+        (crate::model::Recording::Off, None) => "Nothing is being recorded".into(),
         (crate::model::Recording::Failed(why), None) => format!("RECORDING FAILED: {why}"),
     };
     lines.push(recording);

@@ -101,7 +101,7 @@ pub fn status(model: &Model) -> Vec<String> {
     lines.push(match (&model.live.result, &model.live.health.recording) {
         (Some(result), _) => format!("{}.", text::capitalized(&result.kept)),
         (None, Recording::On) => "Recording is on.".into(),
-        (None, Recording::Off) => "Nothing is recorded.".into(),
+        (None, Recording::Off) => "Nothing is being recorded.".into(),
         (None, Recording::Failed(why)) => format!("RECORDING FAILED: {why}."),
     });
     let alarms: Vec<&Alarm> = run.alarms.table().into_iter().filter(|alarm| alarm.is_open()).collect();

@@ -117,7 +117,7 @@ impl Pressing {
     }
 
     fn is_more_than(&self, before: &Self, notice: &Notice) -> bool {
-        // The hold that answers HOLD does not take away what a later key was answered.
+        // The hold that answers HOLD does not remove the answer to a later key.
         let is_expected = notice.is_answer && before.hold_asked;
         let is_held_anew = self.hold.is_some() && self.hold != before.hold && !is_expected;
         self.hold_asked && !before.hold_asked || is_held_anew || self.critical > before.critical

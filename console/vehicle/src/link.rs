@@ -2,7 +2,7 @@
 //! time of the console's clock, which also stamps its commands.
 //!
 //! [`Link`] folds received and sent messages; its parts can also be used alone: [`Clock`] (offset and delay),
-//! [`Sequence`] (loss), [`Motions`] (motion from odometry or poses), [`Stopping`] (whether the vehicle stands),
+//! [`Sequence`] (loss), [`Motions`] (motion from odometry or poses), [`Stopping`] (whether the vehicle stands still),
 //! [`Comparison`] (whether it moves as commanded).
 
 mod clock;
@@ -32,10 +32,11 @@ const LOST_S: f64 = 0.8;
 /// The same two limits in periods of the readings; they apply if readings are slow.
 const LATE_PERIODS: f64 = 2.0;
 const LOST_PERIODS: f64 = 3.0;
-/// A vehicle that has answered pings and has not answered one for this time takes no commands, seconds: longer than ten
-/// pings and their answers, of which a network may lose some.
+/// Time without an answer to a ping, seconds, after which a vehicle that has answered pings before counts as not
+/// receiving commands. It is longer than ten pings and their answers take, because a network may lose some of them.
 const DEAF_S: f64 = 2.0;
-/// Messages in a second that are a fault: this multiple of the rate of readings, plus some for other messages.
+/// Messages per second above which the link is faulty: this multiple of the rate of readings, plus a fixed number for
+/// other messages.
 const FLOOD_FACTOR: f64 = 10.0;
 const FLOOD_SLACK: f64 = 100.0;
 
@@ -72,7 +73,7 @@ pub struct Link {
     closed: bool,
     fault: Option<String>,
     malformed_in_row: u32,
-    /// Start of a second, and the lines heard in it.
+    /// Start of the current second, and the number of lines received in it.
     second: (f64, u32),
 }
 
@@ -109,7 +110,7 @@ impl Link {
     fn message(&mut self, message: &FromVehicle, now_s: f64) {
         match message {
             FromVehicle::Hello(hello) => {
-                // The vehicle has started again: nothing of before holds, except a fault and the counts.
+                // The vehicle has started again: only a fault and the counts are kept from before.
                 let mut sequence = std::mem::take(&mut self.sequence);
                 sequence.restart();
                 let fault = self.fault.take();
@@ -171,7 +172,7 @@ impl Link {
         self.pings = true;
     }
 
-    /// Whether the vehicle has stopped answering: commands wait somewhere on their way to it.
+    /// Whether the vehicle has stopped answering; commands may then be waiting on their way to it.
     pub fn is_deaf(&self, now_s: f64) -> bool {
         self.pings && self.answered_s.is_some_and(|answered_s| now_s - answered_s > DEAF_S)
     }
@@ -229,7 +230,7 @@ impl Link {
         self.stopping.state(now_s, Stopping::limit_s(hello, trip_s))
     }
 
-    /// When the vehicle was commanded to stand, seconds; `None` while it may drive.
+    /// When the vehicle was commanded to stand still, seconds; `None` while it may drive.
     pub fn asked_to_stand_s(&self) -> Option<f64> {
         self.stopping.asked_s()
     }
@@ -239,7 +240,7 @@ impl Link {
         self.comparison.finding()
     }
 
-    /// Offset and delay.
+    /// Offset and delay of the vehicle's clock.
     pub fn clock(&self) -> &Clock {
         &self.clock
     }

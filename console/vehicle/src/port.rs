@@ -11,7 +11,7 @@ use world::{Readings, StationId, Truth};
 /// Time for which a vehicle may carry out a `drive` without a further message, seconds; then it must stand still.
 pub const LEASE_S: f64 = 0.25;
 
-/// A vehicle: its sensors in, its commands out.
+/// A vehicle: it delivers the readings of its sensors and takes commands.
 pub trait Vehicle: Send {
     /// The readings since the last tick. Never waits.
     fn sense(&mut self) -> Sensed;
@@ -33,8 +33,8 @@ pub trait Vehicle: Send {
         true
     }
 
-    /// A handle that makes the vehicle stand at once, from any thread, without waiting for the next tick; `None` for
-    /// vehicles whose time passes with the ticks.
+    /// A handle that stops the vehicle at once, from any thread, without waiting for the next tick; `None` for vehicles
+    /// whose time passes with the ticks.
     fn brake(&self) -> Option<Brake> {
         None
     }
@@ -63,7 +63,8 @@ pub struct Live {
 /// The result of a commanded stop, from readings that were taken after it was sent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stood {
-    /// Whether the readings show that the vehicle stands; if not, it still moves or is silent although it should stand.
+    /// Whether the readings show that the vehicle stands still; if not, it still moves or is silent although it should
+    /// stand.
     pub confirmed: bool,
     /// Time since the command, seconds; until the first of the readings without motion if the stop is confirmed.
     pub after_s: f64,
@@ -91,7 +92,7 @@ pub enum LinkState {
     Closed,
     /// Several messages in a row were faulty.
     Faulty,
-    /// The vehicle has started again; its clock, its frame and its commands of before do not count.
+    /// The vehicle has started again; its earlier clock, frame and commands do not count any more.
     Restarted,
     /// A person drives the vehicle by hand.
     Manual,
@@ -218,7 +219,7 @@ pub struct StationFault {
     pub excess_range_m: Option<f64>,
 }
 
-/// A vehicle does not offer faults.
+/// The error of a vehicle that does not offer faults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CannotInject;
 
@@ -228,7 +229,7 @@ impl fmt::Display for CannotInject {
     }
 }
 
-/// Makes a vehicle stand at once, from any thread. No motion is sent until each pull has been released, by the order that
+/// Stops a vehicle at once, from any thread. No motion is sent until each pull has been released, by the order that
 /// pulled it: when the mission has carried it out ([`Command::braking_orders`]), or if the order is dropped.
 #[derive(Clone)]
 pub struct Brake {

@@ -1,5 +1,5 @@
-//! The evaluation of a trial of a vehicle: messages, stops and frames, each as a row with figures and a verdict. A shell
-//! connects, drives and collects; `tankops check --vehicle` prints the rows.
+//! The evaluation of a trial of a vehicle: messages, stops and frames, each as a row with figures and a verdict. The
+//! caller connects to the vehicle, drives it and collects its messages; `tankops check --vehicle` prints the rows.
 
 mod frames;
 mod link;
@@ -15,11 +15,11 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// It does.
+    /// The vehicle passes.
     Pass,
-    /// It does not.
+    /// The vehicle fails.
     Fail,
-    /// This was not measured.
+    /// The check gave no result.
     NotMeasured,
 }
 

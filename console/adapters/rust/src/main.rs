@@ -21,7 +21,7 @@ const TURN_ACCELERATION_RAD_PER_S2: f64 = 2.0;
 const RADIUS_M: f64 = 0.2;
 const PERIOD: Duration = Duration::from_millis(20);
 const LEASE_MAX_S: f64 = 0.5;
-/// Longer lines stop the robot.
+/// Maximum length of a line, bytes; a longer line stops the robot.
 const LINE_MAX: u64 = 1 << 16;
 
 fn hello() -> Value {
@@ -48,7 +48,7 @@ impl Disc {
 /// A line to the robot's process.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Order {
-    /// Speed ahead, turn rate, and for how many seconds.
+    /// Speed ahead, turn rate, and duration in seconds.
     Drive(f64, f64, f64),
     /// The stamp of a ping; the robot answers, because its clock stamps the readings.
     Ping(f64),
@@ -64,7 +64,7 @@ impl Order {
         }
     }
 
-    /// A line that is no order stops the robot.
+    /// A line that is not a valid order stops the robot.
     fn of(line: &str) -> Self {
         let (kind, values) = line.split_once(' ').unwrap_or_default();
         let values: Vec<f64> = values.split(' ').filter_map(|value| value.parse().ok()).collect();
@@ -76,7 +76,7 @@ impl Order {
     }
 }
 
-/// The process of the robot: orders in, readings out. It outlives an adapter that dies, until the robot stands.
+/// The robot's process: orders in, readings out. If the adapter dies, it runs until the robot stands still.
 fn robot(orders: &Receiver<Order>, say: impl Fn(Value), mut log: Option<File>) {
     let began = Instant::now();
     let now_s = || began.elapsed().as_secs_f64();
@@ -134,7 +134,7 @@ fn robot_process() {
             }
         }
     });
-    // A thread of its own writes: an adapter that takes no bytes must not keep the robot from its lease.
+    // A separate thread writes, so that an adapter that reads nothing cannot keep the robot from checking its lease.
     let (lines, waiting) = sync_channel::<String>(256);
     thread::spawn(move || {
         for line in waiting {

@@ -1,4 +1,4 @@
-//! Work on threads of their own whose result counts only while nothing newer has begun.
+//! Work on separate threads. A result counts only until newer work of the same kind begins.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 

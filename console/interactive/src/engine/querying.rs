@@ -1,4 +1,4 @@
-//! Answers queries about the mission on threads of their own, so that the engine can stop the robot meanwhile.
+//! Answers queries about the mission on separate threads, so that the engine can stop the robot meanwhile.
 
 use super::{EngineThread, newest::Turn};
 use crate::inbox::RunOutbox;

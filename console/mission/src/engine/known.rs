@@ -20,7 +20,7 @@ use world::{Floor, Point, World};
 /// Turn rate, radians per second, from which a robot can turn round within the time limit for reaching a corner.
 const BRISK_RAD_PER_S: f64 = 0.75;
 
-/// The mission's knowledge of robot, tank and task, and its progress.
+/// The mission's knowledge of the robot, the tank and the task, and its progress.
 #[derive(Clone)]
 pub(super) struct Known {
     pub config: MissionConfig,

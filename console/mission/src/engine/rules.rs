@@ -55,7 +55,7 @@ impl Rules {
 
     /// Updates the rules for one tick of a mission in progress; the first rule that returns a verdict decides.
     pub(super) fn update(&mut self, seen: &Seen<'_>, phase: &Phase) -> Option<Verdict> {
-        // The time of a drive back, like that of a hold, is the operator's.
+        // Like a hold, a drive back is the operator's decision, so its time does not count.
         let is_operators = matches!(phase, Phase::Held(_)) || phase.is_return();
         let time_is_up = self.time_limit.update(seen, is_operators);
         if seen.touched {
@@ -81,7 +81,8 @@ impl Rules {
             .or_else(|| if seen.planner.is_waited_for { None } else { stuck.update(seen) })
     }
 
-    /// The rules for a robot that drives back: it is held, but neither asks planners nor ends the mission unfinished.
+    /// The rules for a robot that drives back: they may hold it, but they neither ask planners nor end the mission
+    /// unfinished.
     fn update_return(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
         let Self { lost_position, stuck, .. } = self;
         let hold = |by| Verdict::Hold(Hold { by, resumes: Resumes::Never });

@@ -361,7 +361,7 @@ fn checks_text(checks: &[Check]) -> String {
     format!("pre-flight: {}", parts.collect::<Vec<_>>().join(", "))
 }
 
-/// The end of a sentence that tells who acted: ` by NAME`, or nothing.
+/// The end of a sentence that names the person who acted: ` by NAME`, or nothing.
 fn by_text(by: Option<&String>) -> String {
     by.map_or_else(String::new, |name| format!(" by {name}"))
 }

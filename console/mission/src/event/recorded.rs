@@ -98,7 +98,7 @@ impl EventKind {
     ///
     /// The cost of a plan is not recorded, since nothing reads it. A command is returned as it was sent or, if it was
     /// limited, as the planner requested it. A plan that no planner can have made, because the journal was edited, is
-    /// returned as a fault. `is_plan` tells whether the ask was for a plan.
+    /// returned as a fault. `is_plan` states whether the ask was for a plan.
     pub fn recorded_answer(&self, is_plan: bool) -> Option<Result<Given, Fault>> {
         Some(match self {
             Self::PlannerChosen { ask: Some(_), info, .. }

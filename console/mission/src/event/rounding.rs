@@ -1,9 +1,9 @@
 //! Rounds the numbers in events to the precision with which quantities in a tank can be known.
 //!
 //! Lengths, angles and shares are rounded to a millionth of their unit, covariances to four significant digits. Numbers
-//! are rounded once, where an event leaves the mission. As a result, journal, recording, screen and report contain the
-//! same numbers, and a tick takes a third of the bytes. Plans are not rounded, because the planners' answers are replayed
-//! from the journal. Commands are rounded before they are sent ([`crate::Sending::as_sent`]).
+//! are rounded once, where an event leaves the mission. As a result, the journal, the recording, the screen and the
+//! report contain the same numbers, and a tick takes a third of the bytes. Plans are not rounded, because the planners'
+//! answers are replayed from the journal. Commands are rounded before they are sent ([`crate::Sending::as_sent`]).
 
 use super::{Event, EventKind, TetherContact};
 use crate::{ask::Said, way_back::WayBack};

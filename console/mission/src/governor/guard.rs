@@ -1,8 +1,10 @@
-//! Braking by the raw scan, whatever the chart says: the robot must be able to stop before it touches any scanned point.
+//! Braking by the raw scan, whatever the chart says: the robot must be able to stop before it touches any scanned
+//! point.
 //!
-//! Until the robot stands, its centre stays within a sector of its present surroundings: it travels at most the stopping
-//! distance, in directions between its heading now and its heading when it stands. A scanned point that is nearer to this
-//! sector than the hull's radius may be touched. Points move with the robot's odometry from scan to scan.
+//! Until the robot stands still, its centre stays within a sector of its present surroundings: it travels at most the
+//! stopping distance, in directions between its heading now and its heading at the standstill. The hull may touch a
+//! scanned point that is closer to this sector than the hull's radius. Between two scans, the points are moved by the
+//! robot's odometry.
 
 use super::{HALVINGS, Here, Momentum, ROOM_SHARE, TOUCH_M};
 use geometry::{Drive, Motion, Point};
@@ -18,8 +20,8 @@ struct Echo {
     direction_rad: f64,
 }
 
-/// The places that the centre of the robot can reach until it stands: up to a distance, in directions within `spread_rad`
-/// on both sides of a middle one, robot frame.
+/// The places that the centre of the robot can reach until it stands still: up to a distance, in directions within
+/// `spread_rad` on both sides of a middle one, robot frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Sector {
     way_m: f64,
@@ -28,12 +30,12 @@ struct Sector {
 }
 
 impl Sector {
-    /// The sector between directions that are given as angles from one of them.
+    /// The smallest sector that contains the direction `from_rad` and those at these angles from it.
     fn around(way_m: f64, from_rad: f64, angles: &[f64]) -> Self {
         let low = angles.iter().copied().fold(0.0, f64::min);
         let high = angles.iter().copied().fold(0.0, f64::max);
         let spread_rad = 0.5 * (high - low);
-        // Directions on more than one side of a line can add up to any direction.
+        // Motions in directions that span half a turn or more can add up to a motion in any direction.
         let spread_rad = if spread_rad < FRAC_PI_2 { spread_rad } else { PI };
         Self { way_m, middle_rad: from_rad + 0.5 * (low + high), spread_rad }
     }
@@ -54,7 +56,7 @@ impl Sector {
     }
 }
 
-/// What the guard did to a command.
+/// A command after the guard has checked it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Guarded {
     /// The command that is safe.
@@ -85,13 +87,13 @@ impl Sent {
 pub(crate) struct Guard<'a> {
     echoes: Vec<Echo>,
     here: &'a Here,
-    /// The motion until a command of now takes effect, oldest first.
+    /// The motion before a command that is sent now takes effect, oldest first.
     sent: &'a [Sent],
 }
 
 impl<'a> Guard<'a> {
-    /// A guard for one tick. A vehicle that follows commands after some ticks still has to carry out what was `sent` in
-    /// these ticks.
+    /// Creates the guard for one tick. `sent` is the motion of earlier ticks that the vehicle may still have to carry
+    /// out.
     pub(crate) fn new(points: &[Point], here: &'a Here, sent: &'a [Sent]) -> Self {
         let echo =
             |point: &Point| Echo { distance_m: point.coords.norm(), direction_rad: point.y.atan2(point.x) };
@@ -158,7 +160,7 @@ impl<'a> Guard<'a> {
         Some((nearest.distance_m - self.here.limits.radius_m, nearest.direction_rad))
     }
 
-    /// Where the robot can get, ahead and back.
+    /// The places that the robot can reach, ahead and backward.
     fn sectors(&self, momentum: &Momentum, drive: Drive) -> [Option<Sector>; 2] {
         let limits = &self.here.limits;
         let motions = momentum.motions(drive, self.here);
@@ -188,7 +190,7 @@ impl<'a> Guard<'a> {
         let sector = |from_rad| Sector::around(way_m, from_rad, &turns);
         let (forward, backward) =
             (all().any(|now| now.ahead_m_per_s > 0.0), all().any(|now| now.ahead_m_per_s < 0.0));
-        // Of a way ahead and back, no part is known to come first.
+        // The order of motions ahead and backward is not known.
         if forward && backward {
             return [Some(Sector { way_m, middle_rad: 0.0, spread_rad: PI }), None];
         }

@@ -81,13 +81,13 @@ impl Payout {
         self.beyond_s > SNAG_S
     }
 
-    /// The number of points of the path driven, out of `points`, that are left when the robot has gone back far enough
-    /// for a caught cable to come free: driving back undoes the effect of driving on, among known and unknown obstacles
-    /// alike.
+    /// How many of the `points` points of the path driven are left when the robot has gone back far enough to free a
+    /// caught cable. Driving back undoes the effect of driving on, among known and unknown obstacles alike.
     ///
     /// The excess grows with the square of the distance driven since the cable touched the obstacle. Where the excess
     /// became noticeable, the cable may therefore already have been caught for about the same distance as it has been
-    /// dragged since. Before that place, the cable comes off on the correct side, and the return path along it is clear.
+    /// dragged since. Before that place, the cable comes off on the correct side, and the return path along it is
+    /// clear.
     pub(super) fn points_to_go_back_to(&self, points: usize) -> usize {
         // On the way back, the path becomes shorter again.
         let free = self.free_points.min(points);

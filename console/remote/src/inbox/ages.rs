@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-/// Ages that are kept.
+/// Maximum number of ages kept.
 const MOST_AGES: usize = 1024;
 
 /// The ages of the last readings on arrival.

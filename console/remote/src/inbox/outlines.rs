@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use vehicle::wire::message::Outline;
 use world::{ObstacleId, Point, Shape, Sighting};
 
-/// The ids of a tracker are replaced by numbers from here on: a tracker that does not know the drawing may give an
-/// obstacle the id of a drawn one, which the mission would take for that one.
+/// The ids of a tracker are replaced by numbers from this one on. A tracker that does not know the drawing may give an
+/// obstacle the id of a drawn one, and the mission would confuse the two.
 const FIRST_OWN: u32 = 1_000_000;
-/// Different obstacles in a run, at most.
+/// Maximum number of different obstacles in a run.
 const MOST_OBSTACLES: usize = 1000;
 
 /// The obstacles so far.

@@ -24,16 +24,16 @@ use vehicle::{
 
 /// How long an adapter may take to introduce the vehicle.
 const HELLO_WITHIN: Duration = Duration::from_secs(10);
-/// How often something that is awaited is looked for.
+/// Interval at which an awaited condition is checked.
 const LOOK_AGAIN: Duration = Duration::from_millis(50);
 const PING_EVERY: Duration = Duration::from_millis(250);
-/// Pieces of input that wait to be looked at; a faster adapter waits.
+/// Maximum number of pieces of input that wait to be processed; a faster adapter must wait.
 const MOST_WAITING: usize = 4096;
-/// Readings that are kept at most.
+/// Maximum number of readings kept.
 const MOST_KEPT: usize = 100_000;
 
-/// Input from the adapter with its time of arrival, seconds; `Err` at the end of the stream. A reader of datagrams sends
-/// empty pieces, too, to notice that nothing listens any more.
+/// Input from the adapter with its time of arrival, seconds; `Err` at the end of the stream. A reader of datagrams
+/// sends empty pieces, too, to notice when the connection has been dropped.
 type Piece = (f64, Result<Vec<Heard<FromVehicle>>, String>);
 
 /// A connection to an adapter.
@@ -47,7 +47,7 @@ pub(super) struct Connection {
     clock: Clock,
     motions: Motions,
     sequence: Sequence,
-    /// Odometry and pose since [`Connection::forget`], each by itself.
+    /// The motion since [`Connection::forget`], by odometry and by pose separately.
     pub odometry: Vec<Odometry>,
     pub poses: Vec<Pose>,
     pub heard: Listened,
@@ -56,7 +56,7 @@ pub(super) struct Connection {
 }
 
 impl Connection {
-    /// Connects, and waits for the introduction. An adapter that is started here learns of the log.
+    /// Connects, and waits for the introduction. An adapter that is started here receives the name of the log.
     pub(super) fn open(
         address: &Address,
         network: bool,
@@ -74,7 +74,7 @@ impl Connection {
         let mut fault = String::new();
         while began.elapsed() < HELLO_WITHIN {
             if matches!(address, Address::Udp(_)) {
-                // Over datagrams, the adapter learns of this console by a ping.
+                // Over datagrams, a ping announces this console to the adapter.
                 let _ = write.write_all(b"{\"type\": \"ping\", \"stamp_s\": 0}\n");
             }
             match pieces.recv_timeout(LOOK_AGAIN) {
@@ -140,7 +140,7 @@ impl Connection {
         self.closed.as_deref()
     }
 
-    /// This moment on the vehicle's clock; `None` before anything is known about it.
+    /// The current time on the vehicle's clock; `None` until the offset of that clock is known.
     pub(super) fn vehicle_now_s(&self) -> Option<f64> {
         let now_s = self.now_s();
         let by_pings = self.clock.at(now_s).map(|offset| now_s + offset.offset_s);
@@ -166,7 +166,7 @@ impl Connection {
         }
     }
 
-    /// Only listens.
+    /// Listens without commanding the vehicle.
     pub(super) fn listen(&mut self, time: Duration, is_stopped: &dyn Fn() -> bool) -> Listened {
         let until = Instant::now() + time;
         while Instant::now() < until && self.closed.is_none() && !is_stopped() {
@@ -176,7 +176,7 @@ impl Connection {
         self.heard.clone()
     }
 
-    /// Drops what was heard so far, except for the clock.
+    /// Drops everything received so far, except the offset of the vehicle's clock.
     pub(super) fn forget(&mut self) {
         self.heard = Listened { state: self.heard.state.take(), ..Listened::default() };
         (self.odometry, self.poses) = (Vec::new(), self.poses.last().copied().into_iter().collect());
@@ -273,7 +273,7 @@ impl Connection {
         }
     }
 
-    /// Stops the vehicle and leaves.
+    /// Stops the vehicle and ends the connection.
     pub(super) fn leave(mut self) {
         self.stop();
         self.send(&ToVehicle::Bye(Bye::default()));
@@ -293,7 +293,7 @@ fn read_all(mut read: Box<dyn Read + Send>, began: Instant, tell: &SyncSender<Pi
             },
         };
         let is_end = piece.is_err();
-        // If the connection was left, nothing listens any more.
+        // If the connection was dropped, the receiver is gone.
         if tell.send((began.elapsed().as_secs_f64(), piece)).is_err() || is_end {
             return;
         }

@@ -55,7 +55,7 @@ struct Seen {
 }
 
 impl Driver<'_> {
-    /// Does all checks; returns the reason for an early end.
+    /// Runs all checks; returns the reason if they ended early.
     pub(super) fn drive(
         &mut self,
         connection: Connection,
@@ -130,13 +130,13 @@ impl Driver<'_> {
             let check = if is_ahead { "frames: ahead by pose" } else { "frames: turn by pose" };
             rows.push(match by_pose(&connection.poses) {
                 Some(moved) => row(check, moved),
-                None => Row::fail(check, Vec::new(), "no pose arrived, which `hello.has` promises"),
+                None => Row::fail(check, Vec::new(), "no pose arrived, although `hello.has` promises one"),
             });
         }
         Ok(rows)
     }
 
-    /// Stops the vehicle and waits until it stands.
+    /// Stops the vehicle and waits until it stands still.
     fn stand(&self, connection: &mut Connection) -> Result<(), Early> {
         let until = self.patience(self.hello.stop_time_s);
         connection.stop();
@@ -168,7 +168,7 @@ impl Driver<'_> {
     fn stop(&self, slot: &mut Option<Connection>, cause: Cause, speed: f64) -> Result<Row, Early> {
         let connection = slot.as_mut().ok_or_else(closed)?;
         let is_socket = !matches!(connection.end, End::Process(_));
-        // A second connection to the adapter looks on.
+        // A second connection to the adapter only listens.
         let mut onlooker = if cause == Cause::Cut && is_socket { self.connect().ok() } else { None };
         self.reach(connection, speed)?;
         let limits = self.limits(cause, connection, speed);
@@ -190,7 +190,7 @@ impl Driver<'_> {
         Ok(self.hinted(row, cause))
     }
 
-    /// Says how a stop that was not seen can be measured.
+    /// If a stop was not measured, adds how it can be measured.
     fn hinted(&self, row: Row, cause: Cause) -> Row {
         if row.verdict != trial::Verdict::NotMeasured {
             return row;
@@ -200,7 +200,7 @@ impl Driver<'_> {
                 "let the adapter send readings to a second connection, too"
             }
             (_, Some(_)) => "let the robot write `time speed turn_rate` lines to the file named in ROBOT_LOG",
-            (_, None) => "the folder for temporary files takes no log",
+            (_, None) => "the log cannot be written to the folder for temporary files",
         };
         Row { says: format!("{}; {how}", row.says), ..row }
     }
@@ -208,7 +208,7 @@ impl Driver<'_> {
     fn limits(&self, cause: Cause, connection: &Connection, speed: f64) -> Limits {
         let lease_s = if cause == Cause::Stop { 0.0 } else { LEASE_S.min(self.hello.lease_max_s) };
         let stated_s = lease_s + LEASE_SLACK_S + self.hello.stop_time_s;
-        // The time of a stop is known to a period and the error of the clock.
+        // The time of a stop is known to within one period plus the error of the clock.
         let resolution_s = self.hello.period_s + connection.clock_error_s();
         Limits {
             commanded_m_per_s: speed.abs(),
@@ -255,8 +255,8 @@ impl Driver<'_> {
         Ok(cause_s.map(|cause_s| Seen { samples, cause_s }))
     }
 
-    /// Stops the adapter process for the time of a stop; its readings arrive afterwards. The adapter gets the time to
-    /// pass the last command on: otherwise it would do so when it continues.
+    /// Suspends the adapter process while the vehicle stops; the readings arrive afterwards. The adapter first gets
+    /// time to pass on the last command; otherwise, it would do so when it continues.
     fn by_signal(&self, connection: &mut Connection) -> Result<Option<Seen>, Early> {
         self.take(connection, Instant::now() + COMMAND_EVERY)?;
         let cause_s = connection.vehicle_now_s();
@@ -282,8 +282,8 @@ impl Driver<'_> {
         Ok(cause_s.map(|cause_s| Seen { samples, cause_s }))
     }
 
-    /// Ends the connection or its process, and collects what is still heard of the robot: from a second connection, from
-    /// the rest of the stream, or from the robot's log.
+    /// Ends the connection or its process, and collects the remaining samples of the robot's motion: from a second
+    /// connection, from the rest of the stream, or from the robot's log.
     fn by_end(
         &self,
         mut connection: Connection,
@@ -310,7 +310,8 @@ impl Driver<'_> {
     }
 
     /// Follows the rest of the stream and the log of a robot whose adapter has lost its console or has ended, until the
-    /// robot stands. A robot process may end as soon as the robot stands; its log then ends with a standing robot.
+    /// robot stands still. A robot process may end as soon as the robot stands still; its log then ends with a
+    /// standstill.
     fn until_silent(&self, connection: &mut Connection, cause_s: Option<f64>, until: Instant) -> Vec<Sample> {
         let mut grown = (0, Instant::now());
         loop {
@@ -343,7 +344,7 @@ impl Driver<'_> {
     }
 }
 
-/// Listens with a second connection after the first one was cut. The clock of both ends is the vehicle's.
+/// Listens with a second connection after the first one was cut. Both connections use the vehicle's clock.
 fn connection_gone(
     onlooker: &mut Option<&mut Connection>,
     samples: &mut Vec<Sample>,
@@ -359,7 +360,8 @@ fn connection_gone(
     samples.extend(onlooker.heard.samples.iter().filter(|sample| sample.t_s > known_s));
 }
 
-/// The samples from the wire up to the cause, and those of the log or the wire after it, whichever tell more.
+/// The samples of the log if it reaches back to before the cause and has more samples after it than the wire; otherwise
+/// the samples from the wire.
 fn merged(wire: Vec<Sample>, log: &[Sample], cause_s: f64) -> Vec<Sample> {
     let after = |samples: &[Sample]| samples.iter().filter(|sample| sample.t_s > cause_s).count();
     if after(log) > after(&wire) && log.iter().any(|sample| sample.t_s <= cause_s) {

@@ -4,7 +4,7 @@ use crate::address::Address;
 use std::{fs, io, path::PathBuf};
 use vehicle::trial::Sample;
 
-/// Only the end of a long log is read, bytes.
+/// Maximum number of bytes that are read, from the end of the log.
 const READ_BYTES: usize = 1 << 20;
 
 /// A file to which a robot writes its motion: in each period a line with time, speed ahead and turn rate, separated by
@@ -19,7 +19,7 @@ impl RobotLog {
         Ok(Self(path))
     }
 
-    /// The address whose command finds the name of this file in its environment.
+    /// The address with a command that receives the name of this file in its environment.
     pub(super) fn named_to(&self, address: &Address) -> Address {
         match address {
             Address::Run(command) => {

@@ -48,7 +48,7 @@ pub enum Match {
 
 impl Match {
     /// Matches a command against the typed text. A command that moves the robot or ends the mission matches only the
-    /// beginning of its names, so that nobody finds it by accident.
+    /// beginning of its names, so that it is not found by accident.
     pub fn of(action: &Action, typed: &str) -> Option<Self> {
         let found = Self::of_words(action, typed)?;
         (action.risk == Risk::Safe || found <= Self::Synonym).then_some(found)

@@ -34,8 +34,8 @@ pub(super) const CONSOLE: Guide = Guide {
 };
 
 pub(super) const RESPONSE: Guide = Guide {
-    cause: "One key press in a hundred takes longer than 33 ms to appear on the screen, or than 100 ms while the \
-    robot stands: the machine or the terminal is too busy.",
+    cause: "One key press in a hundred takes longer than 33 ms (while the robot stands still, 100 ms) to appear on \
+    the screen: the machine or the terminal is too busy.",
     effect: "Only the screen is slow. HOLD is always handled first.",
     remedies: &[SLOWER, wait("Close other programs, or make the terminal smaller.")],
 };

@@ -36,7 +36,7 @@ pub(super) fn guide(word: &str) -> Guide {
             remedies: const {
                 &[
                     SHOW,
-                    run("Resume: frees the tether first. Asks first.", ActionId::Resume),
+                    run("Resume: frees the tether, then continues. Asks first.", ActionId::Resume),
                     OTHER_PLANNER,
                     END,
                 ]

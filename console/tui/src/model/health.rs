@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct ByMotion {
     /// While the robot may move.
     pub moving: Limit,
-    /// While it stands: before the start, held and after the end.
+    /// While it stands still: before the start, during a hold and after the end.
     pub standing: Limit,
 }
 
@@ -24,16 +24,16 @@ impl ByMotion {
     }
 }
 
-/// Time from a key press to its frame, milliseconds: one frame of a 30 Hz screen; while the robot stands, a tenth of a
-/// second, which people do not notice yet. The alarm clears when the time is a third below that; because of the delays,
-/// a single slow frame has no effect.
+/// Time from a key press to its frame, milliseconds: one frame of a 30 Hz screen; while the robot stands still, a tenth
+/// of a second, which people do not notice. The alarm clears when the time is a third below that; because of the
+/// delays, a single slow frame has no effect.
 pub const RESPONSE_MS: ByMotion = ByMotion {
     moving: Limit { alarm: 33.0, clear: 22.0, on_delay_s: 2.0, off_delay_s: 5.0 },
     standing: Limit { alarm: 100.0, clear: 66.0, on_delay_s: 2.0, off_delay_s: 5.0 },
 };
 /// Frames skipped within ten seconds, out of about 300: if more than one in ten is skipped, the screen stutters. While
-/// the robot stands, little changes, and half of the frames may be skipped. The figure already spans ten seconds, so
-/// the alarm needs no delay.
+/// the robot stands still, little changes, and half of the frames may be skipped. The figure already spans ten seconds,
+/// so the alarm needs no delay.
 pub const FRAMES: ByMotion = ByMotion {
     moving: Limit { alarm: 30.0, clear: 10.0, on_delay_s: 0.0, off_delay_s: 5.0 },
     standing: Limit { alarm: 150.0, clear: 50.0, on_delay_s: 0.0, off_delay_s: 5.0 },

@@ -94,8 +94,8 @@ pub struct Live {
     pub preflight: Preflight,
     /// Forecasts of how the held mission would continue; `None` until they are requested.
     pub what_if: Option<WhatIf>,
-    /// The way back that was asked for before the robot is ordered to take it, or the reason for its absence, as a sentence;
-    /// `None` until it is known.
+    /// The way back, computed before the robot is ordered to take it, or the reason why there is none, as a sentence;
+    /// `None` until either is known.
     #[serde(default)]
     pub way_back: Option<Result<WayBack, String>>,
     /// The cost of the no-go zone that was drawn; `None` until it is known.

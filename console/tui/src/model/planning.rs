@@ -11,10 +11,10 @@ use world::{Point, coverage::percent_text, polyline};
 /// How far the heading may turn within a lane that the planner did not state, radians.
 const STRAIGHT_RAD: f64 = 0.03;
 
-/// Points of a path are at most this far apart, metres, so that a place on it is close to one of them; further on paths
-/// that are longer than [`LONG_M`].
+/// Maximum distance between neighbouring points of a path, metres, so that every place on the path is close to a point.
+/// On paths longer than [`LONG_M`], the points are farther apart.
 const SPACING_M: f64 = 0.5;
-/// Length of a path above which its points are further apart, metres.
+/// Length of a path above which its points are farther apart, metres.
 const LONG_M: f64 = 1000.0;
 
 /// A lane of a plan: the first and the last index of its points in [`PlanShown::path`].
@@ -82,7 +82,7 @@ impl PlanShown {
             .map_or(0, |(index, _)| index)
     }
 
-    /// The distance driven along this plan, metres, for a share of the task that is done.
+    /// The distance driven along this plan, metres, given the share of the task that is done.
     pub fn along_m(&self, done: f64) -> f64 {
         done * (self.driven_m + self.length_m) - self.driven_m
     }
@@ -160,8 +160,8 @@ pub struct Offer {
     /// The lanes of the path.
     #[serde(default)]
     pub lanes: Vec<Lane>,
-    /// Whether the mission will switch to the better plan at the point where that plan begins, because the operator or
-    /// the scenario says so.
+    /// Whether the mission will switch to the better plan at the point where that plan begins, by order of the operator
+    /// or because of a setting of the scenario.
     pub is_taken: bool,
 }
 

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use vehicle::port::LinkSeen;
 use world::{PlateLayout, Point, Pose, Station, StationId, World};
 
-/// The time under way before which the average pace says nothing about the rest, seconds.
+/// Time under way, seconds, before which the average pace does not allow an estimate of the remaining time.
 const SETTLED_S: f64 = 30.0;
 
 /// A run reconstructed from its events.
@@ -55,7 +55,7 @@ pub struct Run {
     pub log: Log,
 }
 
-/// The subject of a run: scenario, tank and mission.
+/// The subject of a run: its scenario, its tank and its mission.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct About {
     /// The name of the scenario.
@@ -166,7 +166,8 @@ impl Run {
         plan.path.get(plan.reached(progress)..)
     }
 
-    /// Whether the rest of the plan led to each cell of the floor; empty before the end, and without a rest.
+    /// For each cell of the floor, whether the rest of the plan led there. Empty before the end of the mission, and if
+    /// the whole plan was driven.
     pub fn not_reached(&self) -> Vec<bool> {
         let Some((coverage, about)) = self.coverage.as_ref().zip(self.about.as_ref()) else {
             return Vec::new();

@@ -4,7 +4,7 @@ use mission::outline;
 use serde::{Deserialize, Serialize};
 use world::Point;
 
-/// A side or radius that is not longer than this was not drawn yet, metres.
+/// A side or radius that is not longer than this counts as not drawn yet, metres.
 const LEAST_M: f64 = 1e-6;
 
 /// The form of the zone.

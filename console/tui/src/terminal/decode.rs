@@ -74,9 +74,9 @@ const BROKEN_OFF: Duration = Duration::from_millis(300);
 /// A paste has broken off if nothing follows within this time. The rest of a paste counts as keys, so this time is
 /// longer than a connection usually stalls.
 const PASTE_BROKEN_OFF: Duration = Duration::from_secs(5);
-/// The greatest length of a paste in bytes; what follows is dropped.
+/// Maximum length of a paste, bytes; the rest of a longer paste is dropped.
 const LONGEST_PASTE: usize = 1 << 16;
-/// The end of a paste.
+/// The end marker of a paste.
 const PASTE_END: &[u8] = b"\x1b[201~";
 
 /// Decodes a stream of bytes. The division of the stream does not matter, as long as no time limit is reached.
@@ -106,7 +106,7 @@ enum State {
     String(ControlString),
     /// After Esc within a control string.
     StringEscape(ControlString),
-    /// Within a paste, of which this many bytes of its end have been seen.
+    /// Within a paste; this many bytes of its end marker have been seen.
     Paste { text: Vec<u8>, ending: usize },
 }
 

@@ -98,7 +98,7 @@ pub(super) fn open(model: &mut Model, source: Source, planner: Option<PlannerCho
         return refuse(model, why);
     }
     let id = RunId(model.live.id.0 + 1);
-    // A speed set for one mission must not carry over: the next mission could be over before anybody sees it.
+    // A speed set for one mission must not carry over: the next mission could be over before the operator sees it.
     let speed = model.first_speed;
     let before = std::mem::take(&mut model.live);
     // If several runs are opened in quick succession, the last one that was completely open is kept.

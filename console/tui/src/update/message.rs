@@ -167,7 +167,7 @@ pub enum RunMsg {
     Checked(Vec<Check>),
     /// The estimate for a plan, and the ask that the plan answers.
     Estimated(Option<AskId>, Box<Estimate>),
-    /// The way back of the held robot, or the reason for its absence, as a sentence.
+    /// The way back of the held robot, or the reason why there is none, as a sentence.
     WayBack(Result<WayBack, String>),
     /// The cost of a no-go zone with these corners, or the reason why it would be refused, as a sentence.
     ZoneCost(Vec<Point>, Result<ZoneCost, String>),

@@ -13,7 +13,7 @@ use world::StationId;
 /// The number of actions that have a key.
 pub(crate) const MOST: usize = 5;
 
-/// What an action on an alarm does.
+/// The effect of an action on an alarm.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Deed {
     /// Carries out an action of the console.
@@ -36,7 +36,7 @@ pub(crate) fn steps(model: &Model, cause: &Cause) -> Vec<Step> {
     let of_guide = remedies.filter_map(|remedy| Some((remedy.text, remedy.action?)));
     let of_guide = of_guide.map(|(text, action)| Step { text: text.to_owned(), deed: Deed::Act(action) });
     if model.live.is_cut_off {
-        // No console gives orders to this run any more; what remains is to look.
+        // No console gives orders to this run any more; the operator can only look.
         return of_guide.filter(|step| can(model, &step.deed).is_ok()).take(MOST).collect();
     }
     let alarm = model.live.run.alarms.get(cause);
@@ -47,7 +47,7 @@ pub(crate) fn steps(model: &Model, cause: &Cause) -> Vec<Step> {
     of_guide.chain(station(model, cause)).chain(acknowledge).take(MOST).collect()
 }
 
-/// What the operator can do about an alarm that no action does.
+/// Advice: what the operator can do about an alarm apart from the actions.
 pub(crate) fn advice(model: &Model, cause: &Cause) -> Vec<&'static str> {
     if model.live.is_cut_off && *cause != Cause::Writer {
         return vec!["No console controls this run any more. Check the robot on site."];

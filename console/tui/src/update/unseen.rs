@@ -7,7 +7,7 @@
 use crate::keys::KeyPress;
 use crate::model::{Model, Overlay, console::Appeared};
 
-/// The least age of a question that a key may answer, seconds.
+/// Minimum age of a question that a key may answer, seconds.
 const READ_S: f64 = 0.2;
 
 /// The open question, if any.
@@ -40,7 +40,8 @@ pub(super) fn drawn(model: &mut Model, frame: u64) {
     }
 }
 
-/// Whether a key was pressed before the operator can have read the open question; if so, says that it does not count.
+/// Whether a key was pressed before the operator can have read the open question; if so, tells the operator that the
+/// key does not count.
 pub(super) fn is_too_early(model: &mut Model, press: KeyPress) -> bool {
     let (Some(seen), Some(appeared)) = (press.seen, &model.console.appeared) else { return false };
     let was_shown = appeared.frame.is_some_and(|frame| frame <= seen);

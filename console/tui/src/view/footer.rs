@@ -145,7 +145,7 @@ fn place(model: &Model, action: &Action) -> u8 {
     let is_over = model.ui.overlay != Overlay::None;
     match action.id {
         ActionId::Hold if model.live.may_move() => 0,
-        // What Enter does is not in any list.
+        // The effect of Enter is not in any list.
         ActionId::Accept if !is_over => 1,
         id if !is_over && model.ui.screen.row().first == id => 1,
         _ => 2,

@@ -87,8 +87,8 @@ fn critical<'a>(look: &Look<'a>) -> Option<&'a str> {
         .then_some(&worst.text)
 }
 
-/// Draws the floor with its legend. The legend stands where the map is blank; what does not fit there is written in
-/// lines below the floor, which is drawn smaller then.
+/// Draws the floor with its legend. The legend is placed where the map is blank. Entries that do not fit there are
+/// written in lines below the floor, which is then drawn smaller.
 fn floor_and_legend(look: &Look, frame: &mut Frame, area: Rect) {
     let Some(window) = window(look, area) else { return };
     let entries = legend::entries(look, window);

@@ -152,8 +152,8 @@ fn fitting(clauses: &[String], columns: usize) -> Vec<String> {
     kept
 }
 
-/// The line in a given width. While the robot is held, its first clause also says where and how far the mission is, if
-/// no other clause is lost for that.
+/// The line in a given width. While the robot is held, the first clause also states where the robot is and how far the
+/// mission has come, if no other clause has to be dropped for this.
 pub(super) fn line(model: &Model, clauses: &[String], columns: usize) -> String {
     let short = fitting(clauses, columns);
     let whereabouts = held::whereabouts(model).into_iter();

@@ -116,7 +116,7 @@ struct Widths {
 
 /// Width for how a run ended, including one blank, columns.
 const END: usize = 10;
-/// Width of mark, date, outcome and coverage, columns.
+/// Width of the mark, the date, the outcome and the coverage together, columns.
 const FIXED: usize = 3 + BEGAN + END + 7;
 /// Width for when a run began, including one blank, columns.
 const BEGAN: usize = 13;

@@ -39,7 +39,7 @@ impl<'a> SmallMap<'a> {
         Some(Self { world, scanned, trail: run.trail.points(), marks: Vec::new() })
     }
 
-    /// The same with a marked place.
+    /// The same map with a marked place.
     #[must_use]
     pub(super) fn marked(mut self, at: Point, role: Role, text: &str) -> Self {
         self.marks.push((at, role, text.to_owned()));

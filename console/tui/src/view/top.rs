@@ -26,7 +26,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let room = columns.saturating_sub(sum(&alarms));
     let scenario = text::fit(&names.scenario, room);
     let mut room = room - text::width(&scenario);
-    // What does not fit beside the scenario is left out whole.
+    // An item that does not fit beside the scenario is left out completely.
     let mut fits = |columns: usize| {
         let fits = columns <= room;
         room -= if fits { columns } else { 0 };
@@ -63,7 +63,7 @@ fn right_of(area: Rect, width: u16) -> Rect {
     Rect { x: area.right() - width, width, ..area }
 }
 
-/// The names of scenario and planner.
+/// The names of the scenario and the planner.
 struct Names {
     scenario: String,
     /// The size of the tank, after the scenario; empty for a tank that is not round.
@@ -119,7 +119,7 @@ pub(super) fn state(model: &Model) -> Parts {
     vec![(Role::Title, format!("{who} ")), (role, word.into())]
 }
 
-/// Whether a held vehicle really stands.
+/// Whether a held vehicle really stands still.
 fn stands(model: &Model) -> Option<bool> {
     model.live.run.vehicle.as_ref().and_then(|vehicle| vehicle.stands)
 }

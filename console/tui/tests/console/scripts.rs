@@ -464,7 +464,7 @@ fn a_value_is_checked_again_when_it_is_sent() {
     let Overlay::Parameters { edit: Some(edit), .. } = &screen.model.ui.overlay else {
         panic!("still typing")
     };
-    assert!(edit.refusal.as_ref().is_some_and(|why| why.contains("while running")));
+    assert!(edit.refusal.as_ref().is_some_and(|why| why.contains("while the mission is running")));
 }
 
 #[test]
@@ -490,7 +490,7 @@ fn a_bad_value_is_refused_in_place_and_a_good_one_sent() {
 fn what_cannot_change_under_way_says_so() {
     let mut screen = Screen::running();
     screen.press([Key::Char('p'), Key::Down, Key::Down, Key::Down, Key::Enter]);
-    let why = "parameter `mode` cannot be changed while running; HOLD first";
+    let why = "parameter `mode` cannot be changed while the mission is running; HOLD first";
     assert!(notice(&screen).contains(why));
     assert!(matches!(screen.model.ui.overlay, Overlay::Parameters { edit: None, .. }));
 }

@@ -62,7 +62,7 @@ impl Clock {
         Ok(())
     }
 
-    /// The offset now. It stays known after the last answer, with a growing bound.
+    /// The offset now. It stays known after the last answer, but its greatest error grows.
     pub fn at(&self, now_s: f64) -> Option<Offset> {
         let recent = self.trips.iter().find(|trip| now_s - trip.at_s <= WINDOW_S);
         let trip = recent.or(self.trips.back())?;

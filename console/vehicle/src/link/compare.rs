@@ -15,7 +15,7 @@ const KEPT_MAX: usize = 64;
 const SMOOTHED_S: f64 = 0.5;
 /// Age, seconds, above which motion is dropped.
 const FORGOTTEN_S: f64 = 3.0;
-/// Commanded motion that a finding requires, metres and radians.
+/// Minimum commanded motion for a finding, metres and radians.
 const NEEDED_M: f64 = 0.2;
 const NEEDED_RAD: f64 = 0.35;
 /// Time for which a finding must last, seconds.
@@ -26,7 +26,7 @@ const FROZEN: f64 = 0.05;
 const REVERSED: f64 = -0.3;
 /// Ratio of sideways to commanded motion above which the axes count as swapped.
 const SWAPPED: f64 = 0.5;
-/// The range of ratios of measured to commanded motion that slip and friction explain.
+/// The range within which slip and friction explain the ratio of measured to commanded motion.
 const RATIO_MIN: f64 = 0.4;
 const RATIO_MAX: f64 = 1.6;
 

@@ -2,14 +2,14 @@
 
 use crate::wire::message::{Hello, Odometry};
 
-/// A vehicle that moves no faster than this stands, metres and radians per second.
+/// A vehicle that moves no faster than this counts as standing still, metres and radians per second.
 const STILL_M_PER_S: f64 = 0.005;
 const STILL_RAD_PER_S: f64 = 0.02;
-/// Readings in a row without motion that confirm it.
+/// Number of readings in a row without motion that confirm a standstill.
 const STILL_READINGS: u32 = 3;
-/// Time that a vehicle may take to stop, as a multiple of its stop time.
+/// Time that a vehicle may take to stop, as a multiple of the stop time that it states.
 const STOP_TIMES: f64 = 2.0;
-/// The least time that a vehicle is given, seconds: its readings may arrive late.
+/// Minimum time that a vehicle is given to stop, seconds, because its readings may arrive late.
 const STOP_LEAST_S: f64 = 0.5;
 
 /// The effect of a stop.

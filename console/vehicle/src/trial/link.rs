@@ -11,7 +11,7 @@ use crate::{
 const RATE_FACTOR: f64 = 1.25;
 /// Share of readings that may be missing.
 const LOST_SHARE: f64 = 0.1;
-/// Jitter with which a mission still runs: it changes events, never a safety reaction, seconds.
+/// Jitter up to which a mission still runs, seconds. It changes events, but never a safety reaction.
 const JITTER_S: f64 = 0.2;
 /// Greatest error of the clock's offset, seconds.
 const OFFSET_BOUND_S: f64 = 0.1;
@@ -28,21 +28,21 @@ pub struct Listened {
     pub samples: Vec<Sample>,
     /// The last state.
     pub state: Option<State>,
-    /// Number of lines that are not valid messages, and the first of them.
+    /// Number of lines that are not valid messages.
     pub malformed: u64,
     /// The fault of the first malformed line.
     pub fault: Option<String>,
     /// Unknown keys and kinds of messages.
     pub unknown: Vec<String>,
-    /// Pings sent, and the round trips of those that were answered, seconds.
+    /// Number of pings sent.
     pub pings: u32,
-    /// See `pings`.
+    /// Round trips of the pings that were answered, seconds.
     pub trips_s: Vec<f64>,
     /// The offset of the vehicle's clock at the end.
     pub offset: Option<Offset>,
 }
 
-/// What the vehicle says about itself.
+/// Checks the introduction of the vehicle.
 pub fn introduction(hello: &Hello) -> Row {
     let check = "introduction";
     let Hello { name, limits, period_s, stop_time_s, lease_max_s, has, .. } = hello;
@@ -128,12 +128,13 @@ pub fn readings(hello: &Hello, listened: &Listened) -> Vec<Row> {
         Row::judged(rate, figures, &says, &failed)
     } else {
         let missing = missing.join(", ");
-        Row::fail(rate, figures, format!("{says}, but without {missing}, which `hello.has` promises"))
+        Row::fail(rate, figures, format!("{says}, but without {missing}, although `hello.has` promises it"))
     };
     vec![of_rate, of_jitter(jitter, listened)]
 }
 
-/// Whether any reading has a part. Cycles of ranging may be longer than the time of listening.
+/// Whether any reading contains a part. Ranges are not required, because a ranging cycle may be longer than the time of
+/// listening.
 fn is_sent(part: &str, readings: &[(f64, Readings)]) -> bool {
     readings.iter().any(|(_, readings)| match part {
         "odometry" => readings.odometry.is_some() || readings.pose.is_some(),
@@ -146,7 +147,7 @@ fn is_sent(part: &str, readings: &[(f64, Readings)]) -> bool {
     })
 }
 
-/// How much longer than the quickest one the readings take.
+/// By how much the delay of each reading exceeds that of the quickest one.
 fn of_jitter(check: &'static str, listened: &Listened) -> Row {
     let mut delays: Vec<f64> =
         listened.readings.iter().map(|(arrival_s, readings)| arrival_s - readings.stamp_s).collect();
@@ -168,7 +169,8 @@ fn of_jitter(check: &'static str, listened: &Listened) -> Row {
 pub fn clock(listened: &Listened) -> Row {
     let check = "clock";
     let Some(offset) = listened.offset else {
-        let says = format!("{} pings, without a valid answer; send `pong` immediately", listened.pings);
+        let says =
+            format!("no valid answer to {} pings; answer each ping with `pong` immediately", listened.pings);
         return Row::fail(check, Vec::new(), says);
     };
     let mut trips = listened.trips_s.clone();
@@ -217,7 +219,7 @@ pub fn standstill(listened: &Listened) -> Row {
         Figure::new("turn", turn_rad.abs().to_degrees(), "deg").at_most(STILL_RAD.to_degrees()),
     ];
     let failed = "the vehicle moves, or reports motion, without a command";
-    Row::judged(check, figures, "stands without a command", failed)
+    Row::judged(check, figures, "stands still without a command", failed)
 }
 
 #[cfg(test)]

@@ -2,16 +2,16 @@
 
 use super::{Figure, Row};
 
-/// A vehicle that moves no faster than this stands, metres per second and radians per second.
+/// A vehicle that moves no faster than this counts as standing still, metres per second and radians per second.
 const STANDS_M_PER_S: f64 = 0.005;
 const STANDS_RAD_PER_S: f64 = 0.02;
 /// The speed at the cause of a stop is the mean over this time, seconds.
 const BEFORE_S: f64 = 0.3;
 /// A stop counts as measured if the vehicle had at least this share of the commanded speed.
 const FAST_ENOUGH: f64 = 0.5;
-/// Samples farther apart than this leave the stop in the dark, seconds.
+/// Time between two samples, seconds, above which a stop counts as not measured.
 const GAP_S: f64 = 0.3;
-/// A vehicle that stood for this time has stopped, seconds.
+/// A vehicle that has stood still for this long counts as stopped, seconds.
 pub const QUIET_S: f64 = 0.3;
 
 /// A motion between two times of the vehicle's clock.
@@ -28,7 +28,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Whether this is motion.
+    /// Whether the vehicle moved.
     pub fn moves(&self) -> bool {
         self.way_m.abs() > STANDS_M_PER_S * self.over_s
             || self.turn_rad.abs() > STANDS_RAD_PER_S * self.over_s
@@ -71,9 +71,9 @@ impl Cause {
         match self {
             Self::Stop => "correct `stop_time_s` in `hello`, or make the vehicle brake harder",
             Self::Lease => {
-                "keep the lease where the motors are: stand when no `drive` arrives within `lease_s`"
+                "keep the lease where the motors are: stand still when no `drive` arrives within `lease_s`"
             }
-            Self::Cut => "stand at the end of the connection",
+            Self::Cut => "stand still when the connection ends",
             Self::Stopped | Self::Killed => {
                 "keep the lease in the vehicle or in a process separate from the adapter"
             }
@@ -86,7 +86,7 @@ impl Cause {
 pub struct Limits {
     /// Commanded speed before the stop, metres per second.
     pub commanded_m_per_s: f64,
-    /// Longest time from the cause until the vehicle stands, seconds.
+    /// Longest time from the cause until the vehicle stands still, seconds.
     pub time_s: f64,
 }
 
@@ -142,7 +142,7 @@ pub fn stop(cause: Cause, samples: &[Sample], cause_s: f64, limits: Limits) -> R
     Row::judged(check, figures.figures(limits), &says, &failed)
 }
 
-/// A stop so far.
+/// A stop as evaluated so far.
 #[derive(Debug, Default)]
 struct Stopping {
     time_s: f64,

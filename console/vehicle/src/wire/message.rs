@@ -52,7 +52,7 @@ pub struct Hello {
     /// Longest lease that the vehicle honours, seconds: greater than 0, at most 5.
     pub lease_max_s: f64,
     /// Number that differs after each start of the vehicle. Over datagrams, on which an introduction may arrive several
-    /// times, it tells a repetition from a restart.
+    /// times, it distinguishes a repetition from a restart.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub session: Option<u64>,
 }

@@ -19,7 +19,7 @@ use std::collections::BTreeSet;
 const UNKNOWN_MAX: usize = 64;
 /// Maximum number of characters of an unknown key or kind that are kept.
 const UNKNOWN_CHARS: usize = 64;
-/// Characters of the reason for a malformed line that are kept: it may quote the line.
+/// Maximum number of characters kept of the reason for a malformed line; the reason may quote the line.
 const REASON_CHARS: usize = 160;
 
 /// The meaning of a line.

@@ -35,7 +35,7 @@ pub struct ToSession {
 }
 
 impl FromSession {
-    /// The messages of a vehicle that speaks in datagrams, which may arrive more than once.
+    /// The messages of a vehicle that uses datagrams; a datagram may arrive more than once.
     pub fn of_datagrams() -> Self {
         Self { is_of_datagrams: true, ..Self::default() }
     }
@@ -50,7 +50,10 @@ impl FromSession {
             FromVehicle::Hello(hello) => {
                 hello.check()?;
                 if self.is_of_datagrams && hello.session.is_none() {
-                    return misfit("hello.session", "is missing; over datagrams, it must tell each restart");
+                    return misfit(
+                        "hello.session",
+                        "is missing; over datagrams, it must identify each start of the vehicle",
+                    );
                 }
                 // A vehicle that introduces itself again has started again: its clock and its frame are new.
                 *self = Self { hello: Some(hello.as_ref().clone()), newest_s: None, pose: None, ..*self };

@@ -11,17 +11,17 @@ use geometry::{Braking, Drive};
 use planner_api::Command;
 use world::{Point, Readings, scan::carried};
 
-/// An older scan no longer guards the robot, seconds.
+/// Age, seconds, above which a scan does not guard the robot any more.
 const SCAN_MAX_AGE_S: f64 = 0.5;
-/// The robot has moved on since its readings by at most this many ticks.
+/// Maximum number of ticks for which the robot has moved since its readings were taken.
 const READING_TICKS: usize = 1;
-/// Longest time until the first scan, seconds; until then the robot stands.
+/// Longest time until the first scan, seconds; until then the robot stands still.
 const FIRST_WITHIN_S: f64 = 2.0;
-/// Points farther from the hull than the stopping distance at full speed plus this are not kept, metres: more than the
-/// robot travels until its scan is too old.
+/// Distance, metres, that is added to the stopping distance at full speed; points farther from the hull than the sum
+/// are dropped. It is longer than the robot travels before its scan is too old.
 const KEPT_M: f64 = 2.0;
-/// The robot is held if even braking may be too late in this many ticks in a row: a single one may be noise, and the
-/// robot brakes at once.
+/// Number of ticks in a row, each with a point that the hull may touch although the robot brakes, after which the robot
+/// is held. A single such tick may be noise; the robot brakes at once in any case.
 const LATE_TICKS: u32 = 2;
 /// The robot is held if the guard has kept it from moving for this long, seconds.
 const BLOCKED_S: f64 = 2.0;

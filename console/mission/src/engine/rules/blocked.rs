@@ -21,7 +21,7 @@ pub(in crate::engine) struct BlockedRule {
 }
 
 impl BlockedRule {
-    /// Processes one command per tick; `in_lanes` tells whether the planner follows lanes.
+    /// Processes one command per tick; `in_lanes` states whether the planner follows lanes.
     pub(crate) fn update(
         &mut self,
         status: Status,

@@ -3,7 +3,7 @@
 use super::seen::{PlannerSeen, Verdict};
 use crate::phase::{Hold, HoldReason, Resumes};
 
-/// Age, seconds, above which a command is not sent, unless it is no older than a tick.
+/// Age, seconds, above which a command is not sent. A command that is at most one tick old is always sent.
 const STALE_S: f64 = 0.2;
 /// Time without an answer from the planner, seconds, after which the robot is held until the planner answers.
 const SILENT_S: f64 = 2.0;

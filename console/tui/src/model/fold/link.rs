@@ -5,7 +5,7 @@ use mission::{Event, EventKind};
 use vehicle::port::LinkState;
 
 impl Run {
-    /// Folds in an event about the link, or about whether the vehicle stands.
+    /// Folds in an event about the link, or about whether the vehicle stands still.
     pub(super) fn linked(&mut self, event: &Event) {
         match &event.kind {
             EventKind::Link(link) => {
@@ -28,7 +28,7 @@ impl Run {
                     self.raise_as_logged(event, Cause::StopNotConfirmed);
                 }
             }
-            // A motion ends what was known about standing; a command to stand begins the wait for it.
+            // A motion makes an earlier confirmation obsolete; a command to stand still begins the wait for a new one.
             EventKind::Sent { .. } => self.vehicle.get_or_insert_default().stands = None,
             _ => {}
         }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// The number of lines in a full chunk.
 pub(super) const LINES: usize = 1024;
-/// The separator between source and text; a character that nobody types.
+/// The separator between the source and the text; a character that is never typed.
 const BETWEEN: char = '\u{1f}';
 
 /// A chunk of the log.

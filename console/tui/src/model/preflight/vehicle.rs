@@ -1,4 +1,4 @@
-//! The checks of a real vehicle before the start: its link, and whether it stands as commanded.
+//! The checks of a real vehicle before the start: its link, and whether it stands still as commanded.
 
 use super::{Model, check};
 use mission::{Check, CheckOutcome};
@@ -33,7 +33,7 @@ impl Model {
         } else {
             (
                 CheckOutcome::Warning,
-                "off: the vehicle has no scan, so nothing stops it before an unknown object",
+                "off: the vehicle has no scan, so it does not stop in front of unknown objects",
             )
         };
         vec![link, check("standstill", stop.0, stop.1.into()), check("guard", guard.0, guard.1.into())]

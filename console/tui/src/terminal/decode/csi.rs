@@ -3,7 +3,7 @@
 use super::{Gesture, Input, Pointed};
 use crate::keys::{Key, KeyPress};
 
-/// The most bytes of a sequence that are kept; no key needs more.
+/// Maximum number of bytes kept of a sequence; no key needs more.
 const KEPT: usize = 32;
 /// The bits of the modifiers, one less than the number that the terminal sends.
 const ALT: u32 = 2;
@@ -16,7 +16,7 @@ pub(super) struct Csi {
     is_too_long: bool,
 }
 
-/// What the terminal says about a key besides its name.
+/// The terminal's report about a key, apart from its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct How {
     modifiers: u32,

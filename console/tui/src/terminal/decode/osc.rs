@@ -1,6 +1,6 @@
 //! Control strings: long answers of the terminal, which are swallowed.
 
-/// The most bytes of a string that are kept: enough for the answer about the background.
+/// Maximum number of bytes kept of a string: enough for the answer about the background.
 const KEPT: usize = 48;
 /// A longer string never ends properly.
 const LONGEST: usize = 1 << 20;

@@ -60,7 +60,7 @@ pub(super) fn keys(look: &Look, cause: &Cause) -> Option<String> {
     }
 }
 
-/// What the operator can do that no key does.
+/// Advice: what the operator can do without a key of the console.
 fn advice(look: &Look, cause: &Cause) -> Vec<String> {
     remedies::advice(look.model, cause).into_iter().map(|words| look.keys(words)).collect()
 }

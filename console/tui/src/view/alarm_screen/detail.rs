@@ -53,7 +53,7 @@ fn fields_of(look: &Look, alarm: &Alarm) -> Vec<Field> {
     fields
 }
 
-/// What a person did, with the person's name if it is known.
+/// The action of a person, with the person's name if it is known.
 fn signed(by: Option<&str>, what: &str) -> String {
     by.map_or_else(|| what.to_owned(), |by| format!("{what}, by {by}"))
 }

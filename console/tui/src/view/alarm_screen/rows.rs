@@ -219,7 +219,7 @@ fn acknowledged(alarm: &Alarm) -> String {
     }
 }
 
-/// The name of an alarm: with the reason why it is shelved, and without it.
+/// The name of an alarm, once with the reason why the alarm is shelved and once without it.
 fn what(look: &Look, alarm: &Alarm) -> [String; 2] {
     let name = guide::name(&alarm.cause, look.run);
     match &alarm.state {

@@ -1,4 +1,4 @@
-//! A list of the home screen: a heading, rows, and below them what the selected row is about.
+//! A list of the home screen: a heading, rows, and below them a text about the selected row.
 
 use crate::theme::Role;
 use crate::update::Rows;

@@ -218,7 +218,7 @@ impl Board<'_, '_> {
         }
     }
 
-    /// Writes a label whatever is there.
+    /// Writes a label over whatever is there.
     fn always(&mut self, at: Point, role: Role, label: &str) {
         if let Some(cell) = self.window.cell_of(at) {
             self.write(cell, role, label);

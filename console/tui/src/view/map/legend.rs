@@ -109,7 +109,7 @@ pub(super) fn rows(left_over: &[Entry], area: Rect) -> u16 {
     (lines(left_over, usize::from(area.width)).len() as u16).min(area.height / ROWS_PER_LINE)
 }
 
-/// The entries in lines of a width.
+/// The entries in lines of the given width.
 fn lines(entries: &[Entry], columns: usize) -> Vec<Vec<&Entry>> {
     let mut lines: Vec<(usize, Vec<&Entry>)> = Vec::new();
     for entry in entries {

@@ -43,7 +43,7 @@ impl Pattern {
         }
     }
 
-    /// The dots that stand for one dot of the line, which is `step` dots along it.
+    /// Sets the dots that are drawn for one dot of the line; that dot is `step` dots along the line.
     pub(super) fn dots(
         self,
         (x, y): (usize, usize),

@@ -9,7 +9,7 @@ use world::{Point, polyline};
 const APART_COLUMNS: f64 = 1.6;
 /// The distance between the lanes drawn if not all are, columns.
 const THINNED_COLUMNS: f64 = 2.0;
-/// The largest number of lanes for one that is drawn.
+/// Maximum number of lanes of which one is drawn.
 const MOST: usize = 99;
 /// A way between two lanes that is longer than this many lane widths leads to a different part of the floor.
 const TRANSIT_LANES: f64 = 8.0;
@@ -21,7 +21,8 @@ const LINK: f64 = 2.5;
 /// Which lanes of a path are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Thinning {
-    /// One lane is drawn of this odd number of lanes, so that the lanes drawn alternate in direction as all lanes do.
+    /// One lane in this many is drawn. The number is odd, so that the lanes drawn alternate in direction as all lanes
+    /// do.
     pub every: usize,
     /// The index of the first lane drawn in each part of the floor.
     first: usize,
@@ -30,8 +31,8 @@ pub(super) struct Thinning {
 }
 
 impl Thinning {
-    /// The thinning of `paths` paths that are on the map together, with lanes `lane_m` metres apart, of which this is
-    /// the one with the index `which`: equal paths are drawn on different lanes.
+    /// The thinning of the path with the index `which`, one of `paths` paths that are on the map together. Their lanes
+    /// are `lane_m` metres apart. Equal paths are drawn on different lanes.
     pub(super) fn new(lane_m: f64, window: Window, (which, paths): (usize, usize)) -> Self {
         let lane_columns = lane_m / window.column_m / paths.max(1) as f64;
         let is_apart = !lane_columns.is_finite() || lane_columns <= 0.0 || lane_columns >= APART_COLUMNS;
@@ -41,7 +42,7 @@ impl Thinning {
     }
 }
 
-/// A part of a thinned path, from one index of its points to another.
+/// A piece of a thinned path, from one index of its points to another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Piece {
     from: usize,
@@ -50,7 +51,7 @@ struct Piece {
     is_link: bool,
 }
 
-/// What is drawn of a path.
+/// The part of a path that is drawn.
 pub(super) struct Thin<'a> {
     path: &'a [Point],
     pieces: Vec<Piece>,
@@ -148,7 +149,7 @@ fn apart(path: &[Point], gap_m: f64) -> Vec<Lane> {
     stretches
 }
 
-/// Stretches in which those that touch are joined, without those that are single points.
+/// The stretches, joined where they touch, without stretches of a single point.
 fn joined(stretches: Vec<Lane>) -> Vec<Lane> {
     let mut joined: Vec<Lane> = Vec::new();
     for (from, to) in stretches {

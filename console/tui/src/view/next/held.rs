@@ -105,7 +105,7 @@ fn message(by: &HoldReason) -> Option<String> {
     }
 }
 
-/// Where a held robot is and how far its mission is, from the longest wording to the shortest.
+/// Where a held robot is and how far its mission has come, from the longest wording to the shortest.
 pub(super) fn whereabouts(model: &Model) -> Vec<String> {
     let run = &model.live.run;
     if !matches!(run.phase(), Phase::Held(_)) || model.live.asked.is_some() || model.live.is_cut_off {

@@ -57,7 +57,7 @@ fn keys(look: &Look, columns: usize) -> String {
     }
 }
 
-/// An area, its place in a column of a width, and the reason.
+/// An area, its place in a column of the given width, and the reason.
 fn row(area: &Area<MissReason>, place: usize, columns: usize) -> Parts {
     let room = columns.saturating_sub(AREA + 2);
     let place = text::column(&text::place(area.at), place);
@@ -85,11 +85,11 @@ fn reason(reason: MissReason, causes: &[Cause<MissReason>]) -> [String; 3] {
     words.map(str::to_owned)
 }
 
-/// Why floor between or beside the lanes is left out: too narrow for a lane of its own, or the planner leads no lane
+/// Why floor between or beside the lanes is left out: too narrow for a lane of its own, or the planner puts no lane
 /// there.
 fn beside_lanes(measure: Option<&Measure>) -> [String; 3] {
     let Some(measure) = measure else {
-        return ["the planner leads no lane here", "no lane leads here", "no lane"].map(str::to_owned);
+        return ["the planner puts no lane here", "no lane here", "no lane"].map(str::to_owned);
     };
     let wide_m = text::number(measure.value_m, 2);
     if measure.limit_m.is_some_and(|lane_m| measure.value_m < lane_m / 2.0) {
@@ -97,7 +97,7 @@ fn beside_lanes(measure: Option<&Measure>) -> [String; 3] {
         return [format!("{gap}, too narrow for its own"), gap, "beside a lane".into()];
     }
     let far = format!("no lane within {wide_m} m");
-    [format!("the planner leads {far}"), far, "no lane".into()]
+    [format!("the planner puts {far}"), far, "no lane".into()]
 }
 
 /// The areas that are too small to be listed, with the reason for most of them.
@@ -129,7 +129,7 @@ mod tests {
     fn floor_without_a_lane_says_whether_it_is_too_narrow_for_one() {
         let measure = |value_m| Measure { value_m, to_m: None, limit_m: Some(0.5), near: None };
         assert_eq!(beside_lanes(Some(&measure(0.08)))[1], "0.08 m beside a lane");
-        assert_eq!(beside_lanes(Some(&measure(2.3)))[0], "the planner leads no lane within 2.30 m");
+        assert_eq!(beside_lanes(Some(&measure(2.3)))[0], "the planner puts no lane within 2.30 m");
         assert_eq!(beside_lanes(None)[2], "no lane");
     }
 }

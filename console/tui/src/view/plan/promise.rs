@@ -1,5 +1,5 @@
-//! What a plan promises, beside the limits of the mission; beside it what a second plan promises or, during a mission,
-//! what holds now.
+//! The figures that a plan promises, with the limits of the mission. A second column shows the figures of a second plan
+//! or, during a mission, the current figures.
 
 use super::along;
 use crate::model::{Pane, Run};
@@ -65,11 +65,11 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     along::draw(look, frame, below);
 }
 
-/// What stands beside the promise.
+/// The contents of the second column.
 enum Second<'a> {
-    /// What holds now, once the mission has started.
+    /// The current figures, once the mission has started.
     Now,
-    /// What the plan of a different planner promises.
+    /// The figures that a different planner's plan promises.
     Compared(&'a str, &'a Estimate),
 }
 
@@ -165,11 +165,11 @@ struct Figure {
     limit: fn(&MissionConfig) -> Option<f64>,
     /// Whether the figure must not be below its limit, instead of above it.
     is_least: bool,
-    /// What holds during the mission, in a longer and a shorter wording.
+    /// The current figure during the mission, in a longer and a shorter wording.
     now: fn(&Run) -> Option<[String; 2]>,
 }
 
-/// A promised value: where it is reached, or what it is about.
+/// A promised value, with the place where it is reached or the object that it is about.
 struct Found {
     value: f64,
     at: Option<world::Point>,
@@ -186,7 +186,7 @@ impl Found {
     }
 
     fn is_beyond(&self, figure: Figure, limit: Option<f64>) -> bool {
-        // The planner keeps to the limit exactly, so that rounding must not turn it into a fault.
+        // The planner keeps exactly to the limit, so rounding must not make the value appear to violate it.
         let slack = 0.5 * 10.0_f64.powi(-(figure.decimals as i32));
         limit.is_some_and(|limit| {
             let by = if figure.is_least { limit - self.value } else { self.value - limit };
@@ -307,7 +307,7 @@ const FIGURES: [Figure; 9] = [
     },
 ];
 
-/// What is left of a figure.
+/// A value as the amount that is left, in a longer and a shorter wording.
 fn left(value: String) -> [String; 2] {
     [format!("{value} left"), value]
 }
