@@ -6,7 +6,8 @@ use std::{io, path::Path};
 
 /// Reads a text file, which may be a pipe.
 ///
-/// # Errors The file cannot be read or is not UTF-8; the message states what the file contains instead and what to do.
+/// # Errors
+/// The file cannot be read or is not UTF-8; the message states what the file contains instead and what to do.
 pub fn read(file: &Path) -> anyhow::Result<String> {
     named(file, open_waiting(file).and_then(|open| text_of(open, MOST_TEXT_BYTES)))
 }
