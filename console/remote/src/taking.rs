@@ -20,7 +20,8 @@ pub struct Wanted {
 
 /// The flight, with a real vehicle if one is requested.
 ///
-/// # Errors The vehicle cannot be reached, or does not fit the scenario; the message says what to do.
+/// # Errors
+/// The vehicle cannot be reached, or does not fit the scenario; the message says what to do.
 pub fn connected(flight: Flight, scenario: &Scenario, wanted: Option<&Wanted>) -> anyhow::Result<Flight> {
     let Some(wanted) = wanted else { return Ok(flight) };
     if wanted.at == Some(Address::Loopback) {
