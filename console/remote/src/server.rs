@@ -5,7 +5,7 @@ use std::{
     collections::BTreeMap,
     io::{self, Read, Write},
     net::{SocketAddr, TcpListener, UdpSocket},
-    os::unix::net::UnixListener,
+    os::unix::{fs::FileTypeExt, net::UnixListener},
     path::Path,
     sync::{
         Arc,
@@ -138,6 +138,12 @@ impl Server {
 fn unix(path: &Path) -> io::Result<UnixListener> {
     match UnixListener::bind(path) {
         Err(error) if error.kind() == io::ErrorKind::AddrInUse => {
+            if !std::fs::symlink_metadata(path)?.file_type().is_socket() {
+                return Err(io::Error::new(
+                    io::ErrorKind::AlreadyExists,
+                    "the file exists and is not a socket",
+                ));
+            }
             let is_dead = std::os::unix::net::UnixStream::connect(path)
                 .is_err_and(|error| error.kind() == io::ErrorKind::ConnectionRefused);
             if !is_dead {
@@ -358,6 +364,16 @@ impl Datagrams {
 mod tests {
     use super::*;
     use std::io::{BufRead, BufReader};
+
+    #[test]
+    fn a_file_that_is_not_a_socket_is_never_replaced() {
+        let path = std::env::temp_dir().join(format!("tankops-server-{}", std::process::id()));
+        std::fs::write(&path, "precious").unwrap();
+        let why = unix(&path).unwrap_err().to_string();
+        assert!(why.contains("not a socket"), "{why}");
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "precious");
+        std::fs::remove_file(path).unwrap();
+    }
 
     #[test]
     fn one_console_too_many_is_refused_with_the_reason() {

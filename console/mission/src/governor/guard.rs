@@ -20,6 +20,14 @@ struct Echo {
     direction_rad: f64,
 }
 
+impl Echo {
+    /// Whether the point is at the robot's centre: a range of 0 is nearer than the sensor can measure, so the place of
+    /// the point is unknown and every motion may lead to it.
+    fn is_unresolved(&self) -> bool {
+        self.distance_m <= TOUCH_M
+    }
+}
+
 /// The places that the centre of the robot can reach until it stands still: up to a distance, in directions within
 /// `spread_rad` on both sides of a middle one, robot frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -134,6 +142,9 @@ impl<'a> Guard<'a> {
             _ => room_m - TOUCH_M,
         };
         self.nearest(momentum, drive, |echo, sector| {
+            if echo.is_unresolved() {
+                return hull_m;
+            }
             let is_on_course = Sector { way_m: f64::MAX, ..*sector }.distance_m(echo) < hull_m;
             hull_m + kept_m(echo.distance_m - hull_m, is_on_course)
         })
@@ -142,7 +153,10 @@ impl<'a> Guard<'a> {
     /// Whether the hull may touch a point although the robot brakes as hard as it can.
     fn touches(&self, momentum: &Momentum) -> bool {
         let hull_m = self.here.limits.radius_m;
-        self.nearest(momentum, Drive::STILL, |echo, _| hull_m.min(echo.distance_m - TOUCH_M)).is_some()
+        let needed_m = |echo: &Echo| {
+            if echo.is_unresolved() { hull_m } else { hull_m.min(echo.distance_m - TOUCH_M) }
+        };
+        self.nearest(momentum, Drive::STILL, |echo, _| needed_m(echo)).is_some()
     }
 
     fn nearest(
@@ -252,6 +266,16 @@ mod tests {
             let (now, _) = self.waiting.remove(0);
             let motions = self.real.motions(now, &self.here);
             (self.here.pose, self.real) = (motions.end, motions.after);
+        }
+    }
+
+    #[test]
+    fn a_point_nearer_than_the_sensor_can_measure_stops_the_robot() {
+        let robot = Robot::new(limits(Motion::Unicycle, 0.5), 0);
+        for (v_m_per_s, w_rad_per_s) in [(0.4, 0.0), (-0.1, 0.0), (0.1, 1.0)] {
+            let guarded = robot.guard(&[Point::origin()], Drive::Twist { v_m_per_s, w_rad_per_s });
+            let Drive::Twist { v_m_per_s: ahead, .. } = guarded.drive else { panic!("{guarded:?}") };
+            assert!(ahead.abs() < 1e-9 && guarded.before.is_some(), "{guarded:?}");
         }
     }
 
