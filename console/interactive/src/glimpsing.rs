@@ -30,7 +30,7 @@ pub(super) struct Glimpsing {
 struct Wanted {
     next: Option<RunKey>,
     is_reading: bool,
-    /// Whether the run that is being read is no longer wanted.
+    /// Whether reading the run must stop.
     is_given_up: bool,
 }
 

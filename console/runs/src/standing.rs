@@ -17,7 +17,7 @@ pub enum Standing {
     Running,
     /// The run has no report that can be trusted; the journal is the only record.
     JournalOnly {
-        /// The problem with the report; absent if there is no report.
+        /// The problem with the report; absent if the run has none.
         doubt: Option<String>,
         /// Why the writer could no longer write; absent if it was killed.
         failure: Option<String>,

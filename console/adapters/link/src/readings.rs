@@ -1,4 +1,4 @@
-//! Collects what was measured into readings, one message a period.
+//! Collects measurements into readings, one message per period.
 
 use crate::message::{Pose, Readings};
 

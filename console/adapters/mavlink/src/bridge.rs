@@ -94,7 +94,7 @@ impl Bridge {
         self.pilot.wakes_s().min(self.beats_s)
     }
 
-    /// Takes what has arrived.
+    /// Processes an input, and returns the messages to send.
     pub(crate) fn take(&mut self, input: Input, now_s: f64) -> Vec<Output> {
         let mut orders = Vec::new();
         match input {

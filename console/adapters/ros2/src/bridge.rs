@@ -91,7 +91,7 @@ impl Bridge {
         self.pilot.wakes_s()
     }
 
-    /// Takes what has arrived.
+    /// Processes an input, and returns the messages to send.
     pub(crate) fn take(&mut self, input: Input, now_s: f64) -> Vec<Order> {
         let mut out = Vec::new();
         match input {

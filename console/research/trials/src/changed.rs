@@ -19,7 +19,7 @@ pub struct Changed {
     /// The command of the same planner after the change.
     pub after: Command,
     /// The command of a new planner that was configured with the changed values.
-    pub anew: Command,
+    pub fresh: Command,
 }
 
 /// Has a planner with these `fixed` values decide the same tick, beside a column 0.7 m ahead on the left, before and
@@ -66,6 +66,6 @@ pub fn changed<P: Planner>(fixed: &[(&str, f64)], live: &[(&str, f64)]) -> Chang
     let set: Vec<Value<'_>> = values.iter().map(|&(key, number)| Value { key, number }).collect();
     planner.reconfigure(&Config::new(P::PARAMS, &set), &bench.ctx()).expect("accepts the change");
     let after = step(&mut planner);
-    let mut anew: P = bench.configure(&values, &site).expect("accepts the values");
-    Changed { before, after, anew: step(&mut anew) }
+    let mut fresh: P = bench.configure(&values, &site).expect("accepts the values");
+    Changed { before, after, fresh: step(&mut fresh) }
 }

@@ -174,8 +174,8 @@ fn scalars(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>> {
         .collect()
 }
 
-/// The curve of a figure over the last minutes, up to its largest value; empty if there is no room, or for a figure
-/// with negative values.
+/// The curve of a figure over the last minutes, up to its largest value; empty if the room is too small or the figure
+/// has negative values.
 fn curve(look: &Look, name: &str, room: usize) -> String {
     let history = look.run.planning.scalar_history.get(name).filter(|_| room >= CURVE);
     let Some(history) = history else { return String::new() };

@@ -165,5 +165,5 @@ proptest! {
 #[test]
 fn a_change_of_live_parameters_acts_like_a_new_planner() {
     let changed = trials::changed::<ApfDwa>(&[], &[("guard_m", 0.6)]);
-    assert!(changed.after == changed.anew && changed.after != changed.before, "{changed:?}");
+    assert!(changed.after == changed.fresh && changed.after != changed.before, "{changed:?}");
 }

@@ -88,5 +88,5 @@ fn what_crosses_its_way_is_met_where_it_will_be_unless_it_counts_as_standing() {
 #[test]
 fn a_change_of_live_parameters_acts_like_a_new_planner() {
     let changed = trials::changed::<ApfVirtualGoals>(&[], &[("slow_m", 3.0)]);
-    assert!(changed.after == changed.anew && changed.after != changed.before, "{changed:?}");
+    assert!(changed.after == changed.fresh && changed.after != changed.before, "{changed:?}");
 }

@@ -243,5 +243,5 @@ fn a_map_that_is_too_large_is_refused_before_it_plans_with_what_to_choose_instea
 #[test]
 fn a_change_of_live_parameters_acts_like_a_new_planner() {
     let changed = trials::changed::<BvoApf>(&[], &[("slow_m", 3.0)]);
-    assert!(changed.after == changed.anew && changed.after != changed.before, "{changed:?}");
+    assert!(changed.after == changed.fresh && changed.after != changed.before, "{changed:?}");
 }

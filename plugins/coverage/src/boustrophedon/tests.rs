@@ -67,5 +67,5 @@ fn between_walls_a_lap_is_driven_along_all_of_them() {
 #[test]
 fn a_change_of_live_parameters_acts_like_a_new_planner() {
     let changed = trials::changed::<Boustrophedon>(&[], &[("slow_m", 3.0)]);
-    assert!(changed.after == changed.anew && changed.after != changed.before, "{changed:?}");
+    assert!(changed.after == changed.fresh && changed.after != changed.before, "{changed:?}");
 }

@@ -134,6 +134,6 @@ fn the_cuts_hold_from_the_end_of_the_way_home_on() {
 fn a_change_of_live_parameters_acts_like_a_new_planner() {
     for values in [[("slow_m", 3.0), ("min_share", 0.1)], [("slow_m", 3.0), ("guard_m", 1.0)]] {
         let changed = trials::changed::<TetherSafe>(&[], &values);
-        assert!(changed.after == changed.anew && changed.after != changed.before, "{changed:?}");
+        assert!(changed.after == changed.fresh && changed.after != changed.before, "{changed:?}");
     }
 }

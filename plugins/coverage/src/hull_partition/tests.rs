@@ -76,5 +76,5 @@ fn a_floor_without_columns_is_one_cell() {
 #[test]
 fn a_change_of_live_parameters_acts_like_a_new_planner() {
     let changed = trials::changed::<HullPartition>(&[], &[("slow_m", 3.0)]);
-    assert!(changed.after == changed.anew && changed.after != changed.before, "{changed:?}");
+    assert!(changed.after == changed.fresh && changed.after != changed.before, "{changed:?}");
 }
