@@ -15,6 +15,10 @@ use std::{
     os::unix::net::{UnixListener, UnixStream},
     path::{Path, PathBuf},
     process::{Child, Stdio},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
     thread,
     time::{Duration, Instant},
 };
@@ -307,17 +311,20 @@ fn after_a_lost_link_only_an_order_moves_the_robot_again() {
     bench.prove(&run);
 }
 
-const READY: &str = r#"{"type": "state", "stamp_s": 0.0, "mode": "ready"}"#;
-
-/// The answer to a command of the console; empty except for a ping.
-fn answer(command: &Value) -> String {
+/// The answer to a command of the console, with the stamp of the readings with this number; empty except for a ping.
+fn answer(command: &Value, number: u64) -> String {
+    let stamp_s = 0.1 * number as f64;
+    let ready = format!("{{\"type\": \"state\", \"stamp_s\": {stamp_s:.1}, \"mode\": \"ready\"}}");
     let echo_s = command["stamp_s"].as_f64().filter(|_| command["type"] == "ping");
-    let pong = |echo_s| format!("{{\"type\": \"pong\", \"echo_s\": {echo_s}, \"stamp_s\": 0.0}}\n{READY}\n");
+    let pong = |echo_s| {
+        format!("{{\"type\": \"pong\", \"echo_s\": {echo_s}, \"stamp_s\": {stamp_s:.1}}}\n{ready}\n")
+    };
     echo_s.map_or_else(String::new, pong)
 }
 
-/// An adapter that answers pings and says a prepared text after its introduction, until the console leaves.
-fn liar(path: &Path, lie: impl Fn(u64) -> Vec<u8> + Send + 'static) -> thread::JoinHandle<()> {
+/// An adapter that answers pings and says a prepared text after its introduction, until the console leaves. The text may
+/// depend on its number, and on the number of texts since the first `drive`, which is 0 before it.
+fn liar(path: &Path, lie: impl Fn(u64, u64) -> Vec<u8> + Send + 'static) -> thread::JoinHandle<()> {
     let listener = UnixListener::bind(path).unwrap();
     thread::spawn(move || {
         let (mut stream, _) = listener.accept().unwrap();
@@ -325,21 +332,31 @@ fn liar(path: &Path, lie: impl Fn(u64) -> Vec<u8> + Send + 'static) -> thread::J
         let (said, answered) = std::sync::mpsc::channel();
         thread::spawn(move || {
             for line in heard.lines().map_while(Result::ok) {
-                let Ok(()) = said.send(answer(&serde_json::from_str(&line).unwrap())) else { return };
+                let Ok(()) = said.send(serde_json::from_str::<Value>(&line).unwrap()) else { return };
             }
         });
         stream.write_all(format!("{HELLO}\n").as_bytes()).unwrap();
+        let mut since = 0;
         for number in 1.. {
-            let answers: String = answered.try_iter().collect();
-            if stream.write_all(answers.as_bytes()).and_then(|()| stream.write_all(&lie(number))).is_err() {
+            let commands: Vec<Value> = answered.try_iter().collect();
+            since += u64::from(since > 0 || commands.iter().any(|command| command["type"] == "drive"));
+            let answers: String = commands.iter().map(|command| answer(command, number)).collect();
+            let said = stream.write_all(answers.as_bytes());
+            if said.and_then(|()| stream.write_all(&lie(number, since))).is_err() {
                 return;
             }
         }
     })
 }
 
+/// Readings that come 50 times a second.
+fn driven(number: u64, forward_m: &str) -> Vec<u8> {
+    thread::sleep(Duration::from_millis(20));
+    readings(number, &format!(r#""odometry": {{"over_s": 0.1, "forward_m": {forward_m}, "turn_rad": 0}}"#))
+}
+
 /// Connects a run to an adapter that says a prepared text after its introduction, and waits for the end of the run.
-fn lied_to(lie: impl Fn(u64) -> Vec<u8> + Send + 'static) -> Ended {
+fn lied_to(lie: impl Fn(u64, u64) -> Vec<u8> + Send + 'static) -> Ended {
     let bench = Bench::new();
     let path = bench.path().join("liar");
     let liar = liar(&path, lie);
@@ -358,13 +375,9 @@ fn readings(number: u64, more: &str) -> Vec<u8> {
 
 #[test]
 fn what_a_lying_adapter_says_is_named_with_its_field_and_holds_the_robot() {
-    let odometry = |number, forward: &str| {
-        thread::sleep(Duration::from_millis(20));
-        readings(number, &format!(r#""odometry": {{"over_s": 0.1, "forward_m": {forward}, "turn_rad": 0}}"#))
-    };
-    let nan = lied_to(move |number| odometry(number, if number < 20 { "0" } else { "NaN" }));
-    let jump = lied_to(move |number| odometry(number, if number < 20 { "0" } else { "5" }));
-    let half = lied_to(|number| {
+    let nan = lied_to(|number, since| driven(number, if since < 5 { "0" } else { "NaN" }));
+    let jump = lied_to(|number, since| driven(number, if since < 5 { "0" } else { "5" }));
+    let half = lied_to(|number, _| {
         thread::sleep(Duration::from_millis(20));
         if number < 20 {
             readings(number, r#""contact": false"#)
@@ -372,19 +385,18 @@ fn what_a_lying_adapter_says_is_named_with_its_field_and_holds_the_robot() {
             b"{\"type\": \"readings\", \"seq\n".to_vec()
         }
     });
-    let restarted = lied_to(move |number| match number {
+    let restarted = lied_to(|number, since| match since {
         // It goes on at once, with numbers above those before.
-        20 => format!("{HELLO}\n").into_bytes(),
-        _ => odometry(number, "0"),
+        5 => format!("{HELLO}\n").into_bytes(),
+        _ => driven(number, "0"),
     });
-    let long = lied_to(|_| vec![b'x'; 1 << 20]);
-    let stopped = lied_to(move |number| match number {
-        20 => br#"{"type": "state", "stamp_s": 2.0, "mode": "emergency_stop", "battery": 87}
-"#
-        .to_vec(),
-        _ => odometry(number, "0"),
+    let long = lied_to(|_, _| vec![b'x'; 1 << 20]);
+    let stopped = lied_to(|number, since| {
+        let stop = r#"{"type": "state", "stamp_s": 2.0, "mode": "emergency_stop", "battery": 87}"#;
+        let more = if since < 5 { String::new() } else { format!("{stop}\n") };
+        [driven(number, "0"), more.into_bytes()].concat()
     });
-    let driven_off = lied_to(move |number| odometry(number, "0.02"));
+    let driven_off = lied_to(|number, _| driven(number, "0.02"));
     let cases = [
         (nan, "readings.odometry.forward_m: NaN is not a finite number"),
         (jump, "readings.odometry.forward_m: 5 m in 0.1 s"),
@@ -415,7 +427,7 @@ fn a_vehicle_that_speaks_only_after_a_command_is_not_driven_before_its_first_rea
         for line in lines {
             let command: Value = serde_json::from_str(&line.unwrap()).unwrap();
             match command["type"].as_str().unwrap() {
-                "ping" => stream.write_all(answer(&command).as_bytes()).unwrap(),
+                "ping" => stream.write_all(answer(&command, number).as_bytes()).unwrap(),
                 "drive" if number > 0 => break,
                 kind => {
                     before.extend((number == 0).then(|| kind.to_owned()));
@@ -442,25 +454,25 @@ fn a_vehicle_that_speaks_only_after_a_command_is_not_driven_before_its_first_rea
 fn a_vehicle_that_drives_off_before_the_start_raises_an_alarm_and_is_not_started() {
     let bench = Bench::new();
     let path = bench.path().join("liar");
-    let drives = std::sync::Arc::new(std::sync::atomic::AtomicBool::default());
-    let is_driven = drives.clone();
-    let liar = liar(&path, move |number| {
-        thread::sleep(Duration::from_millis(20));
-        let forward_m = if is_driven.load(std::sync::atomic::Ordering::Acquire) { 0.02 } else { 0.0 };
-        let odometry =
-            format!("\"odometry\": {{\"over_s\": 0.1, \"forward_m\": {forward_m}, \"turn_rad\": 0}}");
-        readings(number, &odometry)
+    let drives = Arc::new(AtomicBool::default());
+    let (is_driven, moved) = (drives.clone(), AtomicU64::default());
+    let liar = liar(&path, move |number, _| {
+        // Once it moves, it drives off by more than a metre.
+        let before = moved.load(Ordering::Acquire);
+        let moves = is_driven.load(Ordering::Acquire) || (1..60).contains(&before);
+        moved.fetch_add(u64::from(moves), Ordering::AcqRel);
+        driven(number, if moves { "0.02" } else { "0" })
     });
     let address = format!("unix:{}", path.display());
     let mut console =
         Console::open(bench.command(), &[short(&bench).to_str().unwrap(), "--vehicle", &address]);
     console.hear("stopped, confirmed by odometry");
     console.hear("Enter `start` to start");
-    drives.store(true, std::sync::atomic::Ordering::Release);
+    drives.store(true, Ordering::Release);
     console.hear("vehicle moves without an order");
     console.order("start\n");
     console.hear("moves without an order; stop it by hand");
-    drives.store(false, std::sync::atomic::Ordering::Release);
+    drives.store(false, Ordering::Release);
     console.hear("stopped, confirmed by odometry");
     console.order("start\n");
     console.hear("plan again from here");
@@ -501,14 +513,7 @@ fn a_run_waits_for_the_confirmed_stop_and_its_last_figures() {
     assert!(report["vehicle"]["heard"].as_u64().unwrap() > 10, "{flown:?}");
     bench.prove(&run);
     // This one goes on as before, whatever it is told.
-    let deaf = lied_to(|number| {
-        thread::sleep(Duration::from_millis(20));
-        let forward_m = if number < 40 { 0.0 } else { 0.02 };
-        let odometry =
-            format!("\"odometry\": {{\"over_s\": 0.1, \"forward_m\": {forward_m}, \"turn_rad\": 0.1}}");
-        let still = r#""odometry": {"over_s": 0.1, "forward_m": 0, "turn_rad": 0}"#;
-        if number < 40 { readings(number, still) } else { readings(number, &odometry) }
-    });
+    let deaf = lied_to(|number, since| driven(number, if since < 5 { "0" } else { "0.02" }));
     assert!(deaf.code == Some(1) && deaf.json()["vehicle"]["stands"] == false, "{deaf:?}");
 }
 
