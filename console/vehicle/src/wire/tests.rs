@@ -23,7 +23,10 @@ fn told(lines: &[&str]) -> String {
     let mut reader = greeted();
     let mut last = None;
     for line in lines {
-        last = reader.read(format!("{line}\n").as_bytes()).pop();
+        let mut heard = reader.read(format!("{line}\n").as_bytes());
+        // The part of a malformed state that counts follows its fault.
+        let fault = heard.iter().position(|heard| matches!(heard, Heard::Malformed(_)));
+        last = fault.map(|at| heard.swap_remove(at)).or_else(|| heard.pop());
     }
     match last {
         Some(Heard::Malformed(misfit)) => misfit.to_string(),
