@@ -79,7 +79,6 @@ fn next(model: &Model) -> Vec<String> {
     lines.extend(
         model
             .live
-            .run
             .left_s()
             .filter(|_| is_on_task)
             .map(|left_s| format!("About {} of mission time left", clock(left_s))),

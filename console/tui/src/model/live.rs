@@ -162,6 +162,14 @@ impl Live {
         self.estimate().or_else(|| Some(&self.plans.estimate.as_ref().filter(|_| started)?.1))
     }
 
+    /// Estimated remaining mission time, seconds: from the pace so far or, until that is known, from the promise of the
+    /// plan; `None` if neither is known, or the run has ended.
+    pub fn left_s(&self) -> Option<f64> {
+        let done = self.run.progress.as_ref().map_or(0.0, |progress| progress.done);
+        let promised = || self.estimate().map(|estimate| estimate.time_s * (1.0 - done.clamp(0.0, 1.0)));
+        self.run.left_s().or_else(|| promised().filter(|_| !self.run.has_ended()))
+    }
+
     /// The requested floor that the promised plan leaves out; `None` if it is not known, or nothing is to be scanned.
     pub fn left_out(&self) -> Option<&LeftOut> {
         let (ask, left_out) = self.plans.left_out.as_ref()?;

@@ -5,7 +5,7 @@ use mission::event::{Effort, PlanScans};
 use mission::{AskId, MissionConfig, PlannerChoice, PlannerInfo, WorkerId, planner::Fault};
 use planner_api::{Command, Drawing, Leg, LegTag};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use world::{Point, coverage::percent_text, polyline};
 
 /// How far the heading may turn within a lane that the planner did not state, radians.
@@ -16,6 +16,11 @@ const STRAIGHT_RAD: f64 = 0.03;
 const SPACING_M: f64 = 0.5;
 /// Length of a path above which its points are farther apart, metres.
 const LONG_M: f64 = 1000.0;
+
+/// The maximum number of a run's planner messages that are compared with new ones.
+const MAX_SAID: usize = 256;
+/// The maximum length of such a message, bytes; longer ones count as new.
+const MAX_SAID_BYTES: usize = 1000;
 
 /// A lane of a plan: the first and the last index of its points in [`PlanShown::path`].
 pub type Lane = (usize, usize);
@@ -40,6 +45,9 @@ pub struct PlanShown {
     /// The distance driven along earlier plans when this one was made, metres.
     #[serde(default)]
     pub driven_m: f64,
+    /// The length of its first part, the way back along the tether to the place from which the plan leads on, metres.
+    #[serde(default)]
+    pub retract_m: f64,
 }
 
 impl PlanShown {
@@ -62,6 +70,17 @@ impl PlanShown {
         }
         let long = |lane: &Lane| polyline::length_m(&thin[lane.0..=lane.1]) >= least_m;
         straights(thin).into_iter().filter(long).collect()
+    }
+
+    /// The length of the way back along the tether with which a plan begins, metres; `path` is the whole path.
+    pub fn retract_of_m(path: &[Point], legs: &[Leg]) -> f64 {
+        let back = legs.iter().take_while(|leg| leg.tag == LegTag::Retract).last();
+        back.and_then(|leg| path.get(..=leg.last)).map_or(0.0, polyline::length_m)
+    }
+
+    /// How far the robot still drives back along the tether before the plan leads on, metres; `None` if it does not.
+    pub fn retract_left_m(&self, progress: &Progress) -> Option<f64> {
+        Some(self.retract_m - self.along_m(progress.done).max(0.0)).filter(|left_m| *left_m > 0.0)
     }
 
     /// The length of the path that is left, metres.
@@ -207,9 +226,29 @@ pub struct Planning {
     /// Whether the candidate made the last plan; if so, the next certificate is not about the plan that is running.
     #[serde(default)]
     pub proposed: bool,
+    /// The messages of planners that were shown, oldest first.
+    #[serde(default)]
+    pub said: VecDeque<String>,
     /// A better plan that is on offer, or that was taken and will run from the point at which it begins.
     #[serde(default)]
     pub offer: Option<Offer>,
+}
+
+impl Planning {
+    /// Whether a message of a planner has been shown before; it counts as shown from now on.
+    pub(super) fn has_said(&mut self, text: &str) -> bool {
+        if self.said.iter().any(|said| said == text) {
+            return true;
+        }
+        if text.len() > MAX_SAID_BYTES {
+            return false;
+        }
+        if self.said.len() >= MAX_SAID {
+            self.said.pop_front();
+        }
+        self.said.push_back(text.to_owned());
+        false
+    }
 }
 
 #[cfg(test)]
@@ -227,7 +266,16 @@ mod tests {
 
     fn shown(lanes: Vec<Lane>) -> PlanShown {
         let (path, length_m) = (meander(), 32.0);
-        PlanShown { ask: None, path, lanes, length_m, complete: true, t_s: 0.0, driven_m: 0.0 }
+        PlanShown {
+            ask: None,
+            path,
+            lanes,
+            length_m,
+            complete: true,
+            t_s: 0.0,
+            driven_m: 0.0,
+            retract_m: 0.0,
+        }
     }
 
     #[test]
@@ -287,7 +335,16 @@ mod tests {
         let legs = [(0, 1), (2, 3), (4, 5)].map(|(first, last)| Leg { tag: LegTag::Swath, first, last });
         let length_m = polyline::length_m(&path);
         let (path, lanes) = super::shown(&path, &legs, 2.0);
-        PlanShown { ask: None, path, lanes, length_m, complete: true, t_s: 0.0, driven_m: 0.0 }
+        PlanShown {
+            ask: None,
+            path,
+            lanes,
+            length_m,
+            complete: true,
+            t_s: 0.0,
+            driven_m: 0.0,
+            retract_m: 0.0,
+        }
     }
 
     #[test]
@@ -302,6 +359,20 @@ mod tests {
         );
         let back = plan.reached(&progress(Point::new(9.6, 0.1), 1.0 - 9.6 / length_m));
         assert!(back > plan.lanes[2].1, "on the way back");
+    }
+
+    #[test]
+    fn a_plan_that_begins_with_a_way_back_says_how_much_of_it_is_left() {
+        let leg = |tag, first, last| Leg { tag, first, last };
+        let legs = [leg(LegTag::Retract, 0, 2), leg(LegTag::Retract, 2, 4), leg(LegTag::Swath, 4, 32)];
+        let retract_m = PlanShown::retract_of_m(&meander(), &legs);
+        assert!((retract_m - 4.0).abs() < 1e-9);
+        assert!(PlanShown::retract_of_m(&meander(), &legs[2..]).abs() < 1e-9);
+        // 8 m of 40 m were driven along the plan before.
+        let plan = PlanShown { driven_m: 8.0, retract_m, ..shown(Vec::new()) };
+        let left_m = |driven_m: f64| plan.retract_left_m(&progress(Point::origin(), driven_m / 40.0));
+        assert!((left_m(9.0).unwrap() - 3.0).abs() < 1e-9);
+        assert_eq!(left_m(12.5), None);
     }
 
     #[test]

@@ -141,7 +141,9 @@ impl Model {
                 };
                 check("plan", CheckOutcome::Warning, format!("{:.1} m, {what}", plan.length_m))
             }
-            (None, None) => check("plan", CheckOutcome::Failed, "none; `:plan-again` makes one".into()),
+            (None, None) => {
+                check("plan", CheckOutcome::Failed, "no plan has been made; `:plan-again` makes one".into())
+            }
         }
     }
 

@@ -4,7 +4,7 @@ use super::act::{act, hold_only};
 use super::message::Effect;
 use super::offer::{accepted, offered, refuse};
 use crate::actions::ActionId;
-use crate::guide::guide;
+use crate::guide;
 use crate::model::{Cause, Model, Overlay};
 use mission::Order;
 use positioning::Exclusion;
@@ -32,7 +32,7 @@ pub(crate) struct Step {
 
 /// The actions on an alarm, in the order of their numbers.
 pub(crate) fn steps(model: &Model, cause: &Cause) -> Vec<Step> {
-    let remedies = guide(cause).remedies.iter();
+    let remedies = guide::remedies(cause, &model.live.run);
     let of_guide = remedies.filter_map(|remedy| Some((remedy.text, remedy.action?)));
     let of_guide = of_guide.map(|(text, action)| Step { text: text.to_owned(), deed: Deed::Act(action) });
     if model.live.is_cut_off {
@@ -52,7 +52,7 @@ pub(crate) fn advice(model: &Model, cause: &Cause) -> Vec<&'static str> {
     if model.live.is_cut_off && *cause != Cause::Writer {
         return vec!["No console controls this run any more. Check the robot on site."];
     }
-    let remedies = guide(cause).remedies.iter().filter(|remedy| remedy.action.is_none());
+    let remedies = guide::remedies(cause, &model.live.run).filter(|remedy| remedy.action.is_none());
     remedies.map(|remedy| remedy.text).collect()
 }
 

@@ -76,6 +76,21 @@ fn planner_messages_are_hidden_until_they_are_asked_for_and_then_listed_as_one()
 }
 
 #[test]
+fn what_a_planner_says_again_after_a_replan_is_shown_once() {
+    let mut screen = Screen::running();
+    for message in ["a rim cannot be reached", "0.09 m² cannot be reached", "a rim cannot be reached"] {
+        let (planner, level) = ("rpf".to_owned(), planner_api::LogLevel::Warn);
+        let event = screen.mission.now(EventKind::PlannerLogged { planner, level, message: message.into() });
+        screen.hear(RunMsg::Events(vec![event]));
+    }
+    let log = &screen.model.live.run.log;
+    let entries = (log.oldest()..log.end()).filter_map(|number| log.get(number));
+    let said: Vec<_> =
+        entries.filter(|entry| entry.text.contains("a rim")).map(|entry| entry.severity).collect();
+    assert_eq!(said, [mission::Severity::Watch, mission::Severity::Debug]);
+}
+
+#[test]
 fn a_field_that_is_not_understood_is_marked_and_explained_while_it_is_typed() {
     let mut screen = with_events();
     screen.send(Msg::Resize { width: 80, height: 24 });

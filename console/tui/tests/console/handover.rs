@@ -60,6 +60,7 @@ fn status_tells_state_alarms_and_the_open_question_with_commands() {
         lines.last().unwrap().starts_with("Resume? The robot will move. `yes`: resume, `no`: cancel."),
         "{lines:#?}"
     );
+    assert!(lines.iter().any(|line| line.starts_with("Position: -0.78, 7.40 m, heading ")), "{lines:#?}");
     assert_eq!(plain::no_question(&screen.model), None);
     assert!(plain::no_question(&Screen::running().model).is_some());
 }

@@ -28,5 +28,6 @@ mod scripts;
 mod shadow;
 mod sizes;
 mod start;
+mod state_line;
 mod stopping;
 mod unseen;

@@ -27,10 +27,12 @@ impl Run {
                 if self.planning.proposed {
                     return;
                 }
+                let retract_m = PlanShown::retract_of_m(path, legs);
                 let (path, lanes) = planning::shown(path, legs, self.least_lane_m());
                 let driven_m = self.driven_m();
                 let (ask, length_m, complete, t_s) = (*ask, *length_m, *complete, event.t_s);
-                self.planning.plan = Some(PlanShown { ask, path, lanes, length_m, complete, t_s, driven_m });
+                let plan = PlanShown { ask, path, lanes, length_m, complete, t_s, driven_m, retract_m };
+                self.planning.plan = Some(plan);
                 self.planner_works();
             }
             EventKind::Commanded { command, .. } => self.command(event.t_s, *command),

@@ -11,7 +11,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 /// Width of the names in the table, columns.
-const LABEL: usize = 11;
+const LABEL: usize = 17;
 /// Width from which the worst values are shown with time and place, columns.
 const WORST: usize = 52;
 /// The figures whose worst values are shown, and the width of their names, columns.
@@ -59,6 +59,9 @@ fn lines(look: &Look, result: &RunResult, columns: usize) -> Vec<Line<'static>> 
     lines.extend(table.map(|(role, [what, predicted, actual, limit])| {
         // Without colours, the mark shows that a limit has been exceeded.
         let mark = if role == Role::Warn { "!" } else { " " };
+        // A narrow table leaves out what the value refers to.
+        let name = what.split(" (").next().unwrap_or_default().to_owned();
+        let what = text::wording([what, name], label);
         look.line([
             (Role::Dim, format!(" {}", text::column(&what, label))),
             (Role::Dim, format!("{predicted:>width$}")),
@@ -123,8 +126,8 @@ fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {
     ];
     let required = mission.map(|mission| mission.clearance_m);
     figures.push(match summary.clearance_min_m {
-        Some(true_m) => at_least("gap (true)", metres(2), [clearance, Some(true_m), required]),
-        None => at_least("gap (est.)", metres(2), [clearance, estimated_clearance(summary), required]),
+        Some(true_m) => at_least("clearance (true)", metres(2), [clearance, Some(true_m), required]),
+        None => at_least("clearance (est.)", metres(2), [clearance, estimated_clearance(summary), required]),
     });
     if let Some(tether) = &summary.tether {
         let estimate = promised.and_then(|p| p.tether.as_ref());
