@@ -45,7 +45,7 @@ impl VehicleRecord {
                 self.lost += u64::from(is_lost && self.is_heard);
                 self.is_heard = !is_lost;
             }
-            EventKind::Stood { confirmed: true, after_s } => {
+            EventKind::Stood { confirmed: true, after_s, .. } => {
                 self.stops += 1;
                 self.stop_max_s = Some(self.stop_max_s.map_or(*after_s, |most| most.max(*after_s)));
             }

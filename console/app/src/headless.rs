@@ -147,8 +147,8 @@ fn fly_to_end(
         if stop.requested() {
             orders.push(Order::Terminate);
         }
-        // A vehicle may send its first readings only after a command to stand.
-        let is_early = matches!(flight.phase(), Phase::Waiting) && !flight.hears_vehicle();
+        // The start waits until the vehicle is known to stand; it may send its first readings only after a command.
+        let is_early = matches!(flight.phase(), Phase::Waiting) && !flight.can_decide_start();
         let later = if is_early && !stop.requested() { std::mem::take(&mut orders) } else { Vec::new() };
         let events = if clock.is_some() {
             let mut windowed = Windowed::new(answers.host(), Window::real_time(flight.tick_length()));
@@ -163,22 +163,10 @@ fn fly_to_end(
             flight.tick(&orders, &mut Watched::new(&mut answers, &mut watch))
         };
         orders = later;
-        if let Some(why) = events.iter().find_map(refused_start) {
-            warn_line(&format!("the mission cannot start: {why}"));
-            orders.push(Order::Terminate);
-        }
         orders.extend(shadowing.as_mut().and_then(|shadowing| shadowing.next(&events)));
         take(events, Some(answers.host()));
     }
     answers.into_host()
-}
-
-/// The reason for a refused start: a real vehicle may not be ready to be driven.
-fn refused_start(event: &Event) -> Option<&str> {
-    match &event.kind {
-        EventKind::OrderRefused { order, why } if order.is_start() => Some(why),
-        _ => None,
-    }
 }
 
 /// The clock of a real vehicle: one tick of the mission per tick of time. Lost time is not made up.

@@ -161,10 +161,14 @@ impl Flight {
         self.watch.as_ref().is_some_and(LiveWatch::awaits_stop)
     }
 
-    /// Whether a start order can be decided: readings of the vehicle have arrived, or a problem with the vehicle is
-    /// known, and a start is refused with that reason.
-    pub fn hears_vehicle(&self) -> bool {
-        self.vehicle.is_heard() || self.watch.as_ref().is_some_and(|watch| watch.trouble().is_some())
+    /// Whether a start order can be decided: readings have shown whether the vehicle stands still, or a problem with the
+    /// vehicle is known, and a start is refused with that reason.
+    pub fn can_decide_start(&self) -> bool {
+        self.vehicle.is_standstill_known() || self.trouble().is_some()
+    }
+
+    fn trouble(&self) -> Option<String> {
+        self.watch.as_ref()?.trouble(matches!(self.mission.phase(), Phase::Waiting))
     }
 
     /// A handle that stops a real vehicle at once; `None` in a simulation.
@@ -179,7 +183,7 @@ impl Flight {
         self.readings = readings;
         let mut first = self.truth();
         first.extend(self.watched(&live.unwrap_or_default()));
-        let trouble = self.watch.as_ref().and_then(LiveWatch::trouble);
+        let trouble = self.trouble();
         self.mission.sense(&Input { readings: &self.readings, orders, trouble: trouble.as_deref() });
         loop {
             while let Some(ask) = self.mission.poll_ask() {

@@ -12,12 +12,15 @@ pub(crate) struct LiveWatch {
     must_stand: bool,
     /// Whether readings have confirmed or disproved a standstill since the last motion was commanded.
     is_decided: bool,
+    /// The last result of a commanded stop.
+    stood: Option<Stood>,
 }
 
 impl LiveWatch {
-    /// The reason why the vehicle must not be driven now.
-    pub(crate) fn trouble(&self) -> Option<String> {
-        self.link.trouble()
+    /// The reason why the vehicle must not be driven now. Before the start, the vehicle must also stand still.
+    pub(crate) fn trouble(&self, is_waiting: bool) -> Option<String> {
+        let moves = || self.stood.filter(|_| is_waiting)?.trouble().map(str::to_owned);
+        self.link.trouble().or_else(moves)
     }
 
     /// Whether a commanded stop is still open: odometry has neither confirmed nor disproved it yet.
@@ -39,9 +42,9 @@ impl LiveWatch {
             self.link = link.clone();
             events.push(EventKind::Link(link.clone()));
         }
-        if let Some(Stood { confirmed, after_s }) = live.stood {
-            self.is_decided = true;
-            events.push(EventKind::Stood { confirmed, after_s });
+        if let Some(stood @ Stood { confirmed, after_s, moved }) = live.stood {
+            (self.is_decided, self.stood) = (true, Some(stood));
+            events.push(EventKind::Stood { confirmed, after_s, moved });
         }
         events
     }
@@ -69,7 +72,8 @@ mod tests {
     #[test]
     fn a_stop_is_awaited_until_readings_decide_it() {
         let mut watch = LiveWatch::default();
-        let decided = Live { stood: Some(Stood { confirmed: true, after_s: 0.2 }), ..Live::default() };
+        let stood = Stood { confirmed: true, after_s: 0.2, moved: false };
+        let decided = Live { stood: Some(stood), ..Live::default() };
         assert!(matches!(watch.sent(None), Some(EventKind::Sent { drive: None, .. })));
         assert!(watch.awaits_stop());
         watch.sensed(&Readings::default(), &Live::default());
@@ -80,5 +84,19 @@ mod tests {
         // The brake was pulled between two ticks, and the stop is confirmed before the tick that commands it.
         watch.sensed(&Readings::default(), &decided);
         assert!(watch.sent(None).is_some() && !watch.awaits_stop());
+    }
+
+    #[test]
+    fn a_vehicle_that_moves_without_an_order_is_in_trouble_before_the_start_only() {
+        let mut watch = LiveWatch::default();
+        let stood = |confirmed| Live {
+            stood: Some(Stood { confirmed, after_s: 0.2, moved: !confirmed }),
+            ..Live::default()
+        };
+        watch.sensed(&Readings::default(), &stood(false));
+        assert!(watch.trouble(true).is_some_and(|why| why.contains("without an order")));
+        assert_eq!(watch.trouble(false), None);
+        watch.sensed(&Readings::default(), &stood(true));
+        assert_eq!(watch.trouble(true), None);
     }
 }

@@ -29,8 +29,8 @@ impl Feed {
                     sensed.readings.clone_from(readings);
                 }
                 EventKind::Link(link) => live.link = Some(link.clone()),
-                EventKind::Stood { confirmed, after_s } => {
-                    live.stood = Some(Stood { confirmed: *confirmed, after_s: *after_s });
+                EventKind::Stood { confirmed, after_s, moved } => {
+                    live.stood = Some(Stood { confirmed: *confirmed, after_s: *after_s, moved: *moved });
                 }
                 _ => {}
             }

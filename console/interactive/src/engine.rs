@@ -39,6 +39,10 @@ use std::{
 };
 use tui::{RunMsg, Speed};
 
+/// While a real vehicle only waits for its start, one tick in this many is run: it must not move unnoticed, and the events
+/// of a long wait must not fill the memory.
+const IDLE: u32 = 10;
+
 /// Time limit for closing the recording after a signal has asked the process to exit.
 const HURRY: Duration = Duration::from_millis(900);
 
@@ -163,7 +167,8 @@ impl EngineThread {
             }
             orders.extend(self.planner_check());
             if !orders.is_empty() || self.is_under_way() {
-                pace.tick_flown(Instant::now(), self.flight.tick_length(), self.speed, self.waits());
+                let ticks = if self.is_idle() { IDLE } else { 1 };
+                pace.tick_flown(Instant::now(), self.flight.tick_length() * ticks, self.speed, self.waits());
                 self.tick(orders);
             }
         }
@@ -177,14 +182,20 @@ impl EngineThread {
         self.host.has_ended_idle(worker).then_some(Order::CheckPlanner)
     }
 
-    /// Whether ticks pass without orders: the mission is under way, a planner is being prepared, or the standstill of a
-    /// real vehicle is not confirmed yet.
+    /// Whether ticks pass without orders: the mission is under way, a planner is being prepared, or a real vehicle is
+    /// watched.
     fn is_under_way(&self) -> bool {
         match self.flight.phase() {
-            Phase::Waiting => self.flight.mission().awaits() != Awaits::Nothing || self.flight.awaits_stop(),
+            Phase::Waiting => self.flight.mission().awaits() != Awaits::Nothing || self.flight.is_live(),
             Phase::Running(_) | Phase::Held(_) => true,
             Phase::Ended(_) => false,
         }
+    }
+
+    /// Whether a real vehicle is known to stand still and waits for its start, and nothing else is under way.
+    fn is_idle(&self) -> bool {
+        let is_waiting = matches!(self.flight.phase(), Phase::Waiting) && self.flight.is_live();
+        is_waiting && self.flight.mission().awaits() == Awaits::Nothing && !self.flight.awaits_stop()
     }
 
     /// Whether a planner is working or owes an answer, or only an order can make the robot move.

@@ -155,6 +155,7 @@ impl Mission {
             readiness: self.driving.readiness(&self.known),
             trouble: self.known.trouble.as_deref(),
             is_live: self.known.config.live,
+            from_plan_m: self.driving.course.first_from_m(&self.known),
         }
     }
 

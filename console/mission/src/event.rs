@@ -531,6 +531,9 @@ pub enum EventKind {
         confirmed: bool,
         /// Time since the command to stand still, seconds.
         after_s: f64,
+        /// Whether the vehicle has moved again after a confirmed stop, without an order.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        moved: bool,
     },
     /// The guard by the scan of a real vehicle has limited a command, so that the robot can stop in time.
     Guarded {

@@ -75,7 +75,12 @@ pub struct Standing<'a> {
     pub trouble: Option<&'a str>,
     /// Whether the robot is a real vehicle.
     pub is_live: bool,
+    /// Distance from a real vehicle that waits for its start to the beginning of its plan, metres; `None` without a plan.
+    pub from_plan_m: Option<f64>,
 }
+
+/// Distance from the robot to the beginning of a plan, metres, above which the plan must be made again.
+pub(crate) const NEAR_PLAN_M: f64 = 0.5;
 
 /// Why an order is refused.
 #[derive(Debug, Clone, PartialEq)]
@@ -101,6 +106,11 @@ pub enum Refusal {
         seen: Option<PlanId>,
         /// The plan that is ready.
         ready: PlanId,
+    },
+    /// The plan begins too far from the robot.
+    PlanElsewhere {
+        /// Distance from the robot to the beginning of the plan, metres.
+        away_m: f64,
     },
     /// The mission is running.
     AlreadyMoving,
@@ -167,6 +177,10 @@ impl fmt::Display for Refusal {
                 "plan {} was seen, but plan {} is ready now; check it and start again",
                 seen.short(),
                 ready.short()
+            ),
+            Self::PlanElsewhere { away_m } => write!(
+                f,
+                "the plan begins {away_m:.2} m from the robot (at most {NEAR_PLAN_M} m is allowed); plan again from here"
             ),
             Self::AlreadyMoving => f.write_str("the mission is already running"),
             Self::StepNeedsHold => f.write_str("a single step requires HOLD first"),
@@ -287,12 +301,16 @@ impl Standing<'_> {
     fn can_start(&self, seen: Option<PlanId>) -> Result<(), Refusal> {
         self.can_drive()?;
         match self.readiness {
-            Readiness::Unseen => Ok(()),
-            Readiness::NoPlan => Err(Refusal::NoPlan),
-            Readiness::Preparing => Err(Refusal::Planning),
-            Readiness::Failed(why) => Err(Refusal::PlanFailed { why: why.to_owned() }),
-            Readiness::Plan(ready) if seen == Some(ready) => Ok(()),
-            Readiness::Plan(ready) => Err(Refusal::OtherPlan { seen, ready }),
+            Readiness::Unseen => {}
+            Readiness::NoPlan => return Err(Refusal::NoPlan),
+            Readiness::Preparing => return Err(Refusal::Planning),
+            Readiness::Failed(why) => return Err(Refusal::PlanFailed { why: why.to_owned() }),
+            Readiness::Plan(ready) if seen == Some(ready) => {}
+            Readiness::Plan(ready) => return Err(Refusal::OtherPlan { seen, ready }),
+        }
+        match self.from_plan_m.filter(|away_m| *away_m > NEAR_PLAN_M) {
+            Some(away_m) => Err(Refusal::PlanElsewhere { away_m }),
+            None => Ok(()),
         }
     }
 

@@ -17,8 +17,11 @@ use vehicle::{
 };
 use world::{RangeSet, StationId, scan::RangesMm};
 
-/// Longest time until the first readings of a vehicle, seconds.
-const FIRST_WITHIN_S: f64 = 2.0;
+/// Longest time from `hello` until the first `readings`, `state` and `pong`, seconds.
+const FIRST_WITHIN_S: f64 = 10.0;
+/// Age of the last `state` above which the link counts as lost, seconds. A vehicle sends one a second, and several in a
+/// row may get lost.
+const STATE_WITHIN_S: f64 = 6.0;
 /// Longest time, seconds, for which all readings may be ignored because their numbers are not new.
 const UNREAD_S: f64 = 0.8;
 /// Ranges that are older than this are dropped: the robot has moved on since then.
@@ -35,6 +38,11 @@ pub(crate) struct Inbox {
     /// Whether the vehicle has started again since the last tick.
     has_restarted: bool,
     state: Option<State>,
+    /// Arrival of `hello` and of the last `state`, seconds.
+    greeted_s: f64,
+    state_s: f64,
+    /// Whether the vehicle has answered a ping.
+    has_answered: bool,
     link: Link,
     motions: Motions,
     sequence: Sequence,
@@ -45,6 +53,8 @@ pub(crate) struct Inbox {
     stamps: Option<Stamps>,
     faulty: u64,
     fault: String,
+    /// The fault of a `hello`: what follows it cannot be trusted.
+    bad_hello: Option<String>,
     closed: Option<String>,
     ages: Ages,
     outlines: Outlines,
@@ -61,6 +71,9 @@ impl Inbox {
             hello: None,
             has_restarted: false,
             state: None,
+            greeted_s: 0.0,
+            state_s: 0.0,
+            has_answered: false,
             link: Link::default(),
             motions: Motions::default(),
             sequence: Sequence::default(),
@@ -69,6 +82,7 @@ impl Inbox {
             stamps: None,
             faulty: 0,
             fault: String::new(),
+            bad_hello: None,
             closed: None,
             ages: Ages::default(),
             outlines: Outlines::default(),
@@ -87,9 +101,19 @@ impl Inbox {
         self.closed.as_deref()
     }
 
+    /// The fault of the `hello`, if it is malformed.
+    pub(crate) fn bad_hello(&self) -> Option<&str> {
+        self.bad_hello.as_deref()
+    }
+
     /// The last faulty line; empty without one.
     pub(crate) fn fault(&self) -> &str {
         &self.fault
+    }
+
+    /// Whether readings have shown that the vehicle stands still, or that it does not.
+    pub(crate) fn is_standstill_known(&self) -> bool {
+        self.told_stood.is_some()
     }
 
     /// The number of readings so far.
@@ -129,23 +153,28 @@ impl Inbox {
     pub(crate) fn take(&mut self, heard: Heard<FromVehicle>, now_s: f64) {
         self.link.heard(&heard, now_s);
         match heard {
-            Heard::Message(FromVehicle::Hello(hello)) => self.greet(hello),
+            Heard::Message(FromVehicle::Hello(hello)) => self.greet(hello, now_s),
             Heard::Message(FromVehicle::Readings(readings)) => self.read(&readings, now_s),
-            Heard::Message(FromVehicle::State(state)) => self.state = Some(state),
+            Heard::Message(FromVehicle::State(state)) => (self.state, self.state_s) = (Some(state), now_s),
             Heard::Malformed(misfit) => {
                 self.faulty += 1;
                 self.fault = foreign::plain(&misfit.to_string()).into_owned();
+                if misfit.field.starts_with("hello") {
+                    self.bad_hello = Some(self.fault.clone());
+                }
             }
-            // The link has taken the answer to a ping; keys and messages of newer protocols have no effect.
-            Heard::Message(FromVehicle::Pong(_)) | Heard::Unknown(_) => {}
+            // The link has taken the answer to a ping.
+            Heard::Message(FromVehicle::Pong(_)) => self.has_answered = true,
+            // Keys and messages of newer protocols have no effect.
+            Heard::Unknown(_) => {}
         }
     }
 
     /// A vehicle that introduces itself again has started again: its poses are in a new frame, its numbers begin again.
-    fn greet(&mut self, hello: Box<Hello>) {
+    fn greet(&mut self, hello: Box<Hello>, now_s: f64) {
         self.has_restarted |= self.hello.is_some();
         (self.motions, self.state, self.unread_since_s) = (Motions::default(), None, None);
-        self.told_stood = None;
+        (self.told_stood, self.has_answered, self.greeted_s, self.bad_hello) = (None, false, now_s, None);
         self.sequence.restart();
         self.outlines.greet(hello.has.drawn_ids);
         self.hello = Some(hello);
@@ -207,13 +236,18 @@ impl Inbox {
 
     fn due_stood(&mut self, now_s: f64) -> Option<Stood> {
         let asked_s = self.link.asked_to_stand_s()?;
-        let (confirmed, after_s) = match self.link.hold(now_s) {
+        let hold = self.link.hold(now_s);
+        let (confirmed, after_s) = match hold {
             Hold::Held { after_s } => (true, after_s),
-            Hold::NotConfirmed => (false, now_s - asked_s),
+            Hold::NotConfirmed | Hold::MovedAgain => (false, now_s - asked_s),
             Hold::NotAsked | Hold::Stopping => return None,
         };
+        // A vehicle that has not sent everything yet may report an emergency stop or another commander later.
+        if !self.missing().is_empty() {
+            return None;
+        }
         let is_new = self.told_stood.replace(confirmed) != Some(confirmed);
-        is_new.then(|| Stood { confirmed, after_s: rounded(after_s) })
+        is_new.then(|| Stood { confirmed, after_s: rounded(after_s), moved: hold == Hold::MovedAgain })
     }
 
     fn due_link(&mut self, now_s: f64) -> Option<LinkSeen> {
@@ -245,6 +279,16 @@ impl Inbox {
         }
     }
 
+    /// The messages that the vehicle has not sent since its `hello`, although the console needs them.
+    fn missing(&self) -> Vec<&'static str> {
+        let sent = [
+            (self.link.counts().received > 0, "`readings`"),
+            (self.state.is_some(), "`state`"),
+            (self.has_answered, "`pong`"),
+        ];
+        sent.into_iter().filter(|(is_sent, _)| !is_sent).map(|(_, kind)| kind).collect()
+    }
+
     fn state(&self, now_s: f64) -> (LinkState, String) {
         if let Some(why) = &self.closed {
             return (LinkState::Closed, why.clone());
@@ -257,9 +301,6 @@ impl Inbox {
                 return (LinkState::Lost, "it has stopped answering, so it may not receive commands".into());
             }
             Reached::Lost => return (LinkState::Lost, "its readings stopped".into()),
-            Reached::Connecting if now_s > FIRST_WITHIN_S => {
-                return (LinkState::Lost, "it has not sent readings yet".into());
-            }
             Reached::Late | Reached::Alive
                 if self.unread_since_s.is_some_and(|since_s| now_s - since_s > UNREAD_S) =>
             {
@@ -271,6 +312,18 @@ impl Inbox {
             }
             Reached::Connecting | Reached::Late | Reached::Alive => {}
         }
+        if let Some(fault) = &self.bad_hello {
+            return (LinkState::Faulty, fault.clone());
+        }
+        let missing = self.missing();
+        if !missing.is_empty() && now_s - self.greeted_s > FIRST_WITHIN_S {
+            let missing = missing.join(" and no ");
+            return (LinkState::Lost, format!("within {FIRST_WITHIN_S} s of `hello`, it sent no {missing}"));
+        }
+        if self.state.is_some() && now_s - self.state_s > STATE_WITHIN_S {
+            let why = format!("it has sent no `state` for {STATE_WITHIN_S} s; one a second is required");
+            return (LinkState::Lost, why);
+        }
         if let Some(fault) = self.outlines.fault() {
             return (LinkState::Faulty, fault);
         }
@@ -281,11 +334,12 @@ impl Inbox {
         let text = foreign::plain(state.text.as_deref().unwrap_or_default()).into_owned();
         match (state.mode, state.commander) {
             (Mode::Ready, Commander::You) => (LinkState::Up, String::new()),
-            (Mode::Ready, Commander::OtherConsole) => {
-                (LinkState::VehicleFault, "it obeys another console; this one can only watch".into())
-            }
+            (Mode::Ready, Commander::OtherConsole) => (
+                LinkState::OtherCommander,
+                "another console drives it; this one can only watch until that one exits".into(),
+            ),
             (Mode::Ready, Commander::OtherProgram) => {
-                (LinkState::VehicleFault, "another program sends commands to it".into())
+                (LinkState::OtherCommander, "another program sends commands to it".into())
             }
             (Mode::Manual, _) => (LinkState::Manual, text),
             (Mode::EmergencyStop, _) => (LinkState::EmergencyStop, text),

@@ -6,9 +6,15 @@ use flight::{Flight, behind::Behind};
 use scenario::Scenario;
 use vehicle::{
     port::{CannotInject, Command, Sensed, StationFault, Vehicle, VehicleInfo},
-    wire::{FromSession, FromVehicle, Misfit, Reader, ToSession, ToVehicle, Writer},
+    wire::{
+        FromSession, FromVehicle, Misfit, Reader, ToSession, ToVehicle, Writer,
+        message::{Commander, Pong},
+    },
 };
 use world::Truth;
+
+/// The vehicle sends its state in one tick of this many, which last less than a second.
+const STATE_EVERY: u64 = 8;
 
 /// A simulated vehicle that is reached by the bytes of the wire alone.
 struct Loopback {
@@ -55,6 +61,8 @@ pub(crate) fn looped_back(flight: Flight, scenario: &Scenario) -> Result<Flight,
     };
     loopback.hear(&FromVehicle::Hello(hello))?;
     loopback.hear(&first)?;
+    loopback.hear(&FromVehicle::Pong(Pong { echo_s: 0.0, stamp_s: 0.0 }))?;
+    loopback.tell_state()?;
     Ok(flight.with_vehicle(scenario, Box::new(loopback), info))
 }
 
@@ -85,7 +93,12 @@ impl Loopback {
         }
         self.tick += 1;
         let readings = self.behind.step(self.now_s());
-        self.hear(&readings)
+        self.hear(&readings)?;
+        if self.tick.is_multiple_of(STATE_EVERY) { self.tell_state() } else { Ok(()) }
+    }
+
+    fn tell_state(&mut self) -> Result<(), Misfit> {
+        self.hear(&self.behind.state(self.now_s(), Commander::You))
     }
 }
 

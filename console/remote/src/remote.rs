@@ -160,8 +160,8 @@ impl Vehicle for Remote {
         Err(CannotInject)
     }
 
-    fn is_heard(&self) -> bool {
-        self.heard() > 0
+    fn is_standstill_known(&self) -> bool {
+        self.shared.inbox().is_standstill_known()
     }
 
     fn brake(&self) -> Option<Brake> {
@@ -208,6 +208,9 @@ fn greeted(
         let inbox = shared.inbox();
         if let Some(hello) = inbox.hello() {
             return Ok((hello.clone(), write));
+        }
+        if let Some(fault) = inbox.bad_hello() {
+            return Err(format!("its introduction is malformed: {fault}"));
         }
         if let Some(why) = inbox.closed() {
             let fault = inbox.fault();

@@ -28,8 +28,9 @@ pub trait Vehicle: Send {
     /// The vehicle is not a simulation, or does not offer faults.
     fn inject(&mut self, fault: StationFault) -> Result<(), CannotInject>;
 
-    /// Whether readings have arrived. Until then, a vehicle in another process is not driven.
-    fn is_heard(&self) -> bool {
+    /// Whether readings have shown that the vehicle stands still, or that it does not. Until then, a start of a vehicle in
+    /// another process is not decided.
+    fn is_standstill_known(&self) -> bool {
         true
     }
 
@@ -68,6 +69,22 @@ pub struct Stood {
     pub confirmed: bool,
     /// Time since the command, seconds; until the first of the readings without motion if the stop is confirmed.
     pub after_s: f64,
+    /// Whether the vehicle has moved again after a confirmed stop, without an order.
+    pub moved: bool,
+}
+
+impl Stood {
+    /// The reason why a mission must not start with this vehicle, as a clause; `None` if the vehicle stands still.
+    pub fn trouble(&self) -> Option<&'static str> {
+        if self.confirmed {
+            return None;
+        }
+        Some(if self.moved {
+            "it moves without an order; stop it by hand, then plan again from there"
+        } else {
+            "odometry does not show that it stands still; stop it by hand, and wait until it stands"
+        })
+    }
 }
 
 /// When a reading was taken and when it arrived.
@@ -100,6 +117,8 @@ pub enum LinkState {
     EmergencyStop,
     /// The vehicle reports a fault, or that it is not ready.
     VehicleFault,
+    /// The vehicle obeys another console or program.
+    OtherCommander,
 }
 
 impl LinkState {
@@ -119,6 +138,7 @@ impl LinkState {
             Self::Manual => "manual",
             Self::EmergencyStop => "emergency stop",
             Self::VehicleFault => "fault",
+            Self::OtherCommander => "other commander",
         }
     }
 }
@@ -163,6 +183,7 @@ impl LinkSeen {
             LinkState::Manual => "a person drives the vehicle by hand",
             LinkState::EmergencyStop => "the emergency stop of the vehicle is pressed",
             LinkState::VehicleFault => "the vehicle reports a fault",
+            LinkState::OtherCommander => "the vehicle obeys another commander",
         };
         let why = if self.why.is_empty() { String::new() } else { format!(": {}", self.why) };
         let unknown = if self.state.is_heard() {

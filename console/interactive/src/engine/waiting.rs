@@ -27,6 +27,9 @@ impl EngineThread {
         let mut orders = Vec::new();
         loop {
             let is_ahead = self.is_ahead();
+            if !orders.is_empty() && self.is_idle() && !is_ahead {
+                return (orders, None);
+            }
             let due = pace.wakes_at(!orders.is_empty());
             let due = if is_ahead { due.max(Instant::now() + LOOK_AGAIN) } else { due };
             let wait = due.saturating_duration_since(Instant::now()).min(HEALTH_PERIOD);

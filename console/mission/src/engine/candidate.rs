@@ -12,11 +12,10 @@ use super::{
 use crate::{
     ask::{AskId, Said},
     event::{EventKind, OfferEnd},
+    standing::NEAR_PLAN_M,
 };
 use planner_api::Plan;
 
-/// Distance from the robot to the beginning of the candidate's plan, metres, above which the candidate must plan again.
-pub(super) const NEAR_PLAN_M: f64 = 0.5;
 /// Distance that the robot has moved, metres, up to which a candidate that plans again keeps to its first plan; beyond
 /// it, too much floor would be scanned twice.
 const MOST_GONE_M: f64 = 3.0;

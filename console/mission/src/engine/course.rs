@@ -23,6 +23,8 @@ pub(super) struct Course {
     pub follower: Option<PathFollower>,
     /// The lines that the plan never crosses.
     pub cuts: CutsRule,
+    /// The place where the plan begins.
+    pub begins: Option<Point>,
     /// Obstacles found since the plan that is now being made was requested.
     pub found_since: Vec<Shape>,
 }
@@ -72,8 +74,14 @@ impl Course {
 
     /// Switches to a plan.
     pub(super) fn take(&mut self, plan: &Plan) {
-        (self.due, self.is_whole) = (None, plan.complete);
+        (self.due, self.is_whole, self.begins) = (None, plan.complete, plan.path.first().copied());
         self.follower = (!plan.path.is_empty()).then(|| PathFollower::new(plan.path.clone()));
+    }
+
+    /// Distance from a real vehicle that waits for its start to the beginning of its plan, metres.
+    pub(super) fn first_from_m(&self, known: &Known) -> Option<f64> {
+        let at = self.begins.filter(|_| known.config.live && known.is_waiting())?;
+        Some((known.position() - at).norm())
     }
 
     /// Advances along the plan to the robot's position.

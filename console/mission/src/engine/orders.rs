@@ -2,7 +2,6 @@
 
 use super::{
     Mission,
-    candidate::NEAR_PLAN_M,
     driving::{Driving, Prepare},
     role::Candidate,
 };
@@ -11,6 +10,7 @@ use crate::{
     order::Order,
     phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes},
     planner::{ParamValue, PlannerChoice},
+    standing::NEAR_PLAN_M,
 };
 use planner_api::Reason;
 
@@ -20,7 +20,10 @@ impl Mission {
         // The order precedes its effects in the journal.
         let allowed = self.standing().allows(order).map_err(|why| why.to_string());
         if let Err(why) = allowed.and_then(|()| self.known.check_place(order)) {
-            self.happened.push(EventKind::OrderRefused { order: order.clone(), why });
+            self.happened.push(EventKind::OrderRefused { order: order.clone(), why: why.clone() });
+            if order.is_start() && self.known.is_waiting() && !self.known.config.attended {
+                self.end(Outcome::Aborted, format!("the mission cannot start: {why}"));
+            }
             return;
         }
         self.happened.push(EventKind::Ordered { order: order.clone() });

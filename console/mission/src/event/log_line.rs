@@ -128,12 +128,15 @@ impl Event {
                 format!("floor {}: pressure {:.0} Pa", medium.word(), pressure_pa),
             ),
             EventKind::Link(link) => of_link(link),
-            EventKind::Stood { confirmed: true, after_s } => line(
+            EventKind::Stood { confirmed: true, after_s, .. } => line(
                 Severity::Info,
                 "vehicle",
                 format!("stopped, confirmed by odometry after {after_s:.2} s"),
             ),
-            EventKind::Stood { confirmed: false, after_s } => line(
+            EventKind::Stood { confirmed: false, moved: true, .. } => {
+                line(Severity::Crit, "vehicle", "vehicle moves without an order".into())
+            }
+            EventKind::Stood { confirmed: false, after_s, .. } => line(
                 Severity::Crit,
                 "vehicle",
                 format!("STOP NOT CONFIRMED: odometry does not show a stop {after_s:.2} s after the command"),

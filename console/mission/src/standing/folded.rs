@@ -13,6 +13,8 @@ use crate::{
 };
 use ready::Ready;
 use serde::{Deserialize, Serialize};
+use vehicle::port::Stood;
+use world::Point;
 
 /// The standing of a mission as it follows from its events, for code that sees only the events.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -42,9 +44,17 @@ pub struct FoldedStanding {
     /// Why the vehicle must not be driven, as a clause.
     #[serde(default)]
     trouble: Option<String>,
+    /// Why a vehicle that waits for its start does not stand still, as a clause.
+    #[serde(default)]
+    unsteady: Option<String>,
     /// Whether the robot is a real vehicle.
     #[serde(default)]
     is_live: bool,
+    /// The beginning of the last plan before the start, and where a real vehicle is.
+    #[serde(default)]
+    first: Option<Point>,
+    #[serde(default)]
+    here: Option<Point>,
 }
 
 impl FoldedStanding {
@@ -57,6 +67,12 @@ impl FoldedStanding {
                 *self = Self { ready: Ready::of(run), takes_offers, is_live, ..Self::default() };
             }
             EventKind::Link(link) => self.trouble = link.trouble(),
+            EventKind::Stood { confirmed, after_s, moved } => {
+                let stood = Stood { confirmed: *confirmed, after_s: *after_s, moved: *moved };
+                self.unsteady = stood.trouble().map(str::to_owned);
+            }
+            EventKind::Estimated { pose } => self.here = self.is_live.then_some(pose.position),
+            EventKind::Planned { path, .. } => self.first = path.first().copied(),
             EventKind::Ordered { order } if order.is_start() => self.phase = Phase::Running(Gait::Steady),
             EventKind::Ordered { order } => {
                 if matches!(order, Order::Shadow(_)) {
@@ -117,6 +133,7 @@ impl FoldedStanding {
             None if self.is_alarmed => PositionTrust::Alarmed,
             None => PositionTrust::Good,
         };
+        let is_waiting = self.phase == Phase::Waiting;
         Standing {
             phase: &self.phase,
             position,
@@ -124,8 +141,13 @@ impl FoldedStanding {
             shadow: self.shadow,
             offer: self.offer,
             readiness: self.ready.readiness(),
-            trouble: self.trouble.as_deref(),
+            trouble: self.trouble.as_deref().or(self.unsteady.as_deref().filter(|_| is_waiting)),
             is_live: self.is_live,
+            from_plan_m: self
+                .here
+                .zip(self.first)
+                .filter(|_| is_waiting)
+                .map(|(here, at)| (here - at).norm()),
         }
     }
 }

@@ -61,6 +61,7 @@ fn standing(phase: &Phase, position: PositionTrust) -> Standing<'_> {
         offer: Some(OfferStage::Offered),
         readiness: Readiness::Unseen,
         trouble: None,
+        from_plan_m: None,
         is_live: false,
     }
 }

@@ -9,7 +9,13 @@ use vehicle::wire::{
 fn inbox() -> Inbox {
     let mut inbox = Inbox::new([("A".to_owned(), StationId(1))].into());
     inbox.take(hello(), 0.0);
+    inbox.take(ready(), 0.0);
+    inbox.has_answered = true;
     inbox
+}
+
+fn ready() -> Heard<FromVehicle> {
+    state(Mode::Ready, Commander::You)
 }
 
 fn hello() -> Heard<FromVehicle> {
@@ -137,7 +143,7 @@ fn each_trouble_is_a_state_of_the_link_with_its_reason() {
         (state(Mode::Fault, Commander::You), LinkState::VehicleFault, "left track"),
         (
             state(Mode::Ready, Commander::OtherProgram),
-            LinkState::VehicleFault,
+            LinkState::OtherCommander,
             "another program sends commands to it",
         ),
         (state(Mode::Ready, Commander::You), LinkState::Up, ""),
@@ -209,6 +215,54 @@ fn a_stop_is_decided_by_readings_that_were_taken_after_it_was_sent() {
 }
 
 #[test]
+fn a_vehicle_that_moves_without_an_order_is_told_as_such() {
+    let mut inbox = inbox();
+    inbox.commanded(false, 1.0);
+    inbox.sent(&ToVehicle::Stop(vehicle::wire::message::Stop { seq: 1, stamp_s: 1.0 }));
+    let stood = |inbox: &mut Inbox, seq, forward_m| {
+        let now_s = 1.0 + 0.05 * seq as f64;
+        say(inbox, moved(seq, forward_m, 0.0), now_s);
+        inbox.sense(now_s).live.and_then(|live| live.stood).map(|stood| (stood.confirmed, stood.moved))
+    };
+    let told: Vec<_> = [0.0, 0.0, 0.0, 0.0, 0.01, 0.01, 0.0, 0.0, 0.0, 0.0]
+        .into_iter()
+        .zip(1..)
+        .filter_map(|(forward_m, seq)| stood(&mut inbox, seq, forward_m))
+        .collect();
+    assert_eq!(told, [(true, false), (false, true), (true, false)]);
+}
+
+#[test]
+fn what_the_console_needs_is_named_if_the_vehicle_does_not_send_it() {
+    let mut inbox = Inbox::new(BTreeMap::new());
+    inbox.take(hello(), 3.0);
+    let seen = |inbox: &Inbox, now_s| (inbox.link(now_s).state, inbox.link(now_s).why);
+    assert_eq!(seen(&inbox, 12.9).0, LinkState::Up, "it may still come");
+    let missing = |why: &str| (LinkState::Lost, format!("within 10 s of `hello`, it sent no {why}"));
+    assert_eq!(seen(&inbox, 13.1), missing("`readings` and no `state` and no `pong`"));
+    say(&mut inbox, moved(1, 0.0, 0.0), 13.1);
+    assert_eq!(seen(&inbox, 13.1), missing("`state` and no `pong`"));
+    inbox.take(ready(), 13.1);
+    inbox.has_answered = true;
+    assert_eq!(seen(&inbox, 13.1).0, LinkState::Up);
+    for n in 2..200 {
+        say(&mut inbox, moved(n, 0.0, 0.0), 13.1 + 0.05 * n as f64);
+    }
+    let (state, why) = seen(&inbox, 20.0);
+    assert!(state == LinkState::Lost && why.contains("no `state` for 6 s"), "{why}");
+}
+
+#[test]
+fn a_malformed_hello_is_a_fault_of_its_own() {
+    let mut inbox = inbox();
+    say(&mut inbox, moved(1, 0.0, 0.0), 1.0);
+    let misfit = Misfit { field: "hello.session".into(), what: "is missing".into() };
+    inbox.take(Heard::Malformed(misfit), 1.0);
+    let link = inbox.link(1.0);
+    assert_eq!((link.state, link.why.as_str()), (LinkState::Faulty, "hello.session: is missing"));
+}
+
+#[test]
 fn the_last_fault_of_a_vehicle_is_the_reason_for_the_end_of_its_link() {
     let mut inbox = inbox();
     inbox.take(state(Mode::Fault, Commander::You), 1.0);
@@ -222,6 +276,7 @@ fn the_link_is_reported_when_it_changes_and_every_ten_seconds() {
     let mut reports = Vec::new();
     for tick in 0..250_u32 {
         let now_s = 0.1 * f64::from(tick);
+        inbox.take(ready(), now_s);
         if !(150..170).contains(&tick) {
             say(&mut inbox, moved(u64::from(tick) + 1, 0.0, 0.0), now_s);
         }

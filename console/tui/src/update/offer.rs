@@ -192,7 +192,7 @@ pub(crate) fn speed(model: &Model, faster: bool) -> Result<(), String> {
 fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
     match why {
         Refusal::NotStarted => Some("<start>: start"),
-        Refusal::NoPlan => Some("<plan-again>: plan"),
+        Refusal::NoPlan | Refusal::PlanElsewhere { .. } => Some("<plan-again>: plan"),
         Refusal::PlanFailed { .. } => Some("<planner>: change planner"),
         // Space asks to resume in this case.
         Refusal::AlreadyStarted if matches!(phase, Phase::Held(_)) => None,

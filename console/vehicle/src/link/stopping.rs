@@ -24,8 +24,10 @@ pub enum Hold {
         /// Time from the stop to the first of the readings without motion, seconds.
         after_s: f64,
     },
-    /// The vehicle still moves, its motion is unknown, or it moved again after a standstill.
+    /// The vehicle still moves, or its motion is unknown.
     NotConfirmed,
+    /// The vehicle moved again after a standstill.
+    MovedAgain,
 }
 
 /// Watches a stop.
@@ -88,7 +90,7 @@ impl Stopping {
         let Some(asked_s) = self.asked_s else { return Hold::NotAsked };
         match self.held_after_s {
             Some(after_s) if self.still >= STILL_READINGS => Hold::Held { after_s },
-            Some(_) => Hold::NotConfirmed,
+            Some(_) => Hold::MovedAgain,
             None if now_s - asked_s > limit_s => Hold::NotConfirmed,
             None => Hold::Stopping,
         }
@@ -148,9 +150,9 @@ mod tests {
         (1..=3).for_each(|n| stopping.moved(&motion(0.0, 0.0), 1.0 + 0.1 * f64::from(n)));
         assert!(matches!(stopping.state(1.3, 1.0), Hold::Held { .. }));
         stopping.moved(&motion(0.1, 0.0), 1.4);
-        assert_eq!(stopping.state(1.4, 1.0), Hold::NotConfirmed);
+        assert_eq!(stopping.state(1.4, 1.0), Hold::MovedAgain);
         for n in 5..=7 {
-            assert_eq!(stopping.state(1.4, 1.0), Hold::NotConfirmed, "{n}");
+            assert_eq!(stopping.state(1.4, 1.0), Hold::MovedAgain, "{n}");
             stopping.moved(&motion(0.0, 0.0), 1.0 + 0.1 * f64::from(n));
         }
         let Hold::Held { after_s } = stopping.state(1.7, 1.0) else { panic!("it stands again") };

@@ -6,8 +6,8 @@ use super::{
     fields::fields_of,
     lines::{Lines, Piece},
     message::{
-        Ae, Arrival, Bye, Channel, Difference, Drive, FromVehicle, Has, Hello, Limits, Odometry, Outline,
-        Ping, Pong, Pose, Readings, Scan, State, StationRanges, Stop, Tether, ToVehicle,
+        Ae, Arrival, Bye, Channel, Commander, Difference, Drive, FromVehicle, Has, Hello, Limits, Mode,
+        Odometry, Outline, Ping, Pong, Pose, Readings, Scan, State, StationRanges, Stop, Tether, ToVehicle,
     },
     path::{field_at, keys},
     session::{FromSession, ToSession},
@@ -77,6 +77,10 @@ pub trait Incoming: Sized {
     /// # Errors
     /// The first value that is out of bounds.
     fn check(&self, session: &mut Self::Session) -> Result<(), Misfit>;
+    /// The part of a malformed line that counts although another field is wrong.
+    fn rest_of(_: &str, _: &Self::Session) -> Option<Self> {
+        None
+    }
     /// Whether a message only repeats an earlier one, so that it is left out.
     fn is_repeated(&self, _: &Self::Session) -> bool {
         false
@@ -173,6 +177,8 @@ impl<M: Incoming> Reader<M> {
             Err(misfit) => {
                 let malformed = self.malformed(misfit);
                 heard.push(malformed);
+                let rest = std::str::from_utf8(line).ok().and_then(|line| M::rest_of(line, &self.session));
+                heard.extend(rest.map(Heard::Message));
             }
         }
     }
@@ -244,12 +250,35 @@ fn named(kind: &str, line: &str, error: &serde_json::Error) -> Misfit {
 
 /// The kind of a message that cannot be parsed, if the kind can be found.
 fn kind_of(line: &str) -> String {
-    let after = line.split("\"type\"").nth(1).unwrap_or_default();
+    word_of(line, "type").unwrap_or_default()
+}
+
+/// The word at a key of a line that cannot be parsed; `None` without the key, and empty if the value is not a word.
+fn word_of(line: &str, key: &str) -> Option<String> {
+    let after = line.split(&format!("\"{key}\"")).nth(1)?;
     let value = after.trim_start().strip_prefix(':').unwrap_or_default().trim_start();
-    let kind = value.strip_prefix('"').and_then(|rest| rest.split('"').next()).unwrap_or_default();
+    let word = value.strip_prefix('"').and_then(|rest| rest.split('"').next()).unwrap_or_default();
     let is_word =
-        kind.len() <= UNKNOWN_CHARS && kind.bytes().all(|byte| byte.is_ascii_lowercase() || byte == b'_');
-    if is_word { kind.to_owned() } else { String::new() }
+        word.len() <= UNKNOWN_CHARS && word.bytes().all(|byte| byte.is_ascii_lowercase() || byte == b'_');
+    Some(if is_word { word.to_owned() } else { String::new() })
+}
+
+/// The state in a malformed line, if the vehicle says that it does not obey, or if its mode cannot be read: each field
+/// counts by itself, because a wrong battery must not hide an emergency stop.
+fn alarming(line: &str) -> Option<State> {
+    fn value<T: DeserializeOwned>(word: Option<String>) -> Option<T> {
+        serde_json::from_value(word?.into()).ok()
+    }
+    if kind_of(line) != "state" {
+        return None;
+    }
+    let (mode, commander) = (word_of(line, "mode"), word_of(line, "commander"));
+    let is_unreadable = mode.as_ref().is_some_and(|mode| value::<Mode>(Some(mode.clone())).is_none());
+    let mode = if is_unreadable { Mode::Fault } else { value(mode).unwrap_or(Mode::Ready) };
+    let text = is_unreadable.then(|| "it sent a `state` whose `mode` is unknown".to_owned());
+    let commander = value(commander).unwrap_or_default();
+    let is_alarming = mode != Mode::Ready || commander != Commander::You;
+    is_alarming.then_some(State { stamp_s: 0.0, mode, text, battery: None, commander })
 }
 
 /// A word for a number that is not finite, around a place in a line.
@@ -303,6 +332,11 @@ impl Incoming for FromVehicle {
 
     fn check(&self, session: &mut FromSession) -> Checked {
         session.check(self)
+    }
+
+    fn rest_of(line: &str, session: &FromSession) -> Option<Self> {
+        session.hello()?;
+        alarming(line).map(Self::State)
     }
 
     fn is_repeated(&self, session: &FromSession) -> bool {

@@ -3,7 +3,7 @@
 use super::{
     FromSession, FromVehicle, Heard, Incoming, LINE_MAX, Reader, ToVehicle, Unknown, Writer,
     examples::{examples, to_session},
-    message::{Drive, Odometry, Readings},
+    message::{Drive, Mode, Odometry, Readings},
 };
 use proptest::prelude::*;
 
@@ -28,6 +28,36 @@ fn told(lines: &[&str]) -> String {
     match last {
         Some(Heard::Malformed(misfit)) => misfit.to_string(),
         other => format!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_wrong_field_of_a_state_hides_neither_its_emergency_stop_nor_its_commander() {
+    let state = |rest: &str| format!("{{\"type\": \"state\", \"stamp_s\": 5.0, {rest}}}\n");
+    let cases = [
+        (r#""mode": "emergency_stop", "battery": 87"#, "state.battery: 87", Some(Mode::EmergencyStop)),
+        (r#""mode": "emergency_stop", "battery": NaN"#, "state.battery: NaN", Some(Mode::EmergencyStop)),
+        (r#""battery": 87, "mode": "manual""#, "state.battery: 87", Some(Mode::Manual)),
+        (r#""mode": "estop""#, "state.mode: unknown variant `estop`", Some(Mode::Fault)),
+        (
+            r#""mode": "ready", "battery": 87, "commander": "other_program""#,
+            "state.battery",
+            Some(Mode::Ready),
+        ),
+        (r#""mode": "ready", "battery": 87"#, "state.battery: 87", None),
+        (r#""battery": 0.5"#, "state.mode: missing field", None),
+    ];
+    for (rest, named, mode) in cases {
+        let heard = greeted().read(state(rest).as_bytes());
+        let Heard::Malformed(misfit) = &heard[0] else { panic!("{heard:?}") };
+        assert!(misfit.to_string().starts_with(named), "{misfit}");
+        let counted = heard.iter().find_map(|heard| match heard {
+            Heard::Message(FromVehicle::State(state)) => Some(state.mode),
+            _ => None,
+        });
+        assert_eq!(counted, mode, "{rest}");
+        let before_hello = Reader::<FromVehicle>::new(FromSession::default()).read(state(rest).as_bytes());
+        assert_eq!(before_hello.len(), 1, "{before_hello:?}");
     }
 }
 

@@ -39,8 +39,10 @@ fn cause(state: LinkState) -> Option<Cause> {
     match state {
         LinkState::Up => None,
         LinkState::Lost | LinkState::Closed | LinkState::Faulty => Some(Cause::Link),
-        LinkState::Restarted | LinkState::Manual | LinkState::EmergencyStop | LinkState::VehicleFault => {
-            Some(Cause::Vehicle)
-        }
+        LinkState::Restarted
+        | LinkState::Manual
+        | LinkState::EmergencyStop
+        | LinkState::VehicleFault
+        | LinkState::OtherCommander => Some(Cause::Vehicle),
     }
 }

@@ -60,6 +60,7 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::Certified { .. } => "certificate",
         EventKind::Link(_) => "link to the vehicle",
         EventKind::Stood { confirmed: true, .. } => "vehicle stopped",
+        EventKind::Stood { moved: true, .. } => "unordered motion",
         EventKind::Stood { .. } => "stop not confirmed",
         _ => "event",
     }
