@@ -35,13 +35,18 @@ def scenario(path):
     circles = [o for o in whole.get("obstacles", []) if o["kind"] == "circle"]
     if "radius_m" not in whole["tank"] or len(circles) < len(whole.get("obstacles", [])):
         sys.exit(f"{path}: only round tanks with round obstacles can be built in ir-sim")
-    robot = whole["robot"]
+    robot = {"radius_m": 0.25, "speed_max_m_per_s": 0.4, "turn_rate_max_deg_per_s": 60.0, "acceleration_m_per_s2": 0.5,
+             **whole.get("robot", {})}  # the defaults of scenario-format.md
+    mission = whole.get("mission", {})
     if "start_m" not in robot:
         sys.exit(f"{path}: robot.start_m is missing")
+    start_x, start_y = map(float, robot["start_m"])
+    goal_x, goal_y = map(float, mission.get("goal_m", (start_x, start_y)))
+    heading = math.radians(robot.get("start_heading_deg", math.degrees(math.atan2(goal_y - start_y, goal_x - start_x))))
     return {
         "tank_m": whole["tank"]["radius_m"],
         "columns": [(*map(float, o["center_m"]), o["radius_m"]) for o in circles],
-        "start": [*map(float, robot["start_m"]), math.radians(robot.get("start_heading_deg", 0.0))],
+        "start": [start_x, start_y, heading],
         "radius_m": robot["radius_m"],
         "limits": {
             "speed_m_per_s": robot["speed_max_m_per_s"],
@@ -51,7 +56,7 @@ def scenario(path):
         },
         "ae": whole.get("ae"),
         "anchor": whole["tether"].get("anchor_m", robot["start_m"]) if "tether" in whole else None,
-        "swath_m": whole.get("mission", {}).get("swath_m"),
+        "swath_m": mission.get("swath_m", 0.5) if mission.get("kind") == "cover" else None,
     }
 
 
@@ -197,7 +202,22 @@ class Robot:
 
 
 def account(world, path):
-    """Evaluates a file of true states. Reachable floor: within half a swath of a place where the hull fits."""
+    """Evaluates a file of true states."""
+    rows = [json.loads(line) for line in open(path) if line.endswith("]\n")]
+    collisions, least, longest, was = 0, math.inf, 0.0, False
+    for _, x, y, _, _, _, collided, length in rows:
+        collisions += collided and not was
+        was, longest = collided, max(longest, length or 0.0)
+        gaps = [math.hypot(x - cx, y - cy) - r for cx, cy, r in world["columns"]] + [world["tank_m"] - math.hypot(x, y)]
+        least = min(least, min(gaps) - world["radius_m"])
+    # A drive to a point scans no floor.
+    covered = round(coverage(world, rows), 4) if world["swath_m"] else None
+    return {"coverage": covered, "collisions": int(collisions), "clearance_min_m": round(least, 4),
+            "tether_max_m": round(longest, 3), "time_s": round(len(rows) * PERIOD_S, 1)}
+
+
+def coverage(world, rows):
+    """Scanned share of the reachable floor, which is within half a swath of a place where the hull fits."""
     import numpy
     cell, half, tank, hull = 0.05, world["swath_m"] / 2, world["tank_m"], world["radius_m"]
     side = numpy.arange(-tank, tank, cell) + cell / 2
@@ -218,23 +238,15 @@ def account(world, path):
                 reachable |= numpy.roll(fits, (i, k), (0, 1))
     reachable &= floor
     done = numpy.zeros_like(fits)
-    rows = [json.loads(line) for line in open(path) if line.endswith("]\n")]
-    across = numpy.arange(-half, half + 1e-9, cell / 2)
-    collisions, before, least, longest, was = 0, None, math.inf, 0.0, False
-    for _, x, y, heading, _, _, collided, length in rows:
-        collisions += collided and not was
-        was, longest = collided, max(longest, length or 0.0)
-        gaps = [math.hypot(x - cx, y - cy) - r for cx, cy, r in world["columns"]] + [tank - math.hypot(x, y)]
-        least = min(least, min(gaps) - hull)
+    across, before = numpy.arange(-half, half + 1e-9, cell / 2), None
+    for _, x, y, heading, *_ in rows:
         if before is None or math.dist(before[:2], (x, y)) > cell / 4 or abs(before[2] - heading) > 0.05:
             before = (x, y, heading)
             i = ((y + across * math.cos(heading) + tank) / cell).astype(int)
             k = ((x - across * math.sin(heading) + tank) / cell).astype(int)
             on = (i >= 0) & (k >= 0) & (i < len(side)) & (k < len(side))
             done[i[on], k[on]] = True
-    covered = float((done & reachable).sum() / reachable.sum())
-    return {"coverage": round(covered, 4), "collisions": int(collisions), "clearance_min_m": round(least, 4),
-            "tether_max_m": round(longest, 3), "time_s": round(len(rows) * PERIOD_S, 1)}
+    return float((done & reachable).sum() / reachable.sum())
 
 
 def main():
