@@ -13,6 +13,7 @@ import math
 import os
 import sys
 import tempfile
+import time
 import tomllib
 
 import adapter
@@ -26,6 +27,7 @@ SLIP_SIGMA = 0.01
 ENCODER_SIGMA = 0.02  # share of the motion
 GYRO_BIAS_RAD_PER_S = 0.0003
 CORNERS = 48  # of a column, for the tether
+WATCHDOG_S = 0.25  # of the motors, for a robot that is not behind adapter.py
 
 
 def scenario(path):
@@ -199,6 +201,47 @@ class Robot:
         far, share = math.dist((x, y), station["at_m"]), self.world["ae"].get("noise", {}).get("ratio", 0.05)
         factors = 1.0 + self.chance.uniform(-share, share, self.world["ae"].get("repetitions", 1))
         return {"station": station["name"], "ranges_m": [round(max(far * float(f), 0.001), 4) for f in factors]}
+
+
+class Driven:
+    """The robot of a peer of another adapter: motors of limited acceleration, a watchdog, a pose by its own odometry."""
+
+    def __init__(self, world):
+        self.limits, self.body = world["limits"], Robot(world)
+        self.x = self.y = self.heading = 0.0
+        self.v = self.w = self.to_v = self.to_w = self.until = 0.0
+        self.log = open(os.environ.get("ROBOT_LOG", os.devnull), "w", 1)
+
+    def command(self, v, w, now):
+        """Takes speeds; they hold until the watchdog stops the robot."""
+        most_v, most_w = self.limits["speed_m_per_s"], self.limits["turn_rad_per_s"]
+        self.to_v, self.to_w, self.until = max(-most_v, min(most_v, v)), max(-most_w, min(most_w, w)), now + WATCHDOG_S
+
+    def step(self, dt, now):
+        """Moves for a time; returns the measurements."""
+        if now > self.until:
+            self.to_v = self.to_w = 0.0
+        change = self.limits["acceleration_m_per_s2"] * dt
+        self.v += max(-change, min(change, self.to_v - self.v))
+        self.w += max(-4 * change, min(4 * change, self.to_w - self.w))
+        readings = self.body.measure(self.v, self.w, dt)
+        print(now, self.v, self.w, file=self.log)
+        odometry = readings["odometry"]
+        middle = self.heading + odometry["turn_rad"] / 2
+        self.x += odometry["forward_m"] * math.cos(middle)
+        self.y += odometry["forward_m"] * math.sin(middle)
+        self.heading += odometry["turn_rad"]
+        return readings
+
+
+def each_period(step):
+    """Calls `step` with the time since the last call and the time now, once in each period."""
+    before = time.monotonic()
+    while True:
+        time.sleep(max(0.0, before + PERIOD_S - time.monotonic()))
+        now = time.monotonic()
+        step(now - before, now)
+        before = now
 
 
 def account(world, path):
