@@ -102,7 +102,7 @@ impl Offered {
                 }
                 self.choose_commander();
             }
-            // Rule 2 of the protocol: a vehicle stops on bad input.
+            // Rule 3 of the protocol: a vehicle stops on bad input.
             Did::SaidWrong(_) if self.commander == Some(id) => self.vehicle.halt(),
             Did::Said(message) if self.commander == Some(id) || matches!(message, ToVehicle::Ping(_)) => {
                 let now_s = self.now_s();

@@ -28,18 +28,35 @@ pub struct Listened {
     pub samples: Vec<Sample>,
     /// The last state.
     pub state: Option<State>,
-    /// Number of lines that are not valid messages.
-    pub malformed: u64,
-    /// The fault of the first malformed line.
-    pub fault: Option<String>,
-    /// Unknown keys and kinds of messages.
-    pub unknown: Vec<String>,
+    /// The lines that are not as the protocol has them.
+    pub lines: Lines,
     /// Number of pings sent.
     pub pings: u32,
     /// Round trips of the pings that were answered, seconds.
     pub trips_s: Vec<f64>,
     /// The offset of the vehicle's clock at the end.
     pub offset: Option<Offset>,
+}
+
+/// Lines that the protocol does not know.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Lines {
+    /// Number of lines that are not valid messages.
+    pub malformed: u64,
+    /// The fault of the first malformed line.
+    pub fault: Option<String>,
+    /// Unknown keys and kinds of messages.
+    pub unknown: Vec<String>,
+}
+
+impl Lines {
+    /// Adds later lines.
+    pub fn extend(&mut self, later: Self) {
+        self.malformed += later.malformed;
+        self.fault = self.fault.take().or(later.fault);
+        let new = later.unknown.into_iter().filter(|name| !self.unknown.contains(name));
+        self.unknown.extend(new.collect::<Vec<_>>());
+    }
 }
 
 /// Checks the introduction of the vehicle.
@@ -83,13 +100,13 @@ fn parts(has: Has) -> Vec<&'static str> {
 }
 
 /// Whether all lines were valid messages.
-pub fn messages(listened: &Listened) -> Row {
-    let figures = vec![Figure::new("malformed", listened.malformed as f64, "").at_most(0.0)];
-    let unknown = match listened.unknown.as_slice() {
+pub fn messages(lines: &Lines) -> Row {
+    let figures = vec![Figure::new("malformed", lines.malformed as f64, "").at_most(0.0)];
+    let unknown = match lines.unknown.as_slice() {
         [] => String::new(),
         unknown => format!("; unknown and ignored: {}", unknown.join(", ")),
     };
-    let first = listened.fault.as_deref().unwrap_or_default();
+    let first = lines.fault.as_deref().unwrap_or_default();
     let failed = format!("the first malformed line: {first}{unknown}");
     Row::judged("messages", figures, &format!("all lines are valid messages{unknown}"), &failed)
 }
@@ -329,9 +346,17 @@ mod tests {
         heard.offset = clock_of.at(1.02);
         let row = clock(&heard);
         assert!(row.verdict == Verdict::Pass && row.says == "1 of 2 pings answered", "{row:?}");
-        assert_eq!(messages(&heard).verdict, Verdict::Pass);
-        heard = Listened { malformed: 1, fault: Some("pong.stamp_s: NaN".into()), ..heard };
-        let row = messages(&heard);
+        let mut lines = Lines::default();
+        assert_eq!(messages(&lines).verdict, Verdict::Pass);
+        let unknown = vec!["lights".to_owned()];
+        lines.extend(Lines {
+            malformed: 1,
+            fault: Some("pong.stamp_s: NaN".into()),
+            unknown: unknown.clone(),
+        });
+        lines.extend(Lines { malformed: 2, fault: Some("state.mode".into()), unknown });
+        let row = messages(&lines);
+        assert!(row.figures[0].value == 3.0 && row.says.ends_with("unknown and ignored: lights"), "{row:?}");
         assert!(row.verdict == Verdict::Fail && row.says.contains("pong.stamp_s: NaN"), "{row:?}");
     }
 }

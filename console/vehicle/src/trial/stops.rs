@@ -1,6 +1,6 @@
 //! Time and distance of a stop, from samples of the motion before and after its cause.
 
-use super::{Figure, Row};
+use super::{Figure, Row, Verdict};
 
 /// A vehicle that moves no faster than this counts as standing still, metres per second and radians per second.
 const STANDS_M_PER_S: f64 = 0.005;
@@ -142,6 +142,16 @@ pub fn stop(cause: Cause, samples: &[Sample], cause_s: f64, limits: Limits) -> R
     Row::judged(check, figures.figures(limits), &says, &failed)
 }
 
+/// The result of a stop after which the vehicle moved again as soon as its stopped adapter continued.
+pub fn moved_again(stop: Row) -> Row {
+    let says = "the vehicle moved again when the adapter continued: the adapter carried out a command that had waited; \
+                ignore a `drive` that is older than its lease";
+    match stop.verdict {
+        Verdict::Fail => stop,
+        Verdict::Pass | Verdict::NotMeasured => Row::fail(stop.check, stop.figures, says),
+    }
+}
+
 /// A stop as evaluated so far.
 #[derive(Debug, Default)]
 struct Stopping {
@@ -177,7 +187,6 @@ impl Stopping {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trial::Verdict;
 
     const LIMITS: Limits = Limits { commanded_m_per_s: 0.4, time_s: 1.0 };
 
