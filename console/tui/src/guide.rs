@@ -12,7 +12,7 @@ use crate::actions::ActionId;
 use crate::model::{Cause, Run};
 use crate::screens::Screen;
 use crate::view::text;
-use remedy::{END, HOLD, OTHER_PLANNER, PARAMETERS, RESUME, SHOW, run, wait};
+use remedy::{END, HOLD, OTHER_PLANNER, PARAMETERS, RESUME, SHOW, check, run};
 
 /// The name of an alarm in a table, short enough for one row.
 pub fn name(cause: &Cause, of: &Run) -> String {
@@ -62,7 +62,7 @@ pub fn guide(cause: &Cause) -> Guide {
             cause: "Unknown obstacle: the robot detects something that is not on the drawing.",
             effect: "Planners avoid it. The floor under it is not counted; floor that it blocks becomes \
             unreachable.",
-            remedies: const { &[SHOW, wait("Check what it is: nozzle, sump, debris."), HOLD] },
+            remedies: const { &[SHOW, check("Check what it is: nozzle, sump, debris."), HOLD] },
         },
         Cause::Tether(word) => tether::guide(word),
         Cause::Link => vehicle::LINK,

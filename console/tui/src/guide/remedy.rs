@@ -20,14 +20,22 @@ pub struct Remedy {
     pub text: &'static str,
     /// The action that carries out the remedy; `None` if the operator must act elsewhere or wait.
     pub action: Option<ActionId>,
+    /// Whether advice still makes sense after the end of the mission.
+    pub outlasts_mission: bool,
 }
 
+/// Advice that ends with the mission.
 pub(super) const fn wait(text: &'static str) -> Remedy {
-    Remedy { text, action: None }
+    Remedy { text, action: None, outlasts_mission: false }
+}
+
+/// Advice that does not depend on the mission.
+pub(super) const fn check(text: &'static str) -> Remedy {
+    Remedy { text, action: None, outlasts_mission: true }
 }
 
 pub(super) const fn run(text: &'static str, action: ActionId) -> Remedy {
-    Remedy { text, action: Some(action) }
+    Remedy { text, action: Some(action), outlasts_mission: true }
 }
 
 pub(super) const STAY: Remedy =

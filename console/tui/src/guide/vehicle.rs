@@ -1,6 +1,6 @@
 //! The meaning of alarms about a real vehicle.
 
-use super::remedy::{END, Guide, HOLD, RESUME, run, wait};
+use super::remedy::{END, Guide, HOLD, RESUME, check, run, wait};
 use crate::actions::ActionId;
 
 pub(super) const LINK: Guide = Guide {
@@ -9,8 +9,8 @@ pub(super) const LINK: Guide = Guide {
     effect: "The robot is held. The vehicle stops when its lease lapses; the console cannot confirm \
     this. Its position is unknown.",
     remedies: &[
-        wait("Look at the robot, and use its emergency stop if it moves."),
-        wait("Check adapter, cable and network; a closed link needs a new run."),
+        check("Look at the robot, and use its emergency stop if it moves."),
+        check("Check adapter, cable and network; a closed link needs a new run."),
         RESUME,
         END,
     ],
@@ -20,7 +20,7 @@ pub(super) const VEHICLE: Guide = Guide {
     cause: "The vehicle cannot be driven: a person drives it by hand, its emergency stop is pressed, or it \
     reports a fault.",
     effect: "The robot is held until the operator resumes. Position, coverage and tether are still updated.",
-    remedies: &[wait("Ask the person at the robot, and clear the cause there."), RESUME, END],
+    remedies: &[check("Ask the person at the robot, and clear the cause there."), RESUME, END],
 };
 
 pub(super) const GUARD: Guide = Guide {
@@ -39,5 +39,5 @@ pub(super) const STOP_NOT_CONFIRMED: Guide = Guide {
     cause: "The vehicle was commanded to stop, but after twice its stop time, odometry still shows motion or is \
     missing.",
     effect: "The robot may still move. The console repeats the command in every tick.",
-    remedies: &[wait("Use the emergency stop of the robot."), HOLD, END],
+    remedies: &[check("Use the emergency stop of the robot."), HOLD, END],
 };
