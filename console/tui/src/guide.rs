@@ -13,7 +13,7 @@ use crate::model::{Alarm, Cause, Run};
 use crate::screens::Screen;
 use crate::view::text;
 use mission::Phase;
-use remedy::{END, HOLD, OTHER_PLANNER, PARAMETERS, RESUME, SHOW, run, wait};
+use remedy::{END, HOLD, OTHER_PLANNER, PARAMETERS, RESUME, SHOW, check, run};
 
 /// The name of an alarm in a table, short enough for one row.
 pub fn name(cause: &Cause, of: &Run) -> String {
@@ -64,7 +64,7 @@ pub fn guide(cause: &Cause) -> Guide {
             holds: "",
             effect: "Planners avoid it. The floor under it is not counted; floor that it blocks becomes \
             unreachable.",
-            remedies: const { &[SHOW, wait("Check what it is: nozzle, sump, debris."), HOLD] },
+            remedies: const { &[SHOW, check("Check what it is: nozzle, sump, debris."), HOLD] },
         },
         Cause::Tether(word) => tether::guide(word),
         Cause::Link => vehicle::LINK,

@@ -24,7 +24,7 @@ pub fn page(model: &Model) -> String {
         ("Clearance", clearance(model)),
         ("Work done", done(model)),
         ("Starts, holds and ends", holds(model)),
-        ("Decisions of the operator", entries(model, is_decision)),
+        ("Decisions of the operator", decisions(model)),
     ];
     for (title, lines) in sections {
         page.extend(["\n## ", title, "\n\n"]);
@@ -100,7 +100,9 @@ fn alarms(model: &Model, is_listed: impl Fn(&Alarm) -> bool) -> Vec<String> {
         };
         let name = guide::name(&alarm.cause, run);
         let severity = severity_word(alarm.severity);
-        format!("{severity} {name}, since T+{}, {state}: {}", clock(alarm.since_s), alarm.text)
+        // Some texts begin with the name.
+        let text = alarm.text.strip_prefix(&format!("{name}: ")).unwrap_or(&alarm.text);
+        format!("{severity} {name}, since T+{}, {state}: {text}", clock(alarm.since_s))
     };
     run.alarms.table().iter().filter(|alarm| is_listed(alarm)).map(line).collect()
 }
@@ -148,6 +150,19 @@ fn done(model: &Model) -> Vec<String> {
         .then(|| format!("Scanned: {reachable} % of the reachable floor, {whole} % of the whole floor"));
     let moving = format!("Mission time {}, under way {}", clock(run.clock.t_s), clock(run.clock.moving_s));
     task.map(str::to_owned).into_iter().chain(scanned).chain([moving]).collect()
+}
+
+/// What the operator decided: the decisions in the journal, then the acknowledgements after the end of the mission, which
+/// no journal contains.
+fn decisions(model: &Model) -> Vec<String> {
+    let run = &model.live.run;
+    let after = run.alarms.list().iter().filter_map(|alarm| {
+        let acknowledged =
+            alarm.acknowledged.as_ref().filter(|ack| run.has_ended() && ack.t_s >= run.clock.t_s)?;
+        let by = acknowledged.by.as_ref().map_or_else(String::new, |by| format!(" by {by}"));
+        Some(format!("After the end: acknowledged{by}: {}", alarm.text))
+    });
+    entries(model, is_decision).into_iter().chain(after).collect()
 }
 
 /// The log lines about certain events, oldest first.

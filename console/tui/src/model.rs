@@ -28,6 +28,7 @@ pub mod run;
 pub mod shadow;
 
 pub mod tether;
+pub mod together;
 pub mod trail;
 pub mod ui;
 mod way_left;
@@ -59,6 +60,7 @@ pub use run::{About, Clock, Progress, Run, VehicleSeen};
 pub use shadow::Shadow;
 
 pub use tether::Tether;
+pub use together::{Combination, Continued, Together};
 pub use trail::Trail;
 pub use ui::{Overlay, Pane, Ui};
 pub use what_if::{Candidate, Forecast, WhatIf};

@@ -1,6 +1,6 @@
 //! The meaning of alarms about the console itself.
 
-use super::remedy::{END, Guide, HOLD, SLOWER, When, run, wait};
+use super::remedy::{END, Guide, HOLD, SLOWER, When, check, run, wait};
 use crate::actions::ActionId;
 use crate::screens::Screen;
 
@@ -23,7 +23,7 @@ pub(super) const WRITER: Guide = Guide {
     holds: "",
     effect: "The state of the robot since the last event is unknown.",
     remedies: &[
-        wait("Check the robot on site."),
+        check("Check the robot on site."),
         run("Show the robot's last known position.", ActionId::Go(Screen::Mission)),
         run("Show the result of the run from its journal.", ActionId::Go(Screen::Result)),
     ],
@@ -41,14 +41,14 @@ pub(super) const RESPONSE: Guide = Guide {
     the screen: the machine or the terminal is too busy.",
     holds: "",
     effect: "Only the screen is slow. HOLD is always handled first.",
-    remedies: &[SLOWER, wait("Close other programs, or make the terminal smaller.")],
+    remedies: &[SLOWER, check("Close other programs, or make the terminal smaller.")],
 };
 
 pub(super) const FRAMES: Guide = Guide {
     cause: "Drawing cannot keep up with the mission: the machine or the terminal is too busy.",
     holds: "",
     effect: "The screen skips some states. The journal loses nothing.",
-    remedies: &[SLOWER, wait("Close other programs, or make the terminal smaller.")],
+    remedies: &[SLOWER, check("Close other programs, or make the terminal smaller.")],
 };
 
 pub(super) const RECORDER_LAG: Guide = Guide {
@@ -63,7 +63,7 @@ pub(super) const DISK: Guide = Guide {
     holds: "",
     effect: "Once the disk is full, the latest 40 minutes of the journal are kept only in memory.",
     remedies: &[
-        wait("Free some space, or move old runs elsewhere."),
+        check("Free some space, or move old runs elsewhere."),
         run("HOLD the robot until there is space.", ActionId::Hold).when(When::Moving),
         END,
     ],

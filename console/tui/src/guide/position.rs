@@ -1,6 +1,6 @@
 //! The meaning of position alarms.
 
-use super::remedy::{END, Guide, HOLD, SHOW, STAY, When, run, wait};
+use super::remedy::{END, Guide, HOLD, SHOW, STAY, When, check, run, wait};
 use crate::actions::ActionId;
 
 pub(super) const POSITION_LOST: Guide = Guide {
@@ -24,7 +24,7 @@ pub(super) const CONTRADICTION: Guide = Guide {
     remedies: &[
         wait("Wait: the mission resumes automatically when the ranges agree again.").when(When::Resuming),
         STAY,
-        wait("Check the residuals. A station that is always wrong has wrong survey data."),
+        check("Check the residuals. A station that is always wrong has wrong survey data."),
         END,
     ],
 };

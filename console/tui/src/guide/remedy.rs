@@ -53,7 +53,13 @@ impl When {
     }
 }
 
+/// Advice that ends with the mission.
 pub(super) const fn wait(text: &'static str) -> Remedy {
+    Remedy { text, action: None, when: When::BeforeEnd }
+}
+
+/// Advice that does not depend on the mission.
+pub(super) const fn check(text: &'static str) -> Remedy {
     Remedy { text, action: None, when: When::Any }
 }
 

@@ -1,6 +1,6 @@
 //! The meaning of alarms about a real vehicle.
 
-use super::remedy::{END, Guide, HOLD, RESUME, run, wait};
+use super::remedy::{END, Guide, HOLD, RESUME, check, run, wait};
 use crate::actions::ActionId;
 
 pub(super) const LINK: Guide = Guide {
@@ -9,8 +9,8 @@ pub(super) const LINK: Guide = Guide {
     holds: "The robot is held at once.",
     effect: "The vehicle stops when its lease lapses; the console cannot confirm this. Its position is unknown.",
     remedies: &[
-        wait("Look at the robot, and use its emergency stop if it moves."),
-        wait("Check adapter, cable and network; a closed link needs a new run."),
+        check("Look at the robot, and use its emergency stop if it moves."),
+        check("Check adapter, cable and network; a closed link needs a new run."),
         RESUME,
         END,
     ],
@@ -21,7 +21,7 @@ pub(super) const VEHICLE: Guide = Guide {
     reports a fault.",
     holds: "The robot is held at once.",
     effect: "Position, coverage and tether are still updated.",
-    remedies: &[wait("Ask the person at the robot, and clear the cause there."), RESUME, END],
+    remedies: &[check("Ask the person at the robot, and clear the cause there."), RESUME, END],
 };
 
 pub(super) const GUARD: Guide = Guide {
@@ -42,5 +42,5 @@ pub(super) const STOP_NOT_CONFIRMED: Guide = Guide {
     missing.",
     holds: "",
     effect: "The robot may still move. The console repeats the command in every tick.",
-    remedies: &[wait("Use the emergency stop of the robot."), HOLD, END],
+    remedies: &[check("Use the emergency stop of the robot."), HOLD, END],
 };

@@ -3,7 +3,7 @@
 mod vehicle;
 
 use super::{Model, ui::Arrangement};
-use mission::{Check, CheckOutcome, PlanId, Readiness};
+use mission::{Check, CheckOutcome, PlanId, Readiness, TaskConfig};
 use serde::{Deserialize, Serialize};
 use world::coverage::percent_text;
 
@@ -96,6 +96,7 @@ impl Model {
     fn own_checks(&self) -> Vec<Check> {
         let mut checks = vec![self.planner_check(), self.plan_check()];
         checks.extend(self.tether_check());
+        checks.extend(self.place_check());
         checks.extend(self.vehicle_checks());
         checks.extend([self.station_check(), self.terminal_check()]);
         checks
@@ -163,6 +164,36 @@ impl Model {
                 "tether NOT certified; change planner or parameters".into(),
             ),
             None => check("tether", CheckOutcome::Failed, "no certified plan yet".into()),
+        })
+    }
+
+    /// For a re-scan: whether the run before it left the robot where the plan begins.
+    fn place_check(&self) -> Option<Check> {
+        let left_at = self.live.left_at?;
+        let start = self.live.run.about.as_ref()?.mission.start.position;
+        Some(match self.must_stand() {
+            Some(words) => check("robot", CheckOutcome::Warning, words),
+            None => {
+                let found = format!("was left at the start, {:.1} m from it", (left_at - start).norm());
+                check("robot", CheckOutcome::Passed, found)
+            }
+        })
+    }
+
+    /// For a re-scan whose plan does not begin where the run before it left the robot: where the robot must stand, as the
+    /// end of a sentence about the robot.
+    pub(crate) fn must_stand(&self) -> Option<String> {
+        let left_at = self.live.left_at?;
+        let mission = &self.live.run.about.as_ref()?.mission;
+        let TaskConfig::Cover { tolerance_m, .. } = mission.task else { return None };
+        let start = mission.start.position;
+        let away_m = (left_at - start).norm();
+        let tether = if mission.tether.is_some() { ", tether reeled in" } else { "" };
+        (away_m > tolerance_m).then(|| {
+            format!(
+                "must stand at {:.2}, {:.2} m{tether}; it was left {away_m:.1} m from there, at {:.2}, {:.2} m",
+                start.x, start.y, left_at.x, left_at.y
+            )
         })
     }
 

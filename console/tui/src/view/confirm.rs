@@ -117,6 +117,7 @@ fn asked(model: &Model) -> Option<Vec<String>> {
                 format!("The robot will move: {}.", promised(model)),
             ]
             .into_iter()
+            .chain(stands(model))
             .chain(model.live.left_out().and_then(|left_out| left_out.resumption).map(|at| resumes(&at)))
             .collect()
         }
@@ -202,6 +203,11 @@ fn asked(model: &Model) -> Option<Vec<String>> {
 pub(super) fn finish_way(way: &WayBack) -> String {
     let (length, clearance) = (text::number(way.length_m, 1), text::number(way.clearance_m, 2));
     format!("To the {}, {length} m, clearance {clearance} m", way.to.word())
+}
+
+/// Where the robot must stand before a re-scan, as a sentence; `None` if it was left there.
+pub(super) fn stands(model: &Model) -> Option<String> {
+    Some(format!("The robot {}.", model.must_stand()?))
 }
 
 /// Where the plan of a re-scan begins to scan, and what it scans a second time, as a sentence.

@@ -4,7 +4,8 @@ use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};
 use crate::sizes;
 use mission::event::TetherAlarm;
-use mission::{EventKind, HoldReason, Note, Noted, Order, Resumes, Severity};
+use mission::{EventKind, HoldReason, Note, Noted, Order, Outcome, Resumes, Severity};
+use tui::actions::ActionId;
 use tui::actions::keymap::{Binding, Keymap};
 use tui::model::alarms::State;
 use tui::model::ui::Ask;
@@ -16,6 +17,11 @@ const ENTER: [Key; 1] = [Key::Enter];
 
 fn notice(screen: &Screen) -> &str {
     screen.model.notice().map_or("", |notice| notice.text.as_str())
+}
+
+fn shown(screen: &Screen, size: (u16, u16)) -> String {
+    let shown = text(&drawn(&screen.model, RICH, size));
+    shown.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ") + "\n").collect()
 }
 
 fn hear(screen: &mut Screen, kind: EventKind) {
@@ -76,6 +82,51 @@ fn alarms() {
     sizes::store("alarms", &mut screen, sizes::is_log);
     screen.press(ENTER);
     sizes::store("alarm_actions", &mut screen, sizes::is_log);
+}
+
+#[test]
+fn after_the_end_an_alarm_offers_only_what_is_still_possible() {
+    for cause in Cause::every() {
+        let mut screen = Screen::running();
+        screen.model.live.run.alarms.raise(cause.clone(), Severity::Crit, "what is wrong".into(), 1.0);
+        screen.type_text("4");
+        screen.model.ui.alarm = Some(cause.clone());
+        let ended = screen.mission.ended(Outcome::Aborted, "ended by the operator");
+        screen.hear(RunMsg::Events(vec![ended]));
+        let guide = tui::guide::guide(&cause);
+        let shown = shown(&screen, (200, 60));
+        for remedy in guide.remedies {
+            let words = screen.model.console.keys.spelled(remedy.text);
+            let wants_the_mission = matches!(
+                remedy.action,
+                Some(
+                    ActionId::Hold
+                        | ActionId::Abort
+                        | ActionId::Resume
+                        | ActionId::Slower
+                        | ActionId::DriveBack
+                        | ActionId::Parameters
+                        | ActionId::ChoosePlanner
+                        | ActionId::FlyUncertified
+                )
+            ) || words.starts_with("Wait");
+            assert!(!(wants_the_mission && shown.contains(&words)), "{cause:?}: {words}\n{shown}");
+        }
+        assert!(shown.contains("Acknowledge (a)."), "{cause:?}\n{shown}");
+    }
+}
+
+#[test]
+fn the_alarms_of_the_recorder_end_with_the_run() {
+    for is_kept in [true, false] {
+        let (mut screen, closed) = crate::overviews::ended();
+        for cause in [Cause::Recording, Cause::RecorderLag] {
+            screen.model.live.run.alarms.raise(cause, Severity::Crit, "what is wrong".into(), 1.0);
+        }
+        screen.hear(RunMsg::Closed(Box::new(tui::RunResult { is_kept, ..closed })));
+        let is_active = |cause| screen.model.live.run.alarms.get(&cause).unwrap().is_active();
+        assert_eq!((is_active(Cause::Recording), is_active(Cause::RecorderLag)), (!is_kept, false));
+    }
 }
 
 #[test]

@@ -52,6 +52,20 @@ fn events() {
 }
 
 #[test]
+fn a_filter_without_hits_says_so_in_the_pane_and_on_the_screen() {
+    for page in ["3", "5"] {
+        let mut screen = with_events();
+        screen.type_text(page);
+        screen.type_text("/nowhere");
+        screen.press([Key::Enter]);
+        for size in [(120, 36), (200, 60)] {
+            let shown = shown(&screen, size);
+            assert!(shown.contains("No event matches `nowhere`. Esc: show all events."), "{page}\n{shown}");
+        }
+    }
+}
+
+#[test]
 fn planner_messages_are_hidden_until_they_are_asked_for_and_then_listed_as_one() {
     let mut screen = with_events();
     let said = |screen: &mut Screen, n: u32| {

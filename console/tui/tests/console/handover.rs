@@ -1,7 +1,8 @@
 //! The page for the next operator, and the answer to `status`.
 
 use crate::fixture::Screen;
-use mission::EventKind;
+use mission::{EventKind, Outcome, Severity};
+use tui::model::Cause;
 use tui::{Effect, Key, RunMsg, handover::page, plain};
 
 /// A held mission with a zone, an alarm that is shelved and one that is acknowledged.
@@ -38,6 +39,23 @@ fn the_page_is_asked_for_by_a_command_and_replaced_only_on_demand() {
 }
 
 #[test]
+fn what_was_acknowledged_after_the_end_is_a_decision_and_no_alarm_is_named_twice() {
+    let mut screen = held();
+    let (t_s, text) = (screen.model.live.run.clock.t_s, "STOP NOT CONFIRMED: odometry is missing");
+    screen.model.live.run.alarms.raise(Cause::StopNotConfirmed, Severity::Crit, text.into(), t_s);
+    let ended = screen.mission.ended(Outcome::Aborted, "ended by the operator");
+    screen.hear(RunMsg::Events(vec![ended]));
+    assert_eq!(screen.type_text("4a"), [], "nothing is recorded after the end");
+    let page = page(&screen.model);
+    assert!(
+        page.contains("- After the end: acknowledged by lk: STOP NOT CONFIRMED: odometry is missing"),
+        "{page}"
+    );
+    let alarm = "CRIT STOP NOT CONFIRMED, since T+00:16:07, acknowledged: odometry is missing";
+    assert!(page.contains(alarm), "{page}");
+}
+
+#[test]
 fn no_name_breaks_out_of_its_line() {
     let mut screen = held();
     let name = "# x\n<script>\u{1b}[31m".to_owned();
@@ -70,7 +88,7 @@ fn a_mission_without_alarms_says_so() {
     let screen = Screen::idle();
     assert!(plain::status(&screen.model).contains(&"No alarms.".to_owned()));
     let mut ended = Screen::running();
-    let event = ended.mission.ended(mission::Outcome::Aborted, "ended by operator");
+    let event = ended.mission.ended(Outcome::Aborted, "ended by operator");
     assert!(matches!(event.kind, EventKind::Ended { .. }));
     ended.hear(RunMsg::Events(vec![event]));
     assert!(page(&ended.model).contains("ended by operator"));

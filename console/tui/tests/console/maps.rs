@@ -9,7 +9,7 @@ use mission::{
 };
 use planner_api::{Leg, LegTag, Reason};
 use ratatui::style::Color;
-use tui::model::GhostPlan;
+use tui::model::{Continued, GhostPlan};
 use tui::{Key, Msg, RunMsg};
 use world::Point;
 
@@ -258,6 +258,39 @@ fn the_place_where_a_re_scan_resumes_is_marked_and_named_in_the_question() {
     let flat = shown.split_whitespace().collect::<Vec<_>>().join(" ");
     let words = "The scan resumes at 4.20, -3.00 m, after 12.3 m; 5.6 m² are scanned a second time.";
     assert!(flat.contains(words), "{shown}");
+}
+
+#[test]
+fn before_a_re_scan_the_operator_reads_where_the_robot_must_stand() {
+    let mut screen = rescan();
+    let start = screen.model.live.run.about.as_ref().unwrap().mission.start.position;
+    let left = |away_m: f64| Some(start + world::Vector::new(away_m, 0.0));
+    let continues = |screen: &mut Screen, left_at| {
+        let continued = Continued { runs: vec!["first".into()], left_at };
+        screen.hear(RunMsg::Continues(Ok(continued)));
+        let check = screen.model.checks().into_iter().find(|check| check.what == "robot");
+        check.map(|check| (check.outcome, check.found))
+    };
+    assert_eq!(continues(&mut screen, None), None);
+    let near = continues(&mut screen, left(0.1)).unwrap();
+    assert_eq!(near, (CheckOutcome::Passed, "was left at the start, 0.1 m from it".into()));
+    let (outcome, words) = continues(&mut screen, left(2.5)).unwrap();
+    let wanted =
+        format!("must stand at {:.2}, {:.2} m, tether reeled in; it was left 2.5 m from", start.x, start.y);
+    assert!(outcome == CheckOutcome::Warning && words.starts_with(&wanted), "{words}");
+    for (width, height) in [(120, 36), (200, 60)] {
+        screen.send(Msg::Resize { width, height });
+        let flat = |screen: &Screen| {
+            let shown = text(&drawn(&screen.model, PLAIN, (width, height)));
+            shown.split_whitespace().filter(|word| !word.contains('│')).collect::<Vec<_>>().join(" ")
+        };
+        let before = flat(&screen);
+        assert!(before.contains("The robot must stand at"), "the plan\n{before}");
+        screen.type_text("S");
+        let asked = flat(&screen);
+        assert!(asked.contains("tether reeled in; it was left 2.5 m from there"), "the question\n{asked}");
+        screen.press([Key::Esc]);
+    }
 }
 
 #[test]

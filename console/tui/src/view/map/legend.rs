@@ -161,7 +161,7 @@ fn floor(look: &Look) -> Vec<Entry> {
             [(Shade::OnlyA, "only A"), (Shade::OnlyB, "only B"), (Shade::Floor(FloorClass::Partial), "both")];
         return shades.map(entry).into();
     }
-    let raster = run.coverage.as_ref().filter(|_| layers.shows(MapLayer::Scanned));
+    let raster = look.model.live.scanned().filter(|_| layers.shows(MapLayer::Scanned));
     let division = raster.map(Raster::whole);
     let some = |share: fn(&Shares) -> f64| division.as_ref().is_some_and(|division| share(division) > 0.0);
     let again = raster.and_then(Raster::overlap).is_some_and(|share| share > 0.0);

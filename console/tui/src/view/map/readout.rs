@@ -33,7 +33,7 @@ pub(super) fn cursor(look: &Look, ui: &Ui, width: u16) -> Option<(Role, String)>
 
 /// The floor there: its plate, its class, and the expected error of a fix.
 pub(super) fn floor(look: &Look, at: Point) -> String {
-    let raster = look.run.coverage.as_ref();
+    let raster = look.model.live.scanned();
     let class = raster.and_then(|raster| raster.class_at(at, look.run.has_missed()));
     let Some((class, times)) = class else { return "no floor".into() };
     let plate = plates::name_at(look, at).map_or_else(String::new, |name| format!("{name}  "));

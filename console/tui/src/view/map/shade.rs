@@ -138,7 +138,7 @@ fn paint_cell(look: &Look, upper: Option<Shade>, lower: Option<Shade>, cell: &mu
 /// between frames.
 fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
     let (run, layers) = (look.run, look.model.ui.layers);
-    let raster = run.coverage.as_ref().filter(|_| layers.shows(MapLayer::Scanned));
+    let raster = look.model.live.scanned().filter(|_| layers.shows(MapLayer::Scanned));
     if layers.shows(MapLayer::Accuracy) {
         return window
             .dots(rows_per_row)

@@ -5,7 +5,7 @@ use crate::model::RunResult;
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
 use crate::view::text;
-use account::{FigureId, Summary};
+use account::{FigureId, Shares, Summary};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -170,16 +170,32 @@ fn estimated_clearance(summary: &Summary) -> Option<f64> {
     figure.worst.map(|worst| worst.value)
 }
 
-/// The scanned share of the requested floor, and why the share of the whole is smaller.
-fn requested(look: &Look) -> Option<String> {
+/// The scanned share of the requested floor, and why the share of the whole is smaller; for a re-scan, also what all runs
+/// have scanned.
+fn requested(look: &Look) -> Vec<String> {
     let live = &look.model.live;
-    let ((area_m2, scanned), reachable) = live.requested().zip(live.floor().map(|floor| floor.reachable))?;
-    Some(format!(
-        "Scanned {} % of the requested {} m². That is {} % of all reachable floor; the rest was not requested.",
-        text::percent(scanned),
-        text::number(area_m2, 1),
-        text::percent(reachable.scanned)
-    ))
+    let own = live.result.as_ref().and_then(|result| result.summary.floor.as_ref());
+    let own = live.requested().zip(own).map(|((area_m2, scanned), own)| {
+        let (scanned, area_m2) = (text::percent(scanned), text::number(area_m2, 1));
+        match live.together() {
+            Some(_) => format!("This run scanned {scanned} % of the requested {area_m2} m²."),
+            None => format!(
+                "Scanned {scanned} % of the requested {area_m2} m². That is {} % of all reachable floor; the rest was \
+                 not requested.",
+                text::percent(own.reachable.scanned)
+            ),
+        }
+    });
+    let all = live.together().map(|all| {
+        let of = |shares: &Shares| text::number(shares.percent.scanned, 1);
+        format!(
+            "With {}: {} % of reachable floor, {} % of the whole floor.",
+            all.before(),
+            of(&all.floor.reachable),
+            of(&all.floor.whole)
+        )
+    });
+    own.into_iter().chain(all).collect()
 }
 
 /// The error against the true position.
