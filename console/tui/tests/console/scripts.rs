@@ -971,7 +971,7 @@ fn a_hold_is_said_once_and_in_a_live_run_when_it_is_confirmed() {
         let asked = said.next(&screen.model);
         assert!(!asked.iter().any(|line| line.contains("HELD")), "the question is enough: {asked:#?}");
         screen.press([Key::Esc]);
-        send_event(&mut screen, EventKind::Stood { confirmed: true, after_s: 0.3 });
+        send_event(&mut screen, EventKind::Stood { confirmed: true, after_s: 0.3, moved: false });
         let lines = said.next(&screen.model);
         assert_eq!(
             lines.iter().filter(|line| line.starts_with("HELD")).count(),

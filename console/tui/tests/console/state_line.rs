@@ -118,9 +118,9 @@ fn a_vehicle_is_held_only_when_its_odometry_has_confirmed_the_stop() {
     screen.hear(RunMsg::Events(held));
     hear(&mut screen, [EventKind::Sent { drive: None, lease_s: 0.25 }]);
     assert!(state(&screen).starts_with("STOPPING by operator"), "{}", state(&screen));
-    hear(&mut screen, [EventKind::Stood { confirmed: true, after_s: 0.3 }]);
+    hear(&mut screen, [EventKind::Stood { confirmed: true, after_s: 0.3, moved: false }]);
     assert!(state(&screen).starts_with("HELD by operator at "), "{}", state(&screen));
-    hear(&mut screen, [EventKind::Stood { confirmed: false, after_s: 1.0 }]);
+    hear(&mut screen, [EventKind::Stood { confirmed: false, after_s: 1.0, moved: false }]);
     let line = state(&screen);
     assert!(line.starts_with("STOP NOT CONFIRMED by operator"), "{line}");
     assert!(line.contains("use its emergency stop"), "{line}");
@@ -136,7 +136,7 @@ fn a_hold_names_the_link_and_offers_only_what_it_allows() {
         [
             EventKind::Link(lost),
             EventKind::Held { by: HoldReason::Vehicle { message }, resumes: Resumes::Never },
-            EventKind::Stood { confirmed: false, after_s: 1.0 },
+            EventKind::Stood { confirmed: false, after_s: 1.0, moved: false },
         ],
     );
     let line = state(&screen);
@@ -145,7 +145,10 @@ fn a_hold_names_the_link_and_offers_only_what_it_allows() {
     hear(&mut screen, [link(LinkState::Closed, "the adapter has ended")]);
     let line = state(&screen);
     assert!(line.contains("link to vehicle closed") && line.contains("only a new run connects"), "{line}");
-    hear(&mut screen, [link(LinkState::Up, ""), EventKind::Stood { confirmed: true, after_s: 1.0 }]);
+    hear(
+        &mut screen,
+        [link(LinkState::Up, ""), EventKind::Stood { confirmed: true, after_s: 1.0, moved: false }],
+    );
     let line = state(&screen);
     assert!(line.starts_with("HELD: vehicle can be driven again"), "{line}");
     assert!(line.contains("space: resume."), "{line}");

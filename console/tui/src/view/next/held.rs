@@ -68,6 +68,9 @@ fn undrivable(head: Head, by: &HoldReason, link: &LinkSeen) -> Option<Vec<String
         LinkState::Restarted => ("vehicle has restarted", "Cannot resume yet."),
         LinkState::Manual => ("vehicle is driven by hand", "Cannot resume until it is released."),
         LinkState::EmergencyStop => ("emergency stop is pressed", "Cannot resume until it is released."),
+        LinkState::OtherCommander => {
+            ("vehicle obeys another console", "Cannot resume until that one has ended.")
+        }
         LinkState::VehicleFault => ("vehicle reports a fault", "Cannot resume until the fault is gone."),
     };
     let state = match by {
