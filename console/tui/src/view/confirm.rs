@@ -206,7 +206,7 @@ pub(super) fn finish_way(way: &WayBack) -> String {
 }
 
 /// Where the robot must stand before a re-scan, as a sentence; `None` if it was left there.
-pub(super) fn stands(model: &Model) -> Option<String> {
+fn stands(model: &Model) -> Option<String> {
     Some(format!("The robot {}.", model.must_stand()?))
 }
 

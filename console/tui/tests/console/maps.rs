@@ -285,7 +285,7 @@ fn before_a_re_scan_the_operator_reads_where_the_robot_must_stand() {
             shown.split_whitespace().filter(|word| !word.contains('│')).collect::<Vec<_>>().join(" ")
         };
         let before = flat(&screen);
-        assert!(before.contains("The robot must stand at"), "the plan\n{before}");
+        assert!(before.contains("WARN robot: must stand at"), "the pre-flight checks\n{before}");
         screen.type_text("S");
         let asked = flat(&screen);
         assert!(asked.contains("tether reeled in; it was left 2.5 m from there"), "the question\n{asked}");

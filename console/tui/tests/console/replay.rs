@@ -145,7 +145,7 @@ fn a_large_screen_shows_missed_areas_and_curves_of_the_selected_run() {
     let (run, summary) = (replaying(false).model.live.run, crate::panes::missed_summary());
     let known = tui::model::Glimpse { run, summary: Some(Box::new(summary)), combined: None };
     screen.send(Msg::Glimpsed((A.into(), "complete".into()), Ok(Box::new(known))));
-    sizes::store("review_of_a_scan", &mut screen, |part| part.contains('●'));
+    screen.send(Msg::Resize { width: 200, height: 60 });
     let shown = text(&drawn(&screen.model, RICH, (200, 60)));
     for wanted in ["Missed areas  1", "0.75 m²    1.00, 2.00 m", "95 % error, m"] {
         assert!(shown.contains(wanted), "{wanted}\n{shown}");

@@ -22,8 +22,6 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         return fill(frame, area, block, vec![line]);
     }
     let mut rows = wrapped(progress(look), columns);
-    let stands = confirm::stands(look.model);
-    rows.extend(stands.into_iter().flat_map(|words| wrapped((Role::Warn, words), columns)));
     rows.extend(resumption(look).into_iter().flat_map(|words| wrapped((Role::Text, words), columns)));
     rows.extend(certificate(look, columns).map(one));
     rows.push(one((Role::Text, text::wording(planner(look), columns))));
