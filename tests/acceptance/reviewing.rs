@@ -53,6 +53,16 @@ fn a_replay_takes_no_orders_and_leaves_faulty_notes_alone() {
 }
 
 #[test]
+fn a_script_that_waits_in_a_paused_replay_is_told_to_play_it() {
+    let bench = Bench::new();
+    let run = flown(&bench, "3");
+    let paused = replayed(&bench, &[name(&run)], "wait until phase ended within 1s\n");
+    assert!(paused.code == Some(1) && paused.err.contains("write `play` before this line"), "{paused:?}");
+    let played = replayed(&bench, &[name(&run)], "speed max\nplay\nwait until phase ended\n");
+    assert_eq!(played.code, Some(0), "{played:?}");
+}
+
+#[test]
 fn two_runs_are_compared_from_the_command_line() {
     let bench = Bench::new();
     let (one, other) = (flown(&bench, "3"), flown(&bench, "4"));

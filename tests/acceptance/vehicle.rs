@@ -307,22 +307,42 @@ fn after_a_lost_link_only_an_order_moves_the_robot_again() {
     bench.prove(&run);
 }
 
+const READY: &str = r#"{"type": "state", "stamp_s": 0.0, "mode": "ready"}"#;
+
+/// The answer to a command of the console; empty except for a ping.
+fn answer(command: &Value) -> String {
+    let echo_s = command["stamp_s"].as_f64().filter(|_| command["type"] == "ping");
+    let pong = |echo_s| format!("{{\"type\": \"pong\", \"echo_s\": {echo_s}, \"stamp_s\": 0.0}}\n{READY}\n");
+    echo_s.map_or_else(String::new, pong)
+}
+
+/// An adapter that answers pings and says a prepared text after its introduction, until the console leaves.
+fn liar(path: &Path, lie: impl Fn(u64) -> Vec<u8> + Send + 'static) -> thread::JoinHandle<()> {
+    let listener = UnixListener::bind(path).unwrap();
+    thread::spawn(move || {
+        let (mut stream, _) = listener.accept().unwrap();
+        let heard = BufReader::new(stream.try_clone().unwrap());
+        let (said, answered) = std::sync::mpsc::channel();
+        thread::spawn(move || {
+            for line in heard.lines().map_while(Result::ok) {
+                let Ok(()) = said.send(answer(&serde_json::from_str(&line).unwrap())) else { return };
+            }
+        });
+        stream.write_all(format!("{HELLO}\n").as_bytes()).unwrap();
+        for number in 1.. {
+            let answers: String = answered.try_iter().collect();
+            if stream.write_all(answers.as_bytes()).and_then(|()| stream.write_all(&lie(number))).is_err() {
+                return;
+            }
+        }
+    })
+}
+
 /// Connects a run to an adapter that says a prepared text after its introduction, and waits for the end of the run.
 fn lied_to(lie: impl Fn(u64) -> Vec<u8> + Send + 'static) -> Ended {
     let bench = Bench::new();
     let path = bench.path().join("liar");
-    let listener = UnixListener::bind(&path).unwrap();
-    let liar = thread::spawn(move || {
-        let (mut stream, _) = listener.accept().unwrap();
-        let mut drain = stream.try_clone().unwrap();
-        thread::spawn(move || std::io::copy(&mut drain, &mut std::io::sink()));
-        stream.write_all(format!("{HELLO}\n").as_bytes()).unwrap();
-        for number in 1.. {
-            if stream.write_all(&lie(number)).is_err() {
-                return;
-            }
-        }
-    });
+    let liar = liar(&path, lie);
     let ended = bench.fly(&short(&bench), &["--vehicle", &format!("unix:{}", path.display())]);
     liar.join().unwrap();
     if let Some(run) = bench.runs().pop() {
@@ -358,12 +378,21 @@ fn what_a_lying_adapter_says_is_named_with_its_field_and_holds_the_robot() {
         _ => odometry(number, "0"),
     });
     let long = lied_to(|_| vec![b'x'; 1 << 20]);
+    let stopped = lied_to(move |number| match number {
+        20 => br#"{"type": "state", "stamp_s": 2.0, "mode": "emergency_stop", "battery": 87}
+"#
+        .to_vec(),
+        _ => odometry(number, "0"),
+    });
+    let driven_off = lied_to(move |number| odometry(number, "0.02"));
     let cases = [
         (nan, "readings.odometry.forward_m: NaN is not a finite number"),
         (jump, "readings.odometry.forward_m: 5 m in 0.1 s"),
         (half, "3 malformed lines in a row; readings"),
         (restarted, "the vehicle has restarted"),
         (long, "the line is longer than"),
+        (stopped, "the emergency stop of the vehicle is pressed"),
+        (driven_off, "odometry does not show that it stands still"),
     ];
     for (ended, why) in cases {
         // A mission that could not even start says so on stderr.
@@ -386,7 +415,7 @@ fn a_vehicle_that_speaks_only_after_a_command_is_not_driven_before_its_first_rea
         for line in lines {
             let command: Value = serde_json::from_str(&line.unwrap()).unwrap();
             match command["type"].as_str().unwrap() {
-                "ping" => {}
+                "ping" => stream.write_all(answer(&command).as_bytes()).unwrap(),
                 "drive" if number > 0 => break,
                 kind => {
                     before.extend((number == 0).then(|| kind.to_owned()));
@@ -407,6 +436,80 @@ fn a_vehicle_that_speaks_only_after_a_command_is_not_driven_before_its_first_rea
         "{ended:?}"
     );
     bench.prove(&run);
+}
+
+#[test]
+fn a_vehicle_that_drives_off_before_the_start_raises_an_alarm_and_is_not_started() {
+    let bench = Bench::new();
+    let path = bench.path().join("liar");
+    let drives = std::sync::Arc::new(std::sync::atomic::AtomicBool::default());
+    let is_driven = drives.clone();
+    let liar = liar(&path, move |number| {
+        thread::sleep(Duration::from_millis(20));
+        let forward_m = if is_driven.load(std::sync::atomic::Ordering::Acquire) { 0.02 } else { 0.0 };
+        let odometry =
+            format!("\"odometry\": {{\"over_s\": 0.1, \"forward_m\": {forward_m}, \"turn_rad\": 0}}");
+        readings(number, &odometry)
+    });
+    let address = format!("unix:{}", path.display());
+    let mut console =
+        Console::open(bench.command(), &[short(&bench).to_str().unwrap(), "--vehicle", &address]);
+    console.hear("stopped, confirmed by odometry");
+    console.hear("Enter `start` to start");
+    drives.store(true, std::sync::atomic::Ordering::Release);
+    console.hear("vehicle moves without an order");
+    console.order("start\n");
+    console.hear("moves without an order; stop it by hand");
+    drives.store(false, std::sync::atomic::Ordering::Release);
+    console.hear("stopped, confirmed by odometry");
+    console.order("start\n");
+    console.hear("plan again from here");
+    assert_eq!(console.leave(), Some(0));
+    assert!(bench.runs().is_empty(), "nothing was started");
+    liar.join().unwrap();
+}
+
+#[test]
+fn a_malformed_hello_is_named_by_its_own_fault() {
+    let bench = Bench::new();
+    let path = bench.path().join("liar");
+    let listener = UnixListener::bind(&path).unwrap();
+    let liar = thread::spawn(move || {
+        let (mut stream, _) = listener.accept().unwrap();
+        let hello = HELLO.replace("\"speed_m_per_s\": 0.5", "\"speed_m_per_s\": 1e300");
+        let still = r#""odometry": {"over_s": 0.1, "forward_m": 0, "turn_rad": 0}"#;
+        stream.write_all(format!("{hello}\n").as_bytes()).unwrap();
+        (1..).find(|n| {
+            thread::sleep(Duration::from_millis(20));
+            stream.write_all(&readings(*n, still)).is_err()
+        });
+    });
+    let refused = bench.fly(&short(&bench), &["--vehicle", &format!("unix:{}", path.display())]);
+    let why = "its introduction is malformed: hello.limits.speed_m_per_s: 1e300 is out of range";
+    assert!(refused.code == Some(2) && refused.err.contains(why), "{refused:?}");
+    liar.join().unwrap();
+}
+
+#[test]
+fn a_run_waits_for_the_confirmed_stop_and_its_last_figures() {
+    let bench = Bench::new();
+    let file = short(&bench);
+    let vehicle = Vehicle::offer(&bench, &file, &[]);
+    let (flown, run) = fly(&bench, &file, &vehicle.at);
+    let report = flown.json();
+    assert_eq!(report["vehicle"]["stands"], true, "{flown:?}");
+    assert!(report["vehicle"]["heard"].as_u64().unwrap() > 10, "{flown:?}");
+    bench.prove(&run);
+    // This one goes on as before, whatever it is told.
+    let deaf = lied_to(|number| {
+        thread::sleep(Duration::from_millis(20));
+        let forward_m = if number < 40 { 0.0 } else { 0.02 };
+        let odometry =
+            format!("\"odometry\": {{\"over_s\": 0.1, \"forward_m\": {forward_m}, \"turn_rad\": 0.1}}");
+        let still = r#""odometry": {"over_s": 0.1, "forward_m": 0, "turn_rad": 0}"#;
+        if number < 40 { readings(number, still) } else { readings(number, &odometry) }
+    });
+    assert!(deaf.code == Some(1) && deaf.json()["vehicle"]["stands"] == false, "{deaf:?}");
 }
 
 #[test]

@@ -27,6 +27,12 @@ pub struct VehicleRecord {
     pub stop_max_s: Option<f64>,
     /// Number of times that the odometry did not confirm a stop in time.
     pub stops_not_confirmed: u64,
+    /// Time for which the motion is unknown because odometry was lost, seconds.
+    #[serde(default)]
+    pub unmeasured_s: f64,
+    /// Whether the last commanded stop is confirmed; absent if the vehicle was driven last, or nothing is known.
+    #[serde(default)]
+    pub stands: Option<bool>,
     #[serde(skip)]
     is_heard: bool,
 }
@@ -38,18 +44,24 @@ impl VehicleRecord {
 
     pub(crate) fn apply(&mut self, event: &EventKind) {
         match event {
-            EventKind::Link(LinkSeen { state, age_p99_s, heard, missed, faulty, .. }) => {
+            EventKind::Link(LinkSeen { state, age_p99_s, heard, missed, faulty, unmeasured_s, .. }) => {
+                self.unmeasured_s = *unmeasured_s;
                 (self.heard, self.missed, self.faulty) = (*heard, *missed, *faulty);
                 self.age_p99_s = age_p99_s.or(self.age_p99_s);
                 let is_lost = matches!(state, LinkState::Lost | LinkState::Closed);
                 self.lost += u64::from(is_lost && self.is_heard);
                 self.is_heard = !is_lost;
             }
+            EventKind::Sent { drive: Some(_), .. } => self.stands = None,
             EventKind::Stood { confirmed: true, after_s, .. } => {
+                self.stands = Some(true);
                 self.stops += 1;
                 self.stop_max_s = Some(self.stop_max_s.map_or(*after_s, |most| most.max(*after_s)));
             }
-            EventKind::Stood { confirmed: false, .. } => self.stops_not_confirmed += 1,
+            EventKind::Stood { confirmed: false, .. } => {
+                self.stands = Some(false);
+                self.stops_not_confirmed += 1;
+            }
             _ => {}
         }
     }

@@ -26,7 +26,11 @@ pub(crate) fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<Exit
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
     if let Some(vehicle) = args.vehicle.wanted() {
         let info = remote::fitting(&scenario, &vehicle)?;
-        warn_line(&format!("vehicle   {} at {}: fits the scenario", info.name, info.at));
+        warn_line(&format!(
+            "vehicle   {} at {}: limits, hull, sensors, lease and stop time in its `hello` fit the scenario; its motion is not \
+             checked",
+            info.name, info.at
+        ));
     }
     let format = args.output.as_deref().map(format_of).transpose()?;
     for file in [&args.output, &args.svg].into_iter().flatten() {

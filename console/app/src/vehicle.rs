@@ -94,14 +94,8 @@ impl Offered {
                 self.clients.insert(id, client);
                 self.choose_commander();
             }
-            Did::Left => {
-                self.clients.remove(&id);
-                if self.commander == Some(id) {
-                    self.vehicle.leave();
-                    self.commander = None;
-                }
-                self.choose_commander();
-            }
+            // Over datagrams, a console that has said `bye` still counts as connected for a while.
+            Did::Left | Did::Said(ToVehicle::Bye(_)) => self.part_with(id),
             // Rule 3 of the protocol: a vehicle stops on bad input.
             Did::SaidWrong(_) if self.commander == Some(id) => self.vehicle.halt(),
             Did::Said(message) if self.commander == Some(id) || matches!(message, ToVehicle::Ping(_)) => {
@@ -118,6 +112,15 @@ impl Offered {
             Did::Said(_) | Did::SaidWrong(_) => {}
         }
         Ok(())
+    }
+
+    fn part_with(&mut self, id: ClientId) {
+        self.clients.remove(&id);
+        if self.commander == Some(id) {
+            self.vehicle.leave();
+            self.commander = None;
+        }
+        self.choose_commander();
     }
 
     fn choose_commander(&mut self) {

@@ -8,7 +8,7 @@ use std::fmt;
 
 /// The mission ran, is complete, and met all bounds of its scenario (`[expect]`).
 pub const COMPLETE: u8 = 0;
-/// The mission ran, but ended incomplete or did not meet a bound. Also used for a verification that found a difference.
+/// The mission ran, but ended incomplete, did not meet a bound, or did not confirm the stop of a real vehicle. Also used for a verification that found a difference.
 pub const ENDED_OTHERWISE: u8 = 1;
 /// Incorrect usage or invalid input.
 pub const BAD_INPUT: u8 = 2;
@@ -41,7 +41,12 @@ pub fn is_input(error: &anyhow::Error) -> bool {
 /// The exit code for a mission that ran.
 pub fn mission_code(flown: &Summary) -> u8 {
     let keeps_bounds = flown.violations.as_ref().is_none_or(Vec::is_empty);
-    if flown.outcome == Some(Outcome::Complete) && keeps_bounds { COMPLETE } else { ENDED_OTHERWISE }
+    let stands = flown.vehicle.as_ref().is_none_or(|vehicle| vehicle.stands != Some(false));
+    if flown.outcome == Some(Outcome::Complete) && keeps_bounds && stands {
+        COMPLETE
+    } else {
+        ENDED_OTHERWISE
+    }
 }
 
 /// The exit code for a run, given the code for its mission. A run that should have been kept but was not counts as an

@@ -194,6 +194,7 @@ impl Flight {
         }
         let mut step = self.mission.act();
         self.act(step.drive, orders, &mut step.events);
+        self.settle(&mut step.events);
         self.inject_faults(&step.events);
         self.tick += 1;
         first.into_iter().chain(step.events).map(Event::rounded).collect()
@@ -209,6 +210,18 @@ impl Flight {
         }
         let braking_orders = orders.iter().filter(|order| order.brakes()).count() as u32;
         self.vehicle.act(Command { drive, heading_rad: self.mission.heading_rad(), braking_orders });
+    }
+
+    /// At the end of a mission, adds the last state of the link. Without an operator, it waits for the stop.
+    fn settle(&mut self, events: &mut Vec<Event>) {
+        let Some(watch) = self.watch.as_mut().filter(|_| matches!(self.mission.phase(), Phase::Ended(_)))
+        else {
+            return;
+        };
+        let Some(live) = self.vehicle.settle(!self.opened.mission.attended) else { return };
+        for kind in watch.sensed(&Readings::default(), &live) {
+            before_end(events, self.event(kind));
+        }
     }
 
     fn event(&self, kind: EventKind) -> Event {

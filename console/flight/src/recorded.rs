@@ -6,46 +6,69 @@ use vehicle::port::{CannotInject, Command, Live, Sensed, Stamps, StationFault, S
 use world::Truth;
 
 /// A vehicle that repeats the readings of a journal; commands have no effect on it.
-pub struct Recorded(Receiver<Sensed>);
+pub struct Recorded {
+    fed: Receiver<Fed>,
+    /// The link and the stop at the end of the mission, if the tick under way is its last one.
+    last: Option<Live>,
+}
+
+type Fed = (Sensed, Option<Live>);
 
 /// Feeds a [`Recorded`] vehicle.
-pub struct Feed(Sender<Sensed>);
+pub struct Feed(Sender<Fed>);
 
 /// Creates a vehicle that repeats a journal, and its feed.
 pub fn recorded() -> (Feed, Recorded) {
     let (feed, fed) = channel();
-    (Feed(feed), Recorded(fed))
+    (Feed(feed), Recorded { fed, last: None })
 }
 
 impl Feed {
     /// Feeds the recorded events of the tick that is about to begin.
     pub fn begin_tick<'a>(&self, events: impl Iterator<Item = &'a EventKind>) {
-        let mut sensed = Sensed { live: Some(Live::default()), ..Sensed::default() };
-        let live = sensed.live.get_or_insert_default();
+        let mut readings = world::Readings::default();
+        let (mut first, mut last) = (Live::default(), None);
+        // What a vehicle reports after the decisions of a tick is its state at the end of the mission.
+        let mut is_decided = false;
         for event in events {
             match event {
-                EventKind::Sensed { source_t_s, arrival_t_s, readings } => {
-                    live.stamps = Some(Stamps { source_t_s: *source_t_s, arrival_t_s: *arrival_t_s });
-                    sensed.readings.clone_from(readings);
+                EventKind::Sensed { source_t_s, arrival_t_s, readings: sensed } => {
+                    first.stamps = Some(Stamps { source_t_s: *source_t_s, arrival_t_s: *arrival_t_s });
+                    readings.clone_from(sensed);
                 }
-                EventKind::Link(link) => live.link = Some(link.clone()),
+                EventKind::Link(link) => {
+                    live_of(is_decided, &mut first, &mut last).link = Some(link.clone());
+                }
                 EventKind::Stood { confirmed, after_s, moved } => {
-                    live.stood = Some(Stood { confirmed: *confirmed, after_s: *after_s, moved: *moved });
+                    let stood = Stood { confirmed: *confirmed, after_s: *after_s, moved: *moved };
+                    live_of(is_decided, &mut first, &mut last).stood = Some(stood);
                 }
-                _ => {}
+                EventKind::RunOpened(_) => {}
+                _ => is_decided = true,
             }
         }
+        let sensed = Sensed { readings, live: Some(first) };
         // The receiver is gone once the flight has ended.
-        let _ = self.0.send(sensed);
+        let _ = self.0.send((sensed, last));
     }
+}
+
+fn live_of<'a>(is_decided: bool, first: &'a mut Live, last: &'a mut Option<Live>) -> &'a mut Live {
+    if is_decided { last.get_or_insert_default() } else { first }
 }
 
 impl Vehicle for Recorded {
     fn sense(&mut self) -> Sensed {
-        self.0.try_recv().unwrap_or_default()
+        let (sensed, last) = self.fed.try_recv().unwrap_or_default();
+        self.last = last;
+        sensed
     }
 
     fn act(&mut self, _: Command) {}
+
+    fn settle(&mut self, _: bool) -> Option<Live> {
+        self.last.take()
+    }
 
     fn truth(&self) -> Option<Truth> {
         None

@@ -172,9 +172,12 @@ impl Runner {
                 if self.hear_until(within, |model| condition.holds(model, screen))? {
                     return Ok(());
                 }
+                let model = &self.session.model;
+                let is_paused = model.live.replay.as_ref().is_some_and(|replay| !replay.is_playing);
+                let paused = if is_paused { "; the replay is paused: write `play` before this line" } else { "" };
                 Err(format!(
-                    "timed out after {within_s} s waiting for: {condition}; {}",
-                    condition.instead(&self.session.model)
+                    "timed out after {within_s} s waiting for: {condition}; {}{paused}",
+                    condition.instead(model)
                 ))
             }
             Step::Assert(condition) if condition.holds(&self.session.model, screen) => Ok(()),
@@ -193,6 +196,23 @@ impl Runner {
         Ok(())
     }
 
+    /// Waits until it is known whether a real vehicle stands still, or why it cannot be driven. The link has its own time
+    /// limits for both.
+    fn see_standstill(&mut self) -> Result<(), String> {
+        let is_open = |model: &Model| {
+            let run = &model.live.run;
+            let is_known = run
+                .vehicle
+                .as_ref()
+                .is_some_and(|seen| seen.stands.is_some() || seen.link.trouble().is_some());
+            model.live.waits() && run.is_live() && !is_known
+        };
+        while is_open(&self.session.model) && !self.is_left {
+            self.hear_until(LOOK_AGAIN, |model| !is_open(model))?;
+        }
+        Ok(())
+    }
+
     /// Waits for the plan before a start, as an operator would. The planner has its own time limit for planning.
     fn see_plan(&mut self, action: Option<ActionId>) -> Result<(), String> {
         if action != Some(ActionId::Start) {
@@ -203,6 +223,7 @@ impl Runner {
             Readiness::Preparing => Some(true),
             Readiness::Unseen | Readiness::Failed(_) | Readiness::Plan(_) => None,
         };
+        self.see_standstill()?;
         // A plan is requested when the scenario opens.
         self.hear_until(ANSWERING, |model| !model.live.waits() || readiness(model) != Some(false))?;
         let is_planning = |model: &Model| model.live.waits() && readiness(model) == Some(true);

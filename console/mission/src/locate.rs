@@ -19,6 +19,8 @@ use world::{Point, Pose, Readings, StationId, World};
 pub struct Locator {
     positioner: Positioner,
     limit_m: f64,
+    /// The largest speed and turn rate of the robot, metres and radians per second.
+    fastest: [f64; 2],
     /// Stations that the operator has excluded.
     unused: BTreeSet<StationId>,
     left_out: BTreeMap<StationId, Exclusion>,
@@ -56,6 +58,7 @@ impl Locator {
         Self {
             positioner,
             limit_m: config.position_limit_m,
+            fastest: [config.limits.v_max_m_per_s, config.limits.w_max_rad_per_s],
             unused: BTreeSet::new(),
             left_out: BTreeMap::new(),
             last_cycle_failed: false,
@@ -102,6 +105,11 @@ impl Locator {
 
     /// Processes the readings since the last tick; returns the resulting events.
     pub fn take(&mut self, readings: &Readings) -> Vec<EventKind> {
+        if readings.unmeasured_s > 0.0 {
+            let [most_m_per_s, most_rad_per_s] = self.fastest;
+            self.positioner
+                .wander(most_m_per_s * readings.unmeasured_s, most_rad_per_s * readings.unmeasured_s);
+        }
         self.positioner.predict(&readings.odometry);
         let mut events = if readings.ranging_cycle { self.cycle(readings) } else { Vec::new() };
         events.push(EventKind::Estimated { pose: self.pose_estimate() });

@@ -56,6 +56,8 @@ pub(crate) struct Inbox {
     /// The fault of a `hello`: what follows it cannot be trusted.
     bad_hello: Option<String>,
     closed: Option<String>,
+    /// Time for which the motion is unknown so far, seconds.
+    unmeasured_s: f64,
     ages: Ages,
     outlines: Outlines,
     /// The last report and its time.
@@ -84,6 +86,7 @@ impl Inbox {
             fault: String::new(),
             bad_hello: None,
             closed: None,
+            unmeasured_s: 0.0,
             ages: Ages::default(),
             outlines: Outlines::default(),
             told: None,
@@ -198,6 +201,9 @@ impl Inbox {
         let offset = self.link.clock().at(now_s);
         let age_s = offset.map(|offset| (now_s - (source_t_s - offset.offset_s)).max(0.0));
         self.ages.add(age_s.unwrap_or(0.0));
+        let gap_s = self.motions.gap_s(readings);
+        self.readings.unmeasured_s += gap_s;
+        self.unmeasured_s += gap_s;
         if let Some(moved) = self.motions.take(readings) {
             add(&mut self.readings.odometry, moved);
             if let Some(scan) = &mut self.readings.scan {
@@ -232,6 +238,16 @@ impl Inbox {
         let readings = std::mem::take(&mut self.readings);
         let live = Live { stamps, link: self.due_link(now_s), stood: self.due_stood(now_s) };
         Sensed { readings, live: Some(live) }
+    }
+
+    /// Whether a commanded stop is neither confirmed nor overdue.
+    pub(crate) fn is_stopping(&self, now_s: f64) -> bool {
+        self.link.hold(now_s) == Hold::Stopping
+    }
+
+    /// The link, and the result of a commanded stop if it is new.
+    pub(crate) fn settled(&mut self, now_s: f64) -> Live {
+        Live { stamps: None, link: Some(self.link(now_s)), stood: self.due_stood(now_s) }
     }
 
     fn due_stood(&mut self, now_s: f64) -> Option<Stood> {
@@ -276,6 +292,7 @@ impl Inbox {
             heard: counts.received,
             missed: counts.lost,
             faulty: self.faulty,
+            unmeasured_s: rounded(self.unmeasured_s),
         }
     }
 

@@ -5,7 +5,7 @@ use crate::{inbox::Inbox, outbox::Outbox, remote::motion};
 use flight::{Flight, behind::Behind};
 use scenario::Scenario;
 use vehicle::{
-    port::{CannotInject, Command, Sensed, StationFault, Vehicle, VehicleInfo},
+    port::{CannotInject, Command, Live, Sensed, StationFault, Vehicle, VehicleInfo},
     wire::{
         FromSession, FromVehicle, Misfit, Reader, ToSession, ToVehicle, Writer,
         message::{Commander, Pong},
@@ -114,6 +114,11 @@ impl Vehicle for Loopback {
         if let Err(misfit) = self.say() {
             self.inbox.close(misfit.to_string());
         }
+    }
+
+    fn settle(&mut self, _: bool) -> Option<Live> {
+        let now_s = self.now_s();
+        Some(self.inbox.settled(now_s))
     }
 
     fn truth(&self) -> Option<Truth> {

@@ -19,7 +19,7 @@ use std::{
     time::{Duration, Instant},
 };
 use vehicle::{
-    port::{Brake, CannotInject, Command, Sensed, StationFault, Vehicle},
+    port::{Brake, CannotInject, Command, Live, Sensed, StationFault, Vehicle},
     wire::{FromSession, FromVehicle, Reader, ToSession, ToVehicle, Writer, message::Hello, message::Ping},
 };
 use world::{Station, Truth};
@@ -162,6 +162,16 @@ impl Vehicle for Remote {
 
     fn is_standstill_known(&self) -> bool {
         self.shared.inbox().is_standstill_known()
+    }
+
+    fn settle(&mut self, waits: bool) -> Option<Live> {
+        while waits && self.shared.inbox().is_stopping(self.shared.now_s()) {
+            // A datagram may get lost.
+            self.shared.outbox.command(None, 0);
+            thread::sleep(LOOK_AGAIN);
+        }
+        let now_s = self.shared.now_s();
+        Some(self.shared.inbox().settled(now_s))
     }
 
     fn brake(&self) -> Option<Brake> {

@@ -86,6 +86,7 @@ impl Simulator {
             ranging_cycle: ranges.is_some(),
             ranges: ranges.unwrap_or_default(),
             odometry: self.odometry,
+            unmeasured_s: 0.0,
             sightings: sightings(&self.map, &world.boundary, &world.obstacles, &self.pose, reach_m),
             contact: self.in_contact,
             paid_out_m: self.cable.as_ref().map(Cable::length_m),

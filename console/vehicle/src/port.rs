@@ -34,6 +34,12 @@ pub trait Vehicle: Send {
         true
     }
 
+    /// The link at the end of a mission, after the command to stand still. If `waits`, also whether the vehicle stands:
+    /// the call then takes at most as long as the vehicle may take to stop. `None` if this is not known.
+    fn settle(&mut self, _waits: bool) -> Option<Live> {
+        None
+    }
+
     /// A handle that stops the vehicle at once, from any thread, without waiting for the next tick; `None` for vehicles
     /// whose time passes with the ticks.
     fn brake(&self) -> Option<Brake> {
@@ -169,6 +175,13 @@ pub struct LinkSeen {
     pub missed: u64,
     /// Number of faulty messages.
     pub faulty: u64,
+    /// Time for which the motion is unknown because odometry is missing, seconds.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub unmeasured_s: f64,
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 impl LinkSeen {

@@ -50,6 +50,9 @@ pub struct Readings {
     pub ranging_cycle: bool,
     /// Motion since the last tick.
     pub odometry: Odometry,
+    /// Time for which the motion is unknown because odometry is missing, seconds; 0 in a simulation.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub unmeasured_s: f64,
     /// Obstacles within sensing range.
     pub sightings: Vec<Sighting>,
     /// Whether the bumper is pressed.
@@ -64,4 +67,8 @@ pub struct Readings {
     /// The last scan of the surroundings; `None` without a scanner, and in ticks without a scan.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scan: Option<Scan>,
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }

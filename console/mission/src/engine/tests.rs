@@ -360,6 +360,7 @@ impl Flight {
             ranges,
             ranging_cycle: true,
             odometry: self.moved,
+            unmeasured_s: 0.0,
             sightings: std::mem::take(&mut self.sightings),
             contact: false,
             paid_out_m: self.reel.as_ref().map(|cable| cable.length_m() + self.caught_m),

@@ -186,8 +186,10 @@ fn line(severity: Severity, source: &'static str, text: String) -> LogLine {
 }
 
 fn of_link(link: &LinkSeen) -> LogLine {
-    let LinkSeen { heard, missed, faulty, .. } = link;
-    let figures = format!("{heard} readings arrived, {missed} missing, {faulty} faulty");
+    let LinkSeen { heard, missed, faulty, unmeasured_s, .. } = link;
+    let unmeasured =
+        if *unmeasured_s > 0.0 { format!(", motion unknown for {unmeasured_s:.2} s") } else { String::new() };
+    let figures = format!("{heard} readings arrived, {missed} missing, {faulty} faulty{unmeasured}");
     match (link.trouble(), link.state.is_heard()) {
         (None, _) => line(Severity::Info, "vehicle", format!("link up: {figures}")),
         (Some(why), true) => line(Severity::Warn, "vehicle", format!("{why} ({figures})")),

@@ -47,14 +47,20 @@ pub(super) fn within(field: &str, value: f64, range: RangeInclusive<f64>) -> Che
     if range.contains(&value) {
         return Ok(());
     }
-    misfit(field, format!("{value} is not between {} and {}", range.start(), range.end()))
+    misfit(field, format!("{} is not between {} and {}", short(value), range.start(), range.end()))
 }
 
 fn above_zero(field: &str, value: f64, most: f64) -> Checked {
     if value > 0.0 && value <= most {
         return Ok(());
     }
-    misfit(field, format!("{value} is out of range: greater than 0 and at most {most} is allowed"))
+    misfit(field, format!("{} is out of range: greater than 0 and at most {most} is allowed", short(value)))
+}
+
+/// A number as short text: very large and very small ones with an exponent.
+fn short(value: f64) -> String {
+    let is_plain = value == 0.0 || (1e-6..1e9).contains(&value.abs());
+    if is_plain { format!("{value}") } else { format!("{value:e}") }
 }
 
 fn at_most(field: &str, n: usize, most: usize) -> Checked {
@@ -88,7 +94,7 @@ impl Hello {
         name("hello.name", &self.name)?;
         self.limits.check()?;
         above_zero("hello.period_s", self.period_s, 1.0)?;
-        within("hello.stop_time_s", self.stop_time_s, 0.0..=60.0)?;
+        above_zero("hello.stop_time_s", self.stop_time_s, 60.0)?;
         above_zero("hello.lease_max_s", self.lease_max_s, 5.0)
     }
 }

@@ -25,6 +25,8 @@ pub struct FromSession {
     hello: Option<Hello>,
     newest_s: Option<f64>,
     pose: Option<(f64, Pose)>,
+    /// Number of rays of the first scan.
+    rays: Option<usize>,
 }
 
 /// The commands to a vehicle so far.
@@ -56,7 +58,13 @@ impl FromSession {
                     );
                 }
                 // A vehicle that introduces itself again has started again: its clock and its frame are new.
-                *self = Self { hello: Some(hello.as_ref().clone()), newest_s: None, pose: None, ..*self };
+                *self = Self {
+                    hello: Some(hello.as_ref().clone()),
+                    newest_s: None,
+                    pose: None,
+                    rays: None,
+                    ..*self
+                };
                 Ok(())
             }
             FromVehicle::Readings(readings) => {
@@ -69,6 +77,7 @@ impl FromSession {
                     );
                 }
                 self.moves(&limits, readings)?;
+                self.sees(readings)?;
                 runs_on("readings.stamp_s", &mut self.newest_s, readings.stamp_s)?;
                 self.stands_at(readings);
                 Ok(())
@@ -110,6 +119,17 @@ impl FromSession {
             jumped(limits, over_s, before, pose)?;
         }
         Ok(())
+    }
+
+    /// A scan with far fewer rays than the first one would leave a part of the surroundings unseen.
+    fn sees(&mut self, readings: &Readings) -> Checked {
+        let Some(scan) = &readings.scan else { return Ok(()) };
+        let (n, first) = (scan.ranges_m.len(), *self.rays.get_or_insert(scan.ranges_m.len()));
+        if 2 * n >= first {
+            return Ok(());
+        }
+        let what = format!("{n} rays, but the first scan had {first}; a ray without an echo is null");
+        misfit("readings.scan.ranges_m", what)
     }
 
     fn stands_at(&mut self, readings: &Readings) {

@@ -62,6 +62,28 @@ fn a_wrong_field_of_a_state_hides_neither_its_emergency_stop_nor_its_commander()
 }
 
 #[test]
+fn a_scan_with_far_fewer_rays_than_the_first_is_malformed() {
+    let scan = |seq: u64, rays: usize| {
+        let ranges = vec!["2.0"; rays].join(", ");
+        format!(
+            r#"{{"type": "readings", "seq": {seq}, "stamp_s": 5.0, "odometry": {{"over_s": 0.05, "forward_m": 0, "turn_rad": 0}}, "scan": {{"first_rad": 0, "step_rad": 0.03, "range_max_m": 8, "ranges_m": [{ranges}]}}}}"#
+        )
+    };
+    let first = scan(1, 180);
+    assert!(told(&[&first, &scan(2, 179)]).starts_with("Some(Message"));
+    assert!(
+        told(&[&first, &scan(2, 7)])
+            .starts_with("readings.scan.ranges_m: 7 rays, but the first scan had 180")
+    );
+}
+
+#[test]
+fn a_number_is_named_in_few_characters() {
+    let huge = r#"{"type": "state", "stamp_s": 5.0, "mode": "ready", "battery": 1e300}"#;
+    assert_eq!(told(&[huge]), "state.battery: 1e300 is not between 0 and 1");
+}
+
+#[test]
 fn a_wrong_line_is_named_by_its_field() {
     let readings = |rest: &str| format!(r#"{{"type": "readings", "seq": 1, "stamp_s": 5.0, {rest}}}"#);
     let cases = [

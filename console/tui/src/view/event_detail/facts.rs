@@ -136,7 +136,13 @@ fn linked(link: &LinkSeen) -> Vec<Field> {
     let seconds = |s: f64| format!("{} s", text::number(s, 3));
     let known = [("age", link.age_s), ("p99 age", link.age_p99_s), ("clock offset", link.offset_s)];
     let known = known.into_iter().filter_map(|(what, s)| Some((what, seconds(s?))));
-    let counts = format!("{} arrived, {} missing, {} faulty", link.heard, link.missed, link.faulty);
+    let counts = format!(
+        "{} arrived, {} missing, {} faulty, motion unknown for {} s",
+        link.heard,
+        link.missed,
+        link.faulty,
+        text::number(link.unmeasured_s, 2)
+    );
     [("state", link.state.word().to_owned()), ("readings", counts)].into_iter().chain(known).collect()
 }
 
