@@ -338,6 +338,24 @@ fn liar(path: &Path, lie: impl Fn(u64) -> Vec<u8> + Send + 'static) -> thread::J
     })
 }
 
+#[test]
+fn the_floor_that_a_live_run_missed_is_scanned_by_the_vehicle() {
+    let bench = Bench::new();
+    let scan = |file: &Path| {
+        let vehicle = Vehicle::offer(&bench, file, &[]);
+        let flown = bench.fly(file, &["--vehicle", &vehicle.at, "--set", "mission.time_limit_s=2"]);
+        let run = bench.runs().pop().unwrap_or_else(|| panic!("{flown:?}"));
+        bench.prove(&run);
+        (run, vehicle.at.clone())
+    };
+    let (first, at) = scan(&scenario("cover-rooms.toml"));
+    let made = bench.tankops(&["rescan", first.to_str().unwrap(), "-o", "again.toml"]);
+    let advice = format!("again.toml --vehicle \"{at}\"`");
+    assert!(made.out.contains("place the vehicle at the start") && made.out.contains(&advice), "{made:?}");
+    let (second, _) = scan(&bench.path().join("again.toml"));
+    assert!(first != second && of_kind(&journal(&second), "sensed").len() > 1);
+}
+
 /// Connects a run to an adapter that says a prepared text after its introduction, and waits for the end of the run.
 fn lied_to(lie: impl Fn(u64) -> Vec<u8> + Send + 'static) -> Ended {
     let bench = Bench::new();
