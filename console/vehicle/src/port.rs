@@ -160,7 +160,7 @@ impl LinkSeen {
             LinkState::Closed => "the link to the vehicle is closed",
             LinkState::Faulty => "the vehicle sends faulty messages",
             LinkState::Restarted => "the vehicle has restarted",
-            LinkState::Manual => "a person drives the vehicle by hand",
+            LinkState::Manual => "a person is driving the vehicle by hand",
             LinkState::EmergencyStop => "the emergency stop of the vehicle is pressed",
             LinkState::VehicleFault => "the vehicle reports a fault",
         };

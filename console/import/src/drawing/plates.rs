@@ -139,13 +139,13 @@ fn rings(
     };
     if faces.rings.len() < 2 {
         notes.push(format!(
-            "PLATES: {n_lines} lines that divide no floor were left out; draw seams from seam to seam or to the shell"
+            "PLATES: lines that divide no floor were left out ({n_lines}); end each seam at another seam or at the shell"
         ));
         return Vec::new();
     }
     if faces.n_loose > 0 {
         notes.push(format!(
-            "PLATES: {} lines do not end at another line and divide no floor; draw seams from seam to seam or to the shell",
+            "PLATES: lines that end at no other line divide no floor ({}); end each seam at another seam or at the shell",
             faces.n_loose
         ));
     }

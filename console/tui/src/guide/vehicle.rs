@@ -17,10 +17,10 @@ pub(super) const LINK: Guide = Guide {
 };
 
 pub(super) const VEHICLE: Guide = Guide {
-    cause: "The vehicle cannot be driven: a person drives it by hand, its emergency stop is pressed, or it \
+    cause: "The vehicle cannot be driven: a person is driving it by hand, its emergency stop is pressed, or it \
     reports a fault.",
     effect: "The robot is held until the operator resumes. Position, coverage and tether are still updated.",
-    remedies: &[wait("Ask the person at the robot, and clear the cause there."), RESUME, END],
+    remedies: &[wait("Ask the person at the robot what is wrong, and clear the cause there."), RESUME, END],
 };
 
 pub(super) const GUARD: Guide = Guide {

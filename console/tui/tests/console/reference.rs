@@ -93,8 +93,8 @@ fn reference() -> String {
     format!(
         "{HEAD}{commands}\n| value | what it is |\n|---|---|\n{}\n## In lists, text fields and questions\n\n\
          | action | keys | what it does |\n|---|---|---|\n{steps}\n\
-         In a text field letters and space are typed; left, right, home, end, Ctrl-left, Ctrl-right, Delete, Backspace, Ctrl-U and\n\
-         Ctrl-W edit, and Ctrl-C holds the robot.\n\n\
+         In a text field, letters and the space bar enter text. Left, right, home, end, Ctrl-left and Ctrl-right move the cursor;\n\
+         Delete, Backspace, Ctrl-U and Ctrl-W delete text; Ctrl-C holds the robot.\n\n\
          ## Presets\n\n| preset | action | keys |\n|---|---|---|\n{presets}",
         values()
     )

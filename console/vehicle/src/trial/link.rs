@@ -198,7 +198,7 @@ pub fn state(listened: &Listened) -> Row {
         (Mode::Ready, Commander::You) => return Row::pass(check, figures, "ready, obeys this console"),
         (Mode::Ready, Commander::OtherConsole) => "it obeys another console; close that console first",
         (Mode::Ready, Commander::OtherProgram) => "another program commands it; end that program first",
-        (Mode::Manual, _) => "a person drives it by hand; hand it over first",
+        (Mode::Manual, _) => "a person is driving it by hand; that person must hand over control first",
         (Mode::EmergencyStop, _) => "its emergency stop is pressed; release it first",
         (Mode::Fault, _) => "it reports a fault; repair it first",
     };
