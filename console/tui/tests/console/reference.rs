@@ -63,7 +63,9 @@ fn kind(kind: Kind) -> &'static str {
         Kind::Moment => "a moment of the run: `01:12:30`, `12:30` or `12m30s`",
         Kind::Alarm => "name of an alarm, as the list of alarms shows it",
         Kind::Station => "name of an AE station",
-        Kind::Fault => "`dead`: not heard; `offset=METRES`: ranges too long by METRES, more than 0 and at most 1000",
+        Kind::Fault => {
+            "`dead`: not heard; `offset=METRES`: ranges too long by METRES, more than 0 and at most 1000"
+        }
         Kind::Corner => "x and y in metres: `-1.5,2`",
         Kind::Text => "any text",
     }
