@@ -94,7 +94,7 @@ pub enum LinkState {
     Faulty,
     /// The vehicle has started again; its earlier clock, frame and commands do not count any more.
     Restarted,
-    /// A person drives the vehicle by hand.
+    /// A person is driving the vehicle by hand.
     Manual,
     /// The emergency stop of the vehicle is pressed.
     EmergencyStop,

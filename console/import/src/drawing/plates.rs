@@ -234,7 +234,7 @@ fn named(rings: Vec<Vec<Point>>, labels: &mut Vec<Label>, notes: &mut Vec<String
     let n_numbered = sorted.len() - given.len();
     if n_numbered > 0 {
         notes.push(format!(
-            "PLATES: {n_numbered} of {} plates have no text of their own and were numbered from south to north",
+            "PLATES: plates without a text of their own ({n_numbered} of {}) were numbered from south to north",
             sorted.len()
         ));
     }

@@ -102,7 +102,7 @@ pub fn readings(hello: &Hello, listened: &Listened) -> Vec<Row> {
         listened.readings.windows(2).map(|pair| pair[1].1.stamp_s - pair[0].1.stamp_s).collect();
     intervals.sort_by(f64::total_cmp);
     let Some(median_s) = intervals.get(intervals.len() / 2).copied() else {
-        let says = format!("{count} readings arrived; send one every {} s", hello.period_s);
+        let says = format!("too few readings arrived ({count}); send one every {} s", hello.period_s);
         return vec![
             Row::fail(rate, Vec::new(), says),
             Row::not_measured(jitter, "too few readings arrived"),
