@@ -174,7 +174,8 @@ impl Runner {
                 }
                 let model = &self.session.model;
                 let is_paused = model.live.replay.as_ref().is_some_and(|replay| !replay.is_playing);
-                let paused = if is_paused { "; the replay is paused: write `play` before this line" } else { "" };
+                let paused =
+                    if is_paused { "; the replay is paused: write `play` before this line" } else { "" };
                 Err(format!(
                     "timed out after {within_s} s waiting for: {condition}; {}{paused}",
                     condition.instead(model)

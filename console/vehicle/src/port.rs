@@ -117,7 +117,7 @@ pub enum LinkState {
     Faulty,
     /// The vehicle has started again; its earlier clock, frame and commands do not count any more.
     Restarted,
-    /// A person drives the vehicle by hand.
+    /// A person is driving the vehicle by hand.
     Manual,
     /// The emergency stop of the vehicle is pressed.
     EmergencyStop,
@@ -193,7 +193,7 @@ impl LinkSeen {
             LinkState::Closed => "the link to the vehicle is closed",
             LinkState::Faulty => "the vehicle sends faulty messages",
             LinkState::Restarted => "the vehicle has restarted",
-            LinkState::Manual => "a person drives the vehicle by hand",
+            LinkState::Manual => "a person is driving the vehicle by hand",
             LinkState::EmergencyStop => "the emergency stop of the vehicle is pressed",
             LinkState::VehicleFault => "the vehicle reports a fault",
             LinkState::OtherCommander => "the vehicle obeys another commander",

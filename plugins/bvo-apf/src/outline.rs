@@ -145,7 +145,7 @@ pub struct Follow {
     keep_m: f64,
     /// The direction of the last move, while the robot follows an outline.
     along: Option<Vector>,
-    /// The position of the last choice of side.
+    /// The position at which the robot last chose a side.
     pub met: Option<Point>,
     nearest_m: f64,
     /// The position closest to the goal so far, and the move from there.

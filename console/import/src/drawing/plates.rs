@@ -139,13 +139,13 @@ fn rings(
     };
     if faces.rings.len() < 2 {
         notes.push(format!(
-            "PLATES: {n_lines} lines that divide no floor were left out; draw seams from seam to seam or to the shell"
+            "PLATES: lines that divide no floor were left out ({n_lines}); end each seam at another seam or at the shell"
         ));
         return Vec::new();
     }
     if faces.n_loose > 0 {
         notes.push(format!(
-            "PLATES: {} lines do not end at another line and divide no floor; draw seams from seam to seam or to the shell",
+            "PLATES: lines that end at no other line divide no floor ({}); end each seam at another seam or at the shell",
             faces.n_loose
         ));
     }
@@ -234,7 +234,7 @@ fn named(rings: Vec<Vec<Point>>, labels: &mut Vec<Label>, notes: &mut Vec<String
     let n_numbered = sorted.len() - given.len();
     if n_numbered > 0 {
         notes.push(format!(
-            "PLATES: {n_numbered} of {} plates have no text of their own and were numbered from south to north",
+            "PLATES: plates without a text of their own ({n_numbered} of {}) were numbered from south to north",
             sorted.len()
         ));
     }

@@ -148,7 +148,7 @@ impl Shadow {
         self.course.advance(here, chart.map());
     }
 
-    /// Handles a change of the map: obstacles that were found, and whether they block the shadow's plan.
+    /// Handles a change to the map: obstacles that were found, and whether they block the shadow's plan.
     pub(super) fn map_changed(&mut self, found: &[Shape], is_in_the_way: bool) {
         self.course.found_since.extend_from_slice(found);
         if is_in_the_way {

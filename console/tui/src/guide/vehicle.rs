@@ -17,11 +17,11 @@ pub(super) const LINK: Guide = Guide {
 };
 
 pub(super) const VEHICLE: Guide = Guide {
-    cause: "The vehicle cannot be driven: a person drives it by hand, its emergency stop is pressed, or it \
+    cause: "The vehicle cannot be driven: a person is driving it by hand, its emergency stop is pressed, or it \
     reports a fault.",
     holds: "The robot is held at once.",
     effect: "Position, coverage and tether are still updated.",
-    remedies: &[check("Ask the person at the robot, and clear the cause there."), RESUME, END],
+    remedies: &[check("Ask the person at the robot what is wrong, and clear the cause there."), RESUME, END],
 };
 
 pub(super) const GUARD: Guide = Guide {

@@ -229,7 +229,9 @@ fn hand_over(model: &mut Model, file: String, mut values: impl Iterator<Item = V
     let overwrite = match values.next() {
         None => false,
         Some(Value::Text(word)) if word == "overwrite" => true,
-        Some(_) => return refuse(model, "write overwrite after the file to replace an earlier page".into()),
+        Some(_) => {
+            return refuse(model, "write `overwrite` after the file to replace an earlier page".into());
+        }
     };
     vec![Effect::HandOver { file, page: handover::page(model), overwrite }]
 }

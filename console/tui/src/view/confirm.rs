@@ -134,7 +134,8 @@ fn asked(model: &Model) -> Option<Vec<String>> {
             let next = text::fit(&choice.id, 18);
             let question = match (choice.parameters.len(), model.live.run.planner_id()) {
                 (n @ 1.., Some(id)) if id == choice.id => {
-                    format!("Restart {next} with {n} parameters set? <accept>: change, <cancel>: cancel.")
+                    let set = text::counted(n, "set parameter");
+                    format!("Restart {next} with {set}? <accept>: restart, <cancel>: cancel.")
                 }
                 _ => format!("Change planner to {next}? <accept>: change, <cancel>: cancel."),
             };
@@ -227,7 +228,7 @@ fn continues(model: &Model) -> Option<String> {
     let rest = rest.map_or_else(String::new, |plan| {
         format!(", {} m of the plan left", text::number(plan.rest_m(progress), 1))
     });
-    Some(format!("It continues at {} (×){rest}.", text::place(progress.target)))
+    Some(format!("The robot continues at {} (×){rest}.", text::place(progress.target)))
 }
 
 /// What the zone in the question costs, as sentences.

@@ -164,17 +164,15 @@ fn figures(summary: &Summary, together: Option<&Together>) -> Vec<Field> {
     if let Some(floor) = together.map(|all| &all.floor).or(summary.floor.as_ref()) {
         let missed: Vec<_> = floor.missed.iter().filter(|area| area.reason != MissReason::NotAsked).collect();
         let area_m2: f64 = missed.iter().map(|area| area.area_m2).sum();
-        fields
-            .push(("missed", format!("{}, {} m²", counted(missed.len(), "area"), text::number(area_m2, 2))));
+        fields.push((
+            "missed",
+            format!("{}, {} m²", text::counted(missed.len(), "area"), text::number(area_m2, 2)),
+        ));
     }
     for violation in summary.violations.iter().flatten() {
         fields.push(("not met", violation.clone()));
     }
     fields
-}
-
-fn counted(n: usize, what: &str) -> String {
-    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
 /// What happened during the run.
@@ -186,7 +184,7 @@ fn events(run: &Run, summary: Option<&Summary>) -> Vec<Field> {
         fields.push(("holds", format!("{holds}, collisions {collisions}, planner faults {faults}")));
         fields.extend(
             (summary.obstacles_found > 0)
-                .then(|| ("found", counted(summary.obstacles_found as usize, "obstacle"))),
+                .then(|| ("found", text::counted(summary.obstacles_found as usize, "obstacle"))),
         );
     }
     let mut alarms: Vec<_> = run.alarms.list().iter().collect();

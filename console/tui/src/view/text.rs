@@ -25,6 +25,11 @@ pub(crate) fn number(value: f64, decimals: usize) -> String {
     }
 }
 
+/// A count with its noun in singular or plural.
+pub(crate) fn counted(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
+}
+
 /// The coordinates of a place on the floor.
 pub(crate) fn place(point: Point) -> String {
     format!("{}, {} m", number(point.x, 2), number(point.y, 2))

@@ -35,7 +35,7 @@ fn the_page_is_asked_for_by_a_command_and_replaced_only_on_demand() {
     screen.type_text(":handover shift.md please");
     assert_eq!(screen.press([Key::Enter]), []);
     let said = screen.model.notice().unwrap().text.clone();
-    assert!(said.contains("write overwrite after the file"), "{said}");
+    assert!(said.contains("write `overwrite` after the file"), "{said}");
 }
 
 #[test]

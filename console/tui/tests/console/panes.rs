@@ -74,7 +74,7 @@ pub(crate) fn missed_summary() -> Summary {
         "at": [1.0, 2.0], "low": [0.5, 1.5], "high": [1.5, 2.5], "area_m2": 0.75, "plate": "R-03-05", "reason": "beyond_reel",
         "causes": [
             { "reason": "beyond_reel", "area_m2": 0.5, "measure": null,
-              "text": "not planned: 1.3 m beyond the reel, lanes within 12.4 m of the anchor" },
+              "text": "not planned: 1.3 m beyond the reach of the tether, lanes within 12.4 m of the anchor" },
             { "reason": "position_uncertain", "area_m2": 0.2, "measure": null,
               "text": "passed with position error 0.24 m, limit 0.15 m" },
             { "reason": "clearance", "area_m2": 0.05, "measure": null,

@@ -119,7 +119,7 @@ pub fn readings(hello: &Hello, listened: &Listened) -> Vec<Row> {
         listened.readings.windows(2).map(|pair| pair[1].1.stamp_s - pair[0].1.stamp_s).collect();
     intervals.sort_by(f64::total_cmp);
     let Some(median_s) = intervals.get(intervals.len() / 2).copied() else {
-        let says = format!("{count} readings arrived; send one every {} s", hello.period_s);
+        let says = format!("too few readings arrived ({count}); send one every {} s", hello.period_s);
         return vec![
             Row::fail(rate, Vec::new(), says),
             Row::not_measured(jitter, "too few readings arrived"),
@@ -215,7 +215,7 @@ pub fn state(listened: &Listened) -> Row {
         (Mode::Ready, Commander::You) => return Row::pass(check, figures, "ready, obeys this console"),
         (Mode::Ready, Commander::OtherConsole) => "it obeys another console; close that console first",
         (Mode::Ready, Commander::OtherProgram) => "another program commands it; end that program first",
-        (Mode::Manual, _) => "a person drives it by hand; hand it over first",
+        (Mode::Manual, _) => "a person is driving it by hand; that person must hand over control first",
         (Mode::EmergencyStop, _) => "its emergency stop is pressed; release it first",
         (Mode::Fault, _) => "it reports a fault; repair it first",
     };

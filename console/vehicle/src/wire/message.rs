@@ -299,7 +299,7 @@ pub struct State {
 pub enum Mode {
     /// It obeys.
     Ready,
-    /// A person drives it by hand.
+    /// A person is driving it by hand.
     Manual,
     /// Its emergency stop is pressed.
     EmergencyStop,

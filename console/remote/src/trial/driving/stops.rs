@@ -67,9 +67,11 @@ impl Driver<'_> {
         }
         let how = match (cause, self.log) {
             (Cause::Cut, _) if !matches!(self.address, Address::Run(_)) => {
-                "let the adapter send readings to a second connection, too"
+                "have the adapter also send readings to a second connection"
             }
-            (_, Some(_)) => "let the robot write `time speed turn_rate` lines to the file named in ROBOT_LOG",
+            (_, Some(_)) => {
+                "have the robot write `time speed turn_rate` lines to the file named in ROBOT_LOG"
+            }
             (_, None) => "the log cannot be written to the folder for temporary files",
         };
         Row { says: format!("{}; {how}", row.says), ..row }

@@ -47,8 +47,10 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         let mut mine = cell(figure, estimate, (Role::Text, widths.first));
         let lanes = look.run.planning.plan.as_ref().map_or(0, |plan| plan.lanes.len());
         if figure.label == "path" && lanes > 0 {
-            let plural = if lanes == 1 { "" } else { "s" };
-            mine.1 = text::wording([format!("{}, {lanes} lane{plural}", mine.1), mine.1], widths.first);
+            mine.1 = text::wording(
+                [format!("{}, {}", mine.1, text::counted(lanes, "lane")), mine.1],
+                widths.first,
+            );
         }
         let second = second.as_ref().map(|second| match second {
             Second::Now => (
