@@ -87,7 +87,7 @@ fn what_a_planner_says_again_after_a_replan_is_shown_once() {
     let entries = (log.oldest()..log.end()).filter_map(|number| log.get(number));
     let said: Vec<_> =
         entries.filter(|entry| entry.text.contains("a rim")).map(|entry| entry.severity).collect();
-    assert_eq!(said, [mission::Severity::Watch, mission::Severity::Debug]);
+    assert_eq!(said, [Severity::Watch, Severity::Debug]);
 }
 
 #[test]
