@@ -25,6 +25,15 @@ const MAX_SAID_BYTES: usize = 1000;
 /// A lane of a plan: the first and the last index of its points in [`PlanShown::path`].
 pub type Lane = (usize, usize);
 
+/// What the robot drives before the first lane of a plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lead {
+    /// Back along the tether, to the place from which the new plan leads on.
+    Back,
+    /// To the first lane.
+    ToLane,
+}
+
 /// A plan, thinned for drawing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlanShown {
@@ -45,9 +54,12 @@ pub struct PlanShown {
     /// The distance driven along earlier plans when this one was made, metres.
     #[serde(default)]
     pub driven_m: f64,
-    /// The length of its first part, the way back along the tether to the place from which the plan leads on, metres.
+    /// The length of the way back along the tether with which the plan begins, metres.
     #[serde(default)]
     pub retract_m: f64,
+    /// The length of all that comes before its first lane: the way back and the way from there, metres.
+    #[serde(default)]
+    pub lead_m: f64,
 }
 
 impl PlanShown {
@@ -72,15 +84,18 @@ impl PlanShown {
         straights(thin).into_iter().filter(long).collect()
     }
 
-    /// The length of the way back along the tether with which a plan begins, metres; `path` is the whole path.
-    pub fn retract_of_m(path: &[Point], legs: &[Leg]) -> f64 {
-        let back = legs.iter().take_while(|leg| leg.tag == LegTag::Retract).last();
-        back.and_then(|leg| path.get(..=leg.last)).map_or(0.0, polyline::length_m)
+    /// The length of the part of a plan that consists of legs of the given kinds before all others, metres; `path` is the
+    /// whole path.
+    pub fn begins_m(path: &[Point], legs: &[Leg], with: &[LegTag]) -> f64 {
+        let part = legs.iter().take_while(|leg| with.contains(&leg.tag)).last();
+        part.and_then(|leg| path.get(..=leg.last)).map_or(0.0, polyline::length_m)
     }
 
-    /// How far the robot still drives back along the tether before the plan leads on, metres; `None` if it does not.
-    pub fn retract_left_m(&self, progress: &Progress) -> Option<f64> {
-        Some(self.retract_m - self.along_m(progress.done).max(0.0)).filter(|left_m| *left_m > 0.0)
+    /// The way that the robot drives before the first lane, and how far it still is, metres; `None` once it is there.
+    pub fn lead_left_m(&self, progress: &Progress) -> Option<(Lead, f64)> {
+        let along_m = self.along_m(progress.done).max(0.0);
+        let ways = [(Lead::Back, self.retract_m), (Lead::ToLane, self.lead_m)];
+        ways.into_iter().map(|(lead, end_m)| (lead, end_m - along_m)).find(|(_, left_m)| *left_m > 0.0)
     }
 
     /// The length of the path that is left, metres.
@@ -275,6 +290,7 @@ mod tests {
             t_s: 0.0,
             driven_m: 0.0,
             retract_m: 0.0,
+            lead_m: 0.0,
         }
     }
 
@@ -344,6 +360,7 @@ mod tests {
             t_s: 0.0,
             driven_m: 0.0,
             retract_m: 0.0,
+            lead_m: 0.0,
         }
     }
 
@@ -362,17 +379,29 @@ mod tests {
     }
 
     #[test]
-    fn a_plan_that_begins_with_a_way_back_says_how_much_of_it_is_left() {
+    fn a_plan_says_how_far_it_is_to_its_start_and_to_its_first_lane() {
         let leg = |tag, first, last| Leg { tag, first, last };
-        let legs = [leg(LegTag::Retract, 0, 2), leg(LegTag::Retract, 2, 4), leg(LegTag::Swath, 4, 32)];
-        let retract_m = PlanShown::retract_of_m(&meander(), &legs);
-        assert!((retract_m - 4.0).abs() < 1e-9);
-        assert!(PlanShown::retract_of_m(&meander(), &legs[2..]).abs() < 1e-9);
+        let legs = [
+            leg(LegTag::Retract, 0, 2),
+            leg(LegTag::Retract, 2, 4),
+            leg(LegTag::Travel, 4, 6),
+            leg(LegTag::Swath, 6, 32),
+        ];
+        let begins_m = |legs, with: &[LegTag]| PlanShown::begins_m(&meander(), legs, with);
+        let (retract_m, lead_m) = (
+            begins_m(&legs[..], &[LegTag::Retract]),
+            begins_m(&legs[..], &[LegTag::Retract, LegTag::Travel]),
+        );
+        assert!((retract_m - 4.0).abs() < 1e-9 && (lead_m - 6.0).abs() < 1e-9);
+        assert!(begins_m(&legs[3..], &[LegTag::Retract]).abs() < 1e-9);
         // 8 m of 40 m were driven along the plan before.
-        let plan = PlanShown { driven_m: 8.0, retract_m, ..shown(Vec::new()) };
-        let left_m = |driven_m: f64| plan.retract_left_m(&progress(Point::origin(), driven_m / 40.0));
-        assert!((left_m(9.0).unwrap() - 3.0).abs() < 1e-9);
-        assert_eq!(left_m(12.5), None);
+        let plan = PlanShown { driven_m: 8.0, retract_m, lead_m, ..shown(Vec::new()) };
+        let left = |driven_m: f64| plan.lead_left_m(&progress(Point::origin(), driven_m / 40.0));
+        let is_left = |driven_m, lead, m: f64| {
+            left(driven_m).is_some_and(|(is, left_m)| is == lead && (left_m - m).abs() < 1e-9)
+        };
+        assert!(is_left(9.0, Lead::Back, 3.0) && is_left(13.0, Lead::ToLane, 1.0));
+        assert_eq!(left(14.5), None);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::go;
 use super::message::Effect;
-use super::offer::{offered, refuse};
+use super::offer::{accepted, offered, refuse};
 use super::overlay::{self, ask, open};
 use super::send::{hold_now, send};
 use super::{palette, remedies, replay};
@@ -67,7 +67,10 @@ pub(crate) fn hold(model: &mut Model) -> Vec<Effect> {
         return hold_now(model);
     }
     if model.ui.overlay == Overlay::None {
-        return ask(model, Ask::Resume);
+        return match accepted(model, &Order::Resume) {
+            Ok(()) => ask(model, Ask::Resume),
+            Err(why) => refuse(model, why),
+        };
     }
     model.say(Severity::Info, "already held");
     Vec::new()

@@ -12,8 +12,8 @@ use crate::model::replay::Jump;
 use crate::model::zone_draft::Form;
 use crate::model::{Model, Overlay, Screen, ui::Arrangement};
 use crate::theme::Role;
-use crate::update::{is_typing, offered};
-use mission::Phase;
+use crate::update::{is_typing, offer::accepted, offered};
+use mission::{Order, Phase};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -187,7 +187,11 @@ fn label(action: &Action, model: &Model) -> String {
         (ActionId::Hold, Overlay::None) if is_playing == Some(true) => "pause",
         (ActionId::Hold, Overlay::None) if is_playing == Some(false) => "play",
         (ActionId::Hold, _) if matches!(model.live.run.phase(), Phase::Held(_)) && !model.live.may_move() => {
-            "resume…"
+            if accepted(model, &Order::Resume).is_ok() {
+                "resume…"
+            } else {
+                ""
+            }
         }
         (ActionId::Interrupt, _) if is_typing(model) => "HOLD",
         (ActionId::Cancel, Overlay::None) => "close cursor",

@@ -4,6 +4,7 @@ mod held;
 
 use super::{confirm, events, text};
 use crate::guide;
+use crate::model::planning::Lead;
 use crate::model::{Alarm, Busy, Model, Offer, Overlay, Replay, Screen, ui::Ask};
 use crate::theme::Role;
 use mission::{Outcome, Phase, Readiness, Severity};
@@ -246,11 +247,14 @@ fn doing(model: &Model) -> Clauses {
         return (Role::Title, vec!["Waiting for first command.".into()]);
     };
     let done = text::percent(progress.done);
-    let retracts_m = run.planning.plan.as_ref().and_then(|plan| plan.retract_left_m(progress));
-    if let Some(left_m) = retracts_m {
-        let left_m = text::number(left_m, 1);
-        let why = "Driving back along the tether to the start of the new plan";
-        return (Role::Title, vec![format!("{why}: {left_m} m left."), format!("Path {done} % done.")]);
+    let lead = run.planning.plan.as_ref().and_then(|plan| plan.lead_left_m(progress));
+    if let Some((lead, left_m)) = lead {
+        let why = match lead {
+            Lead::Back => "Driving back along the tether to the start of the new plan",
+            Lead::ToLane => "Driving to the first lane of the plan",
+        };
+        let left = format!("{why}: {} m left.", text::number(left_m, 1));
+        return (Role::Title, vec![left, format!("Path {done} % done.")]);
     }
     (Role::Title, vec![format!("Next target: {}; path {done} % done.", text::place(progress.target))])
 }

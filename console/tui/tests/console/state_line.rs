@@ -81,12 +81,19 @@ fn a_drive_back_to_the_start_of_a_new_plan_is_explained() {
             Leg { tag: LegTag::Swath, first: 1, last: 2 },
         ];
     }
+    let mut travels = planned.clone();
+    if let EventKind::Planned { legs, .. } = &mut travels {
+        legs[0].tag = LegTag::Travel;
+    }
     hear(&mut screen, [planned]);
     let line = state(&screen);
     assert!(
         line.starts_with("Driving back along the tether to the start of the new plan: 4.0 m left."),
         "{line}"
     );
+    hear(&mut screen, [travels]);
+    let line = state(&screen);
+    assert!(line.starts_with("Driving to the first lane of the plan: 4.0 m left."), "{line}");
 }
 
 #[test]
@@ -145,12 +152,19 @@ fn a_hold_names_the_link_and_offers_only_what_it_allows() {
     hear(&mut screen, [link(LinkState::Closed, "the adapter has ended")]);
     let line = state(&screen);
     assert!(line.contains("link to vehicle closed") && line.contains("only a new run connects"), "{line}");
+    assert_eq!(screen.press([tui::Key::Char(' ')]), []);
+    assert_eq!(screen.model.ui.overlay, tui::model::Overlay::None, "it cannot resume, so it does not ask");
+    let why = screen.model.notice().expect("the reason").text.clone();
+    assert!(why.contains("the link to the vehicle is closed"), "{why}");
+    screen.model.console.notice = None;
+    let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+    assert!(!shown.contains("resume…"), "{shown}");
     hear(
         &mut screen,
         [link(LinkState::Up, ""), EventKind::Stood { confirmed: true, after_s: 1.0, moved: false }],
     );
     let line = state(&screen);
-    assert!(line.starts_with("HELD: vehicle can be driven again"), "{line}");
+    assert!(line.starts_with("HELD: vehicle is ready again"), "{line}");
     assert!(line.contains("space: resume."), "{line}");
 }
 

@@ -4,7 +4,7 @@ use crate::model::{Cause, Change, Offer, PlanShown, Run, Withdrawn, planning};
 use mission::{
     BetterPlan, During, Event, EventKind, Phase, PlannerChoice, PlannerInfo, Severity, event::late_text,
 };
-use planner_api::{Command, Drawing};
+use planner_api::{Command, Drawing, LegTag};
 
 /// The maximum number of drawings kept for one tick.
 const MAX_DRAWINGS: usize = 512;
@@ -27,11 +27,14 @@ impl Run {
                 if self.planning.proposed {
                     return;
                 }
-                let retract_m = PlanShown::retract_of_m(path, legs);
+                let begins_m = |with: &[LegTag]| PlanShown::begins_m(path, legs, with);
+                let retract_m = begins_m(&[LegTag::Retract]);
+                let lead_m = begins_m(&[LegTag::Retract, LegTag::Travel]);
                 let (path, lanes) = planning::shown(path, legs, self.least_lane_m());
                 let driven_m = self.driven_m();
                 let (ask, length_m, complete, t_s) = (*ask, *length_m, *complete, event.t_s);
-                let plan = PlanShown { ask, path, lanes, length_m, complete, t_s, driven_m, retract_m };
+                let plan =
+                    PlanShown { ask, path, lanes, length_m, complete, t_s, driven_m, retract_m, lead_m };
                 self.planning.plan = Some(plan);
                 self.planner_works();
             }

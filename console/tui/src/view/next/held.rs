@@ -134,7 +134,7 @@ fn held_for_good(head: Head, by: &HoldReason) -> Vec<String> {
         // The reason for the hold is gone.
         HoldReason::PositionLost => (": position recovered", &[RESUME]),
         HoldReason::RangesInconsistent => (": ranges agree again", &[RESUME]),
-        HoldReason::Vehicle { .. } => (": vehicle can be driven again", &[RESUME, "<end>: end mission."]),
+        HoldReason::Vehicle { .. } => (": vehicle is ready again", &[RESUME, "<end>: end mission."]),
         HoldReason::Stepped => (reason(by), &[RESUME]),
         HoldReason::Operator | HoldReason::PlannerReplaced | HoldReason::PlannerSilent { .. } => {
             (reason(by), &[RESUME, PLANNER])
