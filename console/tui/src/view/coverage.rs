@@ -148,7 +148,7 @@ fn way(run: &Run) -> String {
 }
 
 /// The remaining mission time, and the mission time at the end.
-fn left(run: &Run, wide: bool) -> String {
+pub(super) fn left(run: &Run, wide: bool) -> String {
     let Some(left_s) = run.left_s() else {
         return if run.has_ended() { "ended".into() } else { "-".into() };
     };
