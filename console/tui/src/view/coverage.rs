@@ -148,7 +148,7 @@ fn way(run: &Run) -> String {
 }
 
 /// The remaining mission time, and the mission time at the end.
-fn left(look: &Look, wide: bool) -> String {
+pub(super) fn left(look: &Look, wide: bool) -> String {
     let run = look.run;
     let Some(left_s) = look.model.live.left_s() else {
         return if run.has_ended() { "ended".into() } else { "-".into() };

@@ -2,7 +2,7 @@
 
 use super::look::{Look, fill, marked, ranked};
 use super::{shadow, text};
-use crate::model::history::{HISTORY_S, SLOT_S};
+use crate::model::history::HISTORY_S;
 use crate::model::{Offer, Pane, Run};
 use crate::theme::Role;
 use planner_api::{Drive, Status};
@@ -184,7 +184,7 @@ fn curve(look: &Look, name: &str, room: usize) -> String {
     if !is_drawn {
         return String::new();
     }
-    text::sparkline(history.last(HISTORY_S), largest, room, HISTORY_S / SLOT_S)
+    text::sparkline(history, HISTORY_S, largest, room)
 }
 
 /// A figure of the planner; a count has no decimals.
