@@ -27,6 +27,7 @@ mod position;
 mod readable;
 pub(crate) mod result;
 pub(crate) mod review;
+mod setting;
 mod shadow;
 mod small_map;
 mod stations;

@@ -189,16 +189,19 @@ fn lines_shown(look: &Look, window: Window) -> Vec<Entry> {
     let course = course::course(look);
     let some =
         |part: fn(&course::Course) -> Lane| course.as_ref().map(part).is_some_and(|(from, to)| from < to);
+    let has_ways =
+        course.as_ref().is_some_and(|course| course::parts(look, course).iter().any(|part| part.1));
     let other_run = look.model.live.replay.as_ref().is_some_and(|replay| replay.other.is_some());
     let lines = [
         (course::shows_trail(look), ink::TRAIL, "trail"),
         (on_plan && some(|course| course.driven), ink::DRIVEN, "driven"),
         (some(|course| course.leg), ink::LEG, "this leg"),
         (some(|course| course.ahead), course::plan_ink(look), "plan"),
+        (has_ways, ink::WAY, "way between"),
         (course::offer(look).is_some(), ink::OFFER, "better plan"),
         (course::compared(look).is_some(), ink::OTHER, "compared"),
         (other_run && look.model.ui.screen == Screen::Mission, ink::OTHER, RUN_B),
-        (run.shadow.is_some() && run.is_running(), ink::SHADOW, "shadow"),
+        (run.shown_shadow().is_some(), ink::SHADOW, "shadow"),
         (
             run.tether.as_ref().is_some_and(|tether| tether.line.windows(2).any(|pair| pair[0] != pair[1])),
             ink::TETHER,
