@@ -28,6 +28,7 @@ mod readable;
 pub(crate) mod result;
 pub(crate) mod review;
 mod run_details;
+mod setting;
 mod shadow;
 mod small_map;
 mod stations;

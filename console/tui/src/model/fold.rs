@@ -45,6 +45,9 @@ impl Run {
                 if self.is_waiting() && changes_plan(order) {
                     self.forget_plan();
                 }
+                if let Order::SetParameter { key, value } = order {
+                    self.order_parameter(key, value);
+                }
                 change.answered = Some(order.clone());
                 self.shadowed(event, &mut change);
             }

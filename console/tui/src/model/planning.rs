@@ -218,6 +218,9 @@ impl Offer {
 pub struct Planning {
     /// The active planner, with the parameters set by hand.
     pub choice: Option<PlannerChoice>,
+    /// The active planner with the parameters that were ordered last, until they take effect or are refused.
+    #[serde(default)]
+    pub ordered: Option<PlannerChoice>,
     /// The description of the planner.
     pub info: Option<PlannerInfo>,
     /// The current plan.

@@ -3,6 +3,7 @@
 mod vehicle;
 
 use super::{Model, ui::Arrangement};
+use account::LeftOut;
 use mission::{Check, CheckOutcome, PlanId, Readiness, TaskConfig};
 use serde::{Deserialize, Serialize};
 use world::coverage::percent_text;
@@ -131,7 +132,9 @@ impl Model {
                 check("plan", CheckOutcome::Failed, "being made; start again when it is ready".into())
             }
             (Some(plan), None) if plan.complete => {
-                check("plan", CheckOutcome::Passed, format!("{:.1} m, the whole task", plan.length_m))
+                let left_out = self.live.left_out().filter(|left_out| !left_out.areas.is_empty());
+                let what = left_out.map_or_else(|| "the whole task".to_owned(), all_but);
+                check("plan", CheckOutcome::Passed, format!("{:.1} m, {what}", plan.length_m))
             }
             (Some(plan), None) => {
                 let what = match self.live.left_out() {
@@ -238,6 +241,14 @@ impl Model {
             ),
         }
     }
+}
+
+/// The task without the areas that a plan leaves out: `all but 1 area, 0.4 m²`.
+fn all_but(left_out: &LeftOut) -> String {
+    let area_m2: f64 = left_out.areas.iter().map(|area| area.area_m2).sum();
+    let areas =
+        if left_out.areas.len() == 1 { "1 area".into() } else { format!("{} areas", left_out.areas.len()) };
+    format!("all but {areas}, {area_m2:.1} m²")
 }
 
 fn check(what: &str, outcome: CheckOutcome, found: String) -> Check {

@@ -5,11 +5,11 @@ use super::field::field;
 use super::lists::place_cursor;
 use super::look::Look;
 use super::next::{self, Clauses};
-use super::{coverage, text};
+use super::{coverage, setting, text};
 use crate::guide;
 use crate::model::ui::{Ask, Shelving};
 use crate::model::zone_draft::Form;
-use crate::model::{LineEdit, Model, Offer, Overlay, log::clock, parameter};
+use crate::model::{LineEdit, Model, Offer, Overlay, Shadow, log::clock};
 use crate::theme::Role;
 use account::Resumption;
 use mission::WayBack;
@@ -36,7 +36,14 @@ fn question_lines(model: &Model, columns: u16) -> Vec<String> {
     let columns = usize::from(columns).saturating_sub(2);
     let is_whole = matches!(
         model.ui.overlay,
-        Overlay::Confirm(Ask::Start(_) | Ask::DriveBack | Ask::DrawZone(_) | Ask::TakePlan)
+        Overlay::Confirm(
+            Ask::Start(_)
+                | Ask::DriveBack
+                | Ask::DrawZone(_)
+                | Ask::TakePlan
+                | Ask::Promote
+                | Ask::Set { .. }
+        )
     );
     if !is_whole {
         return vec![next::joined(&clauses, columns)];
@@ -160,18 +167,18 @@ fn asked(model: &Model) -> Option<Vec<String>> {
             vec!["Close this floor? <accept>: close, <cancel>: cancel.".into(), zone_cost(model)]
         }
         Overlay::ZoneDraft(draft) => vec![drawing(draft.form), "Mouse: drag.".into()],
-        Overlay::Confirm(Ask::Set { key, value }) => {
-            let change =
-                parameter::change(model.planner(), model.live.run.planning.choice.as_ref(), key, value);
-            vec![format!("Set {change}? <accept>: set, <cancel>: cancel."), "It takes effect now.".into()]
-        }
+        Overlay::Confirm(Ask::Set { key, value, .. }) => setting::clauses(model, key, value),
         Overlay::Confirm(Ask::Promote) => {
             let shadow = model.live.run.shadow.as_ref();
             let next = text::fit(shadow.map_or("-", |shadow| &shadow.choice.id), 18);
             let driving = model.live.run.planner_id().unwrap_or("-");
             vec![
                 format!("Promote {next} from shadow? <accept>: promote, <cancel>: cancel."),
-                format!("It takes over from {driving} without a hold."),
+                match model.live.run.is_running() {
+                    true => format!("It takes over from {driving} without a hold."),
+                    false => format!("It takes over from {driving}; the robot stays held."),
+                },
+                shadow.map_or_else(String::new, |shadow| shadows_plan(model, shadow)),
             ]
         }
         Overlay::Confirm(Ask::TakePlan) => {
@@ -198,6 +205,24 @@ fn asked(model: &Model) -> Option<Vec<String>> {
         _ => return None,
     };
     Some(clauses.iter().map(|clause| model.console.keys.spelled(clause)).collect())
+}
+
+/// The plan of the planner in shadow, as sentences: its length, and what the tether demands of it.
+fn shadows_plan(model: &Model, shadow: &Shadow) -> String {
+    let length = match (shadow.path.is_empty(), shadow.complete) {
+        (true, _) => "It drives step by step, without a path.".to_owned(),
+        (false, true) => {
+            format!("Its plan: {} m for the rest of the task.", text::number(shadow.length_m, 1))
+        }
+        (false, false) => format!("Its plan: {} m, PARTIAL.", text::number(shadow.length_m, 1)),
+    };
+    let has_tether = model.live.run.about.as_ref().is_some_and(|about| about.mission.tether.is_some());
+    let certificate = if has_tether {
+        " Its certificate for the tether is made at the promotion; without one, it stays in shadow."
+    } else {
+        ""
+    };
+    format!("{length}{certificate}")
 }
 
 /// The length and clearance of a way back: `To the anchor, 5.5 m, clearance 0.12 m`.

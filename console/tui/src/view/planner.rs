@@ -3,7 +3,7 @@
 use super::look::{Look, fill, marked, ranked};
 use super::{shadow, text};
 use crate::model::history::HISTORY_S;
-use crate::model::{Offer, Pane, Run};
+use crate::model::{Offer, Pane, Run, parameter};
 use crate::theme::Role;
 use planner_api::{Drive, Status};
 use ratatui::Frame;
@@ -76,7 +76,11 @@ fn better(look: &Look, offer: &Offer, room: usize) -> Value {
 
 fn planner(look: &Look) -> Value {
     match (look.model.planner(), look.run.planner_id()) {
-        (Some(info), _) => (Role::Title, format!("{} {}", info.id, info.version)),
+        (Some(info), _) => {
+            let changed = parameter::changed(info, look.run.planning.choice.as_ref());
+            let mark = if changed > 0 { format!("*, {changed} changed") } else { String::new() };
+            (Role::Title, format!("{} {}{mark}", info.id, info.version))
+        }
         (None, Some(id)) => (Role::Title, id.to_owned()),
         (None, None) => (Role::Text, "-".into()),
     }

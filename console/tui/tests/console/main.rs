@@ -25,6 +25,7 @@ mod replay;
 mod scanned;
 mod screens;
 mod scripts;
+mod settings;
 mod shadow;
 mod sizes;
 mod start;

@@ -371,3 +371,28 @@ fn a_legend_of_letters_has_the_letters_of_the_map() {
         "{shown}"
     );
 }
+
+#[test]
+fn the_check_of_a_plan_names_what_it_leaves_out() {
+    let screen = planned();
+    let checks = screen.model.checks();
+    let plan = checks.iter().find(|check| check.what == "plan").expect("a check");
+    assert!(plan.found.ends_with("m, all but 3 areas, 5.1 m²"), "{}", plan.found);
+}
+
+#[test]
+fn a_warning_of_the_checks_carries_its_whole_reason_at_every_size_that_lists_them() {
+    let reason = "4; ±0.17 m at 7.8, 4.0 m, limit 0.15 m";
+    for size in [(200, 60), (120, 36), (80, 24)] {
+        let mut screen = planned();
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        if size.0 == 80 {
+            screen.press([Key::Tab, Key::Tab]);
+        }
+        let shown = text(&drawn(&screen.model, RICH, size));
+        let pane: String =
+            shown.lines().filter_map(|line| line.rsplit_once("││").map(|(_, pane)| pane)).collect();
+        let words = pane.replace('│', " ").split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains(reason), "{size:?}: {shown}");
+    }
+}

@@ -27,6 +27,8 @@ pub(super) const DRIVEN: Ink = ink(Role::Dim, Pattern::Solid, '.');
 pub(super) const LEG: Ink = ink(Role::Target, Pattern::Thick, '*');
 /// The plan before the start.
 pub(super) const PLAN: Ink = ink(Role::Plan, Pattern::Solid, ',');
+/// A way of the plan to a different part of the floor, before the start.
+pub(super) const WAY: Ink = ink(Role::Dim, Pattern::Dashed, '-');
 /// The plan ahead of the robot.
 pub(super) const AHEAD: Ink = ink(Role::Plan, Pattern::Dashed, ',');
 /// A better plan that is on offer.
@@ -54,7 +56,7 @@ mod tests {
     fn lines_that_are_on_the_map_together_differ_without_colours() {
         let together: [&[Ink]; 3] = [
             &[TRAIL, LEG, AHEAD, OFFER, SHADOW, TETHER, OTHER, PULL, PUSH, DRAWN],
-            &[PLAN, OTHER, OFFER],
+            &[PLAN, WAY, OTHER, OFFER],
             &[DRIVEN, LEG, AHEAD, OFFER, SHADOW, OTHER],
         ];
         for inks in together {

@@ -163,10 +163,13 @@ fn shade_mark(shade: Shade) -> String {
 type IsDrawn = fn(&Look, Option<&Course>) -> bool;
 
 /// The kinds of lines, the most important first, each with its legend text.
-const LINES: [(Ink, &str, IsDrawn); 10] = [
+const LINES: [(Ink, &str, IsDrawn); 11] = [
     (ink::LEG, "this leg", |_, course| course.is_some_and(|course| course.leg.0 < course.leg.1)),
     (ink::PLAN, "plan", |look, course| is_ahead(look, course, ink::PLAN)),
     (ink::AHEAD, "plan", |look, course| is_ahead(look, course, ink::AHEAD)),
+    (ink::WAY, "way between", |look, course| {
+        course.is_some_and(|course| course::parts(look, course).iter().any(|part| part.1))
+    }),
     (ink::OFFER, "better plan", |look, _| course::offer(look).is_some()),
     (ink::OTHER, "compared", |look, _| course::compared(look).is_some()),
     (ink::TETHER, "tether", |look, _| {
@@ -178,7 +181,7 @@ const LINES: [(Ink, &str, IsDrawn); 10] = [
         let has_other = look.model.live.replay.as_ref().is_some_and(|replay| replay.other.is_some());
         has_other && look.model.ui.screen == Screen::Mission
     }),
-    (ink::SHADOW, "shadow", |look, _| look.run.shadow.is_some() && look.run.is_running()),
+    (ink::SHADOW, "shadow", |look, _| look.run.shown_shadow().is_some()),
     (ink::DRIVEN, "driven", |look, course| {
         look.model.ui.screen == Screen::Plan && course.is_some_and(|course| course.driven.0 < course.driven.1)
     }),
