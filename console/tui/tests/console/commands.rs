@@ -357,3 +357,16 @@ fn the_terminal_s_cursor_is_where_text_is_typed() {
     screen.press([Key::Enter, Key::Char('p'), Key::Enter, Key::End]);
     assert!(cursor(&screen).1.ends_with("rpf_gain = 1.2"), "{}", cursor(&screen).1);
 }
+
+#[test]
+fn the_list_of_keys_says_why_a_command_is_not_possible_now() {
+    let mut screen = Screen::running();
+    screen.send(Msg::Resize { width: 120, height: 36 });
+    screen.type_text(":start");
+    let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+    let why = tui::update::offered(&screen.model, tui::actions::ActionId::Start).unwrap_err();
+    assert!(
+        shown.contains(&format!("Not now: {}", why.split(';').next().unwrap_or_default())),
+        "{why}\n{shown}"
+    );
+}
