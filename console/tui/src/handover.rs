@@ -7,6 +7,7 @@ use crate::model::{
     log::{Entry, What, clock, severity_word},
 };
 use crate::view::{by_command, shares};
+use account::{Area, MissReason};
 use mission::{EventKind, Order, TaskConfig};
 use world::ZoneKind;
 
@@ -23,6 +24,7 @@ pub fn page(model: &Model) -> String {
         ("No-go zones", zones(model)),
         ("Clearance", clearance(model)),
         ("Work done", done(model)),
+        ("Floor missed or left out", floor(model)),
         ("Starts, holds and ends", holds(model)),
         ("Decisions of the operator", decisions(model)),
     ];
@@ -163,6 +165,27 @@ fn decisions(model: &Model) -> Vec<String> {
         Some(format!("After the end: acknowledged{by}: {}", alarm.text))
     });
     entries(model, is_decision).into_iter().chain(after).collect()
+}
+
+/// Every area that was missed or, before the end, that the plan leaves out, each with its reason.
+fn floor(model: &Model) -> Vec<String> {
+    let line = |area: &Area<MissReason>| {
+        format!("{:.2} m² at {:.2}, {:.2} m: {}", area.area_m2, area.at.x, area.at.y, area.why())
+    };
+    let live = &model.live;
+    match (live.floor(), live.left_out()) {
+        (Some(account), _) => {
+            let slivers = &account.slivers;
+            let small = (slivers.count > 0).then(|| {
+                format!("{} areas under 0.01 m²: together {:.2} m²", slivers.count, slivers.area_m2)
+            });
+            live.missed().into_iter().map(line).chain(small).collect()
+        }
+        (None, Some(left_out)) => {
+            left_out.areas.iter().map(|area| format!("Left out by the plan: {}", line(area))).collect()
+        }
+        (None, None) => Vec::new(),
+    }
 }
 
 /// The log lines about certain events, oldest first.

@@ -48,7 +48,7 @@ pub enum OutOfReach {
 
 impl OutOfReach {
     /// The reason why cells of a class are unreachable; `None` for other classes.
-    pub(crate) fn of(kind: Cell) -> Option<Self> {
+    pub fn of(kind: Cell) -> Option<Self> {
         match kind {
             Cell::Outside | Cell::Reachable => None,
             Cell::Unreachable => Some(OutOfReach::ClosedOff),

@@ -236,6 +236,16 @@ impl Live {
         Some(earlier.iter().cloned().chain([run.to_owned()]).collect())
     }
 
+    /// The missed area at a place.
+    pub fn missed_area(&self, at: Point) -> Option<&Area<MissReason>> {
+        smallest_at(self.areas(), at)
+    }
+
+    /// The area at a place that the promised plan leaves out.
+    pub fn left_out_area(&self, at: Point) -> Option<&Area<MissReason>> {
+        smallest_at(self.left_out()?.areas.iter(), at)
+    }
+
     fn areas(&self) -> impl Iterator<Item = &Area<MissReason>> {
         self.floor().into_iter().flat_map(|floor| &floor.missed)
     }
@@ -261,4 +271,16 @@ impl Live {
             self.hold_asked = false;
         }
     }
+}
+
+/// The smallest of the areas whose bounding box contains a place.
+fn smallest_at<'a>(
+    areas: impl Iterator<Item = &'a Area<MissReason>>,
+    at: Point,
+) -> Option<&'a Area<MissReason>> {
+    let is_inside = |area: &&Area<MissReason>| {
+        let within = |low: f64, value: f64, high: f64| low <= value && value <= high;
+        within(area.low.x, at.x, area.high.x) && within(area.low.y, at.y, area.high.y)
+    };
+    areas.filter(is_inside).min_by(|one, other| one.area_m2.total_cmp(&other.area_m2))
 }

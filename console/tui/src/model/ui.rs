@@ -478,6 +478,15 @@ impl Ui {
         }
     }
 
+    /// The panes that have a key of their own, which their titles show: those of a screen that is wide enough to show
+    /// more than one at a time.
+    pub fn numbered_panes(&self) -> &'static [Pane] {
+        match self.panes() {
+            panes @ [_, _, ..] if self.arrangement() == Arrangement::Wide => panes,
+            _ => &[],
+        }
+    }
+
     /// The centre of the map, metres, tank frame.
     pub fn map_center(&self, tank: Point, robot: Option<Point>) -> Point {
         match robot {

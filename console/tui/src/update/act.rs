@@ -181,6 +181,14 @@ pub(crate) fn turn_to(model: &mut Model, by: isize) {
     model.ui.pane = panes.get(next).copied().unwrap_or(Pane::Map);
 }
 
+/// Goes to the pane with a number, from 1.
+pub(crate) fn turn_to_number(model: &mut Model, number: u8) {
+    let panes = model.ui.numbered_panes();
+    if let Some(pane) = usize::from(number).checked_sub(1).and_then(|index| panes.get(index)) {
+        model.ui.pane = *pane;
+    }
+}
+
 /// Moves the selection down by `by` lines in the list that responds to the arrow keys.
 pub(crate) fn select(model: &mut Model, by: isize) {
     if palette::recalls(model, by) {

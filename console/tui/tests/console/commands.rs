@@ -378,3 +378,15 @@ fn a_planner_that_would_be_refused_is_not_offered_as_a_value() {
         assert_eq!(tui::update::values(&screen.model, action), [covers.clone()], "{command}");
     }
 }
+
+fn the_list_of_keys_says_why_a_command_is_not_possible_now() {
+    let mut screen = Screen::running();
+    screen.send(Msg::Resize { width: 120, height: 36 });
+    screen.type_text(":start");
+    let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+    let why = tui::update::offered(&screen.model, tui::actions::ActionId::Start).unwrap_err();
+    assert!(
+        shown.contains(&format!("Not now: {}", why.split(';').next().unwrap_or_default())),
+        "{why}\n{shown}"
+    );
+}

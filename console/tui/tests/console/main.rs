@@ -8,6 +8,7 @@ mod drawing;
 mod ending;
 mod events;
 mod fixture;
+mod footers;
 mod frame;
 mod handover;
 mod held_keys;

@@ -56,7 +56,7 @@ fn past(name: &str, end: &str, reachable: Option<f64>) -> PastRun {
 /// The time at which the fixtures look at their runs: 40 minutes after the first one began.
 const BEGAN_UNIX_S: f64 = 1_795_264_000.0 - 2400.0;
 
-fn found() -> Found {
+pub(crate) fn found() -> Found {
     let invalid = ScenarioEntry {
         problem: Some("scenarios/depot.toml:14:1: unknown key `radus_m`, did you mean `radius_m`?".into()),
         world: None,

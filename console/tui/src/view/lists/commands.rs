@@ -21,7 +21,8 @@ pub(super) fn list(look: &Look, palette: &Palette, columns: u16) -> List {
     let is_whole = palette.line.text().trim().is_empty();
     let (rows, headings, selected) = grouped(look, &found, palette.selected, (columns, is_whole));
     let below = if palette.help {
-        rules(&look.model.console.keys, room)
+        let why = why_not(look, found.get(palette.selected), room);
+        why.into_iter().chain(rules(&look.model.console.keys, room)).collect()
     } else {
         below(look, found.get(palette.selected), room)
     };
@@ -127,12 +128,20 @@ fn command_row(look: &Look, action: &Action, columns: u16) -> Row {
     ]
 }
 
+/// The reason why the selected command is not possible now.
+fn why_not(look: &Look, selected: Option<&Choice>, room: usize) -> Option<Row> {
+    let Some(Choice::Command(action)) = selected else { return None };
+    let why = offered(look.model, action.id).err()?;
+    Some(vec![(Role::Warn, text::clauses(&format!(" Not now: {why}."), room))])
+}
+
 /// The usage of the selected command, and hints about keys, as far as they fit.
 fn below(look: &Look, selected: Option<&Choice>, room: usize) -> Vec<Row> {
     let usage = match selected {
         Some(Choice::Command(action)) if !action.args.is_empty() => Some(format!("{}.", action.usage())),
         _ => None,
     };
+    let refused = why_not(look, selected, room);
     let values = match selected {
         Some(Choice::Command(action)) => values(look.model, action),
         _ => Vec::new(),
@@ -148,7 +157,7 @@ fn below(look: &Look, selected: Option<&Choice>, room: usize) -> Vec<Row> {
     ]
     .map(|clause| look.keys(clause));
     let clauses: Vec<String> = usage.into_iter().chain(keys).collect();
-    listed.into_iter().chain([hint(&format!(" {}", joined(&clauses, room)))]).collect()
+    refused.into_iter().chain(listed).chain([hint(&format!(" {}", joined(&clauses, room)))]).collect()
 }
 
 /// As many values as fit, and the number of the others.
