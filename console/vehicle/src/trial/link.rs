@@ -356,7 +356,10 @@ mod tests {
         });
         lines.extend(Lines { malformed: 2, fault: Some("state.mode".into()), unknown });
         let row = messages(&lines);
-        assert!(row.figures[0].value == 3.0 && row.says.ends_with("unknown and ignored: lights"), "{row:?}");
+        assert!(
+            (row.figures[0].value - 3.0).abs() < 1e-12 && row.says.ends_with("unknown and ignored: lights"),
+            "{row:?}"
+        );
         assert!(row.verdict == Verdict::Fail && row.says.contains("pong.stamp_s: NaN"), "{row:?}");
     }
 }
