@@ -7,7 +7,7 @@ pub(super) const LINK: Guide = Guide {
     cause: "The vehicle sends nothing, or only faulty messages: its adapter has ended, the network is cut, or the \
     robot is switched off.",
     effect: "The robot is held. The vehicle stops when its lease lapses; the console cannot confirm \
-    this. Its position is unknown.",
+    this. The robot's position is unknown.",
     remedies: &[
         wait("Look at the robot, and use its emergency stop if it moves."),
         wait("Check adapter, cable and network; a closed link needs a new run."),
