@@ -250,7 +250,7 @@ fn a_planner_that_is_killed_during_a_hold_is_reported_during_the_hold() {
 fn a_planner_that_is_killed_before_the_start_is_reported_before_the_start() {
     let bench = Bench::new();
     let file = scenario("goto-single-obstacle.toml");
-    let mut console = Console::open(bench.command(), &[file.to_str().unwrap()]);
+    let console = Console::open(bench.command(), &[file.to_str().unwrap()]);
     console.hear("Enter `start` to start");
     signal_it(workers_of(console.pid())[0], Signal::KILL);
     console.hear("was killed by SIGKILL");

@@ -53,7 +53,7 @@ pub(crate) fn simulate(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
 struct Offered {
     vehicle: Behind,
     clients: BTreeMap<ClientId, Client>,
-    /// The console that the vehicle obeys: the one that has been connected longest.
+    /// The console that the vehicle obeys: of all connected consoles, the first that connected.
     commander: Option<ClientId>,
     began: Instant,
     /// When the next tick is due.

@@ -202,7 +202,7 @@ impl LinkSeen {
         let unknown = if self.state.is_heard() {
             ""
         } else {
-            "; the vehicle stops when its lease lapses, which is not confirmed"
+            "; the vehicle stops when its lease lapses, but the console cannot confirm this"
         };
         Some(format!("{what}{why}{unknown}"))
     }

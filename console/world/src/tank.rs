@@ -22,7 +22,7 @@ pub struct Obstacle {
     pub name: String,
     /// The outline, tank frame.
     pub shape: Shape,
-    /// Whether the obstacle is on the drawing; the robot must discover the others.
+    /// Whether the obstacle is on the drawing. If not, the robot must discover the obstacle.
     pub known: bool,
 }
 

@@ -140,7 +140,7 @@ const CHOICE_M: f64 = 1.0;
 /// A robot that follows outlines.
 #[derive(Debug, Clone)]
 pub struct Follow {
-    /// The side on which the robot passes what stops it.
+    /// The side on which the robot passes an obstacle that stops it.
     pub side: Side,
     keep_m: f64,
     /// The direction of the last move, while the robot follows an outline.

@@ -68,7 +68,7 @@ pub struct Drive {
 pub struct Hello {
     /// Version of the protocol.
     pub protocol: u32,
-    /// Name for people.
+    /// Human-readable name.
     pub name: String,
     /// How the vehicle moves.
     pub motion: Motion,

@@ -11,7 +11,7 @@ const PROTOCOL: u32 = 1;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Vehicle {
-    /// Name for people, 1 to 64 characters.
+    /// Human-readable name, 1 to 64 characters.
     pub name: String,
     /// How it moves.
     #[serde(default = "unicycle")]

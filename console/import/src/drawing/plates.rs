@@ -57,7 +57,7 @@ pub(super) fn plates(
     rings.retain(|ring| !is_wholly_outside(boundary, &Shape::Polygon { vertices: ring.clone() }));
     let n_outside = n - rings.len();
     if n_outside > 0 {
-        notes.push(format!("PLATES: {n_outside} outlines outside the shell were left out"));
+        notes.push(format!("PLATES: outlines outside the shell were left out ({n_outside})"));
     }
     if rings.len() > MOST_PLATES {
         let n = rings.len();
@@ -154,7 +154,7 @@ fn rings(
     let n_narrow = n - faces.rings.len();
     if n_narrow > 0 {
         notes.push(format!(
-            "PLATES: {n_narrow} strips narrower than {NARROWEST_M} m were left out; their area was added to the \
+            "PLATES: strips narrower than {NARROWEST_M} m were left out ({n_narrow}); their area was added to the \
              adjacent plates"
         ));
     }

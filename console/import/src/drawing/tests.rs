@@ -429,7 +429,7 @@ fn closed_outlines_are_plates_as_they_are_drawn() {
         plan.plates[1].vertices_m.iter().all(|at| ((at - Point::new(2.0, 0.0)).norm() - 1.0).abs() < 1e-3)
     );
     assert!(
-        plan.notes.contains(&"PLATES: 1 outlines outside the shell were left out".into()),
+        plan.notes.contains(&"PLATES: outlines outside the shell were left out (1)".into()),
         "{:?}",
         plan.notes
     );

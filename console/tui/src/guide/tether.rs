@@ -20,7 +20,7 @@ pub(super) fn name(word: &str) -> String {
 pub(super) fn guide(word: &str) -> Guide {
     match word {
         "reel" => Guide {
-            cause: "More than 80 % of the tether is out, the limit of this alarm.",
+            cause: "The alarm is raised when more than 80 % of the tether is out.",
             holds: "When the reel is empty, the robot is held.",
             effect: "",
             remedies: const {
@@ -51,7 +51,7 @@ pub(super) fn guide(word: &str) -> Guide {
             remedies: const {
                 &[
                     run(
-                        "Resume: drives back the way it came to free the tether. Asks first.",
+                        "Resume: frees the tether by driving back the way it came. Asks first.",
                         ActionId::Resume,
                     ),
                     SHOW,

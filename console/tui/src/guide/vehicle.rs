@@ -10,7 +10,7 @@ pub(super) const LINK: Guide = Guide {
     cause: "The vehicle sends nothing, or only faulty messages: its adapter has ended, the network is cut, or the \
     robot is switched off.",
     holds: "The robot is held at once.",
-    effect: "The vehicle stops when its lease lapses; the console cannot confirm this. Its position is unknown.",
+    effect: "The vehicle stops when its lease lapses; the console cannot confirm this. The robot's position is unknown.",
     remedies: &[
         check("Look at the robot, and use its emergency stop if it moves."),
         check("Check adapter, cable and network; a closed link needs a new run."),

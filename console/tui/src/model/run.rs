@@ -211,7 +211,8 @@ impl Run {
         self.position.speed_m_per_s().filter(|_| !self.has_ended())
     }
 
-    /// Estimated remaining mission time, seconds: at the average pace so far, or at full speed while the robot is driving back.
+    /// Estimated remaining mission time, seconds: at the average pace so far, or at full speed while the robot is
+    /// driving back.
     pub fn left_s(&self) -> Option<f64> {
         if self.standing.phase.is_return() {
             return self.way_left_s();

@@ -379,6 +379,7 @@ fn a_planner_that_would_be_refused_is_not_offered_as_a_value() {
     }
 }
 
+#[test]
 fn the_list_of_keys_says_why_a_command_is_not_possible_now() {
     let mut screen = Screen::running();
     screen.send(Msg::Resize { width: 120, height: 36 });

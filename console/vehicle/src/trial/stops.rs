@@ -123,7 +123,7 @@ pub fn stop(cause: Cause, samples: &[Sample], cause_s: f64, limits: Limits) -> R
     let mut figures = Stopping::default();
     for sample in after {
         if sample.begin_s() > known_until_s + GAP_S && !figures.is_quiet(known_until_s, cause_s) {
-            let says = "the motion after the cause was not reported";
+            let says = "the readings do not cover the whole stop";
             return Row::not_measured(check, says);
         }
         known_until_s = sample.t_s;
@@ -132,12 +132,15 @@ pub fn stop(cause: Cause, samples: &[Sample], cause_s: f64, limits: Limits) -> R
     if !figures.is_quiet(known_until_s, cause_s) {
         let for_s = known_until_s - cause_s;
         if for_s < limits.time_s {
-            return Row::not_measured(check, "the motion after the cause was not reported");
+            return Row::not_measured(check, "the readings do not cover the whole stop");
         }
         let says = format!("the vehicle still moves after {for_s:.2} s; {}", cause.remedy());
         return Row::fail(check, figures.figures(limits), says);
     }
-    let says = format!("stood {:.2} s and {:.3} m after the cause", figures.time_s, figures.way_m);
+    let says = format!(
+        "stood still {:.2} s and {:.3} m after the stop was triggered",
+        figures.time_s, figures.way_m
+    );
     let failed = format!("{says}, but {:.2} s is allowed; {}", limits.time_s, cause.remedy());
     Row::judged(check, figures.figures(limits), &says, &failed)
 }
