@@ -907,12 +907,12 @@ fn a_filter_shows_where_it_acts_and_escape_clears_it() {
 fn the_table_of_stations_is_a_pane_at_120x36() {
     let mut screen = Screen::running();
     screen.send(Msg::Resize { width: 120, height: 36 });
-    assert!(!shown(&screen).contains("─ Stations"), "{}", shown(&screen));
+    assert!(!shown(&screen).contains("Stations ─"), "{}", shown(&screen));
     screen.press([Key::Tab, Key::Tab]);
     let text = shown(&screen);
-    assert!(text.contains("▸ Stations") && text.contains("unused") && text.contains("100 %"), "{text}");
+    assert!(text.contains("▸ F4 Stations") && text.contains("unused") && text.contains("100 %"), "{text}");
     screen.press([Key::Tab]);
-    assert!(!shown(&screen).contains("─ Stations"), "{}", shown(&screen));
+    assert!(!shown(&screen).contains("Stations ─"), "{}", shown(&screen));
 }
 
 #[test]

@@ -28,7 +28,7 @@ pub(super) const LEG: Ink = ink(Role::Target, Pattern::Thick, '*');
 /// The plan before the start.
 pub(super) const PLAN: Ink = ink(Role::Plan, Pattern::Solid, ',');
 /// A way of the plan to a different part of the floor, before the start.
-pub(super) const WAY: Ink = ink(Role::Dim, Pattern::Dashed, '-');
+pub(super) const WAY: Ink = ink(Role::Dim, Pattern::Dashed, '|');
 /// The plan ahead of the robot.
 pub(super) const AHEAD: Ink = ink(Role::Plan, Pattern::Dashed, ',');
 /// A better plan that is on offer.
