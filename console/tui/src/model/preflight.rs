@@ -174,13 +174,10 @@ impl Model {
     fn place_check(&self) -> Option<Check> {
         let left_at = self.live.left_at?;
         let start = self.live.run.about.as_ref()?.mission.start.position;
-        Some(match self.must_stand() {
-            Some(words) => check("robot", CheckOutcome::Warning, words),
-            None => {
-                let found = format!("was left at the start, {:.1} m from it", (left_at - start).norm());
-                check("robot", CheckOutcome::Passed, found)
-            }
-        })
+        let near = || format!("was left at the start, {:.1} m from it", (left_at - start).norm());
+        let words = self.must_stand();
+        let outcome = if words.is_some() { CheckOutcome::Warning } else { CheckOutcome::Passed };
+        Some(check("robot", outcome, words.unwrap_or_else(near)))
     }
 
     /// For a re-scan whose plan does not begin where the run before it left the robot: where the robot must stand, as the
