@@ -227,7 +227,7 @@ fn a_planner_that_is_killed_during_a_hold_is_reported_during_the_hold() {
     console.order("start\nyes\n");
     console.hear("Mission running");
     console.order("hold\n");
-    console.hear("held");
+    console.hear("HELD");
     let workers = workers_of(console.pid());
     assert_eq!(workers.len(), 1, "{workers:?}");
     signal_it(workers[0], Signal::KILL);
@@ -235,7 +235,7 @@ fn a_planner_that_is_killed_during_a_hold_is_reported_during_the_hold() {
     console.order("resume\nyes\n");
     console.hear("resumed");
     console.order("hold\n");
-    console.hear("held");
+    console.hear("HELD");
     console.order("end\nyes\n");
     console.hear("Screen 7: Result.");
     assert_eq!(console.leave(), Some(1), "the operator ended the mission");
@@ -267,7 +267,7 @@ fn a_planner_in_shadow_that_is_killed_during_a_hold_ends_during_the_hold() {
     console.order("start\nyes\n");
     console.hear("Mission running");
     console.order("hold\n");
-    console.hear("held");
+    console.hear("HELD");
     let driving = workers_of(console.pid());
     console.order("shadow apf-dwa\n");
     console.hear("runs in shadow");

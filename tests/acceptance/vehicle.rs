@@ -295,7 +295,7 @@ fn after_a_lost_link_only_an_order_moves_the_robot_again() {
     console.order("resume\nyes\n");
     console.hear("resumed");
     console.order("hold\n");
-    console.hear("held");
+    console.hear("HELD");
     console.order("end\nyes\n");
     console.hear("Screen 7: Result.");
     assert_eq!(console.leave(), Some(1), "an aborted mission");

@@ -4,7 +4,7 @@ use super::{Figure, Row, stops::Sample};
 use crate::{
     link::{Offset, Sequence},
     port::LEASE_S,
-    wire::message::{Commander, Has, Hello, Mode, Readings, State},
+    wire::message::{Commander, Hello, Mode, Readings, State},
 };
 
 /// The interval between readings may differ from `period_s` by this factor.
@@ -79,24 +79,9 @@ pub fn introduction(hello: &Hello) -> Row {
         let says = format!("`lease_max_s` is {lease_max_s}; the console needs leases of {LEASE_S} s");
         return Row::fail(check, figures, says);
     }
-    let says = format!("{name} has {}", parts(*has).join(", "));
+    let says = format!("{name} has {}", has.parts().join(", "));
     let failed = format!("`period_s` is {period_s}; the console needs readings at least every {LEASE_S} s");
     Row::judged(check, figures, &says, &failed)
-}
-
-fn parts(has: Has) -> Vec<&'static str> {
-    let Has { odometry, pose, scan, contact, tether, ae, pressure, drawn_ids } = has;
-    let parts = [
-        (odometry, "odometry"),
-        (pose, "pose"),
-        (scan, "scan"),
-        (contact, "contact"),
-        (tether, "tether"),
-        (ae, "ae"),
-        (pressure, "pressure"),
-        (drawn_ids, "ids of the drawing"),
-    ];
-    parts.into_iter().filter(|(has, _)| *has).map(|(_, part)| part).collect()
 }
 
 /// Whether all lines were valid messages.
@@ -242,6 +227,7 @@ pub fn standstill(listened: &Listened) -> Row {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::wire::message::Has;
     use crate::{
         trial::Verdict,
         wire::message::{Limits, MotionKind, Odometry, Pong},
