@@ -227,7 +227,7 @@ fn a_planner_that_is_killed_during_a_hold_is_reported_during_the_hold() {
     console.order("start\nyes\n");
     console.hear("Mission running");
     console.order("hold\n");
-    console.hear("held");
+    console.hear("HELD");
     let workers = workers_of(console.pid());
     assert_eq!(workers.len(), 1, "{workers:?}");
     signal_it(workers[0], Signal::KILL);
@@ -235,7 +235,7 @@ fn a_planner_that_is_killed_during_a_hold_is_reported_during_the_hold() {
     console.order("resume\nyes\n");
     console.hear("resumed");
     console.order("hold\n");
-    console.hear("held");
+    console.hear("HELD");
     console.order("end\nyes\n");
     console.hear("Screen 7: Result.");
     assert_eq!(console.leave(), Some(1), "the operator ended the mission");
@@ -243,5 +243,41 @@ fn a_planner_that_is_killed_during_a_hold_is_reported_during_the_hold() {
     let events = journal(&run);
     let failed = first_of(&events, "planner_failed").expect("the fault");
     assert!(failed < first_of(&events, "resumed").expect("the resumption"), "noticed during the hold");
+    bench.prove(&run);
+}
+
+#[test]
+fn a_planner_that_is_killed_before_the_start_is_reported_before_the_start() {
+    let bench = Bench::new();
+    let file = scenario("goto-single-obstacle.toml");
+    let console = Console::open(bench.command(), &[file.to_str().unwrap()]);
+    console.hear("Enter `start` to start");
+    signal_it(workers_of(console.pid())[0], Signal::KILL);
+    console.hear("was killed by SIGKILL");
+    assert_eq!(console.leave(), Some(0));
+    assert!(bench.runs().is_empty(), "nothing was started");
+}
+
+#[test]
+fn a_planner_in_shadow_that_is_killed_during_a_hold_ends_during_the_hold() {
+    let bench = Bench::new();
+    let file = scenario("goto-single-obstacle.toml");
+    let mut console = Console::open(bench.command(), &[file.to_str().unwrap()]);
+    console.hear("Enter `start` to start");
+    console.order("start\nyes\n");
+    console.hear("Mission running");
+    console.order("hold\n");
+    console.hear("HELD");
+    let driving = workers_of(console.pid());
+    console.order("shadow apf-dwa\n");
+    console.hear("runs in shadow");
+    let shadow = workers_of(console.pid()).into_iter().find(|worker| !driving.contains(worker));
+    signal_it(shadow.expect("its worker"), Signal::KILL);
+    console.hear("no longer runs in shadow");
+    console.order("end\nyes\n");
+    console.hear("Screen 7: Result.");
+    console.leave();
+    let run = bench.runs().remove(0);
+    assert!(first_of(&journal(&run), "shadow_ended").is_some());
     bench.prove(&run);
 }

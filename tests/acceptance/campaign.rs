@@ -252,7 +252,7 @@ fn a_worker_that_is_asked_to_stop_leaves_no_part_of_the_block_that_it_was_in() {
     let pid = rustix::process::Pid::from_child(&working);
     rustix::process::kill_process(pid, rustix::process::Signal::TERM).unwrap();
     let stopped = Ended::from(working.wait_with_output().unwrap());
-    assert!(stopped.code == Some(1) && stopped.err.contains("stopped; 1 blocks are missing"), "{stopped:?}");
+    assert!(stopped.code == Some(1) && stopped.err.contains("stopped; 1 block is missing"), "{stopped:?}");
     let left = |folder: &str| std::fs::read_dir(bench.path().join(folder)).unwrap().count();
     assert_eq!([left("out/parts"), left("out/cost"), left("out/claims")], [0; 3]);
     works(&bench, "--pull", "out");

@@ -65,6 +65,12 @@ fn a_new_adapter_in_python_passes_the_trial_at_once() {
     passes(&bench, &vehicle, &[]);
     let again = bench.tankops(&["new-vehicle", "my-own"]);
     assert!(again.code == Some(2) && again.err.contains("already exists"), "{again:?}");
+    std::os::unix::fs::symlink("nowhere", bench.path().join("linked")).unwrap();
+    let dangling = bench.tankops(&["new-vehicle", "linked"]);
+    assert!(
+        dangling.code == Some(2) && dangling.err.contains("is a link to a folder that does not exist"),
+        "{dangling:?}"
+    );
 }
 
 #[test]
@@ -115,24 +121,65 @@ fn without_drive_nothing_moves() {
     assert!(table.out.contains("standstill") && table.out.contains("not measured"), "{table:?}");
 }
 
-#[test]
-fn a_robot_that_turns_the_wrong_way_and_keeps_no_lease_is_found_out() {
+/// Tries a faulty adapter until a check fails, and verifies that it passes the check before and is not driven for the
+/// check after it.
+fn fails(changes: &[(&str, &str)], [before, fails, after]: [&str; 3], why: &str) {
     let bench = Bench::new();
-    let vehicle = python(
-        &bench,
-        &[
-            ("\"turn_rad\": turn}", "\"turn_rad\": -turn}"),
-            ("if now > until:", "if now > until + 1000 * has_adapter:"),
-        ],
+    let vehicle = python(&bench, changes);
+    let mut last = None;
+    for _ in 0..TRIES {
+        let tried = check(&bench, &vehicle, &["--drive", "--stop-max", "3"]);
+        assert_eq!(tried.code, Some(1), "{tried:?}");
+        let report = tried.json();
+        let (of_check, says) = verdict(&report, fails);
+        if of_check == "fail" && says.contains(why) {
+            assert_eq!(verdict(&report, before).0, "pass", "{report}");
+            let (later, says) = verdict(&report, after);
+            assert!(later == "not_measured" && says.contains("was not moved again"), "{report}");
+            return;
+        }
+        last = Some(report);
+    }
+    panic!("{last:?}");
+}
+
+#[test]
+fn a_robot_that_turns_the_wrong_way_is_not_driven_on() {
+    fails(
+        &[("\"turn_rad\": turn}", "\"turn_rad\": -turn}")],
+        ["frames: ahead by odometry", "frames: turn by odometry", "stop: message stop"],
+        "mirrored",
     );
-    let tried = check(&bench, &vehicle, &["--drive", "--stop-max", "3"]);
-    let report = tried.json();
-    assert_eq!(tried.code, Some(1), "{report}");
-    let (turn, says) = verdict(&report, "frames: turn by odometry");
-    assert!(turn == "fail" && says.contains("mirrored"), "{report}");
-    let (lease, says) = verdict(&report, "stop: commands end");
-    assert!(lease == "fail" && says.contains("keep the lease where the motors are"), "{report}");
-    assert_eq!(verdict(&report, "frames: ahead by odometry").0, "pass", "{report}");
+}
+
+#[test]
+fn a_robot_that_keeps_no_lease_is_not_driven_on() {
+    fails(
+        &[("if now > until:", "if now > until + 1000 * has_adapter:")],
+        ["stop: message stop", "stop: commands end", "stop: adapter killed"],
+        "keep the lease where the motors are",
+    );
+}
+
+#[test]
+fn an_adapter_that_carries_out_a_command_after_its_lease_is_found_out() {
+    fails(
+        &[("if late - heard[1] <= lease else \"\"", "")],
+        ["stop: commands end", "stop: adapter stopped", "stop: link cut"],
+        "ignore a `drive` that is older than its lease",
+    );
+}
+
+#[test]
+fn a_malformed_line_while_driving_ends_the_drive() {
+    fails(
+        &[(
+            "        print(now, v, w, file=log)",
+            "        print(now, v, w, file=log) or v and say({\"type\": \"state\"})",
+        )],
+        ["state", "messages", "frames: turn"],
+        "state.",
+    );
 }
 
 #[test]
@@ -157,6 +204,10 @@ fn a_trial_needs_an_adapter_and_says_what_is_wrong() {
         let refused = bench.tankops(arguments);
         assert!(refused.code == Some(2) && refused.err.contains(why), "{why}: {refused:?}");
     }
+    let report = check(&bench, "unix:nowhere", &[]).json();
+    assert!(report["passed"] == false && report["vehicle"].is_null(), "{report}");
+    let (verdict, says) = verdict(&report, "connection");
+    assert!(verdict == "fail" && says.contains("cannot drive the vehicle at unix:nowhere"), "{report}");
 }
 
 /// The scenario with a column in the robot's way that is not drawn.

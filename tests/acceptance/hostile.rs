@@ -186,7 +186,7 @@ fn a_replay_refuses_a_bundle_that_is_not_whole() {
     flipped[frames.len() / 2] ^= 1;
     for changed in [&[][..], &frames[..frames.len() - 1], &frames[..frames.len() / 2], &flipped] {
         let refused = replay(changed);
-        let says = refused.err.contains("frames.bin was cut or changed");
+        let says = refused.err.contains("frames.bin was truncated or changed");
         assert!(refused.code == Some(2) && says, "{} bytes: {refused:?}", changed.len());
     }
     for missing in ["crash.txt", "frames.bin"] {

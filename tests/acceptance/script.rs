@@ -41,7 +41,7 @@ fn the_first_line_that_fails_is_named() {
             "mission.txt:1: timed out after 0.1 s waiting for: text \"nonsense\"",
         ),
         ("leave\ntheme dark\n", 1, "mission.txt:2: an earlier line closed the console"),
-        ("theme dark\nwait a bit\n", 2, "mission.txt:2: write wait until CONDITION"),
+        ("theme dark\nwait a bit\n", 2, "mission.txt:2: write `wait until CONDITION"),
     ];
     for (script, code, line) in cases {
         let ended = scripted(&Bench::new(), script);

@@ -299,7 +299,7 @@ fn after_a_lost_link_only_an_order_moves_the_robot_again() {
     console.order("resume\nyes\n");
     console.hear("resumed");
     console.order("hold\n");
-    console.hear("held");
+    console.hear("HELD");
     console.order("end\nyes\n");
     console.hear("Screen 7: Result.");
     assert_eq!(console.leave(), Some(1), "an aborted mission");
@@ -353,6 +353,24 @@ fn liar(path: &Path, lie: impl Fn(u64, u64) -> Vec<u8> + Send + 'static) -> thre
 fn driven(number: u64, forward_m: &str) -> Vec<u8> {
     thread::sleep(Duration::from_millis(20));
     readings(number, &format!(r#""odometry": {{"over_s": 0.1, "forward_m": {forward_m}, "turn_rad": 0}}"#))
+}
+
+#[test]
+fn the_floor_that_a_live_run_missed_is_scanned_by_the_vehicle() {
+    let bench = Bench::new();
+    let scan = |file: &Path| {
+        let vehicle = Vehicle::offer(&bench, file, &[]);
+        let flown = bench.fly(file, &["--vehicle", &vehicle.at, "--set", "mission.time_limit_s=2"]);
+        let run = bench.runs().pop().unwrap_or_else(|| panic!("{flown:?}"));
+        bench.prove(&run);
+        (run, vehicle.at.clone())
+    };
+    let (first, at) = scan(&scenario("cover-rooms.toml"));
+    let made = bench.tankops(&["rescan", first.to_str().unwrap(), "-o", "again.toml"]);
+    let advice = format!("again.toml --vehicle \"{at}\"`");
+    assert!(made.out.contains("place the vehicle at the start") && made.out.contains(&advice), "{made:?}");
+    let (second, _) = scan(&bench.path().join("again.toml"));
+    assert!(first != second && of_kind(&journal(&second), "sensed").len() > 1);
 }
 
 /// Connects a run to an adapter that says a prepared text after its introduction, and waits for the end of the run.

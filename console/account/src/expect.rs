@@ -1,6 +1,6 @@
 //! Bounds that a scenario sets for its own run.
 
-use crate::summary::Summary;
+use crate::{figures::FigureId, summary::Summary};
 use mission::Outcome;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -188,9 +188,33 @@ fn miss(key: &'static str, side: Side, bound: f64, found: Option<f64>) -> Option
     };
     let found = match found {
         Some(found) if keeps(found) => return None,
-        found => found.map(|found| format!("{}", (found * 1e6).round() / 1e6)),
+        found => found.map(|found| rounded(found, decimals(key), |found| !keeps(found))),
     };
     Some(Miss { key, bound: bound.to_string(), found })
+}
+
+/// Most decimals of a printed figure.
+const MOST_DECIMALS: usize = 6;
+
+/// A figure with its decimals, and with more if the rounded figure would keep the bound.
+fn rounded(found: f64, decimals: usize, is_miss: impl Fn(f64) -> bool) -> String {
+    let written = |decimals: usize| format!("{found:.decimals$}");
+    let mut tries = (decimals..=MOST_DECIMALS).map(written);
+    let is_miss = |text: &String| text.parse().is_ok_and(&is_miss);
+    tries.find(is_miss).unwrap_or_else(|| written(MOST_DECIMALS))
+}
+
+/// The decimals of the figure of a bound, from the table of figures; shares have those of a tenth of a per cent.
+fn decimals(key: &str) -> usize {
+    match key {
+        "collisions_max" => 0,
+        "clearance_min_m" => FigureId::TrueClearance.decimals(),
+        "mean_error_max_m" | "p95_error_max_m" => FigureId::TrueError.decimals(),
+        "tether_length_max_m" | "tether_end_length_max_m" => FigureId::TetherOut.decimals(),
+        "wrap_max_deg" => FigureId::WrapLargest.decimals(),
+        "mission_time_max_s" | "path_length_max_m" | "position_lost_max_s" => 1,
+        _ => 3,
+    }
 }
 
 #[cfg(test)]
@@ -223,8 +247,16 @@ mod tests {
         let misses: Vec<String> = expect.check(&run).iter().map(ToString::to_string).collect();
         assert_eq!(
             misses,
-            ["expected complete, actual stuck", "expected path_length_max_m = 70, actual 70.12345"]
+            ["expected complete, actual stuck", "expected path_length_max_m = 70, actual 70.1"]
         );
+    }
+
+    #[test]
+    fn a_figure_has_the_decimals_of_its_kind_and_more_only_to_show_the_difference() {
+        let miss = |bound, found| miss("coverage_reachable_min", Side::AtLeast, bound, Some(found)).unwrap();
+        assert_eq!(miss(0.95, 0.229_641).to_string(), "expected coverage_reachable_min = 0.95, actual 0.230");
+        assert_eq!(miss(0.95, 0.949_97).found.unwrap(), "0.94997");
+        assert_eq!(miss(0.95, 0.95 - 1e-9).found.unwrap(), "0.950000");
     }
 
     #[test]

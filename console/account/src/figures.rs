@@ -61,7 +61,7 @@ impl FigureId {
     pub fn name(self) -> &'static str {
         match self {
             Self::PositionError => "95 % error",
-            Self::Clearance => "nearest obstacle",
+            Self::Clearance => "clearance",
             Self::Covered => "reachable floor",
             Self::CrossTrack => "cross-track",
             Self::SpeedSent => "speed sent",
@@ -70,7 +70,7 @@ impl FigureId {
             Self::WrapLargest => "largest wrap",
             Self::WrapTotal => "total wrap",
             Self::TrueError => "true error",
-            Self::TrueClearance => "nearest obstacle (true)",
+            Self::TrueClearance => "clearance (true)",
             Self::TrueSpeed => "speed (true)",
             Self::TrueTetherOut => "tether out (true)",
         }

@@ -26,33 +26,33 @@ def robot(hello, body):  # lines with speed, turn rate and lease in, readings ou
             lines = os.read(0, 65536).splitlines()
             to_v, to_w, lease = map(float, lines[-1].split()) if lines else (0.0, 0.0, 0.0)
             has_adapter, until = bool(lines), time.monotonic() + lease
-        now = time.monotonic()
-        if now < before + hello["period_s"]: continue
+        if (now := time.monotonic()) < before + hello["period_s"]: continue
         if now > until: to_v = to_w = 0.0  # the lease has lapsed
         seq, dt, before, change = seq + 1, now - before, now, hello["limits"]["acceleration_m_per_s2"] * (now - before)
-        v += max(-change, min(change, to_v - v))
-        w += max(-4 * change, min(4 * change, to_w - w))
+        v, w = (speed + max(-most, min(most, to - speed)) for speed, to, most in ((v, to_v, change), (w, to_w, 4 * change)))
         say({"type": "readings", "seq": seq, "stamp_s": now, **body.measure(v, w, dt)})
         print(now, v, w, file=log)
         if seq % 25 == 0: say({"type": "state", "stamp_s": now, "mode": "ready"})
 
-def command(line, hello, newest):  # the number of a command, and its line for the robot; raises an error for a bad command
+def command(line, hello, heard):  # its line for the robot; an error if it is bad. `heard`: greatest number, least delay of a stamp
+    heard[1] = min(heard[1] + 1e-4, late := time.monotonic() - line.get("stamp_s", float("-inf")))  # + 1e-4: clocks drift
     if line["type"] == "ping": say({"type": "pong", "echo_s": line["stamp_s"], "stamp_s": time.monotonic()})
-    if line["type"] not in ("drive", "stop") or line["seq"] <= newest: return newest, "0 0 0\n" * (line["type"] == "bye")
-    if line["type"] == "stop": return int(line["seq"]), "0 0 0\n"
+    if line["type"] not in ("drive", "stop") or line["seq"] <= heard[0]: return "0 0 0\n" * (line["type"] == "bye")
+    heard[0] = int(line["seq"])
+    if line["type"] == "stop": return "0 0 0\n"
     v, w, lease = (float(line[key]) for key in ("forward_m_per_s", "turn_rad_per_s", "lease_s"))
     fits = abs(v) <= hello["limits"]["speed_m_per_s"] + 1e-9 and abs(w) <= hello["limits"]["turn_rad_per_s"] + 1e-9
     if not fits or line.get("sideways_m_per_s") or not 0 < lease <= hello["lease_max_s"]: raise ValueError("beyond the limits")
-    return int(line["seq"]), f"{v} {w} {lease}\n"
+    return f"{v} {w} {lease}\n" if late - heard[1] <= lease else ""  # it waited while this adapter was stopped
 
 def adapter(hello, program):  # between the console (stdin, stdout) and the robot's process
-    child, newest, rest = subprocess.Popen(program, stdin=-1, stdout=-1, start_new_session=True), -1, b""
+    child, heard, rest = subprocess.Popen(program, stdin=-1, stdout=-1, start_new_session=True), [-1, float("inf")], b""
     say(hello)
     while (ready := select.select([0, child.stdout], [], [])[0]) and (0 not in ready or (data := os.read(0, 65536))):
         if child.stdout in ready: os.write(1, os.read(child.stdout.fileno(), 65536) or sys.exit("the robot process has ended"))
         *lines, rest = (rest + (data if 0 in ready else b"")).split(b"\n") if len(rest) < 65536 else (b"too long", b"")
         for line in filter(None, lines):
-            try: newest, order = command(json.loads(line), hello, newest)
+            try: order = command(json.loads(line), hello, heard)
             except Exception as why: order = print("stopped by a bad line:", repr(why)[:200], file=sys.stderr) or "0 0 0\n"
             os.write(child.stdin.fileno(), order.encode())
 

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Cuts the link to a driven vehicle at random times, and measures when the vehicle stands: `cuts.py TANKOPS SCENARIO [N] [SEED]`.
 
-The robot of adapter.py runs in a separate process and keeps the lease. This program is between the console and the adapter, and cuts
-the link in one of four ways: the socket is closed, the adapter is killed, the adapter is stopped (SIGSTOP), or bytes are dropped both
-ways. Each run must hold the vehicle within the lease and its own braking, must report the lost link within 1 s, must not move the
-vehicle again, and must keep its journal. Prints a JSON line for each cut and one with the summary; ends with 1 if a rule is broken.
+The robot of adapter.py runs in a separate process and keeps the lease. This program is between the console and the adapter,
+and cuts the link in one of four ways: the socket is closed, the adapter is killed, the adapter is stopped (SIGSTOP), or bytes are
+dropped both ways. Each run must hold the vehicle within the lease and its own braking, must report the lost link within 1 s, must
+not move the vehicle again, and must keep a journal that `tankops verify` proves. Prints a JSON line for each cut and one with the
+summary; ends with 1 if a rule is broken.
 Environment: TANKOPS_OPTIONS, global options of tankops, separated by spaces; SET, more options of `run`; JOBS, number of runs at a
 time (1).
 """
@@ -103,6 +104,7 @@ def one(tankops, scenario, number, seed, folder):
     if cut is None:
         return {"cut": number, "way": way, "wrong": [f"the run ended before the cut: {said}"]}
     kept = sorted(os.listdir(logs))
+    proved = subprocess.run([tankops, "verify", os.path.join(logs, kept[-1])], capture_output=True)
     listed = subprocess.run([tankops, "events", os.path.join(logs, kept[-1])], capture_output=True, check=True)
     events = [json.loads(line) for line in listed.stdout.splitlines()]
     with open(log) as lines:
@@ -117,6 +119,7 @@ def one(tankops, scenario, number, seed, folder):
         (stand_s > LEASE_S + braking_s, "it stood too late"), (not is_still, "it moves at the end"),
         (link_s is None or link_s > TOLD_S, "the lost link was not told within 1 s"),
         (again, "a motion was sent after the hold"), (events[-1]["event"] != "ended", f"the run was not kept: {said}"),
+        (proved.returncode != 0, f"the run was not verified: {proved.stdout.decode()}{proved.stderr.decode()}"),
     ] if is_wrong]
     return {**row, **({"wrong": wrong} if wrong else {})}
 
@@ -128,11 +131,11 @@ def main(tankops, scenario, n=100, seed=1):
             rows.append(row)
             print(json.dumps(row), flush=True)
     measured = [row for row in rows if "stand_s" in row]
-    beyond = sorted(row["beyond_braking_s"] for row in measured)
-    p99 = beyond[min(len(beyond) - 1, -(-99 * len(beyond) // 100) - 1)]
-    summary = {"cuts": len(rows), "stand_max_s": max(row["stand_s"] for row in measured), "beyond_braking_p99_s": p99,
-               "beyond_braking_max_s": beyond[-1], "told_max_s": max((row["told_s"] for row in measured if row["told_s"] is not None), default=None),
-               "wrong": sum("wrong" in row for row in rows)}
+    summary = {"cuts": len(rows), "wrong": sum("wrong" in row for row in rows)}
+    for key in ("stand_s", "beyond_braking_s", "told_s"):
+        values = sorted(row[key] for row in measured if row[key] is not None)
+        summary[key] = {name: values[-(-share * len(values) // 100) - 1]
+                        for name, share in (("median", 50), ("p95", 95), ("p99", 99), ("max", 100)) if values}
     print(json.dumps(summary))
     return 1 if summary["wrong"] else 0
 

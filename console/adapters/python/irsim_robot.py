@@ -13,6 +13,7 @@ import math
 import os
 import sys
 import tempfile
+import time
 import tomllib
 
 import adapter
@@ -26,6 +27,7 @@ SLIP_SIGMA = 0.01
 ENCODER_SIGMA = 0.02  # share of the motion
 GYRO_BIAS_RAD_PER_S = 0.0003
 CORNERS = 48  # of a column, for the tether
+WATCHDOG_S = 0.25  # of the motors, for a robot that is not behind adapter.py
 
 
 def scenario(path):
@@ -35,13 +37,18 @@ def scenario(path):
     circles = [o for o in whole.get("obstacles", []) if o["kind"] == "circle"]
     if "radius_m" not in whole["tank"] or len(circles) < len(whole.get("obstacles", [])):
         sys.exit(f"{path}: only round tanks with round obstacles can be built in ir-sim")
-    robot = whole["robot"]
+    robot = {"radius_m": 0.25, "speed_max_m_per_s": 0.4, "turn_rate_max_deg_per_s": 60.0, "acceleration_m_per_s2": 0.5,
+             **whole.get("robot", {})}  # the defaults of scenario-format.md
+    mission = whole.get("mission", {})
     if "start_m" not in robot:
         sys.exit(f"{path}: robot.start_m is missing")
+    start_x, start_y = map(float, robot["start_m"])
+    goal_x, goal_y = map(float, mission.get("goal_m", (start_x, start_y)))
+    heading = math.radians(robot.get("start_heading_deg", math.degrees(math.atan2(goal_y - start_y, goal_x - start_x))))
     return {
         "tank_m": whole["tank"]["radius_m"],
         "columns": [(*map(float, o["center_m"]), o["radius_m"]) for o in circles],
-        "start": [*map(float, robot["start_m"]), math.radians(robot.get("start_heading_deg", 0.0))],
+        "start": [start_x, start_y, heading],
         "radius_m": robot["radius_m"],
         "limits": {
             "speed_m_per_s": robot["speed_max_m_per_s"],
@@ -51,7 +58,7 @@ def scenario(path):
         },
         "ae": whole.get("ae"),
         "anchor": whole["tether"].get("anchor_m", robot["start_m"]) if "tether" in whole else None,
-        "swath_m": whole.get("mission", {}).get("swath_m"),
+        "swath_m": mission.get("swath_m", 0.5) if mission.get("kind") == "cover" else None,
     }
 
 
@@ -196,8 +203,64 @@ class Robot:
         return {"station": station["name"], "ranges_m": [round(max(far * float(f), 0.001), 4) for f in factors]}
 
 
+class Driven:
+    """The robot of a peer of another adapter: motors of limited acceleration, a watchdog, a pose by its own odometry."""
+
+    def __init__(self, world):
+        self.limits, self.body = world["limits"], Robot(world)
+        self.x = self.y = self.heading = 0.0
+        self.v = self.w = self.to_v = self.to_w = self.until = 0.0
+        self.log = open(os.environ.get("ROBOT_LOG", os.devnull), "w", 1)
+
+    def command(self, v, w, now):
+        """Takes speeds; they hold until the watchdog stops the robot."""
+        most_v, most_w = self.limits["speed_m_per_s"], self.limits["turn_rad_per_s"]
+        self.to_v, self.to_w, self.until = max(-most_v, min(most_v, v)), max(-most_w, min(most_w, w)), now + WATCHDOG_S
+
+    def step(self, dt, now):
+        """Moves for a time; returns the measurements."""
+        if now > self.until:
+            self.to_v = self.to_w = 0.0
+        change = self.limits["acceleration_m_per_s2"] * dt
+        self.v += max(-change, min(change, self.to_v - self.v))
+        self.w += max(-4 * change, min(4 * change, self.to_w - self.w))
+        readings = self.body.measure(self.v, self.w, dt)
+        print(now, self.v, self.w, file=self.log)
+        odometry = readings["odometry"]
+        middle = self.heading + odometry["turn_rad"] / 2
+        self.x += odometry["forward_m"] * math.cos(middle)
+        self.y += odometry["forward_m"] * math.sin(middle)
+        self.heading += odometry["turn_rad"]
+        return readings
+
+
+def each_period(step):
+    """Calls `step` with the time since the last call and the time now, once in each period."""
+    before = time.monotonic()
+    while True:
+        time.sleep(max(0.0, before + PERIOD_S - time.monotonic()))
+        now = time.monotonic()
+        step(now - before, now)
+        before = now
+
+
 def account(world, path):
-    """Evaluates a file of true states. Reachable floor: within half a swath of a place where the hull fits."""
+    """Evaluates a file of true states."""
+    rows = [json.loads(line) for line in open(path) if line.endswith("]\n")]
+    collisions, least, longest, was = 0, math.inf, 0.0, False
+    for _, x, y, _, _, _, collided, length in rows:
+        collisions += collided and not was
+        was, longest = collided, max(longest, length or 0.0)
+        gaps = [math.hypot(x - cx, y - cy) - r for cx, cy, r in world["columns"]] + [world["tank_m"] - math.hypot(x, y)]
+        least = min(least, min(gaps) - world["radius_m"])
+    # A drive to a point scans no floor.
+    covered = round(coverage(world, rows), 4) if world["swath_m"] else None
+    return {"coverage": covered, "collisions": int(collisions), "clearance_min_m": round(least, 4),
+            "tether_max_m": round(longest, 3), "time_s": round(len(rows) * PERIOD_S, 1)}
+
+
+def coverage(world, rows):
+    """Scanned share of the reachable floor, which is within half a swath of a place where the hull fits."""
     import numpy
     cell, half, tank, hull = 0.05, world["swath_m"] / 2, world["tank_m"], world["radius_m"]
     side = numpy.arange(-tank, tank, cell) + cell / 2
@@ -218,23 +281,15 @@ def account(world, path):
                 reachable |= numpy.roll(fits, (i, k), (0, 1))
     reachable &= floor
     done = numpy.zeros_like(fits)
-    rows = [json.loads(line) for line in open(path) if line.endswith("]\n")]
-    across = numpy.arange(-half, half + 1e-9, cell / 2)
-    collisions, before, least, longest, was = 0, None, math.inf, 0.0, False
-    for _, x, y, heading, _, _, collided, length in rows:
-        collisions += collided and not was
-        was, longest = collided, max(longest, length or 0.0)
-        gaps = [math.hypot(x - cx, y - cy) - r for cx, cy, r in world["columns"]] + [tank - math.hypot(x, y)]
-        least = min(least, min(gaps) - hull)
+    across, before = numpy.arange(-half, half + 1e-9, cell / 2), None
+    for _, x, y, heading, *_ in rows:
         if before is None or math.dist(before[:2], (x, y)) > cell / 4 or abs(before[2] - heading) > 0.05:
             before = (x, y, heading)
             i = ((y + across * math.cos(heading) + tank) / cell).astype(int)
             k = ((x - across * math.sin(heading) + tank) / cell).astype(int)
             on = (i >= 0) & (k >= 0) & (i < len(side)) & (k < len(side))
             done[i[on], k[on]] = True
-    covered = float((done & reachable).sum() / reachable.sum())
-    return {"coverage": round(covered, 4), "collisions": int(collisions), "clearance_min_m": round(least, 4),
-            "tether_max_m": round(longest, 3), "time_s": round(len(rows) * PERIOD_S, 1)}
+    return float((done & reachable).sum() / reachable.sum())
 
 
 def main():

@@ -98,7 +98,11 @@ fn submit(
 }
 
 fn incomplete(missing: &[u64], why: &str) -> ExitCode {
-    warn_line(&format!("{why}; {} blocks are missing; run the command again to resume", missing.len()));
+    let missing = match missing.len() {
+        1 => "1 block is".to_owned(),
+        n => format!("{n} blocks are"),
+    };
+    warn_line(&format!("{why}; {missing} missing; run the command again to resume"));
     ExitCode::from(ENDED_OTHERWISE)
 }
 

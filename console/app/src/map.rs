@@ -62,7 +62,7 @@ fn human(args: &MapArgs, map: &OccupancyMap, floor: &MapFloor) -> String {
     // Writing to a String cannot fail.
     let _ = write!(
         text,
-        "free floor           {:.1} m² in {} cells; {elsewhere} other free cells count as solid\n\
+        "free floor           {:.1} m² in {} cells; free cells elsewhere, which count as solid: {elsewhere}\n\
          outlines             {}, with {before} corners, {after} after simplification\n\
          convex pieces        {}\n\
          largest shape error  {:.4} m ({:.2} cells), on the safe side\n",

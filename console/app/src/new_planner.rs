@@ -32,11 +32,13 @@ pub(crate) fn create(args: &NewPlannerArgs) -> anyhow::Result<ExitCode> {
 
 /// Writes files, named from the folder, into a folder that does not exist yet.
 pub(crate) fn write_folder(folder: &Path, files: Vec<(String, String)>) -> anyhow::Result<()> {
-    if folder.exists() {
-        return Err(bad_input(format!(
-            "{} already exists and is not overwritten; choose another name",
-            folder.display()
-        )));
+    if let Ok(there) = folder.symlink_metadata() {
+        let what = if there.is_symlink() && !folder.exists() {
+            "is a link to a folder that does not exist; remove the link or choose another name"
+        } else {
+            "already exists and is not overwritten; choose another name"
+        };
+        return Err(bad_input(format!("{} {what}", folder.display())));
     }
     for (name, text) in files {
         let file = folder.join(name);

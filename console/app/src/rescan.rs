@@ -13,6 +13,7 @@ use report::print::{say, say_line};
 use review::{MissedScan, NextScan, doubt, missed_scan};
 use scenario::{Scenario, Settings};
 use std::{path::Path, process::ExitCode};
+use world::Point;
 
 /// Runs `tankops rescan RUN... -o SCENARIO`.
 pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
@@ -25,6 +26,7 @@ pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<
     for note in past.iter().map(doubt).collect::<anyhow::Result<Vec<_>>>()?.into_iter().flatten() {
         say_line(&note)?;
     }
+    let vehicle = past.iter().rev().find_map(|past| past.opened.vehicle.as_ref().map(|info| info.at.clone()));
     let names: Vec<String> = past.iter().map(|past| past.run.name.clone()).collect();
     let scan = match missed_scan(past, min_area_m2, &output.display().to_string())? {
         NextScan::Worth(scan) => *scan,
@@ -40,7 +42,7 @@ pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<
     if let Some(note) = changed {
         say_line(&note)?;
     }
-    print_advice(args, &names)?;
+    print_advice(args, &names, vehicle.map(|at| (at, scenario.mission.start.position)))?;
     Ok(ExitCode::from(COMPLETE))
 }
 
@@ -69,12 +71,19 @@ fn flyable(
     Ok((text, Some(note)))
 }
 
-/// Prints how to run the re-scan.
-fn print_advice(args: &RescanArgs, names: &[String]) -> anyhow::Result<()> {
+/// Prints how to run the re-scan; `live` is the address of the vehicle of the last live run, and the start.
+fn print_advice(args: &RescanArgs, names: &[String], live: Option<(String, Point)>) -> anyhow::Result<()> {
     let (logs, output) = (args.logs.folder(), args.output.display());
     let logs = logs.display();
+    let (place, vehicle) = match live {
+        Some((at, start)) => (
+            format!("place the vehicle at the start, {:.2}, {:.2} m; then ", start.x, start.y),
+            format!(" --vehicle \"{at}\""),
+        ),
+        None => (String::new(), String::new()),
+    };
     Ok(say_line(&format!(
-        "run it with `tankops run --logs {logs} {output}`; then combine the reports with `tankops report --logs \
+        "{place}run it with `tankops run --logs {logs} {output}{vehicle}`; then combine the reports with `tankops report --logs \
          {logs} {} RUN`",
         names.join(" "),
     ))?)

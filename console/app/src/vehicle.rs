@@ -53,7 +53,7 @@ pub(crate) fn simulate(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
 struct Offered {
     vehicle: Behind,
     clients: BTreeMap<ClientId, Client>,
-    /// The console that the vehicle obeys: the one that has been connected longest.
+    /// The console that the vehicle obeys: of all connected consoles, the first that connected.
     commander: Option<ClientId>,
     began: Instant,
     /// When the next tick is due.
@@ -96,7 +96,7 @@ impl Offered {
             }
             // Over datagrams, a console that has said `bye` still counts as connected for a while.
             Did::Left | Did::Said(ToVehicle::Bye(_)) => self.part_with(id),
-            // Rule 2 of the protocol: a vehicle stops on bad input.
+            // Rule 3 of the protocol: a vehicle stops on bad input.
             Did::SaidWrong(_) if self.commander == Some(id) => self.vehicle.halt(),
             Did::Said(message) if self.commander == Some(id) || matches!(message, ToVehicle::Ping(_)) => {
                 let now_s = self.now_s();

@@ -19,7 +19,8 @@ const WIDTH: usize = 100;
 #[derive(Serialize)]
 struct Told<'a> {
     at: String,
-    vehicle: &'a Hello,
+    /// Absent if no vehicle introduced itself.
+    vehicle: Option<&'a Hello>,
     /// Whether the vehicle was allowed to move.
     driven: bool,
     passed: bool,
@@ -44,16 +45,38 @@ pub(crate) fn check(args: &TrialArgs, json: bool) -> anyhow::Result<ExitCode> {
     };
     let stop = stop_signal::listen();
     let tried = try_vehicle(at, &options, &warn_line, &|| stop.requested());
-    let trial = tried.map_err(|error| bad_input(error.to_string()))?;
+    let trial = match tried {
+        Ok(trial) => trial,
+        Err(error) => {
+            let why = error.to_string();
+            if json {
+                let checks = &[Row::fail("connection", Vec::new(), why.clone())];
+                let at = at.to_string();
+                let told =
+                    Told { at, vehicle: None, driven: false, passed: false, interrupted: false, checks };
+                say(&json_of(&told)?)?;
+            }
+            return Err(bad_input(why));
+        }
+    };
     let passed = trial.is_passed();
     say(&if json {
-        let (vehicle, checks, interrupted) = (&trial.hello, trial.rows.as_slice(), trial.interrupted);
-        let told = Told { at: at.to_string(), vehicle, driven: args.drive, passed, interrupted, checks };
-        pretty_json("the result of the trial", &told)?
+        json_of(&Told {
+            at: at.to_string(),
+            vehicle: Some(&trial.hello),
+            driven: args.drive,
+            passed,
+            interrupted: trial.interrupted,
+            checks: &trial.rows,
+        })?
     } else {
         table(&trial)
     })?;
     Ok(ExitCode::from(if passed { COMPLETE } else { ENDED_OTHERWISE }))
+}
+
+fn json_of(told: &Told<'_>) -> anyhow::Result<String> {
+    pretty_json("the result of the trial", told)
 }
 
 fn table(trial: &Trial) -> String {

@@ -230,7 +230,7 @@ impl Campaign {
             |s: &ScenarioText| ScenarioText { path: String::new(), text: String::new(), ..s.clone() };
         let scenarios = self.scenarios.iter().map(without_text).collect();
         let bare = Self { block: 1, scenarios, ..self.clone() };
-        serde_json::to_string(&bare).expect("numbers are finite and keys are texts")
+        serde_json::to_string(&bare).expect("numbers are finite and keys are strings")
     }
 }
 

@@ -26,6 +26,8 @@ pub struct Behind {
     driven: Option<(message::Drive, f64)>,
     /// Number of the last command.
     last_seq: Option<u64>,
+    /// Least time from the stamp of a command to its arrival: the offset of the console's clock plus the shortest delay.
+    least_s: f64,
     /// Number of the last readings.
     seq: u64,
     /// The dead-reckoned pose in the vehicle's own frame; `None` for a vehicle that sends odometry alone.
@@ -35,6 +37,8 @@ pub struct Behind {
     has_scanner: bool,
 }
 
+/// Increase of the least delay per command, seconds, so that it follows clocks that drift.
+const DRIFT_S: f64 = 1e-4;
 /// Rays of the scanner, and its range in metres.
 const RAYS: u32 = 360;
 const SCAN_MAX_M: f64 = 8.0;
@@ -50,6 +54,7 @@ impl Behind {
             hello: hello(scenario),
             driven: None,
             last_seq: None,
+            least_s: f64::INFINITY,
             seq: 0,
             reckoned: None,
             tick_s: scenario.mission.tick_s,
@@ -102,7 +107,7 @@ impl Behind {
 
     /// Forgets the commander; the vehicle stands still.
     pub fn leave(&mut self) {
-        (self.driven, self.last_seq) = (None, None);
+        (self.driven, self.last_seq, self.least_s) = (None, None, f64::INFINITY);
     }
 
     /// Stands still until the next command.
@@ -114,9 +119,17 @@ impl Behind {
     pub fn take(&mut self, message: &ToVehicle, now_s: f64) -> Option<FromVehicle> {
         match message {
             ToVehicle::Drive(drive) if self.is_new(drive.seq) => {
+                let age_s = self.age_s(drive.stamp_s, now_s);
+                // Rule 2 of the protocol: a command that waited while this process was stopped is ignored.
+                if age_s > drive.lease_s {
+                    return None;
+                }
                 self.driven = Some((*drive, now_s + drive.lease_s.min(self.hello.lease_max_s)));
             }
-            ToVehicle::Stop(stop) if self.is_new(stop.seq) => self.driven = None,
+            ToVehicle::Stop(stop) if self.is_new(stop.seq) => {
+                self.age_s(stop.stamp_s, now_s);
+                self.driven = None;
+            }
             ToVehicle::Drive(_) | ToVehicle::Stop(_) => {}
             ToVehicle::Ping(ping) => {
                 return Some(FromVehicle::Pong(Pong { echo_s: ping.stamp_s, stamp_s: now_s }));
@@ -124,6 +137,13 @@ impl Behind {
             ToVehicle::Bye(_) => self.leave(),
         }
         None
+    }
+
+    /// Time since a command was sent, beyond the shortest delay, seconds.
+    fn age_s(&mut self, stamp_s: f64, now_s: f64) -> f64 {
+        let late_s = now_s - stamp_s;
+        self.least_s = late_s.min(self.least_s + DRIFT_S);
+        late_s - self.least_s
     }
 
     fn is_new(&mut self, seq: u64) -> bool {

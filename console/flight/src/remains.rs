@@ -71,7 +71,7 @@ pub fn check_frames(about: &str, frames: &[u8]) -> Result<(), String> {
             "cannot be checked: {CRASH_FILE} beside it has no line `{FRAMES_DIGEST}...`; it was changed, or written by an older tankops"
         )),
         Some(kept) if kept.trim() == digest_of(frames) => Ok(()),
-        Some(_) => Err(format!("was cut or changed: its SHA-256 is not the one in {CRASH_FILE}")),
+        Some(_) => Err(format!("was truncated or changed: its SHA-256 is not the one in {CRASH_FILE}")),
     }
 }
 
@@ -95,7 +95,9 @@ mod tests {
         let [(_, about), (_, frames), _] = files(&crash);
         let about = String::from_utf8(about).expect("text");
         assert_eq!(check_frames(&about, &frames), Ok(()));
-        assert!(check_frames(&about, &frames[..2]).is_err_and(|why| why.starts_with("was cut or changed")));
+        assert!(
+            check_frames(&about, &frames[..2]).is_err_and(|why| why.starts_with("was truncated or changed"))
+        );
         assert!(
             check_frames("planner p died\n", &frames).is_err_and(|why| why.starts_with("cannot be checked"))
         );

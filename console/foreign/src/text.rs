@@ -95,7 +95,7 @@ fn replaced(text: &str, instead: impl Fn(char) -> char) -> Cow<'_, str> {
     rewritten(text, is_plain, |plain, c| plain.push(instead(c)))
 }
 
-/// Keeps the characters of a text for which `may_stay` is true, and calls `write` to replace each other character.
+/// Keeps the characters for which `may_stay` is true, and calls `write` to replace each of the rest.
 fn rewritten(
     text: &str,
     may_stay: impl Fn(char) -> bool,

@@ -50,7 +50,7 @@ fn plugins(tools: &Tools) -> Check {
         .map(|info| info.id.as_str())
         .collect();
     if changed.is_empty() {
-        check("plugins", CheckOutcome::Passed, format!("{} planners, files unchanged", planners.len()))
+        check("plugins", CheckOutcome::Passed, format!("files unchanged; planners: {}", planners.len()))
     } else {
         let found = format!("changed since the console was started: {}", changed.join(", "));
         check("plugins", CheckOutcome::Warning, found)

@@ -4,7 +4,7 @@
 //! next run begins.
 
 use super::{
-    checking,
+    checking, combining,
     comparing::Comparing,
     engine::Engine,
     forecasting::Forecasting,
@@ -28,7 +28,7 @@ use flight::{
 };
 use mission::{PlannerChoice, Severity};
 use planner_host::PluginDirs;
-use review::{combined, rescan_of};
+use review::rescan_of;
 use runs::Closed;
 use scenario::{Scenario, Settings};
 use std::{
@@ -190,7 +190,23 @@ impl Desk {
         let started = Engine::start((scenario, flight), (logs, plugins), screen, self.speed, self.drill);
         self.engine = Some(started.inspect_err(|_| self.current.set(None))?);
         self.opened = Some((id, Arc::new(scenario.clone())));
+        self.look_back(id, scenario.text.clone());
         Ok(())
+    }
+
+    /// Finds the runs that a re-scan continues. This runs on a separate thread, because reading the journals of runs
+    /// without a report takes time.
+    fn look_back(&self, id: RunId, scenario_toml: String) {
+        let screen = RunOutbox { run: id, outbox: self.tools.outbox.clone() };
+        let logs = self.tools.logs.clone();
+        let began = thread::Builder::new().name("look-back".into()).spawn(move || {
+            if let Some(found) = combining::before(&scenario_toml, &logs).transpose() {
+                let _ = screen.send(RunMsg::Continues(found));
+            }
+        });
+        if let Err(error) = began {
+            jobs::report(&self.tools.outbox, &format!("the runs before this one cannot be found: {error}"));
+        }
     }
 
     /// Starts the desk's thread.
@@ -315,8 +331,7 @@ impl Desk {
         let screen = RunOutbox { run: *run, outbox: self.tools.outbox.clone() };
         let logs = self.tools.logs.clone();
         let began = thread::Builder::new().name("combine".into()).spawn(move || {
-            let floor = combined(&runs, &logs).map_err(|error| format!("{error:#}"));
-            let _ = screen.send(RunMsg::Combined(floor.map(Box::new)));
+            let _ = screen.send(RunMsg::Combined(combining::combined(&runs, &logs).map(Box::new)));
         });
         if let Err(error) = began {
             jobs::report(&self.tools.outbox, &format!("failed to combine the runs: {error}"));

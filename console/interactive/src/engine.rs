@@ -174,12 +174,17 @@ impl EngineThread {
         }
     }
 
-    /// The order to check the planner of a held robot, whose process has ended. A planner that drives is asked in every
-    /// tick anyway.
+    /// The order to check the planners, if the process of one has ended.
     fn planner_check(&mut self) -> Option<Order> {
-        let worker =
-            self.flight.mission().idle_worker().filter(|_| matches!(self.flight.phase(), Phase::Held(_)))?;
-        self.host.has_ended_idle(worker).then_some(Order::CheckPlanner)
+        self.has_lost_planner().then_some(Order::CheckPlanner)
+    }
+
+    /// Whether the process of a planner has ended that is asked for nothing, before the start or while the robot is held.
+    /// A planner that drives is asked in every tick anyway.
+    fn has_lost_planner(&mut self) -> bool {
+        let is_asked = !matches!(self.flight.phase(), Phase::Waiting | Phase::Held(_));
+        let mut idle = self.flight.mission().idle_workers().filter(|_| !is_asked);
+        idle.any(|worker| self.host.has_ended_idle(worker))
     }
 
     /// Whether ticks pass without orders: the mission is under way, a planner is being prepared, or a real vehicle is

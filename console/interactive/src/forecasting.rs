@@ -1,4 +1,4 @@
-//! Forecasts how a held mission would continue with different planners: a copy of the mission is run ahead with
+//! Forecasts how a mission would continue with different planners or parameters: a copy of the mission is run ahead with
 //! separate workers.
 
 use super::{inbox::RunOutbox, line::EngineHandle};
@@ -138,7 +138,10 @@ fn fly(
 ) -> Result<Forecast, String> {
     let mut answers = InOrder::new(hosts::host(scenario, plugins));
     let mut ahead = Ahead::new(choice);
-    let mut orders = vec![Order::ChoosePlanner(choice.clone()), Order::Resume];
+    // A running mission accepts another planner only once it is held.
+    let hold = matches!(flight.phase(), Phase::Running(_)).then_some(Order::Hold);
+    let mut orders: Vec<Order> =
+        hold.into_iter().chain([Order::ChoosePlanner(choice.clone()), Order::Resume]).collect();
     for tick in 0.. {
         if given_up.load(Ordering::SeqCst) {
             return Err("cancelled".to_owned());

@@ -1,8 +1,9 @@
 //! Reads what the screen shows about a past run that the operator has selected. Reading a long journal takes seconds, so
 //! only the run that was selected last is read.
 
-use super::{inbox::Outbox, jobs};
+use super::{combining, inbox::Outbox, jobs};
 use account::Summary;
+use mission::EventKind;
 use recording::{JournalReader, journal_of};
 use runs::{Standing, standing};
 use std::{
@@ -12,7 +13,7 @@ use std::{
 };
 use tui::{
     Msg,
-    model::{Glimpse, Log, Run, glimpse::RunKey},
+    model::{Glimpse, Log, Run, Together, glimpse::RunKey},
 };
 
 /// The number of events after which the reader checks whether another run is wanted.
@@ -82,7 +83,7 @@ impl Glimpsing {
         loop {
             let Some(key) = self.wanted().take() else { return };
             let found = runs::find(key.0.as_ref(), &self.logs).map_err(|error| error.to_string());
-            let found = found.and_then(|folder| glimpse(&folder, || self.wanted().goes_on()));
+            let found = found.and_then(|folder| glimpse(&folder, &self.logs, || self.wanted().goes_on()));
             if let Some(found) = found.transpose() {
                 self.outbox.send(Msg::Glimpsed(key, found.map(Box::new)));
             }
@@ -95,19 +96,26 @@ impl Glimpsing {
 }
 
 /// Reads the run in a folder; `None` if it was abandoned.
-fn glimpse(folder: &Path, goes_on: impl Fn() -> bool) -> Result<Option<Glimpse>, String> {
+fn glimpse(folder: &Path, logs: &Path, goes_on: impl Fn() -> bool) -> Result<Option<Glimpse>, String> {
     let mut reader = JournalReader::open(&journal_of(folder)).map_err(|error| error.to_string())?;
-    let mut run = Run::default();
+    let (mut run, mut scenario_toml) = (Run::default(), String::new());
     for number in 1.. {
         // The part of a journal before the damage can be shown.
         let Ok(Some(line)) = reader.next_line() else { break };
         run.fold(&line.event);
+        if let EventKind::RunOpened(opened) = line.event.kind {
+            scenario_toml = opened.scenario_toml;
+        }
         if number % CHECK_EVENTS == 0 && !goes_on() {
             return Ok(None);
         }
     }
     run.log = Log::default();
-    Ok(Some(Glimpse { run, summary: summary(folder) }))
+    let name = folder.to_string_lossy();
+    let combined = combining::of_rescan(&name, &scenario_toml, logs).transpose();
+    let combined =
+        combined.map(|found| found.map(|found| Box::new(Together::new(found, run.coverage.as_ref()))));
+    Ok(Some(Glimpse { run, summary: summary(folder), combined }))
 }
 
 fn summary(folder: &Path) -> Option<Box<Summary>> {

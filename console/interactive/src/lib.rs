@@ -3,6 +3,7 @@
 pub mod config;
 
 mod checking;
+mod combining;
 mod comparing;
 mod crash;
 mod desk;

@@ -45,7 +45,7 @@ impl Measure {
     }
 
     /// Records a drawn frame. `after` is the time since the previous frame; a frame is due every `interval` while
-    /// things change.
+    /// the screen changes.
     pub(super) fn drew(&mut self, now: Instant, after: Duration, interval: Duration) {
         if let Some(key) = self.key.take() {
             self.answered.push_back((now, now - key));

@@ -151,10 +151,10 @@ pub(super) fn signals(outbox: &Outbox, engine: Current, foreground: Foreground) 
     })
 }
 
-/// Listens for changes of the terminal's size.
+/// Listens for changes in the terminal's size.
 pub(super) fn sizes(outbox: &Outbox) -> anyhow::Result<()> {
     let outbox = outbox.clone();
-    let mut changes = Signals::new([SIGWINCH]).context("listening for changes of the terminal's size")?;
+    let mut changes = Signals::new([SIGWINCH]).context("listening for changes in the terminal's size")?;
     spawn("sizes", move || {
         // The size may have changed before this thread began to listen.
         for _ in std::iter::once(SIGWINCH).chain(changes.forever()) {

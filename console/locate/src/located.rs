@@ -232,7 +232,7 @@ impl Task<'_> {
         if of_readings.is_some() {
             let (readings, file) = (self.file.display(), file.display());
             return Err(bad_input(format!(
-                "column tool_on of {readings} and {file} both state when the tool was on; remove one"
+                "{file} and the column tool_on of {readings} both state when the tool was on; remove one of them"
             )));
         }
         match tool::outside(&stretches, span) {

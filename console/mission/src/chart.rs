@@ -19,6 +19,10 @@ const MEMORY: f64 = 50.0;
 /// Time out of sight, seconds, after which a moving obstacle is forgotten.
 const OUT_OF_SIGHT_S: f64 = 2.0;
 
+/// Distance, metres, by which an outline may exceed a drawn obstacle that it shows: errors of the position and of the
+/// tracker. An object this close to a drawn obstacle is not added to the chart; the robot still stops before it.
+const DRAWN_M: f64 = 0.1;
+
 /// The drawing and the found obstacles, with an index for queries.
 #[derive(Clone)]
 pub(crate) struct Chart {
@@ -144,7 +148,8 @@ impl Chart {
 
     /// Puts sightings on the chart, made at time `now_s` from an estimated pose; returns the changes.
     ///
-    /// The obstacle tracker recognizes the columns that are on the drawing, so only other obstacles are added.
+    /// Only obstacles that are not on the drawing are added. A tracker of the simulator recognizes drawn obstacles; other
+    /// trackers see a drawn obstacle where the drawing has it.
     pub(crate) fn see(&mut self, now_s: f64, sightings: &[Sighting], from: &Pose) -> Seen {
         self.now_s = now_s;
         let mut events = Vec::new();
@@ -152,6 +157,9 @@ impl Chart {
         for sighting in sightings {
             if self.drawn.binary_search(&sighting.id).is_err() {
                 let shape = sighting.shape_in_robot.transformed(&from.tank_from_robot());
+                if self.is_drawn(sighting.id, &shape) {
+                    continue;
+                }
                 let did_move = self.velocity(sighting.id).is_some();
                 let event = self.place(sighting.id, shape);
                 let moves = self.velocity(sighting.id).is_some();
@@ -165,6 +173,21 @@ impl Chart {
             self.map = ObstacleMap::new(&self.world.boundary, &self.world.obstacles);
         }
         Seen { events, changes_plans }
+    }
+
+    /// Whether an outline of a foreign tracker is part of a drawn obstacle.
+    fn is_drawn(&self, id: ObstacleId, shape: &Shape) -> bool {
+        if id < ObstacleId::FOREIGN || self.found.iter().any(|found| found.id == id) {
+            return false;
+        }
+        let (points, half_m): (&[Point], f64) = match shape {
+            Shape::Disc { center, radius_m } => (std::slice::from_ref(center), *radius_m),
+            Shape::Polygon { vertices } => (vertices, 0.0),
+            Shape::Polyline { points, half_width_m } => (points, *half_width_m),
+        };
+        let covers =
+            |drawn: &Obstacle| points.iter().all(|point| drawn.shape.distance_m(*point) + half_m <= DRAWN_M);
+        self.world.obstacles.iter().filter(|obstacle| obstacle.known).any(covers)
     }
 
     fn place(&mut self, id: ObstacleId, shape: Shape) -> Option<EventKind> {

@@ -263,8 +263,8 @@ impl MissionConfig {
     }
 
     /// The anchor, and the maximum distance from it, along the shortest path, at which planners place lanes; `None`
-    /// without a tether. Floor farther away is beyond the reel: the outermost lane is up to one swath short of the end of
-    /// the cable.
+    /// without a tether. Floor farther away is beyond the reach of the tether: the outermost lane is up to one swath
+    /// short of the end of the cable.
     pub fn cable_reach(&self) -> Option<(Point, f64)> {
         self.tether.as_ref().map(|tether| (tether.anchor, tether.limits.reel_length_m - self.swath_m))
     }

@@ -139,9 +139,11 @@ impl Mission {
         self.known.sending()
     }
 
-    /// The worker of the active planner while it has nothing to do; the console watches its process.
-    pub fn idle_worker(&self) -> Option<WorkerId> {
-        self.driving.worker.idle()
+    /// The workers of the active planner and of the planner in shadow, as far as they have nothing to do; the console
+    /// watches their processes.
+    pub fn idle_workers(&self) -> impl Iterator<Item = WorkerId> {
+        let shadow = self.shadow.as_ref().and_then(|shadow| shadow.worker.idle());
+        self.driving.worker.idle().into_iter().chain(shadow)
     }
 
     /// Everything that decides whether an order is accepted now.

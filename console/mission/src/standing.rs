@@ -239,7 +239,8 @@ impl Standing<'_> {
             )
             | (Order::Plan | Order::NoteChecks(_), Phase::Waiting)
             | (Order::Hold | Order::Inject(_), Phase::Running(_) | Phase::Held(_))
-            | (Order::Shadow(_) | Order::NoteOutlooks(_) | Order::CheckPlanner, Phase::Held(_))
+            | (Order::Shadow(_) | Order::NoteOutlooks(_), Phase::Held(_))
+            | (Order::CheckPlanner, Phase::Waiting | Phase::Held(_))
             | (Order::ChoosePlanner(_) | Order::SetParameter { .. }, Phase::Waiting | Phase::Held(_)) => {
                 Ok(())
             }
@@ -260,7 +261,6 @@ impl Standing<'_> {
                 | Order::StepTo(_)
                 | Order::DriveBack
                 | Order::NoteOutlooks(_)
-                | Order::CheckPlanner
                 | Order::Inject(_)
                 | Order::Shadow(_)
                 | Order::Promote

@@ -12,7 +12,7 @@ use std::path::Path;
 pub struct Identity {
     /// The id: unique per run, and always the same for a run.
     pub recording_id: String,
-    /// The name for people: the name of the run's folder.
+    /// The human-readable name: the name of the run's folder.
     pub name: String,
     /// Start of the run, read from its name (`20261122T040132Z-...`), UTC, nanoseconds since 1970; absent if the name
     /// does not contain it.

@@ -14,7 +14,7 @@ pub struct Summary {
     pub application: String,
     /// The id that the viewer uses to keep recordings apart.
     pub recording_id: String,
-    /// Name for people.
+    /// Human-readable name.
     pub name: Option<String>,
     /// Rows of each entity.
     pub entities: BTreeMap<String, u64>,

@@ -142,16 +142,8 @@ fn misfits(scenario: &Scenario, hello: &Hello) -> Vec<String> {
 }
 
 fn info(hello: &Hello, address: &Address) -> VehicleInfo {
-    let Has { odometry, pose, scan, contact, tether, ae, pressure, .. } = hello.has;
-    let parts = [
-        (odometry, "odometry"),
-        (pose, "pose"),
-        (scan, "scan"),
-        (contact, "contact"),
-        (tether, "tether"),
-        (ae, "ae"),
-        (pressure, "pressure"),
-    ];
+    // The ids of obstacles are not a sensor.
+    let has = Has { drawn_ids: false, ..hello.has };
     VehicleInfo {
         name: foreign::plain(&hello.name).into_owned(),
         at: address.to_string(),
@@ -160,6 +152,6 @@ fn info(hello: &Hello, address: &Address) -> VehicleInfo {
         stop_s: hello.stop_time_s,
         speed_max_m_per_s: hello.limits.speed_m_per_s,
         turn_max_rad_per_s: hello.limits.turn_rad_per_s,
-        has: parts.into_iter().filter(|(has, _)| *has).map(|(_, part)| part.to_owned()).collect(),
+        has: has.parts().into_iter().map(str::to_owned).collect(),
     }
 }

@@ -124,7 +124,7 @@ impl<'a> ForecastReport<'a> {
             let error = place.accuracy.error_95_m.map_or("no fix".into(), |m| format!("{m:.3} m"));
             let _ = writeln!(
                 text,
-                "  at {:6.2}, {:6.2} m  {error:9}  {} stations heard",
+                "  at {:6.2}, {:6.2} m  {error:9}  stations heard: {}",
                 place.at.x, place.at.y, place.accuracy.heard
             );
         }

@@ -1,4 +1,4 @@
-//! The summary for people at the end of a run.
+//! The human-readable summary at the end of a run.
 
 pub(crate) mod floor;
 mod short;
@@ -137,7 +137,7 @@ fn warnings(run: &Summary) -> Vec<String> {
     found
 }
 
-/// The warning that floor was not planned because it is beyond the reel.
+/// The warning that floor was not planned because it is beyond the reach of the tether.
 fn beyond_reel(floor: &Account) -> Option<String> {
     let is_beyond = floor.missed.iter().any(|area| area.reason == MissReason::BeyondReel);
     let (scanned, area_m2) = (floor.reachable.percent.scanned, floor.reachable.area_m2);

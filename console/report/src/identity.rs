@@ -23,9 +23,21 @@ impl Stated {
     /// # Errors
     /// The scenario is not valid TOML: the journal was changed.
     pub(crate) fn by(run: &RunOpened) -> Result<Self, String> {
-        toml::from_str(&run.scenario_toml)
+        Self::read(&run.scenario_toml)
+    }
+
+    fn read(scenario_toml: &str) -> Result<Self, String> {
+        toml::from_str(scenario_toml)
             .map_err(|error| format!("the scenario in its journal cannot be read: {}", error.message()))
     }
+}
+
+/// The SHA-256 of the journals of the runs that a re-scan continues, hexadecimal; empty for any other run.
+///
+/// # Errors
+/// The scenario is not valid TOML: the journal was changed.
+pub fn continued(scenario_toml: &str) -> Result<Vec<String>, String> {
+    Ok(Stated::read(scenario_toml)?.continues_sha256)
 }
 
 /// The facts that identify the floor; any difference counts.

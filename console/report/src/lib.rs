@@ -24,6 +24,7 @@ pub mod rescan;
 pub use difference::{Difference, first_difference};
 pub use document::Document;
 pub use human::human;
+pub use identity::continued;
 pub use merged::{Merged, MergedRun, merged};
 pub use past_run::PastRun;
 pub use record::Record;

@@ -10,6 +10,7 @@ use crate::{
 };
 use account::{Account, Coverage, Summary};
 use serde::Serialize;
+use world::{CellRun, coverage::runs_of};
 
 /// The combined scan of several runs. Every run keeps its own recording.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -20,6 +21,9 @@ pub struct Merged {
     pub coverage: Coverage,
     /// The account of the floor over all runs together.
     pub floor: Account,
+    /// The cells that count as scanned, in the order of the floor's cells; not part of the file.
+    #[serde(skip)]
+    pub scanned: Vec<CellRun>,
 }
 
 /// One of several runs.
@@ -59,7 +63,9 @@ pub fn merged(runs: &[PastRun]) -> Result<Merged, String> {
         })
     });
     let listed: Vec<MergedRun> = listed.collect();
-    Ok(Merged { coverage: all.scanned.coverage(true), floor: all.account(runs), runs: listed })
+    let grid = all.scanned.believed();
+    let scanned = runs_of((0..grid.floor().len()).filter(|index| grid.is_covered(*index)));
+    Ok(Merged { coverage: all.scanned.coverage(true), floor: all.account(runs), scanned, runs: listed })
 }
 
 impl Merged {
@@ -140,6 +146,10 @@ mod tests {
         let both = merged(&[south, north]).unwrap();
         assert!((alone.floor.reachable.scanned - 0.5).abs() < 0.01, "{:?}", alone.floor.reachable);
         assert!((both.floor.reachable.scanned - 1.0).abs() < 1e-12 && both.floor.missed.is_empty());
+        assert_eq!(
+            (&alone.scanned[..], &both.scanned[..]),
+            (&[CellRun(0, half)][..], &[CellRun(0, 2 * half)][..])
+        );
         let text = both.human();
         for wanted in ["logs/a/recording.rrd, sha256 5aa", "logs/b/recording.rrd, sha256 5ab"] {
             assert!(text.contains(wanted), "{text}");

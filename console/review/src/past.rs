@@ -1,13 +1,13 @@
 //! Past runs, read from their journals.
 
-use account::{Account, Expect, Inspection, Summary};
+use account::{Expect, Inspection, Summary};
 use flight::failure::bad_input;
 use report::{
-    Document, PastRun,
+    Document, Merged, PastRun,
     document::{Context, html},
     human, merged,
 };
-use runs::{Past, find, signed_list};
+use runs::{Past, by_journal, find, signed_list};
 use scenario::Scenario;
 use std::path::{Path, PathBuf};
 
@@ -23,10 +23,20 @@ pub fn read_all(runs: &[PathBuf], logs: &Path) -> anyhow::Result<Vec<Past>> {
 ///
 /// # Errors
 /// A run does not exist, its journal cannot be read, or the runs are not on one floor.
-pub fn combined(runs: &[String], logs: &Path) -> anyhow::Result<Account> {
+pub fn combined(runs: &[String], logs: &Path) -> anyhow::Result<Merged> {
     let runs: Vec<PathBuf> = runs.iter().map(PathBuf::from).collect();
     let past: Vec<PastRun> = read_all(&runs, logs)?.into_iter().map(|past| past.run).collect();
-    Ok(merged(&past).map_err(bad_input)?.floor)
+    merged(&past).map_err(bad_input)
+}
+
+/// The names of the runs that a re-scan continues, oldest first, from the scenario of the re-scan; empty for any other
+/// scenario.
+///
+/// # Errors
+/// The scenario is not TOML, or a run is not in the folder of the runs.
+pub fn continued(scenario_toml: &str, logs: &Path) -> anyhow::Result<Vec<String>> {
+    let digests = report::continued(scenario_toml).map_err(bad_input)?;
+    Ok(if digests.is_empty() { Vec::new() } else { by_journal(&digests, logs)? })
 }
 
 /// The human-readable report of the run in a folder.

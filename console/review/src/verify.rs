@@ -62,7 +62,7 @@ struct Findings {
     builds: BTreeMap<String, PlannerInfo>,
     events: usize,
     last_tick: u64,
-    /// Whether the readings came from the journal.
+    /// Whether the run was live; its readings are then taken from the journal.
     is_live: bool,
 }
 

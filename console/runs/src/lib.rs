@@ -7,6 +7,7 @@
 
 mod beside;
 mod budget;
+mod by_journal;
 mod error;
 mod files;
 mod folder;
@@ -25,6 +26,7 @@ mod standing;
 mod verified;
 mod whole;
 
+pub use by_journal::by_journal;
 pub use error::RunError;
 pub use files::{began, utc, utc_day_minute, utc_minute};
 pub use folder::{RunFolder, find, is_run};

@@ -161,6 +161,11 @@ impl Reported {
         self.source.recovered.as_ref()
     }
 
+    /// The digest of the journal from which the report was made.
+    pub(crate) fn journal_sha256(&self) -> Option<&str> {
+        self.source.events_sha256.as_deref()
+    }
+
     /// Whether the report contains the digests of both journal and recording.
     pub(crate) fn names_digests(&self) -> bool {
         self.source.events_sha256.is_some() && self.source.recording_sha256.is_some()

@@ -91,6 +91,8 @@ pub enum ActionId {
     Filter,
     NextPane,
     PreviousPane,
+    /// The pane with this number (from 1) on a screen that shows several panes.
+    Pane(u8),
     Commands,
     Help,
     Messages,

@@ -6,13 +6,14 @@ mod remedy;
 mod tether;
 mod vehicle;
 
-pub use remedy::{Guide, Remedy};
+pub use remedy::{Guide, Remedy, When};
 
 use crate::actions::ActionId;
-use crate::model::{Cause, Run};
+use crate::model::{Alarm, Cause, Run};
 use crate::screens::Screen;
 use crate::view::text;
-use remedy::{END, HOLD, OTHER_PLANNER, PARAMETERS, RESUME, SHOW, run, wait};
+use mission::Phase;
+use remedy::{END, HOLD, OTHER_PLANNER, PARAMETERS, RESUME, SHOW, check, run};
 
 /// The name of an alarm in a table, short enough for one row.
 pub fn name(cause: &Cause, of: &Run) -> String {
@@ -60,9 +61,10 @@ pub fn guide(cause: &Cause) -> Guide {
         Cause::Disk => console::DISK,
         Cause::Map => Guide {
             cause: "Unknown obstacle: the robot detects something that is not on the drawing.",
+            holds: "",
             effect: "Planners avoid it. The floor under it is not counted; floor that it blocks becomes \
             unreachable.",
-            remedies: const { &[SHOW, wait("Check what it is: nozzle, sump, debris."), HOLD] },
+            remedies: const { &[SHOW, check("Check what it is: nozzle, sump, debris."), HOLD] },
         },
         Cause::Tether(word) => tether::guide(word),
         Cause::Link => vehicle::LINK,
@@ -72,8 +74,8 @@ pub fn guide(cause: &Cause) -> Guide {
         Cause::Certificate => Guide {
             cause: "If run to its end, the plan would exceed a tether limit, touch something, or finish \
             with the tether still out.",
-            effect: "A refused plan is not run: the robot is held. An uncertified plan is run only on the \
-            operator's order.",
+            holds: "The planner makes another plan; if that is refused, too, the robot is held.",
+            effect: "A refused plan is not run. An uncertified plan is run only on the operator's order.",
             remedies: const {
                 &[
                     OTHER_PLANNER,
@@ -85,7 +87,8 @@ pub fn guide(cause: &Cause) -> Guide {
         },
         Cause::Zone(_) => Guide {
             cause: "The hull is in a no-go zone: the zone was drawn across its path, or the position was wrong.",
-            effect: "The robot is held until the operator decides.",
+            holds: "The robot is held at once.",
+            effect: "",
             remedies: const {
                 &[
                     SHOW,
@@ -97,18 +100,20 @@ pub fn guide(cause: &Cause) -> Guide {
         },
         Cause::Planner => Guide {
             cause: "The planner panicked, crashed, hung, or sent an invalid answer; its process has ended.",
-            effect: "The robot is held. If the scenario names a fallback planner, it takes over \
-            automatically.",
+            holds: "The robot is held at once.",
+            effect: "If the scenario names a fallback planner, it takes over automatically.",
             remedies: const { &[RESUME, OTHER_PLANNER, PARAMETERS, END] },
         },
         Cause::Stuck => Guide {
             cause: "The robot has made no progress for longer than the mission allows (scenario: stuck_s).",
-            effect: "The robot is held until the operator decides.",
+            holds: "The robot is held at once.",
+            effect: "",
             remedies: const { &[RESUME, OTHER_PLANNER, PARAMETERS, END] },
         },
         Cause::Ended => Guide {
             cause: "The mission ended before its task was complete.",
-            effect: "Nothing moves. Everything scanned and recorded is kept.",
+            holds: "",
+            effect: "Everything scanned and recorded is kept.",
             remedies: const {
                 &[
                     run("Show the result (<result>).", ActionId::Go(Screen::Result)),
@@ -118,6 +123,34 @@ pub fn guide(cause: &Cause) -> Guide {
             },
         },
     }
+}
+
+/// The consequence of an alarm now, in sentences. A hold is stated only while the robot is held.
+pub fn effect(alarm: &Alarm, of: &Run) -> String {
+    let guide = guide(&alarm.cause);
+    if !alarm.is_active() {
+        return "None any more: the cause is gone.".into();
+    }
+    let hold = match of.phase() {
+        _ if guide.holds.is_empty() => "",
+        Phase::Waiting => "The robot does not move before the start.",
+        Phase::Running(_) => guide.holds,
+        Phase::Held(_) if of.is_stopping() => "The robot has been commanded to stop.",
+        Phase::Held(hold) if hold.resumes.is_never() => "The robot is held until the operator decides.",
+        Phase::Held(_) => "The robot is held; it resumes automatically.",
+        Phase::Ended(_) => "The mission has ended.",
+    };
+    let sentences = [hold, guide.effect].into_iter().filter(|sentence| !sentence.is_empty());
+    sentences.collect::<Vec<_>>().join(" ")
+}
+
+/// The remedies that apply to an alarm now.
+pub fn remedies<'a>(cause: &Cause, of: &'a Run) -> impl Iterator<Item = &'static Remedy> + use<'a> {
+    let is_active = of.alarms.get(cause).is_none_or(Alarm::is_active);
+    let phase = of.phase();
+    // A wait is over when its cause is gone.
+    let applies = move |remedy: &&Remedy| remedy.when.holds(phase) && (is_active || remedy.action.is_some());
+    guide(cause).remedies.iter().filter(applies)
 }
 
 #[cfg(test)]
@@ -130,7 +163,9 @@ mod tests {
         for cause in Cause::every() {
             let guide = guide(&cause);
             let texts = guide.remedies.iter().map(|remedy| remedy.text);
-            for text in [guide.cause, guide.effect].into_iter().chain(texts) {
+            let effects = [guide.holds, guide.effect].into_iter().filter(|text| !text.is_empty());
+            assert!(effects.clone().next().is_some(), "{cause:?} has an effect");
+            for text in std::iter::once(guide.cause).chain(effects).chain(texts) {
                 assert!(text.ends_with('.') && text.starts_with(char::is_uppercase), "{cause:?}: {text}");
             }
             assert!((1..=4).contains(&guide.remedies.len()), "{cause:?}");

@@ -7,6 +7,7 @@ use crate::model::{
     log::{Entry, What, clock, severity_word},
 };
 use crate::view::{by_command, shares};
+use account::{Area, MissReason};
 use mission::{EventKind, Order, TaskConfig};
 use world::ZoneKind;
 
@@ -23,8 +24,9 @@ pub fn page(model: &Model) -> String {
         ("No-go zones", zones(model)),
         ("Clearance", clearance(model)),
         ("Work done", done(model)),
+        ("Floor missed or left out", floor(model)),
         ("Starts, holds and ends", holds(model)),
-        ("Decisions of the operator", entries(model, is_decision)),
+        ("Decisions of the operator", decisions(model)),
     ];
     for (title, lines) in sections {
         page.extend(["\n## ", title, "\n\n"]);
@@ -79,7 +81,6 @@ fn next(model: &Model) -> Vec<String> {
     lines.extend(
         model
             .live
-            .run
             .left_s()
             .filter(|_| is_on_task)
             .map(|left_s| format!("About {} of mission time left", clock(left_s))),
@@ -101,7 +102,9 @@ fn alarms(model: &Model, is_listed: impl Fn(&Alarm) -> bool) -> Vec<String> {
         };
         let name = guide::name(&alarm.cause, run);
         let severity = severity_word(alarm.severity);
-        format!("{severity} {name}, since T+{}, {state}: {}", clock(alarm.since_s), alarm.text)
+        // Some texts begin with the name.
+        let text = alarm.text.strip_prefix(&format!("{name}: ")).unwrap_or(&alarm.text);
+        format!("{severity} {name}, since T+{}, {state}: {text}", clock(alarm.since_s))
     };
     run.alarms.table().iter().filter(|alarm| is_listed(alarm)).map(line).collect()
 }
@@ -149,6 +152,40 @@ fn done(model: &Model) -> Vec<String> {
         .then(|| format!("Scanned: {reachable} % of the reachable floor, {whole} % of the whole floor"));
     let moving = format!("Mission time {}, under way {}", clock(run.clock.t_s), clock(run.clock.moving_s));
     task.map(str::to_owned).into_iter().chain(scanned).chain([moving]).collect()
+}
+
+/// What the operator decided: the decisions in the journal, then the acknowledgements after the end of the mission, which
+/// no journal contains.
+fn decisions(model: &Model) -> Vec<String> {
+    let run = &model.live.run;
+    let after = run.alarms.list().iter().filter_map(|alarm| {
+        let acknowledged =
+            alarm.acknowledged.as_ref().filter(|ack| run.has_ended() && ack.t_s >= run.clock.t_s)?;
+        let by = acknowledged.by.as_ref().map_or_else(String::new, |by| format!(" by {by}"));
+        Some(format!("After the end: acknowledged{by}: {}", alarm.text))
+    });
+    entries(model, is_decision).into_iter().chain(after).collect()
+}
+
+/// Every area that was missed or, before the end, that the plan leaves out, each with its reason.
+fn floor(model: &Model) -> Vec<String> {
+    let line = |area: &Area<MissReason>| {
+        format!("{:.2} m² at {:.2}, {:.2} m: {}", area.area_m2, area.at.x, area.at.y, area.why())
+    };
+    let live = &model.live;
+    match (live.floor(), live.left_out()) {
+        (Some(account), _) => {
+            let slivers = &account.slivers;
+            let small = (slivers.count > 0).then(|| {
+                format!("{} areas under 0.01 m²: together {:.2} m²", slivers.count, slivers.area_m2)
+            });
+            live.missed().into_iter().map(line).chain(small).collect()
+        }
+        (None, Some(left_out)) => {
+            left_out.areas.iter().map(|area| format!("Left out by the plan: {}", line(area))).collect()
+        }
+        (None, None) => Vec::new(),
+    }
 }
 
 /// The log lines about certain events, oldest first.

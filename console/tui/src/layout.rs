@@ -170,8 +170,10 @@ const fn chart(chart: Chart) -> Wish {
 fn second(shown: Shown, alarms: bool) -> Vec<Wish> {
     let tether = [chart(Chart::TetherOut), chart(Chart::Wrap)];
     let alarms = alarms.then_some(wish(Pane::Alarms, 5, 8));
-    let stations = (shown.stations > 0)
-        .then(|| wish(Pane::Stations, (shown.stations + 3).min(9), 2 * shown.stations + 3));
+    // On the largest screens, each station has a curve below its row.
+    let (rows, rows_with_curves) = (shown.stations + 3, 2 * shown.stations + 3);
+    let least = if alarms.is_some() { rows.min(9) } else { rows_with_curves.min(15) };
+    let stations = (shown.stations > 0).then(|| wish(Pane::Stations, least, rows_with_curves));
     let missed = shown.missed.then_some(wish(Pane::Missed, 5, 10));
     let tether = tether.into_iter().filter(|_| shown.tether);
     alarms
@@ -294,5 +296,7 @@ mod tests {
         let alarms = place((200, 60), Pane::Alarms);
         assert!(alarms.is_some_and(|alarms| alarms.height == 12 && alarms.bottom() == 58));
         assert!(place((200, 60), Pane::Chart(Chart::Scanned)).is_some());
+        // A heading, two rows for each station, and the frame.
+        assert!(place((200, 60), Pane::Stations).is_some_and(|stations| stations.height >= 15));
     }
 }

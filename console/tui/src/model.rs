@@ -25,9 +25,11 @@ pub mod preset;
 pub mod replay;
 pub mod review;
 pub mod run;
+pub mod setting;
 pub mod shadow;
 
 pub mod tether;
+pub mod together;
 pub mod trail;
 pub mod ui;
 mod way_left;
@@ -59,6 +61,7 @@ pub use run::{About, Clock, Progress, Run, VehicleSeen};
 pub use shadow::Shadow;
 
 pub use tether::Tether;
+pub use together::{Combination, Continued, Together};
 pub use trail::Trail;
 pub use ui::{Overlay, Pane, Ui};
 pub use what_if::{Candidate, Forecast, WhatIf};

@@ -1,6 +1,6 @@
 //! The console as sentences, one per line, for screen readers and logs.
 
-use crate::actions::{Action, find};
+use crate::actions::{Action, ActionId, Topic, find};
 use crate::model::{
     Alarm, Entry, Model, Overlay, Recording, Screen,
     log::{clock, severity_word},
@@ -9,7 +9,7 @@ use crate::model::{
 use crate::update::offered;
 use crate::view::text;
 use crate::view::{by_command, question, shares, standing};
-use mission::Outcome;
+use mission::{EventKind, Outcome};
 use world::coverage::percent;
 
 /// What has been printed so far.
@@ -34,7 +34,9 @@ impl Said {
         if self.screen.replace(screen) != Some(screen) {
             lines.push(format!("Screen {}: {}.", screen.digit(), screen.name()));
         }
-        let entries = self.entries(model);
+        // The sentence about the state says that the robot is held: in a live run, only when its stop is confirmed.
+        let is_hold = |entry: &Entry| matches!(entry.what.event(), Some(of) if matches!(of.kind, EventKind::Held { .. }));
+        let entries: Vec<Entry> = self.entries(model).into_iter().filter(|entry| !is_hold(entry)).collect();
         lines.extend(entries.iter().map(Entry::line));
         let notice = model.notice().map(|notice| notice.text.clone());
         let is_said = |text: &String| entries.iter().any(|entry| entry.text == *text);
@@ -84,7 +86,7 @@ impl Said {
     }
 }
 
-/// The answer to `status`: state, time, floor, recording, open alarms and the open question, one sentence each.
+/// The answer to `status`: state, time, position, tether, floor, recording, open alarms and the open question, one sentence each.
 pub fn status(model: &Model) -> Vec<String> {
     let run = &model.live.run;
     let scenario = run.about.as_ref().map_or("no mission", |about| about.scenario.as_str());
@@ -94,6 +96,8 @@ pub fn status(model: &Model) -> Vec<String> {
         by_command(model).join(" "),
         format!("{scenario}, planner {planner}, T+{}, speed {speed}.", clock(run.clock.t_s)),
     ];
+    lines.extend(position(model));
+    lines.extend(tether(model));
     let (reachable, whole) = shares(run);
     if run.coverage.is_some() && run.progress.is_some() {
         lines.push(format!("Scanned: {reachable} % of reachable floor, {whole} % of whole floor."));
@@ -118,9 +122,57 @@ pub fn status(model: &Model) -> Vec<String> {
     lines
 }
 
-/// The answer to `help`: the commands that can be given now, one in a line, and how to learn more.
+/// The estimated position and its error, as a sentence; `None` until it is known.
+fn position(model: &Model) -> Option<String> {
+    let position = &model.live.run.position;
+    let pose = position.pose.as_ref()?;
+    let lost = if position.lost { " LOST" } else { "" };
+    let error = position.error_m().map_or_else(|| "unknown".into(), |error_m| format!("±{error_m:.2} m"));
+    let heading = text::number(pose.heading_rad.to_degrees().rem_euclid(360.0), 0);
+    Some(format!("Position{lost}: {}, heading {heading}°, 95 % error {error}.", text::place(pose.position)))
+}
+
+/// The tether paid out and its largest wrap, as a sentence; `None` without a tether.
+fn tether(model: &Model) -> Option<String> {
+    let run = &model.live.run;
+    let tether = run.tether.as_ref().filter(|tether| tether.t_s.is_some())?;
+    let reel_m = run.about.as_ref()?.mission.tether.as_ref()?.limits.reel_length_m;
+    let wrap = tether.largest().map_or_else(String::new, |contact| {
+        format!(", largest wrap {:.0}° on {}", contact.wrap_rad.abs().to_degrees(), contact.on)
+    });
+    let snag = if tether.is_snagged { " SNAGGED" } else { "" };
+    Some(format!("Tether{snag}: {:.1} of {reel_m:.1} m out{wrap}.", tether.length_m))
+}
+
+/// Whether an action changes only a picture or the way to a list, which sentences do not have.
+fn is_only_drawn(action: &Action) -> bool {
+    use ActionId::{
+        Commands, Copy, Help, Messages, NextLike, NextMissed, NextPane, PreviousLike, PreviousMissed,
+        PreviousPane, ShowPlace, Theme,
+    };
+    let of_screen = matches!(
+        action.id,
+        Commands
+            | Copy
+            | Help
+            | Messages
+            | NextLike
+            | NextMissed
+            | NextPane
+            | PreviousLike
+            | PreviousMissed
+            | PreviousPane
+            | ShowPlace
+            | Theme
+    );
+    of_screen || action.topic == Topic::Map
+}
+
+/// The answer to `help`: the commands that can be given now and have an effect on sentences, one in a line, and how to
+/// learn more.
 pub fn help(model: &Model) -> Vec<String> {
-    let now = find::commands().filter(|action| offered(model, action.id).is_ok());
+    let is_listed = |action: &&Action| !is_only_drawn(action) && offered(model, action.id).is_ok();
+    let now = find::commands().filter(is_listed);
     let mut keys = model.console.keys.clone();
     keys.spells_commands = true;
     let line = |action: &'static Action| format!("{}: {}.", action.usage(), keys.spelled(action.about));

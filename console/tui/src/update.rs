@@ -25,6 +25,7 @@ pub(crate) mod remedies;
 pub(crate) mod replay;
 pub(crate) mod review;
 pub(crate) mod send;
+mod setting;
 pub(crate) mod shadow;
 pub(crate) mod stations;
 pub(crate) mod typing;
@@ -85,6 +86,7 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
     }
     events::refresh(model);
     unseen::note(model, question_before.as_ref());
+    effects.extend(setting::follow(model, question_before.as_ref()));
     effects.extend(go::glimpse(model));
     if let Some((notice, before)) = said_before
         && model.console.notice.as_ref() == Some(&notice)

@@ -27,6 +27,8 @@ mod position;
 mod readable;
 pub(crate) mod result;
 pub(crate) mod review;
+mod run_details;
+mod setting;
 mod shadow;
 mod small_map;
 mod stations;

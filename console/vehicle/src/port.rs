@@ -117,7 +117,7 @@ pub enum LinkState {
     Faulty,
     /// The vehicle has started again; its earlier clock, frame and commands do not count any more.
     Restarted,
-    /// A person drives the vehicle by hand.
+    /// A person is driving the vehicle by hand.
     Manual,
     /// The emergency stop of the vehicle is pressed.
     EmergencyStop,
@@ -180,6 +180,7 @@ pub struct LinkSeen {
     pub unmeasured_s: f64,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
 fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
@@ -193,7 +194,7 @@ impl LinkSeen {
             LinkState::Closed => "the link to the vehicle is closed",
             LinkState::Faulty => "the vehicle sends faulty messages",
             LinkState::Restarted => "the vehicle has restarted",
-            LinkState::Manual => "a person drives the vehicle by hand",
+            LinkState::Manual => "a person is driving the vehicle by hand",
             LinkState::EmergencyStop => "the emergency stop of the vehicle is pressed",
             LinkState::VehicleFault => "the vehicle reports a fault",
             LinkState::OtherCommander => "the vehicle obeys another commander",
@@ -202,7 +203,7 @@ impl LinkSeen {
         let unknown = if self.state.is_heard() {
             ""
         } else {
-            "; the vehicle stops when its lease lapses, which is not confirmed"
+            "; the vehicle stops when its lease lapses, but the console cannot confirm this"
         };
         Some(format!("{what}{why}{unknown}"))
     }

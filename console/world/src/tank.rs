@@ -7,6 +7,12 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct ObstacleId(pub u32);
 
+impl ObstacleId {
+    /// The ids from this one on are those of a tracker that does not know the drawing. It may give an obstacle the id of a
+    /// drawn one, so the console replaces its ids; a drawn obstacle that it sees has an id that is not on the drawing.
+    pub const FOREIGN: Self = Self(1_000_000);
+}
+
 /// An object that the robot must not touch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Obstacle {
@@ -16,7 +22,7 @@ pub struct Obstacle {
     pub name: String,
     /// The outline, tank frame.
     pub shape: Shape,
-    /// Whether the obstacle is on the drawing; the robot must discover the others.
+    /// Whether the obstacle is on the drawing. If not, the robot must discover the obstacle.
     pub known: bool,
 }
 

@@ -140,12 +140,12 @@ const CHOICE_M: f64 = 1.0;
 /// A robot that follows outlines.
 #[derive(Debug, Clone)]
 pub struct Follow {
-    /// The side on which the robot passes what stops it.
+    /// The side on which the robot passes an obstacle that stops it.
     pub side: Side,
     keep_m: f64,
     /// The direction of the last move, while the robot follows an outline.
     along: Option<Vector>,
-    /// The position of the last choice of side.
+    /// The position at which the robot last chose a side.
     pub met: Option<Point>,
     nearest_m: f64,
     /// The position closest to the goal so far, and the move from there.

@@ -92,7 +92,8 @@ impl Workspace {
         self.triangulation.get_or_init(|| Triangulation::new(&self.wall, &self.parts, self.keep_m))
     }
 
-    /// Whether the tank has so many obstacles that only few candidates are worth computing.
+    /// Whether this is a tank, not a room, with more than [`CROWDED`] obstacles; only a few candidates are then worth
+    /// computing.
     pub(crate) fn is_crowded(&self) -> bool {
         !self.is_room && self.parts.len() > CROWDED
     }

@@ -24,7 +24,7 @@ pub enum MissReason {
     NotPlanned,
     /// The run had no plan.
     NoPlan,
-    /// No plan led to the floor, because the floor is beyond the reel.
+    /// No plan led to the floor, because the floor is beyond the reach of the tether.
     BeyondReel,
     /// A plan led to the floor, but the mission ended first.
     NotReached,
@@ -48,7 +48,7 @@ pub enum OutOfReach {
 
 impl OutOfReach {
     /// The reason why cells of a class are unreachable; `None` for other classes.
-    pub(crate) fn of(kind: Cell) -> Option<Self> {
+    pub fn of(kind: Cell) -> Option<Self> {
         match kind {
             Cell::Outside | Cell::Reachable => None,
             Cell::Unreachable => Some(OutOfReach::ClosedOff),
@@ -87,8 +87,8 @@ impl Explained for MissReason {
             Self::NoPlan => self.plainly().to_owned(),
             Self::BeyondReel => {
                 format!(
-                    "not planned: {value_m:.1} m beyond the reel; lanes are within {limit_m:.1} m of the \
-                     anchor"
+                    "not planned: {value_m:.1} m beyond the reach of the tether; lanes are within \
+                     {limit_m:.1} m of the anchor"
                 )
             }
             Self::NotReached => {
@@ -111,7 +111,7 @@ impl MissReason {
             Self::Wrap => "not planned (tether)",
             Self::NotPlanned => "not planned",
             Self::NoPlan => "the run had no plan",
-            Self::BeyondReel => "not planned (beyond the reel)",
+            Self::BeyondReel => "not planned (beyond the tether)",
             Self::NotReached => "mission ended",
             Self::PassedBeside => "the robot passed to one side",
         }
@@ -128,7 +128,7 @@ impl MissReason {
             Self::Wrap => "not planned: would wind the tether",
             Self::NotPlanned => "not planned",
             Self::NoPlan => "the run had no plan when it ended",
-            Self::BeyondReel => "not planned (beyond the reel)",
+            Self::BeyondReel => "not planned (beyond the tether)",
             Self::NotReached => "planned, not reached: mission ended",
             Self::PassedBeside => "planned, but the robot passed to one side",
         }

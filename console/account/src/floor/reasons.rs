@@ -149,7 +149,7 @@ impl Reasons<'_> {
             .reduce(f64::min)
     }
 
-    /// Whether a cell had to be scanned, but no plan led there because the cell is beyond the reel.
+    /// Whether a cell had to be scanned, but no plan led there because the cell is beyond the reach of the tether.
     fn is_left_beyond_reel(&self, index: usize, center: Point) -> bool {
         let evidence = self.evidence;
         let is_left = evidence.is_asked(index) && !evidence.is_passed(index) && !evidence.is_ahead(index);

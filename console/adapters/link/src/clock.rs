@@ -1,14 +1,14 @@
-//! Stamps of the vehicle on the adapter's clock.
+//! Stamps of the vehicle and of the console on the adapter's clock.
 //!
-//! The clock of a robot need not agree with the adapter's. The least delay between a stamp and its arrival in the last
-//! seconds stands for the offset; a message that arrives later than that was delayed on its way, not measured later.
+//! The clock of a sender need not agree with the adapter's. The least delay between a stamp and its arrival in the last
+//! seconds stands for the offset; a message that arrives later than that was delayed on its way, not stamped later.
 
 /// Delays are compared within this time, seconds: long enough for jitter, short enough for clocks that drift.
 const WINDOW_S: f64 = 5.0;
 /// A stamp that goes back by more than this belongs to a clock that was set, seconds.
 const SET_BACK_S: f64 = 1.0;
 
-/// Converts stamps of a vehicle to the adapter's clock.
+/// Converts stamps of a sender to the adapter's clock.
 #[derive(Debug, Clone, Default)]
 #[allow(clippy::struct_field_names, reason = "a name ends with its unit")]
 pub struct Clock {
@@ -20,8 +20,8 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// The time of measurement on the adapter's clock, seconds: never later than the arrival. A vehicle that does not
-    /// stamp its messages (`stamp_s` is `None`) measures when they arrive.
+    /// The time of a stamp on the adapter's clock, seconds: never later than the arrival. A message without a stamp
+    /// (`stamp_s` is `None`) counts as stamped when it arrives.
     pub fn measured_s(&mut self, stamp_s: Option<f64>, arrival_s: f64) -> f64 {
         let Some(stamp_s) = stamp_s else { return arrival_s };
         if self.newest_s.is_some_and(|newest_s| stamp_s < newest_s - SET_BACK_S) {

@@ -1,6 +1,9 @@
 //! The console's commands and their lease: which velocity holds now.
 
-use crate::message::{Drive, Limits, Motion, ToVehicle};
+use crate::{
+    clock::Clock,
+    message::{Drive, Limits, Motion, ToVehicle},
+};
 
 /// A velocity in the robot frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -32,7 +35,7 @@ pub enum Heard {
     },
     /// The console leaves; the vehicle stands still.
     Bye,
-    /// Nothing to do: a late command, an empty line or an unknown kind of message.
+    /// Nothing to do: a late or outdated command, an empty line or an unknown kind of message.
     Nothing,
     /// Not a valid command: the vehicle stands still. The text says why.
     Bad(String),
@@ -44,6 +47,8 @@ pub struct Commands {
     motion: Motion,
     limits: Limits,
     lease_max_s: f64,
+    /// The stamps of the console on the clock of the adapter.
+    clock: Clock,
     /// Greatest number of a command.
     newest: Option<u64>,
     /// What holds, and until when.
@@ -56,7 +61,7 @@ const SLACK: f64 = 1e-9;
 impl Commands {
     /// No command yet: the vehicle stands still.
     pub fn new(motion: Motion, limits: Limits, lease_max_s: f64) -> Self {
-        Self { motion, limits, lease_max_s, newest: None, lease: None }
+        Self { motion, limits, lease_max_s, clock: Clock::default(), newest: None, lease: None }
     }
 
     /// Takes a line from the console.
@@ -78,6 +83,11 @@ impl Commands {
         match message {
             ToVehicle::Drive(drive) if self.is_new(drive.seq) => {
                 let velocity = self.checked(&drive)?;
+                let sent_s = self.clock.measured_s(drive.stamp_s, now_s);
+                // It waited while the adapter was stopped or busy; the console may be gone by now.
+                if now_s - sent_s > drive.lease_s {
+                    return Ok(Heard::Nothing);
+                }
                 self.lease = Some((velocity, now_s + drive.lease_s));
                 Ok(Heard::Drive)
             }
@@ -85,7 +95,10 @@ impl Commands {
                 self.stand();
                 Ok(Heard::Stop)
             }
-            ToVehicle::Ping { stamp_s } => Ok(Heard::Ping { stamp_s }),
+            ToVehicle::Ping { stamp_s } => {
+                self.clock.measured_s(Some(stamp_s), now_s);
+                Ok(Heard::Ping { stamp_s })
+            }
             ToVehicle::Bye => {
                 self.stand();
                 Ok(Heard::Bye)
@@ -164,6 +177,21 @@ mod tests {
         assert_eq!(commands.velocity(10.2).map(|v| v.forward_m_per_s), Some(0.3));
         assert_eq!(commands.lease_until_s(), Some(10.25));
         assert_eq!(commands.velocity(10.25), None);
+    }
+
+    #[test]
+    fn a_drive_that_is_older_than_its_lease_is_ignored() {
+        let mut commands = commands();
+        let stamped = |seq: u64, stamp_s: f64| {
+            drive(seq, 0.3).replace("\"stamp_s\": 0", &format!("\"stamp_s\": {stamp_s}"))
+        };
+        commands.hear(r#"{"type": "ping", "stamp_s": 500}"#, 10.0);
+        assert_eq!(commands.hear(&stamped(1, 500.1), 10.3), Heard::Drive, "0.2 s late");
+        // The adapter was stopped for 20 s; meanwhile, two commands arrived.
+        assert_eq!(commands.hear(&stamped(2, 500.4), 30.0), Heard::Nothing);
+        assert_eq!(commands.hear(&stamped(3, 519.7), 30.0), Heard::Nothing);
+        assert_eq!(commands.velocity(30.0), None);
+        assert_eq!(commands.hear(&stamped(4, 520.0), 30.01), Heard::Drive);
     }
 
     #[test]

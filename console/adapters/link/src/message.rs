@@ -50,6 +50,8 @@ pub enum ToVehicle {
 pub struct Drive {
     /// Number of the command; drives and stops are counted together.
     pub seq: u64,
+    /// Time of sending, seconds of the console's clock.
+    pub stamp_s: Option<f64>,
     /// The vehicle stands still if no other drive arrives within this time, seconds.
     pub lease_s: f64,
     /// Metres per second.
@@ -66,7 +68,7 @@ pub struct Drive {
 pub struct Hello {
     /// Version of the protocol.
     pub protocol: u32,
-    /// Name for people.
+    /// Human-readable name.
     pub name: String,
     /// How the vehicle moves.
     pub motion: Motion,

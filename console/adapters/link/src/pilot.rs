@@ -93,8 +93,8 @@ impl Pilot {
         }
     }
 
-    /// Does what is due, after each message and each time of [`Pilot::wakes_s`]. The robot moves only in a state that is
-    /// ready.
+    /// Carries out everything that is due. Call this after each message and at the time of [`Pilot::wakes_s`]. The robot
+    /// moves only if its mode is ready.
     pub fn act(&mut self, state: State, now_s: f64, orders: &mut Vec<Order>) {
         self.greet(state.mode, now_s, orders);
         let velocity = self.commands.velocity(now_s).filter(|_| state.mode == Mode::Ready);

@@ -11,7 +11,7 @@ const PROTOCOL: u32 = 1;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Vehicle {
-    /// Name for people, 1 to 64 characters.
+    /// Human-readable name, 1 to 64 characters.
     pub name: String,
     /// How it moves.
     #[serde(default = "unicycle")]
@@ -91,13 +91,31 @@ pub fn above_zero(key: &str, value: f64, most: f64) -> Result<(), String> {
     Err(format!("{key}: {value} is out of range: greater than 0 and at most {most} is allowed"))
 }
 
-/// Reads a settings file.
-///
-/// # Errors
-/// The file and why it cannot be read, with the line of an error in it.
-pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, String> {
-    let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
-    toml::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))
+/// The settings of an adapter.
+pub trait Settings: DeserializeOwned {
+    /// Checks what the types do not express.
+    ///
+    /// # Errors
+    /// Names the first key that is wrong.
+    fn check(&self) -> Result<(), String>;
+
+    /// Reads and checks the text of a file.
+    ///
+    /// # Errors
+    /// The key and what is wrong with it, with the line if the text cannot be read.
+    fn parse(text: &str) -> Result<Self, String> {
+        let settings: Self = toml::from_str(text).map_err(|error| error.to_string())?;
+        settings.check().map(|()| settings)
+    }
+
+    /// Reads and checks a file.
+    ///
+    /// # Errors
+    /// The file, and why it cannot be used.
+    fn read(path: &Path) -> Result<Self, String> {
+        let text = fs::read_to_string(path).map_err(|error| error.to_string());
+        text.and_then(|text| Self::parse(&text)).map_err(|why| format!("{}: {why}", path.display()))
+    }
 }
 
 #[cfg(test)]

@@ -7,14 +7,14 @@ const PERIOD_S: f64 = 0.5;
 /// Longest text, characters.
 const TEXT_MAX: usize = 200;
 
-/// Remembers what was said last.
+/// Decides when to send the state, and remembers the state that was sent last.
 #[derive(Debug, Clone, Default)]
 pub struct Status {
     said: Option<State>,
 }
 
 impl Status {
-    /// The state as it must be said now, if it must.
+    /// The state to send now; `None` if no message is due.
     pub fn say(&mut self, mut state: State) -> Option<State> {
         state.text = state.text.map(|text| readable(&text));
         let is_due = self.said.as_ref().is_none_or(|said| {

@@ -4,10 +4,9 @@
 mod tests;
 
 use serde::Deserialize;
-use std::path::Path;
 use tankops_adapter::{
     message::{Has, Motion},
-    settings::{self, Vehicle, above_zero},
+    settings::{Settings, Vehicle, above_zero},
 };
 
 /// Values in a `DEBUG_FLOAT_ARRAY`.
@@ -96,17 +95,7 @@ fn once() -> usize {
     1
 }
 
-impl Config {
-    /// Reads and checks a file.
-    ///
-    /// # Errors
-    /// The file, the key and what is wrong with it.
-    pub(crate) fn read(path: &Path) -> Result<Self, String> {
-        let config: Self = settings::read(path)?;
-        config.check().map_err(|why| format!("{}: {why}", path.display()))?;
-        Ok(config)
-    }
-
+impl Settings for Config {
     fn check(&self) -> Result<(), String> {
         check_connection(&self.connection)?;
         for (key, number) in [("own", self.own), ("rover", self.rover)] {
@@ -126,7 +115,9 @@ impl Config {
         self.tether.as_ref().map_or(Ok(()), |name| check_name("tether", name))?;
         self.contact.as_ref().map_or(Ok(()), |name| check_name("contact", name))
     }
+}
 
+impl Config {
     /// The parts of the readings.
     pub(crate) fn has(&self) -> Has {
         Has {

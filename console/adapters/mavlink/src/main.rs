@@ -19,7 +19,10 @@ use std::{
     thread,
     time::{Duration, Instant},
 };
-use tankops_adapter::console::{Speaker, listen};
+use tankops_adapter::{
+    console::{Speaker, listen},
+    settings::Settings,
+};
 
 /// Messages that wait to be taken; then the threads that read them wait.
 const WAITING_MAX: usize = 256;

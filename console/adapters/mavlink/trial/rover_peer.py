@@ -24,7 +24,6 @@ sys.path[:0] = [str(HERE.parent.parent / "python"), str(HERE.parent.parent)]
 import irsim_robot
 from pymavlink import mavutil
 
-WATCHDOG_S = 0.25
 REPETITIONS = 11
 GUIDED = 15
 VELOCITY_AND_YAW_RATE = 0x05C7
@@ -35,37 +34,21 @@ class Rover:
     """The messages of the rover, around its motion in ir-sim."""
 
     def __init__(self, world, address):
-        self.world, self.body = world, irsim_robot.Robot(world)
+        self.robot = irsim_robot.Driven(world)
         self.link = mavutil.mavlink_connection(f"udpout:{address}", source_system=1, source_component=1, dialect="common")
         self.started = time.monotonic()
-        self.north = self.east = self.yaw = 0.0  # by its own odometry
-        self.v = self.w = self.to_v = self.to_w = self.until = self.beat = 0.0
-        self.log = open(os.environ.get("ROBOT_LOG", os.devnull), "w", 1)
+        self.beat = 0.0
 
     def hear(self, now):
         while (message := self.link.recv_msg()) is not None:
             if message.get_type() != "SET_POSITION_TARGET_LOCAL_NED" or message.target_system != 1:
                 continue
             if message.type_mask == VELOCITY_AND_YAW_RATE and message.coordinate_frame == mavutil.mavlink.MAV_FRAME_BODY_NED:
-                self.to_v, self.to_w, self.until = message.vx, -message.yaw_rate, now + WATCHDOG_S
-        if now > self.until:
-            self.to_v = self.to_w = 0.0
+                self.robot.command(message.vx, -message.yaw_rate, now)
 
     def step(self, dt, now):
-        limits = self.world["limits"]
-        change = limits["acceleration_m_per_s2"] * dt
-        v = max(-limits["speed_m_per_s"], min(limits["speed_m_per_s"], self.to_v))
-        w = max(-limits["turn_rad_per_s"], min(limits["turn_rad_per_s"], self.to_w))
-        self.v += max(-change, min(change, v - self.v))
-        self.w += max(-4 * change, min(4 * change, w - self.w))
-        readings = self.body.measure(self.v, self.w, dt)
-        print(now, self.v, self.w, file=self.log)
-        odometry = readings["odometry"]
-        middle = self.yaw - odometry["turn_rad"] / 2
-        self.north += odometry["forward_m"] * math.cos(middle)
-        self.east += odometry["forward_m"] * math.sin(middle)
-        self.yaw -= odometry["turn_rad"]
-        self.send(readings, now)
+        self.hear(now)
+        self.send(self.robot.step(dt, now), now)
 
     def send(self, readings, now):
         send, ms = self.link.mav, int((now - self.started) * 1000)
@@ -75,9 +58,9 @@ class Rover:
                                 mavutil.mavlink.MAV_MODE_FLAG_SAFETY_ARMED | mavutil.mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED,
                                 GUIDED, mavutil.mavlink.MAV_STATE_ACTIVE)
             send.battery_status_send(0, 0, 0, 32767, [65535] * 10, -1, -1, -1, 90)
-        turned = math.remainder(self.yaw, math.tau)
-        send.attitude_send(ms, 0.0, 0.0, turned, 0.0, 0.0, -self.w)
-        send.local_position_ned_send(ms, self.north, self.east, 0.0, 0.0, 0.0, 0.0)
+        yaw = math.remainder(-self.robot.heading, math.tau)
+        send.attitude_send(ms, 0.0, 0.0, yaw, 0.0, 0.0, -self.robot.w)
+        send.local_position_ned_send(ms, self.robot.x, -self.robot.y, 0.0, 0.0, 0.0, 0.0)
         send.named_value_float_send(ms, b"bumper", float(readings["contact"]))
         if "tether" in readings:
             send.named_value_float_send(ms, b"tether", readings["tether"]["paid_out_m"])
@@ -106,13 +89,7 @@ def main():
         sys.exit(__doc__)
     rover = Rover(irsim_robot.scenario(sys.argv[1]), sys.argv[2] if len(sys.argv) == 3 else "127.0.0.1:14550")
     print("the rover is on the air", flush=True)
-    before = time.monotonic()
-    while True:
-        time.sleep(max(0.0, before + irsim_robot.PERIOD_S - time.monotonic()))
-        now = time.monotonic()
-        rover.hear(now)
-        rover.step(now - before, now)
-        before = now
+    irsim_robot.each_period(rover.step)
 
 
 if __name__ == "__main__":

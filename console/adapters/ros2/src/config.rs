@@ -10,10 +10,9 @@ pub(crate) use parts::{
 };
 
 use serde::Deserialize;
-use std::path::Path;
 use tankops_adapter::{
     message::Has,
-    settings::{self, Vehicle, above_zero},
+    settings::{Settings, Vehicle, above_zero},
 };
 
 /// The largest DDS domain whose ports exist.
@@ -58,17 +57,7 @@ fn node() -> String {
     "tankops_adapter".to_owned()
 }
 
-impl Config {
-    /// Reads and checks a file.
-    ///
-    /// # Errors
-    /// The file, the key and what is wrong with it.
-    pub(crate) fn read(path: &Path) -> Result<Self, String> {
-        let config: Self = settings::read(path)?;
-        config.check().map_err(|why| format!("{}: {why}", path.display()))?;
-        Ok(config)
-    }
-
+impl Settings for Config {
     fn check(&self) -> Result<(), String> {
         if let Some(domain) = self.domain.filter(|domain| *domain > DOMAIN_MAX) {
             return Err(format!("domain: {domain} is out of range: 0 to {DOMAIN_MAX} is allowed"));
@@ -93,7 +82,9 @@ impl Config {
         }
         self.stop.as_ref().map_or(Ok(()), |stop| check_name("stop.service", &stop.service))
     }
+}
 
+impl Config {
     /// Every topic with its key and QoS.
     fn topics(&self) -> Vec<(&'static str, &str, &Qos)> {
         let mut topics = vec![("command", self.command.topic.as_str(), &self.command.qos)];

@@ -20,6 +20,7 @@ use std::{
 use tankops_adapter::{
     console::{Speaker, listen},
     pilot::Order,
+    settings::Settings,
 };
 
 /// Messages that wait to be taken; then the threads that read them wait, and DDS drops the oldest.

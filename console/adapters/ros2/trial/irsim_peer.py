@@ -26,7 +26,6 @@ from cyclonedds.pub import DataWriter
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 
-WATCHDOG_S = 0.25
 RELIABLE = Qos(Policy.Reliability.Reliable(10_000_000), Policy.Durability.Volatile, Policy.History.KeepLast(10))
 BEST_EFFORT = Qos(Policy.Reliability.BestEffort, Policy.Durability.Volatile, Policy.History.KeepLast(5))
 
@@ -35,7 +34,7 @@ class Robot:
     """The topics of the robot, around its motion in ir-sim."""
 
     def __init__(self, world, stamped, by_tf, has_stop):
-        self.world, self.body, self.stamped, self.by_tf = world, irsim_robot.Robot(world), stamped, by_tf
+        self.robot, self.stamped, self.by_tf = irsim_robot.Driven(world), stamped, by_tf
         self.domain = DomainParticipant(int(os.environ.get("ROS_DOMAIN_ID", "0")))
         self.commands = self.reader("rt/cmd_vel", ros.TwistStamped if stamped else ros.Twist)
         self.odom = self.writer("rt/tf", ros.TFMessage) if by_tf else self.writer("rt/odom", ros.Odometry)
@@ -46,9 +45,6 @@ class Robot:
         self.battery = self.writer("rt/battery_state", ros.BatteryState)
         self.stop_asked = self.reader("rq/stopRequest", ros.TriggerRequest) if has_stop else None
         self.stop_done = self.writer("rr/stopReply", ros.TriggerResponse) if has_stop else None
-        self.x = self.y = self.heading = 0.0  # by its own odometry
-        self.v = self.w = self.to_v = self.to_w = self.until = 0.0
-        self.log = open(os.environ.get("ROBOT_LOG", os.devnull), "w", 1)
 
     def reader(self, name, kind, qos=RELIABLE):
         return DataReader(self.domain, Topic(self.domain, name, kind, qos), qos)
@@ -60,40 +56,29 @@ class Robot:
         for sample in self.commands.take(64):
             if isinstance(sample, (ros.Twist, ros.TwistStamped)):
                 twist = sample.twist if self.stamped else sample
-                self.to_v, self.to_w, self.until = twist.linear.x, twist.angular.z, now + WATCHDOG_S
+                self.robot.command(twist.linear.x, twist.angular.z, now)
         if self.stop_asked:
             for request in self.stop_asked.take(8):
                 if isinstance(request, ros.TriggerRequest):
-                    self.to_v = self.to_w = 0.0
+                    self.robot.command(0.0, 0.0, now)
                     self.stop_done.write(ros.TriggerResponse(request.client, True, "stopped"))
-        if now > self.until:
-            self.to_v = self.to_w = 0.0
 
-    def step(self, dt, now, wall):
-        limits = self.world["limits"]
-        change = limits["acceleration_m_per_s2"] * dt
-        v = max(-limits["speed_m_per_s"], min(limits["speed_m_per_s"], self.to_v))
-        w = max(-limits["turn_rad_per_s"], min(limits["turn_rad_per_s"], self.to_w))
-        self.v += max(-change, min(change, v - self.v))
-        self.w += max(-4 * change, min(4 * change, w - self.w))
-        readings = self.body.measure(self.v, self.w, dt)
-        print(now, self.v, self.w, file=self.log)
-        odometry = readings["odometry"]
-        middle = self.heading + odometry["turn_rad"] / 2
-        self.x += odometry["forward_m"] * math.cos(middle)
-        self.y += odometry["forward_m"] * math.sin(middle)
-        self.heading += odometry["turn_rad"]
-        self.publish(readings, ros.Time(wall // 1_000_000_000, wall % 1_000_000_000))
+    def step(self, dt, now):
+        # The stamp is the time of the measurement, not of its publication.
+        wall = time.time_ns()
+        self.hear(now)
+        self.publish(self.robot.step(dt, now), ros.Time(wall // 1_000_000_000, wall % 1_000_000_000))
 
     def publish(self, readings, stamp):
-        turned = ros.Quaternion(0.0, 0.0, math.sin(self.heading / 2), math.cos(self.heading / 2))
+        x, y, heading = self.robot.x, self.robot.y, self.robot.heading
+        turned = ros.Quaternion(0.0, 0.0, math.sin(heading / 2), math.cos(heading / 2))
         odom = ros.Header(stamp, "odom")
         if self.by_tf:
-            transform = ros.Transform(ros.Vector3(self.x, self.y, 0.0), turned)
+            transform = ros.Transform(ros.Vector3(x, y, 0.0), turned)
             self.odom.write(ros.TFMessage([ros.TransformStamped(odom, "base_link", transform)]))
         else:
-            pose = ros.PoseWithCovariance(ros.Pose(ros.Point(self.x, self.y, 0.0), turned))
-            twist = ros.Twist(ros.Vector3(self.v, 0.0, 0.0), ros.Vector3(0.0, 0.0, self.w))
+            pose = ros.PoseWithCovariance(ros.Pose(ros.Point(x, y, 0.0), turned))
+            twist = ros.Twist(ros.Vector3(self.robot.v, 0.0, 0.0), ros.Vector3(0.0, 0.0, self.robot.w))
             self.odom.write(ros.Odometry(odom, "base_link", pose, ros.TwistWithCovariance(twist)))
         self.bumper.write(ros.Bool(readings["contact"]))
         if "tether" in readings:
@@ -124,14 +109,7 @@ def main():
     world = irsim_robot.scenario(files[0])
     robot = Robot(world, "--stamped" in sys.argv, "--tf" in sys.argv, "--no-stop-service" not in sys.argv)
     print("the robot is on the air", flush=True)
-    before = time.monotonic()
-    while True:
-        time.sleep(max(0.0, before + irsim_robot.PERIOD_S - time.monotonic()))
-        # The stamp is the time of the measurement, not of its publication.
-        now, wall = time.monotonic(), time.time_ns()
-        robot.hear(now)
-        robot.step(now - before, now, wall)
-        before = now
+    irsim_robot.each_period(robot.step)
 
 
 if __name__ == "__main__":

@@ -147,32 +147,56 @@ fn robot_process() {
     robot(&orders, |message| drop(lines.try_send(format!("{message}\n"))), log);
 }
 
-/// The number of a command, and its order for the robot, if it has one. An error for a command that the robot must not
-/// carry out.
-fn command(line: &str, newest: i64) -> Result<(i64, Option<Order>), Box<dyn Error>> {
-    let message: Value = serde_json::from_str(line)?;
-    let number = |key: &str| message[key].as_f64().ok_or_else(|| format!("{key} is not a number"));
-    match message["type"].as_str() {
-        Some("ping") => return Ok((newest, Some(Order::Ping(number("stamp_s")?)))),
-        Some("bye") => return Ok((newest, Some(STAND))),
-        Some("drive" | "stop") => {}
-        Some(_) => return Ok((newest, None)),
-        None => return Err("type is missing".into()),
+/// The messages of the console so far.
+struct Console {
+    /// Greatest number of a command.
+    newest: i64,
+    /// Least time from a stamp to its arrival: the offset of the console's clock plus the shortest delay, seconds.
+    least_s: f64,
+}
+
+/// Increase of the least time per message, seconds, so that it follows clocks that drift.
+const DRIFT_S: f64 = 1e-4;
+
+impl Console {
+    fn new() -> Self {
+        Self { newest: -1, least_s: f64::INFINITY }
     }
-    let seq = message["seq"].as_i64().ok_or("seq is not a number")?;
-    if seq <= newest {
-        return Ok((newest, None));
+
+    /// Takes a line that arrives at a time of the adapter's clock; returns its order for the robot, if it has one. An
+    /// error for a command that the robot must not carry out.
+    fn take(&mut self, line: &str, now_s: f64) -> Result<Option<Order>, Box<dyn Error>> {
+        let message: Value = serde_json::from_str(line)?;
+        let number = |key: &str| message[key].as_f64().ok_or_else(|| format!("{key} is not a number"));
+        let late_s = number("stamp_s").map_or(f64::NEG_INFINITY, |stamp_s| now_s - stamp_s);
+        if late_s.is_finite() {
+            self.least_s = late_s.min(self.least_s + DRIFT_S);
+        }
+        match message["type"].as_str() {
+            Some("ping") => return Ok(Some(Order::Ping(number("stamp_s")?))),
+            Some("bye") => return Ok(Some(STAND)),
+            Some("drive" | "stop") => {}
+            Some(_) => return Ok(None),
+            None => return Err("type is missing".into()),
+        }
+        let seq = message["seq"].as_i64().ok_or("seq is not a number")?;
+        if seq <= self.newest {
+            return Ok(None);
+        }
+        self.newest = seq;
+        if message["type"] == "stop" {
+            return Ok(Some(STAND));
+        }
+        let (v, w, lease_s) = (number("forward_m_per_s")?, number("turn_rad_per_s")?, number("lease_s")?);
+        let sideways = message["sideways_m_per_s"].as_f64().unwrap_or(0.0);
+        let fits = v.abs() <= SPEED_M_PER_S + 1e-9 && w.abs() <= TURN_RAD_PER_S + 1e-9 && sideways == 0.0;
+        if !fits || lease_s <= 0.0 || lease_s > LEASE_MAX_S {
+            return Err("beyond the limits".into());
+        }
+        // A command that waited while this adapter was stopped is older than its lease: the console may be gone.
+        let is_current = late_s - self.least_s <= lease_s;
+        Ok(is_current.then_some(Order::Drive(v, w, lease_s)))
     }
-    if message["type"] == "stop" {
-        return Ok((seq, Some(STAND)));
-    }
-    let (v, w, lease_s) = (number("forward_m_per_s")?, number("turn_rad_per_s")?, number("lease_s")?);
-    let sideways = message["sideways_m_per_s"].as_f64().unwrap_or(0.0);
-    let fits = v.abs() <= SPEED_M_PER_S + 1e-9 && w.abs() <= TURN_RAD_PER_S + 1e-9 && sideways == 0.0;
-    if !fits || lease_s <= 0.0 || lease_s > LEASE_MAX_S {
-        return Err("beyond the limits".into());
-    }
-    Ok((seq, Some(Order::Drive(v, w, lease_s))))
 }
 
 fn say(message: &Value) {
@@ -207,15 +231,13 @@ fn adapter() -> io::Result<()> {
         eprintln!("the robot process has ended");
         exit(1);
     });
-    let (mut input, mut newest, mut line) = (BufReader::new(io::stdin()), -1, Vec::new());
+    let (began, mut console) = (Instant::now(), Console::new());
+    let (mut input, mut line) = (BufReader::new(io::stdin()), Vec::new());
     while input.by_ref().take(LINE_MAX).read_until(b'\n', &mut line)? > 0 {
         let text = String::from_utf8_lossy(&line);
-        let order = match command(text.trim(), newest) {
+        let order = match console.take(text.trim(), began.elapsed().as_secs_f64()) {
             _ if text.trim().is_empty() => None,
-            Ok((seq, order)) => {
-                newest = seq;
-                order
-            }
+            Ok(order) => order,
             Err(why) => {
                 eprintln!("stopped by a bad line: {why}");
                 Some(STAND)
@@ -243,7 +265,7 @@ mod tests {
 
     fn drive(seq: i64, v: f64) -> String {
         format!(
-            r#"{{"type": "drive", "seq": {seq}, "lease_s": 0.25, "forward_m_per_s": {v}, "turn_rad_per_s": 0}}"#
+            r#"{{"type": "drive", "seq": {seq}, "stamp_s": {seq}, "lease_s": 0.25, "forward_m_per_s": {v}, "turn_rad_per_s": 0}}"#
         )
     }
 
@@ -255,11 +277,23 @@ mod tests {
         assert_eq!(Order::of("drive 1 2"), STAND);
     }
 
+    const DRIVE: Option<Order> = Some(Order::Drive(0.1, 0.0, 0.25));
+
     #[test]
     fn a_delayed_drive_does_not_undo_a_stop() {
-        assert_eq!(command(r#"{"type": "stop", "seq": 7}"#, 6).unwrap(), (7, Some(STAND)));
-        assert_eq!(command(&drive(7, 0.1), 7).unwrap(), (7, None));
-        assert_eq!(command(&drive(8, 0.1), 7).unwrap(), (8, Some(Order::Drive(0.1, 0.0, 0.25))));
+        let mut console = Console::new();
+        assert_eq!(console.take(r#"{"type": "stop", "seq": 7}"#, 7.0).unwrap(), Some(STAND));
+        assert_eq!(console.take(&drive(7, 0.1), 7.0).unwrap(), None);
+        assert_eq!(console.take(&drive(8, 0.1), 8.0).unwrap(), DRIVE);
+    }
+
+    #[test]
+    fn a_drive_that_is_older_than_its_lease_is_ignored() {
+        let mut console = Console::new();
+        assert_eq!(console.take(&drive(1, 0.1), 501.0).unwrap(), DRIVE);
+        assert_eq!(console.take(&drive(2, 0.1), 502.2).unwrap(), DRIVE, "0.2 s late");
+        assert_eq!(console.take(&drive(3, 0.1), 530.0).unwrap(), None);
+        assert_eq!(console.take(&drive(30, 0.1), 530.0).unwrap(), DRIVE);
     }
 
     #[test]
@@ -267,7 +301,7 @@ mod tests {
         for bad in
             [drive(1, 0.5), drive(1, -0.5), "{}".into(), "[]".into(), drive(1, 0.1).replace("0.25", "9")]
         {
-            assert!(command(&bad, 0).is_err(), "{bad}");
+            assert!(Console::new().take(&bad, 0.0).is_err(), "{bad}");
         }
     }
 

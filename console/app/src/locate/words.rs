@@ -89,7 +89,7 @@ fn of_file(text: &mut Lines, survey: &Survey, shown: &str) {
         text.line("time", format!("{first} to {last} (UTC); mission time counts from the first reading"));
     }
     if survey.bad > 0 {
-        text.line("left out", format!("{} bad rows", survey.bad));
+        text.line("left out", format!("bad rows: {}", survey.bad));
         survey.problems.iter().for_each(|problem| text.line("", problem.to_string()));
     }
     if !survey.ignored.is_empty() {

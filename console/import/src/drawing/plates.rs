@@ -57,7 +57,7 @@ pub(super) fn plates(
     rings.retain(|ring| !is_wholly_outside(boundary, &Shape::Polygon { vertices: ring.clone() }));
     let n_outside = n - rings.len();
     if n_outside > 0 {
-        notes.push(format!("PLATES: {n_outside} outlines outside the shell were left out"));
+        notes.push(format!("PLATES: outlines outside the shell were left out ({n_outside})"));
     }
     if rings.len() > MOST_PLATES {
         let n = rings.len();
@@ -139,13 +139,13 @@ fn rings(
     };
     if faces.rings.len() < 2 {
         notes.push(format!(
-            "PLATES: {n_lines} lines that divide no floor were left out; draw seams from seam to seam or to the shell"
+            "PLATES: lines that divide no floor were left out ({n_lines}); end each seam at another seam or at the shell"
         ));
         return Vec::new();
     }
     if faces.n_loose > 0 {
         notes.push(format!(
-            "PLATES: {} lines do not end at another line and divide no floor; draw seams from seam to seam or to the shell",
+            "PLATES: lines that end at no other line divide no floor ({}); end each seam at another seam or at the shell",
             faces.n_loose
         ));
     }
@@ -154,7 +154,7 @@ fn rings(
     let n_narrow = n - faces.rings.len();
     if n_narrow > 0 {
         notes.push(format!(
-            "PLATES: {n_narrow} strips narrower than {NARROWEST_M} m were left out; their area was added to the \
+            "PLATES: strips narrower than {NARROWEST_M} m were left out ({n_narrow}); their area was added to the \
              adjacent plates"
         ));
     }
@@ -234,7 +234,7 @@ fn named(rings: Vec<Vec<Point>>, labels: &mut Vec<Label>, notes: &mut Vec<String
     let n_numbered = sorted.len() - given.len();
     if n_numbered > 0 {
         notes.push(format!(
-            "PLATES: {n_numbered} of {} plates have no text of their own and were numbered from south to north",
+            "PLATES: plates without a text of their own ({n_numbered} of {}) were numbered from south to north",
             sorted.len()
         ));
     }

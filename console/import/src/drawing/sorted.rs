@@ -153,7 +153,8 @@ impl Sorted {
         }
         let miss =
             near::nearest(open).map(|miss| format!("; {}", miss.told(self.unit_m))).unwrap_or_default();
-        notes.push(format!("{role}: {} lines that do not close an outline were left out{miss}", open.len()));
+        notes
+            .push(format!("{role}: lines that do not close an outline were left out ({}){miss}", open.len()));
     }
 
     pub(super) fn pipes(&mut self, assumed_m: f64, notes: &mut Vec<String>) -> Vec<Shape> {
@@ -171,8 +172,9 @@ impl Sorted {
         };
         let shapes: Vec<Shape> = self.take(Role::Pipes).filter_map(&mut shape).collect();
         if n_thin > 0 {
-            notes
-                .push(format!("PIPES: {n_thin} lines without a width were assumed to be {assumed_m} m wide"));
+            notes.push(format!(
+                "PIPES: lines without a width ({n_thin}) were assumed to be {assumed_m} m wide"
+            ));
         }
         shapes
     }

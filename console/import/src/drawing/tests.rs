@@ -70,8 +70,8 @@ fn a_round_tank_in_millimetres_is_centred_and_scaled() {
         plan.notes,
         [
             "(20.000, 15.000) m in the drawing is [0, 0] in the scenario",
-            "PIPES: 1 lines without a width were assumed to be 0.1 m wide",
-            "PLATES: 1 lines that divide no floor were left out; draw seams from seam to seam or to the shell",
+            "PIPES: lines without a width (1) were assumed to be 0.1 m wide",
+            "PLATES: lines that divide no floor were left out (1); end each seam at another seam or at the shell",
             "column 2 is outside the shell and was left out",
         ]
     );
@@ -429,7 +429,7 @@ fn closed_outlines_are_plates_as_they_are_drawn() {
         plan.plates[1].vertices_m.iter().all(|at| ((at - Point::new(2.0, 0.0)).norm() - 1.0).abs() < 1e-3)
     );
     assert!(
-        plan.notes.contains(&"PLATES: 1 outlines outside the shell were left out".into()),
+        plan.notes.contains(&"PLATES: outlines outside the shell were left out (1)".into()),
         "{:?}",
         plan.notes
     );
@@ -492,7 +492,7 @@ fn an_outline_with_a_gap_is_named_with_its_place() {
     let plan = read_text(",9 $INSUNITS,70 6", "", columns, &plain()).unwrap();
     assert!(
         plan.notes.iter().any(|note| note
-            .starts_with("COLUMNS: 1 lines that do not close an outline were left out; an outline 1.000 m across is nearly closed")
+            .starts_with("COLUMNS: lines that do not close an outline were left out (1); an outline 1.000 m across is nearly closed")
             && note.ends_with("one gap of 50.0 mm, from (1, 1) to (1.05, 1) in the drawing")),
         "{:?}",
         plan.notes

@@ -2,7 +2,7 @@
 
 use super::{EngineThread, keeping::HEALTH_PERIOD};
 use crate::{line::Request, pace::Pace};
-use mission::Order;
+use mission::{Order, Phase};
 use runs::RunLog;
 use std::{
     sync::mpsc::{RecvTimeoutError, TryRecvError},
@@ -17,6 +17,8 @@ const LOOK_AGAIN: Duration = Duration::from_millis(1);
 /// The interval at which ending workers are checked while no ticks pass, and at which requests are checked while a
 /// planner owes an answer.
 const LOOK_AFTER: Duration = Duration::from_millis(20);
+/// The interval at which the processes of planners are checked while no ticks pass.
+const LOOK_FOR_PLANNERS: Duration = Duration::from_millis(250);
 
 impl EngineThread {
     /// Waits for the next tick or, while no ticks pass, for a request. Returns the orders received; the second value is
@@ -65,6 +67,8 @@ impl EngineThread {
                     let _ = answer.send(());
                 }
                 Ok(Request::Close { hurry }) => return (orders, Some(hurry)),
+                // The process of a planner has ended.
+                Err(RecvTimeoutError::Timeout) if !self.is_under_way() => return (orders, None),
                 // If the time between ticks is longer than the time between health reports, send a report between
                 // ticks.
                 Err(RecvTimeoutError::Timeout) if is_ahead || Instant::now() < due => self.send_health(),
@@ -91,11 +95,13 @@ impl EngineThread {
         self.asked.recv_timeout(until.saturating_duration_since(Instant::now()))
     }
 
-    /// Waits for a request while no ticks pass, and meanwhile checks workers that are ending.
+    /// Waits for a request while no ticks pass, or until the process of a planner ends. Meanwhile checks workers that are
+    /// ending.
     fn wait_for_request(&mut self) -> Result<Request, RecvTimeoutError> {
-        while self.host.look_after_leaving() {
-            match self.asked.recv_timeout(LOOK_AFTER) {
-                Err(RecvTimeoutError::Timeout) => {}
+        while *self.flight.phase() == Phase::Waiting || self.host.look_after_leaving() {
+            let is_leaving = self.host.look_after_leaving();
+            match self.asked.recv_timeout(if is_leaving { LOOK_AFTER } else { LOOK_FOR_PLANNERS }) {
+                Err(RecvTimeoutError::Timeout) if !self.has_lost_planner() => {}
                 request => return request,
             }
         }

@@ -35,11 +35,11 @@ fn step(line: &str, keys: &Keymap) -> Result<Step, String> {
     let (word, rest) = line.split_once(' ').unwrap_or((line, ""));
     let rest = rest.trim();
     match word {
-        "wait" => wait(rest.strip_prefix("until ").ok_or("write wait until CONDITION [within DURATION]")?),
+        "wait" => wait(rest.strip_prefix("until ").ok_or("write `wait until CONDITION [within DURATION]`")?),
         "assert" => Condition::read(rest).map(Step::Assert),
         "key" => Key::named(rest).map(Step::Key).ok_or_else(|| format!("unknown key `{rest}`")),
         "size" => size(rest).map(Step::Size),
-        "picture" if rest.is_empty() => Err("write picture FILE.svg".into()),
+        "picture" if rest.is_empty() => Err("write `picture FILE.svg`".into()),
         "picture" => Ok(Step::Picture(rest.into())),
         _ => tui::check_line(keys, line).map(|()| Step::Command(line.to_owned())),
     }

@@ -74,7 +74,7 @@ impl Mission {
         let Ok(way) = self.known.way_back() else { return };
         self.drop_better_plan(OfferEnd::DrivingBack);
         self.better_plan_due_s = None;
-        self.reject_preparing("the robot drives back");
+        self.reject_preparing("the robot is driving back");
         self.end_shadow();
         self.driving.course.cuts.clear();
         self.take_way_back(way);

@@ -38,7 +38,7 @@ impl Mission {
         self.better_plan_due_s = wanted.then(|| self.known.now_s() + SETTLE_S);
     }
 
-    /// Handles a change of the map: a better plan that is being made is out of date, and a scheduled search waits until
+    /// Handles a change to the map: a better plan that is being made is out of date, and a scheduled search waits until
     /// the map has settled.
     pub(super) fn postpone_better_plan(&mut self) {
         let is_under_way = self.better().is_some();

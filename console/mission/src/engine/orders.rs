@@ -4,6 +4,7 @@ use super::{
     Mission,
     driving::{Driving, Prepare},
     role::Candidate,
+    shadow::Shadow,
 };
 use crate::{
     event::{EventKind, OfferEnd},
@@ -48,7 +49,10 @@ impl Mission {
             Order::DriveBack => self.drive_back(),
             Order::Abort => self.end(Outcome::Aborted, "ended by operator".into()),
             Order::Terminate => self.end(Outcome::Aborted, "ended by a signal to the process".into()),
-            Order::CheckPlanner => self.driving.snapshot_due = self.driving.worker.is_ready(),
+            Order::CheckPlanner => {
+                self.driving.snapshot_due = self.driving.worker.is_ready();
+                self.shadow.iter_mut().for_each(Shadow::check);
+            }
             Order::ChoosePlanner(choice) => {
                 if self.driving.takes_live(choice) {
                     self.stay_held();

@@ -54,6 +54,8 @@ pub(super) struct Shadow {
     now: Now,
     /// Whether the planner has been ordered to take over.
     promotion: Promotion,
+    /// Whether the planner is to be asked for its state, because its process may have ended.
+    check_due: bool,
 }
 
 /// The requests that a planner in shadow can get in a tick, fixed at the start of the tick.
@@ -116,7 +118,13 @@ impl Shadow {
             asked_at_s: known.now_s(),
             now: Now::default(),
             promotion: Promotion::No,
+            check_due: false,
         }
+    }
+
+    /// Asks the planner for its state if it is open; the answer shows whether its process still runs.
+    pub(super) fn check(&mut self) {
+        self.check_due = self.worker.is_ready();
     }
 
     /// Advances along the shadow's own plan to the robot's position; `driving` is the id of the active planner.
@@ -148,7 +156,7 @@ impl Shadow {
         self.course.advance(here, chart.map());
     }
 
-    /// Handles a change of the map: obstacles that were found, and whether they block the shadow's plan.
+    /// Handles a change to the map: obstacles that were found, and whether they block the shadow's plan.
     pub(super) fn map_changed(&mut self, found: &[Shape], is_in_the_way: bool) {
         self.course.found_since.extend_from_slice(found);
         if is_in_the_way {
@@ -165,6 +173,9 @@ impl Shadow {
             return Some(self.worker.open(known, workers));
         }
         let tick = known.tick;
+        if std::mem::take(&mut self.check_due) {
+            return self.worker.ask(tick, PendingKind::Snapshot, What::Snapshot);
+        }
         if let Some(due) = &self.course.due {
             if !self.now.may_plan {
                 return None;

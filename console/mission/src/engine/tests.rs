@@ -71,6 +71,8 @@ struct Straight {
     scans_less_from_plan: Option<usize>,
     /// Its process has ended while it had nothing to do.
     has_died: bool,
+    /// The process of the worker with this number has ended while it had nothing to do.
+    dead_worker: Option<u16>,
     /// It has a live parameter `gain` that it cannot change under way.
     has_stiff_gain: bool,
     /// It ends with a lap along the wall.
@@ -107,7 +109,9 @@ impl Straight {
                 Err(self.fault(During::Step, Cause::Died))
             }
             What::Step(sensed) => self.step(&sensed).map(Given::Command),
-            What::Snapshot if self.has_died => Err(self.fault(During::Step, Cause::Died)),
+            What::Snapshot if self.has_died || self.dead_worker == Some(id.worker.0) => {
+                Err(self.fault(During::Step, Cause::Died))
+            }
             What::Snapshot => Ok(Given::State { bytes: 1 }),
             What::Close => return None,
         };

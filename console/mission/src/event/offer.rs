@@ -59,7 +59,7 @@ impl fmt::Display for OfferEnd {
             Self::TooLittleLeft => "too little of the current plan is left",
             Self::MapChanged => "the map has changed",
             Self::ZoneDrawn => "a no-go zone was drawn",
-            Self::DrivingBack => "the robot drives back",
+            Self::DrivingBack => "the robot is driving back",
             Self::OtherPlannerChosen => "a different planner was chosen",
             Self::OtherPlannerActive => "a different planner is active",
             Self::ParameterChanged => "a parameter was changed",

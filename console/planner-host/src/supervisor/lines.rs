@@ -1,4 +1,4 @@
-//! Splits the output of a process into lines for people.
+//! Splits the output of a process into human-readable lines.
 
 use foreign::plain;
 

@@ -10,7 +10,7 @@ use crate::{
 use nalgebra::{Matrix2, Vector2};
 use world::{Point, Station};
 
-/// Normal quantile beyond which ranges are refused: one correct cycle in 10,000.
+/// Standard normal quantile beyond which the ranges of a cycle are refused. This refuses one correct cycle in 10,000.
 const GATE_Z: f64 = 3.719;
 /// The largest number of steps in an iterated update; three are usual.
 const UPDATE_STEPS: usize = 12;

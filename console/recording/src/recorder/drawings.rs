@@ -23,9 +23,9 @@ const FORCES: [Layer; 4] = [Layer::Attraction, Layer::Repulsion, Layer::Rotation
 
 /// The drawn length of the arrow of a force, metres.
 ///
-/// Forces of planners span many powers of ten near an obstacle. The length grows with their logarithm, so that weak
-/// forces stay visible and strong ones stay in the tank; direction and order of magnitude are preserved. The true
-/// magnitudes are recorded as figures.
+/// A planner's forces span many powers of ten near an obstacle. The length grows with their logarithm, so that weak
+/// forces stay visible and strong ones stay in the tank. The direction is preserved, and a stronger force never has a
+/// shorter arrow. The true magnitudes are recorded as figures.
 fn drawn_length_m(force_n: f64, longest_m: f64) -> f64 {
     longest_m * ((force_n / WEAK_N).ln_1p() / (STRONG_N / WEAK_N).ln_1p()).min(1.0)
 }

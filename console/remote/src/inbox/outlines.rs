@@ -4,9 +4,6 @@ use std::collections::BTreeMap;
 use vehicle::wire::message::Outline;
 use world::{ObstacleId, Point, Shape, Sighting};
 
-/// The ids of a tracker are replaced by numbers from this one on. A tracker that does not know the drawing may give an
-/// obstacle the id of a drawn one, and the mission would confuse the two.
-const FIRST_OWN: u32 = 1_000_000;
 /// Maximum number of different obstacles in a run.
 const MOST_OBSTACLES: usize = 1000;
 
@@ -41,7 +38,7 @@ impl Outlines {
         }
         self.found = self.found.saturating_add(1);
         let number = u32::try_from(self.found).ok().filter(|_| self.found <= MOST_OBSTACLES)?;
-        let ours = ObstacleId(if self.drawn_ids { id } else { FIRST_OWN + number });
+        let ours = ObstacleId(if self.drawn_ids { id } else { ObstacleId::FOREIGN.0 + number });
         self.ids.insert(id, ours);
         Some(ours)
     }

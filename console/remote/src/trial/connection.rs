@@ -176,9 +176,10 @@ impl Connection {
         self.heard.clone()
     }
 
-    /// Drops everything received so far, except the offset of the vehicle's clock.
+    /// Drops all readings received so far.
     pub(super) fn forget(&mut self) {
-        self.heard = Listened { state: self.heard.state.take(), ..Listened::default() };
+        let (state, lines) = (self.heard.state.take(), std::mem::take(&mut self.heard.lines));
+        self.heard = Listened { state, lines, ..Listened::default() };
         (self.odometry, self.poses) = (Vec::new(), self.poses.last().copied().into_iter().collect());
     }
 
@@ -215,15 +216,15 @@ impl Connection {
             },
             Heard::Message(FromVehicle::Hello(_)) => {}
             Heard::Unknown(Unknown::Kind(name) | Unknown::Key { key: name, .. }) => {
-                self.heard.unknown.push(foreign::plain(&name).into_owned());
+                self.heard.lines.unknown.push(foreign::plain(&name).into_owned());
             }
             Heard::Malformed(misfit) => self.malformed(&misfit),
         }
     }
 
     fn malformed(&mut self, misfit: &Misfit) {
-        self.heard.malformed += 1;
-        self.heard.fault.get_or_insert_with(|| foreign::plain(&misfit.to_string()).into_owned());
+        self.heard.lines.malformed += 1;
+        self.heard.lines.fault.get_or_insert_with(|| foreign::plain(&misfit.to_string()).into_owned());
     }
 
     fn read(&mut self, arrival_s: f64, readings: &Readings) {

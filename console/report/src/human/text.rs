@@ -1,4 +1,4 @@
-//! Labelled lines and numbers for people.
+//! Labelled lines and numbers for the human-readable summary.
 
 use std::fmt::{Display, Write};
 

@@ -1,15 +1,15 @@
 //! The meaning of position alarms.
 
-use super::remedy::{END, Guide, HOLD, SHOW, STAY, run, wait};
+use super::remedy::{END, Guide, HOLD, SHOW, STAY, When, check, run, wait};
 use crate::actions::ActionId;
 
 pub(super) const POSITION_LOST: Guide = Guide {
     cause: "The 95 % position error is above the mission's limit: too few stations are heard, their \
     geometry is poor here, or echoes corrupt their ranges.",
-    effect: "The robot is held automatically after a short delay (scenario: position_lost_hold_s). Floor \
-    covered during that delay does not count as scanned.",
+    holds: "If this lasts, the robot is held automatically (scenario: position_lost_hold_s).",
+    effect: "Floor covered meanwhile does not count as scanned.",
     remedies: &[
-        wait("Wait: the mission resumes automatically when the position is recovered."),
+        wait("Wait: the mission resumes automatically when the position is recovered.").when(When::Resuming),
         STAY,
         run("Show where a good fix is expected (map layers).", ActionId::Layers),
         END,
@@ -19,11 +19,12 @@ pub(super) const POSITION_LOST: Guide = Guide {
 pub(super) const CONTRADICTION: Guide = Guide {
     cause: "Several stations report wrong ranges at the same time: columns block the sound, there are \
     echoes, or station data are wrong. The faulty stations cannot be identified.",
-    effect: "The robot is held automatically. Floor does not count as scanned until the ranges agree.",
+    holds: "If this lasts, the robot is held automatically (scenario: position_lost_hold_s).",
+    effect: "Floor does not count as scanned until the ranges agree.",
     remedies: &[
-        wait("Wait: the mission resumes automatically when the ranges agree again."),
+        wait("Wait: the mission resumes automatically when the ranges agree again.").when(When::Resuming),
         STAY,
-        wait("Check the residuals. A station that is always wrong has wrong survey data."),
+        check("Check the residuals. A station that is always wrong has wrong survey data."),
         END,
     ],
 };
@@ -31,6 +32,7 @@ pub(super) const CONTRADICTION: Guide = Guide {
 pub(super) const NO_FIX: Guide = Guide {
     cause: "No position can be computed from the ranges of this cycle: too few stations were heard, or they \
     are all on one line.",
+    holds: "",
     effect: "The position is dead-reckoned; its error grows until the next fix.",
     remedies: &[wait("Wait for the next ranging cycle."), HOLD],
 };
@@ -38,6 +40,7 @@ pub(super) const NO_FIX: Guide = Guide {
 pub(super) const STATION: Guide = Guide {
     cause: "The station's range disagrees with the others by more than its gate, or the station was not \
     heard: echo, blocked sound path, or wrong station data.",
+    holds: "",
     effect: "The position is computed without this station and is less accurate.",
     remedies: &[wait("Wait: the station is used again as soon as its range agrees."), SHOW, HOLD],
 };

@@ -1,13 +1,17 @@
 //! The explanation of an alarm, and the remedies that several alarms share.
 
 use crate::actions::ActionId;
+use crate::model::alarms::rule::Context;
+use mission::Phase;
 
 /// The explanation of an alarm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Guide {
     /// Why the alarm is raised.
     pub cause: &'static str,
-    /// The consequence.
+    /// When the cause holds a robot that drives, as a sentence; empty if it does not.
+    pub holds: &'static str,
+    /// The other consequences, whatever the mission does; empty if there are none.
     pub effect: &'static str,
     /// What the operator can do; at most four remedies. Those without an action are advice.
     pub remedies: &'static [Remedy],
@@ -20,24 +24,67 @@ pub struct Remedy {
     pub text: &'static str,
     /// The action that carries out the remedy; `None` if the operator must act elsewhere or wait.
     pub action: Option<ActionId>,
+    /// When the remedy applies.
+    pub when: When,
 }
 
+/// When a remedy applies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum When {
+    /// Always.
+    Any,
+    /// While the robot may move.
+    Moving,
+    /// During a hold that ends automatically.
+    Resuming,
+    /// Until the end of the mission.
+    BeforeEnd,
+}
+
+impl When {
+    /// Whether a remedy applies to a mission in this phase.
+    pub fn holds(self, phase: &Phase) -> bool {
+        match self {
+            Self::Any => true,
+            Self::Moving => Context::of(phase).moves(),
+            Self::Resuming => matches!(phase, Phase::Held(hold) if !hold.resumes.is_never()),
+            Self::BeforeEnd => Context::of(phase) != Context::Ended,
+        }
+    }
+}
+
+/// Advice that ends with the mission.
 pub(super) const fn wait(text: &'static str) -> Remedy {
-    Remedy { text, action: None }
+    Remedy { text, action: None, when: When::BeforeEnd }
+}
+
+/// Advice that does not depend on the mission.
+pub(super) const fn check(text: &'static str) -> Remedy {
+    Remedy { text, action: None, when: When::Any }
 }
 
 pub(super) const fn run(text: &'static str, action: ActionId) -> Remedy {
-    Remedy { text, action: Some(action) }
+    Remedy { text, action: Some(action), when: When::Any }
+}
+
+impl Remedy {
+    pub(super) const fn when(self, when: When) -> Self {
+        Self { when, ..self }
+    }
 }
 
 pub(super) const STAY: Remedy =
-    run("Stay held (HOLD): then only the operator can resume the mission.", ActionId::Hold);
-pub(super) const HOLD: Remedy = run("HOLD the robot until this is resolved.", ActionId::Hold);
-pub(super) const END: Remedy = run("End the mission (<end>). Holds, then asks.", ActionId::Abort);
+    run("Stay held (HOLD): then only the operator can resume the mission.", ActionId::Hold)
+        .when(When::Resuming);
+pub(super) const HOLD: Remedy =
+    run("HOLD the robot until this is resolved.", ActionId::Hold).when(When::Moving);
+pub(super) const END: Remedy =
+    run("End the mission (<end>). Holds, then asks.", ActionId::Abort).when(When::BeforeEnd);
 pub(super) const SHOW: Remedy = run("Show it on the map.", ActionId::ShowPlace);
 pub(super) const SLOWER: Remedy = run("Slow the simulation down (<slower>).", ActionId::Slower);
 pub(super) const OTHER_PLANNER: Remedy =
-    run("Change the planner (<planner>). Asks first.", ActionId::ChoosePlanner);
+    run("Change the planner (<planner>). Asks first.", ActionId::ChoosePlanner).when(When::BeforeEnd);
 pub(super) const PARAMETERS: Remedy =
-    run("Change the planner's parameters (<parameters>).", ActionId::Parameters);
-pub(super) const RESUME: Remedy = run("Resume: the planner tries again. Asks first.", ActionId::Resume);
+    run("Change the planner's parameters (<parameters>).", ActionId::Parameters).when(When::BeforeEnd);
+pub(super) const RESUME: Remedy =
+    run("Resume: the planner tries again. Asks first.", ActionId::Resume).when(When::BeforeEnd);

@@ -1,6 +1,6 @@
 //! The meaning of tether alarms.
 
-use super::remedy::{END, Guide, OTHER_PLANNER, RESUME, SHOW, STAY, run, wait};
+use super::remedy::{END, Guide, OTHER_PLANNER, RESUME, SHOW, STAY, When, run, wait};
 use crate::actions::ActionId;
 
 /// The name of a tether alarm; `word` is the word used in its event.
@@ -20,8 +20,9 @@ pub(super) fn name(word: &str) -> String {
 pub(super) fn guide(word: &str) -> Guide {
     match word {
         "reel" => Guide {
-            cause: "More than 80 % of the tether is out, the limit of this alarm.",
-            effect: "When the reel is empty, the robot is held.",
+            cause: "The alarm is raised when more than 80 % of the tether is out.",
+            holds: "When the reel is empty, the robot is held.",
+            effect: "",
             remedies: const {
                 &[
                     run("Resume: frees the tether, then replans from here. Asks first.", ActionId::Resume),
@@ -32,7 +33,8 @@ pub(super) fn guide(word: &str) -> Guide {
         },
         "wrap" | "total wrap" => Guide {
             cause: "The tether bends round obstacles by more than 80 % of the limit.",
-            effect: "Each wrap multiplies the pull. At the limit the robot is held.",
+            holds: "At the limit, the robot is held.",
+            effect: "Each wrap multiplies the pull.",
             remedies: const {
                 &[
                     SHOW,
@@ -44,11 +46,12 @@ pub(super) fn guide(word: &str) -> Guide {
         },
         "snag" => Guide {
             cause: "The reel has paid out more than the map explains: an unmapped object holds the tether.",
-            effect: "The robot is held. The tether's position is unknown; the return path is UNKNOWN.",
+            holds: "The robot is held at once.",
+            effect: "The tether's position is unknown; the return path is UNKNOWN.",
             remedies: const {
                 &[
                     run(
-                        "Resume: drives back the way it came to free the tether. Asks first.",
+                        "Resume: frees the tether by driving back the way it came. Asks first.",
                         ActionId::Resume,
                     ),
                     SHOW,
@@ -59,10 +62,12 @@ pub(super) fn guide(word: &str) -> Guide {
         },
         "return path" => Guide {
             cause: "The hull does not fit through the return path along the tether.",
-            effect: "The robot is held.",
+            holds: "The robot is held at once.",
+            effect: "",
             remedies: const {
                 &[
-                    wait("Wait: the mission resumes automatically as soon as the hull fits again."),
+                    wait("Wait: the mission resumes automatically as soon as the hull fits again.")
+                        .when(When::Resuming),
                     STAY,
                     OTHER_PLANNER,
                     END,
@@ -72,8 +77,9 @@ pub(super) fn guide(word: &str) -> Guide {
         _ => Guide {
             cause: "The robot left its plan and crossed a cut, a line that keeps the tether from winding \
             round obstacles.",
+            holds: "",
             effect: "The mission is replanned automatically.",
-            remedies: const { &[wait("Wait for the new plan."), STAY, RESUME, END] },
+            remedies: const { &[wait("Wait for the new plan.").when(When::Moving), STAY, RESUME, END] },
         },
     }
 }

@@ -1,32 +1,37 @@
 //! The meaning of alarms about a real vehicle.
 
-use super::remedy::{END, Guide, HOLD, RESUME, run, wait};
+use super::remedy::{END, Guide, HOLD, Remedy, When, check, run, wait};
 use crate::actions::ActionId;
+
+const RESUME: Remedy =
+    run("Resume when the vehicle can be driven. Asks first.", ActionId::Resume).when(When::BeforeEnd);
 
 pub(super) const LINK: Guide = Guide {
     cause: "The vehicle sends nothing, or only faulty messages: its adapter has ended, the network is cut, or the \
     robot is switched off.",
-    effect: "The robot is held. The vehicle stops when its lease lapses; the console cannot confirm \
-    this. Its position is unknown.",
+    holds: "The robot is held at once.",
+    effect: "The vehicle stops when its lease lapses; the console cannot confirm this. The robot's position is unknown.",
     remedies: &[
-        wait("Look at the robot, and use its emergency stop if it moves."),
-        wait("Check adapter, cable and network; a closed link needs a new run."),
+        check("Look at the robot, and use its emergency stop if it moves."),
+        check("Check adapter, cable and network; a closed link needs a new run."),
         RESUME,
         END,
     ],
 };
 
 pub(super) const VEHICLE: Guide = Guide {
-    cause: "The vehicle cannot be driven: a person drives it by hand, its emergency stop is pressed, or it \
+    cause: "The vehicle cannot be driven: a person is driving it by hand, its emergency stop is pressed, or it \
     reports a fault.",
-    effect: "The robot is held until the operator resumes. Position, coverage and tether are still updated.",
-    remedies: &[wait("Ask the person at the robot, and clear the cause there."), RESUME, END],
+    holds: "The robot is held at once.",
+    effect: "Position, coverage and tether are still updated.",
+    remedies: &[check("Ask the person at the robot what is wrong, and clear the cause there."), RESUME, END],
 };
 
 pub(super) const GUARD: Guide = Guide {
     cause: "The scan of the vehicle shows something in the way of the hull that the plan does not avoid, or the scan is \
     missing or too old.",
-    effect: "The robot is held until the operator resumes. The guard continues to limit it.",
+    holds: "If the robot cannot go on, it is held.",
+    effect: "The guard continues to limit the robot.",
     remedies: &[
         wait("Look at the place, and remove the object, or draw a no-go zone around it."),
         RESUME,
@@ -38,6 +43,7 @@ pub(super) const GUARD: Guide = Guide {
 pub(super) const STOP_NOT_CONFIRMED: Guide = Guide {
     cause: "The vehicle was commanded to stop, but after twice its stop time, odometry still shows motion or is \
     missing.",
+    holds: "",
     effect: "The robot may still move. The console repeats the command in every tick.",
-    remedies: &[wait("Use the emergency stop of the robot."), HOLD, END],
+    remedies: &[check("Use the emergency stop of the robot."), HOLD, END],
 };

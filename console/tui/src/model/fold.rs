@@ -8,6 +8,7 @@ mod position;
 mod shadow;
 mod tether;
 
+use super::alarms::rule;
 use super::{About, Cause, Change, Progress, Raster, Run, Withdrawn};
 use mission::{
     Event, EventKind, Hold, HoldReason, Order, Outcome, Phase, Severity, TaskConfig, event::RunOpened,
@@ -43,6 +44,9 @@ impl Run {
                 }
                 if self.is_waiting() && changes_plan(order) {
                     self.forget_plan();
+                }
+                if let Order::SetParameter { key, value } = order {
+                    self.order_parameter(key, value);
                 }
                 change.answered = Some(order.clone());
                 self.shadowed(event, &mut change);
@@ -205,12 +209,16 @@ impl Run {
         self.planning.choice = Some(run.mission.planner.clone());
     }
 
+    /// Takes the cause of an alarm, under the rule for what the mission does now.
     fn raise(&mut self, event: &Event, cause: Cause, severity: Severity, text: String) {
-        self.alarms.raise(cause, severity, text, event.t_s);
+        let rule = rule::rule(&cause, severity, self.context());
+        self.alarms.occurred(cause, rule, text, event.t_s);
     }
 
     fn clear(&mut self, cause: &Cause) {
-        self.alarms.clear(cause, self.clock.t_s);
+        let severity = self.alarms.get(cause).map_or(Severity::Info, |alarm| alarm.severity);
+        let off_delay_s = rule::rule(cause, severity, self.context()).off_delay_s;
+        self.alarms.passed(cause, off_delay_s, self.clock.t_s);
     }
 
     /// Raises an alarm with the text of the log line.
@@ -239,6 +247,11 @@ impl Run {
         // The planner has not failed: it made a plan, but the plan was refused.
         if matches!(hold.by, HoldReason::PlannerFault { .. }) && self.planning.fault.is_none() {
             self.forget_certificate();
+        }
+        if let Some(cause) = Cause::of(&event.kind)
+            && let Some(severity) = rule::held_for(&cause)
+        {
+            self.alarms.holds(&cause, severity, event.t_s);
         }
         if let HoldReason::Stuck { message } = &hold.by {
             self.raise(event, Cause::Stuck, Severity::Warn, format!("stuck: {message}"));

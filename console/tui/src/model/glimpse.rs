@@ -1,7 +1,7 @@
 //! Details of past runs, beyond their lines in a list: read from disk when a run is selected and there is room
 //! to show it.
 
-use super::Run;
+use super::{Run, Together};
 use account::Summary;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
@@ -16,6 +16,17 @@ pub struct Glimpse {
     pub run: Run,
     /// The report of the run; `None` if it has none.
     pub summary: Option<Box<Summary>>,
+    /// For a re-scan: the floor that it and the runs before it have scanned together, or why this floor cannot be
+    /// computed.
+    #[serde(default)]
+    pub combined: Option<Result<Box<Together>, String>>,
+}
+
+impl Glimpse {
+    /// The combined scan of a re-scan and the runs before it.
+    pub fn together(&self) -> Option<&Together> {
+        self.combined.iter().flatten().map(|together| &**together).next()
+    }
 }
 
 /// A request for a glimpse: the name of a run and how it ended. A run that ends is read again.

@@ -9,6 +9,11 @@ pub const HISTORY_S: usize = 480;
 /// once per slot.
 pub const SLOT_S: usize = 4;
 
+/// The spans of curves, seconds; a curve covers the shortest one that holds everything since the start of the mission.
+const SPANS_S: [usize; 4] = [60, 120, 240, HISTORY_S];
+/// A curve that no longer begins at the start of the mission shifts by this part of its span.
+const SHIFTS: f64 = 8.0;
+
 /// The largest value in each slot of [`SLOT_S`] seconds of mission time over the last [`HISTORY_S`] seconds, newest
 /// last.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -37,6 +42,28 @@ impl History {
         self.slot as f64 * SLOT_S as f64
     }
 
+    /// The mission time that a curve of at most `most_s` seconds covers: its beginning and its end, seconds. It begins
+    /// at the start of the mission until that is too long ago. It changes rarely, so that most frames differ little.
+    pub fn span_s(&self, most_s: usize) -> [f64; 2] {
+        let end_s = self.newest_s() + SLOT_S as f64;
+        let spans = SPANS_S.into_iter().filter(|span_s| *span_s <= most_s).map(|span_s| span_s as f64);
+        if let Some(span_s) = spans.into_iter().find(|span_s| end_s <= *span_s) {
+            return [0.0, span_s];
+        }
+        let shift_s = most_s as f64 / SHIFTS;
+        let to_s = (end_s / shift_s).ceil() * shift_s;
+        [to_s - most_s as f64, to_s]
+    }
+
+    /// The mission time at which each slot from `from_s` on begins, seconds, and its value; newest last.
+    pub fn since(&self, from_s: f64) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let (newest_s, last) = (self.newest_s(), self.values.len().saturating_sub(1));
+        let values = self.values.iter().enumerate();
+        let timed = values
+            .map(move |(index, value)| (newest_s - ((last - index) * SLOT_S) as f64, f64::from(*value)));
+        timed.filter(move |(t_s, _)| *t_s >= from_s)
+    }
+
     /// The values from the last `seconds`, newest last.
     pub fn last(&self, seconds: usize) -> impl ExactSizeIterator<Item = f64> + '_ {
         let skipped = self.values.len().saturating_sub(seconds / SLOT_S);
@@ -47,6 +74,27 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_curve_begins_at_the_start_of_the_mission_until_it_is_full() {
+        let at = |t_s: f64| {
+            let mut history = History::default();
+            history.add(0.0, 1.0);
+            history.add(t_s, 2.0);
+            history.span_s(HISTORY_S)
+        };
+        let spans = [0.0, 50.0, 60.0, 130.0, 470.0, 480.0, 965.0].map(at);
+        let expected = [
+            [0.0, 60.0],
+            [0.0, 60.0],
+            [0.0, 120.0],
+            [0.0, 240.0],
+            [0.0, 480.0],
+            [60.0, 540.0],
+            [540.0, 1020.0],
+        ];
+        assert_eq!(spans, expected);
+    }
 
     #[test]
     fn the_worst_of_each_slot_is_kept_for_eight_minutes() {

@@ -1,9 +1,10 @@
 //! The open run, and the communication between the operator and its mission.
 
-use super::{Health, Plans, Preflight, Replay, Run, Speed, WhatIf};
+use super::{Health, Plans, Preflight, Raster, Replay, Run, Speed, Together, WhatIf};
 use account::{Account, Area, Estimate, LeftOut, MissReason, Summary};
 use mission::{Order, Phase, WayBack, ZoneCost};
 use serde::{Deserialize, Serialize};
+use world::Point;
 
 /// The id of a run opened since the console was started; 0 means none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
@@ -122,10 +123,16 @@ pub struct Live {
     pub heard_mono_s: f64,
     /// The result of the run, once it has ended and its files are closed.
     pub result: Option<RunResult>,
+    /// For a re-scan: the names of the runs before it, oldest first; empty until they are known, and for any other run.
+    #[serde(default)]
+    pub earlier: Vec<String>,
+    /// For a re-scan: where the last run before it left the robot, metres, tank frame; `None` if it is not known.
+    #[serde(default)]
+    pub left_at: Option<Point>,
     /// For a re-scan: the floor that this run and the runs before it have scanned together, or why this floor cannot be
     /// computed.
     #[serde(default)]
-    pub combined: Option<Result<Box<Account>, String>>,
+    pub combined: Option<Result<Box<Together>, String>>,
     /// The replay, if the run is a replay.
     #[serde(default)]
     pub replay: Option<Box<Replay>>,
@@ -162,6 +169,14 @@ impl Live {
         self.estimate().or_else(|| Some(&self.plans.estimate.as_ref().filter(|_| started)?.1))
     }
 
+    /// Estimated remaining mission time, seconds: from the pace so far or, until that is known, from the promise of the
+    /// plan; `None` if neither is known, or the run has ended.
+    pub fn left_s(&self) -> Option<f64> {
+        let done = self.run.progress.as_ref().map_or(0.0, |progress| progress.done);
+        let promised = || self.estimate().map(|estimate| estimate.time_s * (1.0 - done.clamp(0.0, 1.0)));
+        self.run.left_s().or_else(|| promised().filter(|_| !self.run.has_ended()))
+    }
+
     /// The requested floor that the promised plan leaves out; `None` if it is not known, or nothing is to be scanned.
     pub fn left_out(&self) -> Option<&LeftOut> {
         let (ask, left_out) = self.plans.left_out.as_ref()?;
@@ -177,13 +192,15 @@ impl Live {
         asked().filter(is_missed).chain(asked().filter(|area| !is_missed(area))).collect()
     }
 
-    /// The requested part of the reachable floor: its area in square metres and its scanned share. `None` if all of it was
-    /// requested, or if the account is not known.
+    /// The part of the reachable floor that was requested of this run: its area in square metres and its scanned share.
+    /// `None` if all of it was requested, or if the account is not known.
     ///
     /// Floor that was scanned without being requested counts as requested.
     pub fn requested(&self) -> Option<(f64, f64)> {
-        let not_asked_m2 = self.not_requested_m2();
-        let reachable = self.floor().filter(|_| not_asked_m2 > 0.0)?.reachable;
+        let floor = self.result.as_ref()?.summary.floor.as_ref()?;
+        let not_asked = floor.missed.iter().filter(|area| area.reason == MissReason::NotAsked);
+        let not_asked_m2: f64 = not_asked.map(|area| area.area_m2).sum();
+        let reachable = Some(floor).filter(|_| not_asked_m2 > 0.0)?.reachable;
         let requested_m2 = reachable.area_m2 - not_asked_m2;
         let scanned_m2 = reachable.area_m2 * reachable.scanned;
         (requested_m2 > 0.0).then(|| (requested_m2, (scanned_m2 / requested_m2).min(1.0)))
@@ -196,16 +213,37 @@ impl Live {
 
     /// The account of the floor; for a re-scan, the account over all runs as soon as it is known.
     pub fn floor(&self) -> Option<&Account> {
-        let combined = self.combined.iter().flatten().map(|floor| &**floor).next();
+        let combined = self.together().map(|together| &together.floor);
         combined.or_else(|| self.result.as_ref()?.summary.floor.as_ref())
     }
 
+    /// The combined scan of this re-scan and the runs before it, as soon as it is known.
+    pub fn together(&self) -> Option<&Together> {
+        self.combined.iter().flatten().map(|together| &**together).next()
+    }
+
+    /// The scanned floor; for a re-scan that has ended, the floor scanned by all runs as soon as it is known.
+    pub fn scanned(&self) -> Option<&Raster> {
+        let together = self.together().and_then(|together| together.raster.as_ref());
+        together.or(self.run.coverage.as_ref())
+    }
+
     /// The names of the runs that this run re-scans, followed by its own; `None` if `run` names a different run, or
-    /// this run is not a re-scan.
+    /// this run is not a re-scan or has not ended.
     pub fn with_earlier(&self, run: &str) -> Option<Vec<String>> {
-        let is_open = self.result.as_ref().is_none_or(|result| result.name.as_deref() == Some(run));
-        let Some(Source::Rescan(earlier)) = self.source.as_ref().filter(|_| is_open) else { return None };
+        let is_open = self.result.as_ref().is_some_and(|result| result.name.as_deref() == Some(run));
+        let earlier = Some(&self.earlier).filter(|earlier| is_open && !earlier.is_empty())?;
         Some(earlier.iter().cloned().chain([run.to_owned()]).collect())
+    }
+
+    /// The missed area at a place.
+    pub fn missed_area(&self, at: Point) -> Option<&Area<MissReason>> {
+        smallest_at(self.areas(), at)
+    }
+
+    /// The area at a place that the promised plan leaves out.
+    pub fn left_out_area(&self, at: Point) -> Option<&Area<MissReason>> {
+        smallest_at(self.left_out()?.areas.iter(), at)
     }
 
     fn areas(&self) -> impl Iterator<Item = &Area<MissReason>> {
@@ -233,4 +271,16 @@ impl Live {
             self.hold_asked = false;
         }
     }
+}
+
+/// The smallest of the areas whose bounding box contains a place.
+fn smallest_at<'a>(
+    areas: impl Iterator<Item = &'a Area<MissReason>>,
+    at: Point,
+) -> Option<&'a Area<MissReason>> {
+    let is_inside = |area: &&Area<MissReason>| {
+        let within = |low: f64, value: f64, high: f64| low <= value && value <= high;
+        within(area.low.x, at.x, area.high.x) && within(area.low.y, at.y, area.high.y)
+    };
+    areas.filter(is_inside).min_by(|one, other| one.area_m2.total_cmp(&other.area_m2))
 }

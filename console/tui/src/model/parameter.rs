@@ -25,11 +25,29 @@ pub fn change(
     key: &str,
     then: &ParamValue,
 ) -> String {
-    match planner.and_then(|planner| planner.parameters.iter().find(|info| info.key == key)) {
-        Some(info) if info.unit.is_empty() => format!("{key} {} → {then}", value(choice, info)),
-        Some(info) => format!("{key} {} → {then} {}", value(choice, info), info.unit),
-        None => format!("{key} to {then}"),
+    let shown = with_unit(planner, key, then);
+    match find(planner, key) {
+        Some(info) => format!("{key} {} → {shown}", value(choice, info)),
+        None => format!("{key} to {shown}"),
     }
+}
+
+/// A value of a parameter with its unit, if it has one.
+pub fn with_unit(planner: Option<&PlannerInfo>, key: &str, value: &ParamValue) -> String {
+    match find(planner, key) {
+        Some(info) if !info.unit.is_empty() => format!("{value} {}", info.unit),
+        _ => value.to_string(),
+    }
+}
+
+/// The number of parameters whose values differ from their defaults.
+pub fn changed(planner: &PlannerInfo, choice: Option<&PlannerChoice>) -> usize {
+    planner.parameters.iter().filter(|info| value(choice, info) != default(&info.kind)).count()
+}
+
+/// A parameter of a planner.
+pub fn find<'a>(planner: Option<&'a PlannerInfo>, key: &str) -> Option<&'a ParamInfo> {
+    planner?.parameters.iter().find(|info| info.key == key)
 }
 
 /// The permitted values, in words.

@@ -5,7 +5,7 @@ use mission::event::{Effort, PlanScans};
 use mission::{AskId, MissionConfig, PlannerChoice, PlannerInfo, WorkerId, planner::Fault};
 use planner_api::{Command, Drawing, Leg, LegTag};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use world::{Point, coverage::percent_text, polyline};
 
 /// How far the heading may turn within a lane that the planner did not state, radians.
@@ -17,8 +17,22 @@ const SPACING_M: f64 = 0.5;
 /// Length of a path above which its points are farther apart, metres.
 const LONG_M: f64 = 1000.0;
 
+/// The maximum number of a run's planner messages that are compared with new ones.
+const MAX_SAID: usize = 256;
+/// The maximum length of such a message, bytes; longer ones count as new.
+const MAX_SAID_BYTES: usize = 1000;
+
 /// A lane of a plan: the first and the last index of its points in [`PlanShown::path`].
 pub type Lane = (usize, usize);
+
+/// What the robot drives before the first lane of a plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lead {
+    /// Back along the tether, to the place from which the new plan leads on.
+    Back,
+    /// To the first lane.
+    ToLane,
+}
 
 /// A plan, thinned for drawing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -40,6 +54,12 @@ pub struct PlanShown {
     /// The distance driven along earlier plans when this one was made, metres.
     #[serde(default)]
     pub driven_m: f64,
+    /// The length of the way back along the tether with which the plan begins, metres.
+    #[serde(default)]
+    pub retract_m: f64,
+    /// The length of all that comes before its first lane: the way back and the way from there, metres.
+    #[serde(default)]
+    pub lead_m: f64,
 }
 
 impl PlanShown {
@@ -62,6 +82,20 @@ impl PlanShown {
         }
         let long = |lane: &Lane| polyline::length_m(&thin[lane.0..=lane.1]) >= least_m;
         straights(thin).into_iter().filter(long).collect()
+    }
+
+    /// The length of the part of a plan that consists of legs of the given kinds before all others, metres; `path` is the
+    /// whole path.
+    pub fn begins_m(path: &[Point], legs: &[Leg], with: &[LegTag]) -> f64 {
+        let part = legs.iter().take_while(|leg| with.contains(&leg.tag)).last();
+        part.and_then(|leg| path.get(..=leg.last)).map_or(0.0, polyline::length_m)
+    }
+
+    /// The way that the robot drives before the first lane, and how far it still is, metres; `None` once it is there.
+    pub fn lead_left_m(&self, progress: &Progress) -> Option<(Lead, f64)> {
+        let along_m = self.along_m(progress.done).max(0.0);
+        let ways = [(Lead::Back, self.retract_m), (Lead::ToLane, self.lead_m)];
+        ways.into_iter().map(|(lead, end_m)| (lead, end_m - along_m)).find(|(_, left_m)| *left_m > 0.0)
     }
 
     /// The length of the path that is left, metres.
@@ -184,6 +218,9 @@ impl Offer {
 pub struct Planning {
     /// The active planner, with the parameters set by hand.
     pub choice: Option<PlannerChoice>,
+    /// The active planner with the parameters that were ordered last, until they take effect or are refused.
+    #[serde(default)]
+    pub ordered: Option<PlannerChoice>,
     /// The description of the planner.
     pub info: Option<PlannerInfo>,
     /// The current plan.
@@ -207,9 +244,29 @@ pub struct Planning {
     /// Whether the candidate made the last plan; if so, the next certificate is not about the plan that is running.
     #[serde(default)]
     pub proposed: bool,
+    /// The messages of planners that were shown, oldest first.
+    #[serde(default)]
+    pub said: VecDeque<String>,
     /// A better plan that is on offer, or that was taken and will run from the point at which it begins.
     #[serde(default)]
     pub offer: Option<Offer>,
+}
+
+impl Planning {
+    /// Whether a message of a planner has been shown before; it counts as shown from now on.
+    pub(super) fn has_said(&mut self, text: &str) -> bool {
+        if self.said.iter().any(|said| said == text) {
+            return true;
+        }
+        if text.len() > MAX_SAID_BYTES {
+            return false;
+        }
+        if self.said.len() >= MAX_SAID {
+            self.said.pop_front();
+        }
+        self.said.push_back(text.to_owned());
+        false
+    }
 }
 
 #[cfg(test)]
@@ -227,7 +284,17 @@ mod tests {
 
     fn shown(lanes: Vec<Lane>) -> PlanShown {
         let (path, length_m) = (meander(), 32.0);
-        PlanShown { ask: None, path, lanes, length_m, complete: true, t_s: 0.0, driven_m: 0.0 }
+        PlanShown {
+            ask: None,
+            path,
+            lanes,
+            length_m,
+            complete: true,
+            t_s: 0.0,
+            driven_m: 0.0,
+            retract_m: 0.0,
+            lead_m: 0.0,
+        }
     }
 
     #[test]
@@ -287,7 +354,17 @@ mod tests {
         let legs = [(0, 1), (2, 3), (4, 5)].map(|(first, last)| Leg { tag: LegTag::Swath, first, last });
         let length_m = polyline::length_m(&path);
         let (path, lanes) = super::shown(&path, &legs, 2.0);
-        PlanShown { ask: None, path, lanes, length_m, complete: true, t_s: 0.0, driven_m: 0.0 }
+        PlanShown {
+            ask: None,
+            path,
+            lanes,
+            length_m,
+            complete: true,
+            t_s: 0.0,
+            driven_m: 0.0,
+            retract_m: 0.0,
+            lead_m: 0.0,
+        }
     }
 
     #[test]
@@ -302,6 +379,32 @@ mod tests {
         );
         let back = plan.reached(&progress(Point::new(9.6, 0.1), 1.0 - 9.6 / length_m));
         assert!(back > plan.lanes[2].1, "on the way back");
+    }
+
+    #[test]
+    fn a_plan_says_how_far_it_is_to_its_start_and_to_its_first_lane() {
+        let leg = |tag, first, last| Leg { tag, first, last };
+        let legs = [
+            leg(LegTag::Retract, 0, 2),
+            leg(LegTag::Retract, 2, 4),
+            leg(LegTag::Travel, 4, 6),
+            leg(LegTag::Swath, 6, 32),
+        ];
+        let begins_m = |legs, with: &[LegTag]| PlanShown::begins_m(&meander(), legs, with);
+        let (retract_m, lead_m) = (
+            begins_m(&legs[..], &[LegTag::Retract]),
+            begins_m(&legs[..], &[LegTag::Retract, LegTag::Travel]),
+        );
+        assert!((retract_m - 4.0).abs() < 1e-9 && (lead_m - 6.0).abs() < 1e-9);
+        assert!(begins_m(&legs[3..], &[LegTag::Retract]).abs() < 1e-9);
+        // 8 m of 40 m were driven along the plan before.
+        let plan = PlanShown { driven_m: 8.0, retract_m, lead_m, ..shown(Vec::new()) };
+        let left = |driven_m: f64| plan.lead_left_m(&progress(Point::origin(), driven_m / 40.0));
+        let is_left = |driven_m, lead, m: f64| {
+            left(driven_m).is_some_and(|(is, left_m)| is == lead && (left_m - m).abs() < 1e-9)
+        };
+        assert!(is_left(9.0, Lead::Back, 3.0) && is_left(13.0, Lead::ToLane, 1.0));
+        assert_eq!(left(14.5), None);
     }
 
     #[test]

@@ -3,7 +3,8 @@
 mod vehicle;
 
 use super::{Model, ui::Arrangement};
-use mission::{Check, CheckOutcome, PlanId, Readiness};
+use account::LeftOut;
+use mission::{Check, CheckOutcome, PlanId, Readiness, TaskConfig};
 use serde::{Deserialize, Serialize};
 use world::coverage::percent_text;
 
@@ -96,6 +97,7 @@ impl Model {
     fn own_checks(&self) -> Vec<Check> {
         let mut checks = vec![self.planner_check(), self.plan_check()];
         checks.extend(self.tether_check());
+        checks.extend(self.place_check());
         checks.extend(self.vehicle_checks());
         checks.extend([self.station_check(), self.terminal_check()]);
         checks
@@ -130,7 +132,9 @@ impl Model {
                 check("plan", CheckOutcome::Failed, "being made; start again when it is ready".into())
             }
             (Some(plan), None) if plan.complete => {
-                check("plan", CheckOutcome::Passed, format!("{:.1} m, the whole task", plan.length_m))
+                let left_out = self.live.left_out().filter(|left_out| !left_out.areas.is_empty());
+                let what = left_out.map_or_else(|| "the whole task".to_owned(), all_but);
+                check("plan", CheckOutcome::Passed, format!("{:.1} m, {what}", plan.length_m))
             }
             (Some(plan), None) => {
                 let what = match self.live.left_out() {
@@ -141,7 +145,9 @@ impl Model {
                 };
                 check("plan", CheckOutcome::Warning, format!("{:.1} m, {what}", plan.length_m))
             }
-            (None, None) => check("plan", CheckOutcome::Failed, "none; `:plan-again` makes one".into()),
+            (None, None) => {
+                check("plan", CheckOutcome::Failed, "no plan has been made; `:plan-again` makes one".into())
+            }
         }
     }
 
@@ -161,6 +167,33 @@ impl Model {
                 "tether NOT certified; change planner or parameters".into(),
             ),
             None => check("tether", CheckOutcome::Failed, "no certified plan yet".into()),
+        })
+    }
+
+    /// For a re-scan: whether the run before it left the robot where the plan begins.
+    fn place_check(&self) -> Option<Check> {
+        let left_at = self.live.left_at?;
+        let start = self.live.run.about.as_ref()?.mission.start.position;
+        let near = || format!("was left at the start, {:.1} m from it", (left_at - start).norm());
+        let words = self.must_stand();
+        let outcome = if words.is_some() { CheckOutcome::Warning } else { CheckOutcome::Passed };
+        Some(check("robot", outcome, words.unwrap_or_else(near)))
+    }
+
+    /// For a re-scan whose plan does not begin where the run before it left the robot: where the robot must stand, as the
+    /// end of a sentence about the robot.
+    pub(crate) fn must_stand(&self) -> Option<String> {
+        let left_at = self.live.left_at?;
+        let mission = &self.live.run.about.as_ref()?.mission;
+        let TaskConfig::Cover { tolerance_m, .. } = mission.task else { return None };
+        let start = mission.start.position;
+        let away_m = (left_at - start).norm();
+        let tether = if mission.tether.is_some() { ", tether reeled in" } else { "" };
+        (away_m > tolerance_m).then(|| {
+            format!(
+                "must stand at {:.2}, {:.2} m{tether}; it was left {away_m:.1} m from there, at {:.2}, {:.2} m",
+                start.x, start.y, left_at.x, left_at.y
+            )
         })
     }
 
@@ -205,6 +238,14 @@ impl Model {
             ),
         }
     }
+}
+
+/// The task without the areas that a plan leaves out: `all but 1 area, 0.4 m²`.
+fn all_but(left_out: &LeftOut) -> String {
+    let area_m2: f64 = left_out.areas.iter().map(|area| area.area_m2).sum();
+    let areas =
+        if left_out.areas.len() == 1 { "1 area".into() } else { format!("{} areas", left_out.areas.len()) };
+    format!("all but {areas}, {area_m2:.1} m²")
 }
 
 fn check(what: &str, outcome: CheckOutcome, found: String) -> Check {

@@ -1,5 +1,6 @@
 //! A run reconstructed from its events; live runs and replays use the same fold.
 
+use super::alarms::rule::Context;
 use super::{Alarms, History, Log, Planning, Position, Raster, Shadow, Tether, Trail, log::What};
 use mission::{
     EventKind, FoldedStanding, MissionConfig, Phase, PlannerInfo, TaskConfig, WayBack, event::TetherAlarm,
@@ -134,6 +135,17 @@ impl Run {
         &self.standing.phase
     }
 
+    /// What the mission does, as far as alarms depend on it.
+    pub fn context(&self) -> Context {
+        Context::of(self.phase())
+    }
+
+    /// Whether a held vehicle does not stand still yet, as far as its odometry shows; `false` in a simulation.
+    pub fn is_stopping(&self) -> bool {
+        let stands = self.vehicle.as_ref().and_then(|vehicle| vehicle.stands);
+        self.is_live() && matches!(self.phase(), Phase::Held(_)) && stands != Some(true)
+    }
+
     /// Whether the mission runs: the robot moves, or waits for its planner.
     pub fn is_running(&self) -> bool {
         matches!(self.phase(), Phase::Running(_))
@@ -199,7 +211,8 @@ impl Run {
         self.position.speed_m_per_s().filter(|_| !self.has_ended())
     }
 
-    /// Estimated remaining mission time, seconds: at the average pace so far, or at full speed if the robot drives back.
+    /// Estimated remaining mission time, seconds: at the average pace so far, or at full speed while the robot is
+    /// driving back.
     pub fn left_s(&self) -> Option<f64> {
         if self.standing.phase.is_return() {
             return self.way_left_s();

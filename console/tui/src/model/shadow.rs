@@ -1,7 +1,7 @@
 //! The planner in shadow as shown on the screen: its plan, and the ghost of the robot under its command.
 
-use super::{Run, Trail};
-use mission::{PlannerChoice, PlannerInfo, event::ShadowTally};
+use super::{Lane, Run};
+use mission::{Phase, PlannerChoice, PlannerInfo, event::ShadowTally};
 use nalgebra::Point2;
 use planner_api::Command;
 use serde::{Deserialize, Serialize};
@@ -27,6 +27,15 @@ pub struct Shadow {
     pub tally: ShadowTally,
     /// The points of the path of the planner's plan, thinned for drawing.
     pub path: Vec<Point>,
+    /// The lanes of the path.
+    #[serde(default)]
+    pub lanes: Vec<Lane>,
+    /// The length of the whole path, metres.
+    #[serde(default)]
+    pub length_m: f64,
+    /// Whether the plan achieves the rest of the task.
+    #[serde(default)]
+    pub complete: bool,
     /// The planner's last command, with the mission time, seconds.
     pub command: Option<(f64, Command)>,
     /// Whether the planner was ordered to take over.
@@ -37,10 +46,6 @@ impl Shadow {
     /// Creates the entry for a planner that is about to run in shadow.
     pub(super) fn new(choice: PlannerChoice) -> Self {
         Self { choice, ..Self::default() }
-    }
-
-    pub(super) fn take_path(&mut self, path: &[Point]) {
-        self.path = Trail::thinned(path);
     }
 }
 
@@ -58,6 +63,12 @@ pub struct Differences {
 }
 
 impl Run {
+    /// The planner in shadow whose plan the map shows: while the robot runs or is held.
+    pub fn shown_shadow(&self) -> Option<&Shadow> {
+        let is_under_way = matches!(self.phase(), Phase::Running(_) | Phase::Held(_));
+        self.shadow.as_ref().filter(|_| is_under_way)
+    }
+
     /// Where the command of the planner in shadow would take the robot; `None` if the command is not recent.
     pub fn ghost(&self) -> Option<Vec<Point>> {
         let (pose, command) = self.shadow_command()?;

@@ -344,12 +344,15 @@ pub enum Ask {
     DriveBack,
     /// Close the floor within an outline: its corners, metres, tank frame.
     DrawZone(Vec<Point>),
-    /// Change a parameter of a planner that is driving.
+    /// Change a parameter of the active planner.
     Set {
         /// The parameter.
         key: String,
         /// Its new value.
         value: ParamValue,
+        /// The line in the list of parameters from which the change was made; `None` if it was made by a command.
+        #[serde(default)]
+        list: Option<usize>,
     },
 }
 
@@ -365,7 +368,7 @@ impl Ask {
             Self::TakePlan => Order::TakePlan,
             Self::DriveBack => Order::DriveBack,
             Self::DrawZone(corners) => Order::DrawZone(corners.clone()),
-            Self::Set { key, value } => Order::SetParameter { key: key.clone(), value: value.clone() },
+            Self::Set { key, value, .. } => Order::SetParameter { key: key.clone(), value: value.clone() },
         }
     }
 }
@@ -472,6 +475,15 @@ impl Ui {
             Arrangement::Narrow => &[Pane::Map, Pane::Events],
             Arrangement::Paged => &Pane::PAGES,
             Arrangement::Strip => &[],
+        }
+    }
+
+    /// The panes that have a key of their own, which their titles show: those of a screen that is wide enough to show
+    /// more than one at a time.
+    pub fn numbered_panes(&self) -> &'static [Pane] {
+        match self.panes() {
+            panes @ [_, _, ..] if self.arrangement() == Arrangement::Wide => panes,
+            _ => &[],
         }
     }
 

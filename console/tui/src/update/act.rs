@@ -2,7 +2,7 @@
 
 use super::go;
 use super::message::Effect;
-use super::offer::{offered, refuse};
+use super::offer::{accepted, offered, refuse};
 use super::overlay::{self, ask, open};
 use super::send::{hold_now, send};
 use super::{palette, remedies, replay};
@@ -67,7 +67,10 @@ pub(crate) fn hold(model: &mut Model) -> Vec<Effect> {
         return hold_now(model);
     }
     if model.ui.overlay == Overlay::None {
-        return ask(model, Ask::Resume);
+        return match accepted(model, &Order::Resume) {
+            Ok(()) => ask(model, Ask::Resume),
+            Err(why) => refuse(model, why),
+        };
     }
     model.say(Severity::Info, "already held");
     Vec::new()
@@ -176,6 +179,14 @@ pub(crate) fn turn_to(model: &mut Model, by: isize) {
     let at = panes.iter().position(|pane| *pane == model.ui.pane).unwrap_or(0);
     let next = (at as isize + by).rem_euclid(panes.len().max(1) as isize) as usize;
     model.ui.pane = panes.get(next).copied().unwrap_or(Pane::Map);
+}
+
+/// Goes to the pane with a number, from 1.
+pub(crate) fn turn_to_number(model: &mut Model, number: u8) {
+    let panes = model.ui.numbered_panes();
+    if let Some(pane) = usize::from(number).checked_sub(1).and_then(|index| panes.get(index)) {
+        model.ui.pane = *pane;
+    }
 }
 
 /// Moves the selection down by `by` lines in the list that responds to the arrow keys.

@@ -7,6 +7,7 @@ use crate::guide::name;
 use crate::model::alarms::State;
 use crate::model::ui::Shelving;
 use crate::model::{Alarm, Cause, LineEdit, Model, Overlay, Screen};
+use crate::view::text;
 use mission::{Note, Noted, Order, Severity};
 
 fn selected_cause(model: &Model) -> Option<Cause> {
@@ -62,7 +63,7 @@ pub(crate) fn acknowledge(model: &mut Model) -> Vec<Effect> {
 pub(crate) fn acknowledge_all(model: &mut Model) -> Vec<Effect> {
     let waiting = model.live.run.alarms.list().iter().filter(|alarm| alarm.is_unacknowledged());
     let all: Vec<Noted> = waiting.map(acknowledged).collect();
-    model.say(Severity::Info, format!("{} alarms acknowledged", all.len()));
+    model.say(Severity::Info, format!("{} acknowledged", text::counted(all.len(), "alarm")));
     all.into_iter().flat_map(|noted| note(model, noted)).collect()
 }
 

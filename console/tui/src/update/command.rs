@@ -15,7 +15,8 @@ use super::offer::{accepted, offered, refuse};
 use super::overlay;
 use super::preset;
 use super::replay;
-use super::send::{send, set_parameter};
+use super::send::send;
+use super::setting;
 use super::stations;
 use super::typing;
 use super::zones;
@@ -24,7 +25,7 @@ use crate::handover;
 use crate::model::{
     Model,
     palette::LineFault,
-    ui::{Ask, MapView, Purpose},
+    ui::{MapView, Purpose},
 };
 use line::Word;
 use mission::{Order, Parameters, PlannerChoice};
@@ -142,9 +143,16 @@ pub(super) fn candidates(model: &Model, before: &str) -> Option<Vec<String>> {
         Some(arg) if index == 0 || arg.is_required => value::candidates(model, arg.kind, typed),
         _ => action.args.iter().skip(1).filter(|arg| !arg.is_required).flat_map(by_name).collect(),
     };
+    // A planner for another scenario is judged when that scenario is opened.
+    let refused = |value: &str| {
+        let planner = model.console.planners.iter().find(|planner| planner.id == value);
+        action.id != ActionId::Open
+            && planner.is_some_and(|planner| model.live.run.cannot_fly(planner).is_some())
+    };
+    let all = all.into_iter().filter(|value| !refused(value));
     let small = typed.to_lowercase();
     let fits = |value: &String| value.trim_start_matches('"').to_lowercase().starts_with(&small);
-    Some(all.into_iter().filter(fits).collect())
+    Some(all.filter(fits).collect())
 }
 
 /// Runs a command.
@@ -169,15 +177,7 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
             };
             return overlay::choose(model, purpose, planner);
         }
-        Value::Parameter { key, value } => {
-            let order = Order::SetParameter { key: key.clone(), value: value.clone() };
-            return match accepted(model, &order) {
-                // A value that changes how the robot is driving needs an answer.
-                Ok(()) if model.live.run.is_running() => overlay::ask(model, Ask::Set { key, value }),
-                Ok(()) => set_parameter(model, key, value),
-                Err(why) => refuse(model, why),
-            };
-        }
+        Value::Parameter { key, value } => return setting::propose(model, key, value, None),
         Value::Scenario(source) => {
             let planner = values.find_map(|value| match value {
                 Value::Planner(info) => Some(PlannerChoice { id: info.id, parameters: Parameters::new() }),
@@ -229,7 +229,9 @@ fn hand_over(model: &mut Model, file: String, mut values: impl Iterator<Item = V
     let overwrite = match values.next() {
         None => false,
         Some(Value::Text(word)) if word == "overwrite" => true,
-        Some(_) => return refuse(model, "write overwrite after the file to replace an earlier page".into()),
+        Some(_) => {
+            return refuse(model, "write `overwrite` after the file to replace an earlier page".into());
+        }
     };
     vec![Effect::HandOver { file, page: handover::page(model), overwrite }]
 }

@@ -2,8 +2,10 @@
 
 use super::{Effect, RunMsg, finish, go, health, news, preflight, raise, replay, what_if, zones};
 use crate::model::{
-    Busy, Cause, Change, Health, Live, Model, Overlay, Recording, RunId, RunResult, Screen, Withdrawn,
-    ui::Ask,
+    Busy, Cause, Change, Continued, Health, Live, Model, Overlay, Recording, RunId, RunResult, Screen,
+    Together, Withdrawn,
+    alarms::limit::Watch,
+    ui::{Ask, MapView},
 };
 use mission::{Event, EventKind, Order, PlanId, Severity};
 
@@ -84,7 +86,16 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
             what_if::made(model, &choice, forecast.map(|forecast| *forecast));
         }
         RunMsg::Closed(result) => return closed(model, *result),
-        RunMsg::Combined(combined) => model.live.combined = Some(combined),
+        RunMsg::Continues(Ok(Continued { runs, left_at })) => {
+            (model.live.earlier, model.live.left_at) = (runs, left_at);
+            return combine(model).into_iter().collect();
+        }
+        RunMsg::Continues(Err(why)) => model.live.combined = Some(Err(why)),
+        RunMsg::Combined(combined) => {
+            let own = model.live.run.coverage.as_ref();
+            let combined = combined.map(|found| Box::new(Together::new(*found, own)));
+            model.live.combined = Some(combined);
+        }
         RunMsg::Replay(msg) => replay::hear(model, msg),
     }
     Vec::new()
@@ -162,11 +173,28 @@ fn take_health(model: &mut Model, health: Health) {
 
 /// The run is over: anybody who was watching it is shown the result.
 fn closed(model: &mut Model, result: RunResult) -> Vec<Effect> {
-    let combine =
-        result.name.as_ref().filter(|_| result.is_kept).and_then(|name| model.live.with_earlier(name));
+    rest(model, result.is_kept);
     model.live.result = Some(result);
+    // The result is about the whole tank.
+    model.ui.map = MapView::default();
     if model.ui.screen == Screen::Mission && model.ui.overlay == Overlay::None {
         model.ui.go(Screen::Result);
     }
-    combine.map(Effect::Combine).into_iter().chain([Effect::Look]).collect()
+    combine(model).into_iter().chain([Effect::Look]).collect()
+}
+
+/// Nothing is recorded any more, so the alarms about the recorder end. That a run was not kept stays an alarm.
+fn rest(model: &mut Model, is_kept: bool) {
+    let run = &mut model.live.run;
+    model.console.watches.recorder_lag = Watch::default();
+    run.alarms.clear(&Cause::RecorderLag, run.clock.t_s);
+    if is_kept {
+        run.alarms.clear(&Cause::Recording, run.clock.t_s);
+    }
+}
+
+/// Requests the combined scan of a re-scan that has ended and the runs before it.
+fn combine(model: &Model) -> Option<Effect> {
+    let result = model.live.result.as_ref().filter(|result| result.is_kept)?;
+    model.live.with_earlier(result.name.as_ref()?).map(Effect::Combine)
 }

@@ -3,12 +3,13 @@
 use crate::actions::ActionId;
 use crate::keys::KeyPress;
 use crate::model::{
-    Forecast, GhostPlan, Glimpse, Health, Measured, Preset, Run, RunId, RunResult, Source, Speed, Times,
+    Combination, Continued, Forecast, GhostPlan, Glimpse, Health, Measured, Preset, Run, RunId, RunResult,
+    Source, Speed, Times,
     glimpse::RunKey,
     home::Found,
     replay::{Align, Reel, Side},
 };
-use account::{Account, Estimate, LeftOut, Notes, Summary};
+use account::{Estimate, LeftOut, Notes, Summary};
 use mission::{
     AskId, Check, Event, Order, PlannerChoice, PlannerInfo, RefusedPlugin, Severity, WayBack, ZoneCost,
 };
@@ -184,7 +185,9 @@ pub enum RunMsg {
     /// The run has ended and its files are closed.
     Closed(Box<RunResult>),
     /// The floor scanned by a re-scan and by the runs before it together, or why that is unknown, as a sentence.
-    Combined(Result<Box<Account>, String>),
+    Combined(Result<Box<Combination>, String>),
+    /// The run is a re-scan of these runs, oldest first, or why they cannot be found, as a sentence.
+    Continues(Result<Continued, String>),
     /// A message about a replay.
     Replay(ReplayMsg),
 }

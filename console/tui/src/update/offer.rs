@@ -32,6 +32,13 @@ pub(crate) fn other_pane(model: &Model) -> Result<(), String> {
     demand(turns, "only one pane is shown at this size")
 }
 
+/// Checks that the screen shows numbered panes, and that one of them has this number.
+pub(crate) fn pane(model: &Model, number: u8) -> Result<(), String> {
+    let panes = model.ui.numbered_panes();
+    demand(!panes.is_empty(), "panes have keys of their own only from 120x30; <next-pane>: next pane")?;
+    demand(usize::from(number) <= panes.len(), "no pane has this key on this screen")
+}
+
 /// Checks that a mission is open.
 pub(crate) fn is_open(model: &Model) -> Result<(), String> {
     demand(model.live.source.is_some(), "no mission is open; choose one on screen 1 (Home)")

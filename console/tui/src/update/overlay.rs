@@ -7,8 +7,8 @@ use super::offer::{accepted, demand, offered, refuse};
 use super::preflight;
 use super::preset::take as take_preset;
 use super::replay;
-use super::send::{send, set_parameter};
-use super::{finish, palette, remedies, shadow, typing, what_if, zones};
+use super::send::send;
+use super::{finish, palette, remedies, setting, shadow, typing, what_if, zones};
 use crate::actions::ActionId;
 use crate::model::ui::{Ask, Edit, MapLayer, Purpose};
 use crate::model::{Ghost, Model, Overlay, Palette, parameter, planner_list::PlannerLine, preset};
@@ -39,6 +39,7 @@ pub(super) fn withdraw_motion(model: &mut Model) -> bool {
                     | Ask::FlyUncertified
                     | Ask::TakePlan
                     | Ask::Promote
+                    | Ask::Set { .. }
             )
     );
     if moves {
@@ -104,6 +105,9 @@ pub(super) fn cancel(model: &mut Model) {
             model.ui.overlay = if was_draft { Overlay::WhatIf } else { Overlay::None };
         }
         Overlay::Planners { purpose: Purpose::WhatIf, .. } => model.ui.overlay = Overlay::WhatIf,
+        Overlay::Confirm(Ask::Set { list: Some(selected), .. }) => {
+            model.ui.overlay = Overlay::Parameters { selected: *selected, edit: None };
+        }
         _ => model.ui.overlay = Overlay::None,
     }
 }
@@ -130,7 +134,7 @@ fn agree(model: &mut Model, ask: &Ask) -> Vec<Effect> {
     });
     match (can, ask) {
         (Ok(()), Ask::Start(seen)) => preflight::start(model, *seen),
-        (Ok(()), Ask::Set { key, value }) => set_parameter(model, key.clone(), value.clone()),
+        (Ok(()), Ask::Set { key, value, list }) => setting::take(model, key.clone(), value.clone(), *list),
         (Ok(()), ask) => send(model, ask.order()),
         (Err(why), _) => refuse(model, why),
     }
@@ -251,7 +255,7 @@ fn take_value(model: &mut Model, selected: usize, edit: Edit) -> Vec<Effect> {
                 what_if::set(model, &key, value);
                 return Vec::new();
             }
-            set_parameter(model, key, value)
+            setting::propose(model, key, value, Some(selected))
         }
         Err(why) => {
             let refused = Edit { refusal: Some(why), ..edit };

@@ -13,7 +13,9 @@ use mission::{Noted, Order, PlannerChoice, Severity};
 /// # Errors
 /// Returns the reason why not, as a sentence.
 pub(crate) fn can_load(model: &Model) -> Result<(), String> {
-    demand(!model.console.presets.is_empty(), "no presets yet; preset-save NAME saves one")?;
+    let why = "a preset cannot be loaded while the robot moves; <hold>: HOLD";
+    demand(!model.live.run.is_running(), why)?;
+    demand(!model.console.presets.is_empty(), "no presets yet; :preset-save NAME saves one")?;
     accepted(model, &Order::ChoosePlanner(PlannerChoice::default()))
 }
 

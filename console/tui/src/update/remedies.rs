@@ -2,9 +2,9 @@
 
 use super::act::{act, hold_only};
 use super::message::Effect;
-use super::offer::{accepted, offered, refuse};
+use super::offer::{accepted, demand, offered, refuse};
 use crate::actions::ActionId;
-use crate::guide::guide;
+use crate::guide;
 use crate::model::{Cause, Model, Overlay};
 use mission::Order;
 use positioning::Exclusion;
@@ -32,19 +32,22 @@ pub(crate) struct Step {
 
 /// The actions on an alarm, in the order of their numbers.
 pub(crate) fn steps(model: &Model, cause: &Cause) -> Vec<Step> {
-    let remedies = guide(cause).remedies.iter();
+    let remedies = guide::remedies(cause, &model.live.run);
     let of_guide = remedies.filter_map(|remedy| Some((remedy.text, remedy.action?)));
     let of_guide = of_guide.map(|(text, action)| Step { text: text.to_owned(), deed: Deed::Act(action) });
+    // A mission that takes no more orders keeps only the actions that are still possible; until then, actions that are not
+    // possible for the moment keep their numbers.
+    let is_over = model.live.is_cut_off || model.live.run.has_ended();
+    let is_left = |step: &Step| !is_over || can(model, &step.deed).is_ok();
     if model.live.is_cut_off {
-        // No console gives orders to this run any more; the operator can only look.
-        return of_guide.filter(|step| can(model, &step.deed).is_ok()).take(MOST).collect();
+        return of_guide.filter(is_left).take(MOST).collect();
     }
     let alarm = model.live.run.alarms.get(cause);
     let acknowledge = alarm.filter(|alarm| alarm.is_unacknowledged()).map(|_| Step {
         text: "Acknowledge (<acknowledge>).".to_owned(),
         deed: Deed::Act(ActionId::Acknowledge),
     });
-    of_guide.chain(station(model, cause)).chain(acknowledge).take(MOST).collect()
+    of_guide.chain(station(model, cause)).chain(acknowledge).filter(is_left).take(MOST).collect()
 }
 
 /// Advice: what the operator can do about an alarm apart from the actions.
@@ -52,8 +55,12 @@ pub(crate) fn advice(model: &Model, cause: &Cause) -> Vec<&'static str> {
     if model.live.is_cut_off && *cause != Cause::Writer {
         return vec!["No console controls this run any more. Check the robot on site."];
     }
-    let remedies = guide(cause).remedies.iter().filter(|remedy| remedy.action.is_none());
-    remedies.map(|remedy| remedy.text).collect()
+    let remedies = guide::remedies(cause, &model.live.run).filter(|remedy| remedy.action.is_none());
+    let left: Vec<&str> = remedies.map(|remedy| remedy.text).collect();
+    if model.live.run.has_ended() && left.is_empty() && steps(model, cause).is_empty() {
+        return vec!["Nothing to do: the mission has ended."];
+    }
+    left
 }
 
 /// Excluding the station that an alarm is about, or using it again.
@@ -96,6 +103,11 @@ fn largest_residual(model: &Model) -> Option<(StationId, f64)> {
 /// Returns the reason why not, as a sentence.
 pub(crate) fn can(model: &Model, deed: &Deed) -> Result<(), String> {
     match deed {
+        // The parameters can be read at any time, but an alarm asks to change them.
+        Deed::Act(ActionId::Parameters) => {
+            demand(!model.live.run.has_ended(), "the mission has ended")?;
+            offered(model, ActionId::Parameters)
+        }
         Deed::Act(action) => offered(model, *action),
         Deed::UseStation(station, used) => accepted(model, &order(model, *station, *used)),
     }

@@ -6,14 +6,11 @@ use super::overlay::ask;
 use crate::model::ui::Ask;
 use crate::model::what_if::MOST;
 use crate::model::{Candidate, Forecast, Model, Overlay, WhatIf, preset};
-use mission::{Order, ParamValue, Parameters, PlannerChoice, Severity};
+use mission::{Order, ParamValue, Parameters, Phase, PlannerChoice, Severity};
 
 /// Opens the comparison of the active planner, unchanged, with the others that can run this mission.
 pub(crate) fn open(model: &mut Model) -> Vec<Effect> {
     model.ui.overlay = Overlay::WhatIf;
-    if model.live.what_if.is_some() {
-        return Vec::new();
-    }
     let run = &model.live.run;
     let current = run.planning.choice.clone();
     let others = model.console.planners.iter().filter(|info| run.covers() && run.cannot_fly(info).is_none());
@@ -21,9 +18,53 @@ pub(crate) fn open(model: &mut Model) -> Vec<Effect> {
         .filter(|info| Some(info.id.as_str()) != run.planner_id())
         .map(|info| PlannerChoice { id: info.id.clone(), parameters: Parameters::new() });
     let choices: Vec<PlannerChoice> = current.into_iter().chain(others).take(MOST).collect();
-    let candidates = choices.iter().map(|choice| candidate(choice.clone())).collect();
-    model.live.what_if = Some(WhatIf { t_s: run.clock.t_s, candidates, selected: 0, draft: None });
-    vec![Effect::Forecast(choices)]
+    begin(model, &choices)
+}
+
+/// Forecasts the active planner unchanged and changed, so that the effect of the change can be shown before it is sent.
+pub(super) fn estimate(model: &mut Model, changed: PlannerChoice) -> Vec<Effect> {
+    if let Some(what_if) = &mut model.live.what_if {
+        what_if.candidates.truncate(MOST - 1);
+    }
+    let current = model.live.run.planning.choice.clone();
+    begin(model, &current.into_iter().chain([changed]).collect::<Vec<_>>())
+}
+
+/// Ends the forecasts of a change. Only those of a held mission that are finished remain of use.
+pub(super) fn stop_estimate(model: &mut Model) -> Vec<Effect> {
+    let is_held = matches!(model.live.run.phase(), Phase::Held(_));
+    let Some(what_if) = &mut model.live.what_if else { return Vec::new() };
+    what_if.candidates.retain(|candidate| is_held && candidate.made.is_some());
+    what_if.selected = 0;
+    let current = model.live.run.planning.choice.as_ref();
+    if what_if.candidates.first().map(|first| &first.choice) != current {
+        model.live.what_if = None;
+    }
+    vec![Effect::StopForecasting]
+}
+
+/// Adds planners to the comparison and has them forecast first. Finished forecasts are kept.
+fn begin(model: &mut Model, choices: &[PlannerChoice]) -> Vec<Effect> {
+    let current = model.live.run.planning.choice.clone();
+    let first = |what_if: &WhatIf| what_if.candidates.first().map(|first| first.choice.clone());
+    model.live.what_if.take_if(|what_if| first(what_if) != current);
+    let t_s = model.live.run.clock.t_s;
+    let fresh = || WhatIf { t_s, candidates: Vec::new(), selected: 0, draft: None };
+    let what_if = model.live.what_if.get_or_insert_with(fresh);
+    let before = what_if.candidates.len();
+    for choice in choices {
+        if what_if.candidates.len() < MOST && what_if.candidates.iter().all(|known| known.choice != *choice) {
+            what_if.candidates.push(candidate(choice.clone()));
+        }
+    }
+    if what_if.candidates.len() == before {
+        return Vec::new();
+    }
+    let open = what_if.candidates.iter().filter(|candidate| candidate.made.is_none());
+    let is_urgent = |choice: &PlannerChoice| choices.contains(choice) || current.as_ref() == Some(choice);
+    let (first, later): (Vec<_>, Vec<_>) =
+        open.map(|candidate| candidate.choice.clone()).partition(is_urgent);
+    vec![Effect::Forecast(first.into_iter().chain(later).collect())]
 }
 
 fn candidate(choice: PlannerChoice) -> Candidate {
@@ -38,10 +79,8 @@ pub(super) fn add(model: &mut Model, choice: PlannerChoice) -> Vec<Effect> {
         return refuse(model, format!("planner {} is already in the comparison", choice.id));
     }
     what_if.candidates.truncate(MOST - 1);
-    what_if.candidates.push(candidate(choice));
-    what_if.selected = what_if.candidates.len() - 1;
-    let open = what_if.candidates.iter().filter(|candidate| candidate.made.is_none());
-    vec![Effect::Forecast(open.map(|candidate| candidate.choice.clone()).collect())]
+    what_if.selected = what_if.candidates.len();
+    begin(model, &[choice])
 }
 
 /// Opens the parameters of the selected candidate so that they can be changed for another forecast.

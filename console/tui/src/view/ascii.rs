@@ -18,6 +18,8 @@ const PLAIN: &[(&str, char)] = &[
     ("Ø", 'D'),
     ("²", '2'),
     ("…·▁▂", '.'),
+    ("∙", '"'),
+    ("◇", '@'),
     ("▇◎", '*'),
     ("░", ':'),
     ("▒", '%'),
@@ -32,8 +34,13 @@ const PLAIN: &[(&str, char)] = &[
 pub(super) fn reduce(buffer: &mut Buffer) {
     for cell in &mut buffer.content {
         if !cell.symbol().is_ascii() {
-            let plain = PLAIN.iter().find(|(letters, _)| letters.contains(cell.symbol()));
-            cell.set_char(plain.map_or('?', |(_, plain)| *plain));
+            cell.set_char(plain(cell.symbol()));
         }
     }
+}
+
+/// The 7-bit character for a character outside ASCII.
+pub(super) fn plain(symbol: &str) -> char {
+    let plain = PLAIN.iter().find(|(letters, _)| letters.contains(symbol));
+    plain.map_or('?', |(_, plain)| *plain)
 }

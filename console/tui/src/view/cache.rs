@@ -12,7 +12,8 @@ use world::{Floor, PlateMap};
 /// Data kept between frames.
 #[derive(Debug, Default)]
 pub struct Cache {
-    shades: Option<(ShadeKey, Shades)>,
+    /// The newest one last: the legend needs the shades of the whole area, the map those of the area without it.
+    shades: Vec<(ShadeKey, Shades)>,
     plate_map: Option<(PlateMapKey, Rc<PlateMap>)>,
     plates: Option<(PlateKey, Rc<PlateDrawing>)>,
     shares: Option<((u64, u64), Shares)>,
@@ -62,7 +63,15 @@ impl Cache {
     }
 
     pub(super) fn shades(&mut self, key: ShadeKey, make: impl FnOnce() -> Shades) -> Shades {
-        kept(&mut self.shades, key, make)
+        if let Some((_, shades)) = self.shades.iter().find(|(before, _)| *before == key) {
+            return Rc::clone(shades);
+        }
+        let shades = make();
+        self.shades.push((key, Rc::clone(&shades)));
+        if self.shades.len() > 2 {
+            self.shades.remove(0);
+        }
+        shades
     }
 
     pub(super) fn plates(

@@ -7,7 +7,7 @@ use crate::model::history::{HISTORY_S, SLOT_S};
 use crate::model::{History, Pane, ui::Chart};
 use crate::theme::Role;
 use ratatui::Frame;
-use ratatui::layout::Rect;
+use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::symbols::Marker;
 use ratatui::text::Line;
 use ratatui::widgets::Block;
@@ -16,8 +16,11 @@ use world::Point;
 
 /// Width of the labels beside a curve, columns.
 const LABELS: u16 = 6;
-/// The mission time after which a curve shifts to the left, seconds.
-const PAGE_S: f64 = 60.0;
+/// The smallest plot that has a time axis, columns and rows.
+const AXIS: (u16, u16) = (26, 4);
+/// The width of a mission time, and of an axis with three of them, columns.
+const CLOCK: u16 = 10;
+const MIDDLE: u16 = 3 * CLOCK + 4;
 /// Space above the limit or the largest value, as a factor.
 const HEADROOM: f64 = 1.15;
 
@@ -42,7 +45,7 @@ fn note(series: &Series, area: Rect) -> String {
     let now =
         series.values.last(SLOT_S).last().map_or_else(String::new, |now| format!("now {}, ", said(now)));
     let limit = series.limit.map_or_else(String::new, |limit| format!("limit {}, ", said(limit)));
-    let minutes = format!("{} min", HISTORY_S / 60);
+    let minutes = text::minutes(series.values, HISTORY_S);
     text::wording([format!("{now}{limit}{minutes}"), format!("{limit}{minutes}"), minutes], room)
 }
 
@@ -98,15 +101,26 @@ fn series<'a>(look: &Look<'a>, chart: Chart) -> Option<Series<'a>> {
 }
 
 fn plot(look: &Look, frame: &mut Frame, area: Rect, series: &Series<'_>) {
-    let values: Vec<f64> = series.values.last(HISTORY_S).collect();
-    // The curve grows to the right and shifts left once a minute, so most frames change little and are cheap to
-    // draw.
-    let newest_s = series.values.newest_s();
-    let end_s = ((newest_s / PAGE_S).floor() + 1.0) * PAGE_S;
-    let at_s = |index: usize| newest_s - ((values.len() - 1 - index) * SLOT_S) as f64;
-    let points = values.iter().enumerate().map(|(index, value)| Point::new(at_s(index), *value)).collect();
-    let x = [end_s - HISTORY_S as f64, end_s];
+    let x = series.values.span_s(HISTORY_S);
+    let points = series.values.since(x[0]).map(|(t_s, value)| Point::new(t_s, value)).collect();
+    let has_axis = area.width >= AXIS.0 + LABELS && area.height >= AXIS.1;
+    let [area, below] =
+        Layout::vertical([Constraint::Fill(1), Constraint::Length(has_axis.into())]).areas(area);
     curve(look, frame, area, &Curve { points, x, limit: series.limit, decimals: series.decimals });
+    if has_axis {
+        axis(look, frame, Rect { x: below.x + LABELS, width: below.width - LABELS, ..below }, x);
+    }
+}
+
+/// Writes the mission time at the left edge, in the middle if there is room, and at the right edge.
+fn axis(look: &Look, frame: &mut Frame, area: Rect, [from_s, to_s]: [f64; 2]) {
+    let at = |t_s: f64| look.span(Role::Dim, format!("T+{}", text::clock(t_s)));
+    if area.width >= MIDDLE {
+        frame.render_widget(Line::from(at(f64::midpoint(from_s, to_s))).centered(), area);
+    }
+    let [left, right] = Layout::horizontal([Constraint::Fill(1); 2]).areas(area);
+    frame.render_widget(Line::from(at(from_s)), Rect { width: left.width.min(CLOCK), ..left });
+    frame.render_widget(Line::from(at(to_s)).right_aligned(), right);
 }
 
 /// A curve with its limit.

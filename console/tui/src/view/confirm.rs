@@ -5,11 +5,11 @@ use super::field::field;
 use super::lists::place_cursor;
 use super::look::Look;
 use super::next::{self, Clauses};
-use super::{coverage, text};
+use super::{coverage, setting, text};
 use crate::guide;
 use crate::model::ui::{Ask, Shelving};
 use crate::model::zone_draft::Form;
-use crate::model::{LineEdit, Model, Offer, Overlay, log::clock, parameter};
+use crate::model::{LineEdit, Model, Offer, Overlay, Shadow, log::clock};
 use crate::theme::Role;
 use account::Resumption;
 use mission::WayBack;
@@ -36,7 +36,14 @@ fn question_lines(model: &Model, columns: u16) -> Vec<String> {
     let columns = usize::from(columns).saturating_sub(2);
     let is_whole = matches!(
         model.ui.overlay,
-        Overlay::Confirm(Ask::Start(_) | Ask::DriveBack | Ask::DrawZone(_) | Ask::TakePlan)
+        Overlay::Confirm(
+            Ask::Start(_)
+                | Ask::DriveBack
+                | Ask::DrawZone(_)
+                | Ask::TakePlan
+                | Ask::Promote
+                | Ask::Set { .. }
+        )
     );
     if !is_whole {
         return vec![next::joined(&clauses, columns)];
@@ -117,6 +124,7 @@ fn asked(model: &Model) -> Option<Vec<String>> {
                 format!("The robot will move: {}.", promised(model)),
             ]
             .into_iter()
+            .chain(stands(model))
             .chain(model.live.left_out().and_then(|left_out| left_out.resumption).map(|at| resumes(&at)))
             .collect()
         }
@@ -133,7 +141,8 @@ fn asked(model: &Model) -> Option<Vec<String>> {
             let next = text::fit(&choice.id, 18);
             let question = match (choice.parameters.len(), model.live.run.planner_id()) {
                 (n @ 1.., Some(id)) if id == choice.id => {
-                    format!("Restart {next} with {n} parameters set? <accept>: change, <cancel>: cancel.")
+                    let set = text::counted(n, "set parameter");
+                    format!("Restart {next} with {set}? <accept>: restart, <cancel>: cancel.")
                 }
                 _ => format!("Change planner to {next}? <accept>: change, <cancel>: cancel."),
             };
@@ -158,18 +167,18 @@ fn asked(model: &Model) -> Option<Vec<String>> {
             vec!["Close this floor? <accept>: close, <cancel>: cancel.".into(), zone_cost(model)]
         }
         Overlay::ZoneDraft(draft) => vec![drawing(draft.form), "Mouse: drag.".into()],
-        Overlay::Confirm(Ask::Set { key, value }) => {
-            let change =
-                parameter::change(model.planner(), model.live.run.planning.choice.as_ref(), key, value);
-            vec![format!("Set {change}? <accept>: set, <cancel>: cancel."), "It takes effect now.".into()]
-        }
+        Overlay::Confirm(Ask::Set { key, value, .. }) => setting::clauses(model, key, value),
         Overlay::Confirm(Ask::Promote) => {
             let shadow = model.live.run.shadow.as_ref();
             let next = text::fit(shadow.map_or("-", |shadow| &shadow.choice.id), 18);
             let driving = model.live.run.planner_id().unwrap_or("-");
             vec![
                 format!("Promote {next} from shadow? <accept>: promote, <cancel>: cancel."),
-                format!("It takes over from {driving} without a hold."),
+                match model.live.run.is_running() {
+                    true => format!("It takes over from {driving} without a hold."),
+                    false => format!("It takes over from {driving}; the robot stays held."),
+                },
+                shadow.map_or_else(String::new, |shadow| shadows_plan(model, shadow)),
             ]
         }
         Overlay::Confirm(Ask::TakePlan) => {
@@ -198,10 +207,33 @@ fn asked(model: &Model) -> Option<Vec<String>> {
     Some(clauses.iter().map(|clause| model.console.keys.spelled(clause)).collect())
 }
 
+/// The plan of the planner in shadow, as sentences: its length, and what the tether demands of it.
+fn shadows_plan(model: &Model, shadow: &Shadow) -> String {
+    let length = match (shadow.path.is_empty(), shadow.complete) {
+        (true, _) => "It drives step by step, without a path.".to_owned(),
+        (false, true) => {
+            format!("Its plan: {} m for the rest of the task.", text::number(shadow.length_m, 1))
+        }
+        (false, false) => format!("Its plan: {} m, PARTIAL.", text::number(shadow.length_m, 1)),
+    };
+    let has_tether = model.live.run.about.as_ref().is_some_and(|about| about.mission.tether.is_some());
+    let certificate = if has_tether {
+        " Its certificate for the tether is made at the promotion; without one, it stays in shadow."
+    } else {
+        ""
+    };
+    format!("{length}{certificate}")
+}
+
 /// The length and clearance of a way back: `To the anchor, 5.5 m, clearance 0.12 m`.
 pub(super) fn finish_way(way: &WayBack) -> String {
     let (length, clearance) = (text::number(way.length_m, 1), text::number(way.clearance_m, 2));
     format!("To the {}, {length} m, clearance {clearance} m", way.to.word())
+}
+
+/// Where the robot must stand before a re-scan, as a sentence; `None` if it was left there.
+fn stands(model: &Model) -> Option<String> {
+    Some(format!("The robot {}.", model.must_stand()?))
 }
 
 /// Where the plan of a re-scan begins to scan, and what it scans a second time, as a sentence.
@@ -221,7 +253,7 @@ fn continues(model: &Model) -> Option<String> {
     let rest = rest.map_or_else(String::new, |plan| {
         format!(", {} m of the plan left", text::number(plan.rest_m(progress), 1))
     });
-    Some(format!("It continues at {} (×){rest}.", text::place(progress.target)))
+    Some(format!("The robot continues at {} (×){rest}.", text::place(progress.target)))
 }
 
 /// What the zone in the question costs, as sentences.

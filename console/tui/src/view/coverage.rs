@@ -63,7 +63,7 @@ fn wide_lines(look: &Look, columns: usize) -> Vec<(u8, Line<'static>)> {
         row(5, "speed", pace(run, room)),
         row(6, "overlap", format!("{overlap} % of scanned floor")),
         row(4, way_label(run), way(run)),
-        row(2, "time left", left(run, true)),
+        row(2, "time left", left(look, true)),
     ]
 }
 
@@ -74,7 +74,7 @@ fn narrow_lines(look: &Look) -> Vec<(u8, Line<'static>)> {
     let left_or_missed = if run.has_missed() {
         format!("missed {} % of reachable", percent(run, Raster::reachable, |percent| percent.missed))
     } else {
-        format!("left {}", left(run, false))
+        format!("left {}", left(look, false))
     };
     let mark = if is_stale(look) { "◌" } else { " " };
     vec![
@@ -148,10 +148,14 @@ fn way(run: &Run) -> String {
 }
 
 /// The remaining mission time, and the mission time at the end.
-fn left(run: &Run, wide: bool) -> String {
-    let Some(left_s) = run.left_s() else {
+pub(super) fn left(look: &Look, wide: bool) -> String {
+    let run = look.run;
+    let Some(left_s) = look.model.live.left_s() else {
         return if run.has_ended() { "ended".into() } else { "-".into() };
     };
+    if run.clock.started_s.is_none() {
+        return format!("{} from the start", text::clock(left_s));
+    }
     let end = text::clock(run.clock.t_s + left_s);
     if wide {
         format!("{}, ends T+{end}", text::clock(left_s))

@@ -46,8 +46,25 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let block = look.pane(Pane::Events, &title, &look.keys(note));
     let inner = block.inner(area);
     let listed = ui.events.matches.newest(&look.run.log, newer).take(usize::from(inner.height));
-    let lines = listed.map(|listed| look.line(listed_row(&listed, usize::from(inner.width)))).collect();
-    fill(frame, area, block, lines);
+    let lines = listed.map(|listed| look.line(listed_row(&listed, usize::from(inner.width))));
+    fill(frame, area, block, nothing(look).into_iter().chain(lines).collect());
+}
+
+/// Why no event is listed, and what to do; `None` if one is.
+fn nothing(look: &Look) -> Option<Line<'static>> {
+    let ui = &look.model.ui;
+    let needle = without_least(&ui.needle);
+    let words = match needle.is_empty() {
+        _ if !ui.events.matches.is_empty() => return None,
+        true if ui.needle.is_empty() => "No events.".to_owned(),
+        true => look.keys("No event is that severe. <cancel>: show all events."),
+        false => format!(
+            "No event matches `{}`. {}",
+            text::fit(&needle, 30),
+            look.keys("<cancel>: show all events.")
+        ),
+    };
+    Some(look.line([(Role::Dim, format!(" {words}"))]))
 }
 
 /// Draws the events screen.
@@ -93,14 +110,7 @@ fn list(look: &Look, frame: &mut Frame, area: Rect) {
     let inner = block.inner(area);
     let columns = usize::from(inner.width);
     let mut lines = filter_lines(look, columns);
-    if events.matches.is_empty() {
-        let hint = if look.model.ui.needle.is_empty() {
-            "No events."
-        } else {
-            "No event matches. <filter>, then <cancel>: clear filter."
-        };
-        lines.push(look.line([(Role::Dim, format!(" {}", look.keys(hint)))]));
-    }
+    lines.extend(nothing(look));
     let height = usize::from(inner.height).saturating_sub(lines.len());
     let newer = events.newer();
     let shown = table::window(newer, events.matches.len(), height);

@@ -12,14 +12,14 @@ use crate::model::replay::Jump;
 use crate::model::zone_draft::Form;
 use crate::model::{Model, Overlay, Screen, ui::Arrangement};
 use crate::theme::Role;
-use crate::update::{is_typing, offered};
-use mission::Phase;
+use crate::update::{is_typing, offer::accepted, offered};
+use mission::{Order, Phase};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 /// The actions that are dropped first if space is short.
-const DISPENSABLE: [ActionId; 25] = [
+const DISPENSABLE: [ActionId; 24] = [
     ActionId::Difference,
     ActionId::Align,
     ActionId::Jump(Jump::Minute),
@@ -44,7 +44,6 @@ const DISPENSABLE: [ActionId; 25] = [
     ActionId::Report,
     ActionId::Verify,
     ActionId::Rescan,
-    ActionId::Help,
 ];
 
 /// Columns around a notice beside the keys.
@@ -68,9 +67,11 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     }
 }
 
-/// The columns that remain for a notice beside the keys that are always shown.
+/// The columns that remain for a notice beside the keys that are always shown, except the key of the help.
 pub(super) fn room(model: &Model, columns: usize) -> usize {
-    columns.saturating_sub(width(&fitting(model, 0)) + GAP)
+    let mut always = lasting(model, 0);
+    always.retain(|hint| hint.id != ActionId::Help);
+    columns.saturating_sub(width(&always) + GAP)
 }
 
 /// The footer line, with as many keys as fit.
@@ -78,18 +79,45 @@ pub(super) fn line(look: &Look, columns: usize) -> Line<'static> {
     written(look, fitting(look.model, columns))
 }
 
-/// The keys that fit.
+/// The keys that fit, each with its whole label; at least one.
 fn fitting(model: &Model, columns: usize) -> Vec<Hint> {
+    let mut hints = lasting(model, columns);
+    while width(&hints) > columns && hints.len() > 1 {
+        // Of several keys that matter equally, the last one goes.
+        let least = (0..hints.len()).max_by_key(|index| weight(model, hints[*index].id));
+        hints.remove(least.unwrap_or_default());
+    }
+    hints
+}
+
+/// The keys without the dispensable ones that do not fit.
+fn lasting(model: &Model, columns: usize) -> Vec<Hint> {
     let mut hints = hints(model);
-    let paged = model.ui.arrangement() == Arrangement::Paged;
     for id in DISPENSABLE {
-        // With one pane at a time, the other panes could not be reached without the key for the next pane.
-        let kept = paged && id == ActionId::NextPane;
-        if width(&hints) > columns && !kept {
+        if width(&hints) > columns && !is_way_on(model, id) {
             hints.retain(|hint| hint.id != id);
         }
     }
     hints
+}
+
+/// Whether an action is the only way to the other panes, because one pane is shown at a time.
+fn is_way_on(model: &Model, id: ActionId) -> bool {
+    id == ActionId::NextPane && model.ui.arrangement() == Arrangement::Paged
+}
+
+/// How soon a key is left out, from the last one to the first.
+fn weight(model: &Model, id: ActionId) -> u8 {
+    match id {
+        ActionId::Hold | ActionId::Interrupt => 0,
+        ActionId::Accept => 1,
+        ActionId::Cancel if model.ui.overlay != Overlay::None => 1,
+        id if model.ui.screen.row().first == id => 1,
+        ActionId::Help => 2,
+        id if is_way_on(model, id) => 3,
+        ActionId::Back | ActionId::Abort => 4,
+        _ => 5,
+    }
 }
 
 fn written(look: &Look, hints: Vec<Hint>) -> Line<'static> {
@@ -187,7 +215,11 @@ fn label(action: &Action, model: &Model) -> String {
         (ActionId::Hold, Overlay::None) if is_playing == Some(true) => "pause",
         (ActionId::Hold, Overlay::None) if is_playing == Some(false) => "play",
         (ActionId::Hold, _) if matches!(model.live.run.phase(), Phase::Held(_)) && !model.live.may_move() => {
-            "resume…"
+            if accepted(model, &Order::Resume).is_ok() {
+                "resume…"
+            } else {
+                ""
+            }
         }
         (ActionId::Interrupt, _) if is_typing(model) => "HOLD",
         (ActionId::Cancel, Overlay::None) => "close cursor",

@@ -2,6 +2,7 @@
 
 use super::cache::Cache;
 use super::text;
+use crate::actions::{ActionId, find};
 use crate::caps::{Caps, Colours, Glyphs};
 use crate::model::{Model, Pane, Run};
 use crate::theme::{Role, Theme};
@@ -55,16 +56,26 @@ impl Look<'_> {
         self.model.console.keys.spelled(sentence)
     }
 
-    /// The frame of a pane; a mark before the title shows that the arrow keys apply to the pane.
+    /// The frame of a pane. On a large screen, the title shows the key of the pane; a mark before the title shows that
+    /// the arrow keys apply to the pane.
     pub(crate) fn pane<'t>(&self, pane: Pane, title: &str, note: &str) -> Block<'t> {
         let panes = self.model.ui.panes();
         let focus = self.model.ui.pane == pane && panes.contains(&pane);
+        let title = &format!("{}{title}", self.pane_key(pane));
         match (focus, panes.len()) {
             (true, _) => self.block(Role::Focus, title, note),
             // With one pane, or none that could have the focus, every title is bold.
             (false, 0 | 1) => self.frame(Role::Border, (Role::Title, &format!(" {title} ")), note),
             (false, _) => self.frame(Role::Border, (Role::Text, &format!(" {title} ")), note),
         }
+    }
+
+    /// The key of a pane that has one, for its title.
+    pub(crate) fn pane_key(&self, pane: Pane) -> String {
+        let index = self.model.ui.numbered_panes().iter().position(|other| *other == pane);
+        let action = index.and_then(|index| find::row(ActionId::Pane(index as u8 + 1)));
+        let key = action.and_then(|action| self.model.console.keys.of(action).first());
+        key.map_or_else(String::new, |key| format!("{key} "))
     }
 
     /// A frame with a title; a mark before the title shows that the arrow keys apply here.

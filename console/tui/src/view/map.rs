@@ -37,7 +37,8 @@ const MARGIN: f64 = 1.04;
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let ui = &look.model.ui;
     let title = title(look.model);
-    let mut block = look.pane(Pane::Map, &title, &keys(look, usize::from(area.width), text::width(&title)));
+    let titled = text::width(&title) + text::width(&look.pane_key(Pane::Map));
+    let mut block = look.pane(Pane::Map, &title, &keys(look, usize::from(area.width), titled));
     if let Some(at) = ui.cursor {
         block = block.title_bottom(look.span(Role::Title, format!("─ {} ", readout::floor(look, at))));
     }

@@ -10,7 +10,8 @@ use ratatui::layout::Rect;
 
 /// The account of the floor for a run that has ended.
 pub(super) fn account<'a>(look: &Look<'a>) -> Option<&'a Account> {
-    look.model.live.result.as_ref()?.summary.floor.as_ref()
+    look.model.live.result.as_ref()?;
+    look.model.live.floor()
 }
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {

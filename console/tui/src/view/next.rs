@@ -4,9 +4,12 @@ mod held;
 
 use super::{confirm, events, text};
 use crate::guide;
-use crate::model::{Busy, Model, Offer, Overlay, Replay, Screen, ui::Ask};
+use crate::model::planning::Lead;
+use crate::model::{Alarm, Busy, Model, Offer, Overlay, Replay, Screen, ui::Ask};
 use crate::theme::Role;
 use mission::{Outcome, Phase, Readiness, Severity};
+
+const ACKNOWLEDGE: &str = "<acknowledge>: acknowledge.";
 
 /// The role of the line, and its clauses, most important first.
 pub(super) type Clauses = (Role, Vec<String>);
@@ -101,6 +104,13 @@ pub(crate) fn by_command(model: &Model) -> Vec<String> {
 
 /// What comes next, without the figures that keep changing.
 pub(crate) fn standing(model: &Model) -> String {
+    if let (Phase::Held(hold), None, false) =
+        (model.live.run.phase(), &model.live.asked, model.live.is_cut_off || model.live.is_look_only())
+    {
+        let work = model.live.busy.as_ref().map(|busy| format!("{}.", busy.work));
+        let clauses = held::clauses(model, hold).into_iter().chain(work);
+        return clauses.map(|clause| model.console.keys.spelled(&clause)).collect::<Vec<_>>().join(" ");
+    }
     if let Some(busy) = &model.live.busy {
         return format!("{}.", busy.work);
     }
@@ -206,28 +216,47 @@ fn running(model: &Model) -> Clauses {
         let text = format!("POSITION LOST: automatic HOLD after {} s.", text::number(hold_s, 1));
         return (Role::Crit, vec![text]);
     }
-    let open = model
-        .live
-        .run
-        .alarms
-        .worst()
-        .filter(|alarm| alarm.is_unacknowledged() && alarm.severity >= Severity::Warn);
-    if let Some(alarm) = open {
-        let over = if alarm.is_active() { "" } else { " (cleared)" };
+    let alarms = &model.live.run.alarms;
+    let is_shown = |alarm: &&Alarm| alarm.severity >= Severity::Warn;
+    let (role, doing) = doing(model);
+    if let Some(alarm) = alarms.worst_active_unacknowledged().filter(is_shown) {
         let name = text::capitalized(&guide::name(&alarm.cause, &model.live.run));
         let details = format!("{}.", text::capitalized(&alarm.text));
-        let clauses = vec![format!("{name}{over}."), "<acknowledge>: acknowledge.".into(), details];
-        return (events::role(alarm.severity), clauses);
+        let clauses = [format!("{name}."), ACKNOWLEDGE.into(), details].into_iter().chain(doing);
+        return (events::role(alarm.severity), clauses.collect());
     }
-    if let Some(offer) = &model.live.run.planning.offer {
+    match alarms.worst_returned() {
+        Some(alarm) => {
+            let name = text::capitalized(&guide::name(&alarm.cause, &model.live.run));
+            (role, doing.into_iter().chain([format!("{name} (cleared). {ACKNOWLEDGE}")]).collect())
+        }
+        None => {
+            let calm = (role == Role::Title).then(|| "No action required.".to_owned());
+            (role, doing.into_iter().chain(calm).collect())
+        }
+    }
+}
+
+/// What the robot does now: a better plan on offer, the way to the start of a new plan, or the next target.
+fn doing(model: &Model) -> Clauses {
+    let run = &model.live.run;
+    if let Some(offer) = &run.planning.offer {
         return (Role::Watch, better_plan(offer));
     }
-    let calm = "No action required.".to_owned();
-    let Some(progress) = &model.live.run.progress else {
-        return (Role::Title, vec!["Waiting for first command.".into(), calm]);
+    let Some(progress) = &run.progress else {
+        return (Role::Title, vec!["Waiting for first command.".into()]);
     };
-    let (at, done) = (text::place(progress.target), text::percent(progress.done));
-    (Role::Title, vec![format!("Next target: {at}; path {done} % done."), calm])
+    let done = text::percent(progress.done);
+    let lead = run.planning.plan.as_ref().and_then(|plan| plan.lead_left_m(progress));
+    if let Some((lead, left_m)) = lead {
+        let why = match lead {
+            Lead::Back => "Driving back along the tether to the start of the new plan",
+            Lead::ToLane => "Driving to the first lane of the plan",
+        };
+        let left = format!("{why}: {} m left.", text::number(left_m, 1));
+        return (Role::Title, vec![left, format!("Path {done} % done.")]);
+    }
+    (Role::Title, vec![format!("Next target: {}; path {done} % done.", text::place(progress.target))])
 }
 
 /// The drive back to the anchor or the start.

@@ -6,7 +6,7 @@ use super::small_map::{self, SmallMap};
 use super::text;
 use crate::guide;
 use crate::model::ui::Arrangement;
-use crate::model::{Glimpse, PastRun, Run};
+use crate::model::{Glimpse, PastRun, Run, Together};
 use crate::theme::Role;
 use account::{MissReason, Summary};
 use ratatui::Frame;
@@ -63,8 +63,9 @@ pub(super) fn lines(look: &Look, run: &PastRun, columns: usize) -> Vec<Line<'sta
     let mut lines = fields::lines(look, &outcome(run, summary, room), NAMES, columns);
     lines.extend(notes(look, run, columns).into_iter().map(|parts| look.line(parts)));
     if let Some(glimpse) = glimpse {
-        let figures = summary.map(figures).unwrap_or_default();
-        let all: Vec<Field> = figures.into_iter().chain(events(&glimpse.run, summary)).collect();
+        let figures = summary.map(|summary| figures(summary, glimpse.together())).unwrap_or_default();
+        let combined = combined(glimpse).into_iter();
+        let all: Vec<Field> = combined.chain(figures).chain(events(&glimpse.run, summary)).collect();
         lines.extend(fields::lines(look, &all, NAMES, columns));
     } else if let Some(Err(why)) = found {
         lines.extend(wrapped(Role::Warn, why, columns).map(|parts| look.line(parts)));
@@ -128,7 +129,24 @@ fn notes(look: &Look, run: &PastRun, columns: usize) -> Vec<Parts> {
     lines
 }
 
-fn figures(summary: &Summary) -> Vec<Field> {
+/// What a re-scan and the runs before it have scanned together.
+fn combined(glimpse: &Glimpse) -> Option<Field> {
+    let words = match glimpse.combined.as_ref()? {
+        Ok(all) => {
+            let (reachable, whole) = (&all.floor.reachable.percent, &all.floor.whole.percent);
+            format!(
+                "with {}: {} % of reachable floor, {} % of the whole",
+                all.before(),
+                text::number(reachable.scanned, 1),
+                text::number(whole.scanned, 1)
+            )
+        }
+        Err(why) => format!("this run alone; the runs cannot be combined: {why}"),
+    };
+    Some(("all runs", words))
+}
+
+fn figures(summary: &Summary, together: Option<&Together>) -> Vec<Field> {
     let metres = |m: f64, decimals| format!("{} m", text::number(m, decimals));
     let mut fields: Vec<Field> = Vec::new();
     fields.extend(summary.path_length_m.map(|m| ("path", metres(m, 1))));
@@ -143,20 +161,18 @@ fn figures(summary: &Summary) -> Vec<Field> {
         let wrap = text::number(tether.wrap_max_rad.to_degrees(), 0);
         fields.push(("tether", format!("{} out, wrap {wrap}°", metres(tether.tether_length_max_m, 1))));
     }
-    if let Some(floor) = &summary.floor {
+    if let Some(floor) = together.map(|all| &all.floor).or(summary.floor.as_ref()) {
         let missed: Vec<_> = floor.missed.iter().filter(|area| area.reason != MissReason::NotAsked).collect();
         let area_m2: f64 = missed.iter().map(|area| area.area_m2).sum();
-        fields
-            .push(("missed", format!("{}, {} m²", counted(missed.len(), "area"), text::number(area_m2, 2))));
+        fields.push((
+            "missed",
+            format!("{}, {} m²", text::counted(missed.len(), "area"), text::number(area_m2, 2)),
+        ));
     }
     for violation in summary.violations.iter().flatten() {
         fields.push(("not met", violation.clone()));
     }
     fields
-}
-
-fn counted(n: usize, what: &str) -> String {
-    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
 /// What happened during the run.
@@ -168,7 +184,7 @@ fn events(run: &Run, summary: Option<&Summary>) -> Vec<Field> {
         fields.push(("holds", format!("{holds}, collisions {collisions}, planner faults {faults}")));
         fields.extend(
             (summary.obstacles_found > 0)
-                .then(|| ("found", counted(summary.obstacles_found as usize, "obstacle"))),
+                .then(|| ("found", text::counted(summary.obstacles_found as usize, "obstacle"))),
         );
     }
     let mut alarms: Vec<_> = run.alarms.list().iter().collect();
@@ -185,7 +201,12 @@ fn events(run: &Run, summary: Option<&Summary>) -> Vec<Field> {
 /// The map of a run with its largest missed areas.
 fn map(glimpse: &Glimpse) -> Option<SmallMap<'_>> {
     let mut map = SmallMap::of_run(&glimpse.run)?;
-    let floor = glimpse.summary.as_ref().and_then(|summary| summary.floor.as_ref());
+    let together = glimpse.together();
+    map.scanned = map
+        .scanned
+        .map(|(own, has_ended)| (together.and_then(|all| all.raster.as_ref()).unwrap_or(own), has_ended));
+    let own = || glimpse.summary.as_ref().and_then(|summary| summary.floor.as_ref());
+    let floor = together.map(|all| &all.floor).or_else(own);
     let missed = floor.into_iter().flat_map(|floor| &floor.missed);
     let listed = missed.filter(|area| area.reason != MissReason::NotAsked).take(MARKED);
     for (index, area) in listed.enumerate() {

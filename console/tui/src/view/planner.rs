@@ -2,8 +2,8 @@
 
 use super::look::{Look, fill, marked, ranked};
 use super::{shadow, text};
-use crate::model::history::{HISTORY_S, SLOT_S};
-use crate::model::{Offer, Pane, Run};
+use crate::model::history::HISTORY_S;
+use crate::model::{Offer, Pane, Run, parameter};
 use crate::theme::Role;
 use planner_api::{Drive, Status};
 use ratatui::Frame;
@@ -76,7 +76,11 @@ fn better(look: &Look, offer: &Offer, room: usize) -> Value {
 
 fn planner(look: &Look) -> Value {
     match (look.model.planner(), look.run.planner_id()) {
-        (Some(info), _) => (Role::Title, format!("{} {}", info.id, info.version)),
+        (Some(info), _) => {
+            let changed = parameter::changed(info, look.run.planning.choice.as_ref());
+            let mark = if changed > 0 { format!("*, {changed} changed") } else { String::new() };
+            (Role::Title, format!("{} {}{mark}", info.id, info.version))
+        }
         (None, Some(id)) => (Role::Title, id.to_owned()),
         (None, None) => (Role::Text, "-".into()),
     }
@@ -184,7 +188,7 @@ fn curve(look: &Look, name: &str, room: usize) -> String {
     if !is_drawn {
         return String::new();
     }
-    text::sparkline(history.last(HISTORY_S), largest, room, HISTORY_S / SLOT_S)
+    text::sparkline(history, HISTORY_S, largest, room)
 }
 
 /// A figure of the planner; a count has no decimals.

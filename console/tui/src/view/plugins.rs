@@ -34,8 +34,8 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
 }
 
 fn files(look: &Look, frame: &mut Frame, area: Rect, (found, selected): (&[Plugin<'_>], usize)) {
-    let planners = look.model.console.planners.len();
-    let title = format!("Plugins  {planners} planners in {} files", found.len());
+    let planners = text::counted(look.model.console.planners.len(), "planner");
+    let title = format!("Plugins  {planners} in {}", text::counted(found.len(), "file"));
     let block = look.block(Role::Focus, &title, &look.keys("<reload> reload"));
     let inner = block.inner(area);
     let columns = usize::from(inner.width);

@@ -68,6 +68,11 @@ fn narrow_lines(look: &Look, inner: Rect) -> Vec<(u8, Line<'static>)> {
     ]
 }
 
+/// The state and age of the last fix, the stations heard and the residual, as one sentence.
+pub(super) fn brief(look: &Look) -> String {
+    format!("{}, {} heard, residual {}", fix(look).1, heard(look.run, "/"), residual(look.run))
+}
+
 pub(super) fn is_fix_stale(look: &Look) -> bool {
     let position = &look.run.position;
     let expects = !look.run.has_ended() && position.fix.is_some();
@@ -116,10 +121,10 @@ fn error(look: &Look) -> (Role, String) {
 
 fn curve(look: &Look, columns: usize) -> Line<'static> {
     let limit_m = limit_m(look.run);
-    let note = format!(" 2 min, 0-{} m", text::number(limit_m, 2));
+    let history_m = &look.run.position.history_m;
+    let note = format!(" {}, 0-{} m", text::minutes(history_m, CURVE_S), text::number(limit_m, 2));
     let room = columns.saturating_sub(text::width(&note) + 2);
-    let (history_m, slots) = (&look.run.position.history_m, CURVE_S / SLOT_S);
-    let curve = text::sparkline(history_m.last(CURVE_S), limit_m, room.min(slots), slots);
+    let curve = text::sparkline(history_m, CURVE_S, limit_m, room.min(CURVE_S / SLOT_S));
     look.line([(Role::Text, " ".into()), (Role::Watch, curve), (Role::Dim, note)])
 }
 

@@ -4,7 +4,7 @@
 mod figures;
 mod floor;
 mod missed;
-mod plates;
+pub(super) mod plates;
 
 use super::look::{Look, fill};
 use super::map;
@@ -61,8 +61,8 @@ fn side(look: &Look, frame: &mut Frame, area: Rect, (result, size): (&RunResult,
     let shares = if has_plates { wanted.min(area.height) } else { area.height };
     let [floor, plates] = Layout::vertical([Constraint::Length(shares), Constraint::Fill(1)]).areas(area);
     floor::draw(look, frame, floor, result);
-    if has_plates && plates.height > 3 {
-        plates::draw(look, frame, plates);
+    if let Some(floor) = look.model.live.floor().filter(|_| has_plates && plates.height > 3) {
+        plates::draw(look, frame, plates, floor);
     }
 }
 

@@ -3,10 +3,10 @@
 mod compare;
 
 use super::look::{Look, Parts, fill};
-use super::{past_run, table, text};
+use super::{past_run, run_details, table, text};
 use crate::model::replay::Other;
 use crate::model::ui::Arrangement;
-use crate::model::{PastRun, Replay};
+use crate::model::{Glimpse, PastRun, Replay};
 use crate::theme::Role;
 use crate::update::Rows;
 use ratatui::Frame;
@@ -23,12 +23,7 @@ const DETAIL: u16 = 88;
 pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     if arrangement == Arrangement::Wide && area.width >= LARGE {
         let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(DETAIL)]).areas(area);
-        let rows = if compared(look).is_some() { BELOW.0 } else { 0 };
-        let [list, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(left);
-        runs(look, frame, list);
-        if let Some(compared) = compared(look) {
-            compare::draw(look, frame, below, compared);
-        }
+        large(look, frame, left);
         return about(look, frame, right);
     }
     let rows = match arrangement {
@@ -50,6 +45,30 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
         None if rows > 0 => about(look, frame, below),
         None => {}
     }
+}
+
+/// Below the list, a large screen shows the details of the selected run, or a comparison.
+fn large(look: &Look, frame: &mut Frame, area: Rect) {
+    if let Some(compared) = compared(look) {
+        let [list, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(BELOW.0)]).areas(area);
+        runs(look, frame, list);
+        return compare::draw(look, frame, below, compared);
+    }
+    let glimpse = glimpse(look);
+    // The list keeps at least a third of the screen.
+    let wanted = (look.model.review.runs(&look.model.home).len() as u16).saturating_add(3);
+    let list = if glimpse.is_some() { wanted.max(area.height / 3).min(area.height / 2) } else { area.height };
+    let [list, below] = Layout::vertical([Constraint::Length(list), Constraint::Fill(1)]).areas(area);
+    runs(look, frame, list);
+    if let Some(glimpse) = glimpse {
+        run_details::draw(look, frame, below, glimpse);
+    }
+}
+
+/// The details of the selected run, once they have been read.
+fn glimpse<'a>(look: &Look<'a>) -> Option<&'a Glimpse> {
+    let run = look.model.review.run(&look.model.home)?;
+    look.model.home.glimpses.of(&run.name)?.as_ref().ok().map(|glimpse| &**glimpse)
 }
 
 /// The replayed run and the one with which it is compared.

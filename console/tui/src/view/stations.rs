@@ -3,7 +3,7 @@
 use super::look::{Look, Parts, fill, marked};
 use super::{position, text};
 use crate::model::Pane;
-use crate::model::history::{HISTORY_S, SLOT_S};
+use crate::model::history::HISTORY_S;
 use crate::theme::Role;
 use positioning::Exclusion;
 use ratatui::Frame;
@@ -74,9 +74,9 @@ fn history(look: &Look, station: StationId, columns: usize) -> Parts {
     let history = look.run.position.station_history_mm.get(&station);
     let Some(history) = history else { return vec![(Role::Dim, " no residual yet".into())] };
     let largest = history.last(HISTORY_S).fold(0.0, f64::max);
-    let note = format!(" {} min, 0-{} mm", HISTORY_S / 60, text::number(largest, 0));
+    let note = format!(" {}, 0-{} mm", text::minutes(history, HISTORY_S), text::number(largest, 0));
     let room = columns.saturating_sub(text::width(&note) + 2);
-    let curve = text::sparkline(history.last(HISTORY_S), largest, room, HISTORY_S / SLOT_S);
+    let curve = text::sparkline(history, HISTORY_S, largest, room);
     vec![(Role::Watch, format!(" {curve}")), (Role::Dim, note)]
 }
 

@@ -2,13 +2,19 @@
 
 use super::look::{Look, ranked};
 use super::next::Clauses;
-use super::{confirm, coverage, footer, next, notice, text, top};
+use super::{confirm, coverage, footer, next, notice, position, text, top};
+use crate::model::log::Entry;
 use crate::model::{Model, Overlay};
 use crate::theme::Role;
+use mission::Severity;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 use ratatui::widgets::Paragraph;
+
+/// The most events, and the width of the mission time before them.
+const EVENTS: usize = 12;
+const AT: usize = 12;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let framed = area.width >= 24 && area.height >= 7;
@@ -42,6 +48,9 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     add(4, vec![plain(look, &position(look), columns)]);
     add(5, tether(look).map(|tether| plain(look, &tether, columns)).into_iter().collect());
     add(6, way(look).map(|way| plain(look, &way, columns)).into_iter().collect());
+    add(8, vec![plain(look, &ranging(look), columns)]);
+    add(9, left(look).map(|left| plain(look, &left, columns)).into_iter().collect());
+    add(10, events(look, columns));
     add(2, vec![footer::line(look, columns)]);
     add(
         7,
@@ -56,10 +65,37 @@ fn plain(look: &Look, words: &str, columns: usize) -> Line<'static> {
     Line::from(look.span(Role::Text, text::fit(words, columns)))
 }
 
-/// The tether: length out, reel, and largest wrap.
+/// The last fix and the stations.
+fn ranging(look: &Look) -> String {
+    format!(" fix {}", position::brief(look))
+}
+
+/// The remaining mission time.
+fn left(look: &Look) -> Option<String> {
+    look.run.is_running().then(|| format!(" time left {}", coverage::left(look, true)))
+}
+
+/// The newest events, for the rows that nothing else needs.
+fn events(look: &Look, columns: usize) -> Vec<Line<'static>> {
+    let log = &look.run.log;
+    let newest = (log.oldest()..log.end()).rev().filter_map(|number| log.get(number));
+    let shown = newest.filter(|entry| entry.severity >= Severity::Info).take(EVENTS);
+    let line = |entry: &Entry| {
+        let words = text::clauses(&entry.text, columns.saturating_sub(AT));
+        look.line([
+            (Role::Dim, format!(" T+{} ", text::clock(entry.t_s))),
+            (super::events::role(entry.severity), words),
+        ])
+    };
+    shown.map(line).collect()
+}
+
+/// The tether: length out, reel, and largest wrap; a dash for a length that is not known yet.
 fn tether(look: &Look) -> Option<String> {
-    let tether = look.run.tether.as_ref()?;
     let reel = look.run.about.as_ref()?.mission.tether.as_ref()?.limits.reel_length_m;
+    let Some(tether) = &look.run.tether else {
+        return Some(format!(" tether - of {} m", text::number(reel, 1)));
+    };
     let [out, reel] = [tether.length_m, reel].map(|length_m| text::number(length_m, 1));
     let wrap = tether.largest().map_or_else(String::new, |contact| {
         format!(", wrap {}° on {}", text::number(contact.wrap_rad.abs().to_degrees(), 0), contact.on)

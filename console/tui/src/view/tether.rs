@@ -2,7 +2,7 @@
 
 use super::look::{Look, Parts, fill, marked, ranked};
 use super::text;
-use crate::model::history::{HISTORY_S, SLOT_S};
+use crate::model::history::HISTORY_S;
 use crate::model::{Pane, Tether};
 use crate::theme::Role;
 use mission::Phase;
@@ -64,9 +64,10 @@ fn wide_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> 
 fn trend(look: &Look, tether: &Tether, columns: usize) -> Parts {
     let longest = tether.length_history_m.last(HISTORY_S).fold(0.0, f64::max);
     let top_m = limits(look).map_or(longest, |limits| limits.reel_length_m);
-    let note = format!(" {} min, 0-{} m", HISTORY_S / 60, text::number(top_m, 0));
+    let history_m = &tether.length_history_m;
+    let note = format!(" {}, 0-{} m", text::minutes(history_m, HISTORY_S), text::number(top_m, 0));
     let room = columns.saturating_sub(text::width(&note) + 2);
-    let curve = text::sparkline(tether.length_history_m.last(HISTORY_S), top_m, room, HISTORY_S / SLOT_S);
+    let curve = text::sparkline(history_m, HISTORY_S, top_m, room);
     vec![(Role::Watch, format!(" {curve}")), (Role::Dim, note)]
 }
 

@@ -2,7 +2,8 @@
 
 pub(crate) use crate::model::log::clock;
 
-use crate::model::Speed;
+use crate::model::history::SLOT_S;
+use crate::model::{History, Speed};
 use ratatui::text::Span;
 use world::{Point, coverage::percent_text};
 
@@ -23,6 +24,11 @@ pub(crate) fn number(value: f64, decimals: usize) -> String {
     } else {
         text
     }
+}
+
+/// A count with its noun in singular or plural.
+pub(crate) fn counted(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
 /// The coordinates of a place on the floor.
@@ -161,25 +167,29 @@ pub(crate) fn wrap_items(items: &[String], columns: usize, gap: &str) -> Vec<Str
     lines
 }
 
+/// The span of a sparkline of at most `most_s` seconds.
+pub(crate) fn minutes(history: &History, most_s: usize) -> String {
+    let [from_s, to_s] = history.span_s(most_s);
+    format!("{} min", number((to_s - from_s) / 60.0, 0))
+}
+
 /// A bar, filled to a share.
 pub(crate) fn bar(share: f64, columns: usize) -> String {
     let full = if share.is_finite() { (share.clamp(0.0, 1.0) * columns as f64).round() as usize } else { 0 };
     "█".repeat(full) + &"░".repeat(columns - full)
 }
 
-/// A sparkline, from 0 to `top`; each column shows the largest of its values.
-pub(crate) fn sparkline(
-    values: impl ExactSizeIterator<Item = f64>,
-    top: f64,
-    columns: usize,
-    slots: usize,
-) -> String {
+/// A sparkline of at most `most_s` seconds of a history, from 0 to `top`; each column shows the largest of its values.
+pub(crate) fn sparkline(history: &History, most_s: usize, top: f64, columns: usize) -> String {
     const STEPS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
     let mut largest: Vec<Option<f64>> = vec![None; columns];
-    let skip = slots.saturating_sub(values.len());
-    for (index, value) in values.enumerate() {
-        let column = ((skip + index) * columns / slots.max(1)).min(columns.saturating_sub(1));
-        if let Some(slot) = largest.get_mut(column) {
+    let [from_s, to_s] = history.span_s(most_s);
+    let column = |t_s: f64| (t_s - from_s) / (to_s - from_s) * columns as f64;
+    for (t_s, value) in history.since(from_s) {
+        // A value stands for its whole slot, which can be several columns wide.
+        let first = column(t_s).floor() as usize;
+        let end = (column(t_s + SLOT_S as f64).ceil() as usize).clamp(first + 1, columns.max(first + 1));
+        for slot in largest.iter_mut().take(end).skip(first) {
             *slot = Some(slot.map_or(value, |before| before.max(value)));
         }
     }
@@ -235,9 +245,14 @@ mod tests {
     }
 
     #[test]
-    fn a_curve_keeps_the_largest_value_of_each_column() {
-        let curve = sparkline([0.0, 0.0, 1.0, 0.0].into_iter(), 1.0, 4, 8);
-        assert_eq!(curve, "  ▁█");
+    fn a_curve_begins_at_the_left_and_keeps_the_largest_value_of_each_column() {
+        let mut history = History::default();
+        for (t_s, value) in [(0.0, 0.0), (4.0, 1.0), (8.0, 0.5)] {
+            history.add(t_s, value);
+        }
+        let at = |columns| sparkline(&history, 120, 1.0, columns);
+        assert_eq!([at(5), at(15)], ["█    ", "▁█▅            "]);
+        assert_eq!(at(30).trim_end(), "▁▁██▅▅", "the first minute from the left, without gaps");
     }
 
     #[test]

@@ -4,7 +4,8 @@ use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};
 use crate::sizes;
 use mission::event::TetherAlarm;
-use mission::{EventKind, HoldReason, Note, Noted, Order, Resumes, Severity};
+use mission::{EventKind, HoldReason, Note, Noted, Order, Outcome, Resumes, Severity};
+use tui::actions::ActionId;
 use tui::actions::keymap::{Binding, Keymap};
 use tui::model::alarms::State;
 use tui::model::ui::Ask;
@@ -18,9 +19,19 @@ fn notice(screen: &Screen) -> &str {
     screen.model.notice().map_or("", |notice| notice.text.as_str())
 }
 
+fn shown(screen: &Screen, size: (u16, u16)) -> String {
+    let shown = text(&drawn(&screen.model, RICH, size));
+    shown.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ") + "\n").collect()
+}
+
 fn hear(screen: &mut Screen, kind: EventKind) {
     let event = screen.mission.now(kind);
     screen.hear(RunMsg::Events(vec![event]));
+}
+
+fn pass(screen: &mut Screen, ticks: usize) {
+    let wait = screen.mission.wait(ticks);
+    screen.hear(RunMsg::Events(wait));
 }
 
 /// A position that was lost while a station was rejected, an alarm on the shelf, and some that have cleared.
@@ -74,6 +85,51 @@ fn alarms() {
 }
 
 #[test]
+fn after_the_end_an_alarm_offers_only_what_is_still_possible() {
+    for cause in Cause::every() {
+        let mut screen = Screen::running();
+        screen.model.live.run.alarms.raise(cause.clone(), Severity::Crit, "what is wrong".into(), 1.0);
+        screen.type_text("4");
+        screen.model.ui.alarm = Some(cause.clone());
+        let ended = screen.mission.ended(Outcome::Aborted, "ended by the operator");
+        screen.hear(RunMsg::Events(vec![ended]));
+        let guide = tui::guide::guide(&cause);
+        let shown = shown(&screen, (200, 60));
+        for remedy in guide.remedies {
+            let words = screen.model.console.keys.spelled(remedy.text);
+            let wants_the_mission = matches!(
+                remedy.action,
+                Some(
+                    ActionId::Hold
+                        | ActionId::Abort
+                        | ActionId::Resume
+                        | ActionId::Slower
+                        | ActionId::DriveBack
+                        | ActionId::Parameters
+                        | ActionId::ChoosePlanner
+                        | ActionId::FlyUncertified
+                )
+            ) || words.starts_with("Wait");
+            assert!(!(wants_the_mission && shown.contains(&words)), "{cause:?}: {words}\n{shown}");
+        }
+        assert!(shown.contains("Acknowledge (a)."), "{cause:?}\n{shown}");
+    }
+}
+
+#[test]
+fn the_alarms_of_the_recorder_end_with_the_run() {
+    for is_kept in [true, false] {
+        let (mut screen, closed) = crate::overviews::ended();
+        for cause in [Cause::Recording, Cause::RecorderLag] {
+            screen.model.live.run.alarms.raise(cause, Severity::Crit, "what is wrong".into(), 1.0);
+        }
+        screen.hear(RunMsg::Closed(Box::new(tui::RunResult { is_kept, ..closed })));
+        let is_active = |cause| screen.model.live.run.alarms.get(&cause).unwrap().is_active();
+        assert_eq!((is_active(Cause::Recording), is_active(Cause::RecorderLag)), (!is_kept, false));
+    }
+}
+
+#[test]
 fn no_text_of_an_alarm_is_cut_where_there_is_room_for_its_panes() {
     for cause in Cause::every() {
         for (width, height) in [(120, 36), (80, 24)] {
@@ -85,11 +141,10 @@ fn no_text_of_an_alarm_is_cut_where_there_is_room_for_its_panes() {
             screen.model.ui.alarm = Some(cause.clone());
             let text = text(&drawn(&screen.model, RICH, (width, height)));
             assert!(!text.contains('…'), "{cause:?}\n{text}");
-            let guide = tui::guide::guide(&cause);
+            let remedies = tui::guide::remedies(&cause, &screen.model.live.run);
             let words: Vec<&str> =
                 text.split_whitespace().filter(|word| *word != "││" && *word != "│").collect();
-            for sentence in guide.remedies.iter().map(|remedy| screen.model.console.keys.spelled(remedy.text))
-            {
+            for sentence in remedies.map(|remedy| screen.model.console.keys.spelled(remedy.text)) {
                 let last = sentence.split_whitespace().last().unwrap();
                 assert!(words.contains(&last), "{cause:?}: {sentence}\n{text}");
             }
@@ -105,8 +160,8 @@ fn the_selected_alarm_is_acknowledged_then_the_worst_then_all_of_them() {
         open.map(|alarm| alarm.cause.clone()).collect::<Vec<_>>()
     };
     assert_eq!(unacknowledged(&screen).len(), 4);
-    screen.press([Key::Down]);
-    assert_eq!(screen.model.ui.alarm, Some(Cause::Contradiction));
+    screen.press([Key::Down; 2]);
+    assert_eq!(screen.model.ui.alarm, Some(Cause::Contradiction), "those whose cause persists come first");
     screen.type_text("a");
     assert_eq!(notice(&screen), "acknowledged: ranges contradict each other");
     assert!(!unacknowledged(&screen).contains(&Cause::Contradiction));
@@ -185,7 +240,7 @@ fn what_is_critical_or_over_cannot_be_shelved() {
     let mut screen = troubled();
     screen.type_text("d");
     assert_eq!(notice(&screen), "a CRIT alarm cannot be shelved");
-    screen.press([Key::Down]);
+    screen.press([Key::Down; 2]);
     screen.type_text("d");
     assert_eq!(notice(&screen), "cleared alarms are acknowledged (a), not shelved");
     assert_eq!(screen.model.ui.overlay, Overlay::None);
@@ -233,16 +288,19 @@ fn the_actions_of_an_alarm_stand_beside_the_keys_that_run_them() {
 #[test]
 fn keeping_the_robot_held_holds_and_never_asks_to_resume() {
     let mut screen = troubled();
+    let shown = |screen: &Screen| text(&drawn(&screen.model, RICH, (80, 24)));
     screen.press(ENTER);
+    let resuming = shown(&screen);
+    assert!(
+        resuming.contains("· Wait: the mission resumes automatically"),
+        "advice has no number\n{resuming}"
+    );
     assert_eq!(screen.type_text("1"), [Effect::Order(Order::Hold)]);
     let events = screen.mission.obeyed(Order::Hold);
     screen.hear(RunMsg::Events(events));
     screen.press(ENTER);
-    assert_eq!(screen.type_text("1"), []);
-    assert_eq!((notice(&screen), &screen.model.ui.overlay), ("already held", &Overlay::None));
-    screen.press(ENTER);
-    let shown = text(&drawn(&screen.model, RICH, (80, 24)));
-    assert!(shown.contains("· Wait: the mission resumes automatically"), "advice has no number\n{shown}");
+    let held = shown(&screen);
+    assert!(!held.contains("resumes automatically") && !held.contains("Stay held"), "{held}");
 }
 
 #[test]
@@ -271,7 +329,9 @@ fn an_alarm_that_has_cleared_shows_its_peak_and_no_stale_value() {
     let mut screen = Screen::tethered();
     let near = |out_m| TetherAlarm::Reel { out_m, reel_length_m: 30.0 };
     hear(&mut screen, EventKind::TetherAlarmRaised { alarm: near(25.3), reached: false });
+    pass(&mut screen, 3);
     hear(&mut screen, EventKind::TetherAlarmCleared { alarm: near(25.3) });
+    pass(&mut screen, 11);
     screen.type_text("4");
     screen.model.ui.alarm = Some(Cause::Tether("reel".into()));
     let size = (120, 36);
@@ -387,4 +447,64 @@ fn the_same_key_acknowledges_an_alarm_on_every_screen() {
         let left = screen.model.live.run.alarms.open().filter(|alarm| alarm.is_unacknowledged()).count();
         assert_eq!(left, waiting - 1, "screen {digit}");
     }
+}
+
+#[test]
+fn what_passes_within_its_delay_is_an_event_and_no_alarm() {
+    let mut screen = Screen::running();
+    let raised = |screen: &Screen, cause: Cause| screen.model.live.run.alarms.get(&cause).is_some();
+    hear(&mut screen, EventKind::RangesInconsistent { chi2: 250.0, degrees_of_freedom: 1 });
+    pass(&mut screen, 2);
+    hear(&mut screen, EventKind::RangesConsistent);
+    pass(&mut screen, 10);
+    assert!(!raised(&screen, Cause::Contradiction), "it had no effect on the robot");
+    screen.type_text("5/contradict");
+    screen.press(ENTER);
+    assert_eq!(screen.model.ui.events.matches.len(), 1, "it is an event");
+    hear(&mut screen, EventKind::RangesInconsistent { chi2: 250.0, degrees_of_freedom: 1 });
+    let held = screen.mission.held_until(HoldReason::RangesInconsistent, Resumes::WhenCleared);
+    screen.hear(RunMsg::Events(vec![held]));
+    let alarm = screen.model.live.run.alarms.get(&Cause::Contradiction).expect("the robot is held for it");
+    assert_eq!((alarm.severity, &alarm.state), (Severity::Crit, &State::Unacknowledged));
+}
+
+#[test]
+fn an_alarm_says_that_the_robot_is_held_only_while_it_is() {
+    let shown = |screen: &Screen, cause: &Cause| {
+        let run = &screen.model.live.run;
+        run.alarms.get(cause).map(|alarm| tui::guide::effect(alarm, run)).expect("an alarm")
+    };
+    for cause in Cause::every() {
+        let mut screen = Screen::running();
+        let alarms = &mut screen.model.live.run.alarms;
+        alarms.raise(cause.clone(), Severity::Crit, "what is wrong".into(), 1.0);
+        let driving = shown(&screen, &cause);
+        assert!(!driving.contains("The robot is held until"), "{cause:?}: {driving}");
+        let held = screen.mission.held(HoldReason::Operator);
+        screen.hear(RunMsg::Events(vec![held]));
+        let holds = !tui::guide::guide(&cause).holds.is_empty();
+        assert_eq!(shown(&screen, &cause).starts_with("The robot is held"), holds, "{cause:?}");
+        screen.model.live.run.about.as_mut().expect("a run").mission.live = true;
+        assert_eq!(
+            shown(&screen, &cause).starts_with("The robot has been commanded to stop."),
+            holds,
+            "{cause:?}"
+        );
+        let waits = |screen: &Screen| {
+            let run = &screen.model.live.run;
+            tui::guide::remedies(&cause, run).any(|remedy| remedy.text.contains("resumes automatically"))
+        };
+        assert!(!waits(&screen), "{cause:?}: only the operator ends this hold");
+    }
+}
+
+#[test]
+fn a_refused_plan_is_no_critical_alarm_while_another_one_is_made() {
+    let mut screen = Screen::tethered();
+    let refused = screen.mission.certified(&["hooked around C3"]);
+    screen.hear(RunMsg::Events(vec![refused]));
+    assert_eq!(screen.model.live.run.alarms.count(Severity::Crit), 0);
+    let refused = screen.mission.plan_refused();
+    screen.hear(RunMsg::Events(refused));
+    assert_eq!(screen.model.live.run.alarms.count(Severity::Crit), 1);
 }

@@ -125,7 +125,12 @@ fn commands_take_values() {
     assert_eq!(run(&mut Screen::running(), "speed max"), [Effect::Speed(Speed::Max)]);
     let key = "rpf_gain".to_owned();
     let set = Effect::Order(Order::SetParameter { key, value: ParamValue::Float(1.5) });
-    assert_eq!(run(&mut Screen::held(), "set rpf_gain=1.5"), [set]);
+    let mut screen = Screen::held();
+    assert!(
+        matches!(run(&mut screen, "set rpf_gain=1.5")[..], [Effect::Forecast(_)]),
+        "its effect comes first"
+    );
+    assert_eq!(screen.press([Key::Enter]), [set, Effect::StopForecasting]);
     let open = |planner| {
         vec![Effect::Open {
             id: RunId(2),
@@ -264,17 +269,6 @@ fn a_no_go_zone_is_a_box_between_two_corners() {
 }
 
 #[test]
-fn a_value_for_a_moving_robot_is_shown_beside_the_old_one_and_asked_for() {
-    let mut screen = Screen::running();
-    assert_eq!(run(&mut screen, "set rpf_gain=1.5"), []);
-    let shown = text(&drawn(&screen.model, RICH, (120, 36)));
-    let asked = "Set rpf_gain 1.2 → 1.5 m3/s? Enter: set, Esc: cancel. It takes effect now.";
-    assert!(shown.contains(asked), "{shown}");
-    let order = Order::SetParameter { key: "rpf_gain".into(), value: ParamValue::Float(1.5) };
-    assert_eq!(screen.press([Key::Enter]), [Effect::Order(order)]);
-}
-
-#[test]
 fn a_station_of_the_simulation_fails_on_order_with_the_name_of_who_ordered_it() {
     let mut screen = Screen::running();
     screen.model.console.preferences.operator = Some("lk".into());
@@ -356,4 +350,44 @@ fn the_terminal_s_cursor_is_where_text_is_typed() {
     assert!(cursor(&screen).1.ends_with("Filter: x"));
     screen.press([Key::Enter, Key::Char('p'), Key::Enter, Key::End]);
     assert!(cursor(&screen).1.ends_with("rpf_gain = 1.2"), "{}", cursor(&screen).1);
+}
+
+#[test]
+fn the_list_of_keys_counts_commands_and_not_headings() {
+    let mut screen = Screen::running();
+    screen.type_text("?");
+    let n = choices(&screen.model, &Palette { help: true, ..Palette::default() }).len();
+    let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+    let counts = shown.lines().filter(|line| line.contains(&format!(" of {n}"))).count();
+    assert_eq!(counts, 1, "{n}: {shown}");
+    let title = shown.lines().find(|line| line.contains("Keys and commands")).expect("a title");
+    assert!(title.contains(&format!("of {n} ")), "{title}");
+}
+
+#[test]
+fn a_planner_that_would_be_refused_is_not_offered_as_a_value() {
+    let mut screen = Screen::held();
+    let mut task = screen.model.live.run.about.take().expect("a mission");
+    task.mission.task =
+        mission::TaskConfig::Cover { anchor: Point::new(9.4, 0.0), regions: Vec::new(), tolerance_m: 0.2 };
+    screen.model.live.run.about = Some(task);
+    screen.model.console.planners[0].covers = true;
+    let covers = screen.model.console.planners[0].id.clone();
+    for command in ["planner", "shadow"] {
+        let action = tui::actions::find::named(command).expect("a command");
+        assert_eq!(tui::update::values(&screen.model, action), [covers.clone()], "{command}");
+    }
+}
+
+#[test]
+fn the_list_of_keys_says_why_a_command_is_not_possible_now() {
+    let mut screen = Screen::running();
+    screen.send(Msg::Resize { width: 120, height: 36 });
+    screen.type_text(":start");
+    let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+    let why = tui::update::offered(&screen.model, tui::actions::ActionId::Start).unwrap_err();
+    assert!(
+        shown.contains(&format!("Not now: {}", why.split(';').next().unwrap_or_default())),
+        "{why}\n{shown}"
+    );
 }

@@ -52,6 +52,20 @@ fn events() {
 }
 
 #[test]
+fn a_filter_without_hits_says_so_in_the_pane_and_on_the_screen() {
+    for page in ["3", "5"] {
+        let mut screen = with_events();
+        screen.type_text(page);
+        screen.type_text("/nowhere");
+        screen.press([Key::Enter]);
+        for size in [(120, 36), (200, 60)] {
+            let shown = shown(&screen, size);
+            assert!(shown.contains("No event matches `nowhere`. Esc: show all events."), "{page}\n{shown}");
+        }
+    }
+}
+
+#[test]
 fn planner_messages_are_hidden_until_they_are_asked_for_and_then_listed_as_one() {
     let mut screen = with_events();
     let said = |screen: &mut Screen, n: u32| {
@@ -73,6 +87,21 @@ fn planner_messages_are_hidden_until_they_are_asked_for_and_then_listed_as_one()
     assert!(detail.contains("Rpf: candidate 0 is longer"), "{detail}");
     screen.type_text("d");
     assert!(!shown(&screen, size).contains("candidate 3"));
+}
+
+#[test]
+fn what_a_planner_says_again_after_a_replan_is_shown_once() {
+    let mut screen = Screen::running();
+    for message in ["a rim cannot be reached", "0.09 m² cannot be reached", "a rim cannot be reached"] {
+        let (planner, level) = ("rpf".to_owned(), planner_api::LogLevel::Warn);
+        let event = screen.mission.now(EventKind::PlannerLogged { planner, level, message: message.into() });
+        screen.hear(RunMsg::Events(vec![event]));
+    }
+    let log = &screen.model.live.run.log;
+    let entries = (log.oldest()..log.end()).filter_map(|number| log.get(number));
+    let said: Vec<_> =
+        entries.filter(|entry| entry.text.contains("a rim")).map(|entry| entry.severity).collect();
+    assert_eq!(said, [Severity::Watch, Severity::Debug]);
 }
 
 #[test]

@@ -66,6 +66,8 @@ fn a_long_name_is_whole_and_the_alarms_are_short_before_it_is_cut() {
     screen.model.live.run.about.as_mut().expect("a run").scenario = "cover-unknown-columns".into();
     let lost = screen.mission.now(EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 });
     screen.hear(RunMsg::Events(vec![lost]));
+    let wait = screen.mission.wait(3);
+    screen.hear(RunMsg::Events(wait));
     for size in [(80, 24), (120, 36), (200, 60)] {
         let top = top(&screen, size);
         assert!(top.contains("cover-unknown-columns"), "{size:?}\n{top}");

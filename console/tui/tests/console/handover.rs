@@ -1,7 +1,8 @@
 //! The page for the next operator, and the answer to `status`.
 
 use crate::fixture::Screen;
-use mission::EventKind;
+use mission::{EventKind, Outcome, Severity};
+use tui::model::Cause;
 use tui::{Effect, Key, RunMsg, handover::page, plain};
 
 /// A held mission with a zone, an alarm that is shelved and one that is acknowledged.
@@ -34,7 +35,24 @@ fn the_page_is_asked_for_by_a_command_and_replaced_only_on_demand() {
     screen.type_text(":handover shift.md please");
     assert_eq!(screen.press([Key::Enter]), []);
     let said = screen.model.notice().unwrap().text.clone();
-    assert!(said.contains("write overwrite after the file"), "{said}");
+    assert!(said.contains("write `overwrite` after the file"), "{said}");
+}
+
+#[test]
+fn what_was_acknowledged_after_the_end_is_a_decision_and_no_alarm_is_named_twice() {
+    let mut screen = held();
+    let (t_s, text) = (screen.model.live.run.clock.t_s, "STOP NOT CONFIRMED: odometry is missing");
+    screen.model.live.run.alarms.raise(Cause::StopNotConfirmed, Severity::Crit, text.into(), t_s);
+    let ended = screen.mission.ended(Outcome::Aborted, "ended by the operator");
+    screen.hear(RunMsg::Events(vec![ended]));
+    assert_eq!(screen.type_text("4a"), [], "nothing is recorded after the end");
+    let page = page(&screen.model);
+    assert!(
+        page.contains("- After the end: acknowledged by lk: STOP NOT CONFIRMED: odometry is missing"),
+        "{page}"
+    );
+    let alarm = "CRIT STOP NOT CONFIRMED, since T+00:16:07, acknowledged: odometry is missing";
+    assert!(page.contains(alarm), "{page}");
 }
 
 #[test]
@@ -60,6 +78,7 @@ fn status_tells_state_alarms_and_the_open_question_with_commands() {
         lines.last().unwrap().starts_with("Resume? The robot will move. `yes`: resume, `no`: cancel."),
         "{lines:#?}"
     );
+    assert!(lines.iter().any(|line| line.starts_with("Position: -0.78, 7.40 m, heading ")), "{lines:#?}");
     assert_eq!(plain::no_question(&screen.model), None);
     assert!(plain::no_question(&Screen::running().model).is_some());
 }
@@ -69,7 +88,7 @@ fn a_mission_without_alarms_says_so() {
     let screen = Screen::idle();
     assert!(plain::status(&screen.model).contains(&"No alarms.".to_owned()));
     let mut ended = Screen::running();
-    let event = ended.mission.ended(mission::Outcome::Aborted, "ended by operator");
+    let event = ended.mission.ended(Outcome::Aborted, "ended by operator");
     assert!(matches!(event.kind, EventKind::Ended { .. }));
     ended.hear(RunMsg::Events(vec![event]));
     assert!(page(&ended.model).contains("ended by operator"));

@@ -9,7 +9,7 @@ use mission::{
 };
 use planner_api::{Leg, LegTag, Reason};
 use ratatui::style::Color;
-use tui::model::GhostPlan;
+use tui::model::{Continued, GhostPlan};
 use tui::{Key, Msg, RunMsg};
 use world::Point;
 
@@ -261,6 +261,39 @@ fn the_place_where_a_re_scan_resumes_is_marked_and_named_in_the_question() {
 }
 
 #[test]
+fn before_a_re_scan_the_operator_reads_where_the_robot_must_stand() {
+    let mut screen = rescan();
+    let start = screen.model.live.run.about.as_ref().unwrap().mission.start.position;
+    let left = |away_m: f64| Some(start + world::Vector::new(away_m, 0.0));
+    let continues = |screen: &mut Screen, left_at| {
+        let continued = Continued { runs: vec!["first".into()], left_at };
+        screen.hear(RunMsg::Continues(Ok(continued)));
+        let check = screen.model.checks().into_iter().find(|check| check.what == "robot");
+        check.map(|check| (check.outcome, check.found))
+    };
+    assert_eq!(continues(&mut screen, None), None);
+    let near = continues(&mut screen, left(0.1)).unwrap();
+    assert_eq!(near, (CheckOutcome::Passed, "was left at the start, 0.1 m from it".into()));
+    let (outcome, words) = continues(&mut screen, left(2.5)).unwrap();
+    let wanted =
+        format!("must stand at {:.2}, {:.2} m, tether reeled in; it was left 2.5 m from", start.x, start.y);
+    assert!(outcome == CheckOutcome::Warning && words.starts_with(&wanted), "{words}");
+    for (width, height) in [(120, 36), (200, 60)] {
+        screen.send(Msg::Resize { width, height });
+        let flat = |screen: &Screen| {
+            let shown = text(&drawn(&screen.model, PLAIN, (width, height)));
+            shown.split_whitespace().filter(|word| !word.contains('│')).collect::<Vec<_>>().join(" ")
+        };
+        let before = flat(&screen);
+        assert!(before.contains("WARN robot: must stand at"), "the pre-flight checks\n{before}");
+        screen.type_text("S");
+        let asked = flat(&screen);
+        assert!(asked.contains("tether reeled in; it was left 2.5 m from there"), "the question\n{asked}");
+        screen.press([Key::Esc]);
+    }
+}
+
+#[test]
 fn a_promise_does_not_outlive_its_plan_before_the_start() {
     let mut screen = planned();
     assert!(screen.model.live.promised().is_some() && screen.model.live.left_out().is_some());
@@ -288,7 +321,7 @@ fn floor_that_was_not_reached_differs_from_missed_floor() {
     screen.hear(RunMsg::Events(vec![ended]));
     screen.send(Msg::Resize { width: 120, height: 36 });
     let shown = text(&drawn(&screen.model, RICH, (120, 36)));
-    assert!(shown.contains("not reached") && shown.contains('·') && shown.contains("missed"), "{shown}");
+    assert!(shown.contains("not reached") && shown.contains('∙') && shown.contains("missed"), "{shown}");
     let ahead = screen.model.live.run.not_reached();
     assert!(ahead.iter().any(|is| *is) && ahead.iter().any(|is| !*is));
     assert!(shown.contains("standing"), "an ended robot has no speed: {shown}");
@@ -337,4 +370,29 @@ fn a_legend_of_letters_has_the_letters_of_the_map() {
         shown.contains("~~  tether") && shown.contains(".. trail") || shown.contains("..  trail"),
         "{shown}"
     );
+}
+
+#[test]
+fn the_check_of_a_plan_names_what_it_leaves_out() {
+    let screen = planned();
+    let checks = screen.model.checks();
+    let plan = checks.iter().find(|check| check.what == "plan").expect("a check");
+    assert!(plan.found.ends_with("m, all but 3 areas, 5.1 m²"), "{}", plan.found);
+}
+
+#[test]
+fn a_warning_of_the_checks_carries_its_whole_reason_at_every_size_that_lists_them() {
+    let reason = "4; ±0.17 m at 7.8, 4.0 m, limit 0.15 m";
+    for size in [(200, 60), (120, 36), (80, 24)] {
+        let mut screen = planned();
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        if size.0 == 80 {
+            screen.press([Key::Tab, Key::Tab]);
+        }
+        let shown = text(&drawn(&screen.model, RICH, size));
+        let pane: String =
+            shown.lines().filter_map(|line| line.rsplit_once("││").map(|(_, pane)| pane)).collect();
+        let words = pane.replace('│', " ").split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains(reason), "{size:?}: {shown}");
+    }
 }

@@ -7,7 +7,7 @@ use crate::sizes;
 use account::{Estimate, Fold, Summary, estimate::Worst};
 use mission::{AskId, EventKind, Order, Outcome, Outlook, Severity, WorkerId};
 use tui::model::home::{Attention, Found};
-use tui::model::{Forecast, GhostPlan, PastRun, ScenarioEntry};
+use tui::model::{Combination, Continued, Forecast, GhostPlan, PastRun, ScenarioEntry};
 use tui::{Effect, Msg, RunMsg, RunResult, Source};
 use world::Point;
 
@@ -56,7 +56,7 @@ fn past(name: &str, end: &str, reachable: Option<f64>) -> PastRun {
 /// The time at which the fixtures look at their runs: 40 minutes after the first one began.
 const BEGAN_UNIX_S: f64 = 1_795_264_000.0 - 2400.0;
 
-fn found() -> Found {
+pub(crate) fn found() -> Found {
     let invalid = ScenarioEntry {
         problem: Some("scenarios/depot.toml:14:1: unknown key `radus_m`, did you mean `radius_m`?".into()),
         world: None,
@@ -119,7 +119,7 @@ fn glimpse(screen: &Screen) -> tui::model::Glimpse {
     let run = tui::model::Run { log: tui::model::Log::default(), ..screen.model.live.run.clone() };
     let (_, result) = ended();
     let summary = Summary { holds: 2, obstacles_found: 1, ..*result.summary };
-    tui::model::Glimpse { run, summary: Some(Box::new(summary)) }
+    tui::model::Glimpse { run, summary: Some(Box::new(summary)), combined: None }
 }
 
 #[test]
@@ -278,7 +278,8 @@ fn result_of_an_aborted_mission() {
 fn result_of_a_rescan() {
     let (mut screen, closed) = ended();
     let closed = RunResult { summary: Box::new(missed_summary()), ..closed };
-    screen.model.live.source = Some(Source::Rescan(vec!["20261122T030000Z-tank-07-rpf-42".into()]));
+    let earlier = vec!["20261122T030000Z-tank-07-rpf-42".into()];
+    screen.hear(RunMsg::Continues(Ok(Continued { runs: earlier, left_at: None })));
     let runs = vec!["20261122T030000Z-tank-07-rpf-42".into(), closed.name.clone().unwrap()];
     let floor = closed.summary.floor.clone().unwrap();
     assert_eq!(
@@ -289,7 +290,15 @@ fn result_of_a_rescan() {
     let mut all = floor;
     (all.reachable.percent.scanned, all.reachable.percent.missed) = (99.1, 0.9);
     all.missed.truncate(0);
-    screen.hear(RunMsg::Combined(Ok(Box::new(all))));
+    let cells = screen.model.live.run.coverage.as_ref().unwrap().floor().len() as u32;
+    let (earlier, scanned) = (screen.model.live.earlier.clone(), vec![world::CellRun(0, cells)]);
+    screen.hear(RunMsg::Combined(Ok(Box::new(Combination { earlier, floor: all, scanned }))));
+    for size in [(60, 16), (80, 24), (120, 36), (200, 60)] {
+        let shown = text(&drawn(&screen.model, RICH, size)).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(shown.contains("99.1 %"), "the figure of all runs at {size:?}\n{shown}");
+    }
+    let scanned = screen.model.live.scanned().unwrap().reachable();
+    assert!(scanned.missed == 0.0, "the map shows what the first run scanned: {scanned:?}");
     screen.model.live.run.planning.info.iter_mut().for_each(|planner| planner.covers = true);
     sizes::store("result_rescan", &mut screen, sizes::is_log);
     let effects = screen.type_text("r");
@@ -299,8 +308,18 @@ fn result_of_a_rescan() {
     );
 }
 
+#[test]
+fn a_result_shows_the_whole_tank_although_the_mission_was_zoomed() {
+    let (mut screen, closed) = ended();
+    screen.type_text("3zz");
+    assert!(screen.model.ui.map.zoom > 0);
+    screen.hear(RunMsg::Closed(Box::new(closed)));
+    assert_eq!(screen.model.ui.screen, tui::model::Screen::Result);
+    assert_eq!(screen.model.ui.map, tui::model::ui::MapView::default());
+}
+
 /// A run that has ended, and what it leaves.
-fn ended() -> (Screen, RunResult) {
+pub(crate) fn ended() -> (Screen, RunResult) {
     let mut screen = Screen::running();
     let ended = screen.mission.ended(Outcome::Complete, "end of the preset path reached");
     let mut fold = Fold::new();

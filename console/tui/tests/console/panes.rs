@@ -74,7 +74,7 @@ pub(crate) fn missed_summary() -> Summary {
         "at": [1.0, 2.0], "low": [0.5, 1.5], "high": [1.5, 2.5], "area_m2": 0.75, "plate": "R-03-05", "reason": "beyond_reel",
         "causes": [
             { "reason": "beyond_reel", "area_m2": 0.5, "measure": null,
-              "text": "not planned: 1.3 m beyond the reel, lanes within 12.4 m of the anchor" },
+              "text": "not planned: 1.3 m beyond the reach of the tether, lanes within 12.4 m of the anchor" },
             { "reason": "position_uncertain", "area_m2": 0.2, "measure": null,
               "text": "passed with position error 0.24 m, limit 0.15 m" },
             { "reason": "clearance", "area_m2": 0.05, "measure": null,
@@ -282,4 +282,46 @@ fn the_tether_pane_calls_no_plan_certified_that_is_not_flown() {
         vec![screen.mission.certified(&[]), screen.mission.held(HoldReason::PlannerFault { message })]
     };
     assert_eq!(notes(no_way), [true, false]);
+}
+
+#[test]
+fn on_a_large_terminal_each_pane_has_a_key_that_its_title_shows() {
+    let mut screen = Screen::running();
+    screen.send(Msg::Resize { width: 120, height: 36 });
+    let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+    assert!(shown.contains("▸ F2 Map") && shown.contains("─ F3 Events"), "{shown}");
+    screen.press([tui::Key::F(3)]);
+    let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+    assert!(shown.contains("▸ F3 Events") && shown.contains("─ F2 Map"), "{shown}");
+    screen.press([tui::Key::F(4)]);
+    assert!(text(&drawn(&screen.model, RICH, (120, 36))).contains("▸ F4 Stations"));
+    // On a smaller terminal, Tab is the way, and the key says so.
+    screen.send(Msg::Resize { width: 80, height: 24 });
+    screen.press([tui::Key::F(2)]);
+    let said = screen.model.notice().map(|notice| notice.text.clone()).unwrap_or_default();
+    assert!(said.contains("Tab: next pane"), "{said}");
+    assert!(!text(&drawn(&screen.model, RICH, (80, 24))).contains("F2"));
+}
+
+#[test]
+fn a_terminal_too_small_for_a_map_uses_its_rows() {
+    let mut screen = Screen::tethered();
+    screen.send(Msg::Resize { width: 59, height: 15 });
+    let shown = text(&drawn(&screen.model, RICH, (59, 15)));
+    let blank = shown.lines().filter(|line| line.trim_matches(['│', ' ']).is_empty()).count();
+    assert!(blank <= 1, "{blank} blank rows\n{shown}");
+    for needed in ["tether 12.6 of 30.0 m", "fix ok", "time left", "station S4 rejected"] {
+        assert!(shown.contains(needed), "{needed} is missing\n{shown}");
+    }
+    insta::assert_snapshot!("strip_59x15", shown);
+}
+
+#[test]
+fn the_cursor_on_the_map_gives_the_reason_that_the_report_gives() {
+    let screen = result();
+    let area = screen.model.live.missed()[0].clone();
+    assert_eq!(screen.model.live.missed_area(area.at), Some(&area));
+    assert!(tui::handover::page(&screen.model).contains(&area.why().replace('<', "\\<")));
+    let outside = world::Point::new(area.high.x + 50.0, area.at.y);
+    assert_eq!(screen.model.live.missed_area(outside), None);
 }

@@ -71,7 +71,7 @@ fn what_cannot_be_taken_says_why() {
     }
     let mut screen = offered(Screen::running());
     assert_eq!(run(&mut screen, "preset-load soft"), []);
-    assert_eq!(notice(&screen), "changing the planner requires HOLD first; space: HOLD");
+    assert_eq!(notice(&screen), "a preset cannot be loaded while the robot moves; space: HOLD");
     let mut screen = offered(Screen::held());
     run(&mut screen, "preset-load soft");
     let resumed = screen.mission.obeyed(Order::Resume);
@@ -124,4 +124,38 @@ fn a_draft_is_forgotten_when_the_robot_moves_again() {
     let resumed = screen.mission.obeyed(Order::Resume);
     assert_eq!(screen.hear(RunMsg::Events(resumed)), [Effect::StopForecasting]);
     assert_eq!(screen.model.ui.overlay, Overlay::None);
+}
+
+#[test]
+fn a_preset_waits_for_a_hold_even_if_there_is_none_yet() {
+    for screen in [Screen::running(), offered(Screen::running())] {
+        let why = tui::update::offered(&screen.model, tui::actions::ActionId::PresetLoad);
+        assert_eq!(why, Err("a preset cannot be loaded while the robot moves; space: HOLD".into()));
+    }
+}
+
+#[test]
+fn long_texts_of_a_parameter_are_wrapped_and_none_is_lost() {
+    let help = "The reach of the field around an obstacle, measured from its outline. ".repeat(4);
+    for size in [(120, 36), (80, 24)] {
+        let mut screen = Screen::held();
+        let info = screen.model.live.run.planning.info.as_mut().expect("a planner");
+        info.parameters[3].help.clone_from(&help);
+        if let mission::ParamKind::Choice { options, .. } = &mut info.parameters[3].kind {
+            options.extend((0..12).map(|n| format!("an-option-with-a-long-name-{n}")));
+        }
+        for planner in &mut screen.model.console.planners {
+            planner
+                .parameters
+                .clone_from(&screen.model.live.run.planning.info.as_ref().expect("it").parameters);
+        }
+        screen.press([Key::Char('p'), Key::Down, Key::Down, Key::Down]);
+        for _ in 0..2 {
+            let shown = text(&drawn(&screen.model, RICH, size));
+            let words = shown.replace('│', " ").split_whitespace().collect::<Vec<_>>().join(" ");
+            assert!(words.contains(help.trim()), "{size:?}: {shown}");
+            assert!(words.contains("an-option-with-a-long-name-11"), "{size:?}: {shown}");
+            screen.press([Key::Enter]);
+        }
+    }
 }

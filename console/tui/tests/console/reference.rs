@@ -9,9 +9,9 @@ const HEAD: &str = "\
 
 <!-- Made from the rows in console/tui/src/actions/rows/. INSTA_UPDATE=always cargo test --release -p tui renews it. -->
 
-Keys are those of the preset `default`; `keys.toml` changes them (operator guide). SAFE cannot make the robot move, MOVES can and asks
-first, ENDS ends the mission and asks first. A command is typed after `:`, its values after its name; a value with spaces goes in
-double quotes. Tab completes, the up key recalls earlier lines.
+The table gives the keys of the preset `default`; `keys.toml` changes them (see the operator guide). A *safe* command cannot make
+the robot move. A command that *moves* the robot, or *ends* the mission, asks first. Type a command after `:`, and its values after
+its name. Put a value with spaces in double quotes. Tab completes names and values, and the up key recalls earlier lines.
 
 ## Commands
 
@@ -52,7 +52,7 @@ fn kind(kind: Kind) -> &'static str {
         Kind::Planner => "id of a planner that was found",
         Kind::Parameter => "a parameter of the active planner and its value, such as `k_rep=2`",
         Kind::Scenario => "name of a scenario on the home screen",
-        Kind::Run => "name of a past run, the beginning of one if it is the only one, or `latest`",
+        Kind::Run => "name of a past run, the beginning of a name if only one run has it, or `latest`",
         Kind::Layer => "a layer of the map, such as `robot-trail`",
         Kind::Place => "name of a station or an obstacle",
         Kind::Severity => "`info`, `watch`, `warn` or `crit`",
@@ -63,7 +63,9 @@ fn kind(kind: Kind) -> &'static str {
         Kind::Moment => "a moment of the run: `01:12:30`, `12:30` or `12m30s`",
         Kind::Alarm => "name of an alarm, as the list of alarms shows it",
         Kind::Station => "name of an AE station",
-        Kind::Fault => "`dead`: not heard; `offset=METRES`: ranges too long by more than 0 to 1000 m",
+        Kind::Fault => {
+            "`dead`: not heard; `offset=METRES`: ranges too long by METRES, more than 0 and at most 1000"
+        }
         Kind::Corner => "x and y in metres: `-1.5,2`",
         Kind::Text => "any text",
     }
@@ -93,8 +95,8 @@ fn reference() -> String {
     format!(
         "{HEAD}{commands}\n| value | what it is |\n|---|---|\n{}\n## In lists, text fields and questions\n\n\
          | action | keys | what it does |\n|---|---|---|\n{steps}\n\
-         In a text field letters and space are typed; left, right, home, end, Ctrl-left, Ctrl-right, Delete, Backspace, Ctrl-U and\n\
-         Ctrl-W edit, and Ctrl-C holds the robot.\n\n\
+         In a text field, letters and the space bar enter text. Left, right, home, end, Ctrl-left and Ctrl-right move the cursor;\n\
+         Delete, Backspace, Ctrl-U and Ctrl-W delete text; Ctrl-C holds the robot.\n\n\
          ## Presets\n\n| preset | action | keys |\n|---|---|---|\n{presets}",
         values()
     )

@@ -128,10 +128,28 @@ fn the_list_of_runs() {
     let mut screen = Screen::idle();
     screen.send(Msg::Found(Box::new(found())));
     screen.type_text("6");
-    let known =
-        tui::model::Glimpse { run: replaying(false).model.live.run, summary: Some(summary(0.969, 1931.0)) };
+    let known = tui::model::Glimpse {
+        run: replaying(false).model.live.run,
+        summary: Some(summary(0.969, 1931.0)),
+        combined: None,
+    };
     screen.send(Msg::Glimpsed((A.into(), "complete".into()), Ok(Box::new(known))));
     sizes::store("review", &mut screen, |part| part.contains('●'));
+}
+
+#[test]
+fn a_large_screen_shows_missed_areas_and_curves_of_the_selected_run() {
+    let mut screen = Screen::idle();
+    screen.send(Msg::Found(Box::new(found())));
+    screen.type_text("6");
+    let (run, summary) = (replaying(false).model.live.run, crate::panes::missed_summary());
+    let known = tui::model::Glimpse { run, summary: Some(Box::new(summary)), combined: None };
+    screen.send(Msg::Glimpsed((A.into(), "complete".into()), Ok(Box::new(known))));
+    screen.send(Msg::Resize { width: 200, height: 60 });
+    let shown = text(&drawn(&screen.model, RICH, (200, 60)));
+    for wanted in ["Missed areas  1", "0.75 m²    1.00, 2.00 m", "95 % error, m"] {
+        assert!(shown.contains(wanted), "{wanted}\n{shown}");
+    }
 }
 
 #[test]

@@ -163,8 +163,9 @@ fn a_robot_that_waits_for_its_position_can_be_held_for_good() {
     send_event(&mut screen, EventKind::Held { by: HoldReason::PositionLost, resumes: Resumes::WhenCleared });
     assert_eq!(screen.press([SPACE]), [order(Order::Hold)]);
     obeyed(&mut screen, Order::Hold);
-    assert_eq!(screen.press([SPACE, Key::Enter]), []);
-    assert!(notice(&screen).contains("position is lost"));
+    assert_eq!(screen.press([SPACE]), []);
+    assert!(notice(&screen).contains("position is lost"), "it says so instead of asking");
+    assert_eq!(screen.press([Key::Enter]), []);
     send_event(&mut screen, EventKind::PositionRegained { error_m: 0.1 });
     assert_eq!(screen.press([SPACE, Key::Enter]), [order(Order::Resume)]);
 }
@@ -421,6 +422,12 @@ fn the_certificate_of_a_planner_that_is_prepared_says_nothing_of_the_plan_that_i
     assert_eq!(screen.model.live.run.alarms.list(), Screen::tethered().model.live.run.alarms.list());
     send_certified_plan(&mut screen, None, &["cable stays out"]);
     assert_eq!(screen.model.live.run.tether.as_ref().unwrap().certified, Some(false));
+    assert_eq!(
+        screen.model.live.run.alarms.unacknowledged(Severity::Crit),
+        0,
+        "another plan is being made, and the robot is not held"
+    );
+    send_event(&mut screen, held(HoldReason::PlanRefused { message: "cable stays out".into() }));
     assert_eq!(screen.model.live.run.alarms.unacknowledged(Severity::Crit), 1);
 }
 
@@ -480,10 +487,9 @@ fn a_bad_value_is_refused_in_place_and_a_good_one_sent() {
     screen.press([Key::Backspace]);
     screen.type_text("1.8");
     let key = "rpf_gain".to_owned();
-    assert_eq!(
-        screen.press([Key::Enter]),
-        [order(Order::SetParameter { key, value: ParamValue::Float(1.8) })]
-    );
+    screen.press([Key::Enter]);
+    let set = order(Order::SetParameter { key, value: ParamValue::Float(1.8) });
+    assert_eq!(screen.press([Key::Enter]), [set, Effect::StopForecasting]);
 }
 
 #[test]
@@ -757,7 +763,9 @@ fn the_truth_is_not_known_to_the_screen() {
 fn a_critical_alarm_rings_and_waits_for_the_operator() {
     let mut screen = Screen::running();
     let effects = send_event(&mut screen, EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 });
-    assert_eq!(effects, [Effect::Bell]);
+    assert_eq!(effects, [], "the next cycle may be a good one");
+    let lasts = screen.mission.wait(3);
+    assert_eq!(screen.hear(RunMsg::Events(lasts)), [Effect::Bell]);
     send_event(&mut screen, EventKind::PositionRegained { error_m: 0.1 });
     assert_eq!(screen.model.live.run.alarms.count(Severity::Crit), 1);
     screen.type_text("a");
@@ -768,6 +776,8 @@ fn a_critical_alarm_rings_and_waits_for_the_operator() {
 fn an_alarm_whose_cause_is_gone_says_so_until_the_operator_has_seen_it() {
     let mut screen = Screen::running();
     send_event(&mut screen, EventKind::RangesInconsistent { chi2: 90.0, degrees_of_freedom: 2 });
+    let lasts = screen.mission.wait(3);
+    screen.hear(RunMsg::Events(lasts));
     let open = shown(&screen);
     assert!(open.contains("a: acknowledge.") && !open.contains("(cleared)"), "{open}");
     send_event(&mut screen, EventKind::RangesConsistent);
@@ -897,12 +907,12 @@ fn a_filter_shows_where_it_acts_and_escape_clears_it() {
 fn the_table_of_stations_is_a_pane_at_120x36() {
     let mut screen = Screen::running();
     screen.send(Msg::Resize { width: 120, height: 36 });
-    assert!(!shown(&screen).contains("─ Stations"), "{}", shown(&screen));
+    assert!(!shown(&screen).contains("Stations ─"), "{}", shown(&screen));
     screen.press([Key::Tab, Key::Tab]);
     let text = shown(&screen);
-    assert!(text.contains("▸ Stations") && text.contains("unused") && text.contains("100 %"), "{text}");
+    assert!(text.contains("▸ F4 Stations") && text.contains("unused") && text.contains("100 %"), "{text}");
     screen.press([Key::Tab]);
-    assert!(!shown(&screen).contains("─ Stations"), "{}", shown(&screen));
+    assert!(!shown(&screen).contains("Stations ─"), "{}", shown(&screen));
 }
 
 #[test]
@@ -933,4 +943,40 @@ fn help_in_sentences_lists_the_commands_that_can_be_given() {
     let lines = tui::plain::help(&screen.model);
     assert!(lines.iter().any(|line| line.starts_with("resume: ")), "{lines:#?}");
     assert!(!lines.iter().any(|line| line.starts_with("take-plan: ")), "{lines:#?}");
+}
+
+#[test]
+fn help_in_sentences_leaves_out_what_only_a_picture_has() {
+    let lines = tui::plain::help(&Screen::running().model);
+    for drawn in ["zoom-in: ", "mouse: ", "layers", "next-pane: ", "pan-west: ", "theme "] {
+        assert!(!lines.iter().any(|line| line.starts_with(drawn)), "{drawn}: {lines:#?}");
+    }
+    assert!(lines.iter().any(|line| line.starts_with("hold: ")), "{lines:#?}");
+}
+
+#[test]
+fn a_hold_is_said_once_and_in_a_live_run_when_it_is_confirmed() {
+    for is_live in [false, true] {
+        let mut screen = Screen::running();
+        screen.model.live.run.about.as_mut().expect("a run").mission.live = is_live;
+        screen.model.console.keys.spells_commands = true;
+        let mut said = tui::plain::Said::default();
+        said.next(&screen.model);
+        obeyed(&mut screen, Order::Hold);
+        let lines = said.next(&screen.model);
+        let first = if is_live { "STOPPING by operator. " } else { "HELD by operator. " };
+        let of_hold: Vec<&String> = lines.iter().filter(|line| line.contains("by operator")).collect();
+        assert!(matches!(of_hold[..], [line] if line.starts_with(first)), "{lines:#?}");
+        screen.press([SPACE]);
+        let asked = said.next(&screen.model);
+        assert!(!asked.iter().any(|line| line.contains("HELD")), "the question is enough: {asked:#?}");
+        screen.press([Key::Esc]);
+        send_event(&mut screen, EventKind::Stood { confirmed: true, after_s: 0.3, moved: false });
+        let lines = said.next(&screen.model);
+        assert_eq!(
+            lines.iter().filter(|line| line.starts_with("HELD")).count(),
+            usize::from(is_live),
+            "{lines:#?}"
+        );
+    }
 }

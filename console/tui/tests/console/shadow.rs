@@ -132,3 +132,24 @@ fn a_rebuilt_planner_is_offered_in_shadow_while_the_mission_runs() {
     screen.send(rebuilt());
     assert!(!screen.model.notice().is_some_and(|notice| notice.text.contains("rebuilt")));
 }
+
+#[test]
+fn the_plan_of_the_shadow_stays_on_the_map_of_a_held_mission_and_its_length_is_in_the_question() {
+    let mut screen = with_shadow(0);
+    let held = screen.mission.held(mission::HoldReason::Operator);
+    screen.hear(RunMsg::Events(vec![held]));
+    let shown = shown_at(&screen, (120, 36));
+    assert!(shown.contains("shadow"), "the legend names it: {shown}");
+    let mut without = screen.model.clone();
+    without.live.run.shadow.as_mut().expect("a shadow").path.clear();
+    let map = |model: &tui::model::Model| text(&drawn(model, RICH, (120, 36)));
+    assert_ne!(map(&screen.model), map(&without), "the plan is drawn");
+    screen.type_text(":promote");
+    screen.press([Key::Enter]);
+    let shown = shown_at(&screen, (120, 36));
+    let words = shown.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("the robot stays held. Its plan: 3.8 m for the rest of the task."), "{words}");
+    assert!(!words.contains("without a hold"), "{words}");
+    screen.model.live.run.about.as_mut().expect("a mission").mission.tether = Some(crate::fixture::tether());
+    assert!(shown_at(&screen, (120, 36)).contains("Its certificate for the tether"));
+}

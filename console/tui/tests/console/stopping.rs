@@ -55,7 +55,7 @@ fn overlays() -> Vec<Overlay> {
         Overlay::Confirm(Ask::TakePlan),
         Overlay::Confirm(Ask::DriveBack),
         Overlay::Confirm(Ask::DrawZone(Vec::new())),
-        Overlay::Confirm(Ask::Set { key: "order".into(), value: ParamValue::Int(1) }),
+        Overlay::Confirm(Ask::Set { key: "order".into(), value: ParamValue::Int(1), list: None }),
         Overlay::Finish { selected: 0 },
         Overlay::Finish { selected: 1 },
         Overlay::ZoneDraft(tui::model::ZoneDraft::begun(world::Point::origin())),
@@ -370,8 +370,9 @@ fn leaving_ends_what_was_asked_to_start() {
 fn a_parameter_that_was_sent_does_not_count_as_a_robot_that_may_move() {
     let mut screen = Screen::held();
     let key = "rpf_gain".to_owned();
-    let sent = Effect::Order(Order::SetParameter { key, value: ParamValue::Float(1.2) });
-    assert_eq!(screen.press([Key::Char('p'), Key::Enter, Key::Enter]), [sent]);
+    let sent = Effect::Order(Order::SetParameter { key, value: ParamValue::Float(1.25) });
+    screen.press([Key::Char('p'), Key::Enter, Key::Char('5'), Key::Enter]);
+    assert_eq!(screen.press([Key::Enter]), [sent, Effect::StopForecasting]);
     screen.press([Key::Esc]);
     assert_eq!(screen.press([Key::Char(' ')]), []);
     assert_eq!(screen.model.ui.overlay, Overlay::Confirm(Ask::Resume));

@@ -4,7 +4,7 @@ use super::{Figure, Row, stops::Sample};
 use crate::{
     link::{Offset, Sequence},
     port::LEASE_S,
-    wire::message::{Commander, Has, Hello, Mode, Readings, State},
+    wire::message::{Commander, Hello, Mode, Readings, State},
 };
 
 /// The interval between readings may differ from `period_s` by this factor.
@@ -28,18 +28,35 @@ pub struct Listened {
     pub samples: Vec<Sample>,
     /// The last state.
     pub state: Option<State>,
-    /// Number of lines that are not valid messages.
-    pub malformed: u64,
-    /// The fault of the first malformed line.
-    pub fault: Option<String>,
-    /// Unknown keys and kinds of messages.
-    pub unknown: Vec<String>,
+    /// The lines that are not as the protocol has them.
+    pub lines: Lines,
     /// Number of pings sent.
     pub pings: u32,
     /// Round trips of the pings that were answered, seconds.
     pub trips_s: Vec<f64>,
     /// The offset of the vehicle's clock at the end.
     pub offset: Option<Offset>,
+}
+
+/// Lines that the protocol does not know.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Lines {
+    /// Number of lines that are not valid messages.
+    pub malformed: u64,
+    /// The fault of the first malformed line.
+    pub fault: Option<String>,
+    /// Unknown keys and kinds of messages.
+    pub unknown: Vec<String>,
+}
+
+impl Lines {
+    /// Adds later lines.
+    pub fn extend(&mut self, later: Self) {
+        self.malformed += later.malformed;
+        self.fault = self.fault.take().or(later.fault);
+        let new = later.unknown.into_iter().filter(|name| !self.unknown.contains(name));
+        self.unknown.extend(new.collect::<Vec<_>>());
+    }
 }
 
 /// Checks the introduction of the vehicle.
@@ -62,34 +79,19 @@ pub fn introduction(hello: &Hello) -> Row {
         let says = format!("`lease_max_s` is {lease_max_s}; the console needs leases of {LEASE_S} s");
         return Row::fail(check, figures, says);
     }
-    let says = format!("{name} has {}", parts(*has).join(", "));
+    let says = format!("{name} has {}", has.parts().join(", "));
     let failed = format!("`period_s` is {period_s}; the console needs readings at least every {LEASE_S} s");
     Row::judged(check, figures, &says, &failed)
 }
 
-fn parts(has: Has) -> Vec<&'static str> {
-    let Has { odometry, pose, scan, contact, tether, ae, pressure, drawn_ids } = has;
-    let parts = [
-        (odometry, "odometry"),
-        (pose, "pose"),
-        (scan, "scan"),
-        (contact, "contact"),
-        (tether, "tether"),
-        (ae, "ae"),
-        (pressure, "pressure"),
-        (drawn_ids, "ids of the drawing"),
-    ];
-    parts.into_iter().filter(|(has, _)| *has).map(|(_, part)| part).collect()
-}
-
 /// Whether all lines were valid messages.
-pub fn messages(listened: &Listened) -> Row {
-    let figures = vec![Figure::new("malformed", listened.malformed as f64, "").at_most(0.0)];
-    let unknown = match listened.unknown.as_slice() {
+pub fn messages(lines: &Lines) -> Row {
+    let figures = vec![Figure::new("malformed", lines.malformed as f64, "").at_most(0.0)];
+    let unknown = match lines.unknown.as_slice() {
         [] => String::new(),
         unknown => format!("; unknown and ignored: {}", unknown.join(", ")),
     };
-    let first = listened.fault.as_deref().unwrap_or_default();
+    let first = lines.fault.as_deref().unwrap_or_default();
     let failed = format!("the first malformed line: {first}{unknown}");
     Row::judged("messages", figures, &format!("all lines are valid messages{unknown}"), &failed)
 }
@@ -102,7 +104,7 @@ pub fn readings(hello: &Hello, listened: &Listened) -> Vec<Row> {
         listened.readings.windows(2).map(|pair| pair[1].1.stamp_s - pair[0].1.stamp_s).collect();
     intervals.sort_by(f64::total_cmp);
     let Some(median_s) = intervals.get(intervals.len() / 2).copied() else {
-        let says = format!("{count} readings arrived; send one every {} s", hello.period_s);
+        let says = format!("too few readings arrived ({count}); send one every {} s", hello.period_s);
         return vec![
             Row::fail(rate, Vec::new(), says),
             Row::not_measured(jitter, "too few readings arrived"),
@@ -198,7 +200,7 @@ pub fn state(listened: &Listened) -> Row {
         (Mode::Ready, Commander::You) => return Row::pass(check, figures, "ready, obeys this console"),
         (Mode::Ready, Commander::OtherConsole) => "it obeys another console; close that console first",
         (Mode::Ready, Commander::OtherProgram) => "another program commands it; end that program first",
-        (Mode::Manual, _) => "a person drives it by hand; hand it over first",
+        (Mode::Manual, _) => "a person is driving it by hand; that person must hand over control first",
         (Mode::EmergencyStop, _) => "its emergency stop is pressed; release it first",
         (Mode::Fault, _) => "it reports a fault; repair it first",
     };
@@ -225,6 +227,7 @@ pub fn standstill(listened: &Listened) -> Row {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::wire::message::Has;
     use crate::{
         trial::Verdict,
         wire::message::{Limits, MotionKind, Odometry, Pong},
@@ -329,9 +332,20 @@ mod tests {
         heard.offset = clock_of.at(1.02);
         let row = clock(&heard);
         assert!(row.verdict == Verdict::Pass && row.says == "1 of 2 pings answered", "{row:?}");
-        assert_eq!(messages(&heard).verdict, Verdict::Pass);
-        heard = Listened { malformed: 1, fault: Some("pong.stamp_s: NaN".into()), ..heard };
-        let row = messages(&heard);
+        let mut lines = Lines::default();
+        assert_eq!(messages(&lines).verdict, Verdict::Pass);
+        let unknown = vec!["lights".to_owned()];
+        lines.extend(Lines {
+            malformed: 1,
+            fault: Some("pong.stamp_s: NaN".into()),
+            unknown: unknown.clone(),
+        });
+        lines.extend(Lines { malformed: 2, fault: Some("state.mode".into()), unknown });
+        let row = messages(&lines);
+        assert!(
+            (row.figures[0].value - 3.0).abs() < 1e-12 && row.says.ends_with("unknown and ignored: lights"),
+            "{row:?}"
+        );
         assert!(row.verdict == Verdict::Fail && row.says.contains("pong.stamp_s: NaN"), "{row:?}");
     }
 }

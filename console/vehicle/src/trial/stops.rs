@@ -1,6 +1,6 @@
 //! Time and distance of a stop, from samples of the motion before and after its cause.
 
-use super::{Figure, Row};
+use super::{Figure, Row, Verdict};
 
 /// A vehicle that moves no faster than this counts as standing still, metres per second and radians per second.
 const STANDS_M_PER_S: f64 = 0.005;
@@ -123,7 +123,7 @@ pub fn stop(cause: Cause, samples: &[Sample], cause_s: f64, limits: Limits) -> R
     let mut figures = Stopping::default();
     for sample in after {
         if sample.begin_s() > known_until_s + GAP_S && !figures.is_quiet(known_until_s, cause_s) {
-            let says = "the motion after the cause was not reported";
+            let says = "the readings do not cover the whole stop";
             return Row::not_measured(check, says);
         }
         known_until_s = sample.t_s;
@@ -132,14 +132,27 @@ pub fn stop(cause: Cause, samples: &[Sample], cause_s: f64, limits: Limits) -> R
     if !figures.is_quiet(known_until_s, cause_s) {
         let for_s = known_until_s - cause_s;
         if for_s < limits.time_s {
-            return Row::not_measured(check, "the motion after the cause was not reported");
+            return Row::not_measured(check, "the readings do not cover the whole stop");
         }
         let says = format!("the vehicle still moves after {for_s:.2} s; {}", cause.remedy());
         return Row::fail(check, figures.figures(limits), says);
     }
-    let says = format!("stood {:.2} s and {:.3} m after the cause", figures.time_s, figures.way_m);
+    let says = format!(
+        "stood still {:.2} s and {:.3} m after the stop was triggered",
+        figures.time_s, figures.way_m
+    );
     let failed = format!("{says}, but {:.2} s is allowed; {}", limits.time_s, cause.remedy());
     Row::judged(check, figures.figures(limits), &says, &failed)
+}
+
+/// The result of a stop after which the vehicle moved again as soon as its stopped adapter continued.
+pub fn moved_again(stop: Row) -> Row {
+    let says = "the vehicle moved again when the adapter continued: the adapter carried out a command that had waited; \
+                ignore a `drive` that is older than its lease";
+    match stop.verdict {
+        Verdict::Fail => stop,
+        Verdict::Pass | Verdict::NotMeasured => Row::fail(stop.check, stop.figures, says),
+    }
 }
 
 /// A stop as evaluated so far.
@@ -177,7 +190,6 @@ impl Stopping {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trial::Verdict;
 
     const LIMITS: Limits = Limits { commanded_m_per_s: 0.4, time_s: 1.0 };
 

@@ -112,6 +112,24 @@ pub struct Has {
     pub drawn_ids: bool,
 }
 
+impl Has {
+    /// The parts that are present, in words.
+    pub fn parts(self) -> Vec<&'static str> {
+        let Self { odometry, pose, scan, contact, tether, ae, pressure, drawn_ids } = self;
+        let parts = [
+            (odometry, "odometry"),
+            (pose, "pose"),
+            (scan, "scan"),
+            (contact, "contact"),
+            (tether, "tether"),
+            (ae, "ae"),
+            (pressure, "pressure"),
+            (drawn_ids, "ids of the drawing"),
+        ];
+        parts.into_iter().filter(|(has, _)| *has).map(|(_, part)| part).collect()
+    }
+}
+
 /// The readings of the vehicle's sensors. A part that was not measured is absent.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Readings {
@@ -299,7 +317,7 @@ pub struct State {
 pub enum Mode {
     /// It obeys.
     Ready,
-    /// A person drives it by hand.
+    /// A person is driving it by hand.
     Manual,
     /// Its emergency stop is pressed.
     EmergencyStop,

@@ -23,7 +23,10 @@ const COMMAND_SLACK: f64 = 1e-9;
 pub struct FromSession {
     is_of_datagrams: bool,
     hello: Option<Hello>,
-    newest_s: Option<f64>,
+    /// The newest stamp of the readings, which is a time of measurement, and that of the other messages, which is a time
+    /// of sending. Readings that waited in the adapter are older than its answer to a ping.
+    measured_s: Option<f64>,
+    sent_s: Option<f64>,
     pose: Option<(f64, Pose)>,
     /// Number of rays of the first scan.
     rays: Option<usize>,
@@ -58,13 +61,8 @@ impl FromSession {
                     );
                 }
                 // A vehicle that introduces itself again has started again: its clock and its frame are new.
-                *self = Self {
-                    hello: Some(hello.as_ref().clone()),
-                    newest_s: None,
-                    pose: None,
-                    rays: None,
-                    ..*self
-                };
+                let is_of_datagrams = self.is_of_datagrams;
+                *self = Self { is_of_datagrams, hello: Some(hello.as_ref().clone()), ..Self::default() };
                 Ok(())
             }
             FromVehicle::Readings(readings) => {
@@ -78,19 +76,19 @@ impl FromSession {
                 }
                 self.moves(&limits, readings)?;
                 self.sees(readings)?;
-                runs_on("readings.stamp_s", &mut self.newest_s, readings.stamp_s)?;
+                runs_on("readings.stamp_s", &mut self.measured_s, readings.stamp_s)?;
                 self.stands_at(readings);
                 Ok(())
             }
             FromVehicle::State(state) => {
                 self.greeted("state")?;
                 state.check()?;
-                runs_on("state.stamp_s", &mut self.newest_s, state.stamp_s)
+                runs_on("state.stamp_s", &mut self.sent_s, state.stamp_s)
             }
             FromVehicle::Pong(pong) => {
                 self.greeted("pong")?;
                 pong.check()?;
-                runs_on("pong.stamp_s", &mut self.newest_s, pong.stamp_s)
+                runs_on("pong.stamp_s", &mut self.sent_s, pong.stamp_s)
             }
         }
     }

@@ -176,6 +176,9 @@ fn stamps_and_poses_must_fit_the_messages_before() {
     assert_eq!(after([at(9.0, 0.0), at(7.9, 0.0)]), "readings.stamp_s: goes back by 1.100 s, from 9 to 7.9");
     assert!(after([at(9.0, 0.0), at(8.1, 0.0)]).starts_with("Some(Message"), "reordered on its way");
     assert!(after([at(9.0, 0.0), at(29.0, 5.0)]).starts_with("Some(Message"), "in 20 s it can go there");
+    let pong = |stamp: f64| format!(r#"{{"type": "pong", "echo_s": 1, "stamp_s": {stamp}}}"#);
+    assert!(after([pong(9.0), at(7.0, 0.0)]).starts_with("Some(Message"), "they waited in the adapter");
+    assert_eq!(after([pong(9.0), pong(7.0)]), "pong.stamp_s: goes back by 2.000 s, from 9 to 7");
 }
 
 #[test]

@@ -150,8 +150,8 @@ impl<'a> Pipeline<'a> {
         drafts.split_off(n.min(most))
     }
 
-    /// Polishes drafts in coarse cells, and then finishes the promising ones. If none of these meets the preferences,
-    /// finishes all the others.
+    /// Polishes drafts in coarse cells, and then finishes the promising drafts. If none of these meets the preferences,
+    /// finishes all remaining drafts.
     fn finish(
         &self,
         drafts: Vec<Drafted<'a>>,

@@ -3,14 +3,9 @@ use super::*;
 /// The example that is delivered with the adapter.
 const EXAMPLE: &str = include_str!("../../trial/rover.toml");
 
-fn checked(text: &str) -> Result<Config, String> {
-    let config: Config = toml::from_str(text).map_err(|error| error.to_string())?;
-    config.check().map(|()| config)
-}
-
 #[test]
 fn the_example_is_valid() {
-    let config = checked(EXAMPLE).unwrap();
+    let config = Config::parse(EXAMPLE).unwrap();
     assert_eq!(config.pose, PoseFrom::LocalPosition);
     assert_eq!(config.has(), Has { pose: true, scan: true, contact: true, tether: true, ae: true });
 }
@@ -32,7 +27,7 @@ fn a_wrong_setting_is_named() {
     ];
     for (from, to, why) in cases {
         assert!(EXAMPLE.contains(from), "{from}");
-        let error = checked(&EXAMPLE.replacen(from, to, 1)).expect_err(to);
+        let error = Config::parse(&EXAMPLE.replacen(from, to, 1)).expect_err(to);
         assert!(error.contains(why), "{to}: {error}");
     }
 }

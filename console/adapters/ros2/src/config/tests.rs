@@ -3,14 +3,9 @@ use super::*;
 /// The example that is delivered with the adapter.
 const EXAMPLE: &str = include_str!("../../trial/robot.toml");
 
-fn checked(text: &str) -> Result<Config, String> {
-    let config: Config = toml::from_str(text).map_err(|error| error.to_string())?;
-    config.check().map(|()| config)
-}
-
 #[test]
 fn the_example_is_valid() {
-    let config = checked(EXAMPLE).unwrap();
+    let config = Config::parse(EXAMPLE).unwrap();
     assert_eq!(config.command.kind, CommandType::Twist);
     assert_eq!(config.command.qos, Qos { depth: 1, ..config.command.qos });
     assert_eq!(config.pose_topic(), "/odom");
@@ -41,7 +36,7 @@ fn a_wrong_setting_is_named() {
     ];
     for (from, to, why) in cases {
         assert!(EXAMPLE.contains(from), "{from}");
-        let error = checked(&EXAMPLE.replacen(from, to, 1)).expect_err(to);
+        let error = Config::parse(&EXAMPLE.replacen(from, to, 1)).expect_err(to);
         assert!(error.contains(why), "{to}: {error}");
     }
 }
@@ -50,6 +45,6 @@ fn a_wrong_setting_is_named() {
 fn without_a_source_of_poses_the_settings_are_refused() {
     let start = EXAMPLE.find("[odometry]").unwrap();
     let end = start + EXAMPLE[start..].find("\n\n").unwrap();
-    let error = checked(&[&EXAMPLE[..start], &EXAMPLE[end..]].concat()).unwrap_err();
+    let error = Config::parse(&[&EXAMPLE[..start], &EXAMPLE[end..]].concat()).unwrap_err();
     assert_eq!(error, "odometry: missing; the console needs [odometry] or [tf]");
 }

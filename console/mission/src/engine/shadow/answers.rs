@@ -50,6 +50,10 @@ impl Shadow {
             (PendingKind::Step { .. }, Ok(Given::Command(command))) => {
                 self.take_command((ask, known.tick - pending.tick), command, said, happened);
             }
+            (PendingKind::Snapshot, Ok(Given::State { bytes })) => {
+                self.pass_on(said, happened);
+                self.note(EventKind::Snapshotted { ask, bytes }, happened);
+            }
             (_, result) => {
                 let fault = result.err().unwrap_or_else(|| mismatch(self.worker.id()));
                 self.pass_on(said, happened);

@@ -112,7 +112,8 @@ impl Mission {
         let planner = worker.id().to_owned();
         self.reject_preparing(&format!("planner {planner} was promoted from shadow"));
         worker.before = self.driving.worker.seen().cloned();
-        if let Some(pending) = &mut worker.pending {
+        if let Some(pending) = worker.pending.as_mut().filter(|pending| pending.kind != PendingKind::Snapshot)
+        {
             pending.kind = PendingKind::StepInShadow;
         }
         // A hold caused by the previous planner no longer has a reason.

@@ -287,6 +287,26 @@ fn planners_steer_round_obstacles_where_they_are_seen_not_where_the_chart_has_th
 }
 
 #[test]
+fn a_drawn_column_that_a_foreign_tracker_sees_is_not_found_again() {
+    let column = |x, radius_m| Shape::Disc { center: Point::new(x, -4.0), radius_m };
+    let known = Obstacle { id: ObstacleId(3), name: "C".into(), shape: column(1.0, 0.2), known: true };
+    let mut chart = Chart::new(World { obstacles: vec![known], ..drawing() }, &covering(), 1);
+    let pose = covering().start;
+    let mut found = |id, seen: Shape| {
+        let shape_in_robot = seen.transformed(&pose.tank_from_robot().inverse());
+        let seen = chart.see(0.0, &[Sighting { id: ObstacleId(id), shape_in_robot }], &pose);
+        !seen.events.is_empty() && seen.changes_plans
+    };
+    let foreign = ObstacleId::FOREIGN.0;
+    assert!(!found(foreign, column(1.06, 0.22)));
+    let side = vec![Point::new(0.8, -4.1), Point::new(0.8, -3.9)];
+    assert!(!found(foreign + 1, Shape::Polyline { points: side, half_width_m: 0.02 }));
+    assert!(found(foreign + 2, column(1.15, 0.2)), "it is beside the column");
+    assert!(found(foreign + 3, column(1.0, 0.5)), "it is larger than the column");
+    assert!(found(9, column(1.06, 0.2)), "this tracker knows the drawing");
+}
+
+#[test]
 fn whatever_changes_plans_is_on_the_map_by_which_they_are_checked() {
     let mut chart = Chart::new(drawing(), &covering(), 1);
     let pose = covering().start;

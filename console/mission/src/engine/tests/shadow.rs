@@ -256,3 +256,22 @@ fn a_shadow_that_began_during_a_hold_takes_over_during_it_and_moves_nothing() {
         assert_eq!(replay(config, &flight), flight.events);
     }
 }
+
+#[test]
+fn a_shadow_that_dies_while_the_robot_is_held_ends_during_the_hold() {
+    let mut flight = Flight::new(covering());
+    flight.tick(&[Order::Start]);
+    flight.tick(&[shadow("other")]);
+    flight.fly(20);
+    flight.tick(&[Order::Hold]);
+    flight.fly(20);
+    assert_eq!(flight.mission.idle_workers().count(), 2);
+    flight.tick(&[Order::CheckPlanner]);
+    assert!(flight.mission.shadow.is_some(), "both live");
+    flight.planner.dead_worker = Some(2);
+    flight.tick(&[Order::CheckPlanner]);
+    assert_eq!(count(&flight, |kind| matches!(kind, EventKind::ShadowEnded { .. })), 1);
+    assert!(flight.mission.shadow.is_none());
+    assert!(flight.mission.driving.worker.is_ready(), "the active planner goes on");
+    assert_eq!(replay(covering(), &flight), flight.events);
+}

@@ -5,7 +5,7 @@ use super::{
     arrivals::{replay, replay_asking},
     covering::covering,
 };
-use crate::event::Severity;
+use crate::{event::Severity, standing::Readiness};
 use world::polyline;
 
 /// A flight over the floor that was held on the way.
@@ -106,11 +106,11 @@ fn a_planner_that_dies_while_the_robot_is_held_is_reported_at_once_and_starts_ag
     assert!(refusal(&flight.tick(&[Order::CheckPlanner])).is_some(), "a planner that drives is asked anyway");
     flight.tick(&[Order::Hold]);
     flight.fly(5);
-    assert!(flight.mission.idle_worker().is_some());
+    assert!(flight.mission.idle_workers().count() == 1);
     flight.planner.has_died = true;
     flight.tick(&[Order::CheckPlanner]);
     assert_eq!((last_fault(&flight).cause, last_fault(&flight).severity()), (Cause::Died, Severity::Crit));
-    assert!(flight.mission.idle_worker().is_none(), "it is checked once");
+    assert!(flight.mission.idle_workers().count() == 0, "it is checked once");
     flight.fly(20);
     assert_eq!(flight.planner.chosen.len(), 1);
     let before = flight.pose.position;
@@ -119,6 +119,25 @@ fn a_planner_that_dies_while_the_robot_is_held_is_reported_at_once_and_starts_ag
     assert_eq!(flight.planner.chosen.len(), 2);
     assert!(flight.pose.position != before);
     assert_eq!(replay(covering(), &flight), flight.events);
+}
+
+#[test]
+fn a_planner_that_dies_before_the_start_is_reported_and_bars_the_start_until_it_has_planned_again() {
+    let config = MissionConfig { start_names_plan: true, ..covering() };
+    let mut flight = Flight::new(config.clone());
+    flight.tick(&[Order::Plan]);
+    let Readiness::Plan(seen) = flight.mission.standing().readiness else { panic!("a plan") };
+    assert_eq!(flight.mission.idle_workers().count(), 1);
+    flight.planner.has_died = true;
+    flight.tick(&[Order::CheckPlanner]);
+    assert_eq!(last_fault(&flight).cause, Cause::Died);
+    assert!(matches!(flight.mission.standing().readiness, Readiness::Failed(_)));
+    assert!(refusal(&flight.tick(&[Order::StartPlan(seen)])).is_some());
+    flight.planner.has_died = false;
+    flight.tick(&[Order::Plan]);
+    let Readiness::Plan(seen) = flight.mission.standing().readiness else { panic!("a plan again") };
+    assert!(refusal(&flight.tick(&[Order::StartPlan(seen)])).is_none());
+    assert_eq!(replay(config, &flight), flight.events);
 }
 
 fn last_fault(flight: &Flight) -> &Fault {

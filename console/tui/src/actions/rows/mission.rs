@@ -34,7 +34,7 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::SetSpeed, "speed", "Set the speed of the simulation", &[], &[Context::Screen]).args(&[must("factor", Kind::Speed)]).also(&["rate", "pace"]).reaches(Reach::Pace).when(offer::simulating),
     action(ActionId::Abort, "end", "HOLD, then end or drive back (asks)", &[Key::Char('X')], &[Context::Screen]).label("end").risk(Risk::Destroys).also(&["abort", "finish"])
         .when(offer::abort).does(finish::begin),
-    action(ActionId::ChoosePlanner, "planner", "Change the planner (while held)", &[Key::Char('P')], &[On(Screen::Plan), On(Screen::Mission)]).label("planner").risk(Risk::Moves).args(&[may("planner", Kind::Planner)])
+    action(ActionId::ChoosePlanner, "planner", "Change the planner (not while moving)", &[Key::Char('P')], &[On(Screen::Plan), On(Screen::Mission)]).label("planner").risk(Risk::Moves).args(&[may("planner", Kind::Planner)])
         .when(offer::swap).does(|m| act::choose(m, Purpose::Drive)),
     action(ActionId::Shadow, "shadow", "Run a planner in shadow", &[], &[Context::Screen]).args(&[may("planner", Kind::Planner)]).reaches(Reach::Mission)
         .when(shadow::can_begin).does(|m| act::choose(m, Purpose::Shadow)),

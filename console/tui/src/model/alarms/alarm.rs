@@ -147,9 +147,10 @@ impl Alarm {
         matches!(self.state, State::Unacknowledged | State::Acknowledged | State::Returned)
     }
 
-    /// The urgency of the alarm; greater is more urgent.
+    /// The urgency of the alarm; greater is more urgent. A cause that is gone is less urgent than one that persists, and
+    /// more urgent than what is only worth watching.
     pub(super) fn rank(&self) -> impl Ord + use<> {
-        (self.is_unacknowledged(), self.severity, self.is_active())
+        (self.is_unacknowledged(), self.severity >= Severity::Warn, self.is_active(), self.severity)
     }
 
     /// Updates the alarm with the latest severity and text of its cause. An unacknowledged text is never replaced by

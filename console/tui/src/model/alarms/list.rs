@@ -2,6 +2,8 @@
 
 use super::alarm::{Alarm, Reading, State};
 use super::cause::Cause;
+use super::delayed::{Delayed, Next};
+use super::rule::Rule;
 use mission::{Note, Noted, Severity};
 use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
@@ -19,9 +21,93 @@ pub struct Alarms {
     list: Vec<Alarm>,
     bursts: u32,
     last_s: Option<f64>,
+    /// Causes that wait for their delay, in the order in which they began to wait.
+    #[serde(default)]
+    delayed: Vec<Delayed>,
 }
 
 impl Alarms {
+    /// Takes a cause that has occurred. The alarm is raised after the delay of the rule, if the cause persists until
+    /// then.
+    pub fn occurred(&mut self, cause: Cause, rule: Rule, text: String, t_s: f64) {
+        let Rule { severity, on_delay_s, .. } = rule;
+        let is_active = self.get(&cause).is_some_and(Alarm::is_active);
+        let began = self.forget_delayed(&cause).filter(|delayed| delayed.next != Next::Clear);
+        if is_active || on_delay_s <= 0.0 {
+            self.raise(cause, severity, text, t_s);
+            return;
+        }
+        let since_s = began.as_ref().map_or(t_s, |began| began.since_s);
+        let (line, readings) = match began.map(|began| began.next) {
+            Some(Next::Raise { line, readings, .. }) => (line, readings),
+            _ => (None, Vec::new()),
+        };
+        let next = Next::Raise { severity, text, line, readings };
+        self.delayed.push(Delayed { cause, next, since_s, delay_s: on_delay_s });
+    }
+
+    /// Takes the end of a cause. The alarm clears after the given delay, seconds, unless the cause occurs again before.
+    pub fn passed(&mut self, cause: &Cause, off_delay_s: f64, t_s: f64) {
+        let began = self.forget_delayed(cause).filter(|delayed| delayed.next == Next::Clear);
+        if off_delay_s <= 0.0 {
+            self.clear(cause, t_s);
+        } else if self.get(cause).is_some_and(Alarm::is_active) {
+            let since_s = began.map_or(t_s, |began| began.since_s);
+            let (cause, next) = (cause.clone(), Next::Clear);
+            self.delayed.push(Delayed { cause, next, since_s, delay_s: off_delay_s });
+        }
+    }
+
+    /// Raises the alarm of a persisting cause with at least the given severity, without any further delay: the robot is
+    /// held for it.
+    pub fn holds(&mut self, cause: &Cause, severity: Severity, t_s: f64) {
+        let text = match self.delayed.iter().find(|delayed| delayed.cause == *cause) {
+            Some(Delayed { next: Next::Raise { text, .. }, .. }) => Some(text.clone()),
+            _ => self.get(cause).filter(|alarm| alarm.is_active()).map(|alarm| alarm.text.clone()),
+        };
+        if let Some(text) = text {
+            self.release(cause, severity, text, t_s);
+        }
+    }
+
+    /// Raises and clears the alarms whose delays are over.
+    fn settle(&mut self, t_s: f64) {
+        while let Some(at) = self.delayed.iter().position(|delayed| delayed.is_due(t_s)) {
+            let Delayed { cause, next, .. } = self.delayed[at].clone();
+            match next {
+                Next::Raise { severity, text, .. } => self.release(&cause, severity, text, t_s),
+                Next::Clear => {
+                    self.delayed.remove(at);
+                    self.clear(&cause, t_s);
+                }
+            }
+        }
+    }
+
+    /// Raises an alarm that has waited, with its log line and the time at which its cause began.
+    fn release(&mut self, cause: &Cause, severity: Severity, text: String, t_s: f64) {
+        let delayed = self.forget_delayed(cause);
+        let since_s = delayed.as_ref().map_or(t_s, |delayed| delayed.since_s);
+        self.raise(cause.clone(), severity, text, since_s);
+        let Some(Delayed { next: Next::Raise { line, readings, .. }, .. }) = delayed else { return };
+        if let Some((number, place)) = line {
+            self.note(cause, number, place);
+        }
+        for (t_s, reading) in readings {
+            self.read(cause, t_s, || reading);
+        }
+    }
+
+    /// What happens to the alarm of a cause that waits.
+    fn waiting(&mut self, cause: &Cause) -> Option<&mut Next> {
+        self.delayed.iter_mut().find(|delayed| delayed.cause == *cause).map(|delayed| &mut delayed.next)
+    }
+
+    fn forget_delayed(&mut self, cause: &Cause) -> Option<Delayed> {
+        let at = self.delayed.iter().position(|delayed| delayed.cause == *cause)?;
+        Some(self.delayed.remove(at))
+    }
+
     /// Raises an alarm. If the alarm is already active, it takes the new text; it needs another acknowledgement only
     /// if its severity has risen.
     pub fn raise(&mut self, cause: Cause, severity: Severity, text: String, t_s: f64) {
@@ -83,18 +169,37 @@ impl Alarms {
         }
     }
 
-    /// The most severe unacknowledged alarm; the oldest if there are several.
+    /// The most urgent unacknowledged alarm whose cause persists; the oldest if there are several.
+    pub fn worst_active_unacknowledged(&self) -> Option<&Alarm> {
+        self.worst_of(|alarm| alarm.is_unacknowledged() && alarm.is_active())
+    }
+
+    /// The most severe unacknowledged alarm whose cause is gone; the oldest if there are several.
+    pub fn worst_returned(&self) -> Option<&Alarm> {
+        self.worst_of(|alarm| alarm.state == State::Returned)
+    }
+
+    fn worst_of(&self, counts: impl Fn(&Alarm) -> bool) -> Option<&Alarm> {
+        self.open().rev().filter(|alarm| counts(alarm)).max_by_key(|alarm| alarm.rank())
+    }
+
+    /// The most urgent unacknowledged alarm; the oldest if there are several.
     pub fn worst_unacknowledged(&self) -> Option<&Alarm> {
         self.worst().filter(|alarm| alarm.is_unacknowledged())
     }
 
-    /// Unshelves the alarms whose time is up.
+    /// Unshelves the alarms whose time is up, and settles those whose delays are over.
     pub fn expire(&mut self, t_s: f64) {
+        self.settle(t_s);
         self.list.iter_mut().for_each(|alarm| alarm.expire(t_s));
     }
 
     /// Updates the figure of an alarm.
     pub fn read(&mut self, cause: &Cause, t_s: f64, reading: impl FnOnce() -> Reading) {
+        if let Some(Next::Raise { readings, .. }) = self.waiting(cause) {
+            readings.push((t_s, reading()));
+            return;
+        }
         if let Some(alarm) = self.get_mut(cause) {
             alarm.read(reading(), t_s);
         }
@@ -102,6 +207,10 @@ impl Alarms {
 
     /// Records the number of a log line about an alarm, and the position to which the line refers.
     pub fn note(&mut self, cause: &Cause, number: u64, place: Option<Point>) {
+        if let Some(Next::Raise { line, .. }) = self.waiting(cause) {
+            *line = Some((number, place));
+            return;
+        }
         if let Some(alarm) = self.get_mut(cause) {
             alarm.note(number);
             if alarm.is_active() {
@@ -129,7 +238,7 @@ impl Alarms {
         self.list.iter().filter(|alarm| alarm.is_open())
     }
 
-    /// All alarms in table order: open ones first, with the unacknowledged and most severe at the top; then shelved
+    /// All alarms in table order: open ones first, with the unacknowledged and most urgent at the top; then shelved
     /// ones; then cleared ones, newest first.
     pub fn table(&self) -> Vec<&Alarm> {
         let mut open: Vec<&Alarm> = self.open().collect();
@@ -142,10 +251,9 @@ impl Alarms {
         open.into_iter().chain(shelved).chain(cleared).collect()
     }
 
-    /// The alarm to show where only one fits: unacknowledged before acknowledged, then by severity, then those whose
-    /// cause persists.
+    /// The alarm to show where only one fits: the most urgent one.
     pub fn worst(&self) -> Option<&Alarm> {
-        self.open().rev().max_by_key(|alarm| alarm.rank())
+        self.worst_of(|_| true)
     }
 
     /// The number of open alarms of a severity.

@@ -2,13 +2,17 @@
 
 use crate::model::Run;
 use crate::model::log::{Entry, Occurrence, Robot, What, slim};
-use mission::{Event, EventKind};
+use mission::{Event, EventKind, Severity};
 use positioning::Ranging;
 
 impl Run {
     /// Writes the log line of an event, if it has one; returns the number of the line.
     pub(super) fn write_line(&mut self, event: &Event) -> Option<u64> {
-        let line = event.log_line(self.stations())?;
+        let mut line = event.log_line(self.stations())?;
+        // A planner says the same about the floor after each replan; once is enough.
+        if matches!(event.kind, EventKind::PlannerLogged { .. }) && self.planning.has_said(&line.text) {
+            line.severity = Severity::Debug;
+        }
         self.log.push(Entry {
             tick: event.tick,
             t_s: event.t_s,

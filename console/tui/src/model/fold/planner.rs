@@ -2,9 +2,10 @@
 
 use crate::model::{Cause, Change, Offer, PlanShown, Run, Withdrawn, planning};
 use mission::{
-    BetterPlan, During, Event, EventKind, Phase, PlannerChoice, PlannerInfo, Severity, event::late_text,
+    BetterPlan, During, Event, EventKind, ParamValue, Phase, PlannerChoice, PlannerInfo, Severity,
+    event::late_text,
 };
-use planner_api::{Command, Drawing};
+use planner_api::{Command, Drawing, LegTag};
 
 /// The maximum number of drawings kept for one tick.
 const MAX_DRAWINGS: usize = 512;
@@ -20,17 +21,25 @@ impl Run {
                 self.planning.candidate = None;
                 self.seat(choice, info);
             }
-            EventKind::ParametersChanged { choice, .. } => self.planning.choice = Some(choice.clone()),
+            EventKind::ParametersChanged { choice, .. } => {
+                self.planning.choice = Some(choice.clone());
+                self.parameters_settled();
+            }
             EventKind::Planned { ask, path, length_m, complete, legs, .. } => {
                 // The planner is a candidate: its plan runs once it takes over.
                 self.planning.proposed = ask.is_some_and(|ask| self.planning.candidate == Some(ask.worker));
                 if self.planning.proposed {
                     return;
                 }
+                let begins_m = |with: &[LegTag]| PlanShown::begins_m(path, legs, with);
+                let retract_m = begins_m(&[LegTag::Retract]);
+                let lead_m = begins_m(&[LegTag::Retract, LegTag::Travel]);
                 let (path, lanes) = planning::shown(path, legs, self.least_lane_m());
                 let driven_m = self.driven_m();
                 let (ask, length_m, complete, t_s) = (*ask, *length_m, *complete, event.t_s);
-                self.planning.plan = Some(PlanShown { ask, path, lanes, length_m, complete, t_s, driven_m });
+                let plan =
+                    PlanShown { ask, path, lanes, length_m, complete, t_s, driven_m, retract_m, lead_m };
+                self.planning.plan = Some(plan);
                 self.planner_works();
             }
             EventKind::Commanded { command, .. } => self.command(event.t_s, *command),
@@ -46,9 +55,11 @@ impl Run {
             }
             // The planner works on with its old values.
             EventKind::PlannerFailed { fault, .. } if fault.refuses_change() => {
+                self.planning.ordered = None;
                 change.say(fault.severity(), fault.message.clone());
             }
             EventKind::PlannerFailed { fault, .. } => {
+                self.planning.ordered = None;
                 // A refused planner does not replace the active one.
                 if self.planner_id() == Some(fault.planner.as_str()) {
                     self.planning.fault = Some(fault.clone());
@@ -93,11 +104,25 @@ impl Run {
                 }
             }
             EventKind::PlannerRejected { planner, why } => {
-                self.planning.candidate = None;
+                (self.planning.candidate, self.planning.ordered) = (None, None);
                 change.say(Severity::Warn, format!("planner {planner} will not take over: {why}"));
             }
             _ => {}
         }
+    }
+
+    /// Records that a parameter of the active planner was ordered, on top of those ordered before.
+    pub(super) fn order_parameter(&mut self, key: &str, value: &ParamValue) {
+        let planning = &mut self.planning;
+        let Some(mut choice) = planning.ordered.take().or_else(|| planning.choice.clone()) else { return };
+        choice.parameters.insert(key.to_owned(), value.clone());
+        planning.ordered = Some(choice);
+    }
+
+    /// Forgets the parameters that were ordered, once they are those of the active planner.
+    fn parameters_settled(&mut self) {
+        let planning = &mut self.planning;
+        planning.ordered.take_if(|ordered| planning.choice.as_ref() == Some(ordered));
     }
 
     /// The distance driven along the plans so far, metres.
@@ -107,7 +132,7 @@ impl Run {
     }
 
     /// The minimum length of a straight stretch that counts as a lane, metres.
-    fn least_lane_m(&self) -> f64 {
+    pub(super) fn least_lane_m(&self) -> f64 {
         self.about.as_ref().map_or(0.0, |about| PlanShown::least_lane_m(&about.mission))
     }
 
@@ -118,6 +143,7 @@ impl Run {
             self.planning.plan = None;
         }
         (self.planning.choice, self.planning.info) = (Some(choice.clone()), Some(info.clone()));
+        self.parameters_settled();
         self.planning.scalars.clear();
         self.planning.scalar_history.clear();
         self.planning.drawings.clear();

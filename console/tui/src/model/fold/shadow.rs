@@ -1,6 +1,6 @@
 //! Folds events about the planner in shadow into a run.
 
-use crate::model::{Change, Run, Shadow};
+use crate::model::{Change, Run, Shadow, planning};
 use mission::{Event, EventKind, Order, Severity};
 
 impl Run {
@@ -23,6 +23,7 @@ impl Run {
             }
             _ => {}
         }
+        let least_lane_m = self.least_lane_m();
         let Some(shadow) = &mut self.shadow else { return };
         shadow.tally.apply(&event.kind);
         match &event.kind {
@@ -30,7 +31,10 @@ impl Run {
             EventKind::PromotionRefused { .. } => shadow.is_promoted = false,
             EventKind::ShadowBegan { info, .. } => shadow.info = Some((**info).clone()),
             EventKind::Shadowed { of } => match &**of {
-                EventKind::Planned { path, .. } => shadow.take_path(path),
+                EventKind::Planned { path, legs, length_m, complete, .. } => {
+                    (shadow.path, shadow.lanes) = planning::shown(path, legs, least_lane_m);
+                    (shadow.length_m, shadow.complete) = (*length_m, *complete);
+                }
                 EventKind::Commanded { command, .. } => shadow.command = Some((event.t_s, *command)),
                 _ => {}
             },

@@ -28,7 +28,7 @@ pub struct Filter {
 /// A part of a filter that could not be parsed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Problem {
-    /// The position in the text, bytes.
+    /// The range of bytes in the text of the filter.
     pub at: Range<usize>,
     /// The reason, as a sentence.
     pub why: String,

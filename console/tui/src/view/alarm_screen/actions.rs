@@ -1,6 +1,6 @@
 //! The actions on an alarm, numbered, and the advice about it.
 
-use crate::guide::{guide, name};
+use crate::guide::{effect, guide, name};
 use crate::model::{Alarm, Cause, Overlay};
 use crate::theme::Role;
 use crate::update::remedies::{self, Step};
@@ -81,8 +81,8 @@ pub(in crate::view) fn list(look: &Look, cause: &Cause, selected: usize, columns
     }
     let advice = advice(look, cause).into_iter();
     below.extend(advice.flat_map(|words| rows("·", Role::Text, &words, room)));
-    let guide = guide(cause);
-    below.extend(paragraph(Role::Dim, &format!("{} {}", guide.cause, guide.effect), room));
+    let effect = look.run.alarms.get(cause).map_or_else(String::new, |alarm| effect(alarm, look.run));
+    below.extend(paragraph(Role::Dim, &format!("{} {effect}", guide(cause).cause), room));
     // If space is short, the last lines about the alarm are dropped, never an action.
     below.truncate(usize::from(look.model.ui.height).saturating_sub(FRAME + steps.len()));
     List {

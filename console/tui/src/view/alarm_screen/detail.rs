@@ -1,6 +1,6 @@
 //! The details of one alarm.
 
-use crate::guide::{guide, name};
+use crate::guide::{effect, guide, name};
 use crate::model::alarms::State;
 use crate::model::log::severity_word;
 use crate::model::{Alarm, Cause};
@@ -31,7 +31,7 @@ pub(super) fn cause(look: &Look, alarm: &Alarm, columns: usize, rows: usize) -> 
 
 fn fields_of(look: &Look, alarm: &Alarm) -> Vec<Field> {
     let guide = guide(&alarm.cause);
-    let mut fields: Vec<Field> = vec![("Cause", guide.cause.into()), ("Effect", guide.effect.into())];
+    let mut fields: Vec<Field> = vec![("Cause", guide.cause.into()), ("Effect", effect(alarm, look.run))];
     fields.push(("Message", text::capitalized(&alarm.text)));
     if let Some((_, text)) = &alarm.fallen {
         fields.push(("Then", text::capitalized(text)));

@@ -355,6 +355,6 @@ fn certified(planner: &str, refused: bool, certificate: &Certificate) -> Vec<Fie
     facts.push(("wrap", format!("at most {:.0}° on one obstacle, {:.0}° in total", wraps.0, wraps.1)));
     let (collisions, cuts) = (certificate.collisions, certificate.cut_crossings);
     let clearance = metres(certificate.clearance_min_m);
-    facts.push(("path", format!("clearance {clearance}, {collisions} collisions, {cuts} cuts crossed")));
+    facts.push(("path", format!("clearance {clearance}, collisions: {collisions}, cuts crossed: {cuts}")));
     facts
 }

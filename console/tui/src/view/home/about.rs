@@ -73,8 +73,9 @@ fn lines(look: &Look, entry: &ScenarioEntry, columns: usize) -> Vec<Line<'static
     let mut fields: Vec<Field> =
         vec![("task", format!("{}, {}", entry.task, entry.tank)), ("planner", entry.planner.clone())];
     if let Some(world) = &entry.world {
-        let (stations, obstacles) = (world.stations.len(), world.obstacles.len());
-        fields.push(("drawing", format!("{stations} stations, {obstacles} obstacles")));
+        let stations = text::counted(world.stations.len(), "station");
+        let obstacles = text::counted(world.obstacles.len(), "obstacle");
+        fields.push(("drawing", format!("{stations}, {obstacles}")));
     }
     lines.extend(fields::lines(look, &fields, NAMES, columns));
     lines.push(Line::default());

@@ -1,7 +1,7 @@
 //! The command line and its list; if opened as help, the list shows every key.
 
 use super::list::{List, hint, paragraph};
-use crate::actions::{Action, ActionId, find, keymap::Keymap};
+use crate::actions::{Action, ActionId, keymap::Keymap};
 use crate::model::Palette;
 use crate::theme::Role;
 use crate::update::{Choice, Group, choices, group, offered, values};
@@ -19,18 +19,20 @@ pub(super) fn list(look: &Look, palette: &Palette, columns: u16) -> List {
     let found = choices(look.model, palette);
     let room = usize::from(columns).saturating_sub(3);
     let is_whole = palette.line.text().trim().is_empty();
-    let (rows, selected) = grouped(look, &found, palette.selected, (columns, is_whole));
+    let (rows, headings, selected) = grouped(look, &found, palette.selected, (columns, is_whole));
     let below = if palette.help {
-        rules(&look.model.console.keys, room)
+        let why = why_not(look, found.get(palette.selected), room);
+        why.into_iter().chain(rules(&look.model.console.keys, room)).collect()
     } else {
         below(look, found.get(palette.selected), room)
     };
-    let (above, cursor) = line(palette, found.len(), room);
+    let (above, cursor) = line(palette, found.len(), (is_whole, room));
     List {
         title: if palette.help { "Keys and commands" } else { "Commands" }.into(),
         note: if palette.help { "what works here" } else { "type to filter" }.into(),
         above,
         rows,
+        headings,
         selected,
         below,
         cursor: Some((0, cursor)),
@@ -38,18 +40,20 @@ pub(super) fn list(look: &Look, palette: &Palette, columns: u16) -> List {
     }
 }
 
-/// The rows of the list and the row of the selected entry; each group of the whole list has a heading.
+/// The rows of the list, those that are headings, and the row of the selected entry; each group of the whole list has a
+/// heading.
 fn grouped(
     look: &Look,
     found: &[Choice],
     selected: usize,
     (columns, is_whole): (u16, bool),
-) -> (Vec<Row>, usize) {
-    let (mut rows, mut at, mut last) = (Vec::new(), 0, None);
+) -> (Vec<Row>, Vec<usize>, usize) {
+    let (mut rows, mut headings, mut at, mut last) = (Vec::new(), Vec::new(), 0, None);
     for (index, choice) in found.iter().enumerate() {
         if let (Choice::Command(action), true) = (choice, is_whole) {
             let group = Some(group(look.model, action));
             if group != last {
+                headings.push(rows.len());
                 rows.push(vec![(Role::Title, heading(look, group))]);
                 last = group;
             }
@@ -59,7 +63,7 @@ fn grouped(
         }
         rows.push(row(look, choice, columns));
     }
-    (rows, at)
+    (rows, headings, at)
 }
 
 fn heading(look: &Look, group: Option<Group>) -> String {
@@ -70,10 +74,13 @@ fn heading(look: &Look, group: Option<Group>) -> String {
 }
 
 /// The input line with its error below it, if there is one, and the column of the cursor.
-fn line(palette: &Palette, found: usize, room: usize) -> (Vec<Row>, usize) {
+fn line(palette: &Palette, found: usize, (is_whole, room): (bool, usize)) -> (Vec<Row>, usize) {
     let count = match found {
         0 => "   no match".to_owned(),
-        found => format!("   {found} of {}", find::commands().count()),
+        // The title counts the whole list.
+        _ if is_whole => String::new(),
+        1 => "   1 match".to_owned(),
+        found => format!("   {found} matches"),
     };
     let is_named = palette.line.text().trim_start().contains(' ') || palette.fault.is_some();
     let count = if is_named { String::new() } else { count };
@@ -121,12 +128,20 @@ fn command_row(look: &Look, action: &Action, columns: u16) -> Row {
     ]
 }
 
+/// The reason why the selected command is not possible now.
+fn why_not(look: &Look, selected: Option<&Choice>, room: usize) -> Option<Row> {
+    let Some(Choice::Command(action)) = selected else { return None };
+    let why = offered(look.model, action.id).err()?;
+    Some(vec![(Role::Warn, text::clauses(&format!(" Not now: {why}."), room))])
+}
+
 /// The usage of the selected command, and hints about keys, as far as they fit.
 fn below(look: &Look, selected: Option<&Choice>, room: usize) -> Vec<Row> {
     let usage = match selected {
         Some(Choice::Command(action)) if !action.args.is_empty() => Some(format!("{}.", action.usage())),
         _ => None,
     };
+    let refused = why_not(look, selected, room);
     let values = match selected {
         Some(Choice::Command(action)) => values(look.model, action),
         _ => Vec::new(),
@@ -142,7 +157,7 @@ fn below(look: &Look, selected: Option<&Choice>, room: usize) -> Vec<Row> {
     ]
     .map(|clause| look.keys(clause));
     let clauses: Vec<String> = usage.into_iter().chain(keys).collect();
-    listed.into_iter().chain([hint(&format!(" {}", joined(&clauses, room)))]).collect()
+    refused.into_iter().chain(listed).chain([hint(&format!(" {}", joined(&clauses, room)))]).collect()
 }
 
 /// As many values as fit, and the number of the others.

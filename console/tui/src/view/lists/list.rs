@@ -15,6 +15,8 @@ pub(in crate::view) struct List {
     pub note: String,
     pub above: Vec<Row>,
     pub rows: Vec<Row>,
+    /// The indices of the rows that are headings; they are not counted.
+    pub headings: Vec<usize>,
     pub selected: usize,
     /// The number of rows that the selected entry takes; 0 counts as one.
     pub selected_rows: usize,
@@ -37,7 +39,9 @@ impl List {
         let shown = table::window(chosen.end - 1, self.rows.len(), room - below);
         // A list that is cut says where it is.
         let place = if shown.len() < self.rows.len() {
-            format!("  {}", table::counted(&shown, self.rows.len()))
+            let entries = |rows: usize| rows - self.headings.iter().filter(|row| **row < rows).count();
+            let range = entries(shown.start)..entries(shown.end);
+            format!("  {}", table::counted(&range, entries(self.rows.len())))
         } else {
             String::new()
         };

@@ -47,14 +47,16 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
             // The first line below the table's heading.
             cursor = Some((1, column));
         }
-        needed_below = below.len();
         // The error already states the range.
         if edit.is_none_or(|edit| edit.refusal.is_none()) {
-            let allowed = format!(" {}: {}", info.key, parameter::range(info));
-            below.push(vec![(Role::Dim, text::fit(&allowed, room))]);
+            let (now, unset) = (parameter::value(choice, info), parameter::default(&info.kind));
+            let allowed = format!("{} {now}, default {unset}, allowed: {}", info.key, parameter::range(info));
+            below.extend(paragraph(Role::Dim, &allowed, room));
         }
         let about = format!("{}. {}", info.label, info.help);
         below.extend(paragraph(Role::Text, &about, room));
+        // The texts of the selected parameter take precedence over other parameters.
+        needed_below = below.len();
     }
     let is_draft = look.model.live.what_if.as_ref().is_some_and(|what_if| what_if.draft.is_some());
     let what = if is_draft { "Forecast with parameters" } else { "Parameters" };

@@ -3,7 +3,7 @@
 use super::ink::{self, Ink};
 use super::pen::{Pen, within};
 use super::shapes::Window;
-use super::thin::{Thin, Thinning};
+use super::thin::{Thin, Thinning, divided};
 use crate::model::{Lane, Overlay, Screen, WhatIf, ui::MapLayer};
 use crate::view::look::Look;
 use ratatui::widgets::canvas::Context;
@@ -53,10 +53,21 @@ pub(super) fn plan_ink(look: &Look) -> Ink {
     if look.run.progress.is_some() { ink::AHEAD } else { ink::PLAN }
 }
 
+/// The parts of the plan ahead, each with whether it is a way to a different part of the floor. Under way, the whole plan
+/// ahead is drawn alike.
+pub(super) fn parts(look: &Look, course: &Course) -> Vec<(Lane, bool)> {
+    let lane_m = look.run.about.as_ref().map_or(0.0, |about| about.mission.lane_m());
+    if look.run.progress.is_some() {
+        return vec![(course.ahead, false)];
+    }
+    divided(course.track.path, course.track.lanes, lane_m, course.ahead)
+}
+
 /// Which lanes of the plan are drawn, and which of a second plan beside it.
 pub(super) fn thinnings(look: &Look, window: Window) -> [Thinning; 2] {
     let lane_m = look.run.about.as_ref().map_or(0.0, |about| about.mission.lane_m());
-    let paths = 1 + usize::from(offer(look).or_else(|| compared(look)).is_some());
+    let shadow = look.run.shown_shadow().filter(|_| !look.run.is_running());
+    let paths = 1 + usize::from(offer(look).is_some() || compared(look).is_some() || shadow.is_some());
     [0, 1].map(|which| Thinning::new(lane_m, window, (which.min(paths - 1), paths)))
 }
 
@@ -104,7 +115,10 @@ impl Pen<'_> {
             if self.look.model.ui.screen == Screen::Plan {
                 self.pieces(ctx, &thin, course.driven, ink::DRIVEN);
             }
-            self.pieces(ctx, &thin, course.ahead, plan_ink(&self.look));
+            for (part, is_way) in parts(&self.look, &course) {
+                let ink = if is_way { ink::WAY } else { plan_ink(&self.look) };
+                self.pieces(ctx, &thin, part, ink);
+            }
         }
         if shows_trail(&self.look) {
             self.trail(ctx, self.look.run.trail.points(), ink::TRAIL);

@@ -27,20 +27,26 @@ pub(super) const DRIVEN: Ink = ink(Role::Dim, Pattern::Solid, '.');
 pub(super) const LEG: Ink = ink(Role::Target, Pattern::Thick, '*');
 /// The plan before the start.
 pub(super) const PLAN: Ink = ink(Role::Plan, Pattern::Solid, ',');
+/// A way of the plan to a different part of the floor, before the start.
+pub(super) const WAY: Ink = ink(Role::Dim, Pattern::Dashed, '|');
 /// The plan ahead of the robot.
 pub(super) const AHEAD: Ink = ink(Role::Plan, Pattern::Dashed, ',');
 /// A better plan that is on offer.
 pub(super) const OFFER: Ink = ink(Role::Watch, Pattern::Dotted, '=');
 /// The plan or the forecast of a different planner, or the trail of a different run.
-pub(super) const OTHER: Ink = ink(Role::Ghost, Pattern::Ticked, ':');
+pub(super) const OTHER: Ink = ink(Role::Ghost, Pattern::Ticked, 'b');
 /// The plan of the planner in shadow.
 pub(super) const SHADOW: Ink = ink(Role::Ghost, Pattern::Sparse, ';');
 /// The part of the plan that a zone blocks.
 pub(super) const BLOCKED: Ink = ink(Role::NoGo, Pattern::Thick, 'x');
 /// The tether.
 pub(super) const TETHER: Ink = ink(Role::Tether, Pattern::Double, '~');
-/// The planner's drawings.
-pub(super) const DRAWING: Pattern = Pattern::Solid;
+/// What pulls the robot, among the planner's drawings.
+pub(super) const PULL: Ink = ink(Role::Pull, Pattern::Jagged, '{');
+/// What pushes the robot away, among the planner's drawings.
+pub(super) const PUSH: Ink = ink(Role::Push, Pattern::Beaded, '}');
+/// The planner's other drawings.
+pub(super) const DRAWN: Ink = ink(Role::Drawn, Pattern::DashDotted, '\'');
 
 #[cfg(test)]
 mod tests {
@@ -49,8 +55,8 @@ mod tests {
     #[test]
     fn lines_that_are_on_the_map_together_differ_without_colours() {
         let together: [&[Ink]; 3] = [
-            &[TRAIL, LEG, AHEAD, OFFER, SHADOW, TETHER, OTHER],
-            &[PLAN, OTHER, OFFER],
+            &[TRAIL, LEG, AHEAD, OFFER, SHADOW, TETHER, OTHER, PULL, PUSH, DRAWN],
+            &[PLAN, WAY, OTHER, OFFER],
             &[DRIVEN, LEG, AHEAD, OFFER, SHADOW, OTHER],
         ];
         for inks in together {

@@ -1,19 +1,20 @@
 //! The legend of the map: every mark that is on the map now, beside the floor or in lines below it.
 
+use super::course::{self, Course};
 use super::ink::{self, Ink};
 use super::pattern::braille;
-use super::shade::{Shade, compared};
+use super::shade::{self, Shade};
 use super::shapes::Window;
-use super::{course, drawn, labels, plates};
-use crate::model::{Lane, Raster, Screen, ui::MapLayer};
+use super::{drawn, labels, plates};
+use crate::model::{Screen, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::{Look, Parts};
 use crate::view::text;
-use account::Shares;
+use planner_api::Drawing;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use std::borrow::Cow;
-use world::{Boundary, FloorClass, Point, ZoneKind};
+use world::{Boundary, Point, ZoneKind};
 
 /// Width of a mark, columns.
 const MARK: usize = 3;
@@ -142,91 +143,99 @@ pub(super) fn draw_lines(look: &Look, frame: &mut Frame, area: Rect, left_over: 
     }
 }
 
-/// The entries for what the map shows now: the classes of floor; and lines and marks.
+/// The entries for what the map shows now, the most important first: the classes of floor; and lines and marks.
 pub(super) fn entries(look: &Look, window: Window) -> (Vec<Entry>, Vec<Entry>) {
-    let marks = lines_shown(look, window).into_iter().chain(marks(look, window)).collect();
-    (floor(look), marks)
-}
-
-/// The classes of floor that occur.
-fn floor(look: &Look) -> Vec<Entry> {
-    let (run, layers) = (look.run, look.model.ui.layers);
     let entry = |(shade, word): (Shade, &'static str)| Entry {
         role: shade.role(),
-        mark: shade.glyph().to_string().repeat(2),
+        mark: shade_mark(shade),
         word: word.into(),
     };
-    if compared(look).is_some() {
-        let shades =
-            [(Shade::OnlyA, "only A"), (Shade::OnlyB, "only B"), (Shade::Floor(FloorClass::Partial), "both")];
-        return shades.map(entry).into();
-    }
-    let raster = run.coverage.as_ref().filter(|_| layers.shows(MapLayer::Scanned));
-    let division = raster.map(Raster::whole);
-    let some = |share: fn(&Shares) -> f64| division.as_ref().is_some_and(|division| share(division) > 0.0);
-    let again = raster.and_then(Raster::overlap).is_some_and(|share| share > 0.0);
-    let scanned = some(|division| division.scanned);
-    let accuracy = layers.shows(MapLayer::Accuracy);
-    let not_reached = run.has_missed() && run.is_cut_short();
-    let entries = [
-        (scanned, Shade::Floor(FloorClass::Scanned), "scanned"),
-        (scanned && again, Shade::Floor(FloorClass::Again), "overlap"),
-        (scanned, Shade::Floor(FloorClass::Partial), "partial"),
-        (run.has_missed() && some(|division| division.missed), Shade::Floor(FloorClass::Missed), "missed"),
-        (not_reached, Shade::NotReached, "not reached"),
-        (some(|division| division.unreachable), Shade::Floor(FloorClass::Unreachable), "unreachable"),
-        (some(|division| division.margin), Shade::Floor(FloorClass::Margin), "margin"),
-        (accuracy, Shade::PoorFix, "poor fix"),
-        (accuracy, Shade::WeakFix, "weak fix"),
-    ];
-    entries.into_iter().filter(|(shown, ..)| *shown).map(|(_, shade, word)| entry((shade, word))).collect()
+    let floor = shade::shown(look, window).map(entry).collect();
+    let lines = lines_shown(look, window).into_iter();
+    (floor, lines.chain(marks(look, window)).chain(drawings(look, window)).collect())
 }
 
-/// The lines that are drawn.
-fn lines_shown(look: &Look, window: Window) -> Vec<Entry> {
-    let run = look.run;
-    let on_plan = look.model.ui.screen == Screen::Plan;
-    let course = course::course(look);
-    let some =
-        |part: fn(&course::Course) -> Lane| course.as_ref().map(part).is_some_and(|(from, to)| from < to);
-    let other_run = look.model.live.replay.as_ref().is_some_and(|replay| replay.other.is_some());
-    let lines = [
-        (course::shows_trail(look), ink::TRAIL, "trail"),
-        (on_plan && some(|course| course.driven), ink::DRIVEN, "driven"),
-        (some(|course| course.leg), ink::LEG, "this leg"),
-        (some(|course| course.ahead), course::plan_ink(look), "plan"),
-        (course::offer(look).is_some(), ink::OFFER, "better plan"),
-        (course::compared(look).is_some(), ink::OTHER, "compared"),
-        (other_run && look.model.ui.screen == Screen::Mission, ink::OTHER, RUN_B),
-        (run.shadow.is_some() && run.is_running(), ink::SHADOW, "shadow"),
-        (
-            run.tether.as_ref().is_some_and(|tether| tether.line.windows(2).any(|pair| pair[0] != pair[1])),
-            ink::TETHER,
-            "tether",
-        ),
-    ];
-    let drawings = drawn::shown(look);
-    let drawn = drawn::KINDS.into_iter().filter_map(|(role, word)| {
-        let shown = drawings.iter().any(|drawing| drawn::role(drawing) == role);
-        shown.then_some((Ink { role, pattern: ink::DRAWING, letter: '\'' }, word))
-    });
-    let lines = lines.into_iter().filter(|(shown, ..)| *shown).map(|(_, ink, word)| (ink, word));
-    let has_dots = look.caps.glyphs.has_dots();
-    let mark = |ink: Ink, word: &str| match labels::Arrow::of(ink) {
+fn shade_mark(shade: Shade) -> String {
+    shade.glyph().to_string().repeat(2)
+}
+
+/// Whether a kind of line is drawn.
+type IsDrawn = fn(&Look, Option<&Course>) -> bool;
+
+/// The kinds of lines, the most important first, each with its legend text.
+const LINES: [(Ink, &str, IsDrawn); 11] = [
+    (ink::LEG, "this leg", |_, course| course.is_some_and(|course| course.leg.0 < course.leg.1)),
+    (ink::PLAN, "plan", |look, course| is_ahead(look, course, ink::PLAN)),
+    (ink::AHEAD, "plan", |look, course| is_ahead(look, course, ink::AHEAD)),
+    (ink::WAY, "way between", |look, course| {
+        course.is_some_and(|course| course::parts(look, course).iter().any(|part| part.1))
+    }),
+    (ink::OFFER, "better plan", |look, _| course::offer(look).is_some()),
+    (ink::OTHER, "compared", |look, _| course::compared(look).is_some()),
+    (ink::TETHER, "tether", |look, _| {
+        let line = look.run.tether.as_ref().map(|tether| &tether.line);
+        line.is_some_and(|line| line.windows(2).any(|pair| pair[0] != pair[1]))
+    }),
+    (ink::TRAIL, "trail", |look, _| course::shows_trail(look)),
+    (ink::OTHER, RUN_B, |look, _| {
+        let has_other = look.model.live.replay.as_ref().is_some_and(|replay| replay.other.is_some());
+        has_other && look.model.ui.screen == Screen::Mission
+    }),
+    (ink::SHADOW, "shadow", |look, _| look.run.shown_shadow().is_some()),
+    (ink::DRIVEN, "driven", |look, course| {
+        look.model.ui.screen == Screen::Plan && course.is_some_and(|course| course.driven.0 < course.driven.1)
+    }),
+];
+
+/// Whether the plan ahead is drawn, with the given ink.
+fn is_ahead(look: &Look, course: Option<&Course>, ink: Ink) -> bool {
+    course::plan_ink(look) == ink && course.is_some_and(|course| course.ahead.0 < course.ahead.1)
+}
+
+/// The sample of a kind of line.
+fn line_mark(ink: Ink, word: &str, has_dots: bool) -> String {
+    match labels::Arrow::of(ink) {
         _ if !has_dots => ink.letter.to_string().repeat(2),
         // The trail of a run has no arrows.
         Some(arrow) if word != RUN_B => format!("{}{arrow}", ink.pattern.sample(MARK as u16 - 1)),
         _ => ink.pattern.sample(MARK as u16),
-    };
+    }
+}
+
+fn line_entry(look: &Look, ink: Ink, word: &'static str) -> Entry {
+    Entry { role: ink.role, mark: line_mark(ink, word, look.caps.glyphs.has_dots()), word: word.into() }
+}
+
+/// The lines that are drawn.
+fn lines_shown(look: &Look, window: Window) -> Vec<Entry> {
+    let course = course::course(look);
     let every = course::thinnings(look, window)[0].every;
-    let word = |ink: Ink, word: &'static str| {
-        let is_plan = matches!(ink, ink::PLAN | ink::AHEAD);
-        if is_plan && every > 1 { format!("{word}, 1 lane in {every}").into() } else { Cow::from(word) }
+    let lines = LINES.into_iter().filter(|(.., is_drawn)| is_drawn(look, course.as_ref()));
+    let entry = |(ink, word, _): (Ink, &'static str, IsDrawn)| {
+        let entry = line_entry(look, ink, word);
+        let is_thinned = every > 1 && matches!(ink, ink::PLAN | ink::AHEAD);
+        if is_thinned { Entry { word: format!("{word}, 1 lane in {every}").into(), ..entry } } else { entry }
     };
-    lines
-        .chain(drawn)
-        .map(|(ink, name)| Entry { role: ink.role, mark: mark(ink, name), word: word(ink, name) })
-        .collect()
+    lines.map(entry).collect()
+}
+
+/// The planner's drawings that are large enough to be seen in the window.
+fn drawings(look: &Look, window: Window) -> Vec<Entry> {
+    let is_seen = |drawing: &&Drawing| {
+        let points = drawn::points(drawing);
+        let is_long = points.iter().any(|point| (point - points[0]).norm() >= window.column_m);
+        is_long && points.iter().any(|point| window.cell_of(*point).is_some())
+    };
+    let seen: Vec<Ink> = drawn::shown(look).iter().filter(is_seen).map(drawn::ink).collect();
+    let kinds = drawn::KINDS.into_iter().filter(|(ink, _)| seen.contains(ink));
+    kinds.map(|(ink, word)| line_entry(look, ink, word)).collect()
+}
+
+/// The samples of areas: a no-go zone and the outline of a plate.
+fn fixed_marks(has_dots: bool) -> [(String, &'static str); 2] {
+    let hatched = if has_dots { braille(2, |x, y| (x + y).is_multiple_of(4)) } else { "xx".into() };
+    let outline = if has_dots { braille(3, |x, y| y == 2 && x.is_multiple_of(2)) } else { "``".into() };
+    [(hatched, "no-go zone"), (outline, "plate")]
 }
 
 /// The marks that are drawn.
@@ -234,27 +243,25 @@ fn marks(look: &Look, window: Window) -> Vec<Entry> {
     let (run, ui) = (look.run, &look.model.ui);
     let Some(about) = &run.about else { return Vec::new() };
     let seen = |at: Point| window.cell_of(at).is_some();
-    let has_dots = look.caps.glyphs.has_dots();
+    let [hatched, outline] = fixed_marks(look.caps.glyphs.has_dots()).map(|(mark, _)| mark);
     let obstacle = |known: bool| {
         about.world.obstacles.iter().any(|obstacle| obstacle.known == known && seen(obstacle.shape.center()))
     };
     let no_go = about.world.zones.iter().any(|zone| zone.kind == ZoneKind::NoGo && seen(zone.shape.center()));
-    let hatched = if has_dots { braille(2, |x, y| (x + y).is_multiple_of(4)) } else { "xx".into() };
-    let outline = if has_dots { braille(3, |x, y| y == 2 && x.is_multiple_of(2)) } else { "``".into() };
     let station = ui.layers.shows(MapLayer::Stations)
         && about.world.stations.iter().any(|station| seen(station.position));
     let target = run.progress.as_ref().is_some_and(|progress| !run.has_ended() && seen(progress.target));
     let wound = labels::wound(look).is_some_and(seen);
     let change_over = course::change_over(look).is_some_and(seen);
     let marks = [
-        (obstacle(true), Role::Obstacle, "#".to_owned(), "obstacle"),
-        (obstacle(false), Role::Found, "?".into(), "found"),
         (no_go, Role::NoGo, hatched, "no-go zone"),
-        (plates::plates(look, window).is_some(), Role::Plate, outline, "plate"),
-        (station, Role::Station, stations(look), "station"),
+        (obstacle(false), Role::Found, "?".to_owned(), "found"),
+        (obstacle(true), Role::Obstacle, "#".into(), "obstacle"),
         (target, Role::Target, "×".into(), "target"),
         (wound, Role::Tether, labels::WOUND.into(), "largest wrap"),
         (change_over, Role::Watch, "◇".into(), "change-over"),
+        (station, Role::Station, stations(look), "station"),
+        (plates::plates(look, window).is_some(), Role::Plate, outline, "plate"),
     ];
     let marks = marks.into_iter().filter(|(shown, ..)| *shown);
     let marks = marks.map(|(_, role, mark, word)| Entry { role, mark, word: word.into() });
@@ -301,6 +308,7 @@ fn places(look: &Look, window: Window) -> Vec<Entry> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::view::ascii;
 
     #[test]
     fn a_round_tank_leaves_room_in_the_corners() {
@@ -310,6 +318,51 @@ mod tests {
         let (west, east) = blank(&tank, window, 9);
         assert_eq!((west, east), (11, 9));
         assert!(blank(&tank, window, 2).0 > west);
+    }
+
+    /// The marks of the legend that can be on one map, without their colours.
+    fn marks_together(difference: bool, mission: bool, has_dots: bool) -> Vec<(String, &'static str)> {
+        let of_difference = |shade: Shade| matches!(shade, Shade::OnlyA | Shade::OnlyB | Shade::Both);
+        let floor = shade::LEGEND.into_iter().filter(|(shade, _)| of_difference(*shade) == difference);
+        let of_mission = |ink, word| match word {
+            "compared" | "driven" => !mission,
+            "trail" | RUN_B => mission,
+            // Either as it was before the start, or as it is ahead of the robot.
+            _ => ink != ink::PLAN,
+        };
+        let lines = LINES.into_iter().map(|(ink, word, _)| (ink, word));
+        let lines = lines.filter(|(ink, word)| of_mission(*ink, *word));
+        let drawn = drawn::KINDS.into_iter().filter(|_| mission);
+        let lines = lines.chain(drawn).map(|(ink, word)| (line_mark(ink, word, has_dots), word));
+        let marks = fixed_marks(has_dots).map(|(mark, word)| (mark, word));
+        let own =
+            ["×", labels::WOUND, "◇", "t", "c", "e", labels::RESUMES].map(|mark| (mark.to_owned(), "place"));
+        floor.map(|(shade, word)| (shade_mark(shade), word)).chain(lines).chain(marks).chain(own).collect()
+    }
+
+    fn as_ascii(letter: char) -> char {
+        if letter.is_ascii() { letter } else { ascii::plain(&letter.to_string()) }
+    }
+
+    #[test]
+    fn what_can_be_on_one_map_has_marks_that_differ_without_colours() {
+        for (difference, mission, has_dots) in [
+            (false, true, true),
+            (true, true, true),
+            (false, false, true),
+            (false, true, false),
+            (false, false, false),
+        ] {
+            let mut all = marks_together(difference, mission, has_dots);
+            if !has_dots {
+                for (mark, _) in &mut all {
+                    *mark = mark.chars().map(as_ascii).collect();
+                }
+            }
+            all.sort_unstable();
+            let same = all.windows(2).find(|pair| pair[0].0 == pair[1].0);
+            assert_eq!(same, None, "{all:?}");
+        }
     }
 
     #[test]

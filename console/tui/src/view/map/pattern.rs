@@ -22,13 +22,19 @@ pub(in crate::view) enum Pattern {
     Sparse,
     /// Two lines side by side.
     Double,
+    /// A line that jumps from side to side.
+    Jagged,
+    /// Short pieces, two dots wide.
+    Beaded,
+    /// Long dashes with a dot between them.
+    DashDotted,
 }
 
 impl Pattern {
     /// The pattern of a line of letters, which is one letter wide.
     pub(super) fn in_letters(self) -> Self {
         match self {
-            Self::Double | Self::Thick | Self::Ticked => Self::Solid,
+            Self::Double | Self::Thick | Self::Ticked | Self::Jagged | Self::Beaded => Self::Solid,
             narrow => narrow,
         }
     }
@@ -36,7 +42,9 @@ impl Pattern {
     /// Whether the dot at a distance along the line is set.
     pub(super) fn is_on(self, step: usize) -> bool {
         match self {
-            Self::Solid | Self::Double | Self::Thick | Self::Ticked => true,
+            Self::Solid | Self::Double | Self::Thick | Self::Ticked | Self::Jagged => true,
+            Self::Beaded => step % 4 < 2,
+            Self::DashDotted => step % 6 != 3 && step % 6 != 5,
             Self::Dashed => step % 8 < 5,
             Self::Dotted => step.is_multiple_of(3),
             Self::Sparse => step.is_multiple_of(5),
@@ -51,11 +59,11 @@ impl Pattern {
         mut set: impl FnMut(usize, usize),
     ) {
         match (self, is_flat) {
-            (Self::Thick, true) => {
+            (Self::Thick | Self::Beaded, true) => {
                 set(x, y);
                 set(x, y + 1);
             }
-            (Self::Thick, false) => {
+            (Self::Thick | Self::Beaded, false) => {
                 set(x, y);
                 set(x + 1, y);
             }
@@ -65,6 +73,8 @@ impl Pattern {
             (Self::Ticked, false) if step % TICK_DOTS == TICK_DOTS / 2 => {
                 (x.saturating_sub(1)..=x + 1).for_each(|x| set(x, y));
             }
+            (Self::Jagged, true) => set(x, y + step % 2),
+            (Self::Jagged, false) => set(x + step % 2, y),
             (Self::Double, true) => {
                 set(x, y.saturating_sub(1));
                 set(x, y + 1);
@@ -121,8 +131,15 @@ mod tests {
             Pattern::Thick,
             Pattern::Sparse,
             Pattern::Double,
+            Pattern::Jagged,
+            Pattern::Beaded,
+            Pattern::DashDotted,
         ];
         let samples = all.map(|pattern| pattern.sample(4));
-        assert_eq!(samples, ["⠤⠤⠤⠤", "⠤⠤⠄ ", "⠄⠠ ⠄", "⠤⡦⠤⢴", "⣤⣤⣤⣤", "⠄ ⠠ ", "⣒⣒⣒⣒"].map(str::to_owned));
+        assert_eq!(
+            samples,
+            ["⠤⠤⠤⠤", "⠤⠤⠄ ", "⠄⠠ ⠄", "⠤⡦⠤⢴", "⣤⣤⣤⣤", "⠄ ⠠ ", "⣒⣒⣒⣒", "⢄⢄⢄⢄", "⣤ ⣤ ", "⠤⠄⠄⠤"]
+                .map(str::to_owned)
+        );
     }
 }

@@ -9,7 +9,6 @@ use crate::caps::Glyphs;
 use crate::model::position;
 use crate::theme::Role;
 use crate::view::look::Look;
-use planner_api::Drawing;
 use ratatui::symbols::Marker;
 use ratatui::text::Line;
 use ratatui::widgets::canvas::Context;
@@ -70,14 +69,8 @@ impl Pen<'_> {
     }
 
     pub(super) fn drawings(&self, ctx: &mut Context<'_>) {
-        self.take_up(ctx, '\'');
         for drawing in drawn::shown(&self.look) {
-            let points = match *drawing {
-                Drawing::Arrow { at, vector, .. } => vec![at, at + vector],
-                Drawing::Line { from, to, .. } => vec![from, to],
-                Drawing::Circle { center, radius_m, .. } => ellipse(center, (radius_m, radius_m), 0.0, 32),
-            };
-            self.stroke(ctx, &points, drawn::role(drawing), ink::DRAWING);
+            self.draw(ctx, &drawn::points(drawing), drawn::ink(drawing));
         }
     }
 

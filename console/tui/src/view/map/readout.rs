@@ -4,7 +4,9 @@ use super::plates;
 use crate::model::ui::Ui;
 use crate::theme::Role;
 use crate::view::look::Look;
+use crate::view::missed::briefest;
 use crate::view::text;
+use account::OutOfReach;
 use world::{FloorClass, Point};
 
 /// The robot's position and its error, in words.
@@ -33,7 +35,7 @@ pub(super) fn cursor(look: &Look, ui: &Ui, width: u16) -> Option<(Role, String)>
 
 /// The floor there: its plate, its class, and the expected error of a fix.
 pub(super) fn floor(look: &Look, at: Point) -> String {
-    let raster = look.run.coverage.as_ref();
+    let raster = look.model.live.scanned();
     let class = raster.and_then(|raster| raster.class_at(at, look.run.has_missed()));
     let Some((class, times)) = class else { return "no floor".into() };
     let plate = plates::name_at(look, at).map_or_else(String::new, |name| format!("{name}  "));
@@ -43,17 +45,32 @@ pub(super) fn floor(look: &Look, at: Point) -> String {
         Some(None) => "AE no fix".into(),
         None => "AE -".into(),
     };
-    format!("{plate}{}  {error}", word(class, times))
+    format!("{plate}{}  {error}", word(look, at, (class, times)))
 }
 
-fn word(class: FloorClass, times: u32) -> String {
+/// The class of the floor at a place, and why it was missed, is left out or cannot be reached.
+fn word(look: &Look, at: Point, (class, times): (FloorClass, u32)) -> String {
+    let live = &look.model.live;
+    let out_of_reach = || {
+        let floor = look.run.coverage.as_ref()?.floor();
+        Some(OutOfReach::of(floor.kind(floor.cell_at(at)?))?.plainly())
+    };
     match class {
-        FloorClass::Outside | FloorClass::ToDo => "to do".into(),
-        FloorClass::Missed => "missed".into(),
+        FloorClass::Outside | FloorClass::ToDo => match live.left_out_area(at) {
+            Some(area) => format!("left out: {}", briefest(area)),
+            None => "to do".into(),
+        },
+        FloorClass::Missed => match live.missed_area(at) {
+            Some(area) => format!("missed: {}", briefest(area)),
+            None => "missed".into(),
+        },
         FloorClass::Scanned => "scanned".into(),
         FloorClass::Again => format!("scanned ×{times}"),
         FloorClass::Partial => "partially scanned".into(),
         FloorClass::Margin => "shell margin".into(),
-        FloorClass::Unreachable => "unreachable".into(),
+        FloorClass::Unreachable => match out_of_reach() {
+            Some(why) => format!("unreachable: {why}"),
+            None => "unreachable".into(),
+        },
     }
 }

@@ -24,6 +24,8 @@ pub(crate) enum Shade {
     OnlyA,
     /// Scanned only by the run with which it is compared.
     OnlyB,
+    /// Scanned by both runs.
+    Both,
 }
 
 impl Shade {
@@ -42,11 +44,12 @@ impl Shade {
             Self::Floor(FloorClass::Missed) => ('▓', Role::Missed),
             Self::Floor(FloorClass::Unreachable) => ('/', Role::Unreachable),
             Self::Floor(FloorClass::Margin) => ('-', Role::Margin),
-            Self::NotReached => ('·', Role::Dim),
-            Self::PoorFix => ('%', Role::Crit),
-            Self::WeakFix => (':', Role::Warn),
+            Self::NotReached => ('∙', Role::Dim),
+            Self::PoorFix => ('$', Role::Crit),
+            Self::WeakFix => ('_', Role::Warn),
             Self::OnlyA => ('A', Role::Good),
             Self::OnlyB => ('B', Role::Ghost),
+            Self::Both => ('░', Role::Partly),
         }
     }
 
@@ -85,6 +88,28 @@ pub(crate) type Shades = Rc<[Option<Shade>]>;
 /// character row, whether the mission has ended, and the stamp of the raster with which it is compared.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Key(u64, Window, u16, bool, Option<u64>);
+
+/// The shades in the order of the legend, the most important first, each with its legend text.
+pub(super) const LEGEND: [(Shade, &str); 12] = [
+    (Shade::Floor(FloorClass::Missed), "missed"),
+    (Shade::NotReached, "not reached"),
+    (Shade::PoorFix, "poor fix"),
+    (Shade::WeakFix, "weak fix"),
+    (Shade::Floor(FloorClass::Scanned), "scanned"),
+    (Shade::Floor(FloorClass::Again), "overlap"),
+    (Shade::Floor(FloorClass::Partial), "partial"),
+    (Shade::Floor(FloorClass::Unreachable), "unreachable"),
+    (Shade::Floor(FloorClass::Margin), "margin"),
+    (Shade::OnlyA, "only A"),
+    (Shade::OnlyB, "only B"),
+    (Shade::Both, "both"),
+];
+
+/// The shades that are on the map now, with their legend texts.
+pub(super) fn shown(look: &Look, window: Window) -> impl Iterator<Item = (Shade, &'static str)> {
+    let shades = shades(look, window, if look.is_plain() { 1 } else { 2 });
+    LEGEND.into_iter().filter(move |(shade, _)| shades.contains(&Some(*shade)))
+}
 
 /// Paints the floor where nothing else is drawn, and the background under lines.
 pub(super) fn paint(look: &Look, window: Window, area: Rect, buffer: &mut Buffer) {
@@ -138,7 +163,7 @@ fn paint_cell(look: &Look, upper: Option<Shade>, lower: Option<Shade>, cell: &mu
 /// between frames.
 fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
     let (run, layers) = (look.run, look.model.ui.layers);
-    let raster = run.coverage.as_ref().filter(|_| layers.shows(MapLayer::Scanned));
+    let raster = look.model.live.scanned().filter(|_| layers.shows(MapLayer::Scanned));
     if layers.shows(MapLayer::Accuracy) {
         return window
             .dots(rows_per_row)
@@ -164,7 +189,7 @@ fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
 }
 
 /// The floor of the run with which the replay is compared, if the difference is shown.
-pub(super) fn compared<'a>(look: &Look<'a>) -> Option<&'a Raster> {
+fn compared<'a>(look: &Look<'a>) -> Option<&'a Raster> {
     let replay = look.model.live.replay.as_ref().filter(|replay| replay.shows_difference)?;
     replay.other.as_ref()?.run.coverage.as_ref()
 }
@@ -185,7 +210,7 @@ fn difference(scans: Scans) -> Option<Shade> {
         Scans::None => None,
         Scans::OnlyA => Some(Shade::OnlyA),
         Scans::OnlyB => Some(Shade::OnlyB),
-        Scans::Both => Some(Shade::Floor(FloorClass::Partial)),
+        Scans::Both => Some(Shade::Both),
     }
 }
 

@@ -1,26 +1,34 @@
 //! The planner in shadow on the map: its plan, and the ghost of the robot under its command.
 
+use super::course;
 use super::ink::{self, Ink};
 use super::pattern::Pattern;
 use super::pen::{Pen, within};
 use super::shapes::ellipse;
+use super::thin::Thin;
 use crate::model::ui::MapLayer;
 use ratatui::widgets::canvas::Context;
-use world::Point;
 
-/// How much of its plan is drawn, metres.
+/// How much of its plan is drawn while the robot moves, metres; while the robot is held, all of it is drawn.
 const AHEAD_M: f64 = 4.0;
 
 impl Pen<'_> {
     /// Draws the plan and the ghost.
     pub(super) fn shadow(&self, ctx: &mut Context<'_>) {
         let run = self.look.run;
-        let Some(shadow) = run.shadow.as_ref().filter(|_| run.is_running()) else { return };
-        if self.look.model.ui.layers.shows(MapLayer::Plan) {
-            let robot = run.position.pose.as_ref().map(|pose| pose.position);
-            let from = robot.map_or(0, |robot| super::pen::nearest(&shadow.path, robot));
-            let ahead: &[Point] = shadow.path.get(from..).unwrap_or_default();
-            self.draw(ctx, within(ahead, AHEAD_M), ink::SHADOW);
+        let Some(shadow) = run.shown_shadow() else { return };
+        if self.look.model.ui.layers.shows(MapLayer::Plan) && shadow.path.len() > 1 {
+            if run.is_running() {
+                let robot = run.position.pose.as_ref().map(|pose| pose.position);
+                let from = robot.map_or(0, |robot| super::pen::nearest(&shadow.path, robot));
+                self.draw(ctx, within(&shadow.path[from..], AHEAD_M), ink::SHADOW);
+            } else {
+                let [_, thinning] = course::thinnings(&self.look, self.window);
+                let thin = Thin::new(&shadow.path, &shadow.lanes, thinning);
+                for line in thin.lines((0, shadow.path.len() - 1)) {
+                    self.draw(ctx, &line, ink::SHADOW);
+                }
+            }
         }
         let Some(ghost) = run.ghost() else { return };
         self.draw(ctx, &ghost, Ink { pattern: Pattern::Solid, ..ink::SHADOW });

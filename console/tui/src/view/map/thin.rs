@@ -5,8 +5,9 @@ use crate::model::Lane;
 use std::collections::BTreeMap;
 use world::{Point, polyline};
 
-/// Lanes that are at least this many columns apart are all drawn.
-const APART_COLUMNS: f64 = 1.6;
+/// Lanes that are at least this many columns apart are all drawn. Closer lanes that lead from west to east would be on
+/// neighbouring rows, which are two columns high.
+const APART_COLUMNS: f64 = 2.2;
 /// The distance between the lanes drawn if not all are, columns.
 const THINNED_COLUMNS: f64 = 2.0;
 /// Maximum number of lanes of which one is drawn.
@@ -99,7 +100,7 @@ fn every_nth(path: &[Point], lanes: &[Lane], thinning: Thinning) -> (Vec<Lane>, 
             if is_same_line && drawn.last() == Some(&(index - 1)) {
                 stretches.push(way);
             } else if is_same_line {
-            } else if polyline::length_m(&path[way.0..=way.1]) > TRANSIT_LANES * thinning.lane_m {
+            } else if is_transit(path, way, thinning.lane_m) {
                 stretches.push(way);
                 row = 0;
             } else {
@@ -113,6 +114,27 @@ fn every_nth(path: &[Point], lanes: &[Lane], thinning: Thinning) -> (Vec<Lane>, 
     }
     stretches.extend(lanes.last().map(|lane| (lane.1, path.len() - 1)));
     (stretches, drawn)
+}
+
+/// The parts of a path, each with whether it is a way to a different part of the floor. `part` is the part of the path to
+/// be divided.
+pub(super) fn divided(path: &[Point], lanes: &[Lane], lane_m: f64, part: Lane) -> Vec<(Lane, bool)> {
+    let ways = lanes.windows(2).filter(|pair| !is_continued(path, pair[0], pair[1], lane_m));
+    let ways = ways.map(|pair| (pair[0].1, pair[1].0.max(pair[0].1)));
+    let (mut parts, mut at) = (Vec::new(), part.0);
+    for (from, to) in ways.filter(|way| is_transit(path, *way, lane_m)) {
+        let (from, to) = (from.clamp(at, part.1.max(at)), to.clamp(at, part.1.max(at)));
+        parts.extend([((at, from), false), ((from, to), true)]);
+        at = to;
+    }
+    parts.push(((at, part.1), false));
+    parts.retain(|((from, to), _)| from < to);
+    parts
+}
+
+/// Whether a way between two lanes leads to a different part of the floor.
+fn is_transit(path: &[Point], way: Lane, lane_m: f64) -> bool {
+    lane_m > 0.0 && polyline::length_m(&path[way.0..=way.1]) > TRANSIT_LANES * lane_m
 }
 
 /// Whether a lane continues the one before on the same line.
@@ -195,7 +217,7 @@ mod tests {
     #[test]
     fn lanes_that_are_apart_are_all_drawn() {
         let (path, lanes) = meander(6);
-        let thin = Thin::new(&path, &lanes, Thinning::new(0.5, window(0.25), (0, 1)));
+        let thin = Thin::new(&path, &lanes, Thinning::new(0.5, window(0.2), (0, 1)));
         assert_eq!(thin.lanes.len(), 6);
         assert_eq!(thin.lines((0, 125)).collect::<Vec<_>>(), std::slice::from_ref(&path));
     }
@@ -227,6 +249,19 @@ mod tests {
             thin.lines((0, path.len() - 1))
                 .any(|line| line.contains(&path[n - 1]) && line.contains(&path[n]))
         );
+    }
+
+    #[test]
+    fn ways_between_parts_of_the_floor_are_told_from_lanes() {
+        let (mut path, mut lanes) = meander(2);
+        let n = path.len();
+        path.extend(meander(2).0.iter().map(|at| at + world::Vector::new(0.0, 30.0)));
+        lanes.extend([(n, n + 20), (n + 21, n + 41)]);
+        let end = path.len() - 1;
+        let whole = [((0, n - 1), false), ((n - 1, n), true), ((n, end), false)];
+        assert_eq!(divided(&path, &lanes, 0.5, (0, end)), whole);
+        assert_eq!(divided(&path, &lanes, 0.5, (n + 3, end)), [((n + 3, end), false)]);
+        assert_eq!(divided(&path, &[], 0.5, (2, 9)), [((2, 9), false)]);
     }
 
     #[test]

@@ -1,18 +1,94 @@
 //! The reason, the place and the end of a hold.
 
-use crate::model::Model;
+use crate::model::{Model, Run};
 use crate::view::text;
 use mission::{Hold, HoldReason, Phase, PositionTrust, Resumes};
+use vehicle::port::{LinkSeen, LinkState};
 
 /// The reason for the hold, then its end.
 pub(super) fn clauses(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String> {
-    let position = model.live.run.standing.standing().position;
-    let clauses = match trouble(position) {
-        _ if !resumes.is_never() => held_for_now(by, *resumes),
-        Some(trouble) => held_without_position(by, trouble),
-        None => held_for_good(by),
+    let run = &model.live.run;
+    let head = head(run);
+    let position = run.standing.standing().position;
+    let fault = run.planning.fault.as_ref().filter(|_| resumes.is_never() && !by.blames_planner());
+    if let Some(clauses) = run.vehicle.as_ref().and_then(|vehicle| undrivable(head, by, &vehicle.link)) {
+        return clauses;
+    }
+    let mut clauses = match (trouble(position), fault) {
+        _ if !resumes.is_never() => held_for_now(head, by, *resumes),
+        (Some(trouble), _) => held_without_position(head, by, trouble),
+        (None, Some(fault)) => held_without_planner(head, by, &fault.message),
+        (None, None) => held_for_good(head, by),
     };
+    if head == Head::NotConfirmed {
+        clauses.insert(1, "The robot may move: use its emergency stop.".into());
+    }
     clauses.into_iter().chain(message(by)).collect()
+}
+
+/// The first word of the state: whether the robot stands still.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Head {
+    /// It stands; in a live run, odometry has confirmed this.
+    Held,
+    /// It has been commanded to stop.
+    Stopping,
+    /// It should stand, but odometry does not show it.
+    NotConfirmed,
+}
+
+fn head(run: &Run) -> Head {
+    match run.vehicle.as_ref().map(|vehicle| vehicle.stands) {
+        _ if !run.is_live() => Head::Held,
+        Some(Some(true)) => Head::Held,
+        Some(Some(false)) => Head::NotConfirmed,
+        Some(None) | None => Head::Stopping,
+    }
+}
+
+impl Head {
+    /// The state with the reason for the hold, without a full stop.
+    fn with(self, reason: &str) -> String {
+        let word = match self {
+            Self::Held => "HELD",
+            Self::Stopping => "STOPPING",
+            Self::NotConfirmed => "STOP NOT CONFIRMED",
+        };
+        format!("{word}{reason}")
+    }
+}
+
+/// A vehicle that cannot be driven now, whatever the robot is held for; `None` if it can be driven.
+fn undrivable(head: Head, by: &HoldReason, link: &LinkSeen) -> Option<Vec<String>> {
+    let (what, needs) = match link.state {
+        LinkState::Up => return None,
+        LinkState::Lost => ("link to vehicle lost", "Cannot resume until the link is back."),
+        LinkState::Closed => ("link to vehicle closed", "Cannot resume: only a new run connects again."),
+        LinkState::Faulty => ("vehicle sends faulty messages", "Cannot resume until they are correct."),
+        LinkState::Restarted => ("vehicle has restarted", "Cannot resume yet."),
+        LinkState::Manual => ("vehicle is driven by hand", "Cannot resume until it is released."),
+        LinkState::EmergencyStop => ("emergency stop is pressed", "Cannot resume until it is released."),
+        LinkState::OtherCommander => {
+            ("vehicle obeys another console", "Cannot resume until that one has ended.")
+        }
+        LinkState::VehicleFault => ("vehicle reports a fault", "Cannot resume until the fault is gone."),
+    };
+    let state = match by {
+        HoldReason::Vehicle { .. } => head.with(&format!(": {what}.")),
+        by => head.with(&format!("{}; {what}.", reason(by))),
+    };
+    let why = (!link.why.is_empty()).then(|| format!("{}.", text::capitalized(&link.why)));
+    Some([state, needs.into(), "<end>: end mission.".into()].into_iter().chain(why).collect())
+}
+
+/// A hold during which the planner has ended, too.
+fn held_without_planner(head: Head, by: &HoldReason, fault: &str) -> Vec<String> {
+    vec![
+        head.with(&format!("{}; planner has failed.", reason(by))),
+        "<resume>: restart it and resume.".into(),
+        "<planner>: change planner.".into(),
+        format!("{}.", text::capitalized(fault)),
+    ]
 }
 
 /// The problem with the position, and the condition for moving again.
@@ -28,7 +104,7 @@ fn trouble(position: PositionTrust) -> Option<(&'static str, &'static str)> {
 
 /// A hold that ends automatically. The first two clauses fit into 60 columns, so that no operator is surprised by a robot
 /// that starts to move.
-fn held_for_now(by: &HoldReason, resumes: Resumes) -> Vec<String> {
+fn held_for_now(head: Head, by: &HoldReason, resumes: Resumes) -> Vec<String> {
     let when = match (resumes, by) {
         (Resumes::ByFallback, _) => "Resumes with fallback planner.",
         (_, HoldReason::PositionLost) => "Resumes automatically when recovered.",
@@ -36,58 +112,60 @@ fn held_for_now(by: &HoldReason, resumes: Resumes) -> Vec<String> {
         (_, HoldReason::PlannerSilent { .. }) => "Resumes automatically on answer.",
         _ => "Resumes automatically.",
     };
-    vec![format!("{}.", state(by)), when.into(), "<hold>: HOLD (stay held).".into()]
+    vec![head.with(&format!("{}.", reason(by))), when.into(), "<hold>: HOLD (stay held).".into()]
 }
 
 /// A hold that only an order can end, while the mission accepts no order that moves the robot.
-fn held_without_position(by: &HoldReason, (trouble, needs): (&str, &str)) -> Vec<String> {
+fn held_without_position(head: Head, by: &HoldReason, (trouble, needs): (&str, &str)) -> Vec<String> {
     let state = match by {
-        HoldReason::PositionLost | HoldReason::RangesInconsistent => format!("HELD: {trouble}."),
-        by => format!("{}; {trouble}.", state(by)),
+        HoldReason::PositionLost | HoldReason::RangesInconsistent => head.with(&format!(": {trouble}.")),
+        by => head.with(&format!("{}; {trouble}.", reason(by))),
     };
     let planner = by.blames_planner().then(|| "<planner>: change planner.".to_owned());
     [state, needs.into()].into_iter().chain(planner).collect()
 }
 
 /// A hold that only an order can end.
-fn held_for_good(by: &HoldReason) -> Vec<String> {
+fn held_for_good(head: Head, by: &HoldReason) -> Vec<String> {
     const RESUME: &str = "<resume>: resume.";
     const RETRY: &str = "<resume>: retry.";
     const PLANNER: &str = "<planner>: change planner.";
-    let (state, remedies): (&str, &[&str]) = match by {
+    let (reason, remedies): (&str, &[&str]) = match by {
         // The reason for the hold is gone.
-        HoldReason::PositionLost => ("HELD: position recovered", &[RESUME]),
-        HoldReason::RangesInconsistent => ("HELD: ranges agree again", &[RESUME]),
-        HoldReason::Stepped => (state(by), &[RESUME]),
+        HoldReason::PositionLost => (": position recovered", &[RESUME]),
+        HoldReason::RangesInconsistent => (": ranges agree again", &[RESUME]),
+        HoldReason::Vehicle { .. } => (": vehicle is ready again", &[RESUME, "<end>: end mission."]),
+        HoldReason::Stepped => (reason(by), &[RESUME]),
         HoldReason::Operator | HoldReason::PlannerReplaced | HoldReason::PlannerSilent { .. } => {
-            (state(by), &[RESUME, PLANNER])
+            (reason(by), &[RESUME, PLANNER])
         }
-        HoldReason::Tether { .. }
-        | HoldReason::ZoneBreached { .. }
-        | HoldReason::Vehicle { .. }
-        | HoldReason::Guard { .. } => (state(by), &[RESUME, "<end>: end mission."]),
-        HoldReason::PlanRefused { .. } => (state(by), &[PLANNER, "<run-uncertified>: run it."]),
-        HoldReason::PlannerFault { .. } | HoldReason::Stuck { .. } => (state(by), &[PLANNER, RETRY]),
+        HoldReason::Tether { .. } | HoldReason::ZoneBreached { .. } | HoldReason::Guard { .. } => {
+            (reason(by), &[RESUME, "<end>: end mission."])
+        }
+        HoldReason::PlanRefused { .. } => (reason(by), &[PLANNER, "<run-uncertified>: run it."]),
+        HoldReason::PlannerFault { .. } | HoldReason::Stuck { .. } => (reason(by), &[PLANNER, RETRY]),
     };
-    std::iter::once(format!("{state}.")).chain(remedies.iter().map(|remedy| (*remedy).to_owned())).collect()
+    std::iter::once(head.with(&format!("{reason}.")))
+        .chain(remedies.iter().map(|remedy| (*remedy).to_owned()))
+        .collect()
 }
 
-/// The reason for the hold, without a full stop.
-fn state(by: &HoldReason) -> &'static str {
+/// The reason for the hold, as it follows the word HELD, without a full stop.
+fn reason(by: &HoldReason) -> &'static str {
     match by {
-        HoldReason::Operator => "HELD by operator",
-        HoldReason::Stepped => "HELD after single step",
-        HoldReason::PlannerReplaced => "HELD: planner replaced",
-        HoldReason::RangesInconsistent => "HELD: ranges contradict each other",
-        HoldReason::PositionLost => "HELD: position lost",
-        HoldReason::Stuck { .. } => "HELD: robot stuck",
-        HoldReason::Tether { .. } => "HELD: tether alarm",
-        HoldReason::PlanRefused { .. } => "HELD: plan refused",
-        HoldReason::ZoneBreached { .. } => "HELD: hull in a no-go zone",
-        HoldReason::Vehicle { .. } => "HELD: vehicle cannot be driven",
-        HoldReason::Guard { .. } => "HELD by the guard",
-        HoldReason::PlannerSilent { .. } => "HELD: planner silent",
-        HoldReason::PlannerFault { .. } => "HELD: planner failed",
+        HoldReason::Operator => " by operator",
+        HoldReason::Stepped => " after single step",
+        HoldReason::PlannerReplaced => ": planner replaced",
+        HoldReason::RangesInconsistent => ": ranges contradict each other",
+        HoldReason::PositionLost => ": position lost",
+        HoldReason::Stuck { .. } => ": robot stuck",
+        HoldReason::Tether { .. } => ": tether alarm",
+        HoldReason::PlanRefused { .. } => ": plan refused",
+        HoldReason::ZoneBreached { .. } => ": hull in a no-go zone",
+        HoldReason::Vehicle { .. } => ": vehicle cannot be driven",
+        HoldReason::Guard { .. } => " by the guard",
+        HoldReason::PlannerSilent { .. } => ": planner silent",
+        HoldReason::PlannerFault { .. } => ": planner failed",
     }
 }
 
@@ -99,8 +177,11 @@ fn message(by: &HoldReason) -> Option<String> {
         | HoldReason::Stuck { message }
         | HoldReason::Tether { message }
         | HoldReason::PlanRefused { message }
-        | HoldReason::Vehicle { message }
         | HoldReason::Guard { message } => Some(format!("{}.", text::capitalized(message))),
+        // What follows the semicolon was true only while the link was lost.
+        HoldReason::Vehicle { message } => {
+            Some(format!("It was held because {}.", message.split(';').next().unwrap_or(message)))
+        }
         _ => None,
     }
 }

@@ -16,7 +16,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let columns = usize::from(block.inner(area).width).saturating_sub(1);
     let rows = usize::from(block.inner(area).height);
     let (bad, good): (Vec<&Check>, Vec<&Check>) = checks.iter().partition(|check| is_bad(check));
-    let mut lines: Vec<Line> = bad.into_iter().map(|check| bad_line(look, check, columns)).collect();
+    let mut lines: Vec<Line> = bad.into_iter().flat_map(|check| bad_lines(look, check, columns)).collect();
     let passed = good.iter().map(|check| {
         if has_figure(check) { format!("{} {}", check.what, check.found) } else { check.what.clone() }
     });
@@ -52,12 +52,16 @@ fn has_figure(check: &Check) -> bool {
     check.outcome == CheckOutcome::Passed && text::width(&check.found) <= 24
 }
 
-fn bad_line(look: &Look, check: &Check, columns: usize) -> Line<'static> {
+/// A failed check or a warning with its reason, in as many lines as it needs.
+fn bad_lines(look: &Look, check: &Check, columns: usize) -> Vec<Line<'static>> {
     let (role, word) = match check.outcome {
         CheckOutcome::Failed => (Role::Crit, "FAIL"),
         _ => (Role::Warn, "WARN"),
     };
-    let what = format!(" {}: ", check.what);
-    let found = text::clauses(&check.found, columns.saturating_sub(5 + text::width(&what)));
-    look.line([(Role::Text, " ".into()), (role, word.into()), (Role::Text, format!("{what}{found}"))])
+    let mut found =
+        text::wrap(&format!("{}: {}", check.what, check.found), columns.saturating_sub(6)).into_iter();
+    let first = format!(" {}", found.next().unwrap_or_default());
+    let first = look.line([(Role::Text, " ".into()), (role, word.into()), (Role::Text, first)]);
+    let more = found.map(|words| look.line([(Role::Text, format!("      {words}"))]));
+    std::iter::once(first).chain(more).collect()
 }

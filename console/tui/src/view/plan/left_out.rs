@@ -76,9 +76,7 @@ fn reason(reason: MissReason, causes: &[Cause<MissReason>]) -> [String; 3] {
             ["too little room for hull and clearance", "no room for hull and clearance", "clearance"]
         }
         MissReason::Wrap => ["a lane here would wind the tether", "would wind the tether", "tether"],
-        MissReason::BeyondReel => {
-            ["beyond the reel's length of tether", "beyond the reel", "beyond the reel"]
-        }
+        MissReason::BeyondReel => ["beyond the reach of the tether", "beyond the tether", "beyond tether"],
         MissReason::Narrow => ["outside the outermost lane", "outside the outermost lane", "outside lanes"],
         reason => [reason.plainly(), reason.briefly(), reason.briefly()],
     };

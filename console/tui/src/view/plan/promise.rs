@@ -47,7 +47,10 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         let mut mine = cell(figure, estimate, (Role::Text, widths.first));
         let lanes = look.run.planning.plan.as_ref().map_or(0, |plan| plan.lanes.len());
         if figure.label == "path" && lanes > 0 {
-            mine.1 = text::wording([format!("{}, {lanes} lanes", mine.1), mine.1], widths.first);
+            mine.1 = text::wording(
+                [format!("{}, {}", mine.1, text::counted(lanes, "lane")), mine.1],
+                widths.first,
+            );
         }
         let second = second.as_ref().map(|second| match second {
             Second::Now => (
@@ -94,7 +97,7 @@ pub(super) fn in_a_line(look: &Look, columns: usize) -> String {
         let over = limit
             .filter(|_| is_beyond)
             .map_or_else(String::new, |limit| format!(" > {}", figure.said(limit)));
-        figures.push((is_beyond, format!("{} {}{over}", figure.label, figure.said(found.value))));
+        figures.push((is_beyond, format!("{} {}{over}", figure.brief, figure.said(found.value))));
     }
     figures.sort_by_key(|(is_beyond, _)| !is_beyond);
     let mut line = String::new();
@@ -156,6 +159,8 @@ fn row(label: &str, mine: &Cell, second: Option<Cell>, limit: &str, widths: &Wid
 #[derive(Clone, Copy)]
 struct Figure {
     label: &'static str,
+    /// The label where all figures are in one line.
+    brief: &'static str,
     /// The letter of its place on the map; empty if it has no place.
     letter: &'static str,
     /// The text in front of the value, and the unit behind it.
@@ -229,6 +234,7 @@ impl Figure {
 const fn figure(label: &'static str, letter: &'static str, unit: &'static str, decimals: usize) -> Figure {
     Figure {
         label,
+        brief: label,
         letter,
         around: ("", unit),
         decimals,
@@ -264,7 +270,7 @@ const FIGURES: [Figure; 9] = [
         promised: |e, _| Some(Found::worst(e.clearance_min?)),
         limit: |m| Some(m.clearance_m),
         is_least: true,
-        ..figure("gap", "c", " m", 2)
+        ..figure("clearance", "c", " m", 2)
     },
     Figure {
         promised: |e, _| Some(Found::worst(e.tether.as_ref()?.length_max)),
@@ -288,6 +294,7 @@ const FIGURES: [Figure; 9] = [
         ..figure("wrap", "w", "°", 0)
     },
     Figure {
+        brief: "AE",
         around: ("±", " m"),
         promised: |e, _| Some(Found::worst(e.accuracy_worst?)),
         limit: |m| Some(m.position_limit_m),

@@ -5,13 +5,13 @@ use crate::model::RunResult;
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
 use crate::view::text;
-use account::{FigureId, Summary};
+use account::{FigureId, Shares, Summary};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 /// Width of the names in the table, columns.
-const LABEL: usize = 11;
+const LABEL: usize = 17;
 /// Width from which the worst values are shown with time and place, columns.
 const WORST: usize = 52;
 /// The figures whose worst values are shown, and the width of their names, columns.
@@ -59,6 +59,9 @@ fn lines(look: &Look, result: &RunResult, columns: usize) -> Vec<Line<'static>> 
     lines.extend(table.map(|(role, [what, predicted, actual, limit])| {
         // Without colours, the mark shows that a limit has been exceeded.
         let mark = if role == Role::Warn { "!" } else { " " };
+        // A narrow table leaves out what the value refers to.
+        let name = what.split(" (").next().unwrap_or_default().to_owned();
+        let what = text::wording([what, name], label);
         look.line([
             (Role::Dim, format!(" {}", text::column(&what, label))),
             (Role::Dim, format!("{predicted:>width$}")),
@@ -123,8 +126,8 @@ fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {
     ];
     let required = mission.map(|mission| mission.clearance_m);
     figures.push(match summary.clearance_min_m {
-        Some(true_m) => at_least("gap (true)", metres(2), [clearance, Some(true_m), required]),
-        None => at_least("gap (est.)", metres(2), [clearance, estimated_clearance(summary), required]),
+        Some(true_m) => at_least("clearance (true)", metres(2), [clearance, Some(true_m), required]),
+        None => at_least("clearance (est.)", metres(2), [clearance, estimated_clearance(summary), required]),
     });
     if let Some(tether) = &summary.tether {
         let estimate = promised.and_then(|p| p.tether.as_ref());
@@ -167,16 +170,32 @@ fn estimated_clearance(summary: &Summary) -> Option<f64> {
     figure.worst.map(|worst| worst.value)
 }
 
-/// The scanned share of the requested floor, and why the share of the whole is smaller.
-fn requested(look: &Look) -> Option<String> {
+/// The scanned share of the requested floor, and why the share of the whole is smaller; for a re-scan, also what all runs
+/// have scanned.
+fn requested(look: &Look) -> Vec<String> {
     let live = &look.model.live;
-    let ((area_m2, scanned), reachable) = live.requested().zip(live.floor().map(|floor| floor.reachable))?;
-    Some(format!(
-        "Scanned {} % of the requested {} m². That is {} % of all reachable floor; the rest was not requested.",
-        text::percent(scanned),
-        text::number(area_m2, 1),
-        text::percent(reachable.scanned)
-    ))
+    let own = live.result.as_ref().and_then(|result| result.summary.floor.as_ref());
+    let own = live.requested().zip(own).map(|((area_m2, scanned), own)| {
+        let (scanned, area_m2) = (text::percent(scanned), text::number(area_m2, 1));
+        match live.together() {
+            Some(_) => format!("This run scanned {scanned} % of the requested {area_m2} m²."),
+            None => format!(
+                "Scanned {scanned} % of the requested {area_m2} m². That is {} % of all reachable floor; the rest was \
+                 not requested.",
+                text::percent(own.reachable.scanned)
+            ),
+        }
+    });
+    let all = live.together().map(|all| {
+        let of = |shares: &Shares| text::number(shares.percent.scanned, 1);
+        format!(
+            "With {}: {} % of reachable floor, {} % of the whole floor.",
+            all.before(),
+            of(&all.floor.reachable),
+            of(&all.floor.whole)
+        )
+    });
+    own.into_iter().chain(all).collect()
 }
 
 /// The error against the true position.

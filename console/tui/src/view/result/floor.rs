@@ -1,7 +1,7 @@
 //! The floor shares, relative to the whole and to the reachable floor, and the critical zone along the shell.
 
 use super::next_page;
-use crate::model::{RunResult, Source};
+use crate::model::RunResult;
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
 use crate::view::text;
@@ -50,9 +50,9 @@ fn bases(look: &Look, result: &RunResult, columns: usize) -> Vec<Parts> {
         let percent = Percent { scanned, missed: 100.0 - scanned, ..Percent::default() };
         rows.push(at.row("requested", &Shares { area_m2, percent, ..Shares::default() }));
     }
-    if let Some(Ok(all)) = &look.model.live.combined {
-        rows.push(at.row("all, reach.", &all.reachable));
-        rows.push(at.row("all, whole", &all.whole));
+    if let Some(all) = look.model.live.together() {
+        rows.push(at.row("all, reach.", &all.floor.reachable));
+        rows.push(at.row("all, whole", &all.floor.whole));
     }
     rows
 }
@@ -121,21 +121,13 @@ impl Columns {
 /// Which runs are combined, or why they are not.
 fn of_all_runs(look: &Look) -> Option<String> {
     let live = &look.model.live;
-    let earlier = match &live.source {
-        Some(Source::Rescan(earlier)) => earlier.as_slice(),
-        _ => &[],
-    };
     match &live.combined {
-        Some(Ok(_)) => {
-            let runs = if earlier.len() == 1 { "run" } else { "runs" };
-            Some(format!(
-                "All runs: this one and the {} {runs} before it; zone, plates and missed areas are for all \
-                runs.",
-                earlier.len()
-            ))
-        }
+        Some(Ok(all)) => Some(format!(
+            "All runs: this one and {}; map, zone, plates and missed areas are for all runs.",
+            all.before()
+        )),
         Some(Err(why)) => Some(format!("This run alone; the runs cannot be combined: {why}.")),
-        None if !earlier.is_empty() => {
+        None if !live.earlier.is_empty() => {
             Some("This run alone; combining it with the runs before it...".to_owned())
         }
         None if live.not_requested_m2() > 0.0 => {

@@ -3,12 +3,11 @@
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
 use crate::view::text;
-use account::PlateAccount;
+use account::{Account, PlateAccount};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
-    let Some(floor) = look.model.live.floor() else { return };
+pub(in crate::view) fn draw(look: &Look, frame: &mut Frame, area: Rect, floor: &Account) {
     let mut plates: Vec<&PlateAccount> = floor.plates.iter().collect();
     plates.sort_by(|one, other| other.shares.missed.total_cmp(&one.shares.missed));
     let inner = look.block(Role::Border, "", "").inner(area);

@@ -1,0 +1,51 @@
+//! Combines a re-scan with the runs that it continues.
+
+use mission::EventKind;
+use recording::{JournalReader, journal_of};
+use std::path::Path;
+use tui::model::{Combination, Continued};
+use world::Point;
+
+/// The runs that a scenario continues, and where the last of them left the robot; `None` if it continues none.
+///
+/// # Errors
+/// Why the runs cannot be found, as a sentence.
+pub(super) fn before(scenario_toml: &str, logs: &Path) -> Result<Option<Continued>, String> {
+    let runs = review::continued(scenario_toml, logs).map_err(|error| format!("{error:#}"))?;
+    let left_at = runs.last().map(|last| left_at(last, logs));
+    Ok(left_at.map(|left_at| Continued { runs, left_at }))
+}
+
+/// The last estimated position of a past run; the part of a journal before the damage counts.
+fn left_at(run: &str, logs: &Path) -> Option<Point> {
+    let folder = runs::find(run.as_ref(), logs).ok()?;
+    let events = JournalReader::open(&journal_of(&folder)).ok()?.map_while(Result::ok);
+    let places = events.filter_map(|event| match event.kind {
+        EventKind::Estimated { pose, .. } => Some(pose.position),
+        _ => None,
+    });
+    places.last()
+}
+
+/// The combined scan of runs, the last of which is the re-scan.
+///
+/// # Errors
+/// Why the runs cannot be combined, as a sentence.
+pub(super) fn combined(runs: &[String], logs: &Path) -> Result<Combination, String> {
+    let earlier = runs.split_last().map_or_else(Vec::new, |(_, earlier)| earlier.to_vec());
+    let merged = review::combined(runs, logs).map_err(|error| format!("{error:#}"))?;
+    Ok(Combination { earlier, floor: merged.floor, scanned: merged.scanned })
+}
+
+/// The combined scan of a past run and the runs that its scenario continues; `None` if it continues none.
+///
+/// # Errors
+/// Why the runs cannot be found or combined, as a sentence.
+pub(super) fn of_rescan(run: &str, scenario_toml: &str, logs: &Path) -> Result<Option<Combination>, String> {
+    let earlier = review::continued(scenario_toml, logs).map_err(|error| format!("{error:#}"))?;
+    if earlier.is_empty() {
+        return Ok(None);
+    }
+    let runs: Vec<String> = earlier.into_iter().chain([run.to_owned()]).collect();
+    combined(&runs, logs).map(Some)
+}

@@ -1,0 +1,136 @@
+//! When a cause is an alarm, and how severe the alarm is, by what the mission does (ISA-18.2: delays, and limits by
+//! phase).
+//!
+//! An alarm is critical only if the robot moves or is held for its cause. What passes within its delay has no effect on
+//! the robot: it is an event and not an alarm.
+
+use super::Cause;
+use mission::{Gait, Phase, Severity};
+
+/// What the mission does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Context {
+    /// It waits for the start; plans are made.
+    Planning,
+    /// The robot drives, or stands still while its planner replans.
+    Driving,
+    /// The robot drives back by order.
+    DrivingBack,
+    /// The robot is held.
+    Held,
+    /// The mission has ended.
+    Ended,
+}
+
+impl Context {
+    /// The context of a phase.
+    pub fn of(phase: &Phase) -> Self {
+        match phase {
+            Phase::Waiting => Self::Planning,
+            Phase::Running(Gait::Back) => Self::DrivingBack,
+            Phase::Running(_) => Self::Driving,
+            Phase::Held(_) => Self::Held,
+            Phase::Ended(_) => Self::Ended,
+        }
+    }
+
+    /// Whether the robot may move.
+    pub fn moves(self) -> bool {
+        matches!(self, Self::Driving | Self::DrivingBack)
+    }
+
+    /// Every context, for tests.
+    #[doc(hidden)]
+    pub const EVERY: [Self; 5] = [Self::Planning, Self::Driving, Self::DrivingBack, Self::Held, Self::Ended];
+}
+
+/// The conditions for the alarm of a cause in a context.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rule {
+    /// The severity of the alarm.
+    pub severity: Severity,
+    /// How long the cause must persist before the alarm is raised, seconds of mission time.
+    pub on_delay_s: f64,
+    /// How long the cause must be gone before the alarm clears, seconds of mission time.
+    pub off_delay_s: f64,
+}
+
+/// A wrong cycle of ranges is normally followed by a good one within this time, seconds. It is shorter than the time
+/// after which the mission holds the robot by default.
+const CYCLE_S: f64 = 1.0;
+/// A tether at the edge of a limit crosses it in both directions while the robot turns, seconds.
+const TURN_S: f64 = 5.0;
+
+/// The rule for a cause whose event has the given severity. A row that is missing raises the alarm at once with the
+/// severity of its event, in every context.
+pub fn rule(cause: &Cause, severity: Severity, context: Context) -> Rule {
+    let rule = |most: Severity, on_delay_s, off_delay_s| Rule {
+        severity: severity.min(most),
+        on_delay_s,
+        off_delay_s,
+    };
+    let at_once = |most| rule(most, 0.0, 0.0);
+    match (cause, context) {
+        // While the robot stands, a bad position costs nothing; it only delays the start or the resumption.
+        (Cause::PositionLost | Cause::Contradiction, Context::Planning | Context::Held) => {
+            rule(Severity::Warn, CYCLE_S, 0.0)
+        }
+        (Cause::PositionLost | Cause::Contradiction, _) => rule(Severity::Crit, CYCLE_S, 0.0),
+        (Cause::NoFix | Cause::Station(_), _) => rule(Severity::Watch, CYCLE_S, 0.0),
+        // A refused plan is never run. While the robot is under way, the mission has a second one made; only if that is
+        // refused, too, the robot is held for it.
+        (Cause::Certificate, Context::Driving | Context::DrivingBack) if severity == Severity::Crit => {
+            at_once(Severity::Watch)
+        }
+        (Cause::Certificate, _) => at_once(Severity::Warn),
+        // Without a planner, a robot that stands only stays where it is.
+        (Cause::Planner, Context::Planning | Context::Held) => at_once(Severity::Warn),
+        // A tether that is only near a limit needs no action at once; one that is at its limit holds the robot.
+        (Cause::Tether(word), _) if is_length_or_wrap(word) && severity < Severity::Crit => {
+            rule(Severity::Warn, CYCLE_S, TURN_S)
+        }
+        _ => at_once(Severity::Crit),
+    }
+}
+
+fn is_length_or_wrap(word: &str) -> bool {
+    matches!(word, "reel" | "wrap" | "total wrap")
+}
+
+/// The severity of the alarm of a cause for which the robot is held.
+pub fn held_for(cause: &Cause) -> Option<Severity> {
+    match cause {
+        Cause::PositionLost | Cause::Contradiction | Cause::Certificate => Some(Severity::Crit),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_alarm_is_more_severe_than_its_event() {
+        for cause in Cause::every() {
+            for context in Context::EVERY {
+                for severity in [Severity::Watch, Severity::Warn, Severity::Crit] {
+                    let rule = rule(&cause, severity, context);
+                    assert!(rule.severity <= severity, "{cause:?} {context:?}");
+                    // A critical cause at which the robot is held at once must not wait.
+                    let waits = matches!(cause, Cause::PositionLost | Cause::Contradiction);
+                    assert!(rule.severity < Severity::Crit || rule.on_delay_s == 0.0 || waits, "{cause:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_refused_plan_is_critical_only_where_the_robot_is_held_for_it() {
+        let severity = |context| rule(&Cause::Certificate, Severity::Crit, context).severity;
+        assert_eq!(Context::EVERY.map(severity), {
+            use Severity::{Warn, Watch};
+            [Warn, Watch, Watch, Warn, Warn]
+        });
+        assert_eq!(held_for(&Cause::Certificate), Some(Severity::Crit));
+    }
+}

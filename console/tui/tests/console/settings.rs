@@ -1,0 +1,158 @@
+//! A parameter is changed only after the change and its estimated effect were shown.
+
+use crate::fixture::{RICH, Screen, spiral};
+use crate::screens::{drawn, text};
+use mission::{EventKind, Order, Outcome, Outlook, ParamValue, PlannerChoice};
+use tui::model::{Forecast, GhostPlan, Overlay, ui::Ask};
+use tui::{Effect, Key, RunMsg};
+
+const ENTER: [Key; 1] = [Key::Enter];
+
+fn set(value: f64) -> Order {
+    Order::SetParameter { key: "rpf_gain".into(), value: ParamValue::Float(value) }
+}
+
+fn order(value: f64) -> Effect {
+    Effect::Order(set(value))
+}
+
+/// Types a value for the first parameter and confirms the line.
+fn type_value(screen: &mut Screen, value: &str) -> Vec<Effect> {
+    screen.press([Key::Char('p'), Key::Enter, Key::Backspace, Key::Backspace, Key::Backspace]);
+    screen.type_text(value);
+    screen.press(ENTER)
+}
+
+fn shown(screen: &Screen) -> String {
+    let words = text(&drawn(&screen.model, RICH, (120, 36)));
+    words.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn hear(screen: &mut Screen, kind: EventKind) {
+    let event = screen.mission.now(kind);
+    screen.hear(RunMsg::Events(vec![event]));
+}
+
+/// The active planner with this value.
+fn changed(screen: &Screen, value: f64) -> PlannerChoice {
+    let mut choice = screen.model.live.run.planning.choice.clone().expect("a planner");
+    choice.parameters.insert("rpf_gain".into(), ParamValue::Float(value));
+    choice
+}
+
+fn forecast(choice: &PlannerChoice, length_m: f64, after_s: f64) -> RunMsg {
+    let outlook = Outlook {
+        choice: choice.clone(),
+        outcome: Some(Outcome::Complete),
+        reason: String::new(),
+        after_s,
+        length_m,
+        reachable: 0.9,
+        clearance_min_m: 0.1,
+        tether_length_max_m: None,
+        wrap_max_rad: None,
+    };
+    RunMsg::Forecast(choice.clone(), Ok(Box::new(Forecast { outlook, path: Vec::new(), certified: None })))
+}
+
+#[test]
+fn an_unchanged_value_is_not_sent() {
+    for mut screen in [Screen::idle(), Screen::held(), Screen::running()] {
+        assert_eq!(screen.press([Key::Char('p'), Key::Enter, Key::Enter]), []);
+        assert!(matches!(screen.model.ui.overlay, Overlay::Parameters { edit: None, .. }), "the list stays");
+        let said = &screen.model.notice().expect("it says so").text;
+        assert_eq!(said, "nothing was sent: rpf_gain is 1.2 m3/s already");
+        assert_eq!(screen.press(ENTER), [], "the line is opened again");
+        screen.press([Key::Esc, Key::Esc]);
+        screen.type_text(":set rpf_gain=1.2");
+        assert_eq!(screen.press(ENTER), []);
+        assert_eq!(screen.model.ui.overlay, Overlay::None);
+    }
+}
+
+#[test]
+fn the_value_before_a_change_that_is_under_way_can_be_set_again() {
+    let mut screen = Screen::held();
+    hear(&mut screen, EventKind::Ordered { order: set(1.5) });
+    type_value(&mut screen, "1.2");
+    assert_eq!(screen.press(ENTER)[0], order(1.2));
+}
+
+#[test]
+fn before_the_start_the_plan_with_the_value_is_compared_first() {
+    let mut screen = Screen::idle();
+    let with = changed(&screen, 1.5);
+    assert_eq!(type_value(&mut screen, "1.5"), [Effect::Compare(with.clone())]);
+    let words = shown(&screen);
+    let asked = "Set rpf_gain 1.2 → 1.5 m3/s (default 1.2)? Enter: set, Esc: cancel.";
+    assert!(words.contains(asked) && words.contains("Computing the effect..."), "{words}");
+    let run = screen.model.live.run.about.as_ref().expect("a mission");
+    let estimate = account::Estimate::new(&run.mission, &run.world, &spiral(), true);
+    let made = GhostPlan::new(&run.mission, &spiral(), &[], estimate, None);
+    let length = format!("path {:.1} m", made.estimate.length_m);
+    screen.hear(RunMsg::Compared(with, Ok(Box::new(made))));
+    assert!(shown(&screen).contains("New plan: time 00:"), "{}", shown(&screen));
+    assert!(shown(&screen).contains(&length), "{}", shown(&screen));
+    let sent = screen.press(ENTER);
+    assert_eq!(sent, [order(1.5), Effect::Order(Order::Plan), Effect::StopComparing]);
+    assert!(screen.model.live.plans.ghost.is_none(), "the second plan goes with its question");
+    assert!(matches!(screen.model.ui.overlay, Overlay::Parameters { .. }), "back in the list");
+}
+
+#[test]
+fn under_way_a_forecast_with_the_value_is_shown_first() {
+    for mut screen in [Screen::held(), Screen::running()] {
+        let now = screen.model.live.run.planning.choice.clone().expect("a planner");
+        let with = changed(&screen, 1.5);
+        let asked = type_value(&mut screen, "1.5");
+        assert_eq!(asked, [Effect::Forecast(vec![now.clone(), with.clone()])]);
+        screen.hear(RunMsg::ForecastAt(with.clone(), 0.345));
+        assert!(shown(&screen).contains("Computing the effect 34 %... Enter sets it without."));
+        screen.hear(forecast(&now, 80.0, 600.0));
+        screen.hear(forecast(&with, 90.0, 500.0));
+        let effect = "time 00:08:20 (now 00:10:00), path 90.0 m (now 80.0 m)";
+        assert!(shown(&screen).contains(effect), "{}", shown(&screen));
+        assert_eq!(screen.press(ENTER), [order(1.5), Effect::StopForecasting]);
+    }
+}
+
+#[test]
+fn a_change_that_is_given_up_ends_its_estimate() {
+    let mut screen = Screen::held();
+    type_value(&mut screen, "1.5");
+    assert_eq!(screen.press([Key::Esc]), [Effect::StopForecasting]);
+    assert!(screen.model.live.what_if.is_none(), "nothing was finished");
+    assert!(matches!(screen.model.ui.overlay, Overlay::Parameters { selected: 0, edit: None }));
+    let mut screen = Screen::running();
+    type_value(&mut screen, "1.5");
+    let held = screen.press([Key::Char(' ')]);
+    assert_eq!(held, [Effect::Order(Order::Hold), Effect::StopForecasting], "HOLD withdraws the question");
+    let mut screen = Screen::idle();
+    type_value(&mut screen, "1.5");
+    assert_eq!(screen.press([Key::Esc]), [Effect::StopComparing]);
+}
+
+#[test]
+fn forecasts_of_a_change_stay_in_the_comparison_of_a_held_mission() {
+    let mut screen = Screen::held();
+    let now = screen.model.live.run.planning.choice.clone().expect("a planner");
+    type_value(&mut screen, "1.5");
+    screen.hear(forecast(&now, 80.0, 600.0));
+    screen.press([Key::Esc, Key::Esc]);
+    screen.press([Key::Char('w')]);
+    let what_if = screen.model.live.what_if.as_ref().expect("open");
+    assert_eq!(what_if.candidates[0].choice, now);
+    assert!(what_if.candidates[0].made.is_some());
+}
+
+#[test]
+fn a_change_by_a_command_is_asked_for_and_leaves_no_list() {
+    let mut screen = Screen::running();
+    screen.type_text(":set rpf_gain=1.5");
+    screen.press(ENTER);
+    let words = shown(&screen);
+    assert!(words.contains("1.2 → 1.5 m3/s") && words.contains("It takes effect now."), "{words}");
+    assert!(matches!(screen.model.ui.overlay, Overlay::Confirm(Ask::Set { list: None, .. })));
+    assert_eq!(screen.press(ENTER), [order(1.5), Effect::StopForecasting]);
+    assert_eq!(screen.model.ui.overlay, Overlay::None);
+}
