@@ -276,6 +276,7 @@ fn config() -> MissionConfig {
         start_names_plan: false,
         live: false,
         guard_reaction_s: None,
+        sensor: None,
         better_plan: BetterPlan::Offer,
     }
 }

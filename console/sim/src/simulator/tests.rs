@@ -21,6 +21,7 @@ fn robot() -> RobotConfig {
         gyro_bias_rad_per_s: 0.001,
         amphibious: None,
         pressure: None,
+        scanner: None,
     }
 }
 

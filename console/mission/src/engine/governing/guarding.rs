@@ -1,4 +1,4 @@
-//! The guard by the raw scan of a real vehicle: the scanned points, and when the robot is held because of them.
+//! The guard by the raw scan: the scanned points, and when the robot is held because of them.
 
 use super::{super::Mission, super::known::Known, speed, state::Limited};
 use crate::{
@@ -8,6 +8,7 @@ use crate::{
     phase::{Hold, HoldReason, Resumes},
 };
 use geometry::{Braking, Drive};
+use perception::Perception;
 use planner_api::Command;
 use world::{Point, Readings, scan::carried};
 
@@ -109,6 +110,9 @@ impl Known {
     /// Why the guard stops the robot, as a clause.
     fn guard_stop(&self) -> Option<String> {
         self.config.guard_reaction_s?;
+        if let Some(trouble) = self.perception.as_ref().and_then(Perception::trouble) {
+            return Some(trouble.to_owned());
+        }
         let guard = &self.scan_guard;
         let age_s = guard.age_s;
         if guard.has_scan && age_s > SCAN_MAX_AGE_S {
