@@ -14,7 +14,7 @@ use scenario::Scenario;
 use sim::Simulator;
 use std::{collections::BTreeMap, fmt::Write, time::Instant};
 use world::{
-    Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape,
+    Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Pose, Shape,
     geometry::{PathFollower, motion::drive_for, unit_vector},
     shortest::GrownFloor,
 };
@@ -104,7 +104,8 @@ fn drive(scenario: &Scenario, seed: u64, tally: &mut Tally) {
         for _ in 0..4000 {
             let readings = simulator.sense();
             locator.take(&readings);
-            let (pose, estimate) = (locator.pose(), locator.pose_estimate());
+            let estimate = locator.pose_estimate();
+            let pose = Pose { position: estimate.position, heading_rad: estimate.heading_rad };
             if let Some(scan) = &readings.scan {
                 let view = View {
                     now_s: tick as f64 * 0.1,
