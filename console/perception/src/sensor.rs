@@ -20,6 +20,11 @@ impl Sensor {
     /// A sensor of which nothing is known.
     pub const UNKNOWN: Self = Self { sigma_m: 0.03, range_m: None, rays: None };
 
+    /// Whether the noise is known: it is that of a scenario.
+    pub fn is_known(&self) -> bool {
+        self.rays.is_some()
+    }
+
     /// A sensor that is as a scenario describes it.
     pub fn of(scanner: &Scanner) -> Self {
         Self { sigma_m: scanner.sigma_m, range_m: Some(scanner.range_m), rays: Some(scanner.rays) }
