@@ -36,6 +36,8 @@ const TELLING: usize = 5;
 const SMOOTHING: f64 = 0.1;
 /// Lower limits of the standard deviations, metres: what is estimated may still be corrected.
 const FLOOR_M: f64 = 0.003;
+/// Standard deviation of a radius by edges that are between the same rays in many scans, in rays.
+const EDGE_SHARE: f64 = 0.25;
 /// Largest extent of something whose motion can be judged by its centre, metres.
 const MOVABLE_M: f64 = 1.2;
 
@@ -132,7 +134,10 @@ impl Track {
             let left = self.covariance - gain * self.covariance;
             self.covariance = 0.5 * (left + left.transpose()) + Matrix2::identity() * 1e-9;
         }
-        let variance_m2 = fit.radius.variance_m2.max(FLOOR_M * FLOOR_M);
+        // In scans from nearly the same place, the edges are between the same rays, so many of them are not better than one.
+        let between_rays_m = EDGE_SHARE * rays.step_rad() * (fit.center - rays.eye()).norm();
+        let least_m2 = self.radius.variance_m2.min(between_rays_m * between_rays_m).max(FLOOR_M * FLOOR_M);
+        let variance_m2 = fit.radius.variance_m2.max(least_m2);
         self.radius = Radius { mean_m: fit.radius.mean_m, variance_m2 };
     }
 
