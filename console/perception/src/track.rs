@@ -30,6 +30,8 @@ const GONE_AFTER: u32 = 20;
 const OUT_OF_SIGHT_S: f64 = 2.0;
 /// Mean misfit above which something is not a disc, and below which it is one again.
 const MISFIT: (f64, f64) = (2.2, 1.6);
+/// Misfit of a view up to which it may show a disc.
+const ROUND: f64 = 4.0;
 /// Number of points from which the misfit of a view counts.
 const TELLING: usize = 5;
 /// Weight of a view in the mean misfit.
@@ -112,8 +114,11 @@ impl Track {
             self.misfit += SMOOTHING * (fit.misfit.min(20.0) - self.misfit);
         }
         self.is_disc = if self.is_disc { self.misfit < MISFIT.0 } else { self.misfit < MISFIT.1 };
-        if self.extent_m() < MOVABLE_M {
+        // The centre of a disc that is fitted to something else moves with the robot.
+        if self.is_disc && fit.misfit < ROUND && self.extent_m() < MOVABLE_M {
             self.drift.see(now_s, fit.center);
+        } else if !self.is_disc {
+            self.drift = Drift::default();
         }
         if self.moves() {
             (self.center, self.covariance, self.radius) = (fit.center, place_of(fit, rays, pose), fit.radius);
