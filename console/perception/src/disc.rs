@@ -25,6 +25,18 @@ pub(crate) struct Radius {
     pub variance_m2: f64,
 }
 
+impl Radius {
+    /// This radius after a view that led to another one, if only a share of the view's information counts.
+    pub(crate) fn with_share(&self, after: &Self, share: f64) -> Self {
+        let before = 1.0 / self.variance_m2;
+        let view = (1.0 / after.variance_m2 - before).max(0.0);
+        let (information, all) = (before + share * view, before + view);
+        // The mean moves in proportion to the share of the view in all information.
+        let moved_m = (after.mean_m - self.mean_m) * share * all / information;
+        Self { mean_m: self.mean_m + moved_m, variance_m2: 1.0 / information }
+    }
+}
+
 /// A disc as seen in one view, tank frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Fit {

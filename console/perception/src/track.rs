@@ -14,6 +14,8 @@ use world::ObstacleId;
 /// Errors of the pose are alike in scans that follow each other; as many scans count as one, as far as the pose is
 /// concerned.
 const ALIKE: f64 = 20.0;
+/// In scans from nearly the same place, the edges are between the same rays; as many scans count as one.
+const LIKE_VIEWS: f64 = 5.0;
 /// A track becomes an obstacle when at least `BIRTH_HITS` of the last `BIRTH_OF` scans have shown it.
 const BIRTH_HITS: u32 = 5;
 const BIRTH_OF: u32 = 8;
@@ -38,8 +40,6 @@ const TELLING: usize = 5;
 const SMOOTHING: f64 = 0.1;
 /// Lower limits of the standard deviations, metres: what is estimated may still be corrected.
 const FLOOR_M: f64 = 0.003;
-/// Standard deviation of a radius by edges that are between the same rays in many scans, in rays.
-const EDGE_SHARE: f64 = 0.25;
 /// Largest extent of something whose motion can be judged by its centre, metres.
 const MOVABLE_M: f64 = 1.2;
 
@@ -139,11 +139,8 @@ impl Track {
             let left = self.covariance - gain * self.covariance;
             self.covariance = 0.5 * (left + left.transpose()) + Matrix2::identity() * 1e-9;
         }
-        // In scans from nearly the same place, the edges are between the same rays, so many of them are not better than one.
-        let between_rays_m = EDGE_SHARE * rays.step_rad() * (fit.center - rays.eye()).norm();
-        let least_m2 = self.radius.variance_m2.min(between_rays_m * between_rays_m).max(FLOOR_M * FLOOR_M);
-        let variance_m2 = fit.radius.variance_m2.max(least_m2);
-        self.radius = Radius { mean_m: fit.radius.mean_m, variance_m2 };
+        self.radius = self.radius.with_share(&fit.radius, 1.0 / LIKE_VIEWS);
+        self.radius.variance_m2 = self.radius.variance_m2.max(FLOOR_M * FLOOR_M);
     }
 
     /// Begins a scan.
@@ -236,5 +233,5 @@ impl Track {
 fn place_of(fit: &Fit, rays: &Rays, pose: &Uncertain) -> Matrix2<f64> {
     let arm = fit.center.coords - rays.frame().translation.vector;
     let floor = Matrix2::identity() * FLOOR_M * FLOOR_M;
-    fit.covariance + pose.of_place(arm) * ALIKE + floor
+    fit.covariance * LIKE_VIEWS + pose.of_place(arm) * ALIKE + floor
 }
