@@ -12,7 +12,7 @@ use world::Obstacle;
 /// Number of standard deviations within which a point belongs to the drawing.
 pub(crate) const GATE: f64 = 3.0;
 /// Number of times that the pose is corrected with the points nearest to the drawing.
-const ROUNDS: usize = 2;
+const ROUNDS: usize = 3;
 
 /// A point beside a surface of the drawing: its distance on the free side, metres, and the direction away from the
 /// surface.
@@ -187,7 +187,7 @@ mod tests {
         let mut rays = Rays::default();
         rays.take(&scan, &estimate.tank_from_robot());
         let covariance = Matrix3::from_diagonal(&Vector3::new(0.0036, 0.0036, 4e-4));
-        let pose = Uncertain::new(0.02, &covariance);
+        let pose = Uncertain::estimated(0.02, &covariance);
         let drawing = Drawing::near(&boundary, [&drawn].into_iter(), estimate.position, 9.0);
         let left = drawing.correct(&mut rays, &pose, &mut Buffers::default());
         let off = rays.frame().translation.vector - truth.position.coords;

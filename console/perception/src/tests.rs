@@ -90,6 +90,7 @@ impl Drive {
             boundary: &self.boundary,
             charted: &self.drawn,
             map: &map,
+            reach_m: 4.0,
         };
         let looked = self.perception.look(&view);
         self.looked.not_there.extend(looked.not_there);

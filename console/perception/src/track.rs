@@ -172,11 +172,12 @@ impl Track {
         (self.through == GONE_AFTER && self.is_through).then_some(self.through)
     }
 
-    /// Whether the track is certain enough to be an obstacle.
-    pub(crate) fn is_mature(&self) -> bool {
+    /// Whether the track is certain enough, and within `reach_m` metres, to be an obstacle.
+    pub(crate) fn is_mature(&self, reach_m: f64) -> bool {
         let recent = self.recent & ((1 << BIRTH_OF) - 1);
         let is_sure = self.radius.variance_m2.sqrt() < SURE_RADIUS_M && self.view_sigma_m < SURE_PLACE_M;
-        recent.count_ones() >= BIRTH_HITS && (is_sure || !self.is_disc || self.far_m < NEAR_M)
+        let is_seen = recent.count_ones() >= BIRTH_HITS && self.far_m <= reach_m;
+        is_seen && (is_sure || !self.is_disc || self.far_m < NEAR_M)
     }
 
     /// The shape as far as it is known, tank frame.

@@ -47,6 +47,8 @@ pub struct View<'a> {
     pub charted: &'a [Obstacle],
     /// The same, for queries.
     pub map: &'a ObstacleMap,
+    /// Distance from the scanner, metres, within which something becomes an obstacle; farther away, it is only followed.
+    pub reach_m: f64,
 }
 
 /// An obstacle that the last scan has shown.
@@ -135,7 +137,7 @@ impl Perception {
         let estimate = view.pose.tank_from_robot();
         self.rays.take(view.scan, &estimate);
         let scanned_from = *self.rays.frame();
-        let given = Uncertain::new(self.sensor.sigma_m, &view.covariance);
+        let given = Uncertain::estimated(self.sensor.sigma_m, &view.covariance);
         self.agreement.compare(&self.rays, (view.boundary, view.map), &given, self.sensor.range_m);
         self.trouble = self.agreement.trouble();
         let reach_m = self.rays.range_m.iter().copied().filter(|m| m.is_finite()).fold(1.0, f64::max) + 1.0;
@@ -149,7 +151,7 @@ impl Perception {
         self.join_groups(&pose);
         self.update(&pose, view.now_s);
         self.begin_tracks(&pose, view.now_s);
-        self.give_ids();
+        self.give_ids(view.reach_m);
         let mut not_there = self.missing(&drawing, &pose);
         not_there.extend(self.tracks.iter().filter_map(|track| Some((track.id?, track.is_gone()?))));
         self.drop_tracks(view.now_s);
@@ -271,11 +273,11 @@ impl Perception {
     }
 
     /// Makes obstacles of the tracks that are certain enough. A track on an obstacle is dropped instead.
-    fn give_ids(&mut self) {
+    fn give_ids(&mut self, reach_m: f64) {
         let mut at = 0;
         while at < self.tracks.len() {
             let track = &self.tracks[at];
-            if track.id.is_some() || !track.is_mature() {
+            if track.id.is_some() || !track.is_mature(reach_m) {
                 at += 1;
                 continue;
             }

@@ -8,6 +8,11 @@ const DRAWING_SIGMA_M: f64 = 0.01;
 /// The same for directions, radians.
 const DRAWING_SIGMA_RAD: f64 = 0.002;
 
+/// Standard deviations that are added to those of an estimated pose, metres and radians: filters state too small errors,
+/// above all of the heading, and a column that is drawn must not be taken for another one beside it.
+const DOUBT_M: f64 = 0.02;
+const DOUBT_RAD: f64 = 0.012;
+
 /// The uncertainty of a pose and of the distances measured from it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Uncertain {
@@ -20,12 +25,19 @@ pub(crate) struct Uncertain {
 
 impl Uncertain {
     /// From the standard deviation of a distance and the covariance of x, y and heading.
-    pub(crate) fn new(sigma_m: f64, covariance: &Matrix3<f64>) -> Self {
+    fn new(sigma_m: f64, covariance: &Matrix3<f64>) -> Self {
         let place = covariance.fixed_view::<2, 2>(0, 0);
         let (mean, half) = (0.5 * place.trace(), 0.5 * (place[(0, 0)] - place[(1, 1)]));
         let place_m2 = mean + half.hypot(place[(0, 1)]);
         // A place on a drawing is rounded, so no distance is exact.
         Self { sigma_m: sigma_m.max(0.005), covariance: *covariance, place_m2 }
+    }
+
+    /// The uncertainty of an estimated pose with this covariance of x, y and heading.
+    pub(crate) fn estimated(sigma_m: f64, covariance: &Matrix3<f64>) -> Self {
+        let place = DOUBT_M * DOUBT_M;
+        let doubt = nalgebra::Vector3::new(place, place, DOUBT_RAD * DOUBT_RAD);
+        Self::new(sigma_m, &(covariance + Matrix3::from_diagonal(&doubt)))
     }
 
     /// The uncertainty after the pose has been corrected by the drawing.

@@ -115,13 +115,27 @@ fn drive(scenario: &Scenario, seed: u64, tally: &mut Tally) {
                     boundary: &drawing.boundary,
                     charted: &drawing.obstacles,
                     map: &map,
+                    reach_m: HULL_M + scenario.mission.limits.sensing_range_m,
                 };
                 let began = Instant::now();
                 perception.look(&view);
                 let seen: Vec<_> = perception.seen(&pose).collect();
                 tally.looked_s += began.elapsed().as_secs_f64();
                 tally.ticks += 1;
-                found.extend(seen.into_iter().map(|seen| (seen.id, seen.shape)));
+                for seen in seen {
+                    let is_real =
+                        |column: &Obstacle| (column.shape.center() - seen.shape.center()).norm() < 0.5;
+                    if !found.contains_key(&seen.id) && !unknown.iter().any(|column| is_real(column)) {
+                        let truth = simulator.truth().pose;
+                        let drawn =
+                            world.obstacles.iter().find(|column| is_real(column)).map(|drawn| &drawn.shape);
+                        println!(
+                            "  not real: {:?}, at {truth:?}, estimated {pose:?}, drawn: {drawn:?}",
+                            seen.shape
+                        );
+                    }
+                    found.insert(seen.id, seen.shape);
+                }
             }
             let truth = simulator.truth().pose;
             if tick % 50 == 0 {
