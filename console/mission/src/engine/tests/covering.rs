@@ -294,7 +294,7 @@ fn a_drawn_column_that_a_foreign_tracker_sees_is_not_found_again() {
     let pose = covering().start;
     let mut found = |id, seen: Shape| {
         let shape_in_robot = seen.transformed(&pose.tank_from_robot().inverse());
-        let seen = chart.see(0.0, &[Sighting { id: ObstacleId(id), shape_in_robot }], &pose);
+        let seen = chart.see(0.0, &[Sighting { id: ObstacleId(id), shape_in_robot }], &[], &pose);
         !seen.events.is_empty() && seen.changes_plans
     };
     let foreign = ObstacleId::FOREIGN.0;
