@@ -134,7 +134,9 @@ mod tests {
             let points: Vec<Point> =
                 points.iter().map(|(x, y)| Point::new(f64::from(*x) * 0.02, f64::from(*y) * 0.02)).collect();
             let mut outline = Outline::default();
-            points.iter().for_each(|point| outline.add(*point, 0.0));
+            for point in &points {
+                outline.add(*point, 0.0);
+            }
             prop_assert!(outline.0.len() <= MOST_CORNERS);
             let turns: Vec<f64> = edges(&outline.0).zip(edges(&outline.0).skip(1)).map(|((a, b), (_, c))| (b - a).perp(&(c - b))).collect();
             prop_assert!(turns.iter().all(|turn| *turn >= 0.0));

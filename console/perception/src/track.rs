@@ -127,7 +127,9 @@ impl Track {
             self.blend(fit, rays, pose);
         }
         let noise_m = 2.0 * pose.sigma_m;
-        of.iter().for_each(|ray| self.outline.add(rays.point(*ray), noise_m));
+        for ray in of {
+            self.outline.add(rays.point(*ray), noise_m);
+        }
     }
 
     /// Combines the place and radius so far with those of a view.

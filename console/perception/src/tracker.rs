@@ -238,7 +238,9 @@ impl Perception {
             let near = tracks.iter().enumerate().filter(|(_, track)| is_near(track));
             let nearest = near.map(|(k, track)| (k, apart_m(track))).min_by(|a, b| a.1.total_cmp(&b.1));
             if let Some((k, _)) = nearest.filter(|(_, apart_m)| *apart_m < JOIN_M) {
-                of.iter().for_each(|ray| owners[*ray] = k as u16);
+                for ray in of {
+                    owners[*ray] = k as u16;
+                }
             }
         }
     }

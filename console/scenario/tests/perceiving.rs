@@ -4,6 +4,7 @@
 //! TANKS=50 FIRST_SEED=1000 cargo test --release -p scenario --test perceiving -- --ignored --nocapture
 //! ```
 #![allow(clippy::unwrap_used, reason = "tests")]
+#![expect(clippy::print_stdout, reason = "a measurement prints its figures")]
 
 use mission::{Locator, Sensor};
 use perception::{Perception, View};
@@ -138,7 +139,7 @@ fn drive(scenario: &Scenario, seed: u64, tally: &mut Tally) {
                 }
             }
             let truth = simulator.truth().pose;
-            if tick % 50 == 0 {
+            if tick.is_multiple_of(50) {
                 tally.pose_m.push((truth.position - pose.position).norm());
             }
             for (column, (is_found, was_near)) in unknown.iter().zip(&mut known_now) {
@@ -165,8 +166,19 @@ fn drive(scenario: &Scenario, seed: u64, tally: &mut Tally) {
             simulator.act(drive_for(wanted, truth.heading_rad, &scenario.mission.limits, 0.3));
         }
     }
+    compare(&unknown, &known_now, &found, seed, tally);
+}
+
+/// Compares the obstacles found in a tank with its unknown columns.
+fn compare(
+    unknown: &[&Obstacle],
+    known_now: &[(bool, bool)],
+    found: &BTreeMap<ObstacleId, Shape>,
+    seed: u64,
+    tally: &mut Tally,
+) {
     tally.unknown += unknown.len();
-    for (column, (_, was_near)) in unknown.iter().zip(&known_now) {
+    for (column, (_, was_near)) in unknown.iter().zip(known_now) {
         let Shape::Disc { center, radius_m } = column.shape else { unreachable!("columns are round") };
         let best = found.values().filter(|shape| is_of(shape, column));
         match best.min_by(|a, b| (a.center() - center).norm().total_cmp(&(b.center() - center).norm())) {

@@ -180,6 +180,7 @@ pub struct LinkSeen {
     pub unmeasured_s: f64,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
 fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }

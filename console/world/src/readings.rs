@@ -69,6 +69,7 @@ pub struct Readings {
     pub scan: Option<Scan>,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
 fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
