@@ -509,10 +509,11 @@ fn a_malformed_hello_is_named_by_its_own_fault() {
         let hello = HELLO.replace("\"speed_m_per_s\": 0.5", "\"speed_m_per_s\": 1e300");
         let still = r#""odometry": {"over_s": 0.1, "forward_m": 0, "turn_rad": 0}"#;
         stream.write_all(format!("{hello}\n").as_bytes()).unwrap();
-        (1..).find(|n| {
+        let mut number = 1;
+        while stream.write_all(&readings(number, still)).is_ok() {
             thread::sleep(Duration::from_millis(20));
-            stream.write_all(&readings(*n, still)).is_err()
-        });
+            number += 1;
+        }
     });
     let refused = bench.fly(&short(&bench), &["--vehicle", &format!("unix:{}", path.display())]);
     let why = "its introduction is malformed: hello.limits.speed_m_per_s: 1e300 is out of range";

@@ -77,6 +77,13 @@ impl Account {
         }
     }
 
+    /// Reachable floor that was neither requested nor scanned, square metres.
+    pub fn not_asked_m2(&self) -> f64 {
+        let areas = self.missed.iter().filter(|area| area.reason == MissReason::NotAsked);
+        let specks = self.slivers.causes.iter().filter(|cause| cause.reason == MissReason::NotAsked);
+        areas.map(|area| area.area_m2).chain(specks.map(|cause| cause.area_m2)).sum()
+    }
+
     /// Whether this is the account of a floor that no mission had to scan.
     pub fn is_of_no_scan(&self) -> bool {
         self.whole.area_m2 <= 0.0

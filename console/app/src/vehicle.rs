@@ -29,9 +29,9 @@ pub(crate) fn simulate(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
     let stop = stop_signal::listen();
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
     let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    let vehicle = Behind::new(&scenario).with_session(since_1970.as_secs());
+    let vehicle = if args.scanner { Behind::with_scanner(&scenario) } else { Behind::new(&scenario) };
+    let vehicle = vehicle.with_session(since_1970.as_secs());
     let vehicle = if args.lockstep { vehicle } else { vehicle.with_pose() };
-    let vehicle = if args.scanner { vehicle.with_scanner() } else { vehicle };
     let FromVehicle::Hello(hello) = vehicle.hello() else {
         anyhow::bail!("the simulated vehicle sent no `hello` message")
     };

@@ -4,7 +4,7 @@ use geometry::{Drive, Vector};
 use mission::MissionConfig;
 use planner_api::Motion;
 use scenario::Scenario;
-use sim::Simulator;
+use sim::{RobotConfig, SimConfig, Simulator};
 use vehicle::wire::{
     PROTOCOL,
     message::{
@@ -12,7 +12,7 @@ use vehicle::wire::{
         State, StationRanges, Tether, ToVehicle,
     },
 };
-use world::{Point, Readings, Shape, Sighting, Station};
+use world::{Point, Readings, Scan, Scanner, Shape, Sighting, Station};
 
 /// The longest range that the protocol allows, metres. Noise can make a simulated range impossible.
 const RANGE_MAX_M: f64 = 1000.0;
@@ -33,15 +33,12 @@ pub struct Behind {
     /// The dead-reckoned pose in the vehicle's own frame; `None` for a vehicle that sends odometry alone.
     reckoned: Option<message::Pose>,
     tick_s: f64,
-    /// Whether obstacles are reported by a scan instead of their outlines.
-    has_scanner: bool,
+    /// The scanner, which reports obstacles instead of their outlines.
+    scanner: Option<Scanner>,
 }
 
 /// Increase of the least delay per command, seconds, so that it follows clocks that drift.
 const DRIFT_S: f64 = 1e-4;
-/// Rays of the scanner, and its range in metres.
-const RAYS: u32 = 360;
-const SCAN_MAX_M: f64 = 8.0;
 
 impl Behind {
     /// Creates a vehicle at rest at the start of a scenario. It sends odometry alone: a mission that loses no message
@@ -58,16 +55,16 @@ impl Behind {
             seq: 0,
             reckoned: None,
             tick_s: scenario.mission.tick_s,
-            has_scanner: false,
+            scanner: scenario.sim.robot.scanner,
         }
     }
 
-    /// The same vehicle with a scanner of 360 rays instead of outlines of obstacles: an object that is not on the
-    /// drawing then appears only in the scan.
-    #[must_use]
-    pub fn with_scanner(mut self) -> Self {
-        (self.hello.has.scan, self.has_scanner) = (true, true);
-        self
+    /// A vehicle with a scanner instead of outlines of obstacles: an object that is not on the drawing then appears only
+    /// in the scan. The scanner is that of the scenario or, without one, an exact scanner of 360 rays.
+    pub fn with_scanner(scenario: &Scenario) -> Self {
+        let scanner = scenario.sim.robot.scanner.unwrap_or(Scanner::default().exact());
+        let robot = RobotConfig { scanner: Some(scanner), ..scenario.sim.robot.clone() };
+        Self::new(&Scenario { sim: SimConfig { robot, ..scenario.sim.clone() }, ..scenario.clone() })
     }
 
     /// The true state of the simulated robot.
@@ -186,26 +183,14 @@ impl Behind {
         if let Some(pose) = &mut self.reckoned {
             *pose = reckoned(*pose, readings.odometry);
         }
-        let mut told = message::Readings {
+        let told = message::Readings {
             seq: self.seq,
             stamp_s: now_s,
             pose: self.reckoned,
+            scan: self.scanner.zip(readings.scan.as_ref()).map(|(scanner, scan)| scanned(&scanner, scan)),
             ..told(&readings, &self.stations, self.tick_s)
         };
-        if self.has_scanner {
-            (told.outlines, told.scan) = (Vec::new(), Some(self.scan()));
-        }
         FromVehicle::Readings(Box::new(told))
-    }
-
-    fn scan(&self) -> message::Scan {
-        message::Scan {
-            first_rad: 0.0,
-            step_rad: std::f64::consts::TAU / f64::from(RAYS),
-            range_max_m: SCAN_MAX_M,
-            sensor_m: [0.0; 2],
-            ranges_m: self.simulator.scan(RAYS, SCAN_MAX_M),
-        }
     }
 }
 
@@ -226,6 +211,16 @@ fn told(readings: &Readings, stations: &[Station], tick_s: f64) -> message::Read
         pressure_pa: readings.pressure_pa,
         outlines: readings.sightings.iter().map(outline).collect(),
         ..message::Readings::default()
+    }
+}
+
+fn scanned(scanner: &Scanner, scan: &Scan) -> message::Scan {
+    message::Scan {
+        first_rad: scan.first_rad,
+        step_rad: scan.step_rad,
+        range_max_m: scanner.range_m,
+        sensor_m: scan.sensor_m,
+        ranges_m: Scanner::ranges_m(scan).collect(),
     }
 }
 
@@ -278,6 +273,7 @@ fn hello(scenario: &Scenario) -> Hello {
             tether: scenario.mission.tether.is_some(),
             ae: scenario.sim.ae.is_some(),
             pressure: scenario.mission.pressure.is_some(),
+            scan: scenario.sim.robot.scanner.is_some(),
             drawn_ids: true,
             ..Has::default()
         },

@@ -8,10 +8,10 @@ use crate::{
 use geometry::Drive;
 use mission::{
     Event, EventKind, Fork, Injection, Input, Mission, MissionConfig, Order, Phase, RangeFault, RunOpened,
-    event::JOURNAL_VERSION,
+    Sensor, event::JOURNAL_VERSION,
 };
 use scenario::Scenario;
-use sim::{AeConfig, Disturbances, SimConfig, Simulator};
+use sim::{AeConfig, Disturbances, RobotConfig, SimConfig, Simulator};
 use std::time::Duration;
 use vehicle::port::{Brake, Command, Live, Sensed, StationFault, Vehicle, VehicleInfo};
 use world::{Floor, Readings};
@@ -45,7 +45,8 @@ impl Forked {
             let disturbances = Disturbances { faults: Vec::new(), ..ae.disturbances };
             AeConfig { outages_s: Vec::new(), disturbances, ..ae }
         });
-        let config = SimConfig { world, ae, movers: Vec::new(), ..scenario.sim.clone() };
+        let robot = RobotConfig { scanner: None, ..scenario.sim.robot.clone() };
+        let config = SimConfig { world, robot, ae, movers: Vec::new(), ..scenario.sim.clone() };
         Flight {
             vehicle: Box::new(Simulated::new(Simulator::resumed(config, scenario.seed, pose, cable))),
             watch: None,
@@ -79,9 +80,10 @@ impl Flight {
     /// The same flight, before its first tick, with a real vehicle in place of the simulator.
     #[must_use]
     pub fn with_vehicle(self, scenario: &Scenario, vehicle: Box<dyn Vehicle>, info: VehicleInfo) -> Self {
-        let guard_reaction_s =
-            info.has.iter().any(|part| part == "scan").then(|| reaction_s(&self.opened, &info));
-        let config = MissionConfig { live: true, guard_reaction_s, ..self.opened.mission };
+        let has_scan = info.has.iter().any(|part| part == "scan");
+        let guard_reaction_s = has_scan.then(|| reaction_s(&self.opened, &info));
+        let sensor = has_scan.then(|| self.opened.mission.sensor.unwrap_or(Sensor::UNKNOWN));
+        let config = MissionConfig { live: true, guard_reaction_s, sensor, ..self.opened.mission };
         Self::of(scenario, config, Some((vehicle, info)))
     }
 
@@ -182,6 +184,7 @@ impl Flight {
         let Sensed { readings, live } = self.vehicle.sense();
         self.readings = readings;
         let mut first = self.truth();
+        first.extend(self.scanned());
         first.extend(self.watched(&live.unwrap_or_default()));
         let trouble = self.trouble();
         self.mission.sense(&Input { readings: &self.readings, orders, trouble: trouble.as_deref() });
@@ -226,6 +229,12 @@ impl Flight {
 
     fn event(&self, kind: EventKind) -> Event {
         Event { tick: self.tick, t_s: self.tick as f64 * self.tick_s, kind }
+    }
+
+    /// The scan of a simulated scanner; that of a real vehicle is part of its readings.
+    fn scanned(&self) -> Option<Event> {
+        let scan = self.readings.scan.as_ref().filter(|_| self.watch.is_none())?;
+        Some(self.event(EventKind::Scanned { scan: Box::new(scan.clone()) }))
     }
 
     /// The events of this tick about a real vehicle.

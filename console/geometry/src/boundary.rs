@@ -1,6 +1,6 @@
 //! The wall of a tank.
 
-use crate::{Point, polyline, shape};
+use crate::{Point, Vector, polyline, shape};
 
 /// The wall of a tank; `P` stores the corners, as for [`Shape`](crate::Shape).
 ///
@@ -81,6 +81,32 @@ impl<P: AsRef<[Point]>> Boundary<P> {
                 let vertices = vertices.as_ref();
                 let distance = polyline::distance_to_ring_m(vertices, point);
                 if shape::ring_contains(vertices, point) { distance } else { -distance }
+            }
+        }
+    }
+
+    /// Distance along a ray to the wall, metres; infinite if the ray does not reach it. `direction` has length 1.
+    ///
+    /// ```
+    /// use geometry::{Boundary, Point, Vector};
+    /// let tank: Boundary = Boundary::Circle { radius_m: 10.0 };
+    /// assert_eq!(tank.ray_m(Point::new(4.0, 0.0), Vector::x()), 6.0);
+    /// ```
+    pub fn ray_m(&self, from: Point, direction: Vector) -> f64 {
+        match self {
+            Self::Circle { radius_m } => {
+                let along = from.coords.dot(&direction);
+                let rest = radius_m * radius_m - from.coords.norm_squared() + along * along;
+                if rest < 0.0 { f64::INFINITY } else { (rest.sqrt() - along).max(0.0) }
+            }
+            Self::Polygon { vertices } => {
+                let hits = polyline::edges(vertices.as_ref()).filter_map(|(a, b)| {
+                    let (edge, to) = (b - a, a - from);
+                    let across = direction.perp(&edge);
+                    let (along_m, share) = (to.perp(&edge) / across, to.perp(&direction) / across);
+                    (across != 0.0 && along_m >= 0.0 && (0.0..=1.0).contains(&share)).then_some(along_m)
+                });
+                hits.fold(f64::INFINITY, f64::min)
             }
         }
     }

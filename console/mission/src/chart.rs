@@ -3,11 +3,11 @@
 use crate::{
     ask::{Site, SiteObstacle, SiteZone},
     config::MissionConfig,
-    drift::Drift,
     event::EventKind,
     governor::{Outline, Solid},
 };
 use nalgebra::{Isometry2, Translation2};
+use perception::{Drift, change_m};
 use planner_api as api;
 use std::sync::Arc;
 use world::{Obstacle, ObstacleId, ObstacleMap, Point, Pose, Shape, Sighting, World, Zone, ZoneKind};
@@ -48,6 +48,8 @@ struct Found {
     index: usize,
     sightings: f64,
     reported_at: Point,
+    /// The outline as it was last reported; used for obstacles found in scans.
+    reported: Shape,
     drift: Drift,
 }
 
@@ -141,16 +143,23 @@ impl Chart {
     ///
     /// Even when the position estimate is wrong, the robot sees how far away an obstacle is. Planners therefore avoid
     /// obstacles where they are seen, not where the chart puts them.
-    pub(crate) fn sight(&mut self, sightings: &[Sighting], from: &Pose) {
-        let seen = |s: &Sighting| (s.id, s.shape_in_robot.transformed(&from.tank_from_robot()));
-        self.in_sight = sightings.iter().map(seen).collect();
+    pub(crate) fn sight<'a>(&mut self, seen: impl Iterator<Item = (ObstacleId, &'a Shape)>, from: &Pose) {
+        let placed = |(id, shape): (_, &Shape)| (id, shape.transformed(&from.tank_from_robot()));
+        self.in_sight = seen.map(placed).collect();
     }
 
-    /// Puts sightings on the chart, made at time `now_s` from an estimated pose; returns the changes.
+    /// Puts sightings on the chart, made at time `now_s` from an estimated pose, and obstacles found in scans, which are
+    /// placed already; returns the changes.
     ///
     /// Only obstacles that are not on the drawing are added. A tracker of the simulator recognizes drawn obstacles; other
     /// trackers see a drawn obstacle where the drawing has it.
-    pub(crate) fn see(&mut self, now_s: f64, sightings: &[Sighting], from: &Pose) -> Seen {
+    pub(crate) fn see(
+        &mut self,
+        now_s: f64,
+        sightings: &[Sighting],
+        scanned: &[perception::Seen<'_>],
+        from: &Pose,
+    ) -> Seen {
         self.now_s = now_s;
         let mut events = Vec::new();
         let mut changes_plans = false;
@@ -162,10 +171,15 @@ impl Chart {
                 }
                 let did_move = self.velocity(sighting.id).is_some();
                 let event = self.place(sighting.id, shape);
-                let moves = self.velocity(sighting.id).is_some();
-                changes_plans |= did_move != moves || (event.is_some() && !moves);
+                changes_plans |= self.matters(sighting.id, did_move, event.as_ref());
                 events.extend(event);
             }
+        }
+        for seen in scanned {
+            let did_move = self.velocity(seen.id).is_some();
+            let event = self.place_scanned(seen);
+            changes_plans |= self.matters(seen.id, did_move, event.as_ref());
+            events.extend(event);
         }
         // Even a small movement since the last report may affect plans, because they are checked against this map.
         if changes_plans || !events.is_empty() {
@@ -188,6 +202,32 @@ impl Chart {
         let covers =
             |drawn: &Obstacle| points.iter().all(|point| drawn.shape.distance_m(*point) + half_m <= DRAWN_M);
         self.world.obstacles.iter().filter(|obstacle| obstacle.known).any(covers)
+    }
+
+    /// Whether a plan may have become invalid by the last sighting of an obstacle, with this event.
+    fn matters(&self, id: ObstacleId, did_move: bool, event: Option<&EventKind>) -> bool {
+        let moves = self.velocity(id).is_some();
+        did_move != moves || (event.is_some() && !moves)
+    }
+
+    /// Places an obstacle found in scans. Its place and outline are means already.
+    fn place_scanned(&mut self, seen: &perception::Seen<'_>) -> Option<EventKind> {
+        let Some(found) = self.found.iter_mut().find(|found| found.id == seen.id) else {
+            let event = self.add(seen.id, seen.shape.clone());
+            self.found.iter_mut().filter(|found| found.id == seen.id).for_each(|found| {
+                found.drift.clone_from(seen.drift);
+            });
+            return Some(event);
+        };
+        found.drift.clone_from(seen.drift);
+        let obstacle = &mut self.world.obstacles[found.index];
+        obstacle.shape.clone_from(&seen.shape);
+        if change_m(&found.reported, &seen.shape) < MOVED_M {
+            return None;
+        }
+        found.reported.clone_from(&seen.shape);
+        found.reported_at = seen.shape.center();
+        Some(EventKind::ObstacleMoved { id: seen.id, obstacle: obstacle.clone() })
     }
 
     fn place(&mut self, id: ObstacleId, shape: Shape) -> Option<EventKind> {
@@ -217,7 +257,8 @@ impl Chart {
         let reported_at = shape.center();
         let mut drift = Drift::default();
         drift.see(self.now_s, reported_at);
-        self.found.push(Found { id, index: self.world.obstacles.len(), sightings: 1.0, reported_at, drift });
+        let (index, reported) = (self.world.obstacles.len(), shape.clone());
+        self.found.push(Found { id, index, sightings: 1.0, reported_at, reported, drift });
         let obstacle = Obstacle { id, name, shape, known: false };
         self.world.obstacles.push(obstacle.clone());
         EventKind::ObstacleFound { obstacle }

@@ -2,6 +2,7 @@
 
 use crate::planner::PlannerChoice;
 use geometry::motion::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD};
+use perception::Sensor;
 use planner_api::{Limits, Motion, TetherLimits};
 use positioning::{Aggregation, Forecast, RangeNoise, SolverKind, Timing};
 use serde::{Deserialize, Serialize};
@@ -220,10 +221,14 @@ pub struct MissionConfig {
     /// Whether the robot is a real vehicle and not the simulator: time cannot be stepped, and faults cannot be injected.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub live: bool,
-    /// For a real vehicle with a scan: the robot is guarded by the scan, and this is the time from a command until the
-    /// vehicle follows it, beyond a tick, seconds. `None`: no guard.
+    /// For a robot with a scan: the robot is guarded by the scan, and this is the time from a command until the vehicle
+    /// follows it, beyond a tick, seconds. `None`: no guard.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub guard_reaction_s: Option<f64>,
+    /// The scanner in whose scans the mission finds obstacles. `None` if only the outlines that the readings name are
+    /// used.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sensor: Option<Sensor>,
     /// What to do about a plan that is better than a repaired one.
     #[serde(default, skip_serializing_if = "BetterPlan::is_off")]
     pub better_plan: BetterPlan,

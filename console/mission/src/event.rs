@@ -37,7 +37,9 @@ use positioning::{Exclusion, Fix, FixError, Ranging};
 use serde::{Deserialize, Serialize};
 use vehicle::port::{LinkSeen, VehicleInfo};
 use world::tether::Certificate;
-use world::{CellRun, KindRun, Medium, Obstacle, ObstacleId, Point, Pose, Readings, StationId, World, Zone};
+use world::{
+    CellRun, KindRun, Medium, Obstacle, ObstacleId, Point, Pose, Readings, Scan, StationId, World, Zone,
+};
 
 /// Version of the journal format; raised when older readers can no longer read new journals.
 pub const JOURNAL_VERSION: u32 = 5;
@@ -127,6 +129,12 @@ pub enum EventKind {
         /// The certificate, or why there is none.
         certificate: Certificate,
     },
+    /// The simulated scanner made a scan at the start of this tick. The scans of a real vehicle are part of
+    /// [`EventKind::Sensed`].
+    Scanned {
+        /// The scan.
+        scan: Box<Scan>,
+    },
     /// The robot's true pose at the start of this tick. The simulator reports the pose; the mission does not know it.
     Truth {
         /// True pose.
@@ -195,6 +203,15 @@ pub enum EventKind {
     ObstacleFound {
         /// Estimated outline of the obstacle, tank frame.
         obstacle: Obstacle,
+    },
+    /// Scans went through the place of an obstacle on the chart, so that it is not there.
+    NotThere {
+        /// Id of the obstacle.
+        id: ObstacleId,
+        /// Its name.
+        name: String,
+        /// Number of scans through its place since it was last seen.
+        scans: u32,
     },
     /// The operator drew a zone that the robot must not enter.
     ZoneDrawn {

@@ -11,7 +11,6 @@
 pub mod ask;
 mod chart;
 pub mod config;
-mod drift;
 pub mod engine;
 pub mod event;
 mod governor;
@@ -38,6 +37,7 @@ pub use event::{Event, EventKind, LogLine, RunOpened, Severity};
 pub use locate::Locator;
 pub use order::{Check, CheckOutcome, Injection, Note, Noted, Order, Outlook, RangeFault};
 pub use passage::Passage;
+pub use perception::Sensor;
 pub use phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes, StepTo};
 pub use plan_extent::check_extent;
 pub use plan_id::{PlanId, PlanSeen};

@@ -213,7 +213,7 @@ impl Locator {
     }
 
     /// Estimated pose with its covariance, in the form that planners receive.
-    pub(crate) fn pose_estimate(&self) -> PoseEstimate {
+    pub fn pose_estimate(&self) -> PoseEstimate {
         let estimate = self.positioner.estimate();
         PoseEstimate {
             position: estimate.pose.position,

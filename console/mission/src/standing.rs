@@ -229,6 +229,9 @@ impl Standing<'_> {
             (_, Phase::Ended(outcome)) => Err(Refusal::Ended(*outcome)),
             (Order::Step, _) if self.is_live => Err(Refusal::StepOfVehicle),
             (Order::Inject(_), _) if self.is_live => Err(Refusal::FaultOfVehicle),
+            (Order::Shadow(_) | Order::SetParameter { .. }, Phase::Running(Gait::Back)) => {
+                Err(Refusal::DrivingBack)
+            }
             (
                 Order::Abort
                 | Order::Terminate
@@ -238,16 +241,12 @@ impl Standing<'_> {
                 _,
             )
             | (Order::Plan | Order::NoteChecks(_), Phase::Waiting)
-            | (Order::Hold | Order::Inject(_), Phase::Running(_) | Phase::Held(_))
-            | (Order::Shadow(_) | Order::NoteOutlooks(_), Phase::Held(_))
-            | (Order::CheckPlanner, Phase::Waiting | Phase::Held(_))
-            | (Order::ChoosePlanner(_) | Order::SetParameter { .. }, Phase::Waiting | Phase::Held(_)) => {
-                Ok(())
-            }
-            (Order::Shadow(_) | Order::SetParameter { .. }, Phase::Running(Gait::Back)) => {
-                Err(Refusal::DrivingBack)
-            }
-            (Order::Shadow(_), Phase::Running(_)) => Ok(()),
+            | (Order::Hold | Order::Inject(_) | Order::Shadow(_), Phase::Running(_) | Phase::Held(_))
+            | (Order::NoteOutlooks(_), Phase::Held(_))
+            | (
+                Order::CheckPlanner | Order::ChoosePlanner(_) | Order::SetParameter { .. },
+                Phase::Waiting | Phase::Held(_),
+            ) => Ok(()),
             (Order::Start, Phase::Waiting) => self.can_start(None),
             (Order::StartPlan(seen), Phase::Waiting) => self.can_start(Some(*seen)),
             (

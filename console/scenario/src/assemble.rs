@@ -12,7 +12,7 @@ use super::{
     source::Source,
     task, tether, vehicle,
 };
-use mission::{BetterPlan, Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
+use mission::{BetterPlan, Locating, MissionConfig, ScanConfig, Sensor, TaskConfig, TetherConfig};
 use planner_api::Limits;
 use sim::{AeConfig, Mover, NoiseModel, RobotConfig, SimConfig};
 use toml::de::DeTable;
@@ -125,7 +125,8 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         attended: false,
         start_names_plan: false,
         live: false,
-        guard_reaction_s: None,
+        guard_reaction_s: robot.scanner.map(|_| 0.0),
+        sensor: robot.scanner.as_ref().map(Sensor::of),
         better_plan: rest.better_plan,
     };
     let tether_anchor = mission.tether.as_ref().map(|tether| tether.anchor);
@@ -411,5 +412,6 @@ fn truth(robot: &Robot, start: Pose) -> RobotConfig {
         gyro_bias_rad_per_s: robot.gyro_bias_rad_per_s,
         amphibious: robot.limits.amphibious,
         pressure: robot.pressure,
+        scanner: robot.scanner,
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{problem::Complaint, section::Section};
 use planner_api::{Limits, Motion};
-use world::{Amphibious, Pace, Point, PressureSensor};
+use world::{Amphibious, Pace, Point, PressureSensor, Scanner};
 
 /// `[robot]` as read; the mission may still determine the start.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +27,8 @@ pub(crate) struct Robot {
     pub gyro_bias_rad_per_s: f64,
     /// The pressure sensor of an amphibious robot, if it has one.
     pub pressure: Option<PressureSensor>,
+    /// The scanner, if it has one.
+    pub scanner: Option<Scanner>,
 }
 
 impl Robot {
@@ -69,6 +71,8 @@ pub(crate) fn robot(section: &Section<'_>) -> Option<Robot> {
     let (slip_mean, slip_sigma) = (section.number("slip_mean"), section.number("slip_sigma"));
     let odometry_sigma_ratio = section.number("odometry_sigma_ratio");
     let gyro_bias_deg = section.number("gyro_bias_deg_per_s");
+    let scanner =
+        if section.has("scanner") { Some(scanner(&section.table("scanner")?, radius_m?)?) } else { None };
     let amphibious = amphibious?;
     let pressure = if amphibious.is_some() { pressure(section) } else { None };
     // Planners get the faster of the two limits; the zones determine where the slower limit applies.
@@ -94,6 +98,39 @@ pub(crate) fn robot(section: &Section<'_>) -> Option<Robot> {
         odometry_sigma_ratio: odometry_sigma_ratio?,
         gyro_bias_rad_per_s: gyro_bias_deg?.to_radians(),
         pressure,
+        scanner,
+    })
+}
+
+/// Reads `[robot.scanner]`, for a hull of the given radius.
+fn scanner(section: &Section<'_>, radius_m: f64) -> Option<Scanner> {
+    let rays = section.whole("rays");
+    let field_of_view_deg = section.number("field_of_view_deg");
+    let (range_m, rate_hz) = (section.number("range_m"), section.number("rate_hz"));
+    let (sigma_m, lost_share) = (section.number("sigma_m"), section.number("lost_share"));
+    let heading_deg = section.number("heading_deg");
+    let offset_m = if section.has("offset_m") { section.pair("offset_m") } else { Some([0.0, 0.0]) };
+    if let Some([x, y]) = offset_m
+        && x.hypot(y) > radius_m
+    {
+        let must_be = format!("within the hull, at most {radius_m} m from its centre");
+        section.complain("offset_m", Complaint::OutOfRange(must_be));
+        return None;
+    }
+    if range_m? <= radius_m {
+        let must_be = format!("greater than the radius of the hull, {radius_m} m");
+        section.complain("range_m", Complaint::OutOfRange(must_be));
+        return None;
+    }
+    Some(Scanner {
+        rays: rays? as u32,
+        field_of_view_rad: field_of_view_deg?.to_radians(),
+        range_m: range_m?,
+        rate_hz: rate_hz?,
+        sigma_m: sigma_m?,
+        lost_share: lost_share?,
+        offset_m: offset_m?,
+        heading_rad: heading_deg?.to_radians(),
     })
 }
 

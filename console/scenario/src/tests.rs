@@ -638,3 +638,30 @@ fn plates_have_sizes_or_outlines() {
         assert_eq!(errors(&with(&plates)).problems.len(), 1, "{shown}");
     }
 }
+
+#[test]
+fn a_scanner_is_read_with_its_defaults_and_wrong_ones_are_named() {
+    let with = |keys: &str| format!("{SMALL}[robot.scanner]\n{keys}");
+    let found = read(&with("rays = 180\nheading_deg = 90.0\noffset_m = [0.1, 0.0]"));
+    let scanner = found.sim.robot.scanner.unwrap();
+    let wanted = world::Scanner {
+        rays: 180,
+        heading_rad: std::f64::consts::FRAC_PI_2,
+        offset_m: [0.1, 0.0],
+        ..world::Scanner::default()
+    };
+    assert_eq!(scanner, wanted);
+    assert_eq!(found.mission.sensor, Some(mission::Sensor::of(&wanted)));
+    assert!(found.mission.guard_reaction_s.is_some() && read(SMALL).mission.guard_reaction_s.is_none());
+    for (keys, key, why) in [
+        ("rays = 3", "robot.scanner.rays", "at least 8"),
+        ("rate_hz = 1.0", "robot.scanner.rate_hz", "the guard must not drive blind"),
+        ("offset_m = [3.0, 0.0]", "robot.scanner.offset_m", "within the hull"),
+        ("range_m = 0.1", "robot.scanner.range_m", "greater than the radius of the hull"),
+        ("lost_share = 1.0", "robot.scanner.lost_share", "at most 0.9"),
+        ("ray = 9", "robot.scanner.ray", "rays"),
+    ] {
+        let text = errors(&with(keys)).render();
+        assert!(text.contains(key) && text.contains(why), "{text}");
+    }
+}

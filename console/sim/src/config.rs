@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use world::{Amphibious, ObstacleId, Point, Pose, PressureSensor, StationId, World};
+use world::{Amphibious, ObstacleId, Point, Pose, PressureSensor, Scanner, StationId, World};
 
 /// The random error of ranges.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -157,6 +157,9 @@ pub struct RobotConfig {
     /// The pressure sensor that detects whether the floor under the robot is flooded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure: Option<PressureSensor>,
+    /// The scanner; without one, the robot is told the outlines of obstacles within [`Self::sensing_range_m`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scanner: Option<Scanner>,
 }
 
 /// A moving obstacle.

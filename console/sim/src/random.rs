@@ -31,6 +31,8 @@ pub(crate) struct RandomStreams {
     pub timing: Pcg64,
     /// Errors of the pressure sensor.
     pub pressure: Pcg64,
+    /// Errors and lost rays of the scanner.
+    pub scanner: Pcg64,
 }
 
 impl RandomStreams {
@@ -45,6 +47,7 @@ impl RandomStreams {
             survey: stream(6),
             timing: stream(7),
             pressure: stream(8),
+            scanner: stream(9),
         }
     }
 }

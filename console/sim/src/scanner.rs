@@ -1,73 +1,99 @@
-//! What a scanner at the robot's centre would measure, without noise.
+//! What a scanner on the robot measures.
 
-use geometry::polyline::edges;
-use world::{Boundary, ObstacleMap, Point, Pose, Vector};
+use crate::random::normal;
+use geometry::unit_vector;
+use rand::{Rng, RngExt};
+use world::{Boundary, ObstacleMap, Pose, Scan, Scanner};
 
-/// Distances along evenly spaced rays, counter-clockwise from straight ahead; `None` beyond `most_m`, metres.
+/// Smallest distance that an error can lead to, metres: the resolution of a scan.
+const NEAREST_M: f64 = 1e-3;
+
+/// A scan by a robot at a pose. Each ray draws two random numbers, whatever it hits.
 pub(crate) fn scan(
+    scanner: &Scanner,
     map: &ObstacleMap,
     boundary: &Boundary,
-    pose: &Pose,
-    rays: u32,
-    most_m: f64,
-) -> Vec<Option<f64>> {
+    robot: &Pose,
+    rng: &mut impl Rng,
+) -> Scan {
+    let from = scanner.pose(robot).position;
     let ray = |n: u32| {
-        let angle = pose.heading_rad + std::f64::consts::TAU * f64::from(n) / f64::from(rays);
-        let direction = Vector::new(angle.cos(), angle.sin());
-        let wall_m = wall_m(boundary, pose.position, direction);
-        let hit_m = map.ray_m(pose.position, direction, most_m).unwrap_or(f64::INFINITY).min(wall_m);
-        (hit_m <= most_m).then_some(hit_m)
+        let angle = robot.heading_rad + scanner.first_rad() + f64::from(n) * scanner.step_rad();
+        let direction = unit_vector(angle);
+        let wall_m = boundary.ray_m(from, direction);
+        let hit_m = map.ray_m(from, direction, scanner.range_m).unwrap_or(f64::INFINITY).min(wall_m);
+        let (error_m, is_lost) = (scanner.sigma_m * normal(rng), rng.random::<f64>() < scanner.lost_share);
+        // An error does not turn a hit into the 0 of an object that is too near to be measured.
+        let measured_m = if hit_m > NEAREST_M { (hit_m + error_m).max(NEAREST_M) } else { hit_m };
+        (!is_lost).then_some(measured_m)
     };
-    (0..rays).map(ray).collect()
-}
-
-/// Distance along a ray to the wall, metres; infinite if the ray does not reach it.
-fn wall_m(boundary: &Boundary, from: Point, direction: Vector) -> f64 {
-    match boundary {
-        Boundary::Circle { radius_m } => {
-            let along = from.coords.dot(&direction);
-            let rest = radius_m * radius_m - from.coords.norm_squared() + along * along;
-            if rest < 0.0 { f64::INFINITY } else { (rest.sqrt() - along).max(0.0) }
-        }
-        Boundary::Polygon { vertices } => {
-            let hits = edges(vertices).filter_map(|(a, b)| {
-                let (edge, to) = (b - a, a - from);
-                let across = direction.perp(&edge);
-                let (along_m, share) = (to.perp(&edge) / across, to.perp(&direction) / across);
-                (across != 0.0 && along_m >= 0.0 && (0.0..=1.0).contains(&share)).then_some(along_m)
-            });
-            hits.fold(f64::INFINITY, f64::min)
-        }
-    }
+    scanner.scan((0..scanner.rays).map(ray))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use world::{Obstacle, ObstacleId, Shape};
+    use crate::random::RandomStreams;
+    use std::f64::consts::{FRAC_PI_2, TAU};
+    use world::{NO_ECHO, Obstacle, ObstacleId, Point, Shape};
+
+    fn column() -> Obstacle {
+        let shape = Shape::Disc { center: Point::new(0.0, 2.0), radius_m: 0.5 };
+        Obstacle { id: ObstacleId(1), name: "column".into(), shape, known: false }
+    }
+
+    /// The distances in millimetres.
+    fn scanned(scanner: &Scanner, boundary: &Boundary, pose: &Pose, seed: u64) -> Vec<u16> {
+        let map = ObstacleMap::new(boundary, &[column()]);
+        scan(scanner, &map, boundary, pose, &mut RandomStreams::new(seed).scanner).ranges_mm.0
+    }
+
+    const ROUND: Boundary = Boundary::Circle { radius_m: 5.0 };
 
     #[test]
     fn rays_end_at_columns_and_walls() {
-        let column = Obstacle {
-            id: ObstacleId(1),
-            name: "column".into(),
-            shape: Shape::Disc { center: Point::new(0.0, 2.0), radius_m: 0.5 },
-            known: false,
-        };
         let square = [(-4.0, -3.0), (4.0, -3.0), (4.0, 3.0), (-4.0, 3.0)];
         let square = Boundary::Polygon { vertices: square.map(|(x, y)| Point::new(x, y)).to_vec() };
-        for (boundary, wanted) in [
-            (Boundary::Circle { radius_m: 5.0 }, [Some(4.0), Some(1.5), None, Some(5.0)]),
-            (square, [Some(3.0), Some(1.5), Some(5.0), Some(3.0)]),
-        ] {
-            let map = ObstacleMap::new(&boundary, std::slice::from_ref(&column));
-            let from = |x: f64, n: usize| scan(&map, &boundary, &Pose::new(x, 0.0, 0.0), 4, 5.2)[n];
-            let found = [from(1.0, 0), from(0.0, 1), from(1.0, 2), from(0.0, 3)];
-            let is_near = |(one, other): (&Option<f64>, &Option<f64>)| match (one, other) {
-                (Some(one), Some(other)) => (one - other).abs() < 1e-9,
-                (one, other) => one == other,
-            };
-            assert!(found.iter().zip(&wanted).all(is_near), "{found:?}");
+        // Rays to the west, south, east and north.
+        let scanner = Scanner { rays: 4, range_m: 5.2, ..Scanner::default() }.exact();
+        for (boundary, ahead, behind) in [(ROUND, [4000, NO_ECHO], 5000), (square, [3000, 5000], 3000)] {
+            let (right, middle) = (Pose::new(1.0, 0.0, 0.0), Pose::new(0.0, 0.0, 0.0));
+            let (right, middle) =
+                (scanned(&scanner, &boundary, &right, 1), scanned(&scanner, &boundary, &middle, 1));
+            assert_eq!([right[2], right[0]], ahead);
+            assert_eq!([middle[3], middle[1]], [1500, behind]);
         }
+    }
+
+    #[test]
+    fn the_mounting_moves_and_turns_the_rays() {
+        let scanner =
+            Scanner { rays: 4, offset_m: [0.5, 0.25], heading_rad: FRAC_PI_2, ..Scanner::default() }.exact();
+        // The robot looks north; the scanner is ahead and on the left of its centre, and looks west.
+        let found = scanned(&scanner, &ROUND, &Pose::new(0.25, 0.0, FRAC_PI_2), 1);
+        assert_eq!(found[1], 1000, "the column, north of the scanner");
+        let half = Scanner {
+            rays: 3,
+            field_of_view_rad: TAU / 2.0,
+            heading_rad: 0.0,
+            offset_m: [0.0; 2],
+            ..scanner
+        };
+        assert_eq!(scanned(&half, &ROUND, &Pose::new(0.0, 0.0, 0.0), 1), [5000, 5000, 1500]);
+    }
+
+    #[test]
+    fn errors_and_lost_rays_are_as_configured() {
+        let scanner = Scanner { rays: 10_000, lost_share: 0.1, sigma_m: 0.05, ..Scanner::default() };
+        let found = scanned(&scanner, &Boundary::Circle { radius_m: 1.0 }, &Pose::new(0.0, 0.0, 0.0), 3);
+        let lost = found.iter().filter(|mm| **mm == NO_ECHO).count();
+        assert!((900..1100).contains(&lost), "{lost}");
+        let errors = found.iter().filter(|mm| **mm != NO_ECHO).map(|mm| f64::from(*mm) / 1000.0 - 1.0);
+        let sigma_m = (errors.map(|error| error * error).sum::<f64>() / 9000.0).sqrt();
+        assert!((sigma_m - 0.05).abs() < 0.003, "{sigma_m}");
+        assert_eq!(
+            found,
+            scanned(&scanner, &Boundary::Circle { radius_m: 1.0 }, &Pose::new(0.0, 0.0, 0.0), 3)
+        );
     }
 }

@@ -82,23 +82,25 @@ impl Simulator {
         });
         let robot = &self.config.robot;
         let reach_m = bounded(robot.radius_m.max(0.0) + robot.sensing_range_m.max(0.0));
+        // A robot with a scanner has nothing but the scan.
+        let sightings = match robot.scanner {
+            Some(_) => Vec::new(),
+            None => sightings(&self.map, &world.boundary, &world.obstacles, &self.pose, reach_m),
+        };
+        let due = robot.scanner.filter(|scanner| scanner.is_due(self.tick, self.config.tick_s.max(0.0)));
+        let rng = &mut self.streams.scanner;
+        let scan = due.map(|scanner| scan(&scanner, &self.map, &world.boundary, &self.pose, rng));
         Readings {
             ranging_cycle: ranges.is_some(),
             ranges: ranges.unwrap_or_default(),
             odometry: self.odometry,
             unmeasured_s: 0.0,
-            sightings: sightings(&self.map, &world.boundary, &world.obstacles, &self.pose, reach_m),
+            sightings,
             contact: self.in_contact,
             paid_out_m: self.cable.as_ref().map(Cable::length_m),
             pressure_pa,
-            scan: None,
+            scan,
         }
-    }
-
-    /// What a scanner at the robot's centre would measure now, without noise: distances along evenly spaced rays, metres,
-    /// counter-clockwise from straight ahead; `None` beyond `most_m`.
-    pub fn scan(&self, rays: u32, most_m: f64) -> Vec<Option<f64>> {
-        scan(&self.map, &self.config.world.boundary, &self.pose, rays, most_m)
     }
 
     /// Advances the true state by one tick.

@@ -13,7 +13,7 @@ use crate::model::{Alarm, Cause, Run};
 use crate::screens::Screen;
 use crate::view::text;
 use mission::Phase;
-use remedy::{END, HOLD, OTHER_PLANNER, PARAMETERS, RESUME, SHOW, check, run};
+use remedy::{END, HOLD, OTHER_PLANNER, PARAMETERS, PLAN_AGAIN, RESUME, SHOW, check, run};
 
 /// The name of an alarm in a table, short enough for one row.
 pub fn name(cause: &Cause, of: &Run) -> String {
@@ -102,7 +102,7 @@ pub fn guide(cause: &Cause) -> Guide {
             cause: "The planner panicked, crashed, hung, or sent an invalid answer; its process has ended.",
             holds: "The robot is held at once.",
             effect: "If the scenario names a fallback planner, it takes over automatically.",
-            remedies: const { &[RESUME, OTHER_PLANNER, PARAMETERS, END] },
+            remedies: const { &[RESUME, PLAN_AGAIN, OTHER_PLANNER, PARAMETERS, END] },
         },
         Cause::Stuck => Guide {
             cause: "The robot has made no progress for longer than the mission allows (scenario: stuck_s).",
@@ -147,9 +147,8 @@ pub fn effect(alarm: &Alarm, of: &Run) -> String {
 /// The remedies that apply to an alarm now.
 pub fn remedies<'a>(cause: &Cause, of: &'a Run) -> impl Iterator<Item = &'static Remedy> + use<'a> {
     let is_active = of.alarms.get(cause).is_none_or(Alarm::is_active);
-    let phase = of.phase();
     // A wait is over when its cause is gone.
-    let applies = move |remedy: &&Remedy| remedy.when.holds(phase) && (is_active || remedy.action.is_some());
+    let applies = move |remedy: &&Remedy| remedy.when.holds(of) && (is_active || remedy.action.is_some());
     guide(cause).remedies.iter().filter(applies)
 }
 
@@ -168,7 +167,9 @@ mod tests {
             for text in std::iter::once(guide.cause).chain(effects).chain(texts) {
                 assert!(text.ends_with('.') && text.starts_with(char::is_uppercase), "{cause:?}: {text}");
             }
-            assert!((1..=4).contains(&guide.remedies.len()), "{cause:?}");
+            // Planning again and resuming exclude each other.
+            let at_once = guide.remedies.iter().filter(|remedy| remedy.when != When::Waiting).count();
+            assert!((1..=4).contains(&at_once), "{cause:?}");
             let name = name(&cause, &Run::default());
             assert!(!name.is_empty() && name.len() <= 31, "{name} fits into a table of 80 columns");
         }

@@ -8,6 +8,11 @@ use serde::{Deserialize, Serialize};
 /// The distance of a ray without an echo, and of one that is longer than 65.534 m.
 pub const NO_ECHO: u16 = u16::MAX;
 
+/// Number of neighbours on each side with which a distance is evened.
+pub const EVENED: usize = 2;
+/// Difference of distances on one surface, in standard deviations.
+pub const APART: f64 = 5.0;
+
 /// Distances along rays from a sensor on the robot.
 ///
 /// ```
@@ -66,6 +71,39 @@ impl Scan {
             Some(mm) if (0.0..f64::from(NO_ECHO)).contains(&mm) => mm as u16,
             _ => NO_ECHO,
         }
+    }
+
+    /// The same scan with less noise: each distance is replaced by the mean of itself and of those neighbours, up to
+    /// [`EVENED`] rays to each side, that may lie on the same surface because they differ by less than [`APART`] standard
+    /// deviations. What stands out farther keeps its distance.
+    ///
+    /// ```
+    /// use world::{Scan, scan::RangesMm};
+    /// let ranges_mm = RangesMm(vec![1000, 1000, 700, 1020, 1000]);
+    /// let scan = Scan { step_rad: 0.01, ranges_mm, ..Scan::default() };
+    /// assert_eq!(scan.evened(0.02).ranges_mm.0, [1000, 1007, 700, 1007, 1010]);
+    /// ```
+    #[must_use]
+    pub fn evened(&self, sigma_m: f64) -> Self {
+        let ranges = &self.ranges_mm.0;
+        let n = ranges.len();
+        let is_round = n as f64 * self.step_rad.abs() > std::f64::consts::TAU - 0.5 * self.step_rad.abs();
+        let apart_mm = APART * 1000.0 * sigma_m;
+        let even = |(at, mm): (usize, &u16)| {
+            if *mm == NO_ECHO {
+                return NO_ECHO;
+            }
+            let places = (at + n - EVENED.min(n))..=(at + n + EVENED.min(n));
+            let places = places.filter(|place| is_round || (n..2 * n).contains(place));
+            let beside = places.map(|place| ranges[place % n]).filter(|other| *other != NO_ECHO);
+            let (mut sum, mut count) = (0.0, 0.0);
+            for other in beside.filter(|other| f64::from(other.abs_diff(*mm)) < apart_mm) {
+                (sum, count) = (sum + f64::from(other), count + 1.0);
+            }
+            if count > 0.0 { (sum / count).round() as u16 } else { *mm }
+        };
+        let evened = ranges.iter().enumerate().map(even).collect();
+        Self { ranges_mm: RangesMm(evened), ..self.clone() }
     }
 
     /// The points that were hit, in the robot frame at the end of the readings.

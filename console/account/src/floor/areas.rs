@@ -83,6 +83,11 @@ fn why<R>(causes: &[Cause<R>]) -> String {
 pub trait Explained: Copy + Ord {
     /// The reason as a sentence.
     fn sentence(self, measure: Option<&Measure>) -> String;
+
+    /// Whether the cells with this reason form areas of their own, even where they touch others.
+    fn is_apart(self) -> bool {
+        false
+    }
 }
 
 impl<R> Area<R> {
@@ -105,7 +110,8 @@ impl<R> fmt::Display for Area<R> {
 }
 
 /// Returns the areas of the cells that have a reason, the largest first, and the areas too small to be listed. Cells
-/// are adjacent if they touch, even at a corner, regardless of their plates and reasons.
+/// are adjacent if they touch, even at a corner, regardless of their plates and reasons; only reasons that stand apart form
+/// areas of their own.
 pub fn areas<R: Explained>(
     floor: &Floor,
     plates: Option<&PlateMap>,
@@ -115,7 +121,11 @@ pub fn areas<R: Explained>(
     let reasons: Vec<Option<R>> = (0..floor.len()).map(reason_of).collect();
     let reason = |cell: usize| reasons[cell].expect("only cells with a reason are grouped");
     let (mut listed, mut slivers, mut specks) = (Vec::new(), Slivers::default(), Vec::new());
-    for cells in together(floor, (0..floor.len()).filter(|cell| reasons[*cell].is_some())) {
+    let group = |apart: bool| {
+        let is_in = |cell: &usize| reasons[*cell].is_some_and(|reason| reason.is_apart() == apart);
+        together(floor, (0..floor.len()).filter(is_in))
+    };
+    for cells in group(false).into_iter().chain(group(true)) {
         let area_m2 = cells.len() as f64 * floor.cell_m2();
         if area_m2 < LEAST_M2 {
             slivers.count += 1;

@@ -97,6 +97,11 @@ impl Explained for MissReason {
             Self::PassedBeside => format!("planned, but the robot passed {value_m:.2} m to one side"),
         }
     }
+
+    /// Floor that was not requested is not a gap: an area must not mix it with floor that was.
+    fn is_apart(self) -> bool {
+        self == Self::NotAsked
+    }
 }
 
 impl MissReason {

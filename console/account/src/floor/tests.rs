@@ -378,6 +378,27 @@ fn floor_that_was_not_requested_or_lies_in_a_no_go_zone_is_listed_with_a_distanc
     assert_eq!(out.why(), "in a no-go zone, up to 0.50 m from reachable floor");
 }
 
+#[test]
+fn floor_that_was_not_requested_is_never_one_area_with_floor_that_was() {
+    let mut run = round_tank(0.05);
+    let regions = vec![world::coverage::regions::square(Point::new(0.0, -2.0), 2.0)];
+    run.mission.task = mission::TaskConfig::Cover { anchor: Point::origin(), regions, tolerance_m: 0.3 };
+    let account = account(&run, &CoverageGrid::new(run.floor.clone()), &Evidence::new(&run));
+    let asked_m2: f64 = account
+        .missed
+        .iter()
+        .filter(|area| area.reason != MissReason::NotAsked)
+        .map(|area| area.area_m2)
+        .sum();
+    for area in &account.missed {
+        let not_asked = area.causes.iter().filter(|cause| cause.reason == MissReason::NotAsked).count();
+        assert!(not_asked == 0 || area.causes.len() == 1, "{area:?}");
+    }
+    assert!((asked_m2 - 4.0).abs() < 0.3, "{asked_m2} m² of a square of 2 m");
+    let reachable_m2 = account.reachable.area_m2;
+    assert!((account.not_asked_m2() + asked_m2 - reachable_m2).abs() < 0.02, "{:?}", account.missed);
+}
+
 /// What becomes of a floor on which a box is forbidden, as the words of the areas out of reach.
 fn out_of_reach_with(run: &RunOpened, zone: &world::Shape) -> Vec<Area<OutOfReach>> {
     let mut evidence = Evidence::new(run);

@@ -25,8 +25,9 @@ impl Mission {
     pub fn fork(&self) -> Fork {
         let mut mission = self.clone();
         (mission.preparing, mission.shadow) = (None, None);
-        // In the forecast the robot is simulated, and starts at rest.
+        // In the forecast the robot is simulated, is told the outlines of obstacles, and starts at rest.
         (mission.known.config.live, mission.known.config.guard_reaction_s) = (false, None);
+        (mission.known.config.sensor, mission.known.perception) = (None, None);
         mission.known.governor.stand();
         // No operator is present to take a better plan.
         if mission.known.config.better_plan == BetterPlan::Offer {

@@ -14,6 +14,7 @@ use crate::{
     task::Task,
     tether::{Tether, ends_at_anchor},
 };
+use perception::Perception;
 use planner_api::Drive;
 use world::{Floor, Point, World};
 
@@ -38,6 +39,8 @@ pub(super) struct Known {
     pub governor: Governor,
     /// State of the guard by the raw scan.
     pub scan_guard: ScanGuard,
+    /// The obstacles found in scans; `None` without a scanner, and if its scans serve the guard alone.
+    pub perception: Option<Perception>,
     /// The command at the end of the last tick.
     pub last_drive: Drive,
     /// The drive back that was ordered, until the mission is resumed.
@@ -60,6 +63,7 @@ impl Known {
             locator: Locator::new(&config, &drawing),
             governor: Governor::new(&config, &drawing.zones),
             scan_guard: ScanGuard::default(),
+            perception: config.sensor.map(Perception::new),
             chart: Chart::new(drawing, &config, seed),
             task: Task::new(&config.task, start),
             floor: ScannedFloor::new(floor),

@@ -8,8 +8,9 @@ use super::{
     role::{Preparing, Role},
 };
 use crate::{chart::Seen, event::EventKind, passage::Passage, task::Task};
+use perception::View;
 use planner_api::Reason;
-use world::{Cell, Pose, Readings, Shape, coverage::percent_text, tether::Reach};
+use world::{Cell, Pose, Readings, Shape, World, coverage::percent_text, tether::Reach};
 
 /// Area, square metres, above which an area left out is mentioned at the end.
 const WORTH_TELLING_M2: f64 = 0.05;
@@ -20,12 +21,18 @@ impl Mission {
     /// Puts the obstacles seen on the chart; returns whether the chart has changed.
     pub(super) fn look_around(&mut self, readings: &Readings) -> bool {
         let (now_s, pose) = (self.known.now_s(), self.known.locator.pose());
-        self.known.chart.sight(&readings.sightings, &pose);
+        let missing = self.known.look_at_scan(readings);
+        self.happened.extend(missing);
+        let scanned: Vec<_> = self.known.perception.iter().flat_map(|found| found.seen(&pose)).collect();
+        let told = readings.sightings.iter().map(|told| (told.id, &told.shape_in_robot));
+        let seen = told.chain(scanned.iter().map(|seen| (seen.id, &seen.shape_in_robot)));
+        self.known.chart.sight(seen, &pose);
         // Found obstacles are placed using the estimated pose, so nothing is charted while the position is lost.
         if self.known.locator.is_lost() {
             return false;
         }
-        let Seen { events, changes_plans } = self.known.chart.see(now_s, &readings.sightings, &pose);
+        let Seen { events, changes_plans } =
+            self.known.chart.see(now_s, &readings.sightings, &scanned, &pose);
         if events.is_empty() && !changes_plans {
             return false;
         }
@@ -60,6 +67,22 @@ impl Mission {
 }
 
 impl Known {
+    /// Looks for obstacles in the scan of this tick, if there is one; returns what to report about drawn obstacles.
+    fn look_at_scan(&mut self, readings: &Readings) -> Vec<EventKind> {
+        let (now_s, estimate, pose) = (self.now_s(), self.locator.pose_estimate(), self.locator.pose());
+        let (Some(perception), Some(scan)) = (&mut self.perception, &readings.scan) else {
+            return Vec::new();
+        };
+        let World { boundary, obstacles, .. } = self.chart.world();
+        let (charted, map, covariance) = (&obstacles[..], self.chart.map(), estimate.covariance);
+        let reach_m = self.config.limits.radius_m + self.config.limits.sensing_range_m;
+        let looked =
+            perception.look(&View { now_s, scan, pose, covariance, boundary, charted, map, reach_m });
+        let name = |id| obstacles.iter().find(|obstacle| obstacle.id == id).map(|found| found.name.clone());
+        let not_there = |(id, scans)| Some(EventKind::NotThere { id, name: name(id)?, scans });
+        looked.not_there.into_iter().filter_map(not_there).collect()
+    }
+
     /// A newly found obstacle blocks a path if the path comes closer than the required clearance. If the plan already
     /// took an obstacle into account and its position has merely been corrected, the obstacle blocks a path only within
     /// half that clearance.

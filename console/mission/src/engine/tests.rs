@@ -280,6 +280,7 @@ fn config() -> MissionConfig {
         start_names_plan: false,
         live: false,
         guard_reaction_s: None,
+        sensor: None,
         better_plan: BetterPlan::Offer,
     }
 }
@@ -405,7 +406,11 @@ impl Flight {
                 let rest = radius_m * radius_m - (to.norm_squared() - along * along);
                 (rest >= 0.0 && along > 0.0).then(|| along - rest.sqrt())
             };
-            world::Scan::stored(discs.iter().filter_map(hit).min_by(f64::total_cmp))
+            let known = &self.mission.known;
+            let wall_m = known.chart.world().boundary.ray_m(self.pose.position, Vector::new(cos, sin));
+            // Only a mission that looks for obstacles in its scans needs the wall.
+            let wall_m = known.perception.is_some().then_some(wall_m);
+            world::Scan::stored(discs.iter().filter_map(hit).chain(wall_m).min_by(f64::total_cmp))
         };
         Some(world::Scan {
             step_rad,

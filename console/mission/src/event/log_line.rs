@@ -150,6 +150,13 @@ impl Event {
                     side(*direction_rad)
                 ),
             ),
+            EventKind::NotThere { name, scans, .. } => line(
+                Severity::Warn,
+                "map",
+                format!(
+                    "{name} not found where charted: {scans} scans went through its place; check the drawing"
+                ),
+            ),
             EventKind::Resumed => line(Severity::Info, "mission", "resumed".into()),
             EventKind::Ended { outcome, reason } => {
                 let severity = if *outcome == Outcome::Complete { Severity::Info } else { Severity::Warn };
@@ -175,6 +182,7 @@ impl Event {
             | EventKind::Uncounted { .. }
             | EventKind::FloorChanged { .. }
             | EventKind::Sensed { .. }
+            | EventKind::Scanned { .. }
             | EventKind::Sent { .. }
             | EventKind::Progressed { .. } => return None,
         })

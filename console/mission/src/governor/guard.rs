@@ -151,7 +151,7 @@ impl<'a> Guard<'a> {
     }
 
     /// Whether the hull may touch a point although the robot brakes as hard as it can.
-    fn touches(&self, momentum: &Momentum) -> bool {
+    pub(crate) fn touches(&self, momentum: &Momentum) -> bool {
         let hull_m = self.here.limits.radius_m;
         let needed_m = |echo: &Echo| {
             if echo.is_unresolved() { hull_m } else { hull_m.min(echo.distance_m - TOUCH_M) }

@@ -198,6 +198,10 @@ impl Opened {
         let next = self.tick.next(next);
         let tick = std::mem::replace(&mut self.tick, next);
         self.drawings.show(stream, tick.at, &tick.drawings)?;
+        if let Some(points) = tick.scanned() {
+            let points = rr::Points2D::new(points).with_colors([style::color(style::FOUND)]);
+            stream.once(paths::SCAN, tick.at, &points)?;
+        }
         self.raster.iter_mut().try_for_each(|raster| raster.picture_if_due(stream, tick.at))?;
         self.rangings.push(&self.stations, &tick);
         self.residuals.push(&tick);

@@ -11,6 +11,8 @@ pub(crate) const START: &str = "map/world/start";
 pub(crate) const OBSTACLES_KNOWN: &str = "map/world/obstacles/known";
 pub(crate) const OBSTACLES_HIDDEN: &str = "map/world/obstacles/hidden";
 pub(crate) const OBSTACLES_FOUND: &str = "map/world/obstacles/found";
+/// The points of the last scan, placed by the estimated pose.
+pub(crate) const SCAN: &str = "map/world/scan";
 pub(crate) const ZONES: &str = "map/world/zones";
 pub(crate) const PLATES: &str = "map/world/plates";
 pub(crate) const PLATE_NAMES: &str = "map/world/plates/names";

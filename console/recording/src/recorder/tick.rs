@@ -10,7 +10,7 @@ use positioning::{
     Fix, Ranging,
     fix::{ellipse_95, position_covariance},
 };
-use world::{Point, Pose};
+use world::{Point, Pose, Scan};
 
 /// The data that one tick has reported so far.
 #[derive(Default)]
@@ -33,6 +33,10 @@ pub(crate) struct Tick {
     pub scalars: Vec<(String, f64, String)>,
     /// The latest estimated position.
     pub believed: Point,
+    /// The estimated heading, radians.
+    heading_rad: f64,
+    /// The scan of this tick.
+    scan: Option<Scan>,
     /// The latest target of the robot.
     pub target: Option<Point>,
     /// The anchor of the tether.
@@ -92,8 +96,11 @@ impl Tick {
             EventKind::Estimated { pose } => {
                 let ellipse_95 = ellipse_95(&position_covariance(&pose.covariance));
                 self.believed = pose.position;
+                self.heading_rad = pose.heading_rad;
                 self.estimate = Some(Estimate { position: pose.position, ellipse_95 });
             }
+            EventKind::Scanned { scan } => self.scan = Some((**scan).clone()),
+            EventKind::Sensed { readings, .. } => self.scan.clone_from(&readings.scan),
             EventKind::Commanded { command, .. } => self.commanded_m_per_s = Some(speed(&command.drive)),
             EventKind::Held { .. } => self.is_held = true,
             EventKind::Resumed => self.is_held = false,
@@ -129,6 +136,14 @@ impl Tick {
             }
             _ => {}
         }
+    }
+
+    /// The scanned points of this tick, placed by the estimated pose; `None` without a scan.
+    pub(crate) fn scanned(&self) -> Option<Vec<Flat>> {
+        let estimate = self.estimate?;
+        let pose = Pose { position: estimate.position, heading_rad: self.heading_rad };
+        let tank_from_robot = pose.tank_from_robot();
+        Some(self.scan.as_ref()?.points().map(|point| flat(tank_from_robot * point)).collect())
     }
 
     /// The speed that is sent to the robot.

@@ -375,6 +375,7 @@ fn opened() -> RunOpened {
             attended: false,
             start_names_plan: false,
             guard_reaction_s: None,
+            sensor: None,
             live: false,
             better_plan: mission::BetterPlan::Off,
         },

@@ -3,8 +3,8 @@ use crate::config::{Mover, Track};
 use crate::{AeConfig, Disturbances, NoiseModel, RobotConfig, TimingErrors};
 use proptest::prelude::*;
 use world::{
-    Amphibious, Boundary, Medium, Obstacle, ObstacleId, Point, PressureSensor, Shape, Station, StationId,
-    Vector, World, Zone, ZoneKind, geometry::wrap_angle_rad,
+    Amphibious, Boundary, Medium, Obstacle, ObstacleId, Point, PressureSensor, Scanner, Shape, Station,
+    StationId, Vector, World, Zone, ZoneKind, geometry::wrap_angle_rad,
 };
 
 fn robot() -> RobotConfig {
@@ -21,6 +21,7 @@ fn robot() -> RobotConfig {
         gyro_bias_rad_per_s: 0.001,
         amphibious: None,
         pressure: None,
+        scanner: None,
     }
 }
 
@@ -142,6 +143,10 @@ proptest! {
             odometry_sigma_ratio: n(7), gyro_bias_rad_per_s: n(8),
             amphibious: None,
             pressure: Some(PressureSensor { depth_m: n(1), sigma_pa: n(2) }),
+            scanner: Some(Scanner {
+                rays: 9, field_of_view_rad: n(3), range_m: n(4), rate_hz: n(5), sigma_m: n(6), lost_share: n(7),
+                offset_m: [n(8), n(9)], heading_rad: n(10),
+            }),
         };
         config.tick_s = n(9);
         config.ae = Some(AeConfig {

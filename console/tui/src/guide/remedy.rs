@@ -1,8 +1,9 @@
 //! The explanation of an alarm, and the remedies that several alarms share.
 
 use crate::actions::ActionId;
-use crate::model::alarms::rule::Context;
+use crate::model::{Run, alarms::rule::Context};
 use mission::Phase;
+use vehicle::port::LinkState;
 
 /// The explanation of an alarm.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,6 +36,10 @@ pub enum When {
     Any,
     /// While the robot may move.
     Moving,
+    /// Before the start.
+    Waiting,
+    /// During a hold, as long as a vehicle that is held can still be reached.
+    Held,
     /// During a hold that ends automatically.
     Resuming,
     /// Until the end of the mission.
@@ -42,10 +47,14 @@ pub enum When {
 }
 
 impl When {
-    /// Whether a remedy applies to a mission in this phase.
-    pub fn holds(self, phase: &Phase) -> bool {
+    /// Whether a remedy applies to a run now.
+    pub fn holds(self, run: &Run) -> bool {
+        let phase = run.phase();
+        let is_closed = run.vehicle.as_ref().is_some_and(|vehicle| vehicle.link.state == LinkState::Closed);
         match self {
             Self::Any => true,
+            Self::Waiting => Context::of(phase) == Context::Planning,
+            Self::Held => Context::of(phase) == Context::Held && !is_closed,
             Self::Moving => Context::of(phase).moves(),
             Self::Resuming => matches!(phase, Phase::Held(hold) if !hold.resumes.is_never()),
             Self::BeforeEnd => Context::of(phase) != Context::Ended,
@@ -87,4 +96,6 @@ pub(super) const OTHER_PLANNER: Remedy =
 pub(super) const PARAMETERS: Remedy =
     run("Change the planner's parameters (<parameters>).", ActionId::Parameters).when(When::BeforeEnd);
 pub(super) const RESUME: Remedy =
-    run("Resume: the planner tries again. Asks first.", ActionId::Resume).when(When::BeforeEnd);
+    run("Resume: the planner tries again. Asks first.", ActionId::Resume).when(When::Held);
+pub(super) const PLAN_AGAIN: Remedy =
+    run("Plan again: the planner is restarted.", ActionId::PlanAgain).when(When::Waiting);

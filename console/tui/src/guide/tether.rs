@@ -25,7 +25,8 @@ pub(super) fn guide(word: &str) -> Guide {
             effect: "",
             remedies: const {
                 &[
-                    run("Resume: frees the tether, then replans from here. Asks first.", ActionId::Resume),
+                    run("Resume: frees the tether, then replans from here. Asks first.", ActionId::Resume)
+                        .when(When::Held),
                     OTHER_PLANNER,
                     END,
                 ]
@@ -38,7 +39,8 @@ pub(super) fn guide(word: &str) -> Guide {
             remedies: const {
                 &[
                     SHOW,
-                    run("Resume: frees the tether, then continues. Asks first.", ActionId::Resume),
+                    run("Resume: frees the tether, then continues. Asks first.", ActionId::Resume)
+                        .when(When::Held),
                     OTHER_PLANNER,
                     END,
                 ]
@@ -53,7 +55,8 @@ pub(super) fn guide(word: &str) -> Guide {
                     run(
                         "Resume: frees the tether by driving back the way it came. Asks first.",
                         ActionId::Resume,
-                    ),
+                    )
+                    .when(When::Held),
                     SHOW,
                     run("Stay held (HOLD), and free the tether by hand.", ActionId::Hold),
                     END,

@@ -4,7 +4,7 @@ use super::remedy::{END, Guide, HOLD, Remedy, When, check, run, wait};
 use crate::actions::ActionId;
 
 const RESUME: Remedy =
-    run("Resume when the vehicle can be driven. Asks first.", ActionId::Resume).when(When::BeforeEnd);
+    run("Resume when the vehicle can be driven. Asks first.", ActionId::Resume).when(When::Held);
 
 pub(super) const LINK: Guide = Guide {
     cause: "The vehicle sends nothing, or only faulty messages: its adapter has ended, the network is cut, or the \

@@ -132,6 +132,8 @@ impl Run {
             | EventKind::MediumKnown { .. }
             | EventKind::PlannerLogged { .. }
             | EventKind::Uncounted { .. }
+            | EventKind::NotThere { .. }
+            | EventKind::Scanned { .. }
             | EventKind::Sensed { .. } => {}
             EventKind::Link(_) | EventKind::Stood { .. } | EventKind::Sent { .. } => self.linked(event),
         }

@@ -198,8 +198,7 @@ impl Live {
     /// Floor that was scanned without being requested counts as requested.
     pub fn requested(&self) -> Option<(f64, f64)> {
         let floor = self.result.as_ref()?.summary.floor.as_ref()?;
-        let not_asked = floor.missed.iter().filter(|area| area.reason == MissReason::NotAsked);
-        let not_asked_m2: f64 = not_asked.map(|area| area.area_m2).sum();
+        let not_asked_m2 = floor.not_asked_m2();
         let reachable = Some(floor).filter(|_| not_asked_m2 > 0.0)?.reachable;
         let requested_m2 = reachable.area_m2 - not_asked_m2;
         let scanned_m2 = reachable.area_m2 * reachable.scanned;
@@ -208,7 +207,7 @@ impl Live {
 
     /// Reachable floor that was neither requested nor scanned, square metres.
     pub fn not_requested_m2(&self) -> f64 {
-        self.areas().filter(|area| area.reason == MissReason::NotAsked).map(|area| area.area_m2).sum()
+        self.floor().map_or(0.0, Account::not_asked_m2)
     }
 
     /// The account of the floor; for a re-scan, the account over all runs as soon as it is known.

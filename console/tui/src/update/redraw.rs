@@ -57,6 +57,7 @@ fn is_telemetry(kind: &EventKind) -> bool {
             | EventKind::TetherTruth { .. }
             | EventKind::Uncounted { .. }
             | EventKind::Sensed { .. }
+            | EventKind::Scanned { .. }
             | EventKind::Sent { .. }
     )
 }

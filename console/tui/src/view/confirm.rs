@@ -174,9 +174,10 @@ fn asked(model: &Model) -> Option<Vec<String>> {
             let driving = model.live.run.planner_id().unwrap_or("-");
             vec![
                 format!("Promote {next} from shadow? <accept>: promote, <cancel>: cancel."),
-                match model.live.run.is_running() {
-                    true => format!("It takes over from {driving} without a hold."),
-                    false => format!("It takes over from {driving}; the robot stays held."),
+                if model.live.run.is_running() {
+                    format!("It takes over from {driving} without a hold.")
+                } else {
+                    format!("It takes over from {driving}; the robot stays held.")
                 },
                 shadow.map_or_else(String::new, |shadow| shadows_plan(model, shadow)),
             ]

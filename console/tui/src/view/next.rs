@@ -225,16 +225,13 @@ fn running(model: &Model) -> Clauses {
         let clauses = [format!("{name}."), ACKNOWLEDGE.into(), details].into_iter().chain(doing);
         return (events::role(alarm.severity), clauses.collect());
     }
-    match alarms.worst_returned() {
-        Some(alarm) => {
-            let name = text::capitalized(&guide::name(&alarm.cause, &model.live.run));
-            (role, doing.into_iter().chain([format!("{name} (cleared). {ACKNOWLEDGE}")]).collect())
-        }
-        None => {
-            let calm = (role == Role::Title).then(|| "No action required.".to_owned());
-            (role, doing.into_iter().chain(calm).collect())
-        }
-    }
+    let last = if let Some(alarm) = alarms.worst_returned() {
+        let name = text::capitalized(&guide::name(&alarm.cause, &model.live.run));
+        Some(format!("{name} (cleared). {ACKNOWLEDGE}"))
+    } else {
+        (role == Role::Title).then(|| "No action required.".to_owned())
+    };
+    (role, doing.into_iter().chain(last).collect())
 }
 
 /// What the robot does now: a better plan on offer, the way to the start of a new plan, or the next target.

@@ -375,7 +375,7 @@ fn a_planner_that_would_be_refused_is_not_offered_as_a_value() {
     let covers = screen.model.console.planners[0].id.clone();
     for command in ["planner", "shadow"] {
         let action = tui::actions::find::named(command).expect("a command");
-        assert_eq!(tui::update::values(&screen.model, action), [covers.clone()], "{command}");
+        assert_eq!(tui::update::values(&screen.model, action), std::slice::from_ref(&covers), "{command}");
     }
 }
 

@@ -106,6 +106,7 @@ pub(crate) fn config() -> MissionConfig {
         start_names_plan: true,
         live: false,
         guard_reaction_s: None,
+        sensor: None,
         better_plan: mission::BetterPlan::Offer,
     }
 }

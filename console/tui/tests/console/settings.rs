@@ -57,7 +57,8 @@ fn forecast(choice: &PlannerChoice, length_m: f64, after_s: f64) -> RunMsg {
 
 #[test]
 fn an_unchanged_value_is_not_sent() {
-    for mut screen in [Screen::idle(), Screen::held(), Screen::running()] {
+    for open in [Screen::idle as fn() -> Screen, Screen::held, Screen::running] {
+        let mut screen = open();
         assert_eq!(screen.press([Key::Char('p'), Key::Enter, Key::Enter]), []);
         assert!(matches!(screen.model.ui.overlay, Overlay::Parameters { edit: None, .. }), "the list stays");
         let said = &screen.model.notice().expect("it says so").text;

@@ -121,7 +121,7 @@ pub fn readings(hello: &Hello, listened: &Listened) -> Vec<Row> {
         Figure::new("lost", 100.0 * lost, "%").at_most(100.0 * LOST_SHARE),
     ];
     let missing: Vec<&str> =
-        parts(hello.has).into_iter().filter(|part| !is_sent(part, &listened.readings)).collect();
+        hello.has.parts().into_iter().filter(|part| !is_sent(part, &listened.readings)).collect();
     let says = format!("{count} readings, one every {median_s:.3} s");
     let failed = format!("{says}; `period_s` is {period_s}: correct it or the rate, and number all readings");
     let of_rate = if median_s * RATE_FACTOR < period_s {

@@ -1,4 +1,4 @@
-//! The guard by the raw scan of a real vehicle: the scanned points, and when the robot is held because of them.
+//! The guard by the raw scan: the scanned points, and when the robot is held because of them.
 
 use super::{super::Mission, super::known::Known, speed, state::Limited};
 use crate::{
@@ -8,8 +8,9 @@ use crate::{
     phase::{Hold, HoldReason, Resumes},
 };
 use geometry::{Braking, Drive};
+use perception::{Perception, Sensor};
 use planner_api::Command;
-use world::{Point, Readings, scan::carried};
+use world::{Point, Readings, Scan, scan::carried};
 
 /// Age, seconds, above which a scan does not guard the robot any more.
 const SCAN_MAX_AGE_S: f64 = 0.5;
@@ -35,6 +36,9 @@ const NAMED_AFTER_S: f64 = 0.5;
 pub(in crate::engine) struct ScanGuard {
     /// The points of the last scan, in the robot frame now.
     points: Vec<Point>,
+    /// The same with less noise, if the noise of the scanner is known. The robot brakes for every single point, but noise
+    /// does not hold it.
+    evened: Option<Vec<Point>>,
     /// Whether a scan has arrived.
     has_scan: bool,
     /// Age of the last scan, or of the mission before the first one, seconds.
@@ -55,13 +59,16 @@ impl Known {
             return;
         }
         let far_m = reach_m(&self.config);
+        let sigma_m = self.config.sensor.filter(Sensor::is_known).map(|sensor| sensor.sigma_m);
         let guard = &mut self.scan_guard;
         if let Some(scan) = &readings.scan {
-            guard.points = scan.points().filter(|point| point.coords.norm() <= far_m).collect();
+            let near = |scan: &Scan| scan.points().filter(|point| point.coords.norm() <= far_m).collect();
+            guard.points = near(scan);
+            guard.evened = sigma_m.map(|sigma_m| near(&scan.evened(sigma_m)));
             (guard.has_scan, guard.age_s) = (true, 0.0);
             return;
         }
-        for point in &mut guard.points {
+        for point in guard.points.iter_mut().chain(guard.evened.iter_mut().flatten()) {
             *point = carried(*point, &readings.odometry);
         }
         guard.age_s += self.config.tick_s;
@@ -78,6 +85,10 @@ impl Known {
         let here = self.as_governed();
         let guard = Guard::new(&self.scan_guard.points, &here, &self.scan_guard.sent);
         let Guarded { drive, before, is_late } = guard.guarded(&self.governor.momentum, command.drive);
+        let evened = self.scan_guard.evened.as_ref().filter(|_| is_late);
+        let is_late = evened.map_or(is_late, |evened| {
+            Guard::new(evened, &here, &self.scan_guard.sent).touches(&self.governor.momentum)
+        });
         let state = &mut self.scan_guard;
         state.before = before;
         state.late_ticks = if is_late { state.late_ticks + 1 } else { 0 };
@@ -109,6 +120,9 @@ impl Known {
     /// Why the guard stops the robot, as a clause.
     fn guard_stop(&self) -> Option<String> {
         self.config.guard_reaction_s?;
+        if let Some(trouble) = self.perception.as_ref().and_then(Perception::trouble) {
+            return Some(trouble.to_owned());
+        }
         let guard = &self.scan_guard;
         let age_s = guard.age_s;
         if guard.has_scan && age_s > SCAN_MAX_AGE_S {

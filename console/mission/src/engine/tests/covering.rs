@@ -280,9 +280,9 @@ fn planners_steer_round_obstacles_where_they_are_seen_not_where_the_chart_has_th
     };
     assert!((shown(&chart) - 1.0).abs() < 1e-9);
     let shape_in_robot = column(0.93).transformed(&pose.tank_from_robot().inverse());
-    chart.sight(&[Sighting { id: ObstacleId(3), shape_in_robot }], &pose);
+    chart.sight([(ObstacleId(3), &shape_in_robot)].into_iter(), &pose);
     assert!((shown(&chart) - 0.93).abs() < 1e-9);
-    chart.sight(&[], &pose);
+    chart.sight(std::iter::empty(), &pose);
     assert!((shown(&chart) - 1.0).abs() < 1e-9, "out of sight it is where the drawing has it");
 }
 
@@ -294,7 +294,7 @@ fn a_drawn_column_that_a_foreign_tracker_sees_is_not_found_again() {
     let pose = covering().start;
     let mut found = |id, seen: Shape| {
         let shape_in_robot = seen.transformed(&pose.tank_from_robot().inverse());
-        let seen = chart.see(0.0, &[Sighting { id: ObstacleId(id), shape_in_robot }], &pose);
+        let seen = chart.see(0.0, &[Sighting { id: ObstacleId(id), shape_in_robot }], &[], &pose);
         !seen.events.is_empty() && seen.changes_plans
     };
     let foreign = ObstacleId::FOREIGN.0;
@@ -315,7 +315,8 @@ fn whatever_changes_plans_is_on_the_map_by_which_they_are_checked() {
         // Something drives for three seconds, and stops.
         let x = 0.033 * f64::from(tick.min(31));
         let shape_in_robot = Shape::Disc { center: Point::new(x, 0.0), radius_m: 0.2 };
-        let seen = chart.see(f64::from(tick) * 0.1, &[Sighting { id: ObstacleId(9), shape_in_robot }], &pose);
+        let seen =
+            chart.see(f64::from(tick) * 0.1, &[Sighting { id: ObstacleId(9), shape_in_robot }], &[], &pose);
         if seen.changes_plans || !seen.events.is_empty() {
             silent += u32::from(seen.events.is_empty());
             let (at, world) = (pose.position, chart.world());

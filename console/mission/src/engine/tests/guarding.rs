@@ -105,3 +105,34 @@ fn a_robot_whose_scan_stops_is_held() {
     assert_eq!(never.pose, start, "nothing moves before the first scan");
     assert!(blind(&never), "{:?}", never.mission.phase());
 }
+
+#[test]
+fn an_object_that_only_the_scan_shows_is_put_on_the_map() {
+    let mut flight =
+        before_an_object(MissionConfig { sensor: Some(perception::Sensor::UNKNOWN), ..config() });
+    let (discs, _) = flight.scanner.clone().unwrap();
+    flight.fly(15);
+    let found: Vec<_> = flight
+        .events
+        .iter()
+        .filter_map(|event| match &event.kind {
+            EventKind::ObstacleFound { obstacle } => Some(obstacle.shape.clone()),
+            _ => None,
+        })
+        .collect();
+    let [world::Shape::Disc { center, radius_m }] = found[..] else { panic!("{found:?}") };
+    assert!((center - discs[0].0).norm() < 0.05 && (radius_m - 0.1).abs() < 0.02, "{found:?}");
+    assert_eq!(flight.mission.known.perception.as_ref().and_then(|found| found.trouble()), None);
+}
+
+#[test]
+fn a_scan_that_cannot_be_right_holds_the_robot() {
+    let sensor = perception::Sensor { rays: Some(180), ..perception::Sensor::UNKNOWN };
+    let mut flight = guarded(MissionConfig { sensor: Some(sensor), ..config() });
+    flight.tick(&[Order::Start]);
+    flight.fly(5);
+    let Some(HoldReason::Guard { message }) = flight.held_by() else {
+        panic!("{:?}", flight.mission.phase())
+    };
+    assert_eq!(message, "the scan has 360 rays instead of 180");
+}

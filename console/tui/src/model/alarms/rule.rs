@@ -82,9 +82,10 @@ pub fn rule(cause: &Cause, severity: Severity, context: Context) -> Rule {
         (Cause::Certificate, Context::Driving | Context::DrivingBack) if severity == Severity::Crit => {
             at_once(Severity::Watch)
         }
-        (Cause::Certificate, _) => at_once(Severity::Warn),
         // Without a planner, a robot that stands only stays where it is.
-        (Cause::Planner, Context::Planning | Context::Held) => at_once(Severity::Warn),
+        (Cause::Certificate, _) | (Cause::Planner, Context::Planning | Context::Held) => {
+            at_once(Severity::Warn)
+        }
         // A tether that is only near a limit needs no action at once; one that is at its limit holds the robot.
         (Cause::Tether(word), _) if is_length_or_wrap(word) && severity < Severity::Crit => {
             rule(Severity::Warn, CYCLE_S, TURN_S)

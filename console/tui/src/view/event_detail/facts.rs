@@ -49,6 +49,7 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::PlannerLate { .. } => "planner late",
         EventKind::PlannerFailed { .. } => "planner failed",
         EventKind::SpeedLimited { .. } => "speed limited",
+        EventKind::NotThere { .. } => "obstacle not found",
         EventKind::Guarded { .. } => "guard by the scan",
         EventKind::MediumAwaited => "waiting for the pressure sensor",
         EventKind::MediumKnown { .. } => "floor medium detected",
@@ -117,6 +118,9 @@ fn of_event(run: &Run, event: &Occurrence) -> Vec<Field> {
             vec![("chi-squared", text)]
         }
         EventKind::ObstacleFound { obstacle } => obstacle_facts(obstacle),
+        EventKind::NotThere { name, scans, .. } => {
+            vec![("obstacle", name.clone()), ("seen through", format!("in {scans} scans"))]
+        }
         EventKind::Ordered { .. } | EventKind::RangesConsistent | EventKind::Resumed => Vec::new(),
         EventKind::OrderRefused { why, .. } => vec![("reason", why.clone())],
         EventKind::Held { by, resumes } => vec![("reason", by.to_string()), ("resumes", resumed(*resumes))],

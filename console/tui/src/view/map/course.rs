@@ -115,7 +115,7 @@ impl Pen<'_> {
             if self.look.model.ui.screen == Screen::Plan {
                 self.pieces(ctx, &thin, course.driven, ink::DRIVEN);
             }
-            for (part, is_way) in parts(&self.look, &course) {
+            for (part, is_way) in parts(&self.look, course) {
                 let ink = if is_way { ink::WAY } else { plan_ink(&self.look) };
                 self.pieces(ctx, &thin, part, ink);
             }

@@ -40,7 +40,7 @@ impl Shade {
             Self::Floor(FloorClass::Outside | FloorClass::ToDo) => (' ', Role::Dim),
             Self::Floor(FloorClass::Scanned) => ('▒', Role::Scanned),
             Self::Floor(FloorClass::Again) => ('▚', Role::Overlap),
-            Self::Floor(FloorClass::Partial) => ('░', Role::Partly),
+            Self::Floor(FloorClass::Partial) | Self::Both => ('░', Role::Partly),
             Self::Floor(FloorClass::Missed) => ('▓', Role::Missed),
             Self::Floor(FloorClass::Unreachable) => ('/', Role::Unreachable),
             Self::Floor(FloorClass::Margin) => ('-', Role::Margin),
@@ -49,7 +49,6 @@ impl Shade {
             Self::WeakFix => ('_', Role::Warn),
             Self::OnlyA => ('A', Role::Good),
             Self::OnlyB => ('B', Role::Ghost),
-            Self::Both => ('░', Role::Partly),
         }
     }
 

@@ -17,14 +17,14 @@ const LEAST_WAY_M: f64 = 0.12;
 
 /// Recent sightings of one obstacle.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Drift {
+pub struct Drift {
     places: VecDeque<(f64, Point)>,
     velocity: Option<Vector>,
 }
 
 impl Drift {
     /// Adds a sighting made at a given time, in seconds.
-    pub(crate) fn see(&mut self, t_s: f64, at: Point) {
+    pub fn see(&mut self, t_s: f64, at: Point) {
         self.places.push_back((t_s, at));
         while self.places.front().is_some_and(|(seen_s, _)| t_s - seen_s > MEMORY_S) {
             self.places.pop_front();
@@ -41,12 +41,12 @@ impl Drift {
     }
 
     /// The obstacle's velocity, metres per second, tank frame; `None` if it stands still.
-    pub(crate) fn velocity(&self) -> Option<Vector> {
+    pub fn velocity(&self) -> Option<Vector> {
         self.velocity
     }
 
     /// Time of the last sighting, seconds.
-    pub(crate) fn seen_s(&self) -> f64 {
+    pub fn seen_s(&self) -> f64 {
         self.places.back().map_or(f64::NEG_INFINITY, |(t_s, _)| *t_s)
     }
 

@@ -1,0 +1,121 @@
+//! Whether scans can be those of the scanner in the drawn tank.
+
+use crate::{rays::Rays, uncertain::Uncertain};
+use geometry::{Boundary, Vector};
+use nalgebra::UnitComplex;
+use std::f64::consts::PI;
+use world::ObstacleMap;
+
+/// Number of rays that are compared with the drawing.
+const RAYS: usize = 36;
+/// Every scan is compared until there are as many comparisons, then every `LATER`th.
+const AT_ONCE: u32 = 5;
+const LATER: u32 = 5;
+/// Number of comparisons before the first verdict.
+const LEAST: u32 = 4;
+/// Number of rays that must meet something drawn for a comparison to count.
+const LEAST_RAYS: usize = 9;
+/// Weight of a comparison in the mean.
+const SMOOTHING: f64 = 0.3;
+/// Distance, metres, by which a ray may miss the drawing besides the errors of pose and distance.
+const ROOM_M: f64 = 0.1;
+/// Standard deviation of a place, metres, above which nothing can be said.
+const LOST_M: f64 = 0.3;
+/// Shares of the rays that fit: fewer are wrong, more are right.
+const WRONG: f64 = 0.5;
+const RIGHT: f64 = 0.75;
+const NOTHING: f64 = 0.2;
+
+/// How scans have fitted the drawing.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Agreement {
+    scans: u32,
+    compared: u32,
+    /// Shares of the rays that fit: as they are, mirrored, and turned by half a turn.
+    fits: [f64; 3],
+    /// Share of the rays that must hit something and have an echo.
+    echoes: f64,
+}
+
+impl Agreement {
+    /// Compares a scan with the drawing, if that is due.
+    pub(crate) fn compare(
+        &mut self,
+        rays: &Rays,
+        (boundary, map): (&Boundary, &ObstacleMap),
+        pose: &Uncertain,
+        range_m: Option<f64>,
+    ) {
+        self.scans = self.scans.wrapping_add(1);
+        let is_due = self.compared < AT_ONCE || self.scans.is_multiple_of(LATER);
+        if !is_due || pose.point_m2(0.0).sqrt() > LOST_M {
+            return;
+        }
+        let ahead = rays.frame().rotation;
+        let expected_m = |direction: Vector| {
+            let most_m = range_m.unwrap_or(60.0);
+            let wall_m = boundary.ray_m(rays.eye(), direction);
+            let hit_m = map.ray_m(rays.eye(), direction, most_m).unwrap_or(f64::INFINITY).min(wall_m);
+            Some(hit_m).filter(|hit_m| *hit_m < 0.9 * most_m)
+        };
+        let step = (rays.len() / RAYS).max(1);
+        let (mut must, mut echo, mut fits, mut of) = (0_usize, 0_usize, [0_usize; 3], [0_usize; 3]);
+        for ray in (0..rays.len()).step_by(step) {
+            let (measured_m, direction) = (rays.range_m[ray], rays.direction(ray));
+            let in_robot = ahead.inverse() * direction;
+            let mirrored = ahead * Vector::new(in_robot.x, -in_robot.y);
+            let wanted = [direction, mirrored, UnitComplex::new(PI) * direction];
+            for (way, direction) in wanted.into_iter().enumerate() {
+                let Some(expected_m) = expected_m(direction) else { continue };
+                if way == 0 {
+                    must += 1;
+                    echo += usize::from(measured_m.is_finite());
+                }
+                if measured_m.is_finite() {
+                    of[way] += 1;
+                    let room_m = ROOM_M + pose.gate_m(expected_m) + 0.05 * expected_m;
+                    fits[way] += usize::from((measured_m - expected_m).abs() <= room_m);
+                }
+            }
+        }
+        if must < LEAST_RAYS {
+            return;
+        }
+        let weight = if self.compared == 0 { 1.0 } else { SMOOTHING };
+        self.compared = self.compared.saturating_add(1);
+        self.echoes += weight * (echo as f64 / must as f64 - self.echoes);
+        for (way, fits) in fits.into_iter().enumerate().filter(|(way, _)| of[*way] >= LEAST_RAYS) {
+            self.fits[way] += weight * (fits as f64 / of[way] as f64 - self.fits[way]);
+        }
+    }
+
+    /// Why the scans cannot be right, as a clause.
+    pub(crate) fn trouble(&self) -> Option<String> {
+        if self.compared < LEAST {
+            return None;
+        }
+        let [straight, mirrored, turned] = self.fits;
+        let percent = |share: f64| (100.0 * share).round();
+        if self.echoes < NOTHING {
+            let share = percent(self.echoes);
+            return Some(format!(
+                "only {share} % of the rays that must hit the wall or a column have an echo; check the scanner"
+            ));
+        }
+        let only_if = |how: &str, check: &str| {
+            Some(format!("the scan fits the drawing only if it is {how}; check {check}"))
+        };
+        if straight < WRONG && mirrored > RIGHT && mirrored >= turned {
+            return only_if("mirrored", "the direction of its angles");
+        }
+        if straight < WRONG && turned > RIGHT {
+            return only_if("turned by half a turn", "how the scanner is mounted");
+        }
+        (straight < NOTHING).then(|| {
+            let share = percent(straight);
+            format!(
+                "only {share} % of the scan fits the drawing; check the scanner, the position and the drawing"
+            )
+        })
+    }
+}

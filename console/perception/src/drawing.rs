@@ -1,0 +1,204 @@
+//! What the drawing explains of a scan.
+
+use crate::{rays::Rays, uncertain::Uncertain};
+use geometry::{
+    Boundary, Point, Shape, Vector,
+    polyline::{edges, nearest_on_segment},
+    shape::ring_contains,
+};
+use nalgebra::{Matrix3, Vector3};
+use world::Obstacle;
+
+/// Number of standard deviations within which a point belongs to the drawing.
+pub(crate) const GATE: f64 = 3.0;
+/// Number of times that the pose is corrected with the points nearest to the drawing.
+const ROUNDS: usize = 3;
+
+/// A point beside a surface of the drawing: its distance on the free side, metres, and the direction away from the
+/// surface.
+#[derive(Debug, Clone, Copy)]
+struct Beside {
+    distance_m: f64,
+    away: Vector,
+}
+
+/// The parts of the drawing that a scan can show.
+pub(crate) struct Drawing<'a> {
+    pub boundary: &'a Boundary,
+    /// The obstacles, each with a disc around it.
+    pub obstacles: Vec<(&'a Obstacle, Point, f64)>,
+}
+
+impl<'a> Drawing<'a> {
+    /// The parts within reach of the rays.
+    pub(crate) fn near(
+        boundary: &'a Boundary,
+        obstacles: impl Iterator<Item = &'a Obstacle>,
+        eye: Point,
+        reach_m: f64,
+    ) -> Self {
+        let around = |obstacle: &'a Obstacle| {
+            let (center, radius_m) = disc_around(&obstacle.shape);
+            ((center - eye).norm() - radius_m < reach_m).then_some((obstacle, center, radius_m))
+        };
+        Self { boundary, obstacles: obstacles.filter_map(around).collect() }
+    }
+
+    /// For each ray, the surface beside its point, if the point is within the gate.
+    fn beside(&self, rays: &Rays, pose: &Uncertain, found: &mut Vec<Option<Beside>>) {
+        found.clear();
+        found.extend((0..rays.len()).map(|ray| {
+            let range_m = rays.range_m[ray];
+            let beside = range_m.is_finite().then(|| self.beside_wall(rays.point(ray)))?;
+            (beside.distance_m.abs() <= pose.gate_m(range_m)).then_some(beside)
+        }));
+        for (obstacle, center, radius_m) in &self.obstacles {
+            for ray in rays.towards(*center, radius_m + pose.gate_m((center - rays.eye()).norm())) {
+                let range_m = rays.range_m[ray];
+                if !range_m.is_finite() {
+                    continue;
+                }
+                let beside = beside_shape(&obstacle.shape, rays.point(ray));
+                let best_m = found[ray].map_or(pose.gate_m(range_m), |best| best.distance_m.abs());
+                if beside.distance_m.abs() <= best_m {
+                    found[ray] = Some(beside);
+                }
+            }
+        }
+    }
+
+    fn beside_wall(&self, point: Point) -> Beside {
+        match self.boundary {
+            Boundary::Circle { radius_m } => {
+                let far = point.coords.norm();
+                let away = if far > 0.0 { -point.coords / far } else { Vector::x() };
+                Beside { distance_m: radius_m - far, away }
+            }
+            Boundary::Polygon { vertices } => beside_ring(vertices, point, ring_contains(vertices, point)),
+        }
+    }
+
+    /// Corrects the pose so that the scan fits the drawing; returns the uncertainty that remains.
+    pub(crate) fn correct(&self, rays: &mut Rays, pose: &Uncertain, buffers: &mut Buffers) -> Uncertain {
+        let Some(prior) = pose.information() else { return *pose };
+        let mut corrected = Vector3::zeros();
+        let mut information = prior;
+        for _ in 0..ROUNDS {
+            self.beside(rays, pose, &mut buffers.beside);
+            let robot = rays.frame().translation.vector;
+            let (mut normal, mut right) = (prior, -(prior * corrected));
+            let weight = 1.0 / (pose.sigma_m * pose.sigma_m);
+            for (ray, beside) in buffers.beside.iter().enumerate() {
+                let Some(Beside { distance_m, away }) = beside else { continue };
+                let arm = rays.point(ray).coords - robot;
+                let slope = Vector3::new(away.x, away.y, away.y * arm.x - away.x * arm.y);
+                normal += slope * slope.transpose() * weight;
+                right -= slope * (weight * distance_m);
+            }
+            let Some(step) = normal.cholesky().map(|root| root.solve(&right)) else { break };
+            if !step.iter().all(|x| x.is_finite()) {
+                break;
+            }
+            rays.correct(&step);
+            corrected += step;
+            information = normal;
+        }
+        pose.corrected(&information.try_inverse().unwrap_or_else(Matrix3::zeros))
+    }
+
+    /// Sets for each ray whether the drawing explains it: no echo, a point on or behind the wall, or on or in an obstacle.
+    pub(crate) fn explain(&self, rays: &Rays, pose: &Uncertain, explained: &mut Vec<bool>) {
+        explained.clear();
+        explained.extend((0..rays.len()).map(|ray| {
+            let range_m = rays.range_m[ray];
+            !range_m.is_finite() || self.beside_wall(rays.point(ray)).distance_m <= pose.gate_m(range_m)
+        }));
+        for (obstacle, center, radius_m) in &self.obstacles {
+            let far_m = (center - rays.eye()).norm();
+            for ray in rays.towards(*center, radius_m + pose.gate_m(far_m + radius_m)) {
+                explained[ray] = explained[ray]
+                    || beside_shape(&obstacle.shape, rays.point(ray)).distance_m
+                        <= pose.gate_m(rays.range_m[ray]);
+            }
+        }
+    }
+}
+
+/// Buffers that are kept from scan to scan.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Buffers {
+    beside: Vec<Option<Beside>>,
+}
+
+/// A disc around a shape.
+pub(crate) fn disc_around(shape: &Shape) -> (Point, f64) {
+    if let Shape::Disc { center, radius_m } = shape {
+        return (*center, *radius_m);
+    }
+    let (low, high) = shape.bounds();
+    (nalgebra::center(&low, &high), 0.5 * (high - low).norm())
+}
+
+fn beside_shape(shape: &Shape, point: Point) -> Beside {
+    match shape {
+        Shape::Disc { center, radius_m } => {
+            let from = point - center;
+            let far = from.norm();
+            let away = if far > 0.0 { from / far } else { Vector::x() };
+            Beside { distance_m: far - radius_m, away }
+        }
+        Shape::Polygon { vertices } => beside_ring(vertices, point, !ring_contains(vertices, point)),
+        Shape::Polyline { points, half_width_m } => {
+            let Beside { distance_m, away } =
+                beside_nearest(points.windows(2).map(|w| (w[0], w[1])), point, true);
+            Beside { distance_m: distance_m - half_width_m, away }
+        }
+    }
+}
+
+fn beside_ring(vertices: &[Point], point: Point, is_free: bool) -> Beside {
+    beside_nearest(edges(vertices), point, is_free)
+}
+
+fn beside_nearest(edges: impl Iterator<Item = (Point, Point)>, point: Point, is_free: bool) -> Beside {
+    let nearest = edges.map(|(a, b)| nearest_on_segment(a, b, point));
+    let nearest = nearest.min_by(|a, b| (a - point).norm_squared().total_cmp(&(b - point).norm_squared()));
+    let from = point - nearest.unwrap_or(point);
+    let (far, side) = (from.norm(), if is_free { 1.0 } else { -1.0 });
+    let away = if far > 1e-9 { from * (side / far) } else { Vector::zeros() };
+    Beside { distance_m: side * far, away }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::{column, scan_of};
+    use geometry::Pose;
+    use world::{ObstacleId, Scanner};
+
+    #[test]
+    fn a_scan_corrects_the_pose_and_only_what_is_not_drawn_remains() {
+        let boundary = Boundary::Circle { radius_m: 6.0 };
+        let (drawn, found) = (column(1, 2.0, 1.0, 0.2), column(2, -1.5, 2.0, 0.15));
+        let scanner = Scanner::default();
+        let truth = Pose::new(0.5, -0.8, 0.3);
+        let scan = scan_of(&scanner, &boundary, &[drawn.clone(), found.clone()], &truth, 4);
+        let estimate = Pose::new(0.56, -0.87, 0.32);
+        let mut rays = Rays::default();
+        rays.take(&scan, &estimate.tank_from_robot());
+        let covariance = Matrix3::from_diagonal(&Vector3::new(0.0036, 0.0036, 4e-4));
+        let pose = Uncertain::estimated(0.02, &covariance);
+        let drawing = Drawing::near(&boundary, [&drawn].into_iter(), estimate.position, 9.0);
+        let left = drawing.correct(&mut rays, &pose, &mut Buffers::default());
+        let off = rays.frame().translation.vector - truth.position.coords;
+        assert!(off.norm() < 0.02, "{off}");
+        assert!((rays.frame().rotation.angle() - 0.3).abs() < 0.01);
+        let mut explained = Vec::new();
+        drawing.explain(&rays, &left, &mut explained);
+        for ray in (0..rays.len()).filter(|ray| !explained[*ray]) {
+            assert!(found.shape.distance_m(rays.point(ray)).abs() < 0.15, "{}", rays.point(ray));
+        }
+        assert!(explained.iter().filter(|is| !**is).count() >= 5);
+        assert_eq!(drawn.id, ObstacleId(1));
+    }
+}

@@ -1,0 +1,32 @@
+//! Obstacles from scans: what drawing and chart do not explain is grouped, tracked and fitted.
+//!
+//! The crate is pure. The same scans and poses give the same obstacles; the state does not grow with time. Poses and
+//! obstacles are in the tank frame, scans in the robot frame; metres, radians, seconds.
+//!
+//! In each scan, the pose is first corrected by the drawing, as far as its covariance allows; only obstacles are placed
+//! with that correction, the estimate of the position is not changed. Points within 3 standard deviations of something
+//! drawn are taken out. The rest belongs to things seen before, or forms groups that begin new tracks. A track that enough
+//! scans have shown is an obstacle: a disc with a centre and a radius or, if it does not look like one, a convex outline
+//! that grows view by view, or a line if it is thin.
+#![forbid(unsafe_code)]
+
+mod check;
+mod disc;
+mod drawing;
+mod drift;
+mod groups;
+mod outline;
+mod rays;
+mod sensor;
+mod through;
+mod track;
+mod tracker;
+mod uncertain;
+
+pub use drift::Drift;
+pub use outline::change_m;
+pub use sensor::Sensor;
+pub use tracker::{FIRST_ID, Looked, Perception, Seen, View};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,240 @@
+//! One thing that scans have shown: its place, its shape, and whether it is an obstacle yet.
+
+use crate::{
+    Drift,
+    disc::{self, Fit, Radius},
+    outline::Outline,
+    rays::Rays,
+    uncertain::Uncertain,
+};
+use geometry::{Point, Shape, Vector};
+use nalgebra::Matrix2;
+use world::ObstacleId;
+
+/// Errors of the pose are alike in scans that follow each other; as many scans count as one, as far as the pose is
+/// concerned.
+const ALIKE: f64 = 20.0;
+/// In scans from nearly the same place, the edges are between the same rays; as many scans count as one.
+const LIKE_VIEWS: f64 = 5.0;
+/// A track becomes an obstacle when at least `BIRTH_HITS` of the last `BIRTH_OF` scans have shown it.
+const BIRTH_HITS: u32 = 5;
+const BIRTH_OF: u32 = 8;
+/// Standard deviations up to which a disc is certain enough to be put on a map, metres.
+const SURE_RADIUS_M: f64 = 0.02;
+const SURE_PLACE_M: f64 = 0.05;
+/// Something nearer than this, metres, is an obstacle even if its shape is not certain yet.
+const NEAR_M: f64 = 1.2;
+/// Number of scans in a row that do not show a track, after which it is dropped if it is not an obstacle yet.
+const MISSED: u32 = 5;
+/// Number of scans through an obstacle, without one that shows it, after which it is reported as gone.
+const GONE_AFTER: u32 = 20;
+/// Time out of sight, seconds, after which a moving obstacle is dropped.
+const OUT_OF_SIGHT_S: f64 = 2.0;
+/// Mean misfit above which something is not a disc, and below which it is one again.
+const MISFIT: (f64, f64) = (2.2, 1.6);
+/// Misfit of a view up to which it may show a disc.
+const ROUND: f64 = 4.0;
+/// Number of points from which the misfit of a view counts.
+const TELLING: usize = 5;
+/// Weight of a view in the mean misfit.
+const SMOOTHING: f64 = 0.1;
+/// Lower limits of the standard deviations, metres: what is estimated may still be corrected.
+const FLOOR_M: f64 = 0.003;
+/// Largest extent of something whose motion can be judged by its centre, metres.
+const MOVABLE_M: f64 = 1.2;
+
+/// One track.
+#[derive(Debug, Clone)]
+pub(crate) struct Track {
+    /// The id, once the track is an obstacle.
+    pub id: Option<ObstacleId>,
+    center: Point,
+    covariance: Matrix2<f64>,
+    radius: Radius,
+    outline: Outline,
+    misfit: f64,
+    is_disc: bool,
+    drift: Drift,
+    /// One bit per scan, the newest lowest: whether it has shown the track.
+    recent: u32,
+    missed: u32,
+    /// Number of scans through its place since it was last seen, and whether the last scan went through it.
+    through: u32,
+    is_through: bool,
+    /// Whether the last scan has shown it.
+    pub is_seen: bool,
+    seen_s: f64,
+    /// Largest standard deviation of the centre in the last view, metres.
+    view_sigma_m: f64,
+    /// Distance from the sensor, metres.
+    far_m: f64,
+}
+
+impl Track {
+    /// A track of some points in the order of the scan; `None` if they have no shape.
+    pub(crate) fn new(rays: &Rays, of: &[usize], pose: &Uncertain, now_s: f64) -> Option<Self> {
+        let fit = disc::fit(rays, of, pose.sigma_m, None)?;
+        let mut track = Self {
+            id: None,
+            center: fit.center,
+            covariance: place_of(&fit, rays, pose),
+            radius: fit.radius,
+            outline: Outline::default(),
+            misfit: 1.0,
+            is_disc: true,
+            drift: Drift::default(),
+            recent: 0,
+            missed: 0,
+            through: 0,
+            is_through: false,
+            is_seen: false,
+            seen_s: now_s,
+            view_sigma_m: 0.0,
+            far_m: 0.0,
+        };
+        track.note(rays, of, &fit, pose, now_s);
+        Some(track)
+    }
+
+    /// Takes the points of a scan, in its order.
+    pub(crate) fn see(&mut self, rays: &Rays, of: &[usize], pose: &Uncertain, now_s: f64) {
+        let before = (!self.moves()).then_some(self.radius);
+        if let Some(fit) = disc::fit(rays, of, pose.sigma_m, before) {
+            self.note(rays, of, &fit, pose, now_s);
+        }
+    }
+
+    fn note(&mut self, rays: &Rays, of: &[usize], fit: &Fit, pose: &Uncertain, now_s: f64) {
+        (self.is_seen, self.seen_s, self.missed, self.through) = (true, now_s, 0, 0);
+        self.is_through = false;
+        self.recent |= 1;
+        self.view_sigma_m = fit.covariance.symmetric_eigenvalues().max().max(0.0).sqrt();
+        self.far_m = (fit.center - rays.eye()).norm() - fit.radius.mean_m;
+        if of.len() >= TELLING {
+            self.misfit += SMOOTHING * (fit.misfit.min(20.0) - self.misfit);
+        }
+        self.is_disc = if self.is_disc { self.misfit < MISFIT.0 } else { self.misfit < MISFIT.1 };
+        // The centre of a disc that is fitted to something else moves with the robot.
+        if self.is_disc && fit.misfit < ROUND && self.extent_m() < MOVABLE_M {
+            self.drift.see(now_s, fit.center);
+        } else if !self.is_disc {
+            self.drift = Drift::default();
+        }
+        if self.moves() {
+            (self.center, self.covariance, self.radius) = (fit.center, place_of(fit, rays, pose), fit.radius);
+            self.outline.clear();
+        } else {
+            self.blend(fit, rays, pose);
+        }
+        let noise_m = 2.0 * pose.sigma_m;
+        for ray in of {
+            self.outline.add(rays.point(*ray), noise_m);
+        }
+    }
+
+    /// Combines the place and radius so far with those of a view.
+    fn blend(&mut self, fit: &Fit, rays: &Rays, pose: &Uncertain) {
+        let seen = place_of(fit, rays, pose);
+        if let Some(inverse) = (self.covariance + seen).try_inverse() {
+            let gain = self.covariance * inverse;
+            self.center += gain * (fit.center - self.center);
+            let left = self.covariance - gain * self.covariance;
+            self.covariance = 0.5 * (left + left.transpose()) + Matrix2::identity() * 1e-9;
+        }
+        self.radius = self.radius.with_share(&fit.radius, 1.0 / LIKE_VIEWS);
+        self.radius.variance_m2 = self.radius.variance_m2.max(FLOOR_M * FLOOR_M);
+    }
+
+    /// Begins a scan.
+    pub(crate) fn begin(&mut self, now_s: f64) {
+        if let Some(velocity) = self.drift.velocity() {
+            self.center += velocity * (now_s - self.seen_s).clamp(0.0, 0.5);
+        }
+        self.recent <<= 1;
+        self.is_seen = false;
+    }
+
+    /// Notes that a scan has not shown the track; `through` if its rays went through its place.
+    pub(crate) fn miss(&mut self, through: bool) {
+        self.missed = self.missed.saturating_add(1);
+        self.through = self.through.saturating_add(u32::from(through));
+        self.is_through = through;
+    }
+
+    /// Whether the track is to be dropped. An obstacle that stands still stays, even if it is gone: it is on the map.
+    pub(crate) fn is_over(&self, now_s: f64) -> bool {
+        match self.id {
+            None => self.missed >= MISSED,
+            Some(_) => self.moves() && now_s - self.seen_s > OUT_OF_SIGHT_S,
+        }
+    }
+
+    /// The number of scans through its place, if it has just become certain that the track is gone.
+    pub(crate) fn is_gone(&self) -> Option<u32> {
+        (self.through == GONE_AFTER && self.is_through).then_some(self.through)
+    }
+
+    /// Whether the track is certain enough, and within `reach_m` metres, to be an obstacle.
+    pub(crate) fn is_mature(&self, reach_m: f64) -> bool {
+        let recent = self.recent & ((1 << BIRTH_OF) - 1);
+        let is_sure = self.radius.variance_m2.sqrt() < SURE_RADIUS_M && self.view_sigma_m < SURE_PLACE_M;
+        let is_seen = recent.count_ones() >= BIRTH_HITS && self.far_m <= reach_m;
+        is_seen && (is_sure || !self.is_disc || self.far_m < NEAR_M)
+    }
+
+    /// The shape as far as it is known, tank frame.
+    pub(crate) fn shape(&self) -> Shape {
+        let disc = || Shape::Disc { center: self.center, radius_m: self.radius.mean_m };
+        if self.is_disc { disc() } else { self.outline.shape().unwrap_or_else(disc) }
+    }
+
+    /// A disc around the shape: its centre and radius.
+    pub(crate) fn around(&self) -> (Point, f64) {
+        if self.is_disc {
+            (self.center, self.radius.mean_m)
+        } else {
+            crate::drawing::disc_around(&self.shape())
+        }
+    }
+
+    /// Distance from its outline within which a point belongs to the track, metres.
+    pub(crate) fn gate_m(&self, pose: &Uncertain, range_m: f64) -> f64 {
+        let own_m2 = self.covariance.trace() + self.radius.variance_m2;
+        let gate_m = 3.0 * (pose.sigma_m.powi(2) + pose.point_m2(range_m) + own_m2).sqrt();
+        let room_m = if self.moves() || !self.is_disc { 0.1 } else { 0.03 };
+        gate_m.min(0.3) + room_m
+    }
+
+    /// Standard deviation of the outline, metres.
+    pub(crate) fn sigma_m(&self) -> f64 {
+        let place_m2 = self.covariance.symmetric_eigenvalues().max();
+        (place_m2 + self.radius.variance_m2).max(0.0).sqrt()
+    }
+
+    /// The velocity, metres per second, tank frame; `None` if it stands still.
+    pub(crate) fn velocity(&self) -> Option<Vector> {
+        self.drift.velocity()
+    }
+
+    /// Whether it moves.
+    pub(crate) fn moves(&self) -> bool {
+        self.velocity().is_some()
+    }
+
+    /// Recent places.
+    pub(crate) fn drift(&self) -> &Drift {
+        &self.drift
+    }
+
+    /// Largest extent, metres.
+    pub(crate) fn extent_m(&self) -> f64 {
+        self.outline.extent_m()
+    }
+}
+
+/// Covariance of a centre that was seen once, with the error of the pose.
+fn place_of(fit: &Fit, rays: &Rays, pose: &Uncertain) -> Matrix2<f64> {
+    let arm = fit.center.coords - rays.frame().translation.vector;
+    let floor = Matrix2::identity() * FLOOR_M * FLOOR_M;
+    fit.covariance * LIKE_VIEWS + pose.of_place(arm) * ALIKE + floor
+}

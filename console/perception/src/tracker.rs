@@ -1,0 +1,331 @@
+//! All tracks, from scan to scan.
+
+use crate::{
+    Drift, Sensor,
+    check::Agreement,
+    drawing::{Buffers, Drawing},
+    groups::{self, Group, groups},
+    rays::Rays,
+    through::{self, Look},
+    track::Track,
+    uncertain::Uncertain,
+};
+use geometry::{Boundary, Pose, Shape};
+use nalgebra::{Isometry2, Matrix3};
+use std::collections::BTreeMap;
+use world::{Obstacle, ObstacleId, ObstacleMap, Scan};
+
+/// The ids of obstacles found in scans begin here; drawings and the trackers of vehicles use smaller ones.
+pub const FIRST_ID: u32 = 2_000_000;
+/// Largest number of tracks; further groups are left out until a track is dropped.
+const MOST: usize = 512;
+/// Distance from a track, metres, within which a group belongs to it.
+const JOIN_M: f64 = 0.12;
+/// Extent, metres, up to which a track takes further groups beside it.
+const GROWS_TO_M: f64 = 1.0;
+/// Number of points from which a track that was seen before is fitted.
+const LEAST_POINTS: usize = 2;
+/// Number of scans through the place of a drawn obstacle, without one that shows it, after which it is reported.
+const MISSING_AFTER: u32 = 40;
+/// No track.
+const NONE: u16 = u16::MAX;
+
+/// A scan, and what is known when it is made.
+#[derive(Clone, Copy)]
+pub struct View<'a> {
+    /// Mission time, seconds.
+    pub now_s: f64,
+    /// The scan.
+    pub scan: &'a Scan,
+    /// Estimated pose of the robot at the end of the readings.
+    pub pose: Pose,
+    /// Covariance of x, y and heading.
+    pub covariance: Matrix3<f64>,
+    /// The wall.
+    pub boundary: &'a Boundary,
+    /// All obstacles on the chart.
+    pub charted: &'a [Obstacle],
+    /// The same, for queries.
+    pub map: &'a ObstacleMap,
+    /// Distance from the scanner, metres, within which something becomes an obstacle; farther away, it is only followed.
+    pub reach_m: f64,
+}
+
+/// An obstacle that the last scan has shown.
+#[derive(Debug, Clone)]
+pub struct Seen<'a> {
+    /// Its id, at least [`FIRST_ID`].
+    pub id: ObstacleId,
+    /// The outline by all scans, tank frame.
+    pub shape: Shape,
+    /// The outline in the robot frame, from the estimated pose: where the robot sees it now.
+    pub shape_in_robot: Shape,
+    /// Standard deviation of the outline, metres.
+    pub sigma_m: f64,
+    /// Its recent places.
+    pub drift: &'a Drift,
+}
+
+/// What a scan has changed.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Looked {
+    /// Obstacles that are not where they are drawn or were found, each with the number of scans through its place.
+    pub not_there: Vec<(ObstacleId, u32)>,
+}
+
+/// The tracks, and buffers that are kept from scan to scan.
+#[derive(Debug, Clone)]
+pub struct Perception {
+    sensor: Sensor,
+    tracks: Vec<Track>,
+    next_id: u32,
+    /// Ids of moving obstacles that have gone, for the next obstacles.
+    free_ids: Vec<ObstacleId>,
+    /// For each drawn obstacle that scans went through, their number.
+    through: BTreeMap<ObstacleId, u32>,
+    agreement: Agreement,
+    rays_wanted: Option<u32>,
+    trouble: Option<String>,
+    /// From the estimated to the corrected pose.
+    correction: Isometry2<f64>,
+    rays: Rays,
+    buffers: Buffers,
+    explained: Vec<bool>,
+    owners: Vec<u16>,
+    nearest_m: Vec<f64>,
+    left: Vec<usize>,
+    groups: Vec<Group>,
+    own: Vec<usize>,
+}
+
+impl Perception {
+    /// Nothing has been seen yet.
+    pub fn new(sensor: Sensor) -> Self {
+        Self {
+            rays_wanted: sensor.rays,
+            sensor,
+            tracks: Vec::new(),
+            next_id: FIRST_ID,
+            free_ids: Vec::new(),
+            through: BTreeMap::new(),
+            agreement: Agreement::default(),
+            trouble: None,
+            correction: Isometry2::identity(),
+            rays: Rays::default(),
+            buffers: Buffers::default(),
+            explained: Vec::new(),
+            owners: Vec::new(),
+            nearest_m: Vec::new(),
+            left: Vec::new(),
+            groups: Vec::new(),
+            own: Vec::new(),
+        }
+    }
+
+    /// Why the scans cannot be used, as a clause.
+    pub fn trouble(&self) -> Option<&str> {
+        self.trouble.as_deref()
+    }
+
+    /// Takes a scan.
+    pub fn look(&mut self, view: &View<'_>) -> Looked {
+        self.trouble = self.layout_trouble(view.scan);
+        if self.trouble.is_some() {
+            self.tracks.iter_mut().for_each(|track| track.is_seen = false);
+            return Looked::default();
+        }
+        let estimate = view.pose.tank_from_robot();
+        self.rays.take(view.scan, &estimate);
+        let scanned_from = *self.rays.frame();
+        let given = Uncertain::estimated(self.sensor.sigma_m, &view.covariance);
+        self.agreement.compare(&self.rays, (view.boundary, view.map), &given, self.sensor.range_m);
+        self.trouble = self.agreement.trouble();
+        let reach_m = self.rays.range_m.iter().copied().filter(|m| m.is_finite()).fold(1.0, f64::max) + 1.0;
+        let drawn = view.charted.iter().filter(|obstacle| obstacle.id.0 < FIRST_ID);
+        let drawing = Drawing::near(view.boundary, drawn, self.rays.eye(), reach_m);
+        let pose = drawing.correct(&mut self.rays, &given, &mut self.buffers);
+        self.correction = scanned_from.inverse() * self.rays.frame();
+        drawing.explain(&self.rays, &pose, &mut self.explained);
+        self.tracks.iter_mut().for_each(|track| track.begin(view.now_s));
+        self.share_out(&pose);
+        self.join_groups(&pose);
+        self.update(&pose, view.now_s);
+        self.begin_tracks(&pose, view.now_s);
+        self.give_ids(view.reach_m);
+        let mut not_there = self.missing(&drawing, &pose);
+        not_there.extend(self.tracks.iter().filter_map(|track| Some((track.id?, track.is_gone()?))));
+        self.drop_tracks(view.now_s);
+        Looked { not_there }
+    }
+
+    /// The obstacles that the last scan has shown, for a robot whose estimated pose is now `pose`.
+    pub fn seen(&self, pose: &Pose) -> impl Iterator<Item = Seen<'_>> {
+        let robot_from_tank = (pose.tank_from_robot() * self.correction).inverse();
+        self.tracks.iter().filter(|track| track.is_seen).filter_map(move |track| {
+            let shape = track.shape();
+            let shape_in_robot = shape.transformed(&robot_from_tank);
+            Some(Seen {
+                id: track.id?,
+                shape,
+                shape_in_robot,
+                sigma_m: track.sigma_m(),
+                drift: track.drift(),
+            })
+        })
+    }
+
+    /// Number of things that are followed now, obstacles or not.
+    pub fn tracks(&self) -> usize {
+        self.tracks.len()
+    }
+
+    /// Why scans of this layout cannot be used.
+    fn layout_trouble(&mut self, scan: &Scan) -> Option<String> {
+        let n = scan.ranges_mm.0.len();
+        let is_finite = scan.first_rad.is_finite() && scan.sensor_m.iter().all(|m| m.is_finite());
+        if n == 0 {
+            return Some("the scan has no rays".into());
+        }
+        if !is_finite || !scan.step_rad.is_normal() {
+            return Some("the angles of the scan are not numbers, or all the same".into());
+        }
+        let wanted = *self.rays_wanted.get_or_insert(n as u32);
+        (n != wanted as usize).then(|| format!("the scan has {n} rays instead of {wanted}"))
+    }
+
+    /// Gives each point that the drawing does not explain to the track to whose outline it is nearest.
+    fn share_out(&mut self, pose: &Uncertain) {
+        let Self { tracks, rays, owners, nearest_m, explained, .. } = self;
+        owners.clear();
+        owners.resize(rays.len(), NONE);
+        nearest_m.clear();
+        nearest_m.resize(rays.len(), f64::INFINITY);
+        for (k, track) in tracks.iter().enumerate() {
+            let (center, radius_m) = track.around();
+            let far_m = (center - rays.eye()).norm();
+            let gate_m = track.gate_m(pose, far_m);
+            let shape = track.shape();
+            for ray in rays.towards(center, radius_m + gate_m) {
+                if explained[ray] || (rays.range_m[ray] - far_m).abs() > radius_m + gate_m {
+                    continue;
+                }
+                let off_m = shape.distance_m(rays.point(ray)).abs();
+                if off_m <= gate_m && off_m < nearest_m[ray] {
+                    (owners[ray], nearest_m[ray]) = (k as u16, off_m);
+                }
+            }
+        }
+    }
+
+    /// Groups the points that are left, and gives a group beside a track to that track.
+    fn join_groups(&mut self, pose: &Uncertain) {
+        let Self { tracks, rays, owners, explained, left, groups: found, .. } = self;
+        left.clear();
+        left.extend((0..rays.len()).filter(|ray| !explained[*ray] && owners[*ray] == NONE));
+        groups::turned(rays, left, pose.sigma_m);
+        groups(rays, left, pose.sigma_m, found);
+        for group in found.iter() {
+            let of = &left[group.rays.clone()];
+            let apart_m = |track: &Track| {
+                let shape = track.shape();
+                of.iter().map(|ray| shape.distance_m(rays.point(*ray))).fold(f64::INFINITY, f64::min)
+            };
+            let is_near = |track: &Track| {
+                let (center, radius_m) = track.around();
+                let reach_m = radius_m + JOIN_M + GROWS_TO_M;
+                (rays.point(of[0]) - center).norm() < reach_m && track.extent_m() < GROWS_TO_M
+            };
+            let near = tracks.iter().enumerate().filter(|(_, track)| is_near(track));
+            let nearest = near.map(|(k, track)| (k, apart_m(track))).min_by(|a, b| a.1.total_cmp(&b.1));
+            if let Some((k, _)) = nearest.filter(|(_, apart_m)| *apart_m < JOIN_M) {
+                for ray in of {
+                    owners[*ray] = k as u16;
+                }
+            }
+        }
+    }
+
+    /// Updates each track by its points.
+    fn update(&mut self, pose: &Uncertain, now_s: f64) {
+        let Self { tracks, rays, owners, own, .. } = self;
+        for (k, track) in tracks.iter_mut().enumerate() {
+            let (center, radius_m) = track.around();
+            own.clear();
+            let reach_m = radius_m + GROWS_TO_M;
+            own.extend(rays.towards(center, reach_m).filter(|ray| usize::from(owners[*ray]) == k));
+            if own.len() >= LEAST_POINTS {
+                track.see(rays, own, pose, now_s);
+            }
+            if !track.is_seen {
+                let through = own.is_empty()
+                    && through::look(rays, &track.shape(), pose, self.sensor.range_m) == Look::Through;
+                track.miss(through);
+            }
+        }
+    }
+
+    /// Begins a track for each group that belongs to none.
+    fn begin_tracks(&mut self, pose: &Uncertain, now_s: f64) {
+        let Self { tracks, rays, owners, left, groups: found, .. } = self;
+        for group in found.iter().filter(|group| owners[left[group.rays.start]] == NONE) {
+            if tracks.len() < MOST {
+                tracks.extend(Track::new(rays, &left[group.rays.clone()], pose, now_s));
+            }
+        }
+    }
+
+    /// Makes obstacles of the tracks that are certain enough. A track on an obstacle is dropped instead.
+    fn give_ids(&mut self, reach_m: f64) {
+        let mut at = 0;
+        while at < self.tracks.len() {
+            let track = &self.tracks[at];
+            if track.id.is_some() || !track.is_mature(reach_m) {
+                at += 1;
+                continue;
+            }
+            let center = track.around().0;
+            let is_on = |other: &Track| other.id.is_some() && other.shape().distance_m(center) < 0.0;
+            if self.tracks.iter().any(is_on) {
+                self.tracks.remove(at);
+                continue;
+            }
+            let id = self.free_ids.pop().unwrap_or_else(|| {
+                self.next_id += 1;
+                ObstacleId(self.next_id - 1)
+            });
+            self.tracks[at].id = Some(id);
+            at += 1;
+        }
+    }
+
+    /// Counts the scans through drawn obstacles; returns those that are to be reported now.
+    fn missing(&mut self, drawing: &Drawing<'_>, pose: &Uncertain) -> Vec<(ObstacleId, u32)> {
+        let mut missing = Vec::new();
+        for (obstacle, ..) in &drawing.obstacles {
+            match through::look(&self.rays, &obstacle.shape, pose, self.sensor.range_m) {
+                Look::Hidden => {}
+                Look::Hit => {
+                    self.through.remove(&obstacle.id);
+                }
+                Look::Through => {
+                    let times = self.through.entry(obstacle.id).or_default();
+                    *times = times.saturating_add(1);
+                    if *times == MISSING_AFTER {
+                        missing.push((obstacle.id, *times));
+                    }
+                }
+            }
+        }
+        missing
+    }
+
+    /// Drops tracks that are over. The place of a moving obstacle that is out of sight is unknown; its id is used again.
+    fn drop_tracks(&mut self, now_s: f64) {
+        let free_ids = &mut self.free_ids;
+        self.tracks.retain(|track| {
+            let is_over = track.is_over(now_s);
+            free_ids.extend(track.id.filter(|_| is_over));
+            !is_over
+        });
+    }
+}
