@@ -242,7 +242,7 @@ fn an_adapter_that_ends_or_hangs_ends_an_unattended_run_which_is_kept_and_says_w
         let held = first_of(&events, "held").unwrap();
         assert!(
             lost < held
-                && events[held]["by"]["vehicle"]["message"].as_str().unwrap().contains("not confirmed")
+                && events[held]["by"]["vehicle"]["message"].as_str().unwrap().contains("cannot confirm")
         );
         assert!(
             of_kind(&events[held..], "sent").iter().all(|sent| sent["drive"].is_null()),
