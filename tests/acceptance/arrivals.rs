@@ -218,8 +218,8 @@ fn without_them_the_same_planners_are_waited_for() {
     }
 }
 
-#[test]
-fn a_planner_that_is_killed_during_a_hold_is_reported_during_the_hold() {
+/// A console that holds a mission.
+fn held() -> (Bench, Console) {
     let bench = Bench::new();
     let file = scenario("goto-single-obstacle.toml");
     let mut console = Console::open(bench.command(), &[file.to_str().unwrap()]);
@@ -228,6 +228,12 @@ fn a_planner_that_is_killed_during_a_hold_is_reported_during_the_hold() {
     console.hear("Mission running");
     console.order("hold\n");
     console.hear("HELD");
+    (bench, console)
+}
+
+#[test]
+fn a_planner_that_is_killed_during_a_hold_is_reported_during_the_hold() {
+    let (bench, mut console) = held();
     let workers = workers_of(console.pid());
     assert_eq!(workers.len(), 1, "{workers:?}");
     signal_it(workers[0], Signal::KILL);
@@ -260,14 +266,7 @@ fn a_planner_that_is_killed_before_the_start_is_reported_before_the_start() {
 
 #[test]
 fn a_planner_in_shadow_that_is_killed_during_a_hold_ends_during_the_hold() {
-    let bench = Bench::new();
-    let file = scenario("goto-single-obstacle.toml");
-    let mut console = Console::open(bench.command(), &[file.to_str().unwrap()]);
-    console.hear("Enter `start` to start");
-    console.order("start\nyes\n");
-    console.hear("Mission running");
-    console.order("hold\n");
-    console.hear("HELD");
+    let (bench, mut console) = held();
     let driving = workers_of(console.pid());
     console.order("shadow apf-dwa\n");
     console.hear("runs in shadow");

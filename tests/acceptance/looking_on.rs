@@ -6,10 +6,10 @@ use std::{
     path::Path,
     process::{Child, Command, Stdio},
     sync::mpsc::{Receiver, channel},
-    time::Duration,
+    time::{Duration, Instant},
 };
 
-const PATIENCE: Duration = Duration::from_mins(1);
+const PATIENCE: Duration = Duration::from_mins(5);
 
 /// A console with `--plain`.
 pub(crate) struct Console {
@@ -31,9 +31,12 @@ impl Console {
         self.child.stdin.as_mut().unwrap().write_all(lines.as_bytes()).unwrap();
     }
 
+    /// Waits for a line with these words. A console that goes on saying other things is not waited for longer than one that
+    /// is silent.
     pub(crate) fn hear(&self, words: &str) {
         let mut heard = Vec::new();
-        while let Ok(line) = self.said.recv_timeout(PATIENCE) {
+        let until = Instant::now() + PATIENCE;
+        while let Ok(line) = self.said.recv_timeout(until.saturating_duration_since(Instant::now())) {
             if line.contains(words) {
                 return;
             }

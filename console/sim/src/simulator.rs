@@ -82,7 +82,7 @@ impl Simulator {
         });
         let robot = &self.config.robot;
         let reach_m = bounded(robot.radius_m.max(0.0) + robot.sensing_range_m.max(0.0));
-        // A robot with a scanner has nothing but the scan.
+        // A robot with a scanner sees obstacles only in its scan.
         let sightings = match robot.scanner {
             Some(_) => Vec::new(),
             None => sightings(&self.map, &world.boundary, &world.obstacles, &self.pose, reach_m),

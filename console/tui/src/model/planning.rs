@@ -282,8 +282,7 @@ mod tests {
         (0..3).flat_map(lane).collect()
     }
 
-    fn shown(lanes: Vec<Lane>) -> PlanShown {
-        let (path, length_m) = (meander(), 32.0);
+    fn plan(path: Vec<Point>, lanes: Vec<Lane>, length_m: f64) -> PlanShown {
         PlanShown {
             ask: None,
             path,
@@ -295,6 +294,10 @@ mod tests {
             retract_m: 0.0,
             lead_m: 0.0,
         }
+    }
+
+    fn shown(lanes: Vec<Lane>) -> PlanShown {
+        plan(meander(), lanes, 32.0)
     }
 
     #[test]
@@ -354,17 +357,7 @@ mod tests {
         let legs = [(0, 1), (2, 3), (4, 5)].map(|(first, last)| Leg { tag: LegTag::Swath, first, last });
         let length_m = polyline::length_m(&path);
         let (path, lanes) = super::shown(&path, &legs, 2.0);
-        PlanShown {
-            ask: None,
-            path,
-            lanes,
-            length_m,
-            complete: true,
-            t_s: 0.0,
-            driven_m: 0.0,
-            retract_m: 0.0,
-            lead_m: 0.0,
-        }
+        plan(path, lanes, length_m)
     }
 
     #[test]

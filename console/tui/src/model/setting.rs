@@ -20,7 +20,7 @@ pub struct Figures {
 pub enum Effect {
     /// The estimate is being computed; the share done, 0 to 1, if it is known.
     Computing(Option<f64>),
-    /// The reason why there is no estimate, as a clause.
+    /// Why the estimate failed, as a clause.
     Unknown(String),
     /// The estimate.
     Known {
