@@ -12,15 +12,17 @@ use planner_api as api;
 use std::sync::Arc;
 use world::{Obstacle, ObstacleId, ObstacleMap, Point, Pose, Shape, Sighting, World, Zone, ZoneKind};
 
-/// Change of its estimated position, metres, after which a found obstacle is reported again.
+/// Distance, metres, by which the estimated position of a found obstacle must change before the obstacle is reported
+/// again.
 const MOVED_M: f64 = 0.05;
 /// Number of sightings in the running mean of a found obstacle's position.
 const MEMORY: f64 = 50.0;
 /// Time out of sight, seconds, after which a moving obstacle is forgotten.
 const OUT_OF_SIGHT_S: f64 = 2.0;
 
-/// Distance, metres, by which an outline may exceed a drawn obstacle that it shows: errors of the position and of the
-/// tracker. An object this close to a drawn obstacle is not added to the chart; the robot still stops before it.
+/// Maximum distance, metres, by which an outline from a tracker may extend beyond the drawn obstacle that it shows. It
+/// allows for errors of the position and of the tracker. An object this close to a drawn obstacle is not added to the
+/// chart; the robot still stops before it.
 const DRAWN_M: f64 = 0.1;
 
 /// The drawing and the found obstacles, with an index for queries.
@@ -204,13 +206,14 @@ impl Chart {
         self.world.obstacles.iter().filter(|obstacle| obstacle.known).any(covers)
     }
 
-    /// Whether a plan may have become invalid by the last sighting of an obstacle, with this event.
+    /// Whether the last sighting of an obstacle may have made a plan invalid; `event` is the event that reports the
+    /// sighting, if there is one.
     fn matters(&self, id: ObstacleId, did_move: bool, event: Option<&EventKind>) -> bool {
         let moves = self.velocity(id).is_some();
         did_move != moves || (event.is_some() && !moves)
     }
 
-    /// Places an obstacle found in scans. Its place and outline are means already.
+    /// Places an obstacle found in scans. Its position and its outline have already been averaged.
     fn place_scanned(&mut self, seen: &perception::Seen<'_>) -> Option<EventKind> {
         let Some(found) = self.found.iter_mut().find(|found| found.id == seen.id) else {
             let event = self.add(seen.id, seen.shape.clone());

@@ -221,8 +221,8 @@ pub struct MissionConfig {
     /// Whether the robot is a real vehicle and not the simulator: time cannot be stepped, and faults cannot be injected.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub live: bool,
-    /// For a robot with a scan: the robot is guarded by the scan, and this is the time from a command until the vehicle
-    /// follows it, beyond a tick, seconds. `None`: no guard.
+    /// Time from a command until the vehicle follows it, beyond one tick, seconds. It is set for a robot that is
+    /// guarded by its scan; `None` without a guard.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub guard_reaction_s: Option<f64>,
     /// The scanner in whose scans the mission finds obstacles. `None` if only the outlines that the readings name are
@@ -245,7 +245,7 @@ impl MissionConfig {
         self.swath_m - self.scan.overlap_m
     }
 
-    /// Whether better plans than a repaired one are computed at all.
+    /// Whether the mission computes a better plan after a repair.
     pub fn wants_better_plans(&self) -> bool {
         match self.better_plan {
             BetterPlan::Off => false,

@@ -139,8 +139,8 @@ impl Mission {
         self.known.sending()
     }
 
-    /// The workers of the active planner and of the planner in shadow, as far as they have nothing to do; the console
-    /// watches their processes.
+    /// Those workers of the active planner and of the planner in shadow that have nothing to do; the console watches
+    /// their processes.
     pub fn idle_workers(&self) -> impl Iterator<Item = WorkerId> {
         let shadow = self.shadow.as_ref().and_then(|shadow| shadow.worker.idle());
         self.driving.worker.idle().into_iter().chain(shadow)

@@ -204,7 +204,7 @@ pub enum EventKind {
         /// Estimated outline of the obstacle, tank frame.
         obstacle: Obstacle,
     },
-    /// Scans went through the place of an obstacle on the chart, so that it is not there.
+    /// Scans went through the place of an obstacle on the chart, so the obstacle is not there.
     NotThere {
         /// Id of the obstacle.
         id: ObstacleId,

@@ -161,8 +161,8 @@ impl<'a> Surroundings<'a> {
         Self { solids: solids.iter().map(to).collect() }
     }
 
-    /// Margin of a position of the hull's centre, metres: its distance from an obstacle minus the distance required
-    /// from that obstacle, for the obstacle with the smallest difference. Negative where the centre must not be.
+    /// How much farther a position of the hull's centre is from an obstacle than required, metres: the smallest value
+    /// over all obstacles. It is negative where the centre must not be.
     fn spare_m(&self, at: Point) -> f64 {
         self.solids
             .iter()

@@ -7,8 +7,8 @@ use sha2::{Digest, Sha256};
 use std::fmt;
 use world::Point;
 
-/// SHA-256 that identifies a plan: of the planner with its build and parameters, and of the exact path with its legs and
-/// cuts.
+/// SHA-256 that identifies a plan. It covers the planner with its build and parameters, and the exact path with its
+/// legs and cuts.
 ///
 /// For a planner that only steps, the path is empty, so the hash covers only the planner with its parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

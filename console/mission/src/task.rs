@@ -265,8 +265,8 @@ impl StuckWatch {
         *self = Self::new(self.patience_s);
     }
 
-    /// Processes one tick in which the robot was free to move; `plan_left_m` is the length left of the planner's path, if
-    /// there is one. Returns whether the robot is stuck.
+    /// Processes one tick in which the robot was free to move; `plan_left_m` is the remaining length of the planner's
+    /// path, if there is one. Returns whether the robot is stuck.
     pub(crate) fn update(
         &mut self,
         task: &Task,

@@ -44,7 +44,7 @@ impl Back {
         self.follower.target()
     }
 
-    /// Length left of the way, metres.
+    /// Remaining length of the way, metres.
     pub(super) fn left_m(&self, here: Point) -> f64 {
         self.follower.left_m(here)
     }

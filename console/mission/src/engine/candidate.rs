@@ -16,8 +16,8 @@ use crate::{
 };
 use planner_api::Plan;
 
-/// Distance that the robot has moved, metres, up to which a candidate that plans again keeps to its first plan; beyond
-/// it, too much floor would be scanned twice.
+/// A candidate that plans again keeps to its first plan if the robot has moved at most this far, metres. If the robot
+/// has moved farther, too much floor would be scanned twice.
 const MOST_GONE_M: f64 = 3.0;
 
 impl Mission {

@@ -24,7 +24,8 @@ impl Known {
         self.governor.momentum.speed_m_per_s()
     }
 
-    /// Returns a command as it is safe by the chart and by the scan, and what to report about it.
+    /// Limits a command to what is safe according to the chart and the scan. Returns the limited command and the events
+    /// to report.
     pub(super) fn made_safe(&mut self, wanted: Command) -> (Command, [Option<EventKind>; 2]) {
         let governed = self.governed(wanted);
         let sent = self.guarded(governed);
@@ -32,7 +33,7 @@ impl Known {
         (sent, [limited, self.note_guard(governed.drive, sent.drive)])
     }
 
-    /// Returns a command, slowed down so that the robot can stop after it.
+    /// Slows a command down, if necessary, so that the robot can stop in time.
     fn governed(&self, command: Command) -> Command {
         let (here, momentum) = (self.as_governed(), &self.governor.momentum);
         let reach_m = governor::reach_m(momentum, command.drive, &here);

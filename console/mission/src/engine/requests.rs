@@ -28,7 +28,7 @@ pub(super) struct AskedPlan {
 }
 
 impl AskedPlan {
-    /// A plan that begins at the robot's position, for which the planner is not asked.
+    /// The data of a plan that begins at the robot's position and was not requested from the planner.
     pub(super) fn from_here(reason: Reason, here: Point) -> Self {
         Self { reason, return_path: Vec::new(), from_anchor: false, is_repair: false, here }
     }

@@ -84,7 +84,8 @@ pub(super) struct Offer {
 }
 
 impl Better {
-    /// The stage of the offer; `None` before the first offer. With some settings, every offer is taken.
+    /// The stage of the offer; `None` before the first offer. With [`BetterPlan::Take`], every offer counts as
+    /// accepted.
     pub(super) fn stage(&self, setting: BetterPlan) -> Option<OfferStage> {
         let Self::Offered(offer) = self else { return None };
         let is_accepted = offer.is_ordered || setting == BetterPlan::Take;

@@ -197,8 +197,9 @@ impl Known {
         let beyond = left.iter().filter(|index| reach.is_beyond(floor.center(**index))).count();
         let beyond_m2 = beyond as f64 * floor.cell_m2();
         let reel_length_m = self.config.tether.as_ref()?.limits.reel_length_m;
-        (beyond_m2 > WORTH_TELLING_M2)
-            .then(|| format!("INCOMPLETE: {beyond_m2:.1} m² not planned, beyond the {reel_length_m} m reel"))
+        (beyond_m2 > WORTH_TELLING_M2).then(|| {
+            format!("INCOMPLETE: {beyond_m2:.1} m² not planned, beyond the {reel_length_m} m tether")
+        })
     }
 }
 

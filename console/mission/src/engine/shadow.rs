@@ -63,7 +63,7 @@ pub(super) struct Shadow {
 struct Now {
     /// Whether the robot is running.
     is_running: bool,
-    /// Whether there is anything to plan for; in coverage missions, only once the active planner has a plan.
+    /// Whether the planner may be asked for a plan; in coverage missions, only once the active planner has a plan.
     may_plan: bool,
     /// Number of points in the path driven.
     n_flown: usize,

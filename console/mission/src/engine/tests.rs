@@ -1,4 +1,4 @@
-//! Missions in a perfect little world: exact ranges, a point robot that follows its commands.
+//! Missions in a small, perfect world: the ranges are exact, and the robot is a point that follows its commands.
 
 mod arrivals;
 mod better_plan;
@@ -34,50 +34,50 @@ use world::{
     Shape, Sighting, Station, StationId, Vector,
 };
 
-/// A planner that drives straight to its target, and otherwise behaves as the test demands.
+/// A planner that drives straight to its target, and otherwise behaves as the test requires.
 #[derive(Default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a way to misbehave")]
 struct Straight {
     fail_at_tick: Option<u64>,
     fail_at_ticks: Vec<u64>,
-    /// Its second worker fails in this tick.
+    /// The tick in which the planner's second worker fails.
     second_fails_at_tick: Option<u64>,
-    /// Its plans lead to the goal instead of nowhere in particular.
+    /// Whether the plans lead to the goal instead of to an arbitrary point.
     plans_to_goal: bool,
-    /// It talks with every answer.
+    /// Whether every answer comes with log messages and figures.
     says_much: bool,
-    /// It keeps state.
+    /// Whether the planner saves its state.
     snapshots: bool,
     refuse: Vec<&'static str>,
-    /// From this tick on it says that it cannot go on.
+    /// The tick from which the planner reports that it cannot continue.
     stuck_from_tick: Option<u64>,
     chosen: Vec<String>,
     plans: usize,
     /// Area of the regions of every request to cover, square metres.
     regions_m2: Vec<f64>,
-    /// The tank as it was known at each request.
+    /// The tank as known at each request.
     sites: Vec<Arc<crate::ask::Site>>,
-    /// The plans that it was given to keep to, request by request.
+    /// The plan to keep to in each request.
     kept: Vec<Option<Plan>>,
-    /// What plans to cover keep to.
+    /// The cut in the plans of coverage missions.
     cut: Option<Vec<Point>>,
-    /// Its plans end so far from the middle of the tank, metres.
+    /// Distance from the middle of the tank at which the plans end, metres.
     plans_to_m: Option<f64>,
-    /// Its coverage plans are a single point.
+    /// Whether coverage plans consist of a single point.
     leads_nowhere: bool,
-    /// Its first plans go along each lane three times.
+    /// Number of plans, counted from the first, that drive along each lane three times.
     wasteful_plans: usize,
-    /// From this plan on it leaves out the last lane.
+    /// Number of the first plan that leaves out the last lane.
     scans_less_from_plan: Option<usize>,
-    /// Its process has ended while it had nothing to do.
+    /// Whether the planner's process ended while it had nothing to do.
     has_died: bool,
-    /// The process of the worker with this number has ended while it had nothing to do.
+    /// The worker whose process ended while it had nothing to do.
     dead_worker: Option<u16>,
-    /// It has a live parameter `gain` that it cannot change under way.
+    /// Whether the planner has a live parameter `gain` that it refuses to change during the mission.
     has_stiff_gain: bool,
-    /// It ends with a lap along the wall.
+    /// Whether coverage plans end with a lap along the wall.
     drives_a_lap: bool,
-    /// It proves that no way leads to the goal.
+    /// Whether the planner proves that no path leads to the goal.
     sees_no_way: bool,
 }
 
@@ -96,7 +96,7 @@ impl Straight {
 }
 
 impl Straight {
-    /// Answers an ask; nothing to those that have no answer.
+    /// Answers an ask; `None` for asks that have no answer.
     fn answer(&mut self, Ask { id, what }: Ask) -> Option<Answer> {
         let result = match what {
             What::Open { choice, .. } => self.open(&choice.id).map(|info| Given::Opened(Box::new(info))),
@@ -194,7 +194,7 @@ impl Straight {
     }
 }
 
-/// A parameter that changes under way or not.
+/// The parameter `gain`, which can be changed during the mission if it is live.
 fn gain(live: bool) -> ParamInfo {
     ParamInfo {
         key: "gain".into(),
@@ -285,40 +285,40 @@ fn config() -> MissionConfig {
     }
 }
 
-/// For how many ticks an ask of a tick stays unanswered.
+/// Number of ticks for which an ask that is issued in a tick stays unanswered.
 type Delay = Box<dyn Fn(&Ask, u64) -> u64>;
 
-/// The mission, its planner and a robot that is where it was sent.
+/// The mission, its planner, and a robot that moves exactly as commanded.
 struct Flight {
     mission: Mission,
     planner: Straight,
     pose: Pose,
     moved: Odometry,
-    /// Its velocity, metres per second.
+    /// Velocity of the robot, metres per second.
     velocity: Vector,
-    /// How fast that can change, metres per second squared; infinite for a robot that stops dead.
+    /// Maximum change of the velocity, metres per second squared; infinite for a robot that stops instantly.
     braking_m_per_s2: f64,
     silent: bool,
-    /// Metres by which the ranges of the first stations are too long.
+    /// Excess of the ranges of the first stations, metres.
     excess_range_m: Vec<f64>,
-    /// What the pressure sensor reads, pascals.
+    /// Reading of the pressure sensor, pascals.
     pressure_pa: Option<f64>,
-    /// The true cable, among what stands there unseen; `None` without an encoder.
+    /// The true cable, among obstacles that the mission has not seen; `None` without an encoder.
     reel: Option<Cable>,
-    /// Metres that the reel has paid out beyond that.
+    /// Additional length that the reel has paid out, metres.
     caught_m: f64,
     sightings: Vec<Sighting>,
     events: Vec<Event>,
-    /// For how many ticks an ask of this tick stays unanswered.
+    /// Number of ticks for which an ask of this tick stays unanswered.
     delay: Delay,
-    /// Asks without an answer, with the tick in which they get one.
+    /// Asks without an answer, each with the tick in which it will be answered.
     open: Vec<(u64, Ask)>,
     closed: Vec<WorkerId>,
-    /// Why the vehicle cannot be driven.
+    /// Why the vehicle must not be driven.
     trouble: Option<&'static str>,
-    /// Discs that are seen only by a scanner, and whether it works; `None` without one.
+    /// Discs that only a scanner sees, and whether the scanner works; `None` without a scanner.
     scanner: Option<(Vec<(Point, f64)>, bool)>,
-    /// What entered each tick.
+    /// The inputs of each tick.
     inputs: Vec<(Readings, Vec<Order>)>,
 }
 
@@ -384,7 +384,7 @@ impl Flight {
             wanted
         };
         let velocity = self.velocity;
-        // The heading stays: the odometry of a point robot has both components.
+        // The heading does not change, because the odometry of a point robot has two components.
         self.pose.position += velocity * 0.1;
         if let Some(cable) = &mut self.reel {
             cable.drag_to(self.pose.position);
@@ -394,7 +394,7 @@ impl Flight {
         step.events.into_iter().map(|event| event.kind).collect()
     }
 
-    /// What the scanner measures from the robot's place.
+    /// The scan from the robot's position.
     fn scan(&self) -> Option<world::Scan> {
         let (discs, _) = self.scanner.as_ref().filter(|(_, works)| *works)?;
         let step_rad = std::f64::consts::TAU / 360.0;
@@ -408,7 +408,7 @@ impl Flight {
             };
             let known = &self.mission.known;
             let wall_m = known.chart.world().boundary.ray_m(self.pose.position, Vector::new(cos, sin));
-            // Only a mission that looks for obstacles in its scans needs the wall.
+            // Only missions that look for obstacles in scans need the wall.
             let wall_m = known.perception.is_some().then_some(wall_m);
             world::Scan::stored(discs.iter().filter_map(hit).chain(wall_m).min_by(f64::total_cmp))
         };
@@ -419,7 +419,7 @@ impl Flight {
         })
     }
 
-    /// Answers what is due in this tick, and hands out what is asked.
+    /// Sends the answers that are due in this tick, and takes new asks.
     fn serve(&mut self) {
         let tick = self.mission.known.tick;
         loop {
@@ -501,7 +501,7 @@ fn a_robot_with_a_pressure_sensor_waits_until_its_medium_is_known() {
     let limits = Limits { amphibious: Some(Amphibious::YANG_2021), ..config().limits };
     let mut flight = Flight::new(MissionConfig { limits, pressure: Some(sensor), ..config() });
     flight.tick(&[Order::Start]);
-    // Half way between both expected pressures: readings that decide nothing.
+    // Halfway between the two expected pressures: such readings decide nothing.
     flight.pressure_pa = Some(0.5 * sensor.expected_pa(Medium::Underwater));
     flight.fly(30);
     assert_eq!(flight.pose, config().start);
@@ -512,7 +512,7 @@ fn a_robot_with_a_pressure_sensor_waits_until_its_medium_is_known() {
     let known: Vec<Medium> = flight.events.iter().filter_map(medium_of).collect();
     assert_eq!(known, [Medium::Underwater]);
     assert!(flight.pose.position.x > config().start.position.x + 0.1, "{:?}", flight.pose);
-    // Readings of dry floor count against those of before.
+    // Readings of dry floor must first outweigh the earlier readings.
     flight.pressure_pa = Some(0.0);
     flight.fly(60);
     let known: Vec<Medium> = flight.events.iter().filter_map(medium_of).collect();
@@ -668,7 +668,7 @@ fn contradicting_ranges_hold_the_robot_in_time_and_it_goes_on_when_they_agree() 
     let mut flight = Flight::new(MissionConfig { position_lost_hold_s: 2.0, ..config() });
     flight.tick(&[Order::Start]);
     flight.fly(10);
-    // Of four stations nobody can say which one is wrong.
+    // With four stations, it is impossible to identify the wrong one.
     flight.excess_range_m = vec![1.5];
     flight.fly(20);
     assert_eq!(flight.held_by(), Some(&HoldReason::RangesInconsistent), "within 2 s");

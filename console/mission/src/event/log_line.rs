@@ -344,7 +344,9 @@ fn order_text(order: &Order, stations: &[Station]) -> String {
         Order::DriveBack => "drive back".into(),
         Order::Abort => "end mission".into(),
         Order::Terminate => "end mission, by a signal to the process".into(),
-        Order::CheckPlanner => "check the planners, by the console: the process of one has ended".into(),
+        Order::CheckPlanner => {
+            "check the planners, ordered by the console: the process of one planner has ended".into()
+        }
         Order::ChoosePlanner(choice) => format!("change planner to {}", choice.id),
         Order::Shadow(choice) => format!("run planner {} in shadow", choice.id),
         Order::Promote => "promote the planner in shadow".into(),

@@ -6,7 +6,7 @@ use positioning::fix::{ellipse_95, position_covariance};
 use serde::{Deserialize, Serialize};
 use world::{Pose, Tool};
 
-/// Number of standard deviations that a normally distributed error stays within in 95 of 100 cases.
+/// A normally distributed error stays within this number of standard deviations in 95 of 100 cases.
 const NORMAL_95: f64 = 1.96;
 
 /// Difference, seconds, below which times count as equal: the same time can be computed in two different ways.
@@ -132,7 +132,7 @@ mod tests {
     use super::*;
     use world::Point;
 
-    /// A bar of 0.6 m on a robot of 0.3 m/s; the tool is on from 1 s to 3 s.
+    /// A track for a bar of 0.6 m on a robot that drives at 0.3 m/s at most. The tool is on from 1 s to 3 s.
     fn track(has_motion: bool) -> ToolTrack {
         let (file, sha256) = ("r.csv".to_owned(), String::new());
         ToolTrack {
@@ -159,7 +159,7 @@ mod tests {
         pose
     }
 
-    /// From where to where the tool passed, along the x axis.
+    /// The stretch that the tool passed over, from its start to its end along the x axis.
     fn passed(track: &mut ToolTrack, t_s: f64, x: f64) -> Option<(f64, f64)> {
         let (from, to) = track.visit(t_s, &at(x, 0.01, 0.05))?;
         Some((from.position.x, to.position.x))
@@ -170,7 +170,7 @@ mod tests {
         let mut track = track(true);
         let xs = [(0.0, 0.0), (0.5, 0.1), (1.0, 0.2), (1.5, 0.3), (3.0, 0.7), (3.5, 0.8)];
         let all = xs.map(|(t_s, x)| passed(&mut track, t_s, x));
-        // The stretch up to 1 s was passed with the tool off, only its end counts.
+        // The stretch up to 1 s was driven with the tool off, so only its end counts.
         assert_eq!(all, [None, None, Some((0.2, 0.2)), Some((0.2, 0.3)), Some((0.3, 0.7)), None]);
         assert_eq!(track.measured.on_for_s(), Some(2.0));
     }
@@ -179,7 +179,7 @@ mod tests {
     fn a_stretch_on_which_the_robot_may_have_strayed_counts_only_at_its_end() {
         let mut slow = track(true);
         assert_eq!(passed(&mut slow, 1.0, 0.0), Some((0.0, 0.0)));
-        // At its top speed it could have been 0.3 m off the line in these 2 s.
+        // At its maximum speed, the robot could have been 0.3 m off the line in these 2 s.
         assert_eq!(passed(&mut slow, 3.0, 0.0), Some((0.0, 0.0)));
         let mut sure = track(true);
         passed(&mut sure, 1.0, 0.0);

@@ -54,8 +54,8 @@ pub enum OfferEnd {
 impl fmt::Display for OfferEnd {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Passed => "robot passed its start point",
-            Self::TooLate => "it arrived after the robot had passed its start point",
+            Self::Passed => "robot passed the start of the plan",
+            Self::TooLate => "it arrived after the robot had passed its start",
             Self::TooLittleLeft => "too little of the current plan is left",
             Self::MapChanged => "the map has changed",
             Self::ZoneDrawn => "a no-go zone was drawn",

@@ -2,8 +2,9 @@
 //!
 //! Lengths, angles and shares are rounded to a millionth of their unit, covariances to four significant digits. Numbers
 //! are rounded once, where an event leaves the mission. As a result, the journal, the recording, the screen and the
-//! report contain the same numbers, and a tick takes a third of the bytes. Plans are not rounded, because the planners'
-//! answers are replayed from the journal. Commands are rounded before they are sent ([`crate::Sending::as_sent`]).
+//! report contain the same numbers, and the events of a tick take a third of the bytes that they would take otherwise.
+//! Plans are not rounded, because the planners' answers are replayed from the journal. Commands are rounded before they
+//! are sent ([`crate::Sending::as_sent`]).
 
 use super::{Event, EventKind, TetherContact};
 use crate::{ask::Said, way_back::WayBack};
@@ -229,7 +230,7 @@ mod tests {
         fn what_is_rounded_stays_as_it_is(x in -1e10..1e10_f64, exponent in -30..3_i32) {
             let x = x * 10_f64.powi(exponent);
             prop_assert_eq!(rounded(rounded(x)).to_bits(), rounded(x).to_bits());
-            // Half a step, and what a double of this size cannot hold.
+            // Half a rounding step, plus the rounding error of a double of this size.
             prop_assert!((rounded(x) - x).abs() <= 0.500_001e-6 + 2.0 * f64::EPSILON * x.abs());
             let towards = toward_zero(x);
             prop_assert_eq!(toward_zero(towards).to_bits(), towards.to_bits());

@@ -2,7 +2,7 @@
 //! point.
 //!
 //! Until the robot stands still, its centre stays within a sector of its present surroundings: it travels at most the
-//! stopping distance, in directions between its heading now and its heading at the standstill. The hull may touch a
+//! stopping distance, in directions between its heading now and its heading at the standstill. The hull could touch a
 //! scanned point that is closer to this sector than the hull's radius. Between two scans, the points are moved by the
 //! robot's odometry.
 
@@ -38,7 +38,7 @@ struct Sector {
 }
 
 impl Sector {
-    /// The smallest sector that contains the direction `from_rad` and those at these angles from it.
+    /// The smallest sector that contains the direction `from_rad` and the directions at these angles from it.
     fn around(way_m: f64, from_rad: f64, angles: &[f64]) -> Self {
         let low = angles.iter().copied().fold(0.0, f64::min);
         let high = angles.iter().copied().fold(0.0, f64::max);
@@ -131,7 +131,7 @@ impl<'a> Guard<'a> {
         Guarded { drive: slower(low), before: Some(before), is_late: false }
     }
 
-    /// The nearest point that a robot may come too close to if it follows a command for one tick and then brakes.
+    /// The nearest point that a robot could come too close to if it follows a command for one tick and then brakes.
     fn in_the_way(&self, momentum: &Momentum, drive: Drive) -> Option<(f64, f64)> {
         let hull_m = self.here.limits.radius_m;
         // A hull that passes beside a point may come closer to it than one that drives towards it: a robot along a wall
@@ -150,7 +150,7 @@ impl<'a> Guard<'a> {
         })
     }
 
-    /// Whether the hull may touch a point although the robot brakes as hard as it can.
+    /// Whether the hull could touch a point although the robot brakes as hard as it can.
     pub(crate) fn touches(&self, momentum: &Momentum) -> bool {
         let hull_m = self.here.limits.radius_m;
         let needed_m = |echo: &Echo| {
@@ -237,7 +237,7 @@ mod tests {
     /// A robot whose commands take effect after a number of ticks.
     struct Robot {
         here: Here,
-        /// The speed by the commands sent, as the mission knows it, and the true one.
+        /// The speed that follows from the commands sent, which is all that the mission knows, and the true speed.
         known: Momentum,
         real: Momentum,
         waiting: Vec<(Drive, Sent)>,
@@ -352,7 +352,8 @@ mod tests {
             robot.follow(ahead(0.8));
         }
         let at = |far_m: f64| [robot.here.pose.position + Vector::new(far_m, 0.0)];
-        // 0.16 m until the command to stand takes effect and 0.64 m of braking, with a hull of 0.2 m.
+        // The robot travels 0.16 m until the command to stop takes effect, and 0.64 m while it brakes; the hull has a
+        // radius of 0.2 m.
         let late = robot.guard(&at(0.7), ahead(0.8));
         assert!(late.is_late && late.drive == Drive::STILL, "{late:?}");
         let in_time = robot.guard(&at(1.02), ahead(0.8));

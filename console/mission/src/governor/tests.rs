@@ -21,7 +21,7 @@ fn here(pose: Pose, limits: Limits) -> Here {
     Here { pose, error_m: 0.0, limits }
 }
 
-/// A room of 8 by 6 m with a column and a bar in it.
+/// A room of 8 m by 6 m with a column and a bar in it.
 fn room() -> (Boundary, [Shape; 2]) {
     let corners = [(-4.0, -3.0), (4.0, -3.0), (4.0, 3.0), (-4.0, 3.0)];
     let wall = Boundary::Polygon { vertices: corners.map(|(x, y)| Point::new(x, y)).to_vec() };
@@ -42,7 +42,7 @@ fn solids((wall, shapes): &(Boundary, [Shape; 2])) -> Vec<Solid<'_>> {
 fn any_drive(motion: Motion) -> impl Strategy<Value = Drive> {
     (-2.0..2.0_f64, -3.0..3.0_f64).prop_map(move |(a, b)| match motion {
         Motion::Point => Drive::Velocity(Vector::new(a, b)),
-        // Mostly ahead, as planners do.
+        // Mostly ahead, like the commands of planners.
         Motion::Unicycle => Drive::Twist { v_m_per_s: a.abs() * a.signum().max(-0.3), w_rad_per_s: b },
     })
 }

@@ -43,7 +43,7 @@ pub enum HoldReason {
         /// Name of the zone.
         zone: String,
     },
-    /// The vehicle cannot be driven: the link is lost, a person drives by hand, or the vehicle reports a fault.
+    /// The vehicle cannot be driven: the link is lost, a person is driving by hand, or the vehicle reports a fault.
     Vehicle {
         /// The reason, as a clause.
         message: String,

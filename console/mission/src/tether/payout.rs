@@ -100,7 +100,7 @@ impl Payout {
 mod tests {
     use super::*;
 
-    /// Whether a cable counts as caught after five seconds of which the reel has paid out so much more than explained.
+    /// Whether a cable counts as caught after five seconds in which this much more has been paid out than expected.
     fn is_snagged(excess_m: f64, reel_length_m: f64) -> bool {
         let mut payout = Payout::default();
         let explained = Explained { length_m: 20.0, error_m: 0.1, points: 100 };

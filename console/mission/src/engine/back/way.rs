@@ -9,8 +9,8 @@ use world::{Obstacle, ObstacleId, Point, World, ZoneKind, polyline, shortest::No
 
 /// Maximum number of times that a search for a path may ask whether to go on.
 const MOST_STEPS: usize = 200_000;
-/// Overlap of the hull with an object, metres, from which a new way is searched for: found obstacles are placed with
-/// about this accuracy.
+/// Minimum overlap of the hull with an object, metres, at which a new way is searched for. Found obstacles are placed
+/// with about this accuracy.
 const DOUBT_M: f64 = 0.02;
 
 impl Known {
@@ -50,7 +50,7 @@ impl Known {
             there.drag_to(out);
             let is_caught = tether.is_snagged();
             let home = if is_caught {
-                // A no-go zone may have been drawn on the path driven since then.
+                // Since the robot drove along this path, a no-go zone may have been drawn across it.
                 there.way_out(&fenced, room_m).filter(|way| self.is_free_from_here(way))
             } else {
                 there.return_path(&fenced, room_m)
@@ -62,7 +62,7 @@ impl Known {
             .ok_or_else(|| "the hull does not fit through the return path along the tether".into())
     }
 
-    /// The path driven, backwards; `None` if the hull does not fit on all of it.
+    /// The path driven, backwards; `None` if the hull does not fit everywhere along it.
     fn retraced(&self, tether: &Tether) -> Option<Vec<Point>> {
         let room_m = self.config.limits.radius_m;
         let way: Vec<Point> = tether.way_driven().iter().rev().copied().collect();
@@ -86,7 +86,7 @@ impl Known {
         self.widest(way).ok_or(why)
     }
 
-    /// The path, beginning at the robot.
+    /// The path, with the robot's position as its first point.
     fn led_from_here(&self, mut path: Vec<Point>) -> Vec<Point> {
         path.insert(0, self.position());
         path.dedup_by(|next, before| (*next - *before).norm() < 1e-6);

@@ -60,8 +60,8 @@ impl Known {
         coverage
     }
 
-    /// The floor that both plans scan, and why a plan is not offered in place of the rest of the current path: it saves too
-    /// little, scans less floor, or is not safe for the tether.
+    /// Compares a plan with the rest of the current path. Returns the floor that each of them scans and, if the plan is
+    /// not offered, the reason: it saves too little, scans less floor, or is not safe for the tether.
     pub(super) fn judge_better(
         &self,
         way: &[Point],

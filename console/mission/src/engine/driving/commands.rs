@@ -25,7 +25,7 @@ pub(super) struct Arrived {
     ask: AskId,
     command: Command,
     said: Said,
-    /// The number of ticks that the robot stood still for this command, if it is the first of several late commands.
+    /// Present if this is the first of several late commands: the number of ticks for which the robot stood still.
     late_ticks: Option<u64>,
 }
 

@@ -12,7 +12,7 @@ use perception::{Perception, Sensor};
 use planner_api::Command;
 use world::{Point, Readings, Scan, scan::carried};
 
-/// Age, seconds, above which a scan does not guard the robot any more.
+/// Maximum age, seconds, of a scan that the guard can use.
 const SCAN_MAX_AGE_S: f64 = 0.5;
 /// Maximum number of ticks for which the robot has moved since its readings were taken.
 const READING_TICKS: usize = 1;
@@ -21,8 +21,8 @@ const FIRST_WITHIN_S: f64 = 2.0;
 /// Distance, metres, that is added to the stopping distance at full speed; points farther from the hull than the sum
 /// are dropped. It is longer than the robot travels before its scan is too old.
 const KEPT_M: f64 = 2.0;
-/// Number of ticks in a row, each with a point that the hull may touch although the robot brakes, after which the robot
-/// is held. A single such tick may be noise; the robot brakes at once in any case.
+/// The robot is held after this many ticks in a row in which the hull could touch a point although the robot brakes. A
+/// single such tick may be noise; the robot brakes at once in any case.
 const LATE_TICKS: u32 = 2;
 /// The robot is held if the guard has kept it from moving for this long, seconds.
 const BLOCKED_S: f64 = 2.0;
@@ -36,8 +36,8 @@ const NAMED_AFTER_S: f64 = 0.5;
 pub(in crate::engine) struct ScanGuard {
     /// The points of the last scan, in the robot frame now.
     points: Vec<Point>,
-    /// The same with less noise, if the noise of the scanner is known. The robot brakes for every single point, but noise
-    /// does not hold it.
+    /// The same points with less noise, if the noise of the scanner is known. The robot brakes for every single point,
+    /// but noise alone does not hold the robot.
     evened: Option<Vec<Point>>,
     /// Whether a scan has arrived.
     has_scan: bool,
@@ -162,7 +162,7 @@ pub(crate) fn side(direction_rad: f64) -> &'static str {
 }
 
 impl Mission {
-    /// Holds a moving robot that the guard has stopped; only an order ends that hold. Returns whether it has.
+    /// Holds a moving robot that the guard has stopped; only an order ends that hold. Returns whether it was held.
     pub(in crate::engine) fn hold_by_guard(&mut self) -> bool {
         if !self.known.is_running() {
             return false;

@@ -11,9 +11,9 @@ use world::{
 /// Distance from the end of a return path within which the plan that follows counts as begun, metres.
 pub(in crate::engine) const HOME_M: f64 = 0.3;
 
-/// Distance from the end of a cut up to which the cut is extended into a solid object, as a multiple of the clearance
-/// that the hull needs. The multiple allows for the outlines of planners, which are slightly larger than the exact
-/// outlines.
+/// A cut is extended into a solid object that is at most this far from its end. The distance is a multiple of the
+/// clearance that the hull needs; the multiple allows for the outlines that planners use, which are slightly larger
+/// than the exact outlines.
 const ROOT_SHARE: f64 = 1.1;
 /// Length of that extension inside the solid object, metres.
 const ROOT_M: f64 = 0.01;
@@ -123,7 +123,8 @@ mod tests {
     use super::*;
     use world::{Obstacle, ObstacleId, Shape};
 
-    /// A column of radius 0.3 m in the middle, room for a hull of 0.3 m about it, and a cut from there to the east.
+    /// A tank with a column of radius 0.3 m in the middle. The cut begins at the edge of the clearance around the
+    /// column (0.3 m) and runs east.
     fn strays(ways: &[(f64, f64)]) -> bool {
         let shape = Shape::Disc { center: Point::origin(), radius_m: 0.3 };
         let column = Obstacle { id: ObstacleId(0), name: "C".into(), shape, known: true };

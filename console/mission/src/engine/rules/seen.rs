@@ -23,7 +23,7 @@ pub(in crate::engine) struct Seen<'a> {
     pub here: Point,
     pub position: PositionTrust,
     pub task: &'a Task,
-    /// Length left of the planner's path or of the way back, metres, if there is one.
+    /// Remaining length of the planner's path or of the way back, metres, if there is one.
     pub plan_left_m: Option<f64>,
     /// Whether the robot has reached the end of the way back.
     pub is_back: bool,

@@ -1,4 +1,4 @@
-//! Answers that come when they come: the mission waits for none of them, and the journal repeats every one.
+//! Answers that arrive at any time: the mission does not wait for them, and the journal reproduces each of them.
 
 use super::{covering::covering, shadow::shadow, *};
 use crate::{Awaits, FoldedStanding, event::RecordedAnswers};
@@ -87,7 +87,7 @@ fn two_planners_have_asks_open_at_once_and_the_one_before_drives_on() {
     flight.delay = Box::new(|ask, _| if matches!(ask.what, What::Plan(_)) { 5 } else { 0 });
     flight.tick(&[swap_to("other")]);
     assert_eq!(flight.mission.awaits(), Awaits::Candidate);
-    // While the other one plans, the robot goes on with the planner and the plan that it has.
+    // While the other planner plans, the robot continues with its current planner and plan.
     flight.delay = step_delay(1, 0, u64::MAX);
     flight.tick(&[Order::Resume]);
     let workers: Vec<_> = flight.open.iter().map(|(_, ask)| ask.id.worker).collect();
@@ -167,12 +167,12 @@ fn a_plugin_that_fails_three_times_within_a_minute_may_not_drive_again() {
     assert_eq!(flight.ended(), Some(Outcome::Complete));
 }
 
-/// The answers of a journal, fed into another mission in the ticks in which they arrived.
+/// Replays the answers of a journal in another mission, in the ticks in which they arrived.
 pub(super) fn replay(config: MissionConfig, recorded: &Flight) -> Vec<Event> {
     replay_asking(config, recorded, |_| {})
 }
 
-/// The same, with what is asked.
+/// Does the same, and passes each ask to `hear`.
 pub(super) fn replay_asking(
     config: MissionConfig,
     recorded: &Flight,
@@ -216,14 +216,14 @@ fn order(n: u8) -> Order {
     }
 }
 
-/// How far the operator's orders let the robot move.
+/// How far the operator's orders allow the robot to move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Leave {
-    /// Not at all: the last order was a hold, or the choice of another planner.
+    /// Not at all: the last order was HOLD, or chose another planner.
     None,
     /// For one command.
     OneTick,
-    /// Until it is held.
+    /// Until the robot is held.
     Steady,
 }
 
@@ -243,8 +243,8 @@ impl Leave {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Delays, losses, faults and orders at random: the robot moves only while it runs and only as far as orders let it,
-    /// HOLD stops it in its tick, no worker has two open asks, and the journal repeats to the bit.
+    /// Delays, losses, faults and orders at random: the robot moves only while it runs, and only as far as orders
+    /// allow; HOLD stops it in the same tick; no worker has two open asks; and the journal repeats byte for byte.
     #[test]
     fn whatever_arrives_when_the_rules_hold_and_the_journal_repeats(
         covers in any::<bool>(),
@@ -258,7 +258,7 @@ proptest! {
     ) {
         let config = if covers { covering() } else { config() };
         let fallback = PlannerChoice { id: "fallback".into(), parameters: Parameters::new() };
-        // Odometry alone is soon not good enough, so that ranges that stay away lose the position.
+        // The error of the odometry grows quickly, so the position is lost if ranges are missing.
         let config = MissionConfig { fallback: has_fallback.then_some(fallback), odometry_sigma_per_m: 0.3, ..config };
         let mut flight = Flight::new(config.clone());
         flight.planner.has_stiff_gain = has_stiff_gain;

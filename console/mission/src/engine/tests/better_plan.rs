@@ -1,4 +1,4 @@
-//! A plan for all that is left, made while a repaired one is flown.
+//! A plan for the rest of the task, made while a repaired plan is in use.
 
 use super::{
     super::role::Role,
@@ -13,7 +13,7 @@ use crate::{
 use planner_api::Reason;
 use proptest::prelude::*;
 
-/// A mission over the floor whose plans up to the repair waste a lot of way.
+/// A coverage mission in which the plans up to the repair are much longer than necessary.
 fn wasteful(better_plan: BetterPlan) -> MissionConfig {
     MissionConfig { better_plan, time_limit_s: 5000.0, ..covering() }
 }
@@ -25,7 +25,7 @@ fn flight(config: MissionConfig) -> Flight {
     flight
 }
 
-/// Flies on with columns that are seen from two metres on.
+/// Continues past columns that are seen from a distance of two metres.
 fn fly_past(flight: &mut Flight, columns: &[Point], ticks: usize) {
     for _ in 0..ticks {
         let robot_from_tank = flight.pose.tank_from_robot().inverse();
@@ -46,7 +46,7 @@ fn fly_past(flight: &mut Flight, columns: &[Point], ticks: usize) {
 
 const COLUMN: Point = Point::new(0.0, -2.5);
 
-/// Past one column to the end.
+/// A complete mission past one column.
 fn flown(config: &MissionConfig) -> Flight {
     let mut flight = flight(config.clone());
     fly_past(&mut flight, &[COLUMN], 40_000);
@@ -57,7 +57,7 @@ fn flown(config: &MissionConfig) -> Flight {
     flight
 }
 
-/// Until a better plan is offered.
+/// A mission up to the offer of a better plan.
 fn with_offer() -> Flight {
     let mut flight = flight(wasteful(BetterPlan::Offer));
     for _ in 0..4000 {
@@ -75,7 +75,7 @@ fn folded(flight: &Flight) -> FoldedStanding {
     folded
 }
 
-/// What was said of better plans, each with its tick.
+/// The log lines about better plans, each with its tick.
 fn better_events(flight: &Flight) -> Vec<(u64, String)> {
     let of = |event: &Event| match &event.kind {
         EventKind::BetterPlanned { .. }
@@ -138,7 +138,7 @@ fn an_offer_that_nobody_takes_ends_where_the_plan_begins() {
     assert_eq!(folded(&flight).standing().offer, Some(OfferStage::Offered));
     fly_past(&mut flight, &[COLUMN], 4000);
     let [.., last] = &texts(&flight)[..] else { panic!() };
-    assert_eq!(last, "offer ended: robot passed its start point");
+    assert_eq!(last, "offer ended: robot passed the start of the plan");
     assert_eq!((flight.closed.as_slice(), flight.planner.plans), (&[WorkerId(2)][..], 3));
     assert!(refusal(&flight.tick(&[Order::TakePlan])).is_some_and(|why| why == "no better plan is offered"));
 }
@@ -193,7 +193,7 @@ fn a_plan_that_scans_less_is_not_offered() {
     assert!(said.contains("m² less"), "{said}");
 }
 
-/// Until the third plan is being made, which takes its time.
+/// A mission up to the third plan, whose answer is delayed.
 fn while_it_is_made(config: MissionConfig) -> Flight {
     let mut flight = flight(config);
     flight.delay = Box::new(|ask, _| {
@@ -219,7 +219,7 @@ fn a_plan_that_is_not_there_in_time_is_given_up_and_the_robot_never_waits_for_it
         stood += usize::from(flight.pose == before);
     }
     let [said] = &texts(&flight)[..] else { panic!("{:?}", texts(&flight)) };
-    let late = "it arrived after the robot had passed its start point";
+    let late = "it arrived after the robot had passed its start";
     assert_eq!(*said, format!("better plan of straight dropped: {late}"));
     assert_eq!((stood, flight.closed.as_slice()), (0, &[WorkerId(2)][..]));
 }
@@ -228,7 +228,7 @@ fn a_plan_that_is_not_there_in_time_is_given_up_and_the_robot_never_waits_for_it
 fn another_find_drops_what_is_being_made_and_after_its_repair_one_is_made_anew() {
     let mut flight = while_it_is_made(wasteful(BetterPlan::Take));
     flight.delay = Box::new(|_, _| 0);
-    // On a lane to come, with room for the hull on all sides.
+    // On a lane that has not been driven yet, with room for the hull on all sides.
     let ahead = Point::new(-1.5, -3.3);
     fly_past(&mut flight, &[COLUMN, ahead], 1000);
     assert_eq!(texts(&flight)[0], "better plan of straight dropped: the map has changed");
@@ -344,7 +344,7 @@ fn a_turn_at_the_joint_counts_for_both() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Delays and orders at random: the journal repeats to the bit, and what is offered is known to everybody.
+    /// Delays and orders at random: the journal repeats byte for byte, and all readers know whether a plan is offered.
     #[test]
     fn the_journal_repeats_better_plans(
         takes in any::<bool>(),

@@ -1,4 +1,5 @@
-//! A robot that brakes instead of stopping dead: what it passes after HOLD counts, and everybody who reads the events finds it.
+//! A robot that brakes instead of stopping instantly: the floor that it passes over after HOLD counts, and every reader
+//! of the events computes the same floor.
 
 use super::{covering::covering, *};
 use crate::{FoldedStanding, Passage};
@@ -6,7 +7,7 @@ use positioning::fix::{ellipse_95, position_covariance};
 use proptest::prelude::*;
 use std::collections::BTreeSet;
 
-/// What the events of a flight claim as scanned, and what a reader finds passed where it counted; cells.
+/// The cells that the events of a run report as scanned, and the cells that a reader computes from the poses.
 #[derive(Default)]
 struct Read {
     claimed: BTreeSet<usize>,
@@ -43,7 +44,7 @@ impl Read {
     }
 }
 
-/// Waits, starts, and is held after each of some spans of ticks until it stands.
+/// Waits, starts, and is held after each of these numbers of ticks until it stands still.
 fn held_after(spans: &[usize], braking_m_per_s2: f64, config: &MissionConfig) -> Flight {
     let mut flight = Flight::new(config.clone());
     flight.braking_m_per_s2 = braking_m_per_s2;
@@ -67,7 +68,8 @@ fn floor_that_a_held_robot_passes_while_it_brakes_counts() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// A cell counts as scanned only where every reader of the events finds that the tool passed it, and that this counts.
+    /// A cell counts as scanned only if every reader of the events finds that the tool passed over it, at a place that
+    /// counts.
     #[test]
     fn every_cell_that_counts_was_passed_where_it_counts(
         spans in prop::collection::vec(1_usize..80, 1..5),

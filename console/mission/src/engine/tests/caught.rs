@@ -1,4 +1,5 @@
-//! A tether that snags on something that nobody has drawn or seen: the reel reveals it, and the robot goes back and frees it.
+//! A tether that catches on an unseen object that is not on the drawing: the reel reveals it, and the robot goes back
+//! and frees the tether.
 
 use super::{
     covering::covering,
@@ -9,7 +10,7 @@ use crate::{config::TetherConfig, event::TetherAlarm};
 use planner_api::LegTag;
 use world::{Shape, tether};
 
-/// Stands between two lanes.
+/// A small column between two lanes.
 const UNSEEN: Shape = Shape::Disc { center: Point::new(0.0, 2.05), radius_m: 0.05 };
 
 fn snags(flight: &Flight) -> Vec<String> {
@@ -33,7 +34,7 @@ fn cable(anchor: Point, unseen: &[Shape]) -> Option<Cable> {
     Cable::new(anchor, &drawing().boundary, unseen).ok()
 }
 
-/// A flight of which the reel pays out so much more than the map explains, for some ticks.
+/// A mission in which, for some ticks, the reel pays out more than the map explains, by `more_m` metres.
 fn caught(config: MissionConfig, more_m: f64, ticks: usize) -> Flight {
     let mut flight = Flight::new(config);
     flight.reel = cable(Point::new(-3.0, 0.0), &[]);
@@ -85,7 +86,7 @@ fn the_reel_ends_by_what_it_has_paid_out() {
     assert!(free_m.fold(f64::INFINITY, f64::min) < 0.0);
 }
 
-/// Scans the floor with a column on it that is seen within some metres once the cable has caught on it.
+/// Scans a floor with a column that is seen from `seen_m` metres once the cable has caught on it.
 fn scan_round_unseen_column(seen_m: f64) -> Flight {
     let anchor = covering().start.position;
     let limits = tether::Limits { reel_length_m: 50.0, wrap_max_rad: 50.0, wrap_total_max_rad: 50.0 };
@@ -114,7 +115,7 @@ fn a_caught_cable_is_freed_on_the_way_back() {
         _ => None,
     });
     assert_eq!(legs.collect::<Vec<_>>(), [LegTag::Retract; 2]);
-    // Caught for the third time in one place, with nobody there to look after it.
+    // The cable caught for the third time at one place, and no operator is present.
     assert_eq!((snags(&flight).len(), eased(&flight), flight.ended()), (3, 2, Some(Outcome::Entangled)));
 }
 
@@ -128,7 +129,8 @@ fn what_the_cable_has_caught_on_is_planned_for_once_it_is_seen() {
     assert!(flight.events.iter().any(is_again));
 }
 
-/// The reasons for plans after a column is found across the cable, far from the lanes that are left.
+/// The reasons for the plans that are made after a column has been found across the cable, far from the remaining
+/// lanes.
 fn plans_for_column_across_cable(wrap_max_rad: f64) -> Vec<Reason> {
     let anchor = covering().start.position;
     let limits = tether::Limits { reel_length_m: 50.0, wrap_max_rad, wrap_total_max_rad: 50.0 };
@@ -154,6 +156,6 @@ fn plans_for_column_across_cable(wrap_max_rad: f64) -> Vec<Reason> {
 #[test]
 fn a_column_found_beside_the_lanes_is_planned_for_if_the_cable_will_not_bear_it() {
     let first = |wrap_max_rad| plans_for_column_across_cable(wrap_max_rad).first().cloned();
-    // The lanes to come wind the cable round it by about 55 degrees.
+    // The remaining lanes wind the cable round the column by about 55 degrees.
     assert_eq!((first(0.5), first(1.5)), (Some(Reason::MapChanged), None));
 }

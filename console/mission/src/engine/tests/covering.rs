@@ -1,11 +1,13 @@
-//! Coverage missions: lanes up and down, home again, also round what nobody drew.
+//! Coverage missions: lanes in alternate directions, the return to the anchor, and the path round obstacles that are
+//! not on the drawing.
 
 use super::*;
 use planner_api::{Leg, LegTag};
 use world::ObstacleMap;
 
-/// Straight lanes over the regions, or over everything, from one to the next along the wall; round what stands in the way they
-/// go on its nearer side. With a lap along the wall at the end, which lanes reach with their ends only.
+/// Straight lanes over the regions or, without regions, over all floor. The path from one lane to the next leads along
+/// the wall. Lanes pass obstacles on the nearer side. A lap along the wall at the end is optional; the lanes reach the
+/// wall only with their ends.
 pub(super) fn lanes(request: &PlanAsk, anchor: Point, has_lap: bool) -> Plan {
     let wall_m = 5.0 - request.site.limits.radius_m - request.site.clearance_m;
     let mut path = vec![request.start.position];
@@ -38,14 +40,14 @@ pub(super) fn lanes(request: &PlanAsk, anchor: Point, has_lap: bool) -> Plan {
     Plan { path, complete: true, legs, ..Plan::default() }
 }
 
-/// One leg more of a path.
+/// Adds one leg to a path.
 fn leg(path: &mut Vec<Point>, legs: &mut Vec<Leg>, tag: LegTag, extend: impl FnOnce(&mut Vec<Point>)) {
     let first = path.len() - 1;
     extend(path);
     legs.push(Leg { tag, first, last: path.len() - 1 });
 }
 
-/// Goes on to a place, along the wall between places at it, and round what stands in the way.
+/// Leads the path to a place: along the wall if both ends are at the wall, and round obstacles.
 fn go_on(path: &mut Vec<Point>, request: &PlanAsk, to: Point) {
     let from = path[path.len() - 1];
     let n = ((to - from).norm() / 0.1).ceil().max(1.0) as u32;
@@ -58,7 +60,7 @@ fn go_on(path: &mut Vec<Point>, request: &PlanAsk, to: Point) {
     path.push(to);
 }
 
-/// The same lanes, each of them driven there, back and there again.
+/// The same lanes, with each lane driven forward, back and forward again.
 pub(super) fn wasteful(lanes: &Plan) -> Plan {
     let mut plan = Plan { path: vec![lanes.path[0]], legs: vec![], ..lanes.clone() };
     for leg in &lanes.legs {
@@ -73,7 +75,7 @@ pub(super) fn wasteful(lanes: &Plan) -> Plan {
     plan
 }
 
-/// The same lanes but the last one.
+/// The same lanes without the last one.
 pub(super) fn without_last_lane(mut lanes: Plan) -> Plan {
     let (Some(home), Some(swath)) = (lanes.legs.pop(), lanes.legs.pop()) else { return lanes };
     lanes.path.drain(swath.first + 1..home.last);
@@ -91,7 +93,7 @@ fn is_wanted(request: &PlanAsk, point: Point) -> bool {
     regions.is_empty() || regions.iter().any(is_near)
 }
 
-/// Circles round what stands in the way, wide enough for the hull.
+/// Circles around the obstacles and zones, large enough for the hull.
 fn kept_clear(request: &PlanAsk) -> impl Iterator<Item = (Point, f64)> {
     let room_m = request.site.limits.radius_m + request.site.clearance_m + 0.05;
     let drawn = request.site.obstacles.iter().map(|obstacle| &obstacle.outline);
@@ -103,7 +105,7 @@ fn kept_clear(request: &PlanAsk) -> impl Iterator<Item = (Point, f64)> {
     })
 }
 
-/// The place, or the nearest to it that is far enough from what stands there.
+/// The place itself or, if an obstacle is too close to it, the nearest place that is far enough away.
 fn beside(request: &PlanAsk, point: Point) -> Point {
     let blocking = kept_clear(request).find(|(center, reach_m)| (point - center).norm() < *reach_m);
     blocking.map_or(point, |(center, reach_m)| center + (point - center).normalize() * reach_m)
@@ -259,7 +261,7 @@ fn a_plan_that_scans_nothing_of_what_is_asked_is_refused_with_the_reason() {
     flight.planner.leads_nowhere = true;
     flight.tick(&[Order::Start]);
     flight.fly(5);
-    // No matter of the tether: flying it all the same would not be a remedy.
+    // The tether is not the reason, so running the plan uncertified is not the remedy.
     let Some(HoldReason::PlannerFault { message }) = flight.held_by() else {
         panic!("{:?}", flight.mission.phase())
     };
@@ -312,7 +314,7 @@ fn whatever_changes_plans_is_on_the_map_by_which_they_are_checked() {
     let pose = covering().start;
     let mut silent = 0;
     for tick in 0..60_u32 {
-        // Something drives for three seconds, and stops.
+        // An obstacle moves for three seconds, and then stops.
         let x = 0.033 * f64::from(tick.min(31));
         let shape_in_robot = Shape::Disc { center: Point::new(x, 0.0), radius_m: 0.2 };
         let seen =

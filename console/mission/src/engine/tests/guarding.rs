@@ -22,7 +22,7 @@ fn gap_m(flight: &Flight) -> f64 {
     discs.iter().map(gap_m).fold(f64::INFINITY, f64::min)
 }
 
-/// A robot that drives, and an object that only the scan shows, ahead of it.
+/// A moving robot, and an object ahead of it that only the scan shows.
 fn before_an_object(config: MissionConfig) -> Flight {
     let mut flight = guarded(config);
     flight.tick(&[Order::Start]);

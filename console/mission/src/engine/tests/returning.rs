@@ -1,10 +1,10 @@
-//! The robot drives back by order, without a planner; and a hull in a no-go zone is held.
+//! The robot drives back by order, without a planner, and is held if its hull is in a no-go zone.
 
 use super::{arrivals::replay, covering::covering, tethered::tethered, *};
 use crate::{Home, event::TetherAlarm};
 use world::{Zone, ZoneKind};
 
-/// A robot that is held under way.
+/// A robot that is held during its mission.
 fn held(config: MissionConfig, ticks: usize) -> Flight {
     let mut flight = Flight::new(config);
     flight.tick(&[Order::Start]);
@@ -25,7 +25,7 @@ fn has(events: &[EventKind], is_kind: impl Fn(&EventKind) -> bool) -> bool {
     events.iter().any(is_kind)
 }
 
-/// A zone that nobody checked, around a place.
+/// Draws a zone around a place without any check.
 fn draw_around(flight: &mut Flight, at: Point, half_m: f64) {
     let half = Vector::new(half_m, half_m);
     let shape = Shape::Polygon { vertices: world::shape::rectangle(at - half, at + half) };

@@ -1,4 +1,4 @@
-//! A planner in shadow: it takes over without a hold, and whatever it does moves nothing.
+//! A planner in shadow: it takes over without a hold, and moves nothing before that.
 
 use super::{arrivals::replay, covering::covering, tethered::tethered, *};
 use crate::ask::WorkerId;
@@ -8,7 +8,7 @@ pub(super) fn shadow(id: &str) -> Order {
     Order::Shadow(PlannerChoice { id: id.into(), parameters: Parameters::new() })
 }
 
-/// Round the tank many times.
+/// A mission of many rounds through the tank.
 fn rounds(n: usize) -> MissionConfig {
     let angle = |k: usize| std::f64::consts::PI + std::f64::consts::TAU * k as f64 / 48.0;
     let path = (0..48 * n).map(|k| Point::new(3.0 * angle(k).cos(), 3.0 * angle(k).sin())).collect();
@@ -141,7 +141,8 @@ fn a_robot_that_has_left_the_plan_gets_another_one_first_and_never_stands() {
     let mut flight = Flight::new(covering());
     flight.tick(&[Order::Start]);
     flight.fly(300);
-    // The shadow would begin the floor again from another corner: its plans lead away at once.
+    // The planner in shadow would begin the floor again from another corner, so its plans lead away from the robot's
+    // position.
     flight.tick(&[shadow("other")]);
     flight.delay = Box::new(|ask, _| if matches!(ask.what, What::Plan(_)) { 15 } else { 0 });
     flight.fly(150);
@@ -205,7 +206,8 @@ fn a_shadow_that_is_dropped_or_replaced_is_closed() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
-    /// Late, silent or failing: a run with a shadow is the run without it, less what the shadow did.
+    /// Whether the planner in shadow is late, silent or failing, a run with it is the same as a run without it, apart
+    /// from the events of the shadow.
     #[test]
     fn a_shadow_moves_nothing(
         covers in any::<bool>(),

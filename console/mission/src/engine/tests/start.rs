@@ -1,4 +1,4 @@
-//! A start belongs to the plan that was seen.
+//! A start order names the plan that the operator saw.
 
 use super::arrivals::replay;
 use super::covering::covering;
@@ -57,7 +57,7 @@ fn a_start_is_refused_until_there_is_a_plan_and_then_names_it() {
 fn a_start_names_no_plan_that_was_made_before() {
     let mut flight = Flight::new(seen());
     let first = planned(&mut flight);
-    // Another planner: its plan is as long, and is another one.
+    // A plan of the same length by another planner is a different plan.
     flight.tick(&[swap_to("other")]);
     let between = flight.tick(&[Order::StartPlan(first)]);
     assert_eq!(refusal(&between), Some("there is no plan to start with; make one first"));
@@ -65,7 +65,7 @@ fn a_start_names_no_plan_that_was_made_before() {
     let refused = flight.tick(&[Order::StartPlan(first)]);
     let expected = Refusal::OtherPlan { seen: Some(first), ready: second }.to_string();
     assert_eq!(refusal(&refused), Some(expected.as_str()));
-    // Made again, a plan that is the same is the one that was seen.
+    // If the same plan is made again, it counts as the plan that the operator saw.
     assert_eq!(planned(&mut flight), second);
     assert_eq!(refusal(&flight.tick(&[Order::StartPlan(second)])), None);
 }
@@ -113,14 +113,14 @@ fn a_plan_that_may_not_be_run_and_a_planner_that_fails_say_why() {
 fn where_nobody_looks_on_a_mission_begins_without_a_plan_that_was_seen() {
     let mut flight = Flight::new(config());
     assert_eq!(refusal(&flight.tick(&[Order::Start])), None);
-    // A start that names a plan is accepted, too: journals of today's console are replayed by the same rule.
+    // A start order that names a plan is accepted, too: journals of the current console are replayed by the same rule.
     let mut flight = Flight::new(seen());
     let plan = planned(&mut flight);
     let mut other = Flight::new(config());
     assert_eq!(refusal(&other.tick(&[Order::StartPlan(plan)])), None);
 }
 
-/// What an operator orders before the start; a start names the plan that was ready so many ticks ago.
+/// The operator's orders before the start; a start order names the plan that was ready a number of ticks ago.
 fn order(n: u8, plans: &[Option<PlanId>]) -> Order {
     let before = |ticks: usize| plans.iter().rev().nth(ticks).copied().flatten();
     match n % 9 {
@@ -137,8 +137,8 @@ fn order(n: u8, plans: &[Option<PlanId>]) -> Order {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Whatever is ordered before the start, however late answers come and whatever fails: a mission begins only with the plan
-    /// that the screen shows, by the events alone, and the journal repeats to the bit.
+    /// Whatever is ordered before the start, however late the answers are and whatever fails: a mission begins only
+    /// with the plan that the events show on the screen, and the journal repeats byte for byte.
     #[test]
     fn a_mission_begins_with_the_plan_that_the_events_show(
         covers in any::<bool>(),

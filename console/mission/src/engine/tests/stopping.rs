@@ -1,5 +1,5 @@
-//! Stopping has no exception: whatever the mission does and waits for, HOLD keeps the robot still from the tick in which it
-//! arrives, and nothing but an order lets it move again.
+//! Stopping has no exception: whatever the mission is doing, HOLD stops the robot in the tick in which it arrives, and
+//! only an order lets the robot move again.
 
 use super::{covering::covering, tethered::tethered, *};
 use crate::{
@@ -7,7 +7,7 @@ use crate::{
     phase::{Resumes, StepTo},
 };
 
-/// A flight in some state, with whatever would let the robot move again if nobody held it.
+/// A mission in some state, together with a function that would let the robot move again if HOLD had not been ordered.
 struct Case {
     name: &'static str,
     flight: Flight,
@@ -58,7 +58,8 @@ fn alarmed() -> Flight {
     flight
 }
 
-/// Held because the hull does not fit back along the cable; the hold ends when it does.
+/// A mission that is held because the hull does not fit through the return path along the cable; the hold ends as soon
+/// as the hull fits.
 fn without_return_path() -> Flight {
     let mut flight = started(tethered(20.0));
     let hold =
@@ -102,7 +103,8 @@ fn cases() -> Vec<Case> {
     ]
 }
 
-/// What ways to stop give the mission: HOLD for every key and signal, and the end for leaving.
+/// All ways to stop give the mission one of two orders: keys and signals give HOLD, and leaving the console gives the
+/// end of the mission.
 #[test]
 fn every_hold_stops_the_robot_in_its_tick_and_for_good() {
     for Case { name, mut flight, clear } in cases() {
@@ -161,7 +163,7 @@ fn a_hold_that_only_an_order_ends_keeps_its_reason() {
     assert!(matches!(flight.held_by(), Some(HoldReason::Stuck { .. })));
 }
 
-/// A single step, then something that holds the robot for a while: it stays after that one step.
+/// A single step is interrupted by a hold: when that hold ends, the robot remains held.
 #[test]
 fn a_single_step_that_is_interrupted_by_a_hold_does_not_become_a_run() {
     let mut flight = silent_planner();
@@ -175,7 +177,8 @@ fn a_single_step_that_is_interrupted_by_a_hold_does_not_become_a_run() {
     assert!(!flight.mission.phase().may_move(), "{:?}", flight.mission.phase());
 }
 
-/// The operator held the robot and changed planners: one that fails then leaves it to the operator, too.
+/// The operator held the robot and changed planners; if the new planner fails, the operator decides, not the fallback
+/// rule.
 #[test]
 fn a_fault_while_only_an_order_ends_the_hold_does_not_hand_over_to_the_fallback() {
     let mut flight = started(fallback());
@@ -241,7 +244,7 @@ fn a_candidate_that_the_fallback_displaces_is_reported() {
     assert_eq!(count(&flight, is_reported), 1);
 }
 
-/// A planner that takes long to open is not a robot that is stuck.
+/// A planner that takes long to open does not count as a robot that is stuck.
 #[test]
 fn a_robot_that_waits_for_a_planner_to_open_is_not_stuck() {
     let is_open = |ask: &Ask| matches!(ask.what, What::Open { .. });
@@ -250,7 +253,8 @@ fn a_robot_that_waits_for_a_planner_to_open_is_not_stuck() {
     assert_eq!(flight.mission.phase(), &Phase::Running(Gait::Steady));
 }
 
-/// A plan that a new obstacle made due is not a reason to let go of a planner that is well, for one that may not even open.
+/// A new plan that is due because of an obstacle is no reason to close a working planner in favour of one that may not
+/// even open.
 #[test]
 fn a_planner_that_is_well_stays_when_the_chosen_one_cannot_be_opened() {
     let mut flight = started(config());
@@ -287,7 +291,7 @@ fn a_step_ends_after_a_metre_without_lanes_and_goes_on_until_something_happens()
     assert!(matches!(flight.mission.phase(), Phase::Held(hold) if hold.resumes.is_never()));
 }
 
-/// A hold that was to end by itself: who makes a station fail, or excludes one, does not let the robot go by it.
+/// A hold that would have ended automatically: making a station fail, or excluding one, does not release the robot.
 #[test]
 fn what_changes_the_ranges_of_a_held_robot_leaves_it_to_an_order() {
     let station = StationId(1);

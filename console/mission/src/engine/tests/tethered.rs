@@ -1,4 +1,5 @@
-//! The tether in flight: plans are certified, limits hold the robot, and the tether wraps what is found on the way as it was driven.
+//! The tether during a mission: plans are certified, limits hold the robot, and the tether passes newly found obstacles
+//! on the side on which the robot drove past them.
 
 use super::*;
 use crate::{
@@ -65,7 +66,7 @@ fn a_plan_that_cannot_be_certified_is_refused_until_the_operator_says_otherwise(
     let mut config = tethered(20.0);
     config.tether.as_mut().unwrap().allow_uncertified = false;
     config.tether.as_mut().unwrap().limits.reel_length_m = 4.0;
-    // The way to the goal is longer than the reel.
+    // The path to the goal is longer than the tether.
     let refused_flight = |config: &MissionConfig| {
         let mut flight = Flight::new(config.clone());
         flight.planner.plans_to_goal = true;
@@ -88,7 +89,7 @@ fn a_plan_that_cannot_be_certified_is_refused_until_the_operator_says_otherwise(
         "{events:?}"
     );
     assert!(refusal(&flight.tick(&[Order::FlyUncertified])).is_some_and(|why| why.contains("no plan")));
-    // The refused plan of a planner that was chosen instead can be flown as well.
+    // The refused plan of a planner that was chosen later can be run as well.
     let mut flight = refused_flight(&config);
     flight.tick(&[Order::Start]);
     flight.tick(&[swap_to("other")]);
@@ -117,7 +118,7 @@ fn an_obstacle_found_across_the_cable_is_passed_on_the_side_that_was_driven() {
         for way in [(-1.0, 1.0), (0.0, 1.5), (1.0, 1.0), (3.0, 0.0)] {
             tether.drag_to(Point::new(way.0, way.1 * side));
         }
-        // The taut line lies right over it; the way driven knows better.
+        // The taut line passes right over the obstacle; only the path driven shows on which side it lies.
         world.obstacles.push(column(0.05 * side));
         tether.lay_again(&world);
         let map = world::ObstacleMap::new(&world.boundary, &world.obstacles);
@@ -128,7 +129,7 @@ fn an_obstacle_found_across_the_cable_is_passed_on_the_side_that_was_driven() {
     }
 }
 
-/// Any wrap and length will do.
+/// Limits of the tether that no plan in these tests reaches.
 pub(super) fn loosely_tethered() -> MissionConfig {
     let mut config = MissionConfig { attended: false, ..tethered(99.0) };
     let limits = &mut config.tether.as_mut().unwrap().limits;
@@ -136,7 +137,7 @@ pub(super) fn loosely_tethered() -> MissionConfig {
     config
 }
 
-/// Flies with a barrier across the tank behind the robot, shifted north by some metres.
+/// Runs the mission with a barrier across the tank behind the robot, shifted north by some metres.
 fn fly_before_barrier(flight: &mut Flight, ticks: usize, shift_m: impl Fn(usize) -> f64) {
     for tick in 0..ticks {
         let ends = [-6.0, 6.0].map(|y| Point::new(-1.5, y + shift_m(tick)) - flight.pose.position);
@@ -202,7 +203,7 @@ fn a_plan_that_is_refused_under_way_is_asked_for_again_after_a_way_home() {
     flight.tick(&[Order::Start]);
     flight.fly(900);
     assert!((flight.pose.position - anchor).norm() > 1.0);
-    // The next plan keeps to a cut right before the robot, across its cable.
+    // The cut of the next plan is directly in front of the robot, across its cable.
     flight.planner.cut = Some(vec![Point::new(-1.0, -4.1), Point::new(1.0, -4.1)]);
     let here = flight.pose.position;
     flight.tick(&[Order::Hold]);

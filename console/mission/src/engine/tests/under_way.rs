@@ -1,4 +1,4 @@
-//! What planners are given of a plan that is being flown, or that they made a moment ago.
+//! The plans that planners are asked to keep to: a plan that is in use, or one that they made shortly before.
 
 use super::*;
 use super::{
@@ -8,7 +8,7 @@ use super::{
 use crate::{event::Severity, standing::Readiness};
 use world::polyline;
 
-/// A flight over the floor that was held on the way.
+/// A coverage mission that is held before its end.
 fn held_on_the_way() -> Flight {
     let mut flight = Flight::new(covering());
     flight.tick(&[Order::Start]);
@@ -17,7 +17,7 @@ fn held_on_the_way() -> Flight {
     flight
 }
 
-/// The last path that was planned.
+/// The path of the last plan.
 fn last_path(flight: &Flight) -> Vec<Point> {
     let path = |event: &Event| match &event.kind {
         EventKind::Planned { path, .. } => Some(path.clone()),
@@ -26,7 +26,7 @@ fn last_path(flight: &Flight) -> Vec<Point> {
     flight.events.iter().rev().find_map(path).unwrap()
 }
 
-/// Lengths of what was given to keep to, request by request, metres.
+/// Lengths of the plans to keep to, one per request, metres.
 fn kept_m(flight: &Flight) -> Vec<Option<f64>> {
     let length_m = |plan: &Option<Plan>| plan.as_ref().map(|plan| polyline::length_m(&plan.path));
     flight.planner.kept.iter().map(length_m).collect()
@@ -74,7 +74,7 @@ fn the_planner_that_drives_keeps_its_plan_when_it_is_chosen_with_other_live_valu
     assert!(changed(&flight.tick(&[chosen(2.0)])));
     assert_eq!((flight.planner.plans, flight.planner.chosen.len(), flight.closed.len()), (1, 1, 0));
     assert!(matches!(flight.held_by(), Some(HoldReason::Operator)));
-    // The same choice once more plans anew, and so does one that changes the plan or takes a value back.
+    // Ordering the same choice once more makes a new plan; so does a choice that changes the plan or resets a value.
     flight.tick(&[chosen(2.0)]);
     assert_eq!(flight.planner.plans, 2);
     flight.mission.driving.worker.info.as_mut().unwrap().parameters = vec![gain(false)];
@@ -169,7 +169,7 @@ fn a_planner_that_is_called_back_to_where_it_left_goes_on_with_its_plan() {
     flight.tick(&[swap_to("other")]);
     flight.tick(&[swap_to("straight")]);
     assert_eq!(kept_m(&flight), [None, None, left_m]);
-    // Once the other one has flown, the plan from before means nothing.
+    // Once the other planner has driven the robot, the earlier plan is no longer valid.
     flight.tick(&[swap_to("other")]);
     flight.tick(&[Order::Resume]);
     flight.fly(30);

@@ -1,4 +1,4 @@
-//! A real vehicle that cannot be driven.
+//! A real vehicle that must not be driven.
 
 use super::{Flight, config, refusal};
 use crate::{

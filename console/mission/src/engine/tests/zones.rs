@@ -1,4 +1,4 @@
-//! No-go zones that are drawn under way.
+//! No-go zones that are drawn during a mission.
 
 use super::covering::covering;
 use super::*;
