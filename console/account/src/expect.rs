@@ -193,10 +193,10 @@ fn miss(key: &'static str, side: Side, bound: f64, found: Option<f64>) -> Option
     Some(Miss { key, bound: bound.to_string(), found })
 }
 
-/// Most decimals of a printed figure.
+/// Maximum number of decimals of a printed figure.
 const MOST_DECIMALS: usize = 6;
 
-/// A figure with its decimals, and with more if the rounded figure would keep the bound.
+/// Formats a figure with its usual number of decimals, or with more if the rounded figure would seem to meet the bound.
 fn rounded(found: f64, decimals: usize, is_miss: impl Fn(f64) -> bool) -> String {
     let written = |decimals: usize| format!("{found:.decimals$}");
     let mut tries = (decimals..=MOST_DECIMALS).map(written);
@@ -204,7 +204,8 @@ fn rounded(found: f64, decimals: usize, is_miss: impl Fn(f64) -> bool) -> String
     tries.find(is_miss).unwrap_or_else(|| written(MOST_DECIMALS))
 }
 
-/// The decimals of the figure of a bound, from the table of figures; shares have those of a tenth of a per cent.
+/// Number of decimals of the figure that belongs to a bound, as in the table of figures. Shares are given to a tenth of
+/// a per cent.
 fn decimals(key: &str) -> usize {
     match key {
         "collisions_max" => 0,

@@ -6,9 +6,9 @@ use world::Point;
 /// The direction in which the values of a figure get worse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Worst {
-    /// Large ones.
+    /// Larger values are worse.
     Most,
-    /// Small ones.
+    /// Smaller values are worse.
     Least,
 }
 

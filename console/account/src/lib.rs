@@ -1,9 +1,9 @@
 //! The results of a run: its figures, the account of its floor, and the facts that people add.
 //!
 //! [`Fold`] reads every event of a run once and returns a [`Summary`]: the object that `run --json` prints, and that
-//! [`Expect`] compares with the bounds of a scenario. Every program part that shows, records, compares or reports a
-//! run gets its figures here, so that they always agree. Events contain neither wall-clock figures nor files; the app
-//! fills them in.
+//! [`Expect`] compares with the bounds of a scenario. Every part of the program that shows, records, compares or
+//! reports a run gets its figures here, so that they always agree. Events contain neither wall-clock figures nor files;
+//! the app fills them in.
 //!
 //! An [`Estimate`] gives the same figures for a plan that has not been run. Facts that only people know are the
 //! [`Notes`] on a run and the [`Inspection`]. This crate uses no files, clocks, pages or pictures.

@@ -77,7 +77,10 @@ impl Notes {
     /// The notes exceed a limit; the error is a sentence.
     pub fn tidied(mut self) -> Result<Self, String> {
         if self.bookmarks.len() > MOST_BOOKMARKS {
-            return Err(format!("there are {} bookmarks; at most {MOST_BOOKMARKS}", self.bookmarks.len()));
+            return Err(format!(
+                "there are {} bookmarks; the limit is {MOST_BOOKMARKS}",
+                self.bookmarks.len()
+            ));
         }
         self.remark = checked(&self.remark).map_err(|why| format!("remark: {why}"))?;
         for bookmark in &mut self.bookmarks {
@@ -98,7 +101,7 @@ fn checked(text: &str) -> Result<String, String> {
     let text = text.trim();
     match text.chars().count() {
         0..=MOST_LETTERS => Ok(foreign::plain(text).into_owned()),
-        letters => Err(format!("the text has {letters} characters; at most {MOST_LETTERS}")),
+        letters => Err(format!("the text has {letters} characters; the limit is {MOST_LETTERS}")),
     }
 }
 

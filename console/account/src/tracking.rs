@@ -189,14 +189,14 @@ mod tests {
         fly(&mut tracker, &east(5.05));
         let tracking = tracker.tracking().expect("it moved");
         assert!((tracking.precision - 1.0).abs() < 1e-12);
-        // 0.0 to 5.2 m in steps of 0.1 m, of 101 points.
+        // The points from 0.0 m to 5.2 m in steps of 0.1 m: 53 of 101 points.
         assert!((tracking.recall - 53.0 / 101.0).abs() < 1e-9, "{tracking:?}");
         assert!(tracking.rmse_m.expect("passed") < 1e-9);
     }
 
     #[test]
     fn an_arc_cut_short_counts_in_rmse_and_recall_but_not_in_precision() {
-        // A hairpin: 2 m east, 1 m north, 2 m back west; flown without its far end.
+        // A hairpin: 2 m east, 1 m north, 2 m back west. The robot does not drive its far end.
         let preset = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)].map(|(x, y)| Point::new(x, y));
         let flown = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| Point::new(x, y));
         let mut tracker = Tracker::new(&preset);
@@ -217,7 +217,7 @@ mod tests {
         }
         fly(&mut tracker, &east(1.0));
         let tracking = tracker.tracking().expect("it moved");
-        // One sample off the path among about twenty on it.
+        // A single sample is off the path; about twenty are on it.
         assert!(tracking.precision > 0.9, "{tracking:?}");
     }
 

@@ -1,4 +1,4 @@
-//! The simulator behind the wire: messages in, messages out. It has no clock; its caller passes the time.
+//! The simulator behind the wire protocol: it receives and sends messages. It has no clock; its caller passes the time.
 
 use geometry::{Drive, Vector};
 use mission::MissionConfig;

@@ -59,7 +59,7 @@ impl Forked {
     }
 }
 
-/// The part of a vehicle's stop time that braking by the scenario's deceleration does not explain, seconds.
+/// The part of a vehicle's stop time that braking with the scenario's deceleration does not explain, seconds.
 fn reaction_s(opened: &RunOpened, info: &VehicleInfo) -> f64 {
     let braking_s = info.speed_max_m_per_s / opened.mission.limits.acceleration_m_per_s2;
     (info.stop_s - braking_s).max(0.0)

@@ -8,7 +8,7 @@ use world::Truth;
 /// A vehicle that repeats the readings of a journal; commands have no effect on it.
 pub struct Recorded {
     fed: Receiver<Fed>,
-    /// The link and the stop at the end of the mission, if the tick under way is its last one.
+    /// The link and the stop at the end of the mission, if the current tick is the last one.
     last: Option<Live>,
 }
 
@@ -28,7 +28,8 @@ impl Feed {
     pub fn begin_tick<'a>(&self, events: impl Iterator<Item = &'a EventKind>) {
         let mut readings = world::Readings::default();
         let (mut first, mut last) = (Live::default(), None);
-        // What a vehicle reports after the decisions of a tick is its state at the end of the mission.
+        // Events of the link and the stop that follow the decisions of a tick contain the vehicle's state at the end of
+        // the mission.
         let mut is_decided = false;
         for event in events {
             match event {

@@ -4,7 +4,8 @@ use sim::Simulator;
 use vehicle::port::{CannotInject, Command, Sensed, StationFault, Vehicle};
 use world::Truth;
 
-/// The simulator behind the port. Its readings are not journalled, because they can be computed again.
+/// The simulator in the role of a vehicle. Its readings are not written to the journal, because they can be computed
+/// again.
 pub(crate) struct Simulated(Simulator);
 
 impl Simulated {

@@ -1,5 +1,5 @@
-//! Laws of the drive back, in simulated tanks with columns: the robot comes back without contact, the tether is unwound,
-//! and the run repeats to the bit.
+//! The laws of the drive back, in simulated tanks with columns: the robot comes back without a contact, the tether is
+//! unwound, and the run repeats byte for byte.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "tests")]
 
@@ -14,15 +14,16 @@ use scenario::Scenario;
 use std::collections::VecDeque;
 use world::{Point, shortest::GrownFloor};
 
-/// Minimum distance between columns, and from columns to the wall and the anchor, metres: the robot passes everywhere.
+/// Minimum distance between columns, and from columns to the wall and the anchor, metres; the robot fits through such a
+/// gap.
 const GAP_M: f64 = 0.9;
 const TANK_M: f64 = 5.0;
 const ANCHOR: Point = Point::new(0.0, -4.4);
 
-/// A column: its middle, its radius, metres, and whether it is on the drawing.
+/// A column: its centre, its radius in metres, and whether it is on the drawing.
 type Column = (Point, f64, bool);
 
-/// A planner whose plan wanders about the tank, round columns on either side.
+/// A planner whose plan wanders about the tank and passes columns on either side.
 struct Wanderer {
     open: VecDeque<Ask>,
     places: Vec<Point>,
@@ -215,7 +216,7 @@ fn ordered(event: &Event) -> Option<Order> {
     }
 }
 
-/// What an operator notes, with a text that is not plain.
+/// Notes of an operator; one of them contains text that is not plain.
 fn notes() -> [Order; 2] {
     let (alarm, text) = ("no_fix".to_owned(), "no fix".to_owned());
     let shelved =
@@ -273,7 +274,7 @@ proptest! {
             prop_assert_eq!(flown.position(), here, "it stands");
             flown.order_back();
         }
-        // Half the speed on average, and a turn at every decimetre.
+        // Half the maximum speed on average, and a turn at every decimetre.
         let most_ticks = (way.length_m / 0.02) as usize + 600;
         for _ in 0..most_ticks {
             if matches!(flown.flight.phase(), Phase::Ended(_)) {

@@ -303,7 +303,7 @@ mod tests {
         let lanes: Vec<Point> =
             [(0.0, 0.0), (5.0, 0.0), (5.0, 0.4), (0.0, 0.4)].map(|(x, y)| Point::new(x, y)).to_vec();
         let mut follower = PathFollower::exact(&lanes);
-        // Nearer to the second lane than to the first, but on the way along the first.
+        // The robot is nearer to the second lane, but is still driving along the first.
         for step in 0..=24 {
             follower.advance(Point::new(0.2 * f64::from(step), 0.25), anywhere);
             assert!(follower.target().y < 0.01, "{}", follower.target());
@@ -323,7 +323,7 @@ mod tests {
         };
         let path: Vec<Point> = (0..=40).map(ring).chain([Point::new(1.0, 0.0)]).collect();
         let mut follower = PathFollower::exact(&path);
-        // The position is off by up to 10 cm.
+        // The position is wrong by up to 10 cm.
         for k in 0..=36 {
             let off = crate::Vector::new(0.1, 0.0) * f64::from(k % 3 - 1);
             follower.advance(ring(k) + off, anywhere);

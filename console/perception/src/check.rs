@@ -1,4 +1,4 @@
-//! Whether scans can be those of the scanner in the drawn tank.
+//! Checks whether scans can come from the scanner in the tank as drawn.
 
 use crate::{rays::Rays, uncertain::Uncertain};
 use geometry::{Boundary, Vector};
@@ -8,37 +8,38 @@ use world::ObstacleMap;
 
 /// Number of rays that are compared with the drawing.
 const RAYS: usize = 36;
-/// Every scan is compared until there are as many comparisons, then every `LATER`th.
+/// Every scan is compared until this number of comparisons has been made; after that, every `LATER`th scan is compared.
 const AT_ONCE: u32 = 5;
 const LATER: u32 = 5;
 /// Number of comparisons before the first verdict.
 const LEAST: u32 = 4;
-/// Number of rays that must meet something drawn for a comparison to count.
+/// Minimum number of rays that must meet something on the drawing for a comparison to count.
 const LEAST_RAYS: usize = 9;
-/// Weight of a comparison in the mean.
+/// Weight of a new comparison in the running mean.
 const SMOOTHING: f64 = 0.3;
-/// Distance, metres, by which a ray may miss the drawing besides the errors of pose and distance.
+/// Distance, metres, by which a ray may miss the drawing in addition to the errors of pose and distance.
 const ROOM_M: f64 = 0.1;
-/// Standard deviation of a place, metres, above which nothing can be said.
+/// Standard deviation of the position, metres, above which a comparison shows nothing.
 const LOST_M: f64 = 0.3;
-/// Shares of the rays that fit: fewer are wrong, more are right.
+/// Limits of the share of the rays that fit the drawing: below `WRONG`, the scan does not fit; above `RIGHT`, it fits;
+/// below `NOTHING`, hardly any ray fits.
 const WRONG: f64 = 0.5;
 const RIGHT: f64 = 0.75;
 const NOTHING: f64 = 0.2;
 
-/// How scans have fitted the drawing.
+/// The agreement of the scans with the drawing so far.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Agreement {
     scans: u32,
     compared: u32,
-    /// Shares of the rays that fit: as they are, mirrored, and turned by half a turn.
+    /// Share of the rays that fit if the scan is taken as it is, mirrored, or turned by half a turn.
     fits: [f64; 3],
-    /// Share of the rays that must hit something and have an echo.
+    /// Of the rays that must hit something, the share that have an echo.
     echoes: f64,
 }
 
 impl Agreement {
-    /// Compares a scan with the drawing, if that is due.
+    /// Compares a scan with the drawing if a comparison is due.
     pub(crate) fn compare(
         &mut self,
         rays: &Rays,
@@ -89,7 +90,7 @@ impl Agreement {
         }
     }
 
-    /// Why the scans cannot be right, as a clause.
+    /// The reason why the scans cannot be right, as a clause; `None` if they can.
     pub(crate) fn trouble(&self) -> Option<String> {
         if self.compared < LEAST {
             return None;

@@ -1,21 +1,22 @@
 //! Fits a disc to the points of one view.
 //!
-//! An algebraic fit to the points alone is biased towards small discs when only an arc of a column is seen. The edges say
-//! more about the radius: the column ends between the last ray that hits it and the next ray, which goes past it.
+//! An algebraic fit to the points alone is biased towards small discs when only an arc of a column is seen. The edges
+//! determine the radius better: each edge of the column lies between the outermost ray that hits the column and the
+//! next ray, which passes it.
 
 use crate::rays::Rays;
 use geometry::{Point, Vector};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
-/// Steps of the search for the best disc.
+/// Number of steps in the search for the best disc.
 const STEPS: usize = 4;
 /// Standard deviation of an unknown radius, metres.
 const ANY_RADIUS_M: f64 = 0.5;
 /// Smallest and largest radius of a disc, metres.
 const RADII_M: (f64, f64) = (0.01, 2.0);
-/// Standard deviation of an edge, in rays: it is anywhere between two rays.
+/// Standard deviation of an edge, as a share of the angle between two rays: the edge can be anywhere between them.
 const EDGE_SIGMA: f64 = 0.29;
-/// The same if the next ray has no echo, and so may have been lost.
+/// The same standard deviation if the next ray has no echo, because that ray may have been lost.
 const LOOSE_EDGE_SIGMA: f64 = 0.6;
 
 /// A radius with its variance.
@@ -26,12 +27,13 @@ pub(crate) struct Radius {
 }
 
 impl Radius {
-    /// This radius after a view that led to another one, if only a share of the view's information counts.
+    /// Combines this radius with `after`, the radius that follows from it and one view, so that only a share of the
+    /// information from that view counts.
     pub(crate) fn with_share(&self, after: &Self, share: f64) -> Self {
         let before = 1.0 / self.variance_m2;
         let view = (1.0 / after.variance_m2 - before).max(0.0);
         let (information, all) = (before + share * view, before + view);
-        // The mean moves in proportion to the share of the view in all information.
+        // The mean moves in proportion to the share that the view contributes to all information.
         let moved_m = (after.mean_m - self.mean_m) * share * all / information;
         Self { mean_m: self.mean_m + moved_m, variance_m2: 1.0 / information }
     }
@@ -41,14 +43,15 @@ impl Radius {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Fit {
     pub center: Point,
-    /// Covariance of the centre by the errors of the distances.
+    /// Covariance of the centre due to the errors of the distances.
     pub covariance: Matrix2<f64>,
     pub radius: Radius,
     /// Mean of the squared deviations, each divided by its variance; about 1 for a disc.
     pub misfit: f64,
 }
 
-/// The edge of a disc: a direction from the sensor that touches it, and on which side of that direction the centre is.
+/// An edge of a disc: the direction of a line from the sensor that touches the disc, and the side of that line on which
+/// the centre lies.
 #[derive(Debug, Clone, Copy)]
 struct Edge {
     direction: Vector,
@@ -56,7 +59,7 @@ struct Edge {
     sigma_rad: f64,
 }
 
-/// Fits a disc to points in the order of the scan. `before` is what is known of the radius.
+/// Fits a disc to points in the order of the scan. `before` is the radius as known before this view.
 pub(crate) fn fit(rays: &Rays, of: &[usize], sigma_m: f64, before: Option<Radius>) -> Option<Fit> {
     let edges = edges(rays, of, sigma_m);
     let eye = rays.eye();
@@ -65,7 +68,7 @@ pub(crate) fn fit(rays: &Rays, of: &[usize], sigma_m: f64, before: Option<Radius
     let mut information = Matrix3::zeros();
     let mut squares = 0.0;
     for _ in 0..STEPS {
-        // The place of the centre is unknown; a little information keeps the equations regular.
+        // The position of the centre is unknown; a little information keeps the equations regular.
         information = Matrix3::from_diagonal(&Vector3::new(1e-2, 1e-2, 1.0 / known.variance_m2));
         let mut right = Vector3::new(0.0, 0.0, (known.mean_m - at.z) / known.variance_m2);
         squares = 0.0;
@@ -102,7 +105,8 @@ pub(crate) fn fit(rays: &Rays, of: &[usize], sigma_m: f64, before: Option<Radius
     at.iter().chain(covariance.iter()).all(|x| x.is_finite()).then_some(fit)
 }
 
-/// A first disc: in the middle of the rays, touched by the outermost of them, as far away as the nearest point.
+/// The first guess of a disc: in the middle of the rays, touched by the two outermost rays, and as far away as the
+/// nearest point.
 fn start(rays: &Rays, of: &[usize], before: Option<Radius>) -> Vector3<f64> {
     let (first, last) = (rays.direction(of[0]), rays.direction(of[of.len() - 1]));
     let nearest_m = of.iter().map(|ray| rays.range_m[*ray]).fold(f64::INFINITY, f64::min);
@@ -115,7 +119,7 @@ fn start(rays: &Rays, of: &[usize], before: Option<Radius>) -> Vector3<f64> {
     Vector3::new(center.x, center.y, radius_m)
 }
 
-/// The edges that are seen: beside them, a ray goes past.
+/// The edges that the scan shows: an edge is visible if the ray beside it passes the disc.
 fn edges(rays: &Rays, of: &[usize], sigma_m: f64) -> [Option<Edge>; 2] {
     let (first, last) = (of[0], of[of.len() - 1]);
     let turn = if rays.is_counter_clockwise() { 1.0 } else { -1.0 };

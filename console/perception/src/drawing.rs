@@ -1,4 +1,4 @@
-//! What the drawing explains of a scan.
+//! Determines which points of a scan the drawing explains.
 
 use crate::{rays::Rays, uncertain::Uncertain};
 use geometry::{
@@ -11,11 +11,11 @@ use world::Obstacle;
 
 /// Number of standard deviations within which a point belongs to the drawing.
 pub(crate) const GATE: f64 = 3.0;
-/// Number of times that the pose is corrected with the points nearest to the drawing.
+/// Number of rounds in which the pose is corrected with the points near the drawing.
 const ROUNDS: usize = 3;
 
-/// A point beside a surface of the drawing: its distance on the free side, metres, and the direction away from the
-/// surface.
+/// The relation of a point to the nearest surface of the drawing: its distance on the free side, metres, and the
+/// direction away from the surface.
 #[derive(Debug, Clone, Copy)]
 struct Beside {
     distance_m: f64,
@@ -30,7 +30,7 @@ pub(crate) struct Drawing<'a> {
 }
 
 impl<'a> Drawing<'a> {
-    /// The parts within reach of the rays.
+    /// Collects the parts that are within reach of the rays.
     pub(crate) fn near(
         boundary: &'a Boundary,
         obstacles: impl Iterator<Item = &'a Obstacle>,
@@ -44,7 +44,7 @@ impl<'a> Drawing<'a> {
         Self { boundary, obstacles: obstacles.filter_map(around).collect() }
     }
 
-    /// For each ray, the surface beside its point, if the point is within the gate.
+    /// Finds, for each ray, the surface nearest to its point; `None` if the point is too far from every surface.
     fn beside(&self, rays: &Rays, pose: &Uncertain, found: &mut Vec<Option<Beside>>) {
         found.clear();
         found.extend((0..rays.len()).map(|ray| {
@@ -106,7 +106,8 @@ impl<'a> Drawing<'a> {
         pose.corrected(&information.try_inverse().unwrap_or_else(Matrix3::zeros))
     }
 
-    /// Sets for each ray whether the drawing explains it: no echo, a point on or behind the wall, or on or in an obstacle.
+    /// Determines, for each ray, whether the drawing explains it: the ray has no echo, or its point is on or behind the
+    /// wall, or on or in an obstacle.
     pub(crate) fn explain(&self, rays: &Rays, pose: &Uncertain, explained: &mut Vec<bool>) {
         explained.clear();
         explained.extend((0..rays.len()).map(|ray| {

@@ -12,7 +12,7 @@ const LEAST_PLACES: usize = 4;
 const MOVING_M_PER_S: f64 = 0.08;
 /// Speed, metres per second, down to which an obstacle that already counts as moving continues to do so.
 const STILL_MOVING_M_PER_S: f64 = 0.04;
-/// Minimum distance that an obstacle must have moved to count as moving, metres.
+/// Minimum distance, metres, that an obstacle must have moved before it counts as moving.
 const LEAST_WAY_M: f64 = 0.12;
 
 /// Recent sightings of one obstacle.

@@ -5,22 +5,24 @@ use std::ops::Range;
 
 /// Number of rays without an echo that a group may contain in a row.
 const LOST: usize = 2;
-/// Number of points of a group; fewer are noise.
+/// Minimum number of points in a group; fewer points count as noise.
 pub(crate) const LEAST: usize = 3;
-/// Largest extent of a group, metres. A longer surface is several groups, so that its convex outline stays near it.
+/// Largest extent of a group, metres. A longer surface is divided into several groups, so that their convex outlines
+/// stay close to it.
 const LONGEST_M: f64 = 1.0;
-/// Number of standard deviations of a distance by which neighbouring points of one surface may differ.
+/// Maximum difference of distance between neighbouring points of one surface, in standard deviations.
 const JUMP: f64 = 5.0;
-/// Cosine of the steepest angle between a ray and a surface on which neighbouring points are still expected.
+/// Cosine of the largest angle between a ray and the normal of a surface at which neighbouring points still count as
+/// one surface.
 const GRAZING: f64 = 0.2;
 
-/// The rays of a group, in the order of the scan; they may run across its end.
+/// A group: the positions of its rays in the list from which it was made.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Group {
     pub rays: Range<usize>,
 }
 
-/// Divides the rays that are left into groups. `rays` of a list are in the order of the scan.
+/// Divides the rays in a list, which is in the order of the scan, into groups.
 pub(crate) fn groups(rays: &Rays, left: &[usize], sigma_m: f64, found: &mut Vec<Group>) {
     found.clear();
     let mut begin = 0;
@@ -37,7 +39,7 @@ pub(crate) fn groups(rays: &Rays, left: &[usize], sigma_m: f64, found: &mut Vec<
     }
 }
 
-/// Whether two points, one after the other, may be on one surface.
+/// Whether two consecutive points can lie on one surface.
 fn are_joined(rays: &Rays, one: usize, next: usize, sigma_m: f64) -> bool {
     let between = (next + rays.len() - one) % rays.len();
     if between > LOST + 1 {
@@ -51,8 +53,8 @@ fn are_joined(rays: &Rays, one: usize, next: usize, sigma_m: f64) -> bool {
     skipped_have_no_echo && (rays.range_m[one] - rays.range_m[next]).abs() <= most_m
 }
 
-/// Turns a list of rays in ascending order so that it does not begin in the middle of a group: a scan all around has no
-/// first ray.
+/// Rotates a list of rays in ascending order so that it does not begin in the middle of a group. This matters for a
+/// scan all around, which has no first ray.
 pub(crate) fn turned(rays: &Rays, left: &mut [usize], sigma_m: f64) {
     let (Some(first), Some(last)) = (left.first(), left.last()) else { return };
     if !rays.is_round() || !are_joined(rays, *last, *first, sigma_m) {
@@ -74,7 +76,7 @@ mod tests {
     #[test]
     fn columns_are_groups_also_across_the_end_of_the_scan() {
         let scanner = Scanner { lost_share: 0.1, ..Scanner::default() };
-        // One of them is behind the robot, where the scan begins and ends.
+        // One of the columns is behind the robot, where the scan begins and ends.
         let columns = [column(1, -2.0, 0.0, 0.2), column(2, 1.0, 1.0, 0.15)];
         let scan =
             scan_of(&scanner, &Boundary::Circle { radius_m: 60.0 }, &columns, &Pose::new(0.0, 0.0, 0.0), 2);

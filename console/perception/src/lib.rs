@@ -1,4 +1,4 @@
-//! Obstacles from scans: what drawing and chart do not explain is grouped, tracked and fitted.
+//! Finds obstacles in scans: points that neither the drawing nor the chart explains are grouped, tracked and fitted.
 //!
 //! The crate is pure. The same scans and poses give the same obstacles; the state does not grow with time. Poses and
 //! obstacles are in the tank frame, scans in the robot frame; metres, radians, seconds.

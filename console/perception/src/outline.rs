@@ -1,12 +1,12 @@
-//! The outline of something that is not a disc: convex, and it grows view by view.
+//! The outline of an object that is not a disc. The outline is convex, and grows with every view.
 
 use geometry::{Point, Shape};
 
-/// Largest number of corners.
+/// Maximum number of corners.
 const MOST_CORNERS: usize = 24;
-/// An outline thinner than this is a wall or a pipe, metres.
+/// Thickness, metres, below which an outline is a wall or a pipe.
 const THIN_M: f64 = 0.12;
-/// An outline does not grow beyond this extent, metres; more of the object is another obstacle.
+/// Maximum extent of an outline, metres; an object that is larger becomes several obstacles.
 const LARGEST_M: f64 = 1.6;
 
 /// The convex outline of the points seen so far, counter-clockwise.
@@ -14,7 +14,7 @@ const LARGEST_M: f64 = 1.6;
 pub(crate) struct Outline(Vec<Point>);
 
 impl Outline {
-    /// Adds a point unless it is within `noise_m` metres of the outline.
+    /// Adds a point unless it lies inside the outline or within `noise_m` metres of it.
     pub(crate) fn add(&mut self, point: Point, noise_m: f64) {
         if self.0.len() >= 3 && self.distance_m(point) <= noise_m {
             return;
@@ -42,7 +42,8 @@ impl Outline {
         (b - a).perp(&(c - a)).abs()
     }
 
-    /// The outline as a shape: a polygon or, if it is thin, a line with a thickness; `None` with too few points.
+    /// Returns the outline as a shape: a polygon or, if it is thin, a line with a thickness; `None` if there are too
+    /// few points.
     pub(crate) fn shape(&self) -> Option<Shape> {
         let (a, b) = self.ends()?;
         let along = geometry::pose::direction_or(b - a, geometry::Vector::x());
@@ -57,7 +58,7 @@ impl Outline {
         Some(Shape::Polyline { points: vec![a + middle, b + middle], half_width_m })
     }
 
-    /// The two corners farthest apart.
+    /// The two corners that are farthest apart.
     fn ends(&self) -> Option<(Point, Point)> {
         let pairs =
             self.0.iter().enumerate().flat_map(|(k, a)| self.0[k + 1..].iter().map(move |b| (*a, *b)));
@@ -74,7 +75,7 @@ impl Outline {
         self.0.clear();
     }
 
-    /// Whether a point is in the outline.
+    /// Whether a point is inside the outline.
     #[cfg(test)]
     fn contains(&self, point: Point) -> bool {
         self.distance_m(point) <= 1e-9
@@ -102,7 +103,8 @@ fn hull(points: &mut [Point]) -> Vec<Point> {
     if low.is_empty() { points.first().copied().into_iter().collect() } else { low }
 }
 
-/// Distance in metres by which two shapes differ, as far as paths depend on it.
+/// The difference between two shapes as far as it matters for paths: a distance in metres, or infinity for shapes of
+/// different kinds.
 pub fn change_m(before: &Shape, now: &Shape) -> f64 {
     match (before, now) {
         (Shape::Disc { center, radius_m }, Shape::Disc { center: c, radius_m: r }) => {

@@ -5,23 +5,23 @@ use nalgebra::{Isometry2, UnitComplex};
 use std::f64::consts::TAU;
 use world::{NO_ECHO, Scan};
 
-/// The rays of a scan, as seen from an estimated pose. The buffers are kept from scan to scan.
+/// The rays of a scan, as seen from an estimated pose. The buffers are reused for the next scan.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Rays {
     first_rad: f64,
     step_rad: f64,
-    /// Directions in the frame of the robot, computed again only when the layout of the scans changes.
+    /// Directions in the robot frame; they are computed again only if the layout of the scans changes.
     in_robot: Vec<Vector>,
-    /// Place of the sensor in the robot frame, metres.
+    /// Position of the sensor in the robot frame, metres.
     sensor: Vector,
-    /// The frame of the robot when it scanned.
+    /// The transform from the robot frame at the time of the scan to the tank frame.
     tank_from_robot: Isometry2<f64>,
     /// Distances, metres; infinite without an echo.
     pub range_m: Vec<f64>,
 }
 
 impl Rays {
-    /// Takes a scan by a robot at a pose, which is the pose at the end of the readings.
+    /// Takes a scan. The given pose is that of the robot at the end of the readings, which may be later than the scan.
     pub(crate) fn take(&mut self, scan: &Scan, tank_from_robot: &Isometry2<f64>) {
         let n = scan.ranges_mm.0.len();
         let layout = (scan.first_rad, scan.step_rad);
@@ -48,7 +48,7 @@ impl Rays {
         self.tank_from_robot = Isometry2::from_parts(place.into(), turn);
     }
 
-    /// The frame of the robot when it scanned.
+    /// The transform from the robot frame at the time of the scan to the tank frame.
     pub(crate) fn frame(&self) -> &Isometry2<f64> {
         &self.tank_from_robot
     }
@@ -68,7 +68,7 @@ impl Rays {
         self.step_rad.abs()
     }
 
-    /// Place of the sensor in the tank.
+    /// Position of the sensor in the tank.
     pub(crate) fn eye(&self) -> Point {
         self.tank_from_robot * Point::from(self.sensor)
     }
@@ -78,18 +78,18 @@ impl Rays {
         self.tank_from_robot.rotation * self.in_robot[ray]
     }
 
-    /// The place that a ray has hit; only for rays with an echo.
+    /// The point that a ray hit; only for rays with an echo.
     pub(crate) fn point(&self, ray: usize) -> Point {
         self.eye() + self.direction(ray) * self.range_m[ray]
     }
 
-    /// Direction in the tank of the middle between a ray and the one before it.
+    /// The direction halfway between a ray and the previous one, tank frame.
     pub(crate) fn before(&self, ray: usize) -> Vector {
         let half = UnitComplex::new(-0.5 * self.step_rad);
         half * self.direction(ray)
     }
 
-    /// Direction in the tank of the middle between a ray and the one after it.
+    /// The direction halfway between a ray and the next one, tank frame.
     pub(crate) fn after(&self, ray: usize) -> Vector {
         let half = UnitComplex::new(0.5 * self.step_rad);
         half * self.direction(ray)
@@ -100,7 +100,8 @@ impl Rays {
         self.step_rad > 0.0
     }
 
-    /// The ray after another one in the order of the scan, `by` rays away.
+    /// The ray that is `by` rays after this one in the order of the scan; `None` beyond the end of a scan that is not
+    /// all around.
     pub(crate) fn neighbour(&self, ray: usize, by: isize) -> Option<usize> {
         let n = self.len() as isize;
         let next = ray as isize + by;
@@ -108,7 +109,7 @@ impl Rays {
         (0..n).contains(&next).then_some(next as usize)
     }
 
-    /// The rays towards a disc, in the order of the scan; all rays if the sensor is in the disc.
+    /// The rays towards a disc, in the order of the scan; all rays if the sensor is inside the disc.
     pub(crate) fn towards(&self, center: Point, radius_m: f64) -> impl Iterator<Item = usize> + use<> {
         let to = center - self.eye();
         let far = to.norm();
@@ -123,7 +124,7 @@ impl Rays {
             let count = if high >= low { (high - low) as usize + 1 } else { 0 };
             (0..count).map(move |k| low as usize + k)
         };
-        // A disc across the end of the scan is hit by its last and by its first rays.
+        // A disc in the direction in which the scan begins and ends is hit by the last and the first rays.
         let last = (from + 2.0 * half - around).floor().min(n - 1.0);
         let wrapped = if last >= 0.0 { last as usize + 1 } else { 0 };
         part(from).filter(move |ray| *ray >= wrapped).chain(0..wrapped)

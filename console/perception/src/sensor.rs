@@ -1,14 +1,15 @@
-//! What is known of the sensor that scans.
+//! The known properties of the scanner.
 
 use serde::{Deserialize, Serialize};
 use world::Scanner;
 
-/// What is known of a scanner. A real vehicle states only its distances.
+/// The known properties of a scanner. A real vehicle reports only the distances that it measures.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sensor {
     /// Standard deviation of a distance, metres.
     pub sigma_m: f64,
-    /// Greatest distance that is measured, metres; `None` if it is unknown, so that a ray without an echo says nothing.
+    /// Maximum distance that can be measured, metres; `None` if it is unknown, so that a ray without an echo contains
+    /// no information.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub range_m: Option<f64>,
     /// Number of rays of a scan; `None` to expect as many as in the first scan.
@@ -17,15 +18,15 @@ pub struct Sensor {
 }
 
 impl Sensor {
-    /// A sensor of which nothing is known.
+    /// A scanner whose properties are not known.
     pub const UNKNOWN: Self = Self { sigma_m: 0.03, range_m: None, rays: None };
 
-    /// Whether the noise is known: it is that of a scenario.
+    /// Whether the noise is known because a scenario describes the scanner.
     pub fn is_known(&self) -> bool {
         self.rays.is_some()
     }
 
-    /// A sensor that is as a scenario describes it.
+    /// The scanner that a scenario describes.
     pub fn of(scanner: &Scanner) -> Self {
         Self { sigma_m: scanner.sigma_m, range_m: Some(scanner.range_m), rays: Some(scanner.rays) }
     }

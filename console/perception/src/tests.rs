@@ -1,4 +1,4 @@
-//! Whole scans, from the first one to obstacles on a map.
+//! Tests with whole scans, from the first scan to obstacles on the chart.
 
 use super::*;
 use geometry::{Boundary, Point, Pose, Shape};
@@ -11,7 +11,7 @@ pub(crate) fn column(id: u32, x: f64, y: f64, radius_m: f64) -> Obstacle {
     Obstacle { id: ObstacleId(id), name: format!("C{id}"), shape, known: true }
 }
 
-/// Numbers that look random: uniform from 0 to 1.
+/// A generator of pseudo-random numbers, uniform from 0 to 1.
 struct Noise(u64);
 
 impl Noise {
@@ -20,13 +20,13 @@ impl Noise {
         ((self.0 >> 33) as f64) / f64::from(1_u32 << 31)
     }
 
-    /// The sum of twelve uniform numbers is nearly normal.
+    /// A number that is nearly normally distributed: the sum of twelve uniform numbers.
     fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.next()).sum::<f64>() - 6.0
     }
 }
 
-/// A scan as a scanner would make it.
+/// Simulates the scan of a scanner.
 pub(crate) fn scan_of(
     scanner: &Scanner,
     boundary: &Boundary,
@@ -51,7 +51,7 @@ pub(crate) fn scan_of(
 /// A robot that scans while it drives.
 struct Drive {
     boundary: Boundary,
-    /// What is in the tank, and what is drawn.
+    /// The obstacles that are in the tank, and those on the drawing.
     real: Vec<Obstacle>,
     drawn: Vec<Obstacle>,
     scanner: Scanner,
@@ -68,7 +68,7 @@ impl Drive {
         Self { boundary, real, drawn, scanner, perception, tick: 0, looked: Looked::default() }
     }
 
-    /// One scan; the estimate of the pose is off by some centimetres.
+    /// Processes one scan; the estimated pose has an error of a few centimetres.
     fn scan(&mut self, pose: &Pose) {
         let scan = scan_of(&self.scanner, &self.boundary, &self.real, pose, self.tick);
         self.take(&scan, pose);
@@ -97,7 +97,7 @@ impl Drive {
         self.tick += 1;
     }
 
-    /// A drive along a line.
+    /// Drives along a straight line.
     fn along(&mut self, from: (f64, f64), to: (f64, f64), ticks: u32) {
         for k in 0..ticks {
             let share = f64::from(k) / f64::from(ticks);

@@ -1,27 +1,29 @@
-//! Free space as evidence: rays that go through a place where something should be.
+//! Uses free space as evidence: rays that pass through the place where an obstacle should be.
 
 use crate::{rays::Rays, uncertain::Uncertain};
 use geometry::Shape;
 
-/// Share of the inner radius of an obstacle that its core has; rays through the core must end in the obstacle.
+/// Radius of the core of an obstacle, as a share of the obstacle's inner radius. Rays towards the core must end in the
+/// obstacle.
 const CORE: f64 = 0.6;
-/// Number of rays through the core that a scan must have.
+/// Minimum number of rays that must pass through the core.
 const LEAST_RAYS: usize = 2;
-/// Smallest core, metres.
+/// Minimum radius of the core, metres.
 const LEAST_CORE_M: f64 = 0.03;
 
-/// What a scan shows of a place.
+/// The result of looking at a place in a scan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Look {
-    /// Something is there.
+    /// The scan shows something at the place.
     Hit,
-    /// Rays go through it.
+    /// Rays pass through the place.
     Through,
     /// The scan does not show the place.
     Hidden,
 }
 
-/// What a scan shows of an obstacle. `range_m` is the greatest distance that is measured, if it is known.
+/// Determines what a scan shows at the place of an obstacle. `range_m` is the maximum distance that can be measured, if
+/// it is known.
 pub(crate) fn look(rays: &Rays, shape: &Shape, pose: &Uncertain, range_m: Option<f64>) -> Look {
     let (center, inner_m) = match shape {
         Shape::Disc { center, radius_m } => (*center, *radius_m),
@@ -29,7 +31,7 @@ pub(crate) fn look(rays: &Rays, shape: &Shape, pose: &Uncertain, range_m: Option
     };
     let far_m = (center - rays.eye()).norm();
     let (core_m, gate_m) = (CORE * inner_m, pose.gate_m(far_m));
-    // The rays must go through the core although the pose is not exact.
+    // The core must be large enough for the rays to pass through it in spite of the error of the pose.
     if core_m < LEAST_CORE_M || far_m <= inner_m || core_m < 2.0 / 3.0 * pose.point_m2(far_m).sqrt() {
         return Look::Hidden;
     }
@@ -47,6 +49,6 @@ pub(crate) fn look(rays: &Rays, shape: &Shape, pose: &Uncertain, range_m: Option
             return Look::Hidden;
         }
     }
-    // Single rays get lost, but hardly several side by side.
+    // Single rays may be lost, but hardly ever several neighbouring ones.
     if through >= LEAST_RAYS || through + silent > LEAST_RAYS { Look::Through } else { Look::Hidden }
 }

@@ -1,4 +1,4 @@
-//! One thing that scans have shown: its place, its shape, and whether it is an obstacle yet.
+//! A track: an object that scans have shown, with its position, its shape, and whether it counts as an obstacle yet.
 
 use crate::{
     Drift,
@@ -11,36 +11,38 @@ use geometry::{Point, Shape, Vector};
 use nalgebra::Matrix2;
 use world::ObstacleId;
 
-/// Errors of the pose are alike in scans that follow each other; as many scans count as one, as far as the pose is
-/// concerned.
+/// The errors of the pose are nearly the same in successive scans. For these errors, this number of scans counts as
+/// one.
 const ALIKE: f64 = 20.0;
-/// In scans from nearly the same place, the edges are between the same rays; as many scans count as one.
+/// In scans from nearly the same position, the edges lie between the same rays. For the shape, this number of scans
+/// counts as one.
 const LIKE_VIEWS: f64 = 5.0;
 /// A track becomes an obstacle when at least `BIRTH_HITS` of the last `BIRTH_OF` scans have shown it.
 const BIRTH_HITS: u32 = 5;
 const BIRTH_OF: u32 = 8;
-/// Standard deviations up to which a disc is certain enough to be put on a map, metres.
+/// Maximum standard deviations of the radius and of the position, metres, at which a disc is certain enough for the
+/// chart.
 const SURE_RADIUS_M: f64 = 0.02;
 const SURE_PLACE_M: f64 = 0.05;
-/// Something nearer than this, metres, is an obstacle even if its shape is not certain yet.
+/// An object nearer than this, metres, becomes an obstacle even if its shape is not certain yet.
 const NEAR_M: f64 = 1.2;
-/// Number of scans in a row that do not show a track, after which it is dropped if it is not an obstacle yet.
+/// A track that is not an obstacle yet is dropped after this number of consecutive scans that do not show it.
 const MISSED: u32 = 5;
-/// Number of scans through an obstacle, without one that shows it, after which it is reported as gone.
+/// An obstacle is reported as gone after this number of scans that pass through its place, if none in between shows it.
 const GONE_AFTER: u32 = 20;
 /// Time out of sight, seconds, after which a moving obstacle is dropped.
 const OUT_OF_SIGHT_S: f64 = 2.0;
-/// Mean misfit above which something is not a disc, and below which it is one again.
+/// Mean misfit above which an object no longer counts as a disc, and below which it counts as a disc again.
 const MISFIT: (f64, f64) = (2.2, 1.6);
-/// Misfit of a view up to which it may show a disc.
+/// Maximum misfit of a view that can show a disc.
 const ROUND: f64 = 4.0;
-/// Number of points from which the misfit of a view counts.
+/// Minimum number of points for the misfit of a view to count.
 const TELLING: usize = 5;
-/// Weight of a view in the mean misfit.
+/// Weight of a new view in the mean misfit.
 const SMOOTHING: f64 = 0.1;
-/// Lower limits of the standard deviations, metres: what is estimated may still be corrected.
+/// Minimum standard deviation, metres, so that an estimate can still be corrected.
 const FLOOR_M: f64 = 0.003;
-/// Largest extent of something whose motion can be judged by its centre, metres.
+/// Maximum extent, metres, of an object whose centre shows whether it moves.
 const MOVABLE_M: f64 = 1.2;
 
 /// One track.
@@ -55,13 +57,14 @@ pub(crate) struct Track {
     misfit: f64,
     is_disc: bool,
     drift: Drift,
-    /// One bit per scan, the newest lowest: whether it has shown the track.
+    /// One bit for each recent scan, the latest in the lowest bit: whether the scan showed the track.
     recent: u32,
     missed: u32,
-    /// Number of scans through its place since it was last seen, and whether the last scan went through it.
+    /// Number of scans through the track's place since the track was last seen, and whether the last scan passed
+    /// through it.
     through: u32,
     is_through: bool,
-    /// Whether the last scan has shown it.
+    /// Whether the last scan showed the track.
     pub is_seen: bool,
     seen_s: f64,
     /// Largest standard deviation of the centre in the last view, metres.
@@ -71,7 +74,7 @@ pub(crate) struct Track {
 }
 
 impl Track {
-    /// A track of some points in the order of the scan; `None` if they have no shape.
+    /// Creates a track from points in the order of the scan; `None` if no disc can be fitted to them.
     pub(crate) fn new(rays: &Rays, of: &[usize], pose: &Uncertain, now_s: f64) -> Option<Self> {
         let fit = disc::fit(rays, of, pose.sigma_m, None)?;
         let mut track = Self {
@@ -96,7 +99,7 @@ impl Track {
         Some(track)
     }
 
-    /// Takes the points of a scan, in its order.
+    /// Updates the track with points in the order of the scan.
     pub(crate) fn see(&mut self, rays: &Rays, of: &[usize], pose: &Uncertain, now_s: f64) {
         let before = (!self.moves()).then_some(self.radius);
         if let Some(fit) = disc::fit(rays, of, pose.sigma_m, before) {
@@ -114,7 +117,7 @@ impl Track {
             self.misfit += SMOOTHING * (fit.misfit.min(20.0) - self.misfit);
         }
         self.is_disc = if self.is_disc { self.misfit < MISFIT.0 } else { self.misfit < MISFIT.1 };
-        // The centre of a disc that is fitted to something else moves with the robot.
+        // If a disc is fitted to an object that is not a disc, its centre moves with the robot.
         if self.is_disc && fit.misfit < ROUND && self.extent_m() < MOVABLE_M {
             self.drift.see(now_s, fit.center);
         } else if !self.is_disc {
@@ -132,7 +135,7 @@ impl Track {
         }
     }
 
-    /// Combines the place and radius so far with those of a view.
+    /// Combines the position and the radius so far with those of a new view.
     fn blend(&mut self, fit: &Fit, rays: &Rays, pose: &Uncertain) {
         let seen = place_of(fit, rays, pose);
         if let Some(inverse) = (self.covariance + seen).try_inverse() {
@@ -145,7 +148,7 @@ impl Track {
         self.radius.variance_m2 = self.radius.variance_m2.max(FLOOR_M * FLOOR_M);
     }
 
-    /// Begins a scan.
+    /// Prepares the track for a new scan.
     pub(crate) fn begin(&mut self, now_s: f64) {
         if let Some(velocity) = self.drift.velocity() {
             self.center += velocity * (now_s - self.seen_s).clamp(0.0, 0.5);
@@ -154,14 +157,15 @@ impl Track {
         self.is_seen = false;
     }
 
-    /// Notes that a scan has not shown the track; `through` if its rays went through its place.
+    /// Records that a scan did not show the track; `through` states whether its rays passed through the track's place.
     pub(crate) fn miss(&mut self, through: bool) {
         self.missed = self.missed.saturating_add(1);
         self.through = self.through.saturating_add(u32::from(through));
         self.is_through = through;
     }
 
-    /// Whether the track is to be dropped. An obstacle that stands still stays, even if it is gone: it is on the map.
+    /// Whether the track is to be dropped. An obstacle that stands still is kept even if it is gone, because it is on
+    /// the chart.
     pub(crate) fn is_over(&self, now_s: f64) -> bool {
         match self.id {
             None => self.missed >= MISSED,
@@ -169,12 +173,13 @@ impl Track {
         }
     }
 
-    /// The number of scans through its place, if it has just become certain that the track is gone.
+    /// Returns the number of scans that passed through the track's place if the last scan has made it certain that the
+    /// object is gone.
     pub(crate) fn is_gone(&self) -> Option<u32> {
         (self.through == GONE_AFTER && self.is_through).then_some(self.through)
     }
 
-    /// Whether the track is certain enough, and within `reach_m` metres, to be an obstacle.
+    /// Whether the track is near enough (`reach_m`, metres) and certain enough to become an obstacle.
     pub(crate) fn is_mature(&self, reach_m: f64) -> bool {
         let recent = self.recent & ((1 << BIRTH_OF) - 1);
         let is_sure = self.radius.variance_m2.sqrt() < SURE_RADIUS_M && self.view_sigma_m < SURE_PLACE_M;
@@ -197,7 +202,7 @@ impl Track {
         }
     }
 
-    /// Distance from its outline within which a point belongs to the track, metres.
+    /// Maximum distance from the track's outline at which a point belongs to the track, metres.
     pub(crate) fn gate_m(&self, pose: &Uncertain, range_m: f64) -> f64 {
         let own_m2 = self.covariance.trace() + self.radius.variance_m2;
         let gate_m = 3.0 * (pose.sigma_m.powi(2) + pose.point_m2(range_m) + own_m2).sqrt();
@@ -211,17 +216,17 @@ impl Track {
         (place_m2 + self.radius.variance_m2).max(0.0).sqrt()
     }
 
-    /// The velocity, metres per second, tank frame; `None` if it stands still.
+    /// The velocity, metres per second, tank frame; `None` if the object stands still.
     pub(crate) fn velocity(&self) -> Option<Vector> {
         self.drift.velocity()
     }
 
-    /// Whether it moves.
+    /// Whether the object moves.
     pub(crate) fn moves(&self) -> bool {
         self.velocity().is_some()
     }
 
-    /// Recent places.
+    /// The recent positions.
     pub(crate) fn drift(&self) -> &Drift {
         &self.drift
     }
@@ -232,7 +237,7 @@ impl Track {
     }
 }
 
-/// Covariance of a centre that was seen once, with the error of the pose.
+/// Covariance of the centre after a single view, including the error of the pose.
 fn place_of(fit: &Fit, rays: &Rays, pose: &Uncertain) -> Matrix2<f64> {
     let arm = fit.center.coords - rays.frame().translation.vector;
     let floor = Matrix2::identity() * FLOOR_M * FLOOR_M;

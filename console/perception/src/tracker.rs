@@ -1,4 +1,4 @@
-//! All tracks, from scan to scan.
+//! Keeps all tracks from scan to scan.
 
 use crate::{
     Drift, Sensor,
@@ -15,22 +15,23 @@ use nalgebra::{Isometry2, Matrix3};
 use std::collections::BTreeMap;
 use world::{Obstacle, ObstacleId, ObstacleMap, Scan};
 
-/// The ids of obstacles found in scans begin here; drawings and the trackers of vehicles use smaller ones.
+/// The first id of obstacles that are found in scans; drawings and the trackers of vehicles use smaller ids.
 pub const FIRST_ID: u32 = 2_000_000;
-/// Largest number of tracks; further groups are left out until a track is dropped.
+/// Maximum number of tracks; further groups are ignored until a track is dropped.
 const MOST: usize = 512;
-/// Distance from a track, metres, within which a group belongs to it.
+/// Maximum distance from a track, metres, at which a group belongs to the track.
 const JOIN_M: f64 = 0.12;
-/// Extent, metres, up to which a track takes further groups beside it.
+/// Maximum extent, metres, of a track that can still take further groups.
 const GROWS_TO_M: f64 = 1.0;
-/// Number of points from which a track that was seen before is fitted.
+/// Minimum number of points for updating a track.
 const LEAST_POINTS: usize = 2;
-/// Number of scans through the place of a drawn obstacle, without one that shows it, after which it is reported.
+/// A drawn obstacle is reported as missing after this number of scans that pass through its place, if none in between
+/// shows it.
 const MISSING_AFTER: u32 = 40;
-/// No track.
+/// Marks a ray that belongs to no track.
 const NONE: u16 = u16::MAX;
 
-/// A scan, and what is known when it is made.
+/// A scan, with the state in which it is processed.
 #[derive(Clone, Copy)]
 pub struct View<'a> {
     /// Mission time, seconds.
@@ -39,54 +40,56 @@ pub struct View<'a> {
     pub scan: &'a Scan,
     /// Estimated pose of the robot at the end of the readings.
     pub pose: Pose,
-    /// Covariance of x, y and heading.
+    /// Covariance of x, y and heading of that pose.
     pub covariance: Matrix3<f64>,
     /// The wall.
     pub boundary: &'a Boundary,
     /// All obstacles on the chart.
     pub charted: &'a [Obstacle],
-    /// The same, for queries.
+    /// An index of these obstacles for queries.
     pub map: &'a ObstacleMap,
-    /// Distance from the scanner, metres, within which something becomes an obstacle; farther away, it is only followed.
+    /// Distance from the scanner, metres, within which a track can become an obstacle; farther away, it is only
+    /// followed.
     pub reach_m: f64,
 }
 
-/// An obstacle that the last scan has shown.
+/// An obstacle that the last scan showed.
 #[derive(Debug, Clone)]
 pub struct Seen<'a> {
-    /// Its id, at least [`FIRST_ID`].
+    /// The id, at least [`FIRST_ID`].
     pub id: ObstacleId,
-    /// The outline by all scans, tank frame.
+    /// The outline according to all scans, tank frame.
     pub shape: Shape,
-    /// The outline in the robot frame, from the estimated pose: where the robot sees it now.
+    /// The outline in the robot frame, relative to the estimated pose: where the robot sees the obstacle now.
     pub shape_in_robot: Shape,
     /// Standard deviation of the outline, metres.
     pub sigma_m: f64,
-    /// Its recent places.
+    /// The recent positions of the obstacle.
     pub drift: &'a Drift,
 }
 
-/// What a scan has changed.
+/// The results of a scan.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Looked {
-    /// Obstacles that are not where they are drawn or were found, each with the number of scans through its place.
+    /// Obstacles that are not at the place where they are drawn or were found, each with the number of scans through
+    /// that place.
     pub not_there: Vec<(ObstacleId, u32)>,
 }
 
-/// The tracks, and buffers that are kept from scan to scan.
+/// The tracks, with buffers that are reused for the next scan.
 #[derive(Debug, Clone)]
 pub struct Perception {
     sensor: Sensor,
     tracks: Vec<Track>,
     next_id: u32,
-    /// Ids of moving obstacles that have gone, for the next obstacles.
+    /// Ids of dropped moving obstacles, to be used again for new obstacles.
     free_ids: Vec<ObstacleId>,
-    /// For each drawn obstacle that scans went through, their number.
+    /// Number of scans that passed through each drawn obstacle.
     through: BTreeMap<ObstacleId, u32>,
     agreement: Agreement,
     rays_wanted: Option<u32>,
     trouble: Option<String>,
-    /// From the estimated to the corrected pose.
+    /// The correction of the estimated pose, in the robot frame.
     correction: Isometry2<f64>,
     rays: Rays,
     buffers: Buffers,
@@ -99,7 +102,7 @@ pub struct Perception {
 }
 
 impl Perception {
-    /// Nothing has been seen yet.
+    /// Creates the state before the first scan.
     pub fn new(sensor: Sensor) -> Self {
         Self {
             rays_wanted: sensor.rays,
@@ -122,12 +125,12 @@ impl Perception {
         }
     }
 
-    /// Why the scans cannot be used, as a clause.
+    /// The reason why the scans cannot be used, as a clause; `None` if they can.
     pub fn trouble(&self) -> Option<&str> {
         self.trouble.as_deref()
     }
 
-    /// Takes a scan.
+    /// Processes a scan.
     pub fn look(&mut self, view: &View<'_>) -> Looked {
         self.trouble = self.layout_trouble(view.scan);
         if self.trouble.is_some() {
@@ -158,7 +161,7 @@ impl Perception {
         Looked { not_there }
     }
 
-    /// The obstacles that the last scan has shown, for a robot whose estimated pose is now `pose`.
+    /// The obstacles that the last scan showed, for a robot whose estimated pose is now `pose`.
     pub fn seen(&self, pose: &Pose) -> impl Iterator<Item = Seen<'_>> {
         let robot_from_tank = (pose.tank_from_robot() * self.correction).inverse();
         self.tracks.iter().filter(|track| track.is_seen).filter_map(move |track| {
@@ -174,12 +177,12 @@ impl Perception {
         })
     }
 
-    /// Number of things that are followed now, obstacles or not.
+    /// Number of objects that are followed now, whether they are obstacles yet or not.
     pub fn tracks(&self) -> usize {
         self.tracks.len()
     }
 
-    /// Why scans of this layout cannot be used.
+    /// The reason why scans of this layout cannot be used; `None` if they can.
     fn layout_trouble(&mut self, scan: &Scan) -> Option<String> {
         let n = scan.ranges_mm.0.len();
         let is_finite = scan.first_rad.is_finite() && scan.sensor_m.iter().all(|m| m.is_finite());
@@ -193,7 +196,7 @@ impl Perception {
         (n != wanted as usize).then(|| format!("the scan has {n} rays instead of {wanted}"))
     }
 
-    /// Gives each point that the drawing does not explain to the track to whose outline it is nearest.
+    /// Assigns each point that the drawing does not explain to the track with the nearest outline.
     fn share_out(&mut self, pose: &Uncertain) {
         let Self { tracks, rays, owners, nearest_m, explained, .. } = self;
         owners.clear();
@@ -217,7 +220,7 @@ impl Perception {
         }
     }
 
-    /// Groups the points that are left, and gives a group beside a track to that track.
+    /// Groups the remaining points, and assigns a group beside a track to that track.
     fn join_groups(&mut self, pose: &Uncertain) {
         let Self { tracks, rays, owners, explained, left, groups: found, .. } = self;
         left.clear();
@@ -245,7 +248,7 @@ impl Perception {
         }
     }
 
-    /// Updates each track by its points.
+    /// Updates each track with its points.
     fn update(&mut self, pose: &Uncertain, now_s: f64) {
         let Self { tracks, rays, owners, own, .. } = self;
         for (k, track) in tracks.iter_mut().enumerate() {
@@ -264,7 +267,7 @@ impl Perception {
         }
     }
 
-    /// Begins a track for each group that belongs to none.
+    /// Begins a track for each group that belongs to no track.
     fn begin_tracks(&mut self, pose: &Uncertain, now_s: f64) {
         let Self { tracks, rays, owners, left, groups: found, .. } = self;
         for group in found.iter().filter(|group| owners[left[group.rays.start]] == NONE) {
@@ -274,7 +277,8 @@ impl Perception {
         }
     }
 
-    /// Makes obstacles of the tracks that are certain enough. A track on an obstacle is dropped instead.
+    /// Turns the tracks that are certain enough into obstacles. A track that lies on an existing obstacle is dropped
+    /// instead.
     fn give_ids(&mut self, reach_m: f64) {
         let mut at = 0;
         while at < self.tracks.len() {
@@ -298,7 +302,7 @@ impl Perception {
         }
     }
 
-    /// Counts the scans through drawn obstacles; returns those that are to be reported now.
+    /// Counts the scans that pass through each drawn obstacle; returns the obstacles to be reported now.
     fn missing(&mut self, drawing: &Drawing<'_>, pose: &Uncertain) -> Vec<(ObstacleId, u32)> {
         let mut missing = Vec::new();
         for (obstacle, ..) in &drawing.obstacles {
@@ -319,7 +323,7 @@ impl Perception {
         missing
     }
 
-    /// Drops tracks that are over. The place of a moving obstacle that is out of sight is unknown; its id is used again.
+    /// Drops the tracks that are over. A moving obstacle that is out of sight could be anywhere; its id is used again.
     fn drop_tracks(&mut self, now_s: f64) {
         let free_ids = &mut self.free_ids;
         self.tracks.retain(|track| {

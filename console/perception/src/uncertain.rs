@@ -1,15 +1,15 @@
-//! How far a scanned point may be from its true place.
+//! The uncertainty of scanned points.
 
 use crate::drawing::GATE;
 use nalgebra::{Matrix2, Matrix3};
 
-/// Standard deviation of places on a drawing, metres; a scan does not place the robot better than that.
+/// Standard deviation of positions on a drawing, metres; a scan cannot locate the robot more accurately.
 const DRAWING_SIGMA_M: f64 = 0.01;
-/// The same for directions, radians.
+/// Standard deviation of directions on a drawing, radians.
 const DRAWING_SIGMA_RAD: f64 = 0.002;
 
-/// Standard deviations that are added to those of an estimated pose, metres and radians: filters state too small errors,
-/// above all of the heading, and a column that is drawn must not be taken for another one beside it.
+/// Standard deviations that are added to those of an estimated pose, metres and radians. The errors that filters state
+/// are too small, above all for the heading, and a drawn column must not be taken for another column beside it.
 const DOUBT_M: f64 = 0.02;
 const DOUBT_RAD: f64 = 0.012;
 
@@ -24,12 +24,12 @@ pub(crate) struct Uncertain {
 }
 
 impl Uncertain {
-    /// From the standard deviation of a distance and the covariance of x, y and heading.
+    /// Combines the standard deviation of a distance with the covariance of x, y and heading.
     fn new(sigma_m: f64, covariance: &Matrix3<f64>) -> Self {
         let place = covariance.fixed_view::<2, 2>(0, 0);
         let (mean, half) = (0.5 * place.trace(), 0.5 * (place[(0, 0)] - place[(1, 1)]));
         let place_m2 = mean + half.hypot(place[(0, 1)]);
-        // A place on a drawing is rounded, so no distance is exact.
+        // Positions on a drawing are rounded, so no distance is exact.
         Self { sigma_m: sigma_m.max(0.005), covariance: *covariance, place_m2 }
     }
 
@@ -47,23 +47,24 @@ impl Uncertain {
         Self::new(self.sigma_m, &(covariance + Matrix3::from_diagonal(&floor)))
     }
 
-    /// The inverse covariance of the pose; `None` if it is not positive.
+    /// The inverse covariance of the pose; `None` if the covariance is not positive.
     pub(crate) fn information(&self) -> Option<Matrix3<f64>> {
         let floor = Matrix3::from_diagonal(&nalgebra::Vector3::new(1e-8, 1e-8, 1e-10));
         (self.covariance + floor).cholesky().map(|root| root.inverse())
     }
 
-    /// The variance of a point at a distance, in the direction in which it is largest, square metres.
+    /// The variance of the position of a point at a distance, in the direction in which it is largest, square metres.
     pub(crate) fn point_m2(&self, range_m: f64) -> f64 {
         self.place_m2 + range_m * range_m * self.covariance[(2, 2)]
     }
 
-    /// The distance from its true place within which a point at a distance is, metres.
+    /// The maximum distance between a scanned point and its true position, metres, for a point at `range_m` from the
+    /// scanner.
     pub(crate) fn gate_m(&self, range_m: f64) -> f64 {
         GATE * (self.sigma_m * self.sigma_m + self.point_m2(range_m)).sqrt()
     }
 
-    /// The covariance of the place of something at an offset from the robot.
+    /// The covariance of the position of an object, given its offset from the robot.
     pub(crate) fn of_place(&self, arm: geometry::Vector) -> Matrix2<f64> {
         let slope = nalgebra::Matrix2x3::new(1.0, 0.0, -arm.y, 0.0, 1.0, arm.x);
         slope * self.covariance * slope.transpose()

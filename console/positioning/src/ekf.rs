@@ -13,8 +13,8 @@ use world::{Point, Pose, geometry::wrap_angle_rad};
 const SIGMA_LIMIT_M: f64 = 1e4;
 /// Lower limit for every variance.
 const VARIANCE_FLOOR: f64 = 1e-14;
-/// Normalised squared error beyond which a measurement of one or two values is refused: one correct measurement in
-/// 10,000.
+/// Normalised squared error beyond which a measurement of one or two values is refused. This refuses one correct
+/// measurement in 10,000.
 const GATE: [f64; 2] = [15.14, 18.42];
 
 /// Position, heading, share of the distance that is lost to slip, and error of the measured turn per tick.

@@ -17,7 +17,7 @@ use crate::{
 use nalgebra::{Matrix2, Matrix3};
 use world::{Odometry, Point, Pose, RangeSet, Station, StationId};
 
-/// This many consecutive sound fixes that contradict the filter prove it wrong.
+/// The number of consecutive fixes, each consistent in itself, that must contradict the filter to prove it wrong.
 const PATIENCE: u32 = 3;
 /// Standard deviation of the prior that chooses between a position and its mirror image, metres.
 const MIRROR_SIGMA_M: f64 = 0.01;

@@ -8,7 +8,7 @@ use crate::{
 use std::borrow::Cow;
 use world::{Boundary, Point, RangeSet, Station, StationId};
 
-/// The farthest that a station may lie behind the wall, metres.
+/// Maximum distance of a station behind the wall, metres.
 const BEHIND_WALL_M: f64 = 0.01;
 
 /// An impossible range.

@@ -7,15 +7,17 @@ use crate::{
 use nalgebra::Matrix2;
 use world::Point;
 
-/// Normal quantile beyond which residuals are suspect: one correct fix in 100.
+/// Standard normal quantile beyond which residuals are suspect. The residuals of one correct fix in 100 lie beyond it.
 const SUSPECT_Z: f64 = 2.326_347_874;
-/// Normal quantile beyond which residuals raise an alarm: one correct fix in 1000.
+/// Standard normal quantile beyond which residuals raise an alarm. The residuals of one correct fix in 1000 lie beyond
+/// it.
 pub(crate) const ALARM_Z: f64 = 3.090_232_306;
 
-/// Normal quantile beyond which the scatter of readings exceeds their noise: one correct set in 10,000.
+/// Standard normal quantile beyond which the scatter of readings exceeds their noise. One correct set in 10,000 lies
+/// beyond it.
 const SCATTER_Z: f64 = 3.719_016_485;
 
-/// The number of standard deviations that a protection level allows for chance: one position in 3000 lies farther off.
+/// The number of standard deviations that a protection level allows for chance. One position in 3000 is farther off.
 const PROTECTION_SIGMAS: f64 = 4.0;
 /// A distance, in standard deviations: if a place this far away cannot be ruled out, the errors do not form an ellipse.
 const BENT_SIGMAS: f64 = 5.0;
@@ -114,8 +116,8 @@ pub(crate) fn integrity_of(chi2: f64, degrees_of_freedom: u32) -> Integrity {
     }
 }
 
-/// Returns the sum of squared normalised differences beyond which the scatter of readings exceeds their noise: one
-/// correct sum in 10,000.
+/// Returns the sum of squared normalised differences beyond which the scatter of readings exceeds their noise. One
+/// correct sum in 10,000 lies beyond it.
 pub fn scatter_limit(degrees_of_freedom: u32) -> f64 {
     chi_squared_quantile(SCATTER_Z, degrees_of_freedom)
 }

@@ -10,9 +10,11 @@ use crate::{
 use nalgebra::Matrix2;
 use world::{Boundary, Point, Station};
 
-/// The normalised squared distance beyond which a position contradicts the estimate: one correct position in 10,000.
+/// The normalised squared distance beyond which a position contradicts the estimate. One correct position in 10,000
+/// lies beyond it.
 const CONTRADICTS: f64 = 18.42;
-/// The difference in normalised squared distance that decides between the two positions: one wrong choice in 1000.
+/// The difference in normalised squared distance that decides between the two positions. With this difference, one
+/// choice in 1000 is wrong.
 const DECIDES: f64 = 13.82;
 /// Condition number above which stations are nearly on a line, and can allow a second position.
 pub(crate) const MIRROR_CONDITIONING: f64 = 5.0;

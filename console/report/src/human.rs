@@ -144,7 +144,7 @@ fn beyond_reel(floor: &Account) -> Option<String> {
     is_beyond.then(|| {
         format!(
             "only {scanned:.1} % of {area_m2:.1} m² of reachable floor scanned: some of the floor is beyond \
-            the reel"
+            the reach of the tether"
         )
     })
 }

@@ -66,7 +66,7 @@ impl FloorFacts {
         }
     }
 
-    /// The facts, with missing facts filled in from others.
+    /// The facts; a fact that is missing is taken from `others`.
     fn or(self, others: &Self) -> Self {
         let others = others.clone();
         Self {

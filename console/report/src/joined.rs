@@ -73,7 +73,7 @@ pub(crate) fn joined_or_located(runs: &[PastRun]) -> Result<Joined<'_>, String> 
         all.evidence.to_mut().join(&evidence);
     }
     if all.evidence.found().any(|(id, _)| !known.contains(&id)) {
-        // Exclude floor blocked by an obstacle that only another run found, too.
+        // Floor that is blocked by an obstacle found only in another run is excluded, too.
         let grid = all.scanned.believed().floor();
         let updated = updated_floor(all.run, grid, &all.evidence, all.run.mission.swath_m);
         let changes = updated.into_floor().kinds();

@@ -252,7 +252,7 @@ mod tests {
         assert_eq!(planned(0.014).plan_time_ms, None);
         assert!(planned(0.014).human().contains("computed  in under 0.05 ms\n"));
         assert!(planned(1.5).human().contains("computed  in 1.50 ms\n"));
-        // A plan without a path has no length, and no sign either.
+        // The length of a plan without a path is 0, without a sign.
         assert!(planned(1.5).length_m.is_sign_positive());
     }
 }

@@ -154,7 +154,7 @@ mod tests {
     use mission::{Event, EventKind};
     use world::{CellRun, coverage::runs_of};
 
-    /// A run that scanned everything but some places, each with a radius.
+    /// A run that scanned all floor except some discs, each given by its centre and radius.
     fn all_but(missed: &[(f64, f64, f64)]) -> PastRun {
         let run = round_tank(0.05);
         let is_scanned = |index: &usize| {
@@ -210,7 +210,8 @@ mod tests {
     fn specks_that_lanes_less_the_overlap_do_not_reach_are_reported_and_not_offered() {
         let mut run = round_tank(0.05);
         run.mission.scan.overlap_m = 0.2;
-        // The hull keeps 0.45 m from the shell, so that a bar of 0.4 m ends 0.25 m from it, and one of 0.6 m 0.15 m.
+        // The hull keeps 0.45 m from the shell. A bar of 0.4 m therefore ends 0.25 m from the shell, and a bar of 0.6 m
+        // ends 0.15 m from it.
         let is_missed = |index: &usize| {
             let center = run.floor.center(*index);
             let beside_shell = center.x > 4.6 && center.y.abs() < 1.0 && center.coords.norm() > 4.78;

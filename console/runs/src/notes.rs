@@ -88,7 +88,7 @@ mod tests {
         for (damaged, why) in [
             ("{\n  \"remark\": 3\n}", "notes.json:2:13: invalid type: integer `3`"),
             ("[]", "notes.json:1:0: invalid type: sequence, expected a map"),
-            (&long, "notes.json: remark: the text has 501 characters; at most 500"),
+            (&long, "notes.json: remark: the text has 501 characters; the limit is 500"),
             (&huge, "notes.json: larger than 4 MB"),
         ] {
             fs::write(folder.path().join(NOTES_FILE), damaged).unwrap();

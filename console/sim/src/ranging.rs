@@ -178,7 +178,7 @@ mod tests {
         (0..31).map(|k| sounder.due_cycle(f64::from(k) * 0.1, Point::origin())).collect()
     }
 
-    /// Exact ranges but for the disturbances, of stations at (1, 5), (2, 5) and (3, 5), from the middle.
+    /// Ranges that are exact apart from the disturbances, between the origin and stations at (1, 5), (2, 5) and (3, 5).
     fn disturbed(disturbances: Disturbances, columns: &[(f64, f64, f64)]) -> Vec<RangeSet> {
         let config = AeConfig { noise: NoiseModel::None, repetitions: 400, disturbances, ..config() };
         Sounder::new(config, &tank(columns), 5).cycle(1.0, Point::origin())
@@ -244,7 +244,7 @@ mod tests {
         assert!(creeping[0] > 1e-4 && creeping[0] < 0.1, "{}", creeping[0]);
         let late = with(BehindColumns::Late);
         assert!(late[0] > 0.0 && late.iter().all(|e| (e - late[0]).abs() < 1e-12), "the whole cycle is late");
-        // From the middle the only echoes go along the same line, and the column stands on it.
+        // From the origin, the only echoes travel along the same line, which the column blocks.
         assert!(with(BehindColumns::WallEcho).is_empty());
         assert!(with(BehindColumns::Silent).is_empty());
     }

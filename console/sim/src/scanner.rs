@@ -1,11 +1,11 @@
-//! What a scanner on the robot measures.
+//! Simulates the scans of a scanner on the robot.
 
 use crate::random::normal;
 use geometry::unit_vector;
 use rand::{Rng, RngExt};
 use world::{Boundary, ObstacleMap, Pose, Scan, Scanner};
 
-/// Smallest distance that an error can lead to, metres: the resolution of a scan.
+/// Minimum distance after its error has been added, metres: the resolution of a scan.
 const NEAREST_M: f64 = 1e-3;
 
 /// A scan by a robot at a pose. Each ray draws two random numbers, whatever it hits.
@@ -23,7 +23,8 @@ pub(crate) fn scan(
         let wall_m = boundary.ray_m(from, direction);
         let hit_m = map.ray_m(from, direction, scanner.range_m).unwrap_or(f64::INFINITY).min(wall_m);
         let (error_m, is_lost) = (scanner.sigma_m * normal(rng), rng.random::<f64>() < scanner.lost_share);
-        // An error does not turn a hit into the 0 of an object that is too near to be measured.
+        // An error must not turn a hit into a distance of 0, which stands for an object that is too near to be
+        // measured.
         let measured_m = if hit_m > NEAREST_M { (hit_m + error_m).max(NEAREST_M) } else { hit_m };
         (!is_lost).then_some(measured_m)
     };

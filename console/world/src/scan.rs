@@ -8,9 +8,10 @@ use serde::{Deserialize, Serialize};
 /// The distance of a ray without an echo, and of one that is longer than 65.534 m.
 pub const NO_ECHO: u16 = u16::MAX;
 
-/// Number of neighbours on each side with which a distance is evened.
+/// Number of neighbouring rays on each side with which a distance is averaged.
 pub const EVENED: usize = 2;
-/// Difference of distances on one surface, in standard deviations.
+/// Minimum difference between distances on two surfaces, in standard deviations; a smaller difference may be noise on
+/// one surface.
 pub const APART: f64 = 5.0;
 
 /// Distances along rays from a sensor on the robot.
@@ -37,7 +38,8 @@ pub struct Scan {
     pub ranges_mm: RangesMm,
 }
 
-/// Distances in millimetres, each [`NO_ECHO`] where no echo came back; in text, a string of about a character a ray.
+/// Distances in millimetres, each [`NO_ECHO`] where no echo came back; serialised as a string of about one character
+/// per ray.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub struct RangesMm(pub Vec<u16>);
@@ -65,7 +67,7 @@ fn is_still(moved: &Odometry) -> bool {
 }
 
 impl Scan {
-    /// A distance in metres as it is stored.
+    /// Converts a distance in metres to the form in which it is stored.
     pub fn stored(range_m: Option<f64>) -> u16 {
         match range_m.map(|range_m| (range_m * 1000.0).round()) {
             Some(mm) if (0.0..f64::from(NO_ECHO)).contains(&mm) => mm as u16,
@@ -74,8 +76,8 @@ impl Scan {
     }
 
     /// The same scan with less noise: each distance is replaced by the mean of itself and of those neighbours, up to
-    /// [`EVENED`] rays to each side, that may lie on the same surface because they differ by less than [`APART`] standard
-    /// deviations. What stands out farther keeps its distance.
+    /// [`EVENED`] rays to each side, that may lie on the same surface because they differ by less than [`APART`]
+    /// standard deviations. A distance that differs more from all these neighbours stays unchanged.
     ///
     /// ```
     /// use world::{Scan, scan::RangesMm};
@@ -117,25 +119,26 @@ impl Scan {
     }
 }
 
-/// A point of the robot frame, in the robot frame after a motion.
+/// Converts a point from the robot frame before a motion to the robot frame after the motion.
 pub fn carried(point: Point, moved: &Odometry) -> Point {
     let left = Vector::new(moved.forward_m, moved.sideways_m);
     Point::from(Rotation2::new(-moved.turn_rad) * (point.coords - left))
 }
 
-/// The characters of packed distances: those that need no escape in JSON.
+/// Number of characters for packed distances: the printable ASCII characters that need no escape in JSON.
 const DIGITS: usize = 93;
-/// A small difference is one digit; a medium one is a digit from here and a second one.
+/// A digit below this one encodes a small difference on its own. A digit from this one on encodes a medium difference,
+/// together with a second digit.
 const SMALL: usize = 80;
 const MEDIUM: usize = 11;
-/// A distance in three digits follows.
+/// This digit announces a distance in three digits.
 const WHOLE: usize = SMALL + MEDIUM;
-/// No echo.
+/// This digit stands for a ray without an echo.
 const NONE: usize = WHOLE + 1;
 
 fn digit(value: usize) -> char {
     let byte = b' ' + value as u8;
-    // Without the quotation mark and the backslash.
+    // Skips the quotation mark and the backslash.
     let byte = if byte >= b'"' { byte + 1 } else { byte };
     char::from(if byte >= b'\\' { byte + 1 } else { byte })
 }
@@ -150,7 +153,7 @@ fn value(byte: u8) -> Option<usize> {
     Some(usize::from(at))
 }
 
-/// Differences between neighbours, so that a smooth wall takes one character a ray.
+/// Packs the distances as differences between neighbours, so that a smooth wall takes one character per ray.
 fn text(ranges_mm: &[u16]) -> String {
     let mut text = String::with_capacity(ranges_mm.len() * 2);
     let mut before = 0_i32;

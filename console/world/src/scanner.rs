@@ -17,7 +17,7 @@ pub struct Scanner {
     pub rays: u32,
     /// Angle between the two outermost rays, radians; a full turn for rays all around.
     pub field_of_view_rad: f64,
-    /// Greatest distance that is measured, metres.
+    /// Maximum distance that can be measured, metres.
     pub range_m: f64,
     /// Number of scans per second.
     pub rate_hz: f64,
@@ -48,7 +48,7 @@ impl Default for Scanner {
 }
 
 impl Scanner {
-    /// The same scanner without errors of its distances and without lost rays.
+    /// The same scanner without errors in its distances and without lost rays.
     #[must_use]
     pub fn exact(self) -> Self {
         Self { sigma_m: 0.0, lost_share: 0.0, ..self }
@@ -83,7 +83,7 @@ impl Scanner {
     /// assert_eq!([0, 1, 2, 3].map(|tick| scanner.is_due(tick, 0.1)), [true, false, true, false]);
     /// ```
     pub fn is_due(&self, tick: u64, tick_s: f64) -> bool {
-        // A tick that should begin exactly with a scan must not miss it by rounding.
+        // Because of rounding, a tick that should begin exactly with a scan could otherwise miss it.
         let scans = |tick: u64| (tick as f64 * tick_s * self.rate_hz + 1e-6).floor();
         tick == 0 || scans(tick) > scans(tick - 1)
     }

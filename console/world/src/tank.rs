@@ -8,8 +8,9 @@ use serde::{Deserialize, Serialize};
 pub struct ObstacleId(pub u32);
 
 impl ObstacleId {
-    /// The ids from this one on are those of a tracker that does not know the drawing. It may give an obstacle the id of a
-    /// drawn one, so the console replaces its ids; a drawn obstacle that it sees has an id that is not on the drawing.
+    /// Ids from this one on belong to a tracker that does not know the drawing. Such a tracker may use the id of a
+    /// drawn obstacle for another obstacle, so the console replaces all ids of the tracker. As a result, a drawn
+    /// obstacle that the tracker sees has an id that is not on the drawing.
     pub const FOREIGN: Self = Self(1_000_000);
 }
 

@@ -9,7 +9,7 @@ use world::{Point, Pose, polyline};
 /// Where a plan that continues earlier runs begins to scan, and what it scans a second time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Resumption {
-    /// The point of the path from which on it scans requested floor, metres, tank frame.
+    /// The point of the path from which on requested floor is scanned, metres, tank frame.
     pub at: Point,
     /// Length of the path up to that point, metres.
     pub after_m: f64,
@@ -74,7 +74,7 @@ impl LeftOut {
     }
 }
 
-/// The point of a path from which on it scans requested floor, and the length of the path up to there, metres.
+/// The point of a path from which on requested floor is scanned, and the length of the path up to that point, metres.
 fn resumes(run: &RunOpened, path: &[Point], is_requested: &dyn Fn(usize) -> bool) -> Option<(Point, f64)> {
     let fine = polyline::resampled(path, run.mission.cell_m);
     let scans = |pair: &[Point]| {

@@ -98,7 +98,7 @@ impl Explained for MissReason {
         }
     }
 
-    /// Floor that was not requested is not a gap: an area must not mix it with floor that was.
+    /// Floor that was not requested is not missed floor, so no area may contain both kinds.
     fn is_apart(self) -> bool {
         self == Self::NotAsked
     }

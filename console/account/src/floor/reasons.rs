@@ -8,7 +8,7 @@ use super::{
 use std::collections::BTreeMap;
 use world::{Cell, CoverageGrid, Point, polyline, tether::Reach};
 
-/// The names of some cells' zones, the zone with most cells first; `None` without zones.
+/// The names of the zones of some cells, the zone with the most cells first; `None` without zones.
 fn named<'a>(zones: impl Iterator<Item = &'a Solid>) -> Option<String> {
     let mut cells: BTreeMap<&str, usize> = BTreeMap::new();
     zones.for_each(|zone| *cells.entry(&zone.name).or_default() += 1);

@@ -1,4 +1,5 @@
-//! Accounts of a small round tank: shares that sum up, gaps that have their reasons, plates and the zone at the shell.
+//! The account of a small round tank: shares that add up, missed areas with their reasons, plates, and the zone along
+//! the shell.
 
 use super::*;
 use crate::samples::round_tank;
@@ -25,7 +26,7 @@ fn lanes() -> Vec<Point> {
     (0..14).flat_map(lane).collect()
 }
 
-/// All lanes were planned and the first `lanes` of them flown.
+/// A run for which all lanes were planned, and that drove the first `flown` of them.
 fn scanned(run: &RunOpened, flown: usize) -> (CoverageGrid, Evidence) {
     let (mut grid, mut evidence) = (CoverageGrid::new(run.floor.clone()), Evidence::new(run));
     let path = lanes();
@@ -72,7 +73,7 @@ fn lanes_that_were_not_flown_are_reported_with_place_plate_and_reason() {
     let north = &account.missed[0];
     assert_eq!(north.reason, MissReason::NotReached);
     assert!(north.area_m2 > 2.0 && north.high.y > 4.0 && north.plate.is_some(), "{north:?}");
-    // What was not planned touches it: one area with a cause for each part.
+    // Floor that was not planned touches this area, so they form one area with a cause for each part.
     let reasons: Vec<MissReason> = north.causes.iter().map(|cause| cause.reason).collect();
     assert!(
         reasons.contains(&MissReason::Clearance) && reasons.contains(&MissReason::NotPlanned),
@@ -97,7 +98,7 @@ fn floor_ahead_of_a_run_that_was_cut_short_was_not_passed_however_near_the_robot
         "{:?}",
         account.missed
     );
-    // The lane beside the only one flown, half a swath away.
+    // The lane beside the only lane that was driven, half a swath away.
     assert_eq!(why_missed(&evidence, &run, 0.0, -3.45), MissReason::NotReached);
 }
 
@@ -135,7 +136,7 @@ fn a_new_plan_takes_the_place_of_the_one_before_unless_it_is_refused() {
     }
 }
 
-/// A tether made fast in the south, of which 6.6 m are on the reel.
+/// A tether with its anchor in the south and 6.6 m on the reel.
 fn tether() -> mission::TetherConfig {
     mission::TetherConfig {
         anchor: Point::new(0.0, -4.5),
@@ -158,7 +159,7 @@ fn floor_that_the_cable_does_not_lead_to_is_reported_as_beyond_the_reel_only_if_
     }
 }
 
-/// Why the only area of some missed cells was missed.
+/// The reason for the only missed area.
 fn why(run: &RunOpened, evidence: &Evidence, is_missed: impl Fn(Point) -> bool) -> String {
     let mut grid = CoverageGrid::new(run.floor.clone());
     grid.apply(&runs_of((0..run.floor.len()).filter(|index| !is_missed(run.floor.center(*index)))));
@@ -198,7 +199,8 @@ fn guaranteed_is_what_the_tool_passed_wherever_the_robot_stood_within_its_error(
     let run = round_tank(0.05);
     let mut scanned = Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start);
     let mut believed = CoverageGrid::new(run.floor.clone());
-    // Sure across the way and unsure along it, then the other way round.
+    // The position is accurate across the heading and inaccurate along it; for the second pass, it is the other way
+    // round.
     for (x_m, covariance_m2) in [(-2.0, [0.01, 0.0, 0.0, 0.0001]), (2.0, [0.0001, 0.0, 0.0, 0.01])] {
         let at = |y_m: f64| Pose::new(y_m, x_m, 0.0);
         let covariance = Matrix2::from_row_slice(&covariance_m2);
@@ -212,7 +214,7 @@ fn guaranteed_is_what_the_tool_passed_wherever_the_robot_stood_within_its_error(
         let beside = cells.filter(|index| (run.floor.center(*index).y - y_m).abs() < 1.0);
         beside.count() as f64 * run.floor.cell_m2() / 2.0
     };
-    // 0.6 m less twice 2.45 standard deviations across the way.
+    // 0.6 m minus twice 2.45 standard deviations across the heading.
     assert!((width_m(-2.0) - 0.55).abs() < 0.051, "{}", width_m(-2.0));
     assert!((width_m(2.0) - 0.11).abs() < 0.051, "{}", width_m(2.0));
     let whole = super::account(&run, &scanned, &Evidence::new(&run)).whole;
@@ -371,8 +373,8 @@ fn floor_that_was_not_requested_or_lies_in_a_no_go_zone_is_listed_with_a_distanc
     run.floor.change(&kinds);
     let account = account(&run, &CoverageGrid::new(run.floor.clone()), &Evidence::new(&run));
     let all: Vec<String> = account.missed.iter().map(ToString::to_string).collect();
-    // From what the bar reaches in the north, 4.83 m, to the first cells of the square, 1.03 m south of the centre: 5.85 m, and a
-    // little more because the zone lies between them.
+    // The bar reaches up to 4.83 m in the north, and the first cells of the square are 1.03 m south of the centre: that
+    // makes 5.85 m. The actual distance is slightly larger, because the zone lies between them.
     assert!(all[0].contains("not requested, up to 5.93 m outside"), "{all:?}");
     let out = account.unreachable.iter().find(|area| area.reason == OutOfReach::NoGo).expect("the zone");
     assert_eq!(out.why(), "in a no-go zone, up to 0.50 m from reachable floor");
@@ -399,7 +401,7 @@ fn floor_that_was_not_requested_is_never_one_area_with_floor_that_was() {
     assert!((account.not_asked_m2() + asked_m2 - reachable_m2).abs() < 0.02, "{:?}", account.missed);
 }
 
-/// What becomes of a floor on which a box is forbidden, as the words of the areas out of reach.
+/// The unreachable areas of a floor after a box has been closed as a no-go zone.
 fn out_of_reach_with(run: &RunOpened, zone: &world::Shape) -> Vec<Area<OutOfReach>> {
     let mut evidence = Evidence::new(run);
     let mut maker = world::FloorMaker::new(&run.world, 0.05, 0.45, 0.6, Point::origin());
@@ -423,7 +425,7 @@ fn floor_in_a_drawn_zone_names_it_and_so_does_floor_that_it_closes_off() {
     let within = out_of_reach_with(&run, &rectangle((1.0, -1.0), (2.5, 0.5)));
     let named = within.iter().find(|area| area.reason == OutOfReach::NoGo).expect("the zone");
     assert!(named.why().starts_with(&format!("in {words}, up to ")), "{}", named.why());
-    // A bar across the tank: what lies east of it is closed off.
+    // A bar across the tank closes off the floor east of it.
     let across = out_of_reach_with(&run, &rectangle((2.0, -6.0), (2.2, 6.0)));
     let closed: Vec<String> = across.iter().map(Area::why).collect();
     assert!(

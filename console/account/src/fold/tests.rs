@@ -1,4 +1,4 @@
-//! The figures of tiny runs whose figures can be worked out by hand, and of one with everything in it.
+//! The figures of very short runs that can be worked out by hand, and of one run with every kind of event.
 
 #![allow(clippy::unwrap_used, clippy::float_cmp, reason = "tests with exact figures")]
 
@@ -40,7 +40,7 @@ fn position_errors_are_paired_by_tick() {
     assert!((positioning.mean_error_m - 0.2).abs() < 1e-12);
     assert!((positioning.p50_m - 0.1).abs() < 1e-12);
     assert!((positioning.p95_m - 0.3).abs() < 1e-12 && (positioning.max_m - 0.3).abs() < 1e-12);
-    // 0.1 m lies within 2.45 sigma of 0.1 m, 0.3 m does not.
+    // An error of 0.1 m lies within 2.45 sigma of 0.1 m; an error of 0.3 m does not.
     assert!((positioning.in_95_ellipse - 0.5).abs() < 1e-12);
 }
 
@@ -61,7 +61,7 @@ fn lost_time_counts_until_regained_or_the_end() {
 
 #[test]
 fn coverage_counts_believed_and_true_cells() {
-    // The grid has 8 by 8 cells, all reachable; two rows of eight are believed scanned.
+    // The grid has 8 by 8 cells, all reachable; two rows of eight cells count as scanned by the estimate.
     let run = fold(&[
         (0, opened()),
         (1, json!({ "event": "covered", "runs": [[24, 8]] })),
@@ -85,7 +85,8 @@ fn going_back_over_everything_is_an_overlap_of_nearly_one() {
     let mut events = vec![(0, opened()), (0, start), (0, json!({ "event": "covered", "runs": [[24, 16]] }))];
     events.extend(there.chain(back).enumerate().map(|(i, x)| (i as u64, estimated(x, 0.0, 0.01))));
     let overlap = fold(&events).summary().coverage.unwrap().overlap.unwrap();
-    // Where it turned it had not gone two swaths since: those cells do not count again.
+    // Near its turning point, the robot came back after less than two swaths of path, so those cells do not count as
+    // scanned again.
     assert!((0.5..0.9).contains(&overlap), "{overlap}");
 }
 
@@ -93,7 +94,7 @@ fn going_back_over_everything_is_an_overlap_of_nearly_one() {
 fn floor_that_is_passed_while_a_held_robot_brakes_has_an_error_and_is_guaranteed() {
     let start = json!({ "event": "ordered", "order": "start" });
     let held = json!({ "event": "held", "by": "operator" });
-    // Held at 0.25 m; it stops 1 m further on.
+    // The robot is held at 0.25 m, and stops 1 m farther on.
     let run = fold(&[
         (0, opened()),
         (0, start),

@@ -34,7 +34,7 @@ proptest! {
 #[test]
 fn all_of_the_ring_about_a_station_close_by_counts() {
     let (error_m, long_m) = error_and_axis_m(12_166_711_506_782_477_027, 1, 6);
-    // Of a fine raster of the set: 0.3085 m and 0.5797 m.
+    // Reference values, computed on a fine grid over the set: 0.3085 m and 0.5797 m.
     assert!((error_m - 0.3085).abs() < 0.02 && (long_m - 0.5797).abs() < 0.02, "{error_m} {long_m}");
 }
 
@@ -64,7 +64,8 @@ fn two_stations_leave_the_piece_on_the_side_of_the_prior() {
     }
 }
 
-/// Mean errors of this solver and of least squares, metres, and the mean square of this one's in its own sigmas.
+/// Mean errors of this solver and of least squares, metres, and the mean squared error of this solver in units of its
+/// own variance.
 fn mean_error_m(stations: &[Station], repetitions: usize, runs: u32) -> (f64, f64, f64) {
     let mut draws = Draws::new(0.05, repetitions, 31);
     let (mut bounded, mut nls, mut squared) = (0.0, 0.0, 0.0);

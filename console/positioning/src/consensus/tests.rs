@@ -30,7 +30,8 @@ proptest! {
     }
 }
 
-/// Mean error with each station hidden in one of five cycles, late by an exponential delay of a metre.
+/// Mean error if each station is hidden in one cycle of five. A hidden station's range is too long by an exponentially
+/// distributed length with a mean of one metre.
 fn hidden(n: u32, runs: u32) -> f64 {
     let (stations, mut draws) = (ring(n, 7.5), Draws::new(0.05, 20, 14));
     let mut error_m = 0.0;

@@ -64,8 +64,8 @@ fn a_single_range_narrows_the_direction_it_was_measured_in() {
     assert!((filter.error_95_m() - 0.5 * 2.448).abs() < 1e-3);
 }
 
-/// Drives an arc with slip, odometry noise and gyro bias; fixes of 5 cm once a second. Gives the mean error after
-/// the first 20 s and the share of ticks with the truth inside the 95 % ellipse.
+/// Drives an arc with slip, odometry noise and gyro bias; fixes of 5 cm once a second. Returns the mean error after the
+/// first 20 s and the share of ticks with the truth inside the 95 % ellipse.
 fn driven_arc(slip: f64, gyro_bias_rad_per_s: f64, seed: u64) -> (f64, f64) {
     let (dt, sigma_m, mut draws) = (0.1, 0.05, Draws::new(0.0, 1, seed));
     let mut truth = Pose::new(4.0, 0.0, 1.5);

@@ -50,7 +50,7 @@ fn a_saddle_becomes_a_valley_with_the_same_axes() {
     }
 }
 
-/// How the solver did over the disc.
+/// The results of the solver over the floor of the tank.
 struct Score {
     mean_error_m: f64,
     /// Mean error of normal noise with the smallest possible covariance, at the same truths.

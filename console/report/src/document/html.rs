@@ -22,7 +22,7 @@ pub fn html(document: &Document) -> String {
     let mut page = sections(document);
     page.css = CSS;
     number(&mut page);
-    // The template cannot fail.
+    // Rendering this template cannot fail.
     let html = Html { page: &page }.render().unwrap_or_default();
     foreign::plain_lines(&html).into_owned()
 }

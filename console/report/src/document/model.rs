@@ -32,7 +32,7 @@ pub struct Document {
     /// The real vehicle that was driven; absent for simulations and located readings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub live: Option<account::VehicleRecord>,
-    /// The located readings on which the report is made; absent for missions.
+    /// The located readings that the report is about; absent for missions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub located: Option<Located>,
     /// The facts that only people know; a missing fact is `null`.

@@ -13,22 +13,22 @@ use mission::{Event, EventKind, RunOpened, TaskConfig};
 use planner_api::Reason;
 use world::{Floor, Obstacle, ObstacleId, Point, Shape};
 
-/// Places of two cells in the middle.
+/// Positions of two cells in the middle of the tank.
 const MISSED: [Point; 2] = [Point::new(1.0, -1.0), Point::new(1.1, -1.0)];
 
-/// A run that scanned everything but two cells out of the middle.
+/// A run that scanned all floor except two cells in the middle of the tank.
 fn past() -> PastRun {
     past_without(&MISSED)
 }
 
-/// A run that scanned everything but the cells at some places, where its plan does not lead.
+/// A run that scanned all floor except the cells at some positions, to which its plan does not lead.
 fn past_without(missed: &[Point]) -> PastRun {
     let mut past = past_of(round_tank(0.1), missed);
     plan(&mut past, vec![]);
     past
 }
 
-/// Gives a run a plan that leads away from what was missed, with lines that it does not cross.
+/// Gives a run a plan that does not lead to the missed cells, with these cuts.
 fn plan(past: &mut PastRun, cuts: Vec<Vec<Point>>) {
     let path = [Point::new(-1.75, 0.0), Point::new(-2.5, 0.0)];
     let kind = EventKind::Planned {
@@ -46,7 +46,7 @@ fn plan(past: &mut PastRun, cuts: Vec<Vec<Point>>) {
     past.summary = past.fold.summary();
 }
 
-/// The same of some run, without a plan.
+/// A run that scanned all floor except the cells at some positions, without a plan.
 fn past_of(run: RunOpened, missed: &[Point]) -> PastRun {
     let missed: Vec<usize> = missed.iter().map(|place| run.floor.cell_at(*place).unwrap()).collect();
     let runs = world::coverage::runs_of((0..run.floor.len()).filter(|cell| !missed.contains(cell)));
@@ -85,7 +85,7 @@ fn what_is_missing_is_printed_with_its_key_and_what_is_given_is_escaped() {
 fn a_gap_without_a_reason_and_a_plate_without_a_figure_are_open_items() {
     let missed_accepted = Some("seen by eye".to_owned());
     let mut document = document(Inspection { missed_accepted, ..Inspection::default() });
-    // Nothing was passed by an estimated position, so no plate has an accuracy.
+    // The tool passed over nothing according to an estimated position, so no plate has an accuracy.
     assert!(open(&document).contains(&5) && !open(&document).contains(&6), "{:?}", document.gate);
     document.floor.plates.iter_mut().for_each(|plate| plate.error_p95_m = Some(0.05));
     document.floor.missed[0].causes[0].text.clear();
@@ -136,7 +136,7 @@ fn a_datum_moves_and_turns_what_geojson_says() {
     assert_eq!(map["crs"]["properties"]["name"], "EPSG:25832");
     let shell =
         map["features"].as_array().unwrap().iter().find(|f| f["properties"]["layer"] == "shell").unwrap();
-    // East of the tank is its south there.
+    // In this coordinate system, east of the tank frame is south.
     assert_eq!(shell["geometry"]["coordinates"][0][0], serde_json::json!([1000.0, 1995.0]));
 }
 
@@ -164,7 +164,7 @@ fn a_run_that_was_cut_off_and_gaps_block_the_signature_until_they_are_decided() 
     let lacks =
         |item: usize, key: &str| undecided.gate[item - 1].missing.contains(&format!("inspection.{key}"));
     assert!(lacks(2, "partial_scope_accepted") && lacks(6, "missed_accepted"), "{:?}", undecided.gate);
-    // Nobody scanned the shell, and that the recording stops is an incident.
+    // No part of the shell was scanned, and the early end of the recording is an incident.
     assert!(lacks(2, "critical_zone_accepted") != undecided.floor.critical_zone.done);
     assert!(lacks(11, "events_reviewed_by"), "{:?}", undecided.gate[10]);
     let page = html(&undecided);
@@ -181,14 +181,14 @@ fn a_run_that_was_cut_off_and_gaps_block_the_signature_until_they_are_decided() 
     assert!(html(&decided).contains("the rest by hand"), "printed");
 }
 
-/// Two runs, each of which found an obstacle and has a track.
+/// Two runs, each with a found obstacle and a track.
 fn two_runs() -> [PastRun; 2] {
     two_runs_of([round_tank(0.1), round_tank(0.1)])
 }
 
-/// The same, opened so.
+/// Two runs that were opened in this way, each with a found obstacle and a track.
 fn two_runs_of([first, second]: [RunOpened; 2]) -> [PastRun; 2] {
-    // The second one stands beside what both missed.
+    // The obstacle of the second run is beside the cells that both runs missed.
     [("20261122T040132Z-a", 2.0, first), ("20261122T050132Z-b", -1.0, second)].map(|(name, y, opened)| {
         let mut run = past_of(opened, &MISSED);
         plan(&mut run, vec![]);
@@ -226,7 +226,8 @@ fn indications_have_numbered_marks_on_the_map_that_do_not_cover_one_another() {
     let places = ["I1", "I2", "I3"].map(place_of);
     assert!(places[0] != places[1] && places[1] != places[2] && places[0] != places[2], "{places:?}");
     assert!(map.legend.iter().any(|entry| entry.text.starts_with("indication") && entry.value == "3"));
-    // Where there is no room, a mark has no number rather than one over another, and the caption says so.
+    // A mark without enough space has no number, so that numbers do not overlap, and the caption states how many marks
+    // have none.
     let crowd: String = (0..300).fold("t_s\n".into(), |csv, k| csv + &format!("{}\n", 0.03 * f64::from(k)));
     let [run, _] = two_runs();
     let context = Context { indications_csv: Some(("found.csv", &crowd)), ..Context::default() };
@@ -254,7 +255,7 @@ fn what_was_found_in_several_runs_is_named_by_its_run_in_every_format() {
     assert!(map.contains(r#""number":2,"plate""#) && map.contains(r#""run":"20261122T050132Z-b""#), "{map}");
     let reasons: String = document.floor.missed.iter().map(account::Area::why).collect();
     assert!(reasons.contains("from found 1 of run 2, found during the run"), "{reasons}");
-    // A run of its own needs no number.
+    // In a report on a single run, the names need no run number.
     let [run, _] = two_runs();
     let alone = Document::new(std::slice::from_ref(&run), Context::default()).unwrap();
     assert!(!dxf::dxf(&alone, &[run]).contains("of run"));

@@ -4,7 +4,7 @@ use super::trace::outlines;
 use std::fmt::{Display, Write};
 use world::{Boundary, Floor, Point, Shape};
 
-/// The colours of all report drawings: muted for good results, strong for what needs a decision.
+/// The colours of all report drawings: muted for good results, strong for results that need a decision.
 pub(crate) mod colour {
     pub(crate) const INK: &str = "#1C2731";
     pub(crate) const SOFT: &str = "#53616C";

@@ -1,4 +1,4 @@
-//! Texts of tiny runs.
+//! The summaries of very short runs.
 
 use super::*;
 use crate::samples::{chosen, fold, full_run, opened, truth, zone_drawn};

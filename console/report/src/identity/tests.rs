@@ -19,7 +19,7 @@ datum_m = [691608.2, 5334760.4]
 datum_north_deg = 12.5
 "#;
 
-/// A run of a tank with everything that identifies one.
+/// A run of a tank with all the facts that identify a tank.
 fn run() -> RunOpened {
     static TANK: LazyLock<RunOpened> = LazyLock::new(|| round_tank(0.25));
     let mut run = TANK.clone();
@@ -35,12 +35,12 @@ fn past(name: &str, run: RunOpened) -> PastRun {
     fold.apply(&Event { tick: 0, t_s: 0.0, kind: EventKind::RunOpened(Box::new(run)) });
     let logs = Logs { journal: None, recording: None, error: None, is_open: false };
     let files = Files { journal_sha256: Some(digest_of(name)), ..Files::default() };
-    // What it summarises does not say whose floor it is.
+    // The summary does not affect the identity of the floor.
     let (summary, record) = (Fold::new().summary(), Record::new());
     PastRun { name: name.into(), logs, began: None, files, fold, summary, record }
 }
 
-/// What the tests take for the digest of a run's journal.
+/// The digest that the tests use for the journal of a run.
 fn digest_of(name: &str) -> String {
     name.repeat(64)
 }
@@ -50,7 +50,7 @@ fn together(runs: [RunOpened; 2]) -> Result<(), String> {
     require_one_floor(&[past("a", a), past("b", b)])
 }
 
-/// Another run of the same scenario, or a re-scan of `a` and `b`, which has another name.
+/// A re-scan of the runs with these names; its scenario has another name.
 fn rescan_of(names: &[&str]) -> RunOpened {
     let mut run = run();
     let digests: Vec<String> = names.iter().map(|name| format!("\"{}\"", digest_of(name))).collect();
@@ -59,7 +59,7 @@ fn rescan_of(names: &[&str]) -> RunOpened {
     run
 }
 
-/// Changes one field of what identifies a floor; gives the key that must be named.
+/// Changes one of the fields that identify a floor; returns the key that the message must name.
 fn change(run: &mut RunOpened, which: usize, by: f64, word: &str) -> &'static str {
     let mut fact = |from: &str, to: String| {
         assert!(run.scenario_toml.contains(from));
@@ -131,7 +131,7 @@ const KEYS: [&str; 21] = [
 ];
 
 proptest! {
-    /// Whatever single field differs, by however little, the two are never one floor.
+    /// If any single field differs, however little, the runs are never on one floor.
     #[test]
     fn any_one_field_that_differs_is_named_with_both_values(
         which in 0..KEYS.len(), by in 1e-6..3.0_f64, word in "[A-Z]{3}-[0-9]{2}", rescans in any::<bool>(),

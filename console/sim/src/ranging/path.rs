@@ -174,7 +174,7 @@ mod tests {
     fn the_echo_in_a_round_tank_is_a_reflection() {
         let around = around(ROUND, column(1.0));
         let length_m = around.echo_m(Point::new(-3.0, 0.0), Point::new(3.0, 0.0)).expect("an echo");
-        // Over the wall abeam: the way over the wall ahead is blocked.
+        // The echo comes from the wall at the side, because the path to the wall ahead is blocked.
         assert!((length_m - 2.0 * 109.0_f64.sqrt()).abs() < 1e-3, "{length_m}");
     }
 

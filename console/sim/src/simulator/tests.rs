@@ -169,7 +169,7 @@ proptest! {
     }
 }
 
-/// Readings of a drive that meets nothing.
+/// The readings of a drive without contacts.
 fn free_run(config: SimConfig) -> Vec<Readings> {
     let mut sim = Simulator::new(config, 42);
     let drive = Drive::Twist { v_m_per_s: 0.3, w_rad_per_s: 0.3 };
@@ -292,7 +292,7 @@ fn a_cycle_without_an_answer_is_reported() {
     assert!(run[10].ranging_cycle && !run[10].ranges.is_empty());
 }
 
-/// A robot that goes from the flooded west to the dry east at the greatest speed it is allowed.
+/// The positions and speeds of a robot that drives from the flooded west to the dry east at the maximum speed allowed.
 fn speeds_across_the_waterline(transition_steps: u32) -> Vec<(f64, f64)> {
     let amphibious = Amphibious { transition_steps, ..Amphibious::YANG_2021 };
     let water =
@@ -323,7 +323,7 @@ fn an_amphibious_robot_swims_faster_than_it_walks_and_brakes_at_the_waterline() 
     let speeds = speeds_across_the_waterline(20);
     assert!(speeds.iter().any(|(x, speed)| *x < 0.0 && (speed - 0.23).abs() < 1e-9));
     assert!((speeds[199].1 - 0.13).abs() < 1e-9);
-    // In 20 steps the limit falls by 0.005 m/s each, half of what the brakes can do.
+    // In each of the 20 steps, the limit falls by 0.005 m/s, half of what the brakes can achieve.
     let falls = speeds.windows(2).map(|w| w[0].1 - w[1].1).fold(0.0, f64::max);
     assert!((falls - 0.005).abs() < 1e-9, "{falls}");
     let instant = speeds_across_the_waterline(0);

@@ -305,7 +305,7 @@ mod tests {
         let grid = grid(0.05);
         let floor = grid.floor();
         let headings = (0..48).map(|k| (0.131 * f64::from(k), 0.05 * f64::from(k % 5)));
-        // From a robot that stands still, through steps of usual length, to a bar whose ends cross.
+        // The cases range from a robot that stands still, through steps of the usual length, to a bar whose ends cross.
         for (heading, turn) in headings {
             for (tool, step_m, turn) in [
                 (BAR, 0.0, turn),
