@@ -82,7 +82,7 @@ mod tests {
             overlap.pass(way_m, 0.6, &cells, |cell| cell != 2)
         };
         assert_eq!(pass(0.0, &[0, 1, 2]), []);
-        assert_eq!(pass(0.3, &[0]), [], "still under the tool");
+        assert_eq!(pass(0.3, &[0]), [], "the cell is still under the tool");
         assert_eq!(pass(3.0, &[]), []);
         assert_eq!(pass(0.1, &[0, 1, 2]), [(0, true), (1, true)], "cell 2 never counted as scanned");
         assert_eq!(pass(3.0, &[]), []);

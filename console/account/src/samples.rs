@@ -86,7 +86,7 @@ pub(crate) fn round_tank(cell_m: f64) -> RunOpened {
     (mission["swath_m"], mission["cell_m"]) = (json!(0.6), json!(cell_m));
     run["floor"] = json!(world::Floor::new(&world, cell_m, 0.45, 0.6, Point::origin()));
     (run["world"], run["plates"]) = (json!(world), json!(plates));
-    let EventKind::RunOpened(run) = event(0, &run).kind else { panic!("that is what it is") };
+    let EventKind::RunOpened(run) = event(0, &run).kind else { panic!("the event must be run_opened") };
     *run
 }
 

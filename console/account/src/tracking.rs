@@ -168,7 +168,7 @@ mod tests {
     fn a_path_flown_exactly_has_no_error() {
         let mut tracker = Tracker::new(&east(5.0));
         fly(&mut tracker, &east(5.0));
-        let tracking = tracker.tracking().expect("it moved");
+        let tracking = tracker.tracking().expect("the robot moved");
         assert!((tracking.precision, tracking.recall) == (1.0, 1.0), "{tracking:?}");
         assert!(tracking.cross_track_rmse_m < 1e-9 && tracking.rmse_m.expect("passed") < 1e-9);
     }
@@ -177,7 +177,7 @@ mod tests {
     fn a_parallel_path_is_off_by_its_distance() {
         let mut tracker = Tracker::new(&east(5.0));
         fly(&mut tracker, &[Point::new(0.0, 0.3), Point::new(5.0, 0.3)]);
-        let tracking = tracker.tracking().expect("it moved");
+        let tracking = tracker.tracking().expect("the robot moved");
         assert!((tracking.precision, tracking.recall) == (0.0, 0.0), "{tracking:?}");
         assert!((tracking.cross_track_rmse_m - 0.3).abs() < 1e-9);
         assert!((tracking.rmse_m.expect("passed") - 0.3).abs() < 1e-9);
@@ -187,7 +187,7 @@ mod tests {
     fn half_a_path_flown_exactly_is_half_recalled() {
         let mut tracker = Tracker::new(&east(10.0));
         fly(&mut tracker, &east(5.05));
-        let tracking = tracker.tracking().expect("it moved");
+        let tracking = tracker.tracking().expect("the robot moved");
         assert!((tracking.precision - 1.0).abs() < 1e-12);
         // The points from 0.0 m to 5.2 m in steps of 0.1 m: 53 of 101 points.
         assert!((tracking.recall - 53.0 / 101.0).abs() < 1e-9, "{tracking:?}");
@@ -203,7 +203,7 @@ mod tests {
         fly(&mut tracker, &flown[..2]);
         tracker.progress(4.0);
         fly(&mut tracker, &flown[1..]);
-        let tracking = tracker.tracking().expect("it moved");
+        let tracking = tracker.tracking().expect("the robot moved");
         assert!(tracking.precision > 0.75, "{tracking:?}");
         assert!((0.4..0.7).contains(&tracking.recall), "{tracking:?}");
         assert!(tracking.rmse_m.expect("passed") > 0.4, "{tracking:?}");
@@ -216,7 +216,7 @@ mod tests {
             tracker.pass(Point::new(0.0, 0.5), Point::new(0.0, 0.5));
         }
         fly(&mut tracker, &east(1.0));
-        let tracking = tracker.tracking().expect("it moved");
+        let tracking = tracker.tracking().expect("the robot moved");
         // A single sample is off the path; about twenty are on it.
         assert!(tracking.precision > 0.9, "{tracking:?}");
     }
@@ -229,7 +229,7 @@ mod tests {
         );
         let mut tracker = Tracker::new(&preset);
         fly(&mut tracker, &[Point::new(0.0, 0.0), Point::new(1.0, 0.0), Point::new(1.0, 0.5)]);
-        let cross_track_m = tracker.tracking().expect("it moved").cross_track_rmse_m;
+        let cross_track_m = tracker.tracking().expect("the robot moved").cross_track_rmse_m;
         assert!(cross_track_m > 0.1, "{cross_track_m}");
     }
 }

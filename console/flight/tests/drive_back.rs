@@ -271,7 +271,7 @@ proptest! {
             flown.fly(20);
             let here = flown.position();
             flown.fly(5);
-            prop_assert_eq!(flown.position(), here, "it stands");
+            prop_assert_eq!(flown.position(), here, "the robot stands still");
             flown.order_back();
         }
         // Half the maximum speed on average, and a turn at every decimetre.

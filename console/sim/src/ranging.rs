@@ -226,7 +226,7 @@ mod tests {
     #[test]
     fn without_disturbances_exact_ranges_are_exact() {
         let sets = disturbed(Disturbances::default(), &[(0.5, 2.5, 0.2)]);
-        assert!(excess(&sets, 1).iter().all(|e| e.abs() < 1e-12), "a column is nothing unless it is said so");
+        assert!(excess(&sets, 1).iter().all(|e| e.abs() < 1e-12), "by default, columns do not affect ranges");
     }
 
     #[test]

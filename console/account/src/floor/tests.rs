@@ -59,7 +59,10 @@ fn both_bases_and_every_plate_sum_to_the_whole() {
     let plates_m2: f64 = account.plates.iter().map(|plate| plate.shares.area_m2).sum();
     assert!((plates_m2 - account.whole.area_m2).abs() < 1e-9);
     assert!(account.plates.iter().all(|plate| (sum(&plate.shares) - 1.0).abs() < 1e-12));
-    assert!(account.plates.iter().any(|plate| plate.shares.scanned == 0.0), "also those with nothing");
+    assert!(
+        account.plates.iter().any(|plate| plate.shares.scanned == 0.0),
+        "plates on which nothing was scanned are listed, too"
+    );
     let listed_m2: f64 = account.missed.iter().map(|area| area.area_m2).sum();
     let missed_m2 = account.reachable.missed * account.reachable.area_m2;
     assert!((listed_m2 + account.slivers.area_m2 - missed_m2).abs() < 1e-9);
@@ -297,7 +300,7 @@ fn out_of_reach_is_listed_with_the_reason() {
     let all_m2 = (account.whole.unreachable + account.whole.margin) * account.whole.area_m2;
     let listed_m2: f64 = account.unreachable.iter().map(|area| area.area_m2).sum();
     let reported_m2 = listed_m2 + account.unreachable_slivers.area_m2;
-    assert!((reported_m2 - all_m2).abs() < 1e-9, "nothing is dropped: {reported_m2} of {all_m2}");
+    assert!((reported_m2 - all_m2).abs() < 1e-9, "no floor is lost: {reported_m2} of {all_m2}");
 }
 
 #[test]

@@ -158,7 +158,7 @@ fn arcs(shell: &[ShellStretch]) -> Vec<ZoneArc> {
     if open.len() > 1 && is_over_the_end(&open[0], &open[open.len() - 1]) {
         let first = open.remove(0);
         over_m = first.last().map(|stretch| end_m(stretch) + total_m);
-        open.last_mut().expect("at least two").extend(first);
+        open.last_mut().expect("at least two arcs remain").extend(first);
     }
     let last = open.len().saturating_sub(1);
     let arc = |(index, arc): (usize, Vec<&ShellStretch>)| {

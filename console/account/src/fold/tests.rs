@@ -71,7 +71,7 @@ fn coverage_counts_believed_and_true_cells() {
     ]);
     let coverage = run.summary().coverage.unwrap();
     assert_eq!((coverage.reachable, coverage.whole), (0.25, 0.25));
-    assert_eq!(coverage.missed_area_m2, None, "the mission was not to scan");
+    assert_eq!(coverage.missed_area_m2, None, "the task was not to scan");
     assert_eq!(coverage.by_truth.unwrap().whole, 0.25);
     assert_eq!(coverage.overlap, Some(0.0));
     assert_eq!(coverage.by_truth.unwrap().scanned_truly, Some(1.0));

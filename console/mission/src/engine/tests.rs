@@ -603,7 +603,11 @@ fn a_planner_that_is_not_there_holds_at_the_start_and_another_may_fly() {
     assert!(again.iter().any(|kind| matches!(kind, EventKind::PlannerFailed { fault, .. } if fault.message.contains("no planner straight"))));
     assert!(matches!(flight.held_by(), Some(HoldReason::PlannerFault { .. })));
     flight.tick(&[swap_to("other")]);
-    assert_eq!(flight.held_by(), Some(&HoldReason::PlannerReplaced), "the reason is gone with the planner");
+    assert_eq!(
+        flight.held_by(),
+        Some(&HoldReason::PlannerReplaced),
+        "the reason for the hold is gone together with the planner"
+    );
     flight.tick(&[Order::Resume]);
     flight.fly(200);
     assert_eq!(flight.ended(), Some(Outcome::Complete));
@@ -628,7 +632,7 @@ fn a_planner_that_is_refused_does_not_take_over() {
     assert_eq!(flight.held_by(), Some(&HoldReason::Operator));
     flight.tick(&[Order::Resume]);
     flight.fly(200);
-    assert_eq!(flight.ended(), Some(Outcome::Complete), "the one before drives on");
+    assert_eq!(flight.ended(), Some(Outcome::Complete), "the previous planner continues");
 }
 
 #[test]
@@ -798,7 +802,11 @@ fn a_live_parameter_that_the_planner_cannot_change_under_way_makes_a_new_instanc
         events.iter().any(|kind| matches!(kind, EventKind::PlannerFailed { .. })),
         "it says so: {events:?}"
     );
-    assert_eq!(flight.mission.phase(), &Phase::Running(Gait::Steady), "and drives on with the value before");
+    assert_eq!(
+        flight.mission.phase(),
+        &Phase::Running(Gait::Steady),
+        "the planner continues with the old value"
+    );
     flight.tick(&[Order::Hold]);
     assert_eq!(refusal(&flight.tick(&[gain()])), None);
     assert_eq!((flight.planner.chosen.len(), flight.planner.plans), (2, 2));

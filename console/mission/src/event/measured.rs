@@ -183,7 +183,11 @@ mod tests {
         assert_eq!(passed(&mut slow, 3.0, 0.0), Some((0.0, 0.0)));
         let mut sure = track(true);
         passed(&mut sure, 1.0, 0.0);
-        assert_eq!(passed(&mut sure, 3.0, 0.6), Some((0.0, 0.6)), "as fast as it can, it goes straight");
+        assert_eq!(
+            passed(&mut sure, 3.0, 0.6),
+            Some((0.0, 0.6)),
+            "at its maximum speed, the robot must drive straight"
+        );
         let mut far = track(true);
         passed(&mut far, 1.0, 0.0);
         assert_eq!(passed(&mut far, 3.0, 0.2), Some((0.2, 0.2)));
@@ -197,6 +201,6 @@ mod tests {
         assert!(!visit(&mut track(true), &at(0.0, 0.01, 0.4)), "ends of the bar off by 0.235 m");
         assert!(!visit(&mut track(false), &at(0.0, 0.01, 0.05)), "nothing measured the heading");
         let mut disc = ToolTrack { tool: Tool::Disc { swath_m: 0.6 }, ..track(false) };
-        assert!(visit(&mut disc, &at(0.0, 0.01, 3.0)), "a disc has none");
+        assert!(visit(&mut disc, &at(0.0, 0.01, 3.0)), "a disc needs no heading");
     }
 }

@@ -324,7 +324,7 @@ mod tests {
         assert_eq!(robot.guard(&touched, ahead(-0.4)).drive, ahead(-0.4));
         let Guarded { drive, before: Some((gap_m, direction_rad)), .. } = robot.guard(&touched, ahead(0.4))
         else {
-            panic!("a point in the way")
+            panic!("there must be a point in the way")
         };
         let turn = Drive::Twist { v_m_per_s: 0.0, w_rad_per_s: 1.0 };
         assert_eq!(robot.guard(&touched, turn).drive, turn, "a disc may turn in place");

@@ -99,7 +99,7 @@ fn far_from_everything_a_command_stays_as_it_is() {
 fn a_robot_before_a_wall_still_turns() {
     let here = here(Pose::new(3.789, 0.0, 0.0), limits(Motion::Unicycle, 0.4, 1.0, 0.5, 0.1));
     let drive = sent(&Momentum::NONE, Drive::Twist { v_m_per_s: 0.4, w_rad_per_s: 1.0 }, &here);
-    let Drive::Twist { v_m_per_s, w_rad_per_s } = drive else { panic!("a unicycle is sent twists") };
+    let Drive::Twist { v_m_per_s, w_rad_per_s } = drive else { panic!("a unicycle receives twists") };
     assert!(v_m_per_s < 0.05 && (w_rad_per_s - 1.0).abs() < 1e-12, "{drive:?}");
 }
 

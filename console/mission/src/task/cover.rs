@@ -339,7 +339,11 @@ mod tests {
         let left = cover.regions_left(&grid, 0.6);
         assert!(left.len() > 1 && left.last() == Some(&outside), "{left:?}");
         grid.mark_swath(Point::new(0.0, 0.0), Point::new(0.0, 0.0), 20.0);
-        assert_eq!(cover.regions_left(&grid, 0.6).len(), 2, "a cell at the anchor, and what is out of reach");
+        assert_eq!(
+            cover.regions_left(&grid, 0.6).len(),
+            2,
+            "a cell at the anchor, and the area out of reach"
+        );
     }
 
     #[test]
@@ -401,6 +405,9 @@ mod tests {
         for x in [0.0, 0.7, 1.4, 2.0] {
             cover.advance(Point::new(x, 0.0), &map);
         }
-        assert!(!cover.is_in_the_way(&column(1.0, -0.3), 0.3), "the lane beside it is behind");
+        assert!(
+            !cover.is_in_the_way(&column(1.0, -0.3), 0.3),
+            "the lane beside the column is behind the robot"
+        );
     }
 }

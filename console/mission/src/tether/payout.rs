@@ -125,7 +125,7 @@ mod tests {
         taken(&mut payout, 21.0, 240);
         assert!(payout.is_snagged());
         assert_eq!(payout.points_to_go_back_to(240), 200 - 40 - 10);
-        assert_eq!(payout.points_to_go_back_to(100), 100 - 10, "already on the way back, further than that");
+        assert_eq!(payout.points_to_go_back_to(100), 100 - 10, "the robot is already farther back than that");
         taken(&mut payout, 20.05, 150);
         assert!(!payout.is_snagged());
     }

@@ -99,7 +99,7 @@ fn a_wild_ping_is_trimmed() {
     let trimmed = Aggregation::TrimmedMean.aggregate(&[set(&ranges)], &NORMAL).unwrap()[0];
     assert!((trimmed.range_m - clean.range_m).abs() < 1e-12);
     assert!((trimmed.sigma_m - clean.sigma_m).abs() < 1e-12);
-    assert!((trimmed.most_m - 14.0).abs() < 1e-12, "the extremes are those of all pings");
+    assert!((trimmed.most_m - 14.0).abs() < 1e-12, "the extremes are those of all ranges");
 }
 
 #[test]

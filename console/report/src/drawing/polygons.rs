@@ -141,7 +141,7 @@ mod tests {
             for ring in found.iter().flat_map(Polygon::rings) {
                 let corners: std::collections::BTreeSet<[u64; 2]> =
                     ring.iter().map(|p| [p.x.to_bits(), p.y.to_bits()]).collect();
-                prop_assert_eq!(corners.len(), ring.len(), "a ring passes a corner twice");
+                prop_assert_eq!(corners.len(), ring.len(), "a ring must pass each corner only once");
             }
         }
     }

@@ -41,7 +41,7 @@ fn wrap(label: &str, what: &str, columns: usize) -> Vec<String> {
     let indent = if label.is_empty() { 0 } else { LABEL };
     let mut lines = vec![format!("{label:<indent$}")];
     for word in what.split(' ') {
-        let line = lines.last_mut().expect("there is a line");
+        let line = lines.last_mut().expect("at least one line exists");
         let length = line.chars().count();
         if length > indent && length + 1 + word.chars().count() > columns {
             lines.push(format!("{:indent$}{word}", ""));

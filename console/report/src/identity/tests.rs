@@ -155,10 +155,10 @@ fn a_run_of_another_scenario_is_a_rescan_only_by_the_digest_of_a_journal_that_is
         require_one_floor(&runs)
     };
     assert_eq!(fits(&[("a", run()), ("b", of(&["a"]))]), Ok(()));
-    assert_eq!(fits(&[("b", of(&["a"])), ("a", run())]), Ok(()), "in any order");
+    assert_eq!(fits(&[("b", of(&["a"])), ("a", run())]), Ok(()), "the order does not matter");
     assert_eq!(fits(&[("a", run()), ("b", of(&["a"])), ("c", of(&["a", "b"]))]), Ok(()), "a chain");
-    assert_eq!(fits(&[("c", of(&["a", "b"])), ("a", run())]), Ok(()), "without the one between");
-    assert_eq!(fits(&[("b", of(&["a"])), ("d", of(&["a"]))]), Ok(()), "flown twice");
+    assert_eq!(fits(&[("c", of(&["a", "b"])), ("a", run())]), Ok(()), "the run in between may be missing");
+    assert_eq!(fits(&[("b", of(&["a"])), ("d", of(&["a"]))]), Ok(()), "the re-scan was run twice");
     assert_eq!(fits(&[("c", of(&["a"]))]), Ok(()), "alone");
     let refused = fits(&[("a", run()), ("c", of(&["b"]))]).unwrap_err();
     assert!(
@@ -166,7 +166,7 @@ fn a_run_of_another_scenario_is_a_rescan_only_by_the_digest_of_a_journal_that_is
             && refused.contains(&format!("the journal of a has the SHA-256 {}", digest_of("a"))),
         "{refused}"
     );
-    assert!(fits(&[("c", of(&["x"])), ("d", of(&["y"]))]).is_err(), "of different runs");
+    assert!(fits(&[("c", of(&["x"])), ("d", of(&["y"]))]).is_err(), "the re-scans continue different runs");
     let named = RunOpened { scenario: "tiny-rescan".into(), ..run() };
     let refused = fits(&[("a", run()), ("b", named)]).unwrap_err();
     assert!(

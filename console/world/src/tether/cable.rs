@@ -246,7 +246,7 @@ impl Cable {
     /// let mut cable = Cable::new(Point::origin(), &wall, &[column]).unwrap();
     /// cable.drag_along(&[Point::new(4.0, 2.0), Point::new(8.0, 0.0)]);
     /// cable.drag_to(Point::new(4.4, 0.0));
-    /// assert!((cable.tip() - Point::new(4.5, 0.0)).norm() < 1e-6, "out of the column");
+    /// assert!((cable.tip() - Point::new(4.5, 0.0)).norm() < 1e-6, "the tip is outside the column");
     /// ```
     pub fn tip(&self) -> Point {
         self.tip

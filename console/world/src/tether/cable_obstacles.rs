@@ -285,7 +285,7 @@ mod tests {
         let corners = [(0., 0.), (0., 2.), (0.5, -1.), (1.5, -1.), (2., 0.), (2., 2.), (3., 0.5), (3., 1.5)];
         assert_eq!(posts(&three), corners.map(|(x, y)| Point::new(x, y)));
         assert_eq!(posts(&[square(-9., 0., 1.)]), [(-8., 0.), (-8., 1.)].map(|(x, y)| Point::new(x, y)));
-        assert_eq!(posts(&[square(0., 0., 2.), square(0., 0., 2.)]).len(), 4, "twice the same square");
+        assert_eq!(posts(&[square(0., 0., 2.), square(0., 0., 2.)]).len(), 4, "the same square twice");
     }
 
     #[test]

@@ -182,7 +182,7 @@ fn a_tip_on_the_last_contact_goes_back_the_way_it_came() {
             let mut cable = cable(anchor, std::slice::from_ref(&shape));
             cable.drag_along(&[out(around_rad, 3.0), out(around_rad - PI / 2.0, 3.0)]);
             let home: Vec<Point> = cable.taut_line().into_iter().rev().collect();
-            assert!(cable.wrap_total_rad() > 0.1, "{k}: the way must bend");
+            assert!(cable.wrap_total_rad() > 0.1, "{k}: the cable must bend");
             cable.drag_along(&home);
             assert!(cable.length_m() < 1e-9, "{k}: {:?}", cable.contacts());
         }

@@ -144,6 +144,9 @@ mod tests {
     #[test]
     fn a_robot_that_stays_beyond_a_cut_has_strayed_whichever_way_it_went() {
         assert!(strays(&[(0.62, 0.01), (0.6, 1.0)]));
-        assert!(strays(&[(0.585, -0.01), (0.585, 0.01), (0.6, 1.0)]), "between the cut and the column");
+        assert!(
+            strays(&[(0.585, -0.01), (0.585, 0.01), (0.6, 1.0)]),
+            "the robot passes between the cut and the column"
+        );
     }
 }

@@ -110,7 +110,7 @@ fn a_planner_whose_plan_comes_after_the_robot_went_on_plans_again_and_the_robot_
     flight.tick(&[Order::Resume]);
     flight.fly(24);
     let before = flight.pose;
-    assert_eq!(moves(&mut flight, 20), [false; 20], "it waits for the second plan");
+    assert_eq!(moves(&mut flight, 20), [false; 20], "the robot waits for the second plan");
     flight.fly(5);
     assert!(flight.pose != before);
     assert_eq!(flight.planner.chosen, ["straight", "other"]);
@@ -279,7 +279,7 @@ proptest! {
             flight.tick(&now);
             leave = leave.after(&flight.events[n_before..]);
             if flight.pose != before {
-                prop_assert_ne!(leave, Leave::None, "tick {}: it moves by itself", tick);
+                prop_assert_ne!(leave, Leave::None, "tick {}: the robot moves without an order", tick);
                 leave = if leave == Leave::OneTick { Leave::None } else { leave };
             }
             for event in flight.events.iter().filter(|event| event.tick == flight.mission.known.tick - 1) {
@@ -314,6 +314,6 @@ fn with_long_ticks_a_planner_that_always_answers_in_the_next_tick_drives() {
     flight.delay = Box::new(|ask, _| if matches!(ask.what, What::Open { .. }) { 40 } else { 1 });
     flight.tick(&[Order::Start]);
     flight.fly(60);
-    assert_eq!(flight.held_by(), None, "it may take its time to open");
+    assert_eq!(flight.held_by(), None, "a planner may take long to open");
     assert!(flight.pose.position.x > -2.5, "{}", flight.pose.position);
 }

@@ -66,7 +66,7 @@ fn with_offer() -> Flight {
             return flight;
         }
     }
-    panic!("nothing is offered: {:?}", better_events(&flight));
+    panic!("no plan is offered: {:?}", better_events(&flight));
 }
 
 fn folded(flight: &Flight) -> FoldedStanding {
@@ -104,21 +104,24 @@ fn a_better_plan_is_taken_where_it_begins_in_one_tick_and_without_a_hold() {
     assert!(took.1.starts_with("better plan of straight taken: "), "{took:?}");
     assert!(driven_s(&taken) < 0.8 * driven_s(&off), "{} s, {} s", driven_s(&taken), driven_s(&off));
     assert_eq!(taken.planner.kept.iter().map(Option::is_some).collect::<Vec<_>>(), [false, true, false]);
-    assert_eq!(taken.closed, [WorkerId(1), WorkerId(2)], "the worker of before, and at the end");
+    assert_eq!(taken.closed, [WorkerId(1), WorkerId(2)], "the previous worker, and the last one at the end");
     assert_eq!(off.planner.plans, 2);
     let commands = |tick: u64| {
         taken.events.iter().filter(|event| event.tick == tick).any(|event| {
             matches!(&event.kind, EventKind::Commanded { ask: Some(AskId { worker: WorkerId(2), .. }), .. })
         })
     };
-    assert!(commands(took.0) && !commands(took.0 - 1), "it drives in the tick in which it takes over");
+    assert!(
+        commands(took.0) && !commands(took.0 - 1),
+        "the planner commands in the tick in which it takes over"
+    );
 }
 
 #[test]
 fn the_plan_is_asked_from_a_place_ahead_for_what_will_be_left_there() {
     let mut flight = with_offer();
     let Some(Preparing { role: Role::Better(better), .. }) = &flight.mission.preparing else {
-        panic!("none is made")
+        panic!("no better plan may be made")
     };
     let (kept, asked) = (flight.planner.regions_m2[1], flight.planner.regions_m2[2]);
     assert!(asked < kept - 2.0, "{kept} m² at the repair, {asked} m² for the better plan");
@@ -157,7 +160,7 @@ fn an_offer_is_taken_by_order_also_by_one_that_is_given_while_the_robot_is_held(
         } else {
             flight.tick(&[Order::TakePlan]);
         }
-        assert!(refusal(&flight.tick(&[Order::TakePlan])).is_some(), "it is taken already");
+        assert!(refusal(&flight.tick(&[Order::TakePlan])).is_some(), "the plan has already been accepted");
         fly_past(&mut flight, &[COLUMN], 40_000);
         assert_eq!(count(&flight, |kind| matches!(kind, EventKind::BetterPlanTaken { .. })), 1);
         assert_eq!(flight.ended(), Some(Outcome::Complete));
@@ -249,7 +252,11 @@ fn orders_that_change_the_plan_drop_it() {
     ] {
         let mut flight = with_offer();
         flight.tick(&[Order::Hold]);
-        assert_eq!(flight.mission.standing().offer, Some(OfferStage::Offered), "a hold changes no plan");
+        assert_eq!(
+            flight.mission.standing().offer,
+            Some(OfferStage::Offered),
+            "a hold does not change the plan"
+        );
         flight.tick(&[order]);
         assert_eq!((flight.mission.standing().offer, folded(&flight).standing().offer), (None, None));
         assert_eq!(texts(&flight)[1], format!("offer ended: {why}"));

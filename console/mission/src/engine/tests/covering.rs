@@ -169,7 +169,7 @@ fn a_column_found_on_the_way_is_planned_around_and_what_is_scanned_stays_scanned
             flight.sightings = vec![Sighting { id: ObstacleId(7), shape_in_robot }];
         }
         flight.tick(&[]);
-        assert!(relative.coords.norm() > 0.5, "it drove into the column");
+        assert!(relative.coords.norm() > 0.5, "the robot drove into the column");
     }
     assert_eq!(flight.ended(), Some(Outcome::Complete));
     assert_eq!(reasons(&flight)[..2], [Reason::Start, Reason::MapChanged]);
@@ -177,7 +177,7 @@ fn a_column_found_on_the_way_is_planned_around_and_what_is_scanned_stays_scanned
     assert!(flight.planner.regions_m2[1] < 0.8 * whole_m2, "{:?}", flight.planner.regions_m2);
     assert!(covered(&flight) > 0.92, "{}", covered(&flight));
     let changed = flight.events.iter().any(|event| matches!(event.kind, EventKind::FloorChanged { .. }));
-    assert!(changed, "the floor under a column is none");
+    assert!(changed, "the cells under a column are no longer floor");
 }
 
 #[test]
@@ -285,7 +285,7 @@ fn planners_steer_round_obstacles_where_they_are_seen_not_where_the_chart_has_th
     chart.sight([(ObstacleId(3), &shape_in_robot)].into_iter(), &pose);
     assert!((shown(&chart) - 0.93).abs() < 1e-9);
     chart.sight(std::iter::empty(), &pose);
-    assert!((shown(&chart) - 1.0).abs() < 1e-9, "out of sight it is where the drawing has it");
+    assert!((shown(&chart) - 1.0).abs() < 1e-9, "out of sight, the obstacle is at its drawn position");
 }
 
 #[test]
@@ -303,8 +303,8 @@ fn a_drawn_column_that_a_foreign_tracker_sees_is_not_found_again() {
     assert!(!found(foreign, column(1.06, 0.22)));
     let side = vec![Point::new(0.8, -4.1), Point::new(0.8, -3.9)];
     assert!(!found(foreign + 1, Shape::Polyline { points: side, half_width_m: 0.02 }));
-    assert!(found(foreign + 2, column(1.15, 0.2)), "it is beside the column");
-    assert!(found(foreign + 3, column(1.0, 0.5)), "it is larger than the column");
+    assert!(found(foreign + 2, column(1.15, 0.2)), "the object is beside the column");
+    assert!(found(foreign + 3, column(1.0, 0.5)), "the object is larger than the column");
     assert!(found(9, column(1.06, 0.2)), "this tracker knows the drawing");
 }
 
@@ -326,5 +326,8 @@ fn whatever_changes_plans_is_on_the_map_by_which_they_are_checked() {
             assert!((chart.map().obstacle_distance_m(at) - as_it_is).abs() < 1e-12, "tick {tick}");
         }
     }
-    assert!(silent > 0, "its stop changes plans although it has hardly moved since it was reported");
+    assert!(
+        silent > 0,
+        "the stop of the obstacle changes plans although it has hardly moved since the last report"
+    );
 }

@@ -86,7 +86,7 @@ fn hold_stops_a_robot_that_drives_back_and_it_may_drive_on_or_take_up_its_task_a
     flight.tick(&[Order::Hold]);
     let n_plans = flight.planner.plans;
     flight.tick(&[Order::Resume]);
-    assert_eq!(flight.planner.plans, n_plans + 1, "a plan from here");
+    assert_eq!(flight.planner.plans, n_plans + 1, "one more plan, from the current position");
     flight.fly(300);
     assert_eq!(flight.ended(), Some(Outcome::Complete));
 }
@@ -106,7 +106,7 @@ fn a_lost_position_holds_a_robot_that_drives_back_until_it_is_ordered_again() {
     assert!(refusal(&flight.tick(&[Order::DriveBack])).is_some_and(|why| why.contains("position is lost")));
     flight.silent = false;
     flight.fly(30);
-    assert_eq!(flight.held_by(), Some(&HoldReason::PositionLost), "the robot does not move by itself");
+    assert_eq!(flight.held_by(), Some(&HoldReason::PositionLost), "the robot does not move without an order");
     flight.tick(&[Order::DriveBack]);
     flight.fly(200);
     assert_eq!(flight.ended(), Some(Outcome::Aborted));
@@ -160,7 +160,11 @@ fn a_hull_in_a_zone_is_held_once_and_drives_out_of_it() {
         let of_zone = |event: &&Event| {
             matches!(event.kind, EventKind::ZoneBreached { .. } | EventKind::ZoneLeft { .. })
         };
-        assert_eq!(flight.events.iter().filter(of_zone).count(), 2, "in, and out again");
+        assert_eq!(
+            flight.events.iter().filter(of_zone).count(),
+            2,
+            "the hull entered the zone and left it again"
+        );
     }
 }
 
@@ -230,7 +234,7 @@ fn a_tether_alarm_holds_a_robot_that_drives_back() {
     );
     assert!(matches!(flight.held_by(), Some(HoldReason::Tether { .. })), "{:?}", flight.mission.phase());
     let here = flight.pose.position;
-    assert_eq!(refusal(&flight.tick(&[Order::DriveBack])), None, "by a way that frees the tether first");
+    assert_eq!(refusal(&flight.tick(&[Order::DriveBack])), None, "the drive back frees the tether first");
     flight.fly(20);
     assert!((flight.pose.position - here).norm() > 0.1);
 }

@@ -58,7 +58,11 @@ fn a_thousand_planners_take_over_without_a_hold_or_a_lost_tick() {
     let mut drivers: Vec<u16> = commanded_by(&flight).into_iter().map(|(_, worker)| worker.0).collect();
     drivers.dedup();
     assert_eq!(drivers, (1..=1001).collect::<Vec<_>>());
-    assert_eq!(flight.closed, (1..=1000).map(WorkerId).collect::<Vec<_>>(), "each one left was closed");
+    assert_eq!(
+        flight.closed,
+        (1..=1000).map(WorkerId).collect::<Vec<_>>(),
+        "every previous worker was closed"
+    );
     assert_eq!(replay(config, &flight), flight.events);
 }
 
@@ -79,7 +83,7 @@ fn a_shadow_that_takes_lanes_over_goes_on_where_the_robot_is() {
             EventKind::Planned { ask: None, planner, path, .. } => Some((planner.clone(), path[0])),
             _ => None,
         });
-        let (planner, begin) = plan.expect("the plan from here");
+        let (planner, begin) = plan.expect("a plan from the current position");
         assert!(planner == "other" && (begin - before).norm() < 0.1);
         flight.fly(4000);
         assert_eq!(flight.ended(), Some(Outcome::Complete));
@@ -130,7 +134,11 @@ fn an_answer_on_its_way_when_the_planner_takes_over_is_neither_used_nor_late() {
     flight.delay = Box::new(|_, _| 0);
     let n_before = commanded_by(&flight).len();
     flight.tick(&[Order::Promote]);
-    assert_eq!(commanded_by(&flight).len(), n_before + 1, "by the planner that took over, in this tick");
+    assert_eq!(
+        commanded_by(&flight).len(),
+        n_before + 1,
+        "one command in this tick, by the planner that took over"
+    );
     assert_eq!(commanded_by(&flight).last().map(|(_, worker)| worker.0), Some(2));
     assert_eq!(count(&flight, |kind| matches!(kind, EventKind::PlannerLate { .. })), 0);
     assert_eq!(replay(rounds(1), &flight), flight.events);
@@ -164,7 +172,11 @@ fn a_shadow_may_take_over_from_a_planner_that_has_failed() {
     flight.fly(25);
     assert!(matches!(flight.held_by(), Some(HoldReason::PlannerSilent { .. })));
     flight.tick(&[Order::Promote]);
-    assert_eq!(flight.held_by(), Some(&HoldReason::PlannerReplaced), "the operator lets the robot go on");
+    assert_eq!(
+        flight.held_by(),
+        Some(&HoldReason::PlannerReplaced),
+        "only the operator lets the robot move again"
+    );
     flight.tick(&[Order::Resume]);
     let before = flight.pose;
     flight.fly(1);
@@ -269,11 +281,11 @@ fn a_shadow_that_dies_while_the_robot_is_held_ends_during_the_hold() {
     flight.fly(20);
     assert_eq!(flight.mission.idle_workers().count(), 2);
     flight.tick(&[Order::CheckPlanner]);
-    assert!(flight.mission.shadow.is_some(), "both live");
+    assert!(flight.mission.shadow.is_some(), "both processes still run");
     flight.planner.dead_worker = Some(2);
     flight.tick(&[Order::CheckPlanner]);
     assert_eq!(count(&flight, |kind| matches!(kind, EventKind::ShadowEnded { .. })), 1);
     assert!(flight.mission.shadow.is_none());
-    assert!(flight.mission.driving.worker.is_ready(), "the active planner goes on");
+    assert!(flight.mission.driving.worker.is_ready(), "the active planner continues");
     assert_eq!(replay(covering(), &flight), flight.events);
 }

@@ -111,15 +111,15 @@ fn every_hold_stops_the_robot_in_its_tick_and_for_good() {
         assert!(flight.mission.phase().may_move(), "{name}: {:?}", flight.mission.phase());
         let before = flight.pose;
         flight.tick(&[Order::Hold]);
-        assert_eq!(flight.pose, before, "{name}: it moved in the tick of HOLD");
+        assert_eq!(flight.pose, before, "{name}: the robot moved in the tick of HOLD");
         assert_eq!(flight.held_by(), Some(&HoldReason::Operator), "{name}");
         clear(&mut flight);
         flight.fly(80);
-        assert_eq!(flight.pose, before, "{name}: it moved by itself");
+        assert_eq!(flight.pose, before, "{name}: the robot moved without an order");
         assert!(!flight.mission.phase().may_move(), "{name}: {:?}", flight.mission.phase());
         flight.tick(&[Order::Resume]);
         flight.fly(30);
-        assert!(flight.pose != before, "{name}: an order lets it move: {:?}", flight.mission.phase());
+        assert!(flight.pose != before, "{name}: an order lets the robot move: {:?}", flight.mission.phase());
     }
 }
 
@@ -136,7 +136,7 @@ fn hold_and_another_order_in_one_tick_are_obeyed_in_turn() {
     let before = flight.pose;
     flight.tick(&[Order::Start, Order::Hold]);
     flight.fly(20);
-    assert_eq!(flight.pose, before, "a start that was held in the same tick");
+    assert_eq!(flight.pose, before, "the start was followed by HOLD in the same tick");
 }
 
 #[test]

@@ -103,14 +103,17 @@ fn a_planner_that_dies_while_the_robot_is_held_is_reported_at_once_and_starts_ag
     let mut flight = Flight::new(covering());
     flight.tick(&[Order::Start]);
     flight.fly(100);
-    assert!(refusal(&flight.tick(&[Order::CheckPlanner])).is_some(), "a planner that drives is asked anyway");
+    assert!(
+        refusal(&flight.tick(&[Order::CheckPlanner])).is_some(),
+        "a planner that drives the robot is asked in every tick anyway"
+    );
     flight.tick(&[Order::Hold]);
     flight.fly(5);
     assert!(flight.mission.idle_workers().count() == 1);
     flight.planner.has_died = true;
     flight.tick(&[Order::CheckPlanner]);
     assert_eq!((last_fault(&flight).cause, last_fault(&flight).severity()), (Cause::Died, Severity::Crit));
-    assert!(flight.mission.idle_workers().count() == 0, "it is checked once");
+    assert!(flight.mission.idle_workers().count() == 0, "the planner is checked only once");
     flight.fly(20);
     assert_eq!(flight.planner.chosen.len(), 1);
     let before = flight.pose.position;
@@ -135,7 +138,9 @@ fn a_planner_that_dies_before_the_start_is_reported_and_bars_the_start_until_it_
     assert!(refusal(&flight.tick(&[Order::StartPlan(seen)])).is_some());
     flight.planner.has_died = false;
     flight.tick(&[Order::Plan]);
-    let Readiness::Plan(seen) = flight.mission.standing().readiness else { panic!("a plan again") };
+    let Readiness::Plan(seen) = flight.mission.standing().readiness else {
+        panic!("there must be a plan again")
+    };
     assert!(refusal(&flight.tick(&[Order::StartPlan(seen)])).is_none());
     assert_eq!(replay(config, &flight), flight.events);
 }
@@ -145,7 +150,7 @@ fn last_fault(flight: &Flight) -> &Fault {
         EventKind::PlannerFailed { fault, .. } => Some(fault),
         _ => None,
     });
-    faults.next().expect("a fault was reported")
+    faults.next().expect("a fault must be reported")
 }
 
 #[test]
@@ -195,6 +200,6 @@ fn a_plan_that_came_too_late_is_kept_to_in_the_next_one_unless_the_robot_is_far(
                 kept.push(request.under_way.clone());
             }
         });
-        assert!(events == flight.events && kept == flight.planner.kept, "the journal repeats what is asked");
+        assert!(events == flight.events && kept == flight.planner.kept, "the asks and events repeat");
     }
 }

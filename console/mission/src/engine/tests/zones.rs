@@ -25,10 +25,14 @@ fn a_zone_drawn_under_way_is_no_floor_and_the_planner_goes_on_with_it_on_its_map
     );
     let lost = (before - flight.mission.known.floor.coverage.counts().reachable) as f64 * 0.01;
     assert!(lost > 3.0 && lost < 12.0, "{lost} m2 of floor");
-    assert_eq!(flight.planner.chosen, ["straight", "straight"], "its steering has to know the zone, too");
+    assert_eq!(
+        flight.planner.chosen,
+        ["straight", "straight"],
+        "the planner's steering needs to know the zone, too"
+    );
     let site = flight.planner.sites.last().unwrap();
     assert_eq!((site.zones.len(), site.revision), (1, 1));
-    assert!(flight.planner.kept[1].is_some(), "it keeps to its plan");
+    assert!(flight.planner.kept[1].is_some(), "the planner keeps to its plan");
     assert_eq!(flight.mission.phase(), &Phase::Running(Gait::Steady));
     flight.fly(6000);
     assert_eq!(flight.ended(), Some(Outcome::Complete));
@@ -40,7 +44,7 @@ fn a_plan_from_before_the_start_is_made_again_for_a_zone() {
     let no_go = || zone((-1.0, 0.0), (1.0, 2.0));
     flight.tick(&[no_go()]);
     flight.fly(5);
-    assert_eq!(flight.planner.plans, 0, "nobody has asked for one");
+    assert_eq!(flight.planner.plans, 0, "no plan has been requested");
     flight.tick(&[Order::Plan]);
     flight.fly(5);
     assert_eq!(flight.planner.plans, 1);
@@ -58,7 +62,7 @@ fn a_zone_drawn_while_the_robot_is_held_is_planned_for_at_once_and_nothing_moves
     flight.tick(&[swap_to("other"), zone((-1.0, 0.0), (1.0, 2.0))]);
     flight.fly(5);
     assert_eq!((flight.pose, flight.held_by()), (before, Some(&HoldReason::Operator)));
-    assert_eq!(flight.mission.planner_id(), "other", "whoever was to take over does");
+    assert_eq!(flight.mission.planner_id(), "other", "the candidate takes over");
     assert!(flight.planner.sites.iter().rev().take(2).all(|site| site.zones.len() == 1));
 }
 
@@ -81,7 +85,7 @@ fn a_zone_where_the_robot_or_its_anchor_is_and_one_that_is_none_are_refused() {
     }
     let good = zone((-1.0, 0.0), (1.0, 2.0));
     assert_eq!(refusal(&flight.tick(std::slice::from_ref(&good))), None);
-    assert_eq!(refusal(&flight.tick(&[good])), None, "it gets another name");
+    assert_eq!(refusal(&flight.tick(&[good])), None, "the second zone gets a different name");
     let names: Vec<&str> =
         flight.mission.known.chart.world().zones.iter().map(|zone| zone.name.as_str()).collect();
     assert_eq!(names, ["no-go 1", "no-go 2"]);

@@ -54,7 +54,7 @@ mod tests {
         }
         assert!(!quarantine.holds("a"));
         quarantine.note("a", 93.0);
-        assert!(quarantine.holds("a"), "and stays so");
+        assert!(quarantine.holds("a"), "the plugin stays excluded");
         quarantine.note("a", 1000.0);
         assert!(quarantine.holds("a"));
     }
