@@ -2,7 +2,7 @@
 //!
 //! The mission never waits. It issues [`Ask`]s and continues; the caller that runs the planners passes each [`Answer`]
 //! back when it arrives, in the same tick or in a later one. An ask owns all its data, so it can be stored, sent to
-//! another process, or put to another planner again.
+//! another process, or sent again to another planner.
 //!
 //! Lengths are in metres. Angles are in radians, counter-clockwise from the x axis of the tank frame.
 

@@ -150,8 +150,8 @@ impl Chart {
         self.in_sight = seen.map(placed).collect();
     }
 
-    /// Puts sightings on the chart, made at time `now_s` from an estimated pose, and obstacles found in scans, which are
-    /// placed already; returns the changes.
+    /// Adds to the chart the sightings made at time `now_s` from an estimated pose, and the obstacles found in scans,
+    /// whose positions in the tank are already known. Returns the changes.
     ///
     /// Only obstacles that are not on the drawing are added. A tracker of the simulator recognizes drawn obstacles; other
     /// trackers see a drawn obstacle where the drawing has it.

@@ -287,7 +287,7 @@ pub enum EventKind {
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         cuts: Vec<Vec<Point>>,
     },
-    /// The planner answered a step; the event contains the command that was sent to the robot.
+    /// The planner answered a request for a step; the event contains the command that was sent to the robot.
     Commanded {
         /// Id of the ask that this answers; absent in journals up to version 2.
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -353,8 +353,8 @@ pub enum EventKind {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         plan: Option<Box<EventKind>>,
     },
-    /// A planner answered a step after the tick in which it was asked; of several late answers in a row, only the first
-    /// is reported.
+    /// A planner answered a request for a step only after the tick of the request; of several late answers in a row,
+    /// only the first is reported.
     PlannerLate {
         /// Id of the planner.
         planner: String,
@@ -384,7 +384,8 @@ pub enum EventKind {
         /// The event that would have occurred if this planner had been the active one.
         of: Box<EventKind>,
     },
-    /// The planner in shadow answered a step later than in the tick after the ask, so the answer is not used.
+    /// The planner in shadow answered a request for a step too late: after the tick that follows the request. The
+    /// answer is not used.
     ShadowMissed {
         /// Id of the ask that was answered.
         ask: AskId,
@@ -544,7 +545,7 @@ pub enum EventKind {
     },
     /// Odometry has confirmed a commanded stop of a real vehicle, or has not confirmed it in time.
     Stood {
-        /// Whether the stop is confirmed; if not, the vehicle still moves although it should stand still by now.
+        /// Whether the stop is confirmed; if not, the vehicle is still moving although it should stand still by now.
         confirmed: bool,
         /// Time since the command to stand still, seconds.
         after_s: f64,

@@ -78,7 +78,8 @@ impl Locator {
         }
     }
 
-    /// Increases the uncertainty of the pose after an unmeasured motion of at most the given metres and radians.
+    /// Increases the uncertainty of the pose after an unmeasured motion of at most `most_m` metres and `most_rad`
+    /// radians.
     pub fn wander(&mut self, most_m: f64, most_rad: f64) {
         self.positioner.wander(most_m, most_rad);
     }

@@ -40,8 +40,8 @@ pub enum Order {
     Abort,
     /// End the mission because its process received a signal to exit.
     Terminate,
-    /// While held or waiting: ask the planner, and the one in shadow, for their states, because the console has noticed that
-    /// the process of one has ended. The fault of the process is then the answer.
+    /// While held or waiting: ask the active planner and the planner in shadow for their states, because the console
+    /// has noticed that the process of one of them has ended. The answer of that planner is then a fault.
     CheckPlanner,
     /// While held or waiting: change to a different planner.
     ChoosePlanner(PlannerChoice),

@@ -75,7 +75,8 @@ pub struct Standing<'a> {
     pub trouble: Option<&'a str>,
     /// Whether the robot is a real vehicle.
     pub is_live: bool,
-    /// Distance from a real vehicle that waits for its start to the beginning of its plan, metres; `None` without a plan.
+    /// For a real vehicle that has not been started: its distance from the beginning of its plan, metres; `None`
+    /// without a plan.
     pub from_plan_m: Option<f64>,
 }
 

@@ -78,7 +78,7 @@ impl Course {
         self.follower = (!plan.path.is_empty()).then(|| PathFollower::new(plan.path.clone()));
     }
 
-    /// Distance from a real vehicle that waits for its start to the beginning of its plan, metres.
+    /// For a real vehicle that has not been started: its distance from the beginning of its plan, metres.
     pub(super) fn first_from_m(&self, known: &Known) -> Option<f64> {
         let at = self.begins.filter(|_| known.config.live && known.is_waiting())?;
         Some((known.position() - at).norm())

@@ -83,7 +83,7 @@ impl Driving {
         Self { worker, course: Course::new(reason), prepare, ..Self::default() }
     }
 
-    /// A planner that already has a plan; obstacles found since it was requested may block it.
+    /// A planner that already has a plan; obstacles found since the plan was requested may block it.
     pub(super) fn with_plan(worker: Worker, found_since: Vec<Shape>, prepare: Prepare) -> Self {
         let course = Course { found_since, ..Course::default() };
         Self { worker, course, prepare, ..Self::default() }

@@ -27,8 +27,9 @@ impl Mission {
         }
     }
 
-    /// Holds a robot that may move while its vehicle cannot be driven; only an order ends that hold. Returns whether the
-    /// vehicle cannot be driven: then no rule ends the mission, because nothing is known about the robot.
+    /// If the vehicle cannot be driven, holds the robot unless it is already held; only an order ends that hold.
+    /// Returns whether the vehicle cannot be driven. In that case, no rule ends the mission, because nothing is known
+    /// about the robot.
     pub(super) fn hold_in_trouble(&mut self) -> bool {
         let Some(why) = self.known.trouble.clone() else { return false };
         if self.known.phase.may_move() {

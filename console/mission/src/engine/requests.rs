@@ -10,7 +10,7 @@ use planner_api::{Drive, Plan, PoseEstimate, Reason};
 use std::sync::Arc;
 use world::{CoverageGrid, Point};
 
-/// Length, ahead of the robot, of the targets and of the plan that a planner receives, metres.
+/// Distance ahead of the robot up to which a planner receives the targets and the plan, metres.
 const AHEAD_M: f64 = 4.0;
 
 /// The data that the mission keeps about a plan that is being made.
@@ -103,7 +103,7 @@ impl Known {
     }
 }
 
-/// The rest of the plan that the same planner is asked to continue, with a change.
+/// The rest of the current plan, if the same planner is asked to continue it with a change.
 pub(super) fn under_way(task: &Task, reason: &Reason) -> Option<Plan> {
     let goes_on = matches!(reason, Reason::MapChanged | Reason::Blocked | Reason::Recover);
     goes_on.then(|| task.under_way()).flatten()

@@ -12,7 +12,7 @@ use perception::View;
 use planner_api::Reason;
 use world::{Cell, Pose, Readings, Shape, World, coverage::percent_text, tether::Reach};
 
-/// Area, square metres, above which an area left out is mentioned at the end.
+/// Area, square metres, above which an omitted or unreachable area is mentioned at the end.
 const WORTH_TELLING_M2: f64 = 0.05;
 /// Maximum number of unreachable areas named at the end.
 const MOST_NAMED: usize = 4;
@@ -67,7 +67,7 @@ impl Mission {
 }
 
 impl Known {
-    /// Looks for obstacles in the scan of this tick, if there is one; returns what to report about drawn obstacles.
+    /// Looks for obstacles in the scan of this tick, if there is one; returns the events about drawn obstacles.
     fn look_at_scan(&mut self, readings: &Readings) -> Vec<EventKind> {
         let (now_s, estimate, pose) = (self.now_s(), self.locator.pose_estimate(), self.locator.pose());
         let (Some(perception), Some(scan)) = (&mut self.perception, &readings.scan) else {

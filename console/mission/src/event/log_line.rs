@@ -134,7 +134,7 @@ impl Event {
                 format!("stopped, confirmed by odometry after {after_s:.2} s"),
             ),
             EventKind::Stood { confirmed: false, moved: true, .. } => {
-                line(Severity::Crit, "vehicle", "vehicle moves without an order".into())
+                line(Severity::Crit, "vehicle", "vehicle is moving without an order".into())
             }
             EventKind::Stood { confirmed: false, after_s, .. } => line(
                 Severity::Crit,
