@@ -139,8 +139,8 @@ pub struct PlateAccount {
     /// metres; absent if none of the plate was scanned.
     #[serde(default)]
     pub error_p95_m: Option<f64>,
-    /// The largest 95 % position error of the scanned cells, taking the best pass over each cell, metres; absent if none of
-    /// the plate was scanned, and from older reports.
+    /// The largest 95 % position error of the scanned cells, taking the best pass over each cell, metres; absent if
+    /// none of the plate was scanned, and in older reports.
     #[serde(default)]
     pub error_max_m: Option<f64>,
     /// The division of the plate's floor.

@@ -45,7 +45,7 @@ pub struct Fold {
     figures: Figures,
     run: Option<Box<RunOpened>>,
     evidence: Option<Evidence>,
-    /// Whether the previous event drew a zone: the change of the floor that follows belongs to that zone.
+    /// Whether the previous event drew a zone: the change to the floor that follows belongs to that zone.
     is_zone_new: bool,
     /// Whether the account of the floor is omitted.
     leaves_out_floor: bool,

@@ -4,8 +4,7 @@ use crate::{Account, Figure, VehicleRecord, drawn::DrawnZone};
 use mission::{Check, Outcome, Parameters, Sandbox};
 use serde::{Deserialize, Serialize};
 
-/// Version of the format of JSON reports on one run or several; increased when old readers could not read the new
-/// format.
+/// Version of the format of JSON reports on one run or several; increased if older readers cannot read the new format.
 pub const REPORT_VERSION: u32 = 1;
 
 /// All figures that are reported about a run at its end. An unknown figure is `None`, in JSON `null`, never zero.
@@ -30,7 +29,7 @@ pub struct Summary {
     pub parameters: Option<Parameters>,
     /// Every planner that was active, in order, without duplicates.
     pub planners: Vec<String>,
-    /// The weakest sandbox of the run's planners. Absent if no planner was loaded, and from older reports.
+    /// The weakest sandbox of the run's planners. Absent if no planner was loaded, and in older reports.
     #[serde(default)]
     pub sandbox: Option<Sandbox>,
     /// Seed for all random numbers.

@@ -26,7 +26,8 @@ pub struct Behind {
     driven: Option<(message::Drive, f64)>,
     /// Number of the last command.
     last_seq: Option<u64>,
-    /// Least time from the stamp of a command to its arrival: the offset of the console's clock plus the shortest delay.
+    /// Minimum time from the stamp of a command to its arrival: the offset of the console's clock plus the shortest
+    /// delay.
     least_s: f64,
     /// Number of the last readings.
     seq: u64,

@@ -32,7 +32,8 @@ pub fn bad_input(text: impl Into<String>) -> anyhow::Error {
     BadInput(text.into()).into()
 }
 
-/// Whether a failure is an input error; journals that cannot be read and folders that cannot take runs are included.
+/// Whether a failure is an input error; this includes journals that cannot be read, and folders in which runs cannot be
+/// stored.
 pub fn is_input(error: &anyhow::Error) -> bool {
     let of_run = error.downcast_ref::<RunError>().is_some_and(RunError::is_input);
     of_run || error.is::<BadInput>() || error.is::<JournalError>()

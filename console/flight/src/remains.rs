@@ -14,8 +14,9 @@ const FRAMES_DIGEST: &str = "frames.bin: sha256 ";
 /// Maximum number of lines shown at once.
 const MOST_SHOWN: usize = 8;
 
-/// Saves what planners have printed, and the crash files of planners that have failed, since the last call, in files
-/// beside the journal. Returns the printed lines as events for display; they are not written to the journal.
+/// Saves the lines that planners have printed since the last call, and the crash files of planners that have failed
+/// since then, in files beside the journal. Returns the printed lines as events for display; they are not written to
+/// the journal.
 pub fn keep(host: &mut Host, mut log: Option<&mut RunLog>, (tick, t_s): (u64, f64)) -> Vec<Event> {
     let (printed, crashes, bad_ends) = (host.take_printed(), host.take_crashes(), host.take_bad_ends());
     if let Some(log) = &mut log {

@@ -15,8 +15,8 @@ const SEEN_ROOM_M: f64 = 0.01;
 /// Maximum clearance, metres, to keep from obstacles that are only on the chart. The clearance allows for the position
 /// error, but is limited, because a robot that is lost must still be able to move.
 const CHART_ROOM_MOST_M: f64 = 0.15;
-/// Share of the room that must remain where room is short, because a robot that brakes straight ahead along a curved
-/// wall gets closer to the wall.
+/// The clearance to keep is at most this share of the space between the hull and an obstacle, because a robot that
+/// brakes straight ahead along a curved wall gets closer to the wall.
 const ROOM_SHARE: f64 = 0.5;
 /// Distance, metres, by which a hull in contact with an obstacle may move into it, to allow for rounding.
 const TOUCH_M: f64 = 1e-4;

@@ -101,7 +101,7 @@ pub enum Refusal {
         /// The reason, as a sentence.
         why: String,
     },
-    /// The plan that is ready is not the one that the start order names; `None` if the order names none.
+    /// The plan that is ready is not the one that the start order names, or the order names no plan.
     OtherPlan {
         /// The plan that was seen.
         seen: Option<PlanId>,
@@ -327,8 +327,9 @@ impl Standing<'_> {
         }
     }
 
-    /// The promoted planner's plan is certified from the robot's position. While the robot is held, no steps are
-    /// requested, and a planner that takes over moves nothing: its plan is enough, as for any other change of planner.
+    /// The plan of the promoted planner is certified from the robot's position. While the robot is held, no steps are
+    /// requested, and a change of planner moves nothing. It is then enough that the planner in shadow has a plan, as
+    /// for any other change of planner.
     fn can_promote(&self) -> Result<(), Refusal> {
         match self.shadow {
             None => Err(Refusal::NoShadow),

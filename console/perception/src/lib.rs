@@ -3,11 +3,11 @@
 //! The crate is pure. The same scans and poses give the same obstacles; the state does not grow with time. Poses and
 //! obstacles are in the tank frame, scans in the robot frame; metres, radians, seconds.
 //!
-//! In each scan, the pose is first corrected by the drawing, as far as its covariance allows; only obstacles are placed
-//! with that correction, the estimate of the position is not changed. Points within 3 standard deviations of something
-//! drawn are taken out. The rest belongs to things seen before, or forms groups that begin new tracks. A track that enough
-//! scans have shown is an obstacle: a disc with a centre and a radius or, if it does not look like one, a convex outline
-//! that grows view by view, or a line if it is thin.
+//! In each scan, the pose is first corrected by the drawing, as far as its covariance allows. The correction is used
+//! only to place obstacles; the estimated position is not changed. Points within 3 standard deviations of something on
+//! the drawing are removed. The remaining points either belong to objects seen before, or form groups that begin new
+//! tracks. A track that enough scans have shown is an obstacle: a disc with a centre and a radius or, if it does not
+//! look like one, a convex outline that grows view by view, or a line if it is thin.
 #![forbid(unsafe_code)]
 
 mod check;

@@ -36,10 +36,10 @@ const RESTART_HEADING_SIGMA_RAD: f64 = 0.3;
 pub struct Doubt {
     /// A suspected error of all ranges, as a share of the distance.
     pub ratio: f64,
-    /// Likely errors of all ranges, as standard deviations: fixes become less certain, but not suspect.
+    /// Likely errors of all ranges, as standard deviations. They make fixes less certain, but not suspect.
     pub likely_errors: [CommonError; 2],
-    /// Likely error of a position in any direction, metres, as a standard deviation: fixes become less certain, but not
-    /// suspect.
+    /// Likely error of a position in any direction, metres, as a standard deviation. It makes fixes less certain, but
+    /// not suspect.
     pub likely_m: f64,
     /// A suspected error of all ranges, metres.
     pub sigma_m: f64,

@@ -55,8 +55,8 @@ impl Measure {
 /// The largest distance of some cells from the edge of the reference cells around them, metres. The distance is at
 /// least one cell; `None` without reference cells.
 pub(crate) fn depth_m(floor: &Floor, cells: &[usize], is_other: impl Fn(usize) -> bool) -> Option<f64> {
-    // Each cell adopts the nearest reference cell of a neighbour that is closer to a reference cell: almost exact, in
-    // linear time.
+    // Each cell adopts the nearest reference cell of a neighbour that is closer to one. The result is almost exact, and
+    // the time is linear.
     let mut nearest: BTreeMap<usize, Option<usize>> = cells.iter().map(|cell| (*cell, None)).collect();
     let distance_m = |a: usize, b: usize| (floor.center(a) - floor.center(b)).norm();
     let closest = |cell: usize, candidates: &mut dyn Iterator<Item = usize>| {

@@ -77,8 +77,8 @@ impl LeftPlan {
 }
 
 impl Driving {
-    /// A planner that becomes active as soon as it has a plan, with the reason for the plan and how far to prepare the
-    /// planner.
+    /// Creates the state of a planner that becomes active as soon as it has a plan, given the reason for the plan and
+    /// how far to prepare the planner.
     pub(super) fn new(worker: Worker, reason: Reason, prepare: Prepare) -> Self {
         Self { worker, course: Course::new(reason), prepare, ..Self::default() }
     }

@@ -1,4 +1,4 @@
-//! Limits commands: the robot's speed as the mission knows it, and the reports about planners that are slowed down.
+//! Limits commands, tracks the robot's speed as the mission knows it, and reports planners that are slowed down.
 
 pub(super) mod guarding;
 pub(super) mod state;

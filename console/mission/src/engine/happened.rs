@@ -9,7 +9,7 @@ use crate::{
 #[derive(Clone, Default)]
 pub(super) struct Happened {
     events: Vec<EventKind>,
-    /// Results of the answers from the planner in shadow: reported last, in whatever order the answers arrive.
+    /// Events from the answers of the planner in shadow; they are reported last, in whatever order the answers arrive.
     pub of_shadow: Vec<EventKind>,
     /// The end of the mission, reported after all other events of the tick.
     pub ending: Option<EventKind>,

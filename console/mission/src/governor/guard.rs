@@ -22,14 +22,14 @@ struct Echo {
 
 impl Echo {
     /// Whether the point is at the robot's centre: a range of 0 is nearer than the sensor can measure, so the place of
-    /// the point is unknown and every motion may lead to it.
+    /// the point is unknown and every motion could lead to it.
     fn is_unresolved(&self) -> bool {
         self.distance_m <= TOUCH_M
     }
 }
 
-/// The places that the centre of the robot can reach until it stands still: up to a distance, in directions within
-/// `spread_rad` on both sides of a middle one, robot frame.
+/// The places that the centre of the robot can reach until it stands still: within a distance of its present position,
+/// and in directions within `spread_rad` on both sides of a middle direction; robot frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Sector {
     way_m: f64,
@@ -134,8 +134,8 @@ impl<'a> Guard<'a> {
     /// The nearest point that a robot could come too close to if it follows a command for one tick and then brakes.
     fn in_the_way(&self, momentum: &Momentum, drive: Drive) -> Option<(f64, f64)> {
         let hull_m = self.here.limits.radius_m;
-        // A hull that passes beside a point may come closer to it than one that drives towards it: a robot along a wall
-        // must not be stopped by the wall.
+        // A hull that passes beside a point is allowed to come closer to it than one that drives towards it: a robot
+        // along a wall must not be stopped by the wall.
         let kept_m = |room_m: f64, is_on_course: bool| match room_m {
             _ if is_on_course && room_m > 0.0 => SCAN_ROOM_M,
             _ if room_m > 0.0 => SCAN_ROOM_M.min(ROOM_SHARE * room_m),

@@ -154,7 +154,7 @@ impl<'a> Layers<'a> {
             cell.and_then(|cell| self.classes.get(cell))
                 .map_or(0, |class| u8::from(*class == FloorClass::Again))
         };
-        // First the sums of three cells along each row. The first and last cell of a row are never scanned.
+        // The first step adds up three cells along each row. The first and last cell of a row are never scanned.
         let across = |cell: usize| at(cell.checked_sub(1)) + at(Some(cell)) + at(Some(cell + 1));
         let rows: Vec<u8> = (0..self.classes.len()).map(across).collect();
         let row = |cell: Option<usize>| cell.and_then(|cell| rows.get(cell)).copied().unwrap_or(0);

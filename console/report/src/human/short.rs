@@ -10,9 +10,9 @@ const LABEL: usize = 14;
 /// The narrowest terminal for which lines are wrapped.
 const NARROWEST: usize = 40;
 
-/// A run in at most twelve lines of at most `columns` characters: how it ended, and `kept`, the sentence about where it
-/// is kept. `name` is the name of its folder, if the full report can be printed from there. Lines are wrapped between
-/// words; lines that do not fit are left out, least important first.
+/// A run in at most twelve lines of at most `columns` characters: how it ended, and where it is kept (`kept`, a
+/// sentence). `name` is the name of the run's folder, if the full report can be printed from there. Lines are wrapped
+/// between words; lines that do not fit are left out, least important first.
 pub fn short(run: &Summary, kept: Option<&str>, name: Option<&str>, columns: usize) -> String {
     let columns = columns.max(NARROWEST);
     let wrapped = |label: &str, what: &str| wrap(label, what, columns);

@@ -17,9 +17,9 @@ pub enum Cell {
     Outside,
     /// Floor that the robot cannot get to, because no passage is wide enough.
     Unreachable,
-    /// Floor along the shell that the tool cannot reach, because the hull keeps clear of the wall.
+    /// Floor that the tool cannot reach because the hull keeps clear of the wall.
     Margin,
-    /// Floor beside obstacles that the tool cannot reach, because the hull keeps clear of them.
+    /// Floor that the tool cannot reach because the hull keeps clear of obstacles.
     Beside,
     /// Floor in a no-go zone, beyond the reach of the tool.
     NoGo,

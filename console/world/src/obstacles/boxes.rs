@@ -10,7 +10,8 @@ use parry2d_f64::{
 /// Allowance for rounding in every test, metres and square metres; a segment that merely touches a box meets the box.
 const SLACK: f64 = 1e-9;
 
-/// Boxes in a tree; the cost of a query is the logarithm of the number of boxes, plus the number of boxes found.
+/// Boxes in a tree; the cost of a query grows with the logarithm of the number of boxes, plus the number of boxes
+/// found.
 #[derive(Debug, Clone)]
 pub(crate) struct Boxes {
     tree: Bvh,

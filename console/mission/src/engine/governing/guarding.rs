@@ -19,7 +19,7 @@ const READING_TICKS: usize = 1;
 /// Longest time until the first scan, seconds; until then the robot stands still.
 const FIRST_WITHIN_S: f64 = 2.0;
 /// Distance, metres, that is added to the stopping distance at full speed; points farther from the hull than the sum
-/// are dropped. It is longer than the robot travels before its scan is too old.
+/// are dropped. This distance is longer than the one that the robot travels before its scan is too old.
 const KEPT_M: f64 = 2.0;
 /// The robot is held after this many ticks in a row in which the hull could touch a point although the robot brakes. A
 /// single such tick may be noise; the robot brakes at once in any case.

@@ -26,8 +26,8 @@ pub(in crate::engine) struct Limited {
 }
 
 impl Limited {
-    /// Records one more command; returns whether it is time to report that commands are limited: after `named_after_s`
-    /// seconds.
+    /// Records one more command; returns whether to report now that commands are limited, which is after
+    /// `named_after_s` seconds.
     pub(in crate::engine) fn update(&mut self, is_limited: bool, tick_s: f64, named_after_s: f64) -> bool {
         if !is_limited {
             self.for_s = 0.0;

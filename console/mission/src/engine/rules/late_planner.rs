@@ -23,8 +23,8 @@ impl LatePlannerRule {
         begins
     }
 
-    /// Whether a command that arrived some ticks, of `tick_s` seconds each, after it was requested may still be sent.
-    /// If ticks are long, a planner has until the next tick.
+    /// Whether a command may still be sent that arrived `ticks` ticks, of `tick_s` seconds each, after it was
+    /// requested. If ticks are long, the planner has until the next tick.
     pub(crate) fn is_fresh(ticks: u64, tick_s: f64) -> bool {
         // Ages are multiples of the tick and contain floating-point errors.
         ticks <= 1 || ticks as f64 * tick_s <= STALE_S + 1e-9

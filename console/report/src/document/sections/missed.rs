@@ -72,8 +72,8 @@ pub(super) fn missed(document: &Document) -> Vec<Block> {
     blocks
 }
 
-/// The number of missed areas, the largest first, that have a table row: all of them or, if there are many, only
-/// those that are not small.
+/// The number of missed areas, counted from the largest, that have a table row of their own: all of them or, if there
+/// are many, only those that are not small.
 fn listed_one_by_one(missed: &[Area<MissReason>]) -> usize {
     if missed.len() > MOST_ROWS {
         missed.partition_point(|area| area.area_m2 >= SMALL_M2)
