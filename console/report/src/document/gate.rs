@@ -100,7 +100,7 @@ fn tank(document: &Document) -> Answered {
     let facts = &document.inspection;
     let plates = match document.floor.plates.len() {
         0 => "plate layout not given".to_owned(),
-        n => format!("{n} plates"),
+        n => counted(n as u64, "plate"),
     };
     let mut lacks = asked(&[("tank_id", &facts.tank_id), ("drawing", &facts.drawing)]);
     lacks.extend(facts.nominal_thickness_mm.is_none().then(|| "inspection.nominal_thickness_mm".to_owned()));
