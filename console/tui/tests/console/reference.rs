@@ -49,7 +49,7 @@ fn step(action: &Action) -> String {
 fn kind(kind: Kind) -> &'static str {
     match kind {
         Kind::Speed => "0.25 to 64 times real time, or `max`",
-        Kind::Planner => "id of a planner that was found",
+        Kind::Planner => "id of an available planner",
         Kind::Parameter => "a parameter of the active planner and its value, such as `k_rep=2`",
         Kind::Scenario => "name of a scenario on the home screen",
         Kind::Run => "name of a past run, the beginning of a name if only one run has it, or `latest`",
