@@ -34,15 +34,45 @@ impl Console {
     /// Waits for a line with these words. A console that goes on saying other things is not waited for longer than one that
     /// is silent.
     pub(crate) fn hear(&self, words: &str) {
+        self.hear_all(&[words]);
+    }
+
+    /// Waits for lines with these words, in any order.
+    pub(crate) fn hear_all(&self, words: &[&str]) {
+        let mut left = words.to_vec();
+        self.hear_until(|line| {
+            left.retain(|words| !line.contains(words));
+            left.is_empty().then_some(())
+        })
+        .unwrap_or_else(|heard| panic!("not all of {words:?} in {heard:#?}"));
+    }
+
+    /// Gives an order until it has been heard that it is carried out; each time it is refused for now, once more.
+    pub(crate) fn order_until(&mut self, order: &str, done: &str, refused: &str) {
+        loop {
+            self.order(order);
+            let is_done = self.hear_until(|line| match line.contains(done) {
+                true => Some(true),
+                false => line.contains(refused).then_some(false),
+            });
+            if is_done.unwrap_or_else(|heard| panic!("neither {done:?} nor {refused:?} in {heard:#?}")) {
+                return;
+            }
+            std::thread::sleep(Duration::from_millis(500));
+        }
+    }
+
+    /// Hears lines until one is what is waited for; if none is, the lines.
+    fn hear_until<T>(&self, mut is_it: impl FnMut(&str) -> Option<T>) -> Result<T, Vec<String>> {
         let mut heard = Vec::new();
         let until = Instant::now() + PATIENCE;
         while let Ok(line) = self.said.recv_timeout(until.saturating_duration_since(Instant::now())) {
-            if line.contains(words) {
-                return;
+            if let Some(found) = is_it(&line) {
+                return Ok(found);
             }
             heard.push(line);
         }
-        panic!("no {words:?} in {heard:#?}");
+        Err(heard)
     }
 
     /// The id of its process.

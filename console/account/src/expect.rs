@@ -196,7 +196,8 @@ fn miss(key: &'static str, side: Side, bound: f64, found: Option<f64>) -> Option
 /// Maximum number of decimals of a printed figure.
 const MOST_DECIMALS: usize = 6;
 
-/// Formats a figure with its usual number of decimals, or with more if the rounded figure would seem to meet the bound.
+/// Formats a figure with its usual number of decimals, or with more, up to [`MOST_DECIMALS`], if the rounded figure
+/// would seem to meet the bound.
 fn rounded(found: f64, decimals: usize, is_miss: impl Fn(f64) -> bool) -> String {
     let written = |decimals: usize| format!("{found:.decimals$}");
     let mut tries = (decimals..=MOST_DECIMALS).map(written);

@@ -62,6 +62,8 @@ pub(crate) struct Inbox {
     outlines: Outlines,
     /// The last report and its time.
     told: Option<(LinkState, String, f64)>,
+    /// Whether the last command was a motion.
+    drives: bool,
     /// Whether the last report about a commanded stop was that it is confirmed; `None` without such a report.
     told_stood: Option<bool>,
 }
@@ -90,6 +92,7 @@ impl Inbox {
             ages: Ages::default(),
             outlines: Outlines::default(),
             told: None,
+            drives: false,
             told_stood: None,
         }
     }
@@ -136,6 +139,7 @@ impl Inbox {
 
     /// A command was given; it will be sent as soon as the stream takes it.
     pub(crate) fn commanded(&mut self, drives: bool, now_s: f64) {
+        self.drives = drives;
         if drives {
             self.told_stood = None;
         } else {
@@ -251,6 +255,10 @@ impl Inbox {
     }
 
     fn due_stood(&mut self, now_s: f64) -> Option<Stood> {
+        // A motion that has not been sent yet ends the wait for the last stop, too.
+        if self.drives {
+            return None;
+        }
         let asked_s = self.link.asked_to_stand_s()?;
         let hold = self.link.hold(now_s);
         let (confirmed, after_s) = match hold {

@@ -165,7 +165,8 @@ impl Vehicle for Remote {
     }
 
     fn settle(&mut self, waits: bool) -> Option<Live> {
-        while waits && self.shared.inbox().is_stopping(self.shared.now_s()) {
+        let is_open = || self.shared.inbox().closed().is_none();
+        while waits && is_open() && self.shared.inbox().is_stopping(self.shared.now_s()) {
             // A datagram may get lost.
             self.shared.outbox.command(None, 0);
             thread::sleep(LOOK_AGAIN);

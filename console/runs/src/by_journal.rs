@@ -2,27 +2,27 @@
 
 use crate::{error::RunError, folder::past_runs, report_file::Reported};
 use recording::{events_sha256, journal_of};
-use std::path::Path;
+use std::{cell::OnceCell, path::Path};
 
 /// The names of the runs whose journals have these SHA-256 digests (hexadecimal), in the order of the digests.
 ///
-/// Only journals whose digest is not in a report are read.
+/// Only journals whose digest is not in a report are read, each at most once.
 ///
 /// # Errors
 /// The folder cannot be read, or a run is not in it.
 pub fn by_journal(sha256: &[String], logs: &Path) -> Result<Vec<String>, RunError> {
     let folders = past_runs(logs)?;
     let stated: Vec<Option<String>> = folders.iter().map(|folder| stated(folder)).collect();
+    let read: Vec<OnceCell<Option<String>>> = vec![OnceCell::new(); folders.len()];
+    let digest_of =
+        |index: usize| read[index].get_or_init(|| events_sha256(&journal_of(&folders[index])).ok()).as_ref();
     let find = |wanted: &String| {
         let reported = stated.iter().position(|sha256| sha256.as_ref() == Some(wanted));
-        let read = || {
-            let unknown = (0..folders.len()).filter(|index| stated[*index].is_none());
-            let mut unknown = unknown.rev();
-            unknown.find(|index| {
-                events_sha256(&journal_of(&folders[*index])).is_ok_and(|sha256| sha256 == *wanted)
-            })
+        let unreported = || {
+            let mut unknown = (0..folders.len()).rev().filter(|index| stated[*index].is_none());
+            unknown.find(|index| digest_of(*index) == Some(wanted))
         };
-        let found = reported.or_else(read).map(|index| name(&folders[index]));
+        let found = reported.or_else(unreported).map(|index| name(&folders[index]));
         found.ok_or_else(|| {
             let digest: String = wanted.chars().take(12).collect();
             RunError::Refused(format!(

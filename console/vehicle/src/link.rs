@@ -73,8 +73,10 @@ pub struct Link {
     closed: bool,
     fault: Option<String>,
     malformed_in_row: u32,
-    /// Start of the current second, and the number of lines received in it.
-    second: (f64, u32),
+    /// Arrival of the last line, seconds.
+    heard_s: f64,
+    /// Start of the current second, the number of lines received in it, and the silence before it, seconds.
+    second: (f64, u32, f64),
 }
 
 impl Link {
@@ -97,12 +99,17 @@ impl Link {
         }
     }
 
+    /// Counts a line. After a silence, as many lines more may arrive in a second as the vehicle may have sent meanwhile: a
+    /// console that was stopped for a minute finds them all at once.
     fn count(&mut self, now_s: f64) {
-        let (start_s, n) = self.second;
-        self.second = if now_s - start_s < 1.0 { (start_s, n.saturating_add(1)) } else { (now_s, 1) };
+        let (start_s, n, silent_s) = self.second;
+        let waited_s = now_s - std::mem::replace(&mut self.heard_s, now_s);
+        let goes_on = now_s - start_s < 1.0;
+        self.second = if goes_on { (start_s, n.saturating_add(1), silent_s) } else { (now_s, 1, waited_s) };
         let Some(hello) = &self.hello else { return };
         let most = FLOOD_FACTOR / hello.period_s + FLOOD_SLACK;
-        if f64::from(self.second.1) > most {
+        let (_, n, silent_s) = self.second;
+        if f64::from(n) > most * silent_s.max(1.0) {
             self.fault.get_or_insert_with(|| format!("more than {most:.0} messages in a second"));
         }
     }
@@ -115,7 +122,7 @@ impl Link {
                 sequence.restart();
                 let fault = self.fault.take();
                 *self = Self { hello: Some(hello.as_ref().clone()), fault, sequence, ..Self::default() };
-                self.second = (now_s, 1);
+                (self.heard_s, self.second) = (now_s, (now_s, 1, 0.0));
             }
             FromVehicle::Readings(readings) => self.readings(readings, now_s),
             FromVehicle::Pong(pong) => {

@@ -210,6 +210,7 @@ fn a_stop_is_decided_by_readings_that_were_taken_after_it_was_sent() {
         assert!(found.is_none_or(|stood| (stood.after_s - 0.38).abs() < 1e-3), "{found:?}");
     }
     inbox.commanded(true, 2.0);
+    assert_eq!(stood(&mut inbox, 2.0), None, "the motion waits to be sent");
     inbox.commanded(false, 2.0);
     assert!(stood(&mut inbox, 2.0).is_some(), "the brake: no motion was sent in between");
 }

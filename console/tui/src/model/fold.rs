@@ -267,6 +267,7 @@ impl Run {
         reason.clone_into(&mut self.end_reason);
         self.planning.offer = None;
         change.withdraw(Withdrawn::All);
+        self.alarms.conclude(event.t_s);
         let severity = match outcome {
             Outcome::Complete | Outcome::Aborted => return,
             Outcome::Stuck | Outcome::TimeLimit | Outcome::Entangled => Severity::Warn,

@@ -117,6 +117,20 @@ fn a_flood_of_messages_is_a_fault() {
 }
 
 #[test]
+fn what_collects_while_the_console_is_stopped_is_no_flood() {
+    let mut link = connected();
+    // A minute of readings at 20 a second is read at once.
+    for seq in 1..1200_u64 {
+        link.heard(&readings(seq, 0.05 * seq as f64), 60.0 + 1e-5 * seq as f64);
+    }
+    assert_eq!(link.fault(), None);
+    for seq in 1200..11_200_u64 {
+        link.heard(&readings(seq, 60.0 + 1e-4 * seq as f64), 62.0 + seq as f64 * 1e-4);
+    }
+    assert_eq!(link.fault(), Some("more than 300 messages in a second"));
+}
+
+#[test]
 fn a_stop_is_held_by_odometry_and_a_lost_link_leaves_it_not_confirmed() {
     let drive = Drive {
         seq: 1,

@@ -20,6 +20,9 @@ const BURST_S: f64 = 10.0;
 pub struct Alarms {
     list: Vec<Alarm>,
     bursts: u32,
+    /// Mission time at which the first cause of the current burst began, seconds.
+    #[serde(default)]
+    began_s: f64,
     last_s: Option<f64>,
     /// Causes that wait for their delay, in the order in which they began to wait.
     #[serde(default)]
@@ -72,7 +75,16 @@ impl Alarms {
 
     /// Raises and clears the alarms whose delays are over.
     fn settle(&mut self, t_s: f64) {
-        while let Some(at) = self.delayed.iter().position(|delayed| delayed.is_due(t_s)) {
+        self.settle_those(t_s, |delayed| delayed.is_due(t_s));
+    }
+
+    /// Raises and clears all alarms that wait: the run has ended, so their causes do not change any more.
+    pub fn conclude(&mut self, t_s: f64) {
+        self.settle_those(t_s, |_| true);
+    }
+
+    fn settle_those(&mut self, t_s: f64, is_due: impl Fn(&Delayed) -> bool) {
+        while let Some(at) = self.delayed.iter().position(&is_due) {
             let Delayed { cause, next, .. } = self.delayed[at].clone();
             match next {
                 Next::Raise { severity, text, .. } => self.release(&cause, severity, text, t_s),
@@ -131,13 +143,24 @@ impl Alarms {
         Some(self.list.len() - 1)
     }
 
+    /// Adds an alarm to the current burst, or begins a new one. The alarm whose cause began first is the first of the
+    /// burst, even if it was raised later because of its delay.
     fn join_burst(&mut self, index: usize, t_s: f64) {
         let is_new = self.last_s.is_none_or(|last_s| t_s - last_s > BURST_S);
-        self.last_s = Some(t_s);
+        let is_first = is_new || t_s < self.began_s;
+        self.last_s = Some(self.last_s.map_or(t_s, |last_s| last_s.max(t_s)));
         self.bursts += u32::from(is_new);
+        if is_first {
+            self.began_s = t_s;
+            let burst = self.bursts;
+            self.list
+                .iter_mut()
+                .filter(|alarm| alarm.burst == burst)
+                .for_each(|alarm| alarm.is_first = false);
+        }
         let alarm = &mut self.list[index];
-        if alarm.burst != self.bursts {
-            (alarm.burst, alarm.is_first) = (self.bursts, is_new);
+        if is_first || alarm.burst != self.bursts {
+            (alarm.burst, alarm.is_first) = (self.bursts, is_first);
         }
     }
 

@@ -1,6 +1,6 @@
 //! The life of alarms.
 
-use super::*;
+use super::{rule::Rule, *};
 use mission::{
     Note, Noted,
     Severity::{self, Crit, Info, Warn, Watch},
@@ -198,6 +198,32 @@ fn the_first_of_a_burst_is_marked_as_long_as_it_is_not_alone() {
     alarms.raise(Cause::Stuck, Warn, "stuck".into(), 30.0);
     alarms.raise(Cause::Planner, Crit, "planner failed".into(), 31.0);
     assert_eq!(first(&alarms), [Cause::NoFix, Cause::Stuck]);
+}
+
+#[test]
+fn the_first_of_a_burst_is_the_alarm_whose_cause_began_first() {
+    let mut alarms = Alarms::default();
+    let rule = Rule { severity: Crit, on_delay_s: 1.0, off_delay_s: 0.0 };
+    alarms.occurred(CAUSE, rule, "position lost".into(), 10.0);
+    alarms.raise(Cause::Vehicle, Warn, "vehicle".into(), 10.5);
+    alarms.expire(11.5);
+    let marked: Vec<_> = alarms.list().iter().filter(|alarm| alarms.is_first_out(alarm)).collect();
+    assert_eq!(marked.len(), 1);
+    assert_eq!((&marked[0].cause, marked[0].since_s), (&CAUSE, 10.0));
+    alarms.raise(Cause::Stuck, Warn, "stuck".into(), 20.3);
+    let burst = |cause: &Cause| alarms.get(cause).map(|alarm| alarm.burst);
+    assert_eq!(burst(&Cause::Stuck), burst(&CAUSE), "10 s count from the newest cause");
+}
+
+#[test]
+fn delays_end_with_the_run() {
+    let mut alarms = raised(Crit);
+    let rule = Rule { severity: Warn, on_delay_s: 5.0, off_delay_s: 5.0 };
+    alarms.passed(&CAUSE, 5.0, 10.0);
+    alarms.occurred(Cause::Stuck, rule, "stuck".into(), 10.0);
+    alarms.conclude(11.0);
+    assert!(!alarms.get(&CAUSE).unwrap().is_active());
+    assert!(alarms.get(&Cause::Stuck).unwrap().is_active());
 }
 
 #[test]
