@@ -586,9 +586,12 @@ fn a_vehicle_that_does_not_fit_is_refused_with_every_reason() {
     let vehicle = Vehicle::offer(&bench, &slow, &[]);
     let refused = bench.fly(&file, &["--vehicle", &vehicle.at, "--set", "vehicle.stop_max_s=0.1"]);
     assert!(refused.code == Some(2) && bench.runs().is_empty(), "{refused:?}");
-    for why in
-        ["does not fit scenario", "its limit is 0.2", "`robot.speed_max_m_per_s`", "`vehicle.stop_max_s`"]
-    {
+    for why in [
+        "does not fit scenario",
+        "the vehicle's limit is 0.2",
+        "`robot.speed_max_m_per_s`",
+        "`vehicle.stop_max_s`",
+    ] {
         assert!(refused.err.contains(why), "{why}: {refused:?}");
     }
     for (vehicle, why) in [

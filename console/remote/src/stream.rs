@@ -210,7 +210,7 @@ impl Read for Datagrams {
 impl Write for Datagrams {
     fn write(&mut self, line: &[u8]) -> io::Result<usize> {
         match self.socket.send(line) {
-            // As if the datagram had been lost on its way.
+            // The port is closed for now. The effect is that of a lost datagram.
             Err(error) if error.kind() == io::ErrorKind::ConnectionRefused => Ok(line.len()),
             sent => sent,
         }
