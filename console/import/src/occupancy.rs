@@ -48,7 +48,7 @@ impl fmt::Display for Unseen {
         let Self { n_cells, grey, free_thresh } = self;
         write!(
             f,
-            "{n_cells} cells of grey {grey} count as solid: map savers write this grey for unseen cells, \
+            "cells of grey {grey} count as solid ({n_cells}): map savers write this grey for unseen cells, \
              although free_thresh {free_thresh} would make it floor"
         )
     }

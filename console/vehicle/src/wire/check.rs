@@ -208,7 +208,7 @@ impl Outline {
         if self.points_m.len() < least {
             return misfit(
                 field("points_m"),
-                format!("{} points; at least {least} are needed", self.points_m.len()),
+                format!("number of points: {}; required: {least} or more", self.points_m.len()),
             );
         }
         for (k, point) in self.points_m.iter().enumerate() {
