@@ -2,7 +2,7 @@
 //!
 //! Values are interpreted as in the ROS 2 `nav2_map_server`. Cells that are not known to be free count as solid, as
 //! they do for the robots in the papers. Cells of grey 205, which map savers write for unseen cells, also count as
-//! solid, whatever the thresholds.
+//! solid, even if the thresholds would make them floor.
 
 mod image;
 mod settings;

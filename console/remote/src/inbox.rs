@@ -229,7 +229,7 @@ impl Inbox {
         }
     }
 
-    /// Hands over the messages that have arrived since the last tick.
+    /// Returns the content of the messages that have arrived since the last tick.
     pub(crate) fn sense(&mut self, now_s: f64) -> Sensed {
         let stamps = self.stamps.take().map(|Stamps { source_t_s, arrival_t_s }| Stamps {
             source_t_s: rounded(source_t_s),

@@ -25,7 +25,7 @@ use std::{
 const DATAGRAM_BYTES: usize = 65_536;
 /// Interval at which a reader of datagrams checks whether it should end.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
-/// How long an adapter that was started here may take to end by itself.
+/// Time that an adapter that was started here may take to end on its own.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Maximum number of bytes that wait on this machine for an adapter, so that a stop does not wait behind many drives.

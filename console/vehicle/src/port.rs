@@ -93,7 +93,7 @@ impl Stood {
     }
 }
 
-/// When a reading was taken and when it arrived.
+/// The times at which a reading was taken and arrived.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Stamps {
     /// The vehicle's own clock when it took the reading, seconds.

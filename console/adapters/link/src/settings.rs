@@ -102,7 +102,7 @@ pub trait Settings: DeserializeOwned {
     /// Reads and checks the text of a file.
     ///
     /// # Errors
-    /// The key and what is wrong with it, with the line if the text cannot be read.
+    /// The wrong key and the reason; if the text cannot be parsed, also the line.
     fn parse(text: &str) -> Result<Self, String> {
         let settings: Self = toml::from_str(text).map_err(|error| error.to_string())?;
         settings.check().map(|()| settings)

@@ -66,7 +66,7 @@ impl Cause {
         }
     }
 
-    /// What to do if the vehicle does not stop in time.
+    /// The remedy if the vehicle does not stop in time.
     fn remedy(self) -> &'static str {
         match self {
             Self::Stop => "correct `stop_time_s` in `hello`, or make the vehicle brake harder",

@@ -23,7 +23,7 @@ const POINTS_MAX: usize = 1000;
 pub struct Misfit {
     /// The field, such as `readings.scan.ranges_m[3]`; empty if the fault concerns the whole line.
     pub field: String,
-    /// What is wrong and what would be right, as a clause that does not name the field.
+    /// The fault and the allowed values, as a clause that does not name the field.
     pub what: String,
 }
 

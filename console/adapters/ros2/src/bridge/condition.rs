@@ -24,7 +24,7 @@ pub(crate) struct Condition {
     pub(crate) publishers: usize,
     /// Arrival of the newest command of another program.
     pub(crate) other_command_s: Option<f64>,
-    /// Why the stop service failed.
+    /// The reason why the stop service failed.
     pub(crate) stop_trouble: Option<String>,
     /// Whether the emergency stop is pressed.
     pub(crate) is_stopped: bool,
