@@ -491,7 +491,7 @@ fn a_vehicle_that_drives_off_before_the_start_raises_an_alarm_and_is_not_started
     drives.store(true, Ordering::Release);
     console.hear("vehicle moves without an order");
     console.order("start\n");
-    console.hear("moves without an order; stop it by hand");
+    console.hear("moving without an order; stop it by hand");
     drives.store(false, Ordering::Release);
     console.hear("stopped, confirmed by odometry");
     console.order("start\n");

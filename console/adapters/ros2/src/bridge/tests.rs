@@ -91,7 +91,7 @@ fn without_a_robot_the_introduction_says_what_is_missing() {
     assert_eq!(text.as_deref(), Some("no scan is arriving on /scan: check topic, type and QoS"));
     let out = bridge.take(scan(), 5.2);
     let text = state(&out).unwrap().text.clone();
-    assert_eq!(text.as_deref(), Some("the robot does not listen to /cmd_vel: check topic, type and QoS"));
+    assert_eq!(text.as_deref(), Some("the robot does not subscribe to /cmd_vel: check topic, type and QoS"));
 }
 
 #[test]
