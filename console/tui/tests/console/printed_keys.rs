@@ -1,4 +1,4 @@
-//! Every key that is printed is one that does what is said of it, whatever keys the operator has chosen.
+//! Every key printed on the screen does what the text beside it says, whichever keys the operator has chosen.
 
 use crate::fixture::{RICH, Screen};
 use crate::screens::text;

@@ -112,7 +112,7 @@ fn overlays() -> Vec<Overlay> {
     all
 }
 
-/// Where a way to stop stops.
+/// The situations in which a way to stop the robot works.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Where {
     /// On the screens with nothing over them.
@@ -124,7 +124,7 @@ enum Where {
 }
 
 impl Where {
-    /// Said without the code under test.
+    /// Computed without the code under test.
     fn includes(self, overlay: &Overlay) -> bool {
         let is_text = matches!(
             overlay,
@@ -194,7 +194,7 @@ fn screen_in(phase: &Phase) -> Screen {
     };
     screen.hear(RunMsg::Events(events));
     assert_eq!(screen.model.live.run.phase(), phase);
-    // What is only drawn is of no interest here, and slow to copy.
+    // Data that is only drawn is not needed here, and is slow to copy.
     (screen.model.live.run.coverage, screen.model.live.run.accuracy) = (None, None);
     (screen.model.live.run.trail, screen.model.live.run.log) = Default::default();
     screen.model.live.run.planning.plan = None;
