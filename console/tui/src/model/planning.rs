@@ -92,7 +92,8 @@ impl PlanShown {
         part.and_then(|leg| path.get(..=leg.last)).map_or(0.0, polyline::length_m)
     }
 
-    /// The way that the robot drives before the first lane, and how far it still is, metres; `None` once it is there.
+    /// The stretch that the robot drives before the first lane, and its remaining length, metres; `None` once the robot
+    /// has reached the lane.
     pub fn lead_left_m(&self, progress: &Progress) -> Option<(Lead, f64)> {
         let along_m = self.along_m(progress.done).max(0.0);
         let ways = [(Lead::Back, self.retract_m), (Lead::ToLane, self.lead_m)];

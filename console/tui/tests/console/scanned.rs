@@ -1,4 +1,4 @@
-//! The screen finds the same floor scanned again as the account does, whatever the mission does meanwhile.
+//! The screen counts the same floor as scanned again as the account does, whatever happens in the mission.
 
 use crate::fixture::{ScriptedMission, config, opened};
 use account::Fold;

@@ -142,8 +142,8 @@ impl Where {
     }
 }
 
-/// The ways to stop, and where they do. `X` belongs to the screens. In a line of text it is typed, and so is the space:
-/// there Ctrl-C stops, and the line above the keys says so.
+/// The ways to stop the robot, and where each one works. `X` works on the screens. In a line of text, `X` and the space
+/// are typed; there Ctrl-C stops the robot, and the line above the keys says so.
 fn ways() -> Vec<(Msg, Where)> {
     let key = |key: Key, place: Where| (Msg::Key(key.into()), place);
     let panicked = Msg::ThreadPanicked { thread: "recorder".into(), message: "out of bounds".into() };
@@ -239,7 +239,7 @@ fn is_loose(model: &Model) -> bool {
     by_itself || model.live.asked.is_some()
 }
 
-/// Whether the console is on its way out: it reads no keys any more.
+/// Whether the console is about to exit, so that it reads no more keys.
 fn is_farewell(way: &Msg) -> bool {
     matches!(way, Msg::Signal(Signal::Terminate | Signal::Hangup | Signal::End(_)))
 }

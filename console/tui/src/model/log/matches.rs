@@ -18,7 +18,7 @@ pub struct Matches {
     filter: Filter,
     /// The lines that pass, ascending.
     found: VecDeque<Group>,
-    /// All lines before this number have already been tested.
+    /// The number of the first line that has not been tested yet.
     seen: u64,
     /// How often the last of these lines had been repeated when it was tested, and its time.
     #[serde(default)]

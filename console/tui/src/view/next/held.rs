@@ -67,7 +67,7 @@ fn undrivable(head: Head, by: &HoldReason, link: &LinkSeen) -> Option<Vec<String
         LinkState::Closed => ("link to vehicle closed", "Cannot resume: only a new run connects again."),
         LinkState::Faulty => ("vehicle sends faulty messages", "Cannot resume until they are correct."),
         LinkState::Restarted => ("vehicle has restarted", "Cannot resume yet."),
-        LinkState::Manual => ("vehicle is driven by hand", "Cannot resume until it is released."),
+        LinkState::Manual => ("vehicle is being driven by hand", "Cannot resume until it is released."),
         LinkState::EmergencyStop => ("emergency stop is pressed", "Cannot resume until it is released."),
         LinkState::OtherCommander => {
             ("vehicle obeys another console", "Cannot resume until that one has ended.")
