@@ -154,7 +154,7 @@ fn console_text_json_html_csv_and_recording_have_the_same_shares_of_every_cover_
             let html = rows.find(|row| row.contains(&format!(">{name}</td>")));
             assert!(html.unwrap().contains(&row), "{file} {name}, HTML: {html:?} has not {row}");
         }
-        // Every gap has a reason with a number, and all guaranteed floor was scanned.
+        // Every missed area has a reason with a number, and all guaranteed floor was scanned.
         let floor = &flown["floor"];
         for kind in ["missed", "unreachable"] {
             floor[kind].as_array().unwrap().iter().for_each(|area| assert_explained(area, &area["causes"]));
@@ -167,7 +167,8 @@ fn console_text_json_html_csv_and_recording_have_the_same_shares_of_every_cover_
     }
 }
 
-/// Flies a scan that is held several times until the robot stands, and then ended early; returns its run.
+/// Runs a scan that is held several times, each time until the robot stands still, and then ended early; returns its
+/// run.
 fn held_scan(bench: &Bench) -> PathBuf {
     let holds: Vec<String> = (1..=4)
         .map(|percent| {

@@ -11,7 +11,7 @@ use std::{
 
 const PATIENCE: Duration = Duration::from_mins(1);
 
-/// A mission in progress, flown by the misbehaving planner.
+/// A mission in progress with the misbehaving planner.
 struct Flying {
     bench: Bench,
     child: Child,
@@ -173,7 +173,7 @@ fn a_plan_that_ran_out_of_time_is_proven_without_waiting_again() {
         let verified = bench.verify(&run, more);
         let took = began.elapsed();
         assert!(verified.code == Some(0) && verified.out.contains("equal: "), "{verified:?}");
-        // The flight waited for the plan's whole budget of 5 s.
+        // The mission waited for the plan's whole budget of 5 s.
         assert!(took < flight, "verify took {took:?}, the flight {flight:?}");
     }
 }

@@ -73,7 +73,7 @@ impl Bench {
         Ended::from(self.command().args(arguments).output().unwrap())
     }
 
-    /// Flies a scenario headless and returns the report.
+    /// Runs a scenario headless and returns the report.
     pub(crate) fn fly(&self, scenario: &Path, more: &[&str]) -> Ended {
         let mut command = self.command();
         command.arg("run").arg(scenario).arg("--json").args(more);

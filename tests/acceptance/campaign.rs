@@ -1,4 +1,4 @@
-//! Campaigns: the table is the same, whichever worker flies which part and however often workers are killed.
+//! Campaigns: the table is the same, whichever worker runs which part, and however often workers are killed.
 
 use crate::bench::{Bench, Ended, scenario};
 use std::{

@@ -1,4 +1,4 @@
-//! The command line from the point of view of scripts: exit codes, JSON, clear refusals.
+//! The command line from the point of view of scripts: exit codes, JSON and clear refusals.
 
 use crate::bench::{Bench, scenario};
 

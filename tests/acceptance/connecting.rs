@@ -7,7 +7,8 @@ use crate::{
 use serde_json::Value;
 use std::{path::Path, process::Command};
 
-/// A trial that passes on a machine of any speed, if it is repeated after a moment in which the machine was too busy.
+/// Maximum number of attempts at a trial that must pass on a machine of any speed; a machine that was too busy for a
+/// moment may spoil an attempt.
 const TRIES: usize = 10;
 
 fn new_vehicle(bench: &Bench, lang: &str) {
@@ -210,7 +211,7 @@ fn a_trial_needs_an_adapter_and_says_what_is_wrong() {
     assert!(verdict == "fail" && says.contains("cannot drive the vehicle at unix:nowhere"), "{report}");
 }
 
-/// The scenario with a column in the robot's way that is not drawn.
+/// The scenario with a column that is in the robot's way but not on the drawing.
 fn undrawn(bench: &Bench) -> std::path::PathBuf {
     let text = std::fs::read_to_string(scenario("goto-single-obstacle.toml")).unwrap();
     let text = text.replace("radius_m = 0.3\n", "radius_m = 0.3\nknown = false\n");

@@ -1,9 +1,9 @@
-//! Planners that misbehave: the robot is held within the tick, the operator sees the reason, the mission can
+//! Planners that misbehave: the robot is held within the tick, the operator sees the reason, and the mission can
 //! continue.
 
 use crate::bench::{Bench, Ended, journal, of_kind, passed_over, scenario};
 
-/// Flies the goto scenario with the faulty planner; `apf` is its fallback.
+/// Runs the goto scenario with the faulty planner; the fallback is `apf`.
 fn fly_faulty(bench: &Bench, fault: &str) -> Ended {
     // In quotes, because `nan` would otherwise be a number.
     let set = format!("fault=\"{fault}\"");

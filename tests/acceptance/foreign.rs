@@ -1,5 +1,5 @@
-//! Foreign files and names: nothing in a logs folder uses up memory, no hidden characters of a name reach a terminal
-//! or a file, nothing is overwritten.
+//! Foreign files and names: no file in a logs folder uses up memory, no hidden characters of a name reach a terminal
+//! or a file, and no file is overwritten.
 
 use crate::bench::{Bench, Ended, change_journal, journal_text, scenario};
 use recording::JOURNAL_FILE;

@@ -438,7 +438,7 @@ fn what_is_no_regular_file_is_no_plugin_and_is_not_waited_for() {
         listed.out.contains("not a regular file") || listed.err.contains("not a regular file"),
         "{listed:?}"
     );
-    // The kernel's log has no end; not every machine lets its user open it.
+    // The kernel's log has no end; on some machines, the user may not open it.
     let endless = bench.tankops(&["check", "/proc/kmsg"]);
     assert_eq!(endless.code, Some(2), "{endless:?}");
 }

@@ -30,7 +30,7 @@ fn a_drawing_with_layers_of_other_names_becomes_a_mission_that_is_flown() {
         imported.out.contains("round tank of 6.000 m radius, 4 obstacles, 0 no-go zones"),
         "{imported:?}"
     );
-    assert!(imported.out.contains("note: not used: layer Text: TEXT, 1 of them"), "{imported:?}");
+    assert!(imported.out.contains("note: not used: layer Text: TEXT (1)"), "{imported:?}");
     let svg = std::fs::read_to_string(bench.path().join("floor.svg")).unwrap();
     assert!(svg.matches("<circle").count() >= 5, "shell and columns: {svg}");
     let flown = bench.tankops(&["run", "floor.toml", "--no-record", "--json"]);

@@ -1,4 +1,4 @@
-//! kill -9 in the middle of a mission: only the last moment is lost.
+//! A mission that is killed (kill -9) loses only its last moment.
 
 use crate::bench::{Bench, journal, scenario};
 use std::{
@@ -9,7 +9,7 @@ use std::{
 
 #[test]
 fn a_killed_run_is_listed_as_crashed_and_its_journal_opens() {
-    // Times differ, so that the kill hits different moments; seeds are written out.
+    // The times differ, so that the kill comes at different moments.
     for (seed, wait_ms) in [(11, 50), (12, 170), (13, 390), (14, 610), (15, 830)] {
         let bench = Bench::new();
         // A long mission, because one that ends within a second could not be killed in time.

@@ -31,8 +31,7 @@ impl Console {
         self.child.stdin.as_mut().unwrap().write_all(lines.as_bytes()).unwrap();
     }
 
-    /// Waits for a line with these words. A console that goes on saying other things is not waited for longer than one that
-    /// is silent.
+    /// Waits for a line with these words. The time limit is the same whether the console prints other lines or nothing.
     pub(crate) fn hear(&self, words: &str) {
         self.hear_all(&[words]);
     }

@@ -46,7 +46,7 @@ fn aborted(mut session: Session) -> (Session, Vec<Value>) {
     (session, events)
 }
 
-/// The operator's hold came before the plan, and before the time limit of the plan.
+/// Checks that the operator's hold came before the plan, and before the time limit of the plan.
 fn assert_held_first(events: &[Value]) {
     let events = since_zone(events);
     let held = first_of(events, "held").expect("held");

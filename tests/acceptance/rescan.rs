@@ -1,4 +1,4 @@
-//! A scan with gaps, a mission for the gaps, and the combined result.
+//! A scan with missed areas, a mission for these areas, and the combined result.
 
 use crate::bench::{Bench, Ended, change_journal, journal_text, scenario};
 use serde_json::Value;
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// Straight lanes alone: half the work of planning.
 const LANES: [&str; 4] = ["--planner", "tether-safe", "--set", "pattern=straight"];
 
-/// Flies the round tank with a time limit.
+/// Runs a scan of the round tank with a time limit.
 fn half_a_scan(bench: &Bench) -> PathBuf {
     let cover = scenario("cover-circle.toml");
     let flown = bench.fly(&cover, &[&LANES[..], &["--set", "mission.time_limit_s=300"]].concat());
@@ -87,7 +87,7 @@ fn runs_that_do_not_fit_together_are_refused_with_the_reason() {
     assert!(twice.code == Some(2) && twice.err.contains("given twice"), "{twice:?}");
     let none = rescan(&bench, &[Path::new("no-such-run")], "again.toml");
     assert!(none.code == Some(2) && none.err.contains("tankops runs"), "{none:?}");
-    // Requests only areas larger than any that was missed.
+    // The size limit is larger than every missed area.
     let nothing =
         bench.tankops(&["rescan", first.to_str().unwrap(), "-o", "none.toml", "--min-area-m2", "1000"]);
     assert!(

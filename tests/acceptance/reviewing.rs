@@ -3,7 +3,7 @@
 use crate::bench::{Bench, change_journal, journal_text, scenario};
 use std::path::Path;
 
-/// Flies a short mission and returns its folder.
+/// Runs a short mission and returns its folder.
 fn flown(bench: &Bench, seed: &str) -> std::path::PathBuf {
     let ended = bench.fly(&scenario("goto-single-obstacle.toml"), &["--seed", seed]);
     assert_eq!(ended.code, Some(0), "{ended:?}");

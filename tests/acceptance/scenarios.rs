@@ -1,8 +1,8 @@
-//! Every shipped scenario meets its own `[expect]`, and repeats.
+//! Every shipped scenario meets its own `[expect]`, and gives the same run when it is repeated.
 
 use crate::bench::{Bench, journal_text, scenario, workspace};
 
-/// Maximum distance between the end of a flight into a trap and the end of its plan, metres.
+/// Maximum distance between the end of a run into a trap and the end of its plan, metres.
 const STOP_M: f64 = 0.2;
 
 fn shipped() -> Vec<std::path::PathBuf> {

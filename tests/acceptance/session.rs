@@ -39,7 +39,7 @@ impl Session {
         Self::open_after("", arguments, width, height)
     }
 
-    /// The same, after another command in the shell, where `$TANKOPS` is the program.
+    /// Opens a session in which the shell runs another command before the console; `$TANKOPS` is the program.
     pub(crate) fn open_after(before: &str, arguments: &str, width: u16, height: u16) -> Self {
         let bench = Bench::new();
         let size = PtySize { rows: height, cols: width, pixel_width: 0, pixel_height: 0 };
@@ -97,7 +97,7 @@ impl Session {
         assert!(is_so, "timed out waiting for {what}; the screen shows:\n{}", self.text());
     }
 
-    /// Waits until something is so, but no longer than this; returns whether it is.
+    /// Waits until a condition holds, at most for `patience`; returns whether it holds.
     fn is_within(&self, patience: Duration, is_so: impl Fn(&Self) -> bool) -> bool {
         let until = Instant::now() + patience;
         while !is_so(self) {
@@ -124,13 +124,13 @@ impl Session {
     pub(crate) fn agree(&mut self) {
         let text = self.text();
         let asked = text.lines().rev().find_map(|line| Some(&line[line.find("Enter:")?..]));
-        // What follows may contain figures that change.
+        // The text after `Esc` may contain figures that change.
         let asked = asked.and_then(|asked| asked.split("Esc").next()).expect("a question is on the screen");
         self.agree_until("the answer", |session| !session.text().contains(asked));
     }
 
-    /// The same, for a question that stays on the screen after the answer. A busy console may take Enter for one that was
-    /// pressed too early; Enter is then pressed again.
+    /// Like [`Self::agree`], for a question that stays on the screen after the answer. A busy console may treat an Enter
+    /// as pressed too early; then Enter is pressed again.
     pub(crate) fn agree_until(&mut self, what: &str, is_answered: impl Fn(&Self) -> bool) {
         let until = Instant::now() + PATIENCE;
         while Instant::now() < until {
@@ -201,7 +201,7 @@ impl Session {
         self.agree();
     }
 
-    /// Flies the rest of the mission at high speed, and leaves the console.
+    /// Runs the rest of the mission at high speed, and leaves the console.
     pub(crate) fn finish(&mut self) {
         self.press(">>>>>>");
         self.see("DONE");

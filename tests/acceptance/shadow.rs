@@ -1,5 +1,5 @@
-//! A planner in shadow: it takes over without a hold, its faults do not affect the mission, and `verify` repeats
-//! everything.
+//! A planner in shadow: it takes over without a hold, its faults do not affect the mission, and `verify` recomputes
+//! the whole run.
 
 use crate::bench::{Bench, Ended, journal, of_kind, scenario};
 use serde_json::Value;

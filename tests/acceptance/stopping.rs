@@ -17,7 +17,7 @@ impl Draw {
     }
 }
 
-/// Flies a robot with other limits and a generous time limit.
+/// Runs a mission of a robot with other limits and a generous time limit.
 fn fly(name: &str, planner: &str, seed: u64, set: &[String]) -> Ended {
     let bench = Bench::new();
     let seed = seed.to_string();

@@ -63,7 +63,7 @@ fn a_held_key_moves_nothing() {
     session.hold();
     session.press(".");
     session.see("Step?");
-    // Repeats like a keyboard: after half a second, then many times a second.
+    // The key repeats as on a keyboard: after half a second, then many times a second.
     std::thread::sleep(std::time::Duration::from_millis(500));
     for _ in 0..40 {
         session.press(".");
@@ -203,7 +203,7 @@ fn hold_is_heard_behind_whatever_the_terminal_sends() {
             // Spaces belong to a paste until it ends.
             session.send(b"\x1b[201~");
         }
-        // The sequence has broken off when a space is a key again.
+        // A space counts as a key again only after the incomplete sequence has timed out.
         session.press_until(" ", "Resume?");
         session.agree();
     }

@@ -29,7 +29,7 @@ const PATIENCE: Duration = Duration::from_mins(2);
 
 const HELLO: &str = r#"{"type": "hello", "protocol": 1, "name": "liar", "motion": "unicycle", "limits": {"speed_m_per_s": 0.5, "turn_rad_per_s": 2.0, "acceleration_m_per_s2": 1.0, "radius_m": 0.25}, "has": {"odometry": true, "contact": true, "ae": true}, "period_s": 0.1, "stop_time_s": 0.5, "lease_max_s": 1.0}"#;
 
-/// A simulator in a process of its own.
+/// A simulator in a separate process.
 pub(crate) struct Vehicle {
     process: Child,
     pub at: String,
@@ -54,7 +54,7 @@ impl Vehicle {
 
 impl Drop for Vehicle {
     fn drop(&mut self) {
-        // It may have ended already.
+        // The process may have ended already.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
@@ -146,7 +146,8 @@ fn a_live_run_has_no_figure_that_needs_the_truth_and_its_reports_say_live() {
     assert!(readings.lines().filter(|line| line.contains(",A,")).count() > 20, "ranges of station A");
 }
 
-/// A vehicle behind a socket whose readings are waited for, so that each tick has its own, however slow the machine is.
+/// A vehicle behind a socket. Each tick waits for its readings, so that every tick has its own readings even on a slow
+/// machine.
 struct Patient {
     remote: Remote,
     ticks: u64,
@@ -315,7 +316,8 @@ fn after_a_lost_link_only_an_order_moves_the_robot_again() {
     bench.prove(&run);
 }
 
-/// The answer to a command of the console, with the stamp of the readings with this number; empty except for a ping.
+/// The answer to a command of the console: for a ping, a pong with the stamp of the readings with this number; for any
+/// other command, an empty text.
 fn answer(command: &Value, number: u64) -> String {
     let stamp_s = 0.1 * number as f64;
     let ready = format!("{{\"type\": \"state\", \"stamp_s\": {stamp_s:.1}, \"mode\": \"ready\"}}");
@@ -326,9 +328,9 @@ fn answer(command: &Value, number: u64) -> String {
     echo_s.map_or_else(String::new, pong)
 }
 
-/// An adapter that answers pings and says a prepared text after its introduction, until the console leaves. The text may
-/// depend on its number, and on the number of texts since the first `drive`, which is 0 before it. Ten numbers pass in a
-/// second.
+/// An adapter that answers pings and, after its introduction, sends prepared texts until the console leaves. A text may
+/// depend on its number, and on the number of texts since the first `drive`, which is 0 before that `drive`. Ten
+/// numbers pass in a second.
 fn liar(path: &Path, lie: impl Fn(u64, u64) -> Vec<u8> + Send + 'static) -> thread::JoinHandle<()> {
     let listener = UnixListener::bind(path).unwrap();
     thread::spawn(move || {
@@ -357,6 +359,7 @@ fn liar(path: &Path, lie: impl Fn(u64, u64) -> Vec<u8> + Send + 'static) -> thre
     })
 }
 
+/// Readings of a vehicle that moves by this distance between two of them.
 fn driven(number: u64, forward_m: &str) -> Vec<u8> {
     readings(number, &format!(r#""odometry": {{"over_s": 0.1, "forward_m": {forward_m}, "turn_rad": 0}}"#))
 }
@@ -379,7 +382,7 @@ fn the_floor_that_a_live_run_missed_is_scanned_by_the_vehicle() {
     assert!(first != second && of_kind(&journal(&second), "sensed").len() > 1);
 }
 
-/// Connects a run to an adapter that says a prepared text after its introduction, and waits for the end of the run.
+/// Connects a run to an adapter that sends prepared texts after its introduction, and waits for the end of the run.
 fn lied_to(lie: impl Fn(u64, u64) -> Vec<u8> + Send + 'static) -> Ended {
     let bench = Bench::new();
     let path = bench.path().join("liar");
@@ -409,7 +412,7 @@ fn what_a_lying_adapter_says_is_named_with_its_field_and_holds_the_robot() {
         }
     });
     let restarted = lied_to(|number, since| match since {
-        // It goes on at once, with numbers above those before.
+        // After the restart, the vehicle continues at once, with numbers above the earlier ones.
         5 => format!("{HELLO}\n").into_bytes(),
         _ => driven(number, "0"),
     });
@@ -430,7 +433,7 @@ fn what_a_lying_adapter_says_is_named_with_its_field_and_holds_the_robot() {
         (driven_off, "odometry does not show that it stands still"),
     ];
     for (ended, why) in cases {
-        // A mission that could not even start says so on stderr.
+        // If a mission could not start, the reason is on stderr.
         let said = format!("{}\n{}", ended.json()["reason"].as_str().unwrap(), ended.err);
         assert!(ended.code == Some(1) && said.contains(why), "{why}: {ended:?}");
     }
@@ -480,7 +483,7 @@ fn a_vehicle_that_drives_off_before_the_start_raises_an_alarm_and_is_not_started
     let drives = Arc::new(AtomicBool::default());
     let (is_driven, moved) = (drives.clone(), AtomicU64::default());
     let liar = liar(&path, move |number, _| {
-        // Once it moves, it drives off by more than a metre.
+        // Once the vehicle has begun to move, it drives more than a metre.
         let before = moved.load(Ordering::Acquire);
         let moves = is_driven.load(Ordering::Acquire) || (1..60).contains(&before);
         moved.fetch_add(u64::from(moves), Ordering::AcqRel);
@@ -493,7 +496,7 @@ fn a_vehicle_that_drives_off_before_the_start_raises_an_alarm_and_is_not_started
     console.hear("Enter `start` to start");
     drives.store(true, Ordering::Release);
     console.hear("vehicle is moving without an order");
-    console.order_until("start\n", "moves without an order; stop it by hand", CANNOT_DRIVE);
+    console.order_until("start\n", "moving without an order; stop it by hand", CANNOT_DRIVE);
     drives.store(false, Ordering::Release);
     console.hear("stopped, confirmed by odometry");
     console.order_until("start\n", "plan again from here", CANNOT_DRIVE);
@@ -534,7 +537,7 @@ fn a_run_waits_for_the_confirmed_stop_and_its_last_figures() {
     assert_eq!(report["vehicle"]["stands"], true, "{flown:?}");
     assert!(report["vehicle"]["heard"].as_u64().unwrap() > 10, "{flown:?}");
     bench.prove(&run);
-    // This one goes on as before, whatever it is told.
+    // This vehicle ignores all commands and continues to move.
     let deaf = lied_to(|number, since| driven(number, if since < 5 { "0" } else { "0.02" }));
     assert!(deaf.code == Some(1) && deaf.json()["vehicle"]["stands"] == false, "{deaf:?}");
 }
@@ -559,7 +562,7 @@ fn ten_thousand_lines_a_second_leave_the_memory_flat() {
     });
     let address = format!("unix:{}", path.display());
     let console = Console::open(bench.command(), &[short(&bench).to_str().unwrap(), "--vehicle", &address]);
-    // It has sent no odometry yet.
+    // The vehicle has not sent odometry yet.
     console.hear("Start blocked: standstill.");
     let memory_kb = || -> u64 {
         let status = std::fs::read_to_string(format!("/proc/{}/status", console.pid())).unwrap();
@@ -591,9 +594,12 @@ fn a_vehicle_that_does_not_fit_is_refused_with_every_reason() {
     let vehicle = Vehicle::offer(&bench, &slow, &[]);
     let refused = bench.fly(&file, &["--vehicle", &vehicle.at, "--set", "vehicle.stop_max_s=0.1"]);
     assert!(refused.code == Some(2) && bench.runs().is_empty(), "{refused:?}");
-    for why in
-        ["does not fit scenario", "its limit is 0.2", "`robot.speed_max_m_per_s`", "`vehicle.stop_max_s`"]
-    {
+    for why in [
+        "does not fit scenario",
+        "the vehicle's limit is 0.2",
+        "`robot.speed_max_m_per_s`",
+        "`vehicle.stop_max_s`",
+    ] {
         assert!(refused.err.contains(why), "{why}: {refused:?}");
     }
     for (vehicle, why) in [

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Cuts the link to a driven vehicle at random times, and measures when the vehicle stands: `cuts.py TANKOPS SCENARIO [N] [SEED]`.
+"""Cuts the link to a moving vehicle at random times, and measures when the vehicle stands still: `cuts.py TANKOPS SCENARIO [N] [SEED]`.
 
 The robot of adapter.py runs in a separate process and keeps the lease. This program is between the console and the adapter,
 and cuts the link in one of four ways: the socket is closed, the adapter is killed, the adapter is stopped (SIGSTOP), or bytes are
@@ -71,7 +71,7 @@ def moves(data):
 
 
 def stands(log, cut):
-    """Time from the cut until the robot stands for good, its highest speed since then, and whether it stands at the end."""
+    """Time from the cut until the robot stands still for good, highest speed after the cut, whether it stands at the end."""
     rows = [tuple(map(float, line.split())) for line in log if len(line.split()) == 3]
     moving = [at for at, v, w in rows if at > cut and (abs(v) > STILL or abs(w) > STILL)]
     # Until its lease lapses, it may still accelerate.
@@ -116,8 +116,8 @@ def one(tankops, scenario, number, seed, folder):
     row = {"cut": number, "way": way, "after_s": round(after_s, 3), "speed_m_per_s": round(speed, 3),
            "stand_s": round(stand_s, 3), "beyond_braking_s": round(stand_s - braking_s, 3), "told_s": link_s}
     wrong = [why for is_wrong, why in [
-        (stand_s > LEASE_S + braking_s, "it stood too late"), (not is_still, "it moves at the end"),
-        (link_s is None or link_s > TOLD_S, "the lost link was not told within 1 s"),
+        (stand_s > LEASE_S + braking_s, "it stopped too late"), (not is_still, "it was moving at the end"),
+        (link_s is None or link_s > TOLD_S, "the lost link was not reported within 1 s"),
         (again, "a motion was sent after the hold"), (events[-1]["event"] != "ended", f"the run was not kept: {said}"),
         (proved.returncode != 0, f"the run was not verified: {proved.stdout.decode()}{proved.stderr.decode()}"),
     ] if is_wrong]

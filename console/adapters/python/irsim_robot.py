@@ -26,8 +26,8 @@ SLIP = 0.02  # share of the wheels' motion that is lost
 SLIP_SIGMA = 0.01
 ENCODER_SIGMA = 0.02  # share of the motion
 GYRO_BIAS_RAD_PER_S = 0.0003
-CORNERS = 48  # of a column, for the tether
-WATCHDOG_S = 0.25  # of the motors, for a robot that is not behind adapter.py
+CORNERS = 48  # corners of the polygon that replaces a column, for the tether
+WATCHDOG_S = 0.25  # time limit of the motors' watchdog, for a robot that is not behind adapter.py
 
 
 def scenario(path):
@@ -101,14 +101,14 @@ class Tether:
         turns = [math.tau * k / CORNERS for k in range(CORNERS)]
         corners = [(x + r * math.cos(a), y + r * math.sin(a)) for x, y, r in columns for a in turns]
         self.corners = numpy.array(corners).reshape(-1, 2)
-        self.bends = [(float(anchor[0]), float(anchor[1]), 0)]  # x, y and on which side the line bends
+        self.bends = [(float(anchor[0]), float(anchor[1]), 0)]  # x, y, and the side on which the line bends
         self.end = self.bends[0][:2]
 
     def move(self, end):
         before, self.end = self.end, end
         while bend := self.first_corner(before, end):
             self.bends.append(bend)
-            # The line beyond the corner sweeps on from the direction in which it met the corner.
+            # Beyond the corner, the line continues to sweep, from the direction in which it met the corner.
             (ax, ay, _), (bx, by, _) = self.bends[-2:]
             left = max(math.dist(before, (ax, ay)) - math.dist((ax, ay), (bx, by)), 0.0)
             away = math.dist((ax, ay), (bx, by))
@@ -120,7 +120,7 @@ class Tether:
             self.bends.pop()
 
     def first_corner(self, before, end):
-        """The corner that the line meets first in the triangle of the last bend and two places of its end."""
+        """The corner that the line meets first, in the triangle of the last bend and two successive places of its end."""
         bx, by, _ = self.bends[-1]
         p, q, to = (before[0] - bx, before[1] - by), (end[0] - bx, end[1] - by), self.corners - (bx, by)
         turn = p[0] * q[1] - p[1] * q[0]
@@ -204,7 +204,7 @@ class Robot:
 
 
 class Driven:
-    """The robot of a peer of another adapter: motors of limited acceleration, a watchdog, a pose by its own odometry."""
+    """The robot in the trials of other adapters, with motors of limited acceleration, a watchdog, and a pose by odometry."""
 
     def __init__(self, world):
         self.limits, self.body = world["limits"], Robot(world)
@@ -213,7 +213,7 @@ class Driven:
         self.log = open(os.environ.get("ROBOT_LOG", os.devnull), "w", 1)
 
     def command(self, v, w, now):
-        """Takes speeds; they hold until the watchdog stops the robot."""
+        """Takes speeds, which apply until the watchdog stops the robot."""
         most_v, most_w = self.limits["speed_m_per_s"], self.limits["turn_rad_per_s"]
         self.to_v, self.to_w, self.until = max(-most_v, min(most_v, v)), max(-most_w, min(most_w, w)), now + WATCHDOG_S
 
@@ -235,7 +235,7 @@ class Driven:
 
 
 def each_period(step):
-    """Calls `step` with the time since the last call and the time now, once in each period."""
+    """Calls `step` once in each period, with the time since the last call and the current time."""
     before = time.monotonic()
     while True:
         time.sleep(max(0.0, before + PERIOD_S - time.monotonic()))

@@ -48,7 +48,7 @@ fn prepare(args: &OutArgs, here: &Here) -> anyhow::Result<(Folder, Campaign)> {
 
 fn shape(folder: &Folder, campaign: &Campaign) -> String {
     let (cases, blocks) = (campaign.cases(), campaign.blocks());
-    format!("{cases} missions in {blocks} blocks: {}", folder.path().display())
+    format!("missions: {cases}, blocks: {blocks}, folder: {}", folder.path().display())
 }
 
 fn run(args: &RunCampaignArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {

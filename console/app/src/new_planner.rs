@@ -49,7 +49,7 @@ pub(crate) fn write_folder(folder: &Path, files: Vec<(String, String)>) -> anyho
     Ok(())
 }
 
-/// Whether a text can name a `kind` of thing.
+/// Checks the name of a planner or a vehicle; `kind` is the word for it in the message.
 pub(crate) fn check_name(kind: &str, name: &str) -> Result<(), String> {
     let is_of_id = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';
     let is_good = name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(is_of_id);

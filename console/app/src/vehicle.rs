@@ -56,7 +56,7 @@ struct Offered {
     /// The console that the vehicle obeys: of all connected consoles, the first that connected.
     commander: Option<ClientId>,
     began: Instant,
-    /// When the next tick is due.
+    /// The time at which the next tick is due.
     due: Instant,
     state_due: Instant,
     lockstep: bool,

@@ -155,7 +155,7 @@ impl fmt::Display for Comparison {
         ))?;
         if self.unpaired > 0 {
             let what = if self.metric == "success" { "ran" } else { "are complete" };
-            writeln!(f, "  {} missions {what} in only one of the tables", self.unpaired)?;
+            writeln!(f, "  missions that {what} in only one of the tables: {}", self.unpaired)?;
         }
         Ok(())
     }

@@ -33,7 +33,7 @@ pub struct Row {
     pub case: u64,
     /// Whether the mission ran.
     pub status: Status,
-    /// Why the mission did not run, as a sentence.
+    /// The reason why the mission did not run, as a sentence.
     pub error: Option<String>,
     /// Whether the mission is complete and met every bound.
     pub success: bool,

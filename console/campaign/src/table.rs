@@ -127,7 +127,7 @@ pub(crate) fn more_is_better(metric: &str) -> bool {
     MORE_IS_BETTER.contains(&metric)
 }
 
-/// Why a table cannot be written or read.
+/// The reason why a table cannot be written or read.
 #[derive(Debug, Error)]
 pub enum TableError {
     /// The columns do not match.

@@ -93,7 +93,7 @@ impl fmt::Display for Findings {
         for faults in self.faults.iter().take(MOST_ARMS) {
             writeln!(
                 f,
-                "    {}: {} faults in {} missions",
+                "    {}: planner faults: {}, in missions: {}",
                 short(&faults.arm),
                 faults.count,
                 faults.missions

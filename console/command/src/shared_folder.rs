@@ -107,7 +107,7 @@ impl SharedFolder {
     pub fn claim(&self, name: &str) -> bool {
         let claim = self.claim_file(name);
         if claim.exists() && is_void(&claim, self.now()) {
-            // If two processes find the claim void at the same time, at worst both do the same work.
+            // If two processes find the claim void at the same time, both do the same work at worst.
             let _ = fs::remove_file(&claim);
         }
         match File::create_new(&claim) {
@@ -150,7 +150,7 @@ fn is_void(claim: &Path, now: SystemTime) -> bool {
         && process.is_some_and(|process| !processes.join(process.to_string()).exists())
 }
 
-/// Whether a file has not been modified for so long that its process must have stopped working on it.
+/// Whether a file has not been modified for so long that the process that wrote it must have stopped.
 fn is_silent(file: &Path, now: SystemTime) -> bool {
     let touched = fs::metadata(file).and_then(|file| file.modified());
     touched.is_ok_and(|at| now.duration_since(at).unwrap_or_default() > SILENT_FOR)
@@ -166,7 +166,7 @@ fn host() -> String {
 mod tests {
     use super::*;
 
-    /// Makes a file look as if nobody had touched it for a long time.
+    /// Makes a file look as if it had not been modified for a long time.
     fn age(file: &Path) {
         let file = File::options().write(true).open(file).expect("a file");
         file.set_modified(SystemTime::now() - SILENT_FOR - Duration::from_secs(1)).expect("set");

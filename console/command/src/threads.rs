@@ -14,7 +14,7 @@ pub const PLANNER: usize = 2;
 /// The thread that waits for signals.
 pub const SIGNAL: usize = 1;
 
-/// The time within which the system releases threads that have ended, even on a busy machine.
+/// How long the check waits for the system to release ended threads; even a busy machine needs less.
 const CLEARED_WITHIN: Duration = Duration::from_secs(1);
 /// The stack of each test thread in bytes; the threads do nothing.
 const STACK_BYTES: usize = 64 << 10;

@@ -188,7 +188,7 @@ fn note_coincident(rows: &[Row], notes: &mut Vec<String>) {
 fn no_row(error: &csv::Error, line: u64) -> Wrong {
     let what = match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            format!("{len} cells, but the first line has {expected_len}")
+            format!("{len} cell{}, but the first line has {expected_len}", if *len == 1 { "" } else { "s" })
         }
         _ => format!("not a CSV file: {error}"),
     };

@@ -2,7 +2,7 @@
 //!
 //! Values are interpreted as in the ROS 2 `nav2_map_server`. Cells that are not known to be free count as solid, as
 //! they do for the robots in the papers. Cells of grey 205, which map savers write for unseen cells, also count as
-//! solid, whatever the thresholds.
+//! solid, even if the thresholds would make them floor.
 
 mod image;
 mod settings;
@@ -48,7 +48,7 @@ impl fmt::Display for Unseen {
         let Self { n_cells, grey, free_thresh } = self;
         write!(
             f,
-            "{n_cells} cells of grey {grey} count as solid: map savers write this grey for unseen cells, \
+            "cells of grey {grey} count as solid ({n_cells}): map savers write this grey for unseen cells, \
              although free_thresh {free_thresh} would make it floor"
         )
     }

@@ -13,7 +13,7 @@ use tui::RunMsg;
 
 /// The longest acceptable response time of the engine; a slower engine would stop the robot too late.
 const STOP_LIMIT: Duration = Duration::from_millis(50);
-/// The longest wait for an answer of the engine.
+/// The longest wait for an answer from the engine.
 const STOP_PATIENCE: Duration = Duration::from_secs(2);
 /// The time over which the two clocks are compared, and the largest acceptable difference.
 const CLOCK_SPAN: Duration = Duration::from_millis(100);

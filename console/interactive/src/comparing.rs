@@ -1,4 +1,5 @@
-//! Another planner's plan for the waiting mission, made in a separate worker for comparison; this plan is never run.
+//! Another planner's plan for the waiting mission, made in a separate worker for comparison; the robot never follows
+//! this plan.
 
 use super::inbox::RunOutbox;
 use account::Estimate;

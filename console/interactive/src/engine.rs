@@ -39,8 +39,8 @@ use std::{
 };
 use tui::{RunMsg, Speed};
 
-/// While a real vehicle only waits for its start, one tick in this many is run: it must not move unnoticed, and the events
-/// of a long wait must not fill the memory.
+/// While a real vehicle only waits for its start, one tick in this many is run. A movement of the vehicle must be
+/// noticed, but the events of a long wait must not fill the memory.
 const IDLE: u32 = 10;
 
 /// Time limit for closing the recording after a signal has asked the process to exit.
@@ -63,7 +63,7 @@ impl Engine {
     ) -> anyhow::Result<Self> {
         let mut host = host(scenario, plugins);
         let (handle, asked) = line(host.waker(), flight.brake());
-        // The time of a real vehicle cannot be sped up.
+        // A mission of a real vehicle cannot run faster than real time.
         let speed = if flight.is_live() { Speed::Times(1.0) } else { speed };
         let (progress, reported) = mpsc::channel();
         host.set_on_progress(Arc::new(move |ask, at| {
@@ -179,8 +179,8 @@ impl EngineThread {
         self.has_lost_planner().then_some(Order::CheckPlanner)
     }
 
-    /// Whether the process of a planner has ended that is asked for nothing, before the start or while the robot is held.
-    /// A planner that drives is asked in every tick anyway.
+    /// Whether the process of an idle planner has ended, before the start or while the robot is held. While the robot
+    /// moves, this check is unnecessary, because the active planner is asked in every tick.
     fn has_lost_planner(&mut self) -> bool {
         let is_asked = !matches!(self.flight.phase(), Phase::Waiting | Phase::Held(_));
         let mut idle = self.flight.mission().idle_workers().filter(|_| !is_asked);
@@ -267,7 +267,7 @@ impl EngineThread {
         events
     }
 
-    /// Reports to the screen any work of the planners that outlasts this tick, with its progress.
+    /// Reports planning work that takes longer than this tick, and its progress, to the screen.
     fn send_work(&mut self) {
         let work = self.watch.current();
         if work != self.shown_work.as_ref() {

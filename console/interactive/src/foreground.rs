@@ -1,6 +1,6 @@
 //! Keeps the console in the terminal's foreground group; only processes in this group may read keys. If another process
-//! in the session took the terminal, the console would receive no keys, so the console takes it back within two
-//! seconds, or when the next key is pressed.
+//! in the session took the terminal, the console would receive no keys, so the console takes the terminal back within
+//! two seconds, or when the next key is pressed.
 //!
 //! A planner's worker cannot take the terminal: it leaves the session before any plugin code runs.
 

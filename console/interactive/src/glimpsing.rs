@@ -1,5 +1,5 @@
-//! Reads what the screen shows about a past run that the operator has selected. Reading a long journal takes seconds, so
-//! only the run that was selected last is read.
+//! Reads the details of the past run that the operator has selected, for the screen. Reading a long journal takes
+//! seconds, so only the run that was selected last is read.
 
 use super::{combining, inbox::Outbox, jobs};
 use account::Summary;

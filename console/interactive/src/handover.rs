@@ -35,7 +35,7 @@ fn write(file: &Path, page: &str, overwrite: bool) -> anyhow::Result<()> {
         Ok(_) if !overwrite => {
             bail!("{shown} exists; choose another file, or `handover {shown} overwrite` to replace the page")
         }
-        // Either the file is not there, or the operator has said that the page is to be replaced.
+        // The file does not exist, or the operator has agreed to replace the page.
         _ => {}
     }
     let written = format!("{MARK}{page}\nWritten {}.\n", runs::utc_minute(SystemTime::now()));

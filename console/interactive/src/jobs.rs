@@ -43,7 +43,7 @@ fn carry_out(job: &Job, Tools { logs, plugins, .. }: &Tools) -> anyhow::Result<S
             Ok(format!("draft report written: {}", file.display()))
         }
         Job::View(_) => view(&folder.join(RECORDING_FILE)),
-        // The viewer accepts a time only with the address of a server, not with a file.
+        // The viewer accepts a start time only with the address of a server, not with a file.
         Job::ViewAt(_, at) => {
             let opened = view(&folder.join(RECORDING_FILE)).with_context(|| format!("at {at}"))?;
             Ok(format!("{opened}; go to {at} there"))

@@ -83,7 +83,7 @@ pub struct Options {
     pub view: Option<PathBuf>,
     /// A past run to play back, instead of opening a scenario.
     pub replay: Option<Replay>,
-    /// The part of the console to fail on purpose.
+    /// The part of the console that fails on purpose, if any.
     pub drill: Option<Drill>,
 }
 

@@ -23,7 +23,7 @@ use tui::{
     plain::{Said, help, no_question, status},
 };
 
-/// The lines that are not commands of the console.
+/// The words that the plain console accepts besides the commands of the console.
 const STATUS: &str = "status";
 const HELP: [&str; 2] = ["help", ":help"];
 const YES: &str = "yes";
@@ -71,7 +71,7 @@ pub(super) fn speak(mut session: Session, outbox: &Outbox, engine: &Current) -> 
     }
 }
 
-/// The answer to a line that only concerns the printed text; `None` for any other message.
+/// The answer to `status` or `help`, which only print text; `None` for any other message.
 fn answered(model: &Model, msg: &Msg) -> Option<Vec<String>> {
     match msg {
         Msg::Line(line) if line == STATUS => Some(status(model)),
@@ -81,7 +81,7 @@ fn answered(model: &Model, msg: &Msg) -> Option<Vec<String>> {
     }
 }
 
-/// The key for which `yes` or `no` stands.
+/// Converts `yes` or `no` to the key press that it stands for.
 fn pressed(msg: Msg) -> Msg {
     match msg {
         Msg::Line(line) if line == YES => Msg::Key(Key::Enter.into()),

@@ -17,8 +17,8 @@ use std::{
 };
 use tui::terminal::{Decoder, Input};
 
-/// Asks for the background colour (OSC 11), and then for the kind of the terminal (DA1), which every terminal answers:
-/// once it has answered this second question, an answer about the background will not come.
+/// Asks for the background colour (OSC 11), and then for the kind of the terminal (DA1), which every terminal answers.
+/// If the answer to the second question comes first, the terminal does not report its background.
 const ASK_BACKGROUND: &[u8] = b"\x1b]11;?\x1b\\\x1b[c";
 /// The pause after the system has refused to read, because another process has the terminal.
 const REFUSED: Duration = Duration::from_millis(100);

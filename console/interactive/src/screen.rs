@@ -27,7 +27,7 @@ const CALM_FRAME: Duration = Duration::from_secs(1);
 /// robot is at rest. Answers to keys are not delayed.
 const LINE_RATE: f64 = 15_000.0;
 const CALM_RATE: f64 = 200.0;
-/// The longest time between two frames of a robot at rest.
+/// The longest time between two frames that show a robot at rest.
 const LONGEST_CALM: Duration = Duration::from_secs(4);
 /// The longest time that new values wait until the line to the terminal is free, even after a complete redraw.
 const LONGEST_DEBT: Duration = Duration::from_millis(250);
@@ -43,7 +43,7 @@ pub(super) struct Screen {
     frame_interval: Duration,
     /// The shortest time between the last frame and a frame that only shows new values of a robot at rest.
     calm_pause: Duration,
-    /// The time after the last frame for which a line with the data rate [`LINE_RATE`] is still busy.
+    /// How long a line with the data rate [`LINE_RATE`] needs to transmit the last frame.
     line_busy: Duration,
     /// How soon a frame must be drawn.
     due: Redraw,
@@ -130,7 +130,7 @@ impl Screen {
     /// Waits for a message, then takes all others that are waiting.
     fn take_burst(&mut self) -> anyhow::Result<Option<Left>> {
         let first = self.wait();
-        // The model may have reached a time at which it changes by itself.
+        // The time may have come at which the model changes without a message.
         let by_itself = self.session.model.wakes_at_mono_s();
         self.session.update_time();
         if by_itself.is_some_and(|at_s| at_s <= self.session.model.console.now.mono_s) {

@@ -41,7 +41,8 @@ impl Session {
         self.inbox.next(until)
     }
 
-    /// When the model next changes by itself, plus a millisecond, so that this moment has passed when the caller wakes.
+    /// The time at which the model next changes without a message, plus a millisecond. The extra millisecond makes sure
+    /// that this time has passed when the caller wakes.
     pub(super) fn wakes_at(&self) -> Option<Instant> {
         let at_s = self.model.wakes_at_mono_s()?;
         Some(self.began + Duration::from_secs_f64(at_s.max(0.0)) + Duration::from_millis(1))

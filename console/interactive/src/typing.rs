@@ -2,8 +2,8 @@
 //!
 //! The screen reports whether an input line is open, but a burst of keys arrives faster than the screen takes it: in
 //! `:speed 2`, read from the terminal at once, the space is read before the screen has opened the line. The thread
-//! therefore follows the keys that the screen has not taken yet. If it errs, it errs towards HOLD, and the screen
-//! holds in any case when it takes a space outside a line.
+//! therefore follows the keys that the screen has not taken yet. In doubt, the thread treats a space as HOLD. In any
+//! case, the screen holds the robot when it takes a space outside a line.
 
 use std::{
     collections::VecDeque,
@@ -150,10 +150,11 @@ mod tests {
         // The screen has refused to open the line.
         burst.reports.report(true, false);
         assert!(!burst.follower.is_typing(burst.began));
-        // It has opened a line in another way.
+        // The screen has opened a line in another way.
         burst.reports.report(false, true);
         assert!(burst.follower.is_typing(burst.began));
-        // Enter may close it, and the screen has not taken Enter yet; then it says that the line is still open.
+        // Enter may close the line, but the screen has not taken Enter yet. The screen then reports that the line is
+        // still open.
         burst.read(&[Key::Enter]);
         assert!(!burst.follower.is_typing(burst.began));
         burst.reports.report(true, true);

@@ -33,7 +33,7 @@ const INTERVALS: usize = 4_096;
 /// Minimum number of contradicting fixes for the motion to be ignored. A wrong start alone makes three fixes contradict
 /// the motion.
 const CONTRADICTING: u64 = 4;
-/// Maximum number of fixes for each contradicting fix, as a second condition for the motion to be ignored.
+/// Second condition for the motion to be ignored: at least one in this many fixes contradicts it.
 const CONTRADICTING_OF: u64 = 4;
 
 /// A file to locate, with the options.

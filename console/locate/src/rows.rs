@@ -109,7 +109,7 @@ fn of_csv(error: &csv::Error, line: u64, file: &Path) -> Problem {
     let is_end = matches!(error.kind(), csv::ErrorKind::Io(_));
     let what = match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            format!("{len} cells; the first line has {expected_len}")
+            format!("{len} cell{}; the first line has {expected_len}", if *len == 1 { "" } else { "s" })
         }
         csv::ErrorKind::Utf8 { .. } => encoding::narrow(file, line),
         csv::ErrorKind::Io(error) => error.to_string(),

@@ -20,9 +20,9 @@ use world::Point;
 /// Squared distance, in standard deviations, within which 95 % of a two-dimensional normal distribution lies.
 const ELLIPSE_95: f64 = 5.991_464_547;
 
-/// With this many sets, chance no longer matters.
+/// The number of sets from which on chance has no influence.
 const ENOUGH: u64 = 200;
-/// Fewer fixes than this count as few.
+/// A number of fixes below this counts as few.
 const FEW: u64 = 200;
 /// Covariances in events have four significant digits: semi-axes are accurate to this share.
 const ROUNDING: f64 = 5e-4;

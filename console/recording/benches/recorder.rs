@@ -1,4 +1,4 @@
-//! What recording costs: the simulation's thread, the journal, the fold into the recording.
+//! Measures the cost of recording: in the simulation's thread, for the journal, and for the fold into the recording.
 
 #[path = "../tests/recording/synthetic.rs"]
 mod synthetic;

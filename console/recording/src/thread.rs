@@ -83,7 +83,7 @@ pub struct Finished {
 
 /// Writes the journal and the recording of a run in a separate thread.
 ///
-/// [`RunRecorder::send`] hands over events and returns immediately, unless 8192 batches are waiting. In that case the
+/// [`RunRecorder::send`] queues events and returns immediately, unless 8192 batches are waiting. In that case, the
 /// simulation waits for the disk, and no data is lost. An error affects only its own file and appears in
 /// [`RunRecorder::health`] within a second. The same applies to a file that another program deletes, replaces or
 /// truncates. The other file and the mission continue. [`crate::FAILURE_FILE`] in the folder of the run states the
@@ -166,7 +166,7 @@ impl RunRecorder {
         sync::begin(file, &self.shared).map_err(error)
     }
 
-    /// Hands over the events of a tick; waits while the queue is full.
+    /// Queues the events of a tick for writing; waits while the queue is full.
     pub fn send(&self, events: impl Into<Arc<[Event]>>) {
         let Some(sender) = &self.sender else { return };
         self.shared.sent.fetch_add(1, Ordering::Relaxed);

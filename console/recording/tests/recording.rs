@@ -17,7 +17,7 @@ mod synthetic;
 #[path = "recording/thread.rs"]
 mod thread;
 
-/// A made-up run of so many ticks as one list.
+/// All events of a made-up run with this number of ticks, in one list.
 fn events(ticks: u64) -> Vec<mission::Event> {
     synthetic::run(ticks).into_iter().flatten().collect()
 }

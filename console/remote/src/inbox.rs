@@ -53,7 +53,7 @@ pub(crate) struct Inbox {
     stamps: Option<Stamps>,
     faulty: u64,
     fault: String,
-    /// The fault of a `hello`: what follows it cannot be trusted.
+    /// The fault of a `hello`; after it, no message can be trusted.
     bad_hello: Option<String>,
     closed: Option<String>,
     /// Time for which the motion is unknown so far, seconds.
@@ -233,7 +233,7 @@ impl Inbox {
         }
     }
 
-    /// Hands over the messages that have arrived since the last tick.
+    /// Returns the content of the messages that have arrived since the last tick.
     pub(crate) fn sense(&mut self, now_s: f64) -> Sensed {
         let stamps = self.stamps.take().map(|Stamps { source_t_s, arrival_t_s }| Stamps {
             source_t_s: rounded(source_t_s),
@@ -361,10 +361,10 @@ impl Inbox {
             (Mode::Ready, Commander::You) => (LinkState::Up, String::new()),
             (Mode::Ready, Commander::OtherConsole) => (
                 LinkState::OtherCommander,
-                "another console drives it; this one can only watch until that one exits".into(),
+                "another console is driving it; this console can only watch until that one exits".into(),
             ),
             (Mode::Ready, Commander::OtherProgram) => {
-                (LinkState::OtherCommander, "another program sends commands to it".into())
+                (LinkState::OtherCommander, "another program is sending commands to it".into())
             }
             (Mode::Manual, _) => (LinkState::Manual, text),
             (Mode::EmergencyStop, _) => (LinkState::EmergencyStop, text),

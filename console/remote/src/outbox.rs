@@ -149,7 +149,7 @@ mod tests {
         outbox.brake();
         outbox.command(drive, 1);
         assert!(matches!(next(&outbox), ToVehicle::Stop(_)));
-        // A tick of a held mission is not that order either.
+        // A tick of a held mission does not carry out the third order, either.
         outbox.command(None, 0);
         outbox.command(drive, 0);
         assert!(matches!(next(&outbox), ToVehicle::Stop(_)));

@@ -24,7 +24,7 @@ use vehicle::{
 };
 use world::{Station, Truth};
 
-/// How long an adapter may take to introduce the vehicle.
+/// Longest time that an adapter may take to introduce the vehicle.
 const HELLO_WITHIN: Duration = Duration::from_secs(10);
 /// Interval at which the console checks for the introduction and, over datagrams, requests it.
 const LOOK_AGAIN: Duration = Duration::from_millis(50);

@@ -13,7 +13,7 @@ use std::{
 const MOST_LINES: usize = 3;
 /// Maximum number of bytes kept of a line.
 const LINE_BYTES: usize = 160;
-/// How long the last lines may take after the end of the adapter's messages.
+/// Longest time that the last lines may take to arrive after the end of the adapter's messages.
 const LAST_WITHIN: Duration = Duration::from_millis(300);
 
 /// The lines of an adapter so far.

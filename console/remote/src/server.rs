@@ -205,7 +205,7 @@ impl Drop for Open {
     }
 }
 
-/// Introduces the vehicle to a console that cannot be served, with the reason.
+/// Introduces the vehicle to a console that cannot be served, and states the reason.
 fn refuse(mut write: impl Write, hello: &Hello) {
     let mut client = Writer::<FromVehicle>::new(FromSession::default());
     let text = Some(format!("{MOST_CLIENTS} consoles are connected already; close one of them"));

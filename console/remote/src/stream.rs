@@ -25,7 +25,7 @@ use std::{
 const DATAGRAM_BYTES: usize = 65_536;
 /// Interval at which a reader of datagrams checks whether it should end.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
-/// How long an adapter that was started here may take to end by itself.
+/// Time that an adapter that was started here may take to end on its own.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Maximum number of bytes that wait on this machine for an adapter, so that a stop does not wait behind many drives.
@@ -210,7 +210,7 @@ impl Read for Datagrams {
 impl Write for Datagrams {
     fn write(&mut self, line: &[u8]) -> io::Result<usize> {
         match self.socket.send(line) {
-            // As if the datagram had been lost on its way.
+            // The port is closed for now. The effect is that of a lost datagram.
             Err(error) if error.kind() == io::ErrorKind::ConnectionRefused => Ok(line.len()),
             sent => sent,
         }

@@ -99,14 +99,14 @@ fn misfits(scenario: &Scenario, hello: &Hello) -> Vec<String> {
     refuse(
         speed > limits.speed_m_per_s,
         format!(
-            "the scenario drives at {speed} m/s (`robot.speed_max_m_per_s`); its limit is {}",
+            "the scenario drives at {speed} m/s (`robot.speed_max_m_per_s`); the vehicle's limit is {}",
             limits.speed_m_per_s
         ),
     );
     refuse(
         turn > limits.turn_rad_per_s,
         format!(
-            "the scenario turns at {turn:.3} rad/s (`robot.turn_rate_max_deg_per_s`); its limit is {:.3}",
+            "the scenario turns at {turn:.3} rad/s (`robot.turn_rate_max_deg_per_s`); the vehicle's limit is {:.3}",
             limits.turn_rad_per_s
         ),
     );

@@ -15,7 +15,7 @@ use vehicle::{
     wire::message::Hello,
 };
 
-/// How long the vehicle is listened to.
+/// Time for which the trial listens to the vehicle before anything moves.
 const LISTEN: Duration = Duration::from_secs(3);
 /// Time, seconds, that is added to the lease of the last command and the vehicle's own stop time; after the sum, the
 /// vehicle must stand still.
@@ -59,7 +59,7 @@ impl Trial {
     }
 }
 
-/// Why a trial ended early.
+/// The reason why a trial ended early.
 #[derive(Debug)]
 enum Early {
     /// A signal requested it.

@@ -39,8 +39,8 @@ fn below(key: String, one: &Value, other: &Value) -> Option<Difference> {
             pairs.find_map(|(index, (one, other))| below(at(&index.to_string()), one, other))
         }
         (Value::Array(ones), Value::Array(others)) => Some(Difference {
-            one: format!("a list of {}", ones.len()),
-            other: format!("one of {}", others.len()),
+            one: format!("a list of length {}", ones.len()),
+            other: format!("one of length {}", others.len()),
             key,
         }),
         _ => Some(Difference { key, one: one.to_string(), other: other.to_string() }),

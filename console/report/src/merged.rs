@@ -172,7 +172,10 @@ mod tests {
         );
         (other.world.boundary, other.world.obstacles) = (round_tank(0.1).world.boundary, vec![]);
         let columns = refused(round_tank(0.1), other);
-        assert!(columns.ends_with("obstacles is a list of 1 in a and one of 0 in b"), "{columns}");
+        assert!(
+            columns.ends_with("obstacles is a list of length 1 in a and one of length 0 in b"),
+            "{columns}"
+        );
         let twice = merged(&[run("a", 0.1, 0, 1), run("a", 0.1, 0, 1)]).unwrap_err();
         assert_eq!(twice, "run a is given twice");
     }

@@ -69,7 +69,7 @@ pub fn report_page(folder: &Path) -> anyhow::Result<String> {
     Ok(html(&Document::new(&[past.run], context).map_err(bad_input)?))
 }
 
-/// The facts in the scenario of a run that only people know.
+/// The facts for the inspection report that only people know, from the scenario of a run.
 ///
 /// # Errors
 /// The scenario in its journal is refused.

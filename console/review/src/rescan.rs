@@ -8,7 +8,7 @@ use runs::Past;
 use scenario::{Continued, Scenario};
 use std::path::{Path, PathBuf};
 
-/// Maximum number of boxes in a scenario for a re-scan; more are merged into coarser ones.
+/// Maximum number of boxes in a scenario for a re-scan. If there were more, they are merged into coarser boxes.
 const MOST_BOXES: usize = 4000;
 /// Area below which missed floor is not worth a mission, square metres.
 pub const MIN_AREA_M2: f64 = 0.05;

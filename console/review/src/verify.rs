@@ -1,11 +1,11 @@
 //! Recomputes a past run and proves that the result equals its journal.
 //!
-//! One pass makes two proofs. *Mission*: simulator and mission get the recorded orders, and the recorded answers of the
-//! planners in the ticks in which they arrived. Every line must then be reproduced, byte for byte. This is always
-//! possible, whatever happened to the planners during the run. *Planners*: each ask also goes to a planner, whose
-//! answer must equal the recorded one. Some faults depend on the machine and not on the ask: a planner is killed or
-//! stopped, answers too late, or is disturbed by a thread that it left behind. Such faults are taken from the journal
-//! and counted. A fault that occurs again in a different tick counts as the same fault.
+//! One pass makes two proofs. *Mission*: the simulator and the mission receive the recorded orders, and the recorded
+//! answers of the planners in the ticks in which the answers arrived. Every line must then be reproduced, byte for
+//! byte. This is always possible, whatever happened to the planners during the run. *Planners*: each ask also goes to a
+//! planner, whose answer must equal the recorded one. Some faults depend on the machine and not on the ask: a planner
+//! is killed or stopped, answers too late, or is disturbed by a thread that it left behind. Such faults are taken from
+//! the journal and counted. A fault that occurs again in a different tick counts as the same fault.
 //!
 //! The journal is read tick by tick; memory use does not grow with its length.
 
@@ -33,7 +33,7 @@ use std::{
     time::SystemTime,
 };
 
-/// Maximum number of ticks read together; fewer if their lines reach this many bytes.
+/// Maximum number of ticks in a batch, and the number of bytes of lines that ends a batch earlier.
 const BATCH: usize = 64;
 const BATCH_BYTES: u64 = 1 << 18;
 /// Size of the read-ahead queue, bytes of lines.
@@ -88,7 +88,7 @@ pub fn verify(folder: &Path, plugins: &PluginDirs, from_journal: bool) -> anyhow
     if let Some(measured) = Ticks::open(&journal_of(folder))?.opened()?.measured.clone() {
         return verify_located(folder, &measured);
     }
-    // A journal that cannot be read fails below, with its place.
+    // If the journal cannot be read, the code below reports the error and its position.
     let proof = (!from_journal).then(|| Proof::begin(folder)).transpose();
     let findings = findings(folder, (!from_journal).then_some(plugins))?;
     let (is_equal, mut lines) = (findings.are_equal(), lines(&findings, plugins));

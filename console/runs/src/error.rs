@@ -3,7 +3,7 @@
 use recording::{JOURNAL_FILE, JournalError, RecordingError};
 use std::{io, path::PathBuf};
 
-/// Why a run cannot be kept, found or read.
+/// The reason why a run cannot be kept, found or read.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// No run can be written to the folder for runs. Contains the reason, and what to do.

@@ -18,8 +18,8 @@ impl Kept {
         Self { folder: folder.path().to_owned(), problem: finished.error.clone().or_else(unwritten) }
     }
 
-    /// Why the run is not kept; `None` if it is kept. Checks the disk again, because the console may stay open long after
-    /// the end of the run.
+    /// The reason why the run is not kept; `None` if it is kept. Checks the disk again, because the console may stay
+    /// open long after the end of the run.
     pub fn problem(&self) -> Option<String> {
         let mut missing = [JOURNAL_FILE, REPORT_FILE].into_iter().map(|name| self.folder.join(name));
         let missing =

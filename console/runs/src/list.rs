@@ -43,7 +43,7 @@ pub struct Listed {
     /// Folder of the run.
     #[serde(serialize_with = "shown")]
     pub folder: PathBuf,
-    /// When the run was last verified, UTC, such as `2026-11-22 04:01`; absent if it was not, or if its journal has
+    /// Time of the last verification, UTC, such as `2026-11-22 04:01`; absent if it was not, or if its journal has
     /// changed since.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verified: Option<String>,

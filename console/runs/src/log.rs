@@ -10,7 +10,7 @@ use std::{
     time::{Duration, Instant, SystemTime},
 };
 
-/// How long closing a run may take before the attempt is abandoned with a message.
+/// Longest time that closing a run may take; then the attempt is abandoned with a message.
 pub const CLOSE_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// A run that is being written or, if it has no folder, only computed.

@@ -16,7 +16,7 @@ const MIN_FREE_BYTES: u64 = 16 << 20;
 /// Size of the test file, bytes: one block on common file systems.
 const PROBE: [u8; 4096] = [b'\n'; 4096];
 
-/// Why no run can be kept in a folder.
+/// The reason why no run can be kept in a folder.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum LogsError {
     /// A part of the path is a file.

@@ -56,7 +56,7 @@ fn refuse_closed(folder: &Path) -> Result<(), RunError> {
     }
 }
 
-/// Why nothing can be recovered from a journal.
+/// The reason why nothing can be recovered from a journal.
 fn explained(error: RunError, folder: &Path) -> RunError {
     match error {
         RunError::Journal(JournalError::NotOpened { .. }) => RunError::Refused(format!(

@@ -112,7 +112,7 @@ impl Reported {
     /// Reads the report in the folder of a run; `None` if there is none.
     ///
     /// # Errors
-    /// Why the report cannot be read, as a sentence.
+    /// The reason why the report cannot be read, as a sentence.
     pub(crate) fn read(folder: &Path) -> Result<Option<Self>, String> {
         match read_json(&folder.join(REPORT_FILE), MOST_BYTES) {
             Ok(text) => {
@@ -127,7 +127,7 @@ impl Reported {
     /// The figures in the report, if the report is unchanged and agrees with the journal.
     ///
     /// # Errors
-    /// Why the report is not trusted, as a sentence.
+    /// The reason why the report is not trusted, as a sentence.
     pub(crate) fn summary(&self, folder: &Path, budget: &Budget) -> Result<Box<Summary>, String> {
         let summary: Box<Summary> = serde_json::from_str(&self.text).map_err(|error| damaged(&error))?;
         self.seal_doubt().map_or(Ok(()), Err)?;
@@ -171,14 +171,14 @@ impl Reported {
         self.source.events_sha256.is_some() && self.source.recording_sha256.is_some()
     }
 
-    /// Why the journal with this digest does not match the report; `None` if it does.
+    /// The reason why the journal with this digest does not match the report; `None` if it does.
     pub(crate) fn journal_doubt(&self, sha256: Option<&str>) -> Option<String> {
         let then = self.source.events_sha256.as_deref()?;
         (then != sha256?).then(|| NOT_THE_ONE.to_owned())
     }
 
-    /// Why the recording does not match the report; `None` if it does. A missing recording can be made again, so it does
-    /// not count as a mismatch.
+    /// The reason why the recording does not match the report; `None` if it does. A missing recording can be made
+    /// again, so it does not count as a mismatch.
     pub(crate) fn recording_doubt(&self, folder: &Path, now: &Now<'_>) -> Option<String> {
         let (then, path) = (self.source.recording_sha256.as_deref()?, folder.join(RECORDING_FILE));
         if !path.exists() {
@@ -204,8 +204,8 @@ impl Reported {
         }
     }
 
-    /// Why the figures are not trusted: they differ from the figures derived from the journal (`figures`), or the file
-    /// was changed. `None` if they are trusted.
+    /// The reason why the figures are not trusted: they differ from the figures derived from the journal (`figures`),
+    /// or the file was changed. `None` if they are trusted.
     pub(crate) fn figures_doubt(&self, figures: &Summary) -> Option<String> {
         if self.source.report_sha256.is_none() {
             return self.seal_doubt();
@@ -222,7 +222,7 @@ impl Reported {
             .or_else(|| self.seal_doubt())
     }
 
-    /// Why the lines of the report do not match the digest that it contains; `None` if they do.
+    /// The reason why the lines of the report do not match the digest that it contains; `None` if they do.
     fn seal_doubt(&self) -> Option<String> {
         let Some(then) = &self.source.report_sha256 else { return Some(NO_SEAL.to_owned()) };
         let now = digest_of_lines(&self.text);

@@ -288,7 +288,7 @@ mod tests {
         let (signed, none) = (Signed::new(), Register::at(None));
         let clean = Signatures { revisions: vec![signed.revision()], ..Signatures::default() };
         assert_eq!(signatures(&signed.run(), &signed.register), clean);
-        // Another register cannot know it.
+        // Another user's register cannot contain this report.
         let Signatures { doubts, notes, .. } = signatures(&signed.run(), &none);
         assert!(
             doubts.is_empty()
@@ -362,7 +362,7 @@ mod tests {
         fs::write(&list, "[{").unwrap();
         let Signatures { doubts, .. } = signatures(&signed.run(), &signed.register);
         assert!(doubts[0].contains("signed.json is damaged: ") && doubts[0].contains("line 1"), "{doubts:?}");
-        // What the run was called when it was closed counts, whatever its folder is called now.
+        // The name that the run had when it was closed counts, not the current name of its folder.
         fs::remove_file(&list).unwrap();
         let [then] = &names_of(&signed.run())[..] else { panic!("no report names it") };
         let renamed = tempfile::tempdir().unwrap();
@@ -389,7 +389,7 @@ mod tests {
             found.contains("has the files of run a, which was signed as revision A by L. Kern"),
             "{found}"
         );
-        // A mission that was flown again has the same journal, and another recording.
+        // If a mission is run again, it has the same journal, but a different recording.
         assert_eq!(doubt(&files("7c")), None);
         assert_eq!(doubt(&SignedRun { recording_sha256: None, ..files("6b") }), None);
     }

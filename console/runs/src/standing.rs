@@ -19,7 +19,7 @@ pub enum Standing {
     JournalOnly {
         /// The problem with the report; absent if the run has none.
         doubt: Option<String>,
-        /// Why the writer could no longer write; absent if it was killed.
+        /// The reason why the writer could no longer write; absent if it was killed.
         failure: Option<String>,
     },
 }

@@ -15,7 +15,7 @@ const MOST_BYTES: u64 = 1 << 16;
 /// A journal that was verified.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Proof {
-    /// When the verification ended, UTC, such as `2026-11-22 04:01`.
+    /// Time at which the verification ended, UTC, such as `2026-11-22 04:01`.
     at: String,
     /// SHA-256 of the journal's events, hexadecimal.
     events_sha256: String,

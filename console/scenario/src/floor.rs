@@ -49,7 +49,7 @@ pub(crate) fn plates(root: &Section<'_>, boundary: Option<&Boundary>) -> Option<
     let n_annular = if section.has("annular_count") {
         section.whole("annular_count")? as u32
     } else {
-        // The perimeter of a circle with the same area, whatever the shape of the floor.
+        // The perimeter of a circle with the same area, regardless of the shape of the floor.
         let shell_m = (4.0 * std::f64::consts::PI * boundary?.area_m2()).sqrt();
         (shell_m / length_m).ceil().clamp(1.0, 1000.0) as u32
     };

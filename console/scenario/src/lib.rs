@@ -53,7 +53,7 @@ pub struct Scenario {
     pub name: String,
     /// A description for people; may be empty.
     pub about: String,
-    /// The file name, or a different name, for messages.
+    /// The name that messages use: the file name, or a different name.
     pub shown_name: String,
     /// The text of the scenario after settings have been applied; it reproduces the scenario.
     pub text: String,

@@ -21,7 +21,7 @@ impl ScenarioErrors {
         }
         let rest = self.problems.len().saturating_sub(MOST_SHOWN);
         if rest > 0 {
-            writeln!(text, "error: {}: {rest} more problems", self.shown_name)
+            writeln!(text, "error: {}: further problems: {rest}", self.shown_name)
                 .expect("writing to a String cannot fail");
         }
         text

@@ -139,7 +139,7 @@ fn index(part: &str) -> Option<usize> {
 }
 
 fn no_entry(part: &str, count: usize) -> String {
-    format!("no entry `{part}`; the list has {count} entries, counted from 0")
+    format!("no entry `{part}`; the list has length {count}, and its entries are counted from 0")
 }
 
 /// The new value, with the spacing and the comment of the old value.
@@ -193,7 +193,7 @@ mod tests {
         assert!(
             put_all(&["obstacles.1.known=false"])
                 .expect_err("only one")
-                .contains("no entry `1`; the list has 1")
+                .contains("no entry `1`; the list has length 1")
         );
     }
 

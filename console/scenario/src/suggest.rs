@@ -43,7 +43,7 @@ const UNITS: &[(&str, &str, f64)] = &[
 
 /// The suggested correction: the right unit, the nearest name, the right section, or a list of all names.
 pub(crate) fn remedy(section: &str, keys: &'static [Key], unknown: &str, value: Option<f64>) -> String {
-    // Names are compared letter by letter, so very long names are cut; they cannot be misspellings of known keys.
+    // Names are compared letter by letter, so very long names are shortened; they cannot be misspellings of known keys.
     let short: String = unknown.chars().take(64).collect();
     same_quantity(keys, &short, value)
         .or_else(|| {

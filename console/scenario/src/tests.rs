@@ -1,4 +1,4 @@
-//! What scenarios may say, what they may not, and what is said about it.
+//! Valid scenarios, invalid scenarios, and the messages about their faults.
 
 use super::*;
 use mission::{ParamValue, TaskConfig};
@@ -12,7 +12,7 @@ const PAPER: &str = include_str!("../../../scenarios/spiral-paper.toml");
 const GOTO: &str = include_str!("../../../scenarios/goto-single-obstacle.toml");
 const DOC: &str = include_str!("../../docs/scenario-format.md");
 
-/// The shortest scenario there is.
+/// The shortest valid scenario.
 const SMALL: &str = r#"name = "small"
 [tank]
 radius_m = 5
@@ -35,7 +35,7 @@ fn errors(text: &str) -> ScenarioErrors {
     Scenario::parse(text, "x.toml").expect_err("something is wrong with it")
 }
 
-/// The one thing that is wrong after `from` in the small scenario became `to`: line, column, sentence.
+/// Replaces `from` by `to` in the small scenario; returns the line, column and sentence of the only problem.
 fn complaint(from: &str, to: &str) -> String {
     assert!(SMALL.contains(from), "{from}");
     let errors = errors(&SMALL.replacen(from, to, 1));
@@ -216,7 +216,7 @@ fn an_error_shows_file_line_column_key_value_and_remedy() {
     assert!(shown.contains(first), "{shown}");
 }
 
-/// What the small scenario says, what it says instead, and what is said about that.
+/// A text in the small scenario, a faulty replacement, and the resulting message.
 const MISTAKES: &[(&str, &str, &str)] = &[
     ("radius_m = 5", "radius_m = -5", "3:12: tank.radius_m = -5: must be greater than 0 m"),
     ("radius_m = 5", "radius_m = 5e9", "3:12: tank.radius_m = 5e9: must be at most 1000 m"),
@@ -527,7 +527,7 @@ fn document_row(key: &schema::Key) -> String {
     format!("| `{}` | {unit} | {holds} | {default} |", key.name).replace("|  |", "| |")
 }
 
-/// Something that may stand where a value stood.
+/// Texts that replace a value.
 fn values() -> impl Strategy<Value = String> {
     prop_oneof![
         any::<f64>().prop_map(|number| number.to_string()),
@@ -541,7 +541,7 @@ fn values() -> impl Strategy<Value = String> {
     ]
 }
 
-/// Reads a text and shows what is wrong with it, within seconds; what is right stays right.
+/// Checks that a text is either accepted or refused with a message, within seconds.
 fn survives(text: &str) -> Result<(), TestCaseError> {
     let begun = Instant::now();
     match Scenario::parse(text, "x.toml") {

@@ -1,4 +1,4 @@
-//! Damaged scenarios and maps: refused with a message, or read; never a panic.
+//! Damaged scenarios and maps are read or refused with a message, and never cause a panic.
 
 use mutations::{mutated, mutations};
 use proptest::prelude::*;

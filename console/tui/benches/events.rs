@@ -14,7 +14,7 @@ use world::StationId;
 const TYPED: [&str; 4] =
     ["rejected", "sev>=watch source=ae,tether", "station=17 t>00:05", "-rejected \"in use\" -plan"];
 
-/// A run whose log is full: stations that come and go, and news of the console.
+/// A run whose log is full: stations are rejected and used again, and the console reports messages.
 fn full_run() -> Run {
     let mut run = Run::default();
     for tick in 0..MAX_LINES as u64 {

@@ -19,10 +19,10 @@ use std::time::{Duration, Instant};
 use tui::{Cache, Msg, RunMsg, view_cached};
 use world::{CellRun, Point};
 
-/// Frames behind the percentiles.
+/// The number of frames from which the percentiles are computed.
 const FRAMES: usize = 2000;
 
-/// A mission with a long way behind it.
+/// A mission in which the robot has already driven a long way.
 fn long_mission() -> Screen {
     let mut screen = Screen::running();
     let path: Vec<Point> = (0..10_000)

@@ -1,4 +1,4 @@
-//! The page that an operator hands over to the next one: the state, the reasons and the next steps.
+//! The handover page, which an operator writes for the next one: the state, the reasons and the next steps.
 
 use crate::guide;
 use crate::model::{
@@ -102,7 +102,7 @@ fn alarms(model: &Model, is_listed: impl Fn(&Alarm) -> bool) -> Vec<String> {
         };
         let name = guide::name(&alarm.cause, run);
         let severity = severity_word(alarm.severity);
-        // Some texts begin with the name.
+        // Some alarm texts already begin with the name of the alarm.
         let text = alarm.text.strip_prefix(&format!("{name}: ")).unwrap_or(&alarm.text);
         format!("{severity} {name}, since T+{}, {state}: {text}", clock(alarm.since_s))
     };
@@ -203,7 +203,7 @@ fn line(entry: &Entry) -> String {
     format!("T+{} {}", clock(entry.t_s), entry.text)
 }
 
-/// The starts, holds and ends. A drive back begins with its order, not with the task being resumed.
+/// The starts, holds and ends. A drive back is listed by its order, and not as a resumption of the task.
 fn holds(model: &Model) -> Vec<String> {
     let back: Vec<u64> = listed(model, |kind| matches!(kind, EventKind::Ordered { order: Order::DriveBack }))
         .map(|entry| entry.tick)

@@ -1,8 +1,7 @@
 //! The panes of the mission screen for a given terminal size, and their positions.
 //!
-//! Every pane has a rank, and a minimum and a preferred number of rows. If space is short, the highest-ranked panes
-//! get their minimum; the remaining rows are then handed out one by one, in order of rank, to the panes that prefer
-//! more.
+//! Every pane has a rank, and a minimum and a preferred number of rows. If space is short, the highest-ranked panes get
+//! their minimum; the remaining rows then go one by one, in order of rank, to the panes that prefer more.
 
 use crate::model::{
     Pane, Run,
@@ -17,9 +16,9 @@ const STACK: (u16, u16) = (30, 50);
 const PLAN_SIDE: (u16, u16, u16) = (34, 50, 80);
 /// Width of the map, in columns, for a given number of floor rows: the round tank, its legend and the frame.
 const MAP: (u16, u16) = (2, 22);
-/// Rows beside the map from which a single stack has a table of the stations.
+/// The minimum number of rows beside the map at which a single stack has a table of the stations.
 const TABLE_ROWS: u16 = 32;
-/// Rows of the plan screen from which it has room for a curve.
+/// The minimum number of rows at which the plan screen has room for a curve.
 const TALL: u16 = 45;
 /// Rows of the map that show no floor: the frame and the readout.
 const MAP_FRAME: u16 = 3;
@@ -120,7 +119,7 @@ pub(crate) fn plan(area: Rect, (width, height): (u16, u16), pane: Pane) -> Vec<(
     let side = side.max(if arrangement == Arrangement::Wide { PLAN_SIDE.1 } else { PLAN_SIDE.0 });
     let [map, side] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(side)]).areas(area);
     let mut placed = vec![(Pane::Map, map)];
-    // On a tall screen, a curve stands below the figures.
+    // On a tall screen, a curve is shown below the figures.
     let promise = wish(Pane::Promise, 10, if area.height >= TALL { 24 } else { 12 });
     if arrangement == Arrangement::Narrow {
         placed.extend(match pane {
@@ -150,7 +149,7 @@ pub(crate) fn page(area: Rect, pane: Pane, shown: Shown) -> Vec<(Pane, Rect)> {
     }
 }
 
-/// The panes beside the map. Whatever can end a mission comes first.
+/// The panes beside the map. The panes about conditions that can end a mission come first.
 fn first(shown: Shown, wide: bool) -> Vec<Wish> {
     let rows = |full: u16, short: u16| if wide { full } else { short };
     let tether = shown.tether.then_some(wish(Pane::Tether, 5, rows(10, 6)));

@@ -84,7 +84,7 @@ const SILENCE_S: f64 = 2.0;
 /// The state of the screens.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Model {
-    /// The scenarios and past runs that can be opened.
+    /// The home screen: the scenarios and past runs that can be opened.
     pub home: Home,
     /// The review screen: the list of past runs.
     #[serde(default)]
@@ -115,7 +115,7 @@ impl Model {
         model
     }
 
-    /// Whether the mission still owes the figures of the open question, without which the question cannot be answered.
+    /// Whether the open question cannot be answered yet, because the mission has not sent the figures that it shows.
     pub fn awaits_figures(&self) -> bool {
         match &self.ui.overlay {
             Overlay::Confirm(ui::Ask::DriveBack) | Overlay::Finish { .. } => self.live.way_back.is_none(),
@@ -200,7 +200,7 @@ impl Model {
         (self.is_heard() && silence_s > SILENCE_S).then_some(silence_s)
     }
 
-    /// Whether a mission is running whose events should keep arriving.
+    /// Whether a mission is running, so that its events should keep arriving.
     fn is_heard(&self) -> bool {
         self.live.run.is_running() && !self.live.is_replay()
     }

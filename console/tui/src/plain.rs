@@ -34,7 +34,8 @@ impl Said {
         if self.screen.replace(screen) != Some(screen) {
             lines.push(format!("Screen {}: {}.", screen.digit(), screen.name()));
         }
-        // The sentence about the state says that the robot is held: in a live run, only when its stop is confirmed.
+        // The sentence about the state already says that the robot is held; in a live run, it does so only once the
+        // stop is confirmed.
         let is_hold = |entry: &Entry| matches!(entry.what.event(), Some(of) if matches!(of.kind, EventKind::Held { .. }));
         let entries: Vec<Entry> = self.entries(model).into_iter().filter(|entry| !is_hold(entry)).collect();
         lines.extend(entries.iter().map(Entry::line));
@@ -144,7 +145,7 @@ fn tether(model: &Model) -> Option<String> {
     Some(format!("Tether{snag}: {:.1} of {reel_m:.1} m out{wrap}.", tether.length_m))
 }
 
-/// Whether an action changes only a picture or the way to a list, which sentences do not have.
+/// Whether an action changes only a picture or opens a list; sentences have neither.
 fn is_only_drawn(action: &Action) -> bool {
     use ActionId::{
         Commands, Copy, Help, Messages, NextLike, NextMissed, NextPane, PreviousLike, PreviousMissed,
@@ -168,7 +169,7 @@ fn is_only_drawn(action: &Action) -> bool {
     of_screen || action.topic == Topic::Map
 }
 
-/// The answer to `help`: the commands that can be given now and have an effect on sentences, one in a line, and how to
+/// The answer to `help`: the commands that can be given now and have an effect on sentences, one per line, and how to
 /// learn more.
 pub fn help(model: &Model) -> Vec<String> {
     let is_listed = |action: &&Action| !is_only_drawn(action) && offered(model, action.id).is_ok();

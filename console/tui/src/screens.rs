@@ -47,7 +47,7 @@ pub(crate) struct Row {
     contexts: &'static [&'static [Context]],
     /// The index of the active set of contexts.
     active: fn(&Model) -> usize,
-    /// The action for which the operator comes to the screen; the footer shows its key first.
+    /// The main action on the screen; the footer shows its key first.
     pub first: ActionId,
     /// The label of Enter in the footer; `None` while there is nothing to open.
     pub opens: fn(&Model) -> Option<&'static str>,
@@ -139,7 +139,7 @@ fn of_plan(model: &Model) -> usize {
     }
 }
 
-/// The index of the mission screen's contexts: by pane or cursor, then the same again for a replay.
+/// The index of the mission screen's contexts: by pane or cursor, followed by the same sets for a replay.
 fn of_mission(model: &Model) -> usize {
     let here = match model.ui.pane {
         _ if model.ui.cursor.is_some() => 3,

@@ -237,7 +237,7 @@ impl Link {
         self.stopping.state(now_s, Stopping::limit_s(hello, trip_s))
     }
 
-    /// When the vehicle was commanded to stand still, seconds; `None` while it may drive.
+    /// Time at which the vehicle was commanded to stand still, seconds; `None` while it may drive.
     pub fn asked_to_stand_s(&self) -> Option<f64> {
         self.stopping.asked_s()
     }

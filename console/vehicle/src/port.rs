@@ -34,8 +34,8 @@ pub trait Vehicle: Send {
         true
     }
 
-    /// The link at the end of a mission, after the command to stand still. If `waits`, also whether the vehicle stands:
-    /// the call then takes at most as long as the vehicle may take to stop. `None` if this is not known.
+    /// The link at the end of a mission, after the command to stand still. If `waits`, also whether the vehicle stands
+    /// still: the call then takes at most as long as the vehicle may take to stop. `None` if this is not known.
     fn settle(&mut self, _waits: bool) -> Option<Live> {
         None
     }
@@ -86,14 +86,14 @@ impl Stood {
             return None;
         }
         Some(if self.moved {
-            "it moves without an order; stop it by hand, then plan again from there"
+            "it is moving without an order; stop it by hand, then plan again from its new position"
         } else {
             "odometry does not show that it stands still; stop it by hand, and wait until it stands"
         })
     }
 }
 
-/// When a reading was taken and when it arrived.
+/// The times at which a reading was taken and arrived.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Stamps {
     /// The vehicle's own clock when it took the reading, seconds.
@@ -238,8 +238,8 @@ pub struct Command {
     /// The estimated heading of the robot, radians, with which a velocity in the tank frame is turned into the robot's
     /// frame.
     pub heading_rad: f64,
-    /// Number of orders that the mission has carried out in this tick and that pulled the [`Brake`] before. Each releases
-    /// the brake that it has pulled.
+    /// Number of orders carried out by the mission in this tick that had pulled the [`Brake`] before. Carrying out such
+    /// an order releases its pull.
     pub braking_orders: u32,
 }
 
@@ -264,8 +264,9 @@ impl fmt::Display for CannotInject {
     }
 }
 
-/// Stops a vehicle at once, from any thread. No motion is sent until each pull has been released, by the order that
-/// pulled it: when the mission has carried it out ([`Command::braking_orders`]), or if the order is dropped.
+/// Stops a vehicle at once, from any thread. Each pull belongs to an order, and is released when the mission has
+/// carried out that order ([`Command::braking_orders`]) or the order is dropped. Until all pulls are released, no
+/// motion is sent.
 #[derive(Clone)]
 pub struct Brake {
     pull: std::sync::Arc<dyn Fn() + Send + Sync>,

@@ -64,7 +64,7 @@ pub struct Row {
     /// The measured values.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub figures: Vec<Figure>,
-    /// What was found, and for a failure what to do, as a sentence without a full stop.
+    /// The finding and, for a failure, the remedy, as a sentence without a full stop.
     pub says: String,
 }
 

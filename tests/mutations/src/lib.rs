@@ -1,7 +1,7 @@
 //! Random damage to bytes, for tests that feed damaged input to a reader.
 //!
 //! Mutations of good input reach deeper into a reader than random bytes, which fail at the first one. Cases come from
-//! proptest, so they are seeded, bounded in number, and made smaller when one fails.
+//! proptest, so they are seeded and bounded in number, and a failing case is shrunk.
 
 use proptest::prelude::*;
 

@@ -1,4 +1,4 @@
-//! From types to schemas.
+//! Turns types into schemas.
 
 use crate::{
     Sources,
@@ -83,7 +83,7 @@ impl<'a> Document<'a> {
     #[allow(clippy::needless_pass_by_value, reason = "callers make the name")]
     fn defined_as(&mut self, at: &Defined, name: String) -> Value {
         if !self.definitions.contains_key(&name) {
-            // So that a type may contain itself.
+            // The entry exists before the definition is complete, so that a type may contain itself.
             self.definitions.insert(name.clone(), Value::Null);
             let schema = self.definition(at);
             self.definitions.insert(name.clone(), schema);
@@ -311,7 +311,7 @@ impl<'a> Document<'a> {
             ("BTreeMap" | "HashMap", [_, inner]) => {
                 json!({ "type": "object", "additionalProperties": self.of_type(at, inner) })
             }
-            // Has its own `Serialize`.
+            // This type has its own `Serialize`.
             ("PlanId", _) => json!({ "type": "string", "description": "SHA-256, hexadecimal" }),
             ("Point" | "Vector" | "Point2" | "Vector2", _) => json!({
                 "type": "array",

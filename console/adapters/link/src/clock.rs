@@ -1,18 +1,19 @@
-//! Stamps of the vehicle and of the console on the adapter's clock.
+//! Converts stamps of the robot and of the console to the adapter's clock.
 //!
-//! The clock of a sender need not agree with the adapter's. The least delay between a stamp and its arrival in the last
-//! seconds stands for the offset; a message that arrives later than that was delayed on its way, not stamped later.
+//! The clock of a sender need not agree with the adapter's. The least difference between arrival and stamp in the last
+//! seconds is taken as the offset. A message with a greater difference was delayed on its way, not stamped later.
 
-/// Delays are compared within this time, seconds: long enough for jitter, short enough for clocks that drift.
+/// Time within which delays are compared, seconds: long enough for jitter, short enough for clocks that drift.
 const WINDOW_S: f64 = 5.0;
-/// A stamp that goes back by more than this belongs to a clock that was set, seconds.
+/// Step back of a stamp, seconds, above which the sender's clock counts as having been set.
 const SET_BACK_S: f64 = 1.0;
 
 /// Converts stamps of a sender to the adapter's clock.
 #[derive(Debug, Clone, Default)]
 #[allow(clippy::struct_field_names, reason = "a name ends with its unit")]
 pub struct Clock {
-    /// Start of the current window, and the least differences of arrival and stamp in it and in the one before.
+    /// Start of the current window. The least differences between arrival and stamp are those in this window and in the
+    /// one before.
     since_s: f64,
     least_s: Option<f64>,
     least_before_s: Option<f64>,

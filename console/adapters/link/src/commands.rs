@@ -1,4 +1,4 @@
-//! The console's commands and their lease: which velocity holds now.
+//! The console's commands and their lease, which determine the current velocity.
 
 use crate::{
     clock::Clock,
@@ -21,10 +21,10 @@ impl Velocity {
     pub const ZERO: Self = Self { forward_m_per_s: 0.0, sideways_m_per_s: 0.0, turn_rad_per_s: 0.0 };
 }
 
-/// What a line from the console was.
+/// The meaning of a line from the console.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Heard {
-    /// A new velocity holds.
+    /// A new velocity applies.
     Drive,
     /// The vehicle must stand still.
     Stop,
@@ -37,7 +37,7 @@ pub enum Heard {
     Bye,
     /// Nothing to do: a late or outdated command, an empty line or an unknown kind of message.
     Nothing,
-    /// Not a valid command: the vehicle stands still. The text says why.
+    /// Not a valid command: the vehicle stands still. The text states the reason.
     Bad(String),
 }
 
@@ -49,17 +49,17 @@ pub struct Commands {
     lease_max_s: f64,
     /// The stamps of the console on the clock of the adapter.
     clock: Clock,
-    /// Greatest number of a command.
+    /// Greatest number of a command so far.
     newest: Option<u64>,
-    /// What holds, and until when.
+    /// The last velocity, and the time at which its lease lapses, seconds.
     lease: Option<(Velocity, f64)>,
 }
 
-/// Tolerance for limits that were written and read as decimal numbers.
+/// Tolerance for limits, because they are converted to decimal numbers and back.
 const SLACK: f64 = 1e-9;
 
 impl Commands {
-    /// No command yet: the vehicle stands still.
+    /// The state before the first command: the vehicle stands still.
     pub fn new(motion: Motion, limits: Limits, lease_max_s: f64) -> Self {
         Self { motion, limits, lease_max_s, clock: Clock::default(), newest: None, lease: None }
     }
@@ -128,7 +128,10 @@ impl Commands {
         within("turn_rad_per_s", drive.turn_rad_per_s, self.limits.turn_rad_per_s)?;
         if !(drive.lease_s > 0.0 && drive.lease_s <= self.lease_max_s) {
             let most = self.lease_max_s;
-            return Err(format!("drive.lease_s: {} is not above 0 and at most {most}", drive.lease_s));
+            return Err(format!(
+                "drive.lease_s: {} is out of range: greater than 0 and at most {most} is allowed",
+                drive.lease_s
+            ));
         }
         Ok(Velocity {
             forward_m_per_s: drive.forward_m_per_s,
@@ -142,7 +145,7 @@ impl Commands {
         self.lease = None;
     }
 
-    /// The velocity that holds. `None` without a lease: the vehicle must stand still.
+    /// The current velocity; `None` without a lease, because the vehicle must then stand still.
     pub fn velocity(&self, now_s: f64) -> Option<Velocity> {
         self.lease.filter(|(_, until_s)| now_s < *until_s).map(|(velocity, _)| velocity)
     }
@@ -207,8 +210,11 @@ mod tests {
     fn a_bad_line_stops_the_vehicle_and_names_the_field() {
         let lines = [
             (drive(2, 0.5), "drive.forward_m_per_s: 0.5 is beyond the limit of 0.4"),
-            (drive(2, 0.3).replace("0.25", "0.6"), "drive.lease_s: 0.6 is not above 0 and at most 0.5"),
-            (drive(2, 0.3).replace("0.25", "0"), "drive.lease_s: 0 is not above 0"),
+            (
+                drive(2, 0.3).replace("0.25", "0.6"),
+                "drive.lease_s: 0.6 is out of range: greater than 0 and at most 0.5 is allowed",
+            ),
+            (drive(2, 0.3).replace("0.25", "0"), "drive.lease_s: 0 is out of range"),
             (drive(2, 0.3).replace("\"turn", "\"sideways_m_per_s\": 0.1, \"turn"), "drive.sideways_m_per_s"),
             (drive(2, 0.3).replace("0.3", "NaN"), "expected value"),
             (drive(2, 0.3)[..40].to_owned(), "EOF"),

@@ -9,11 +9,11 @@ use std::{
 
 /// Maximum length of a line, bytes.
 const LINE_MAX: u64 = 256 * 1024;
-/// Messages that wait for a console that does not read; more are dropped.
+/// Maximum number of messages that wait for a console that does not read; further messages are dropped.
 const WAITING_MAX: usize = 64;
 
 /// Reads lines in a thread and passes each to `take`, then `None` at the end of the input. A line that is too long or
-/// not UTF-8 arrives as a text that is not a command. The thread ends when `take` returns false.
+/// not UTF-8 is passed on as a text that is not a command. The thread ends when `take` returns false.
 pub fn listen(take: impl FnMut(Option<String>) -> bool + Send + 'static) {
     thread::spawn(move || read_lines(io::stdin().lock(), take));
 }
@@ -52,9 +52,9 @@ impl Speaker {
         Self { waiting }
     }
 
-    /// Says a message. It is dropped if the console does not read.
+    /// Sends a message, which is dropped if the console does not read.
     pub fn say(&self, message: FromVehicle) {
-        // A console that has left or does not read hears nothing; the lease stops the vehicle.
+        // A console that has left or does not read misses the message; the lease stops the vehicle.
         let _ = self.waiting.try_send(message);
     }
 }

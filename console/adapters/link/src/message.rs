@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 pub enum FromVehicle {
     /// The first message of a connection.
     Hello(Hello),
-    /// What was measured.
+    /// The measurements of one period.
     Readings(Readings),
-    /// At least once a second, and after each change.
+    /// The state of the vehicle, sent at least once a second and after each change.
     State(State),
     /// The answer to a ping.
     Pong {
@@ -26,7 +26,7 @@ pub enum FromVehicle {
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum ToVehicle {
-    /// Move like this until the lease lapses.
+    /// Move as stated until the lease lapses.
     Drive(Drive),
     /// Stand still until the next drive.
     Stop {
@@ -54,12 +54,12 @@ pub struct Drive {
     pub stamp_s: Option<f64>,
     /// The vehicle stands still if no other drive arrives within this time, seconds.
     pub lease_s: f64,
-    /// Metres per second.
+    /// Speed ahead, metres per second.
     pub forward_m_per_s: f64,
-    /// Metres per second, to the left.
+    /// Speed to the left, metres per second.
     #[serde(default)]
     pub sideways_m_per_s: f64,
-    /// Radians per second, counter-clockwise.
+    /// Turn rate, radians per second, counter-clockwise.
     pub turn_rad_per_s: f64,
 }
 
@@ -74,13 +74,13 @@ pub struct Hello {
     pub motion: Motion,
     /// The limits of its motion.
     pub limits: Limits,
-    /// The parts of its readings.
+    /// The parts that its readings contain.
     pub has: Has,
     /// Time between two readings, seconds.
     pub period_s: f64,
-    /// Time from `stop` at full speed until the vehicle stands still, seconds.
+    /// Time from the arrival of a `stop` at full speed until the vehicle stands still, seconds.
     pub stop_time_s: f64,
-    /// Longest lease that is honoured, seconds.
+    /// Longest lease that the vehicle honours, seconds.
     pub lease_max_s: f64,
 }
 
@@ -88,7 +88,7 @@ pub struct Hello {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Motion {
-    /// Ahead, back and turning.
+    /// Forward and backward along its heading, and turning.
     Unicycle,
     /// In any direction, and turning.
     Omni,
@@ -97,17 +97,17 @@ pub enum Motion {
 /// The limits of a vehicle's motion.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Limits {
-    /// Metres per second.
+    /// Maximum speed, metres per second.
     pub speed_m_per_s: f64,
-    /// Radians per second.
+    /// Maximum turn rate, radians per second.
     pub turn_rad_per_s: f64,
-    /// Metres per second squared.
+    /// Maximum acceleration, metres per second squared.
     pub acceleration_m_per_s2: f64,
     /// Radius of a disc about the origin of the robot frame that contains the hull, metres.
     pub radius_m: f64,
 }
 
-/// The parts of a vehicle's readings.
+/// The parts that a vehicle's readings contain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[allow(clippy::struct_excessive_bools, reason = "each is a sensor of its own")]
 pub struct Has {
@@ -123,7 +123,7 @@ pub struct Has {
     pub ae: bool,
 }
 
-/// What was measured. A part that was not measured is absent.
+/// The measurements of one period. A part that was not measured is absent.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Readings {
     /// Number of these readings.
@@ -181,11 +181,11 @@ pub struct Scan {
     pub first_rad: f64,
     /// Angle from ray to ray, radians.
     pub step_rad: f64,
-    /// Largest distance that is measured, metres.
+    /// Largest distance that the sensor measures, metres.
     pub range_max_m: f64,
     /// Place of the sensor in the robot frame, metres ahead and to the left.
     pub sensor_m: [f64; 2],
-    /// Distances from the sensor, metres; none for a ray without an echo, 0 for something too near to be measured.
+    /// Distances from the sensor, metres: `None` for a ray without an echo, 0 for something too near to be measured.
     pub ranges_m: Vec<Option<f64>>,
 }
 
@@ -219,7 +219,7 @@ pub struct State {
 pub enum Mode {
     /// It obeys.
     Ready,
-    /// A person drives it.
+    /// A person is driving it.
     Manual,
     /// Its emergency stop is pressed.
     EmergencyStop,
@@ -233,6 +233,6 @@ pub enum Mode {
 pub enum Commander {
     /// The console.
     You,
-    /// Another program commands it, too.
+    /// Another program is commanding it, too.
     OtherProgram,
 }

@@ -11,27 +11,27 @@ use crate::{
 #[cfg(test)]
 mod tests;
 
-/// What an adapter must do.
+/// An order to the adapter.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Order {
-    /// Say this to the console.
+    /// Send this message to the console.
     Say(FromVehicle),
-    /// Command this velocity.
+    /// Command this velocity to the robot.
     Move(Velocity),
-    /// The robot was under way and must stand still now: use other ways to stop it, too, if there are any.
+    /// The robot was moving and must now stand still: if the robot can be stopped in other ways, use these, too.
     Halt,
-    /// Write this to standard error.
+    /// Write this text to standard error.
     Note(String),
-    /// The console has left, and the robot was told to stand still for a while: end.
+    /// End: the console has left, and zero velocity has been commanded for some time.
     End,
 }
 
-/// Longest time to wait for the robot before `hello`, seconds: the console waits for 10.
+/// Longest time to wait for the robot before `hello`, seconds; the console waits for `hello` for 10 s.
 const GREET_WITHIN_S: f64 = 5.0;
-/// How long zero is commanded after the console has left, seconds.
+/// Time for which zero velocity is commanded after the console has left, seconds.
 const LEAVE_AFTER_S: f64 = 0.5;
 
-/// Keeps the lease and the manners of the wire.
+/// Keeps the lease and the other rules of the wire.
 #[derive(Debug, Clone)]
 pub struct Pilot {
     hello: Hello,
@@ -41,13 +41,13 @@ pub struct Pilot {
     started_s: f64,
     has_greeted: bool,
     moves_s: f64,
-    /// Whether the velocity that was commanded last had a lease.
+    /// Whether the last commanded velocity had a lease.
     was_driven: bool,
     leaves_s: Option<f64>,
 }
 
 impl Pilot {
-    /// For a vehicle that gets a command every `period_s`.
+    /// Creates the pilot for a vehicle that receives a command every `period_s`.
     pub fn new(vehicle: &Vehicle, has: Has, period_s: f64, now_s: f64) -> Self {
         Self {
             hello: vehicle.hello(has),
@@ -62,7 +62,7 @@ impl Pilot {
         }
     }
 
-    /// Whether the vehicle has been introduced. Nothing may be said to the console before.
+    /// Whether the vehicle has been introduced. Before that, nothing may be sent to the console.
     pub fn has_greeted(&self) -> bool {
         self.has_greeted
     }

@@ -2,20 +2,20 @@
 
 use crate::message::{Pose, Readings};
 
-/// Readings in the making.
+/// Readings under construction.
 #[derive(Debug, Clone, Default)]
 pub struct Assembly {
-    /// What was measured since the last readings, in addition to the pose.
+    /// The measurements since the last readings, in addition to the pose.
     pub parts: Readings,
     period_s: f64,
     last_s: Option<f64>,
 }
 
-/// A pose that comes this much earlier than a period after the last one is taken for the next period, share of it.
+/// Share of a period by which a pose may come before the next readings are due and still be used for them.
 const EARLY: f64 = 0.25;
 
 impl Assembly {
-    /// For one message every `period_s`.
+    /// Creates readings for one message every `period_s`.
     pub fn new(period_s: f64) -> Self {
         Self { period_s, ..Self::default() }
     }

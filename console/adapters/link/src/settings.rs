@@ -1,4 +1,4 @@
-//! The table `[vehicle]` of a settings file: what the adapter says in `hello`.
+//! The table `[vehicle]` of a settings file, from which the adapter makes its `hello`.
 
 use crate::message::{Has, Hello, Limits, Motion};
 use serde::{Deserialize, de::DeserializeOwned};
@@ -7,7 +7,7 @@ use std::{fs, path::Path};
 /// Version of the protocol on the wire.
 const PROTOCOL: u32 = 1;
 
-/// What the vehicle is. The keys are those of `hello`.
+/// The description of the vehicle. The keys are those of `hello`.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Vehicle {
@@ -26,9 +26,9 @@ pub struct Vehicle {
     pub radius_m: f64,
     /// Time between two readings, seconds.
     pub period_s: f64,
-    /// Time from `stop` at full speed until the vehicle stands still, as measured, seconds.
+    /// Measured time from the arrival of a `stop` at full speed until the vehicle stands still, seconds.
     pub stop_time_s: f64,
-    /// Longest lease that is honoured, seconds.
+    /// Longest lease that the vehicle honours, seconds.
     pub lease_max_s: f64,
 }
 
@@ -65,7 +65,7 @@ impl Vehicle {
         }
     }
 
-    /// The introduction.
+    /// The introduction of the vehicle.
     pub fn hello(&self, has: Has) -> Hello {
         Hello {
             protocol: PROTOCOL,
@@ -93,7 +93,7 @@ pub fn above_zero(key: &str, value: f64, most: f64) -> Result<(), String> {
 
 /// The settings of an adapter.
 pub trait Settings: DeserializeOwned {
-    /// Checks what the types do not express.
+    /// Checks the conditions that the types do not express.
     ///
     /// # Errors
     /// Names the first key that is wrong.
@@ -102,7 +102,7 @@ pub trait Settings: DeserializeOwned {
     /// Reads and checks the text of a file.
     ///
     /// # Errors
-    /// The key and what is wrong with it, with the line if the text cannot be read.
+    /// The wrong key and the reason; if the text cannot be parsed, also the line.
     fn parse(text: &str) -> Result<Self, String> {
         let settings: Self = toml::from_str(text).map_err(|error| error.to_string())?;
         settings.check().map(|()| settings)

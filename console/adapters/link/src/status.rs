@@ -1,10 +1,10 @@
-//! When the state of the vehicle is said: after each change, and at least twice a second.
+//! Decides when the state of the vehicle is sent: after each change, and at least twice a second.
 
 use crate::message::State;
 
 /// Longest time between two messages, seconds. The protocol asks for one a second.
 const PERIOD_S: f64 = 0.5;
-/// Longest text, characters.
+/// Maximum length of a text, characters.
 const TEXT_MAX: usize = 200;
 
 /// Decides when to send the state, and remembers the state that was sent last.

@@ -1,4 +1,4 @@
-//! The adapter without its sockets: messages of the console and of the rover in, messages to both out.
+//! The adapter without its sockets: it receives messages from the console and the rover, and returns messages to both.
 
 mod condition;
 #[cfg(test)]
@@ -23,37 +23,38 @@ use tankops_adapter::{
     readings::Assembly,
 };
 
-/// What arrives.
+/// An input to the adapter.
 #[derive(Debug, Clone)]
 pub(crate) enum Input {
     /// A line from the console; `None` at the end of the connection.
     Console(Option<String>),
-    /// A message of MAVLink.
+    /// A MAVLink message.
     Message(MavHeader, Box<MavMessage>),
     /// Only time has passed.
     Tick,
 }
 
-/// What the shell must do.
+/// An output of the adapter, which the shell carries out.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Output {
-    /// To the console.
+    /// A message to the console.
     Say(FromVehicle),
-    /// To the rover.
+    /// A message to the rover.
     Send(Box<MavMessage>),
-    /// To standard error.
+    /// A text for standard error.
     Note(String),
-    /// The adapter has done its work.
+    /// The adapter ends.
     End,
 }
 
 /// Time between two heartbeats of the adapter, seconds.
 const HEARTBEAT_S: f64 = 1.0;
-/// Heartbeats between two requests for the rates of messages: requests get lost, too.
+/// Number of heartbeats between two requests for the rates of messages; requests are repeated because they may get
+/// lost.
 const REQUEST_EVERY: u32 = 5;
-/// An attitude that is older than this does not belong to the position, seconds.
+/// Largest difference in time between a position and the attitude that is combined with it, seconds.
 const ATTITUDE_MAX_AGE_S: f64 = 0.5;
-/// Stamps that go back by more than this are those of a rover that has started again, seconds.
+/// Step back of the stamps, seconds, above which the rover counts as having started again.
 const RESTART_S: f64 = 1.0;
 
 /// The adapter's state.
@@ -63,7 +64,7 @@ pub(crate) struct Bridge {
     clock: Clock,
     readings: Assembly,
     condition: Condition,
-    /// The newest pose and its time, until it is said: nothing is, before the introduction.
+    /// The newest pose and its time, until the pose is sent; before the introduction, no readings are sent.
     pose: Option<(Pose, f64)>,
     attitude: Option<ATTITUDE_DATA>,
     /// Stamp of the newest pose, seconds of the rover's clock.
@@ -73,7 +74,7 @@ pub(crate) struct Bridge {
 }
 
 impl Bridge {
-    /// Nothing has been heard yet.
+    /// Creates an adapter that has not received any message yet.
     pub(crate) fn new(config: Config, now_s: f64) -> Self {
         Self {
             pilot: Pilot::new(&config.vehicle, config.has(), config.command_period_s, now_s),
@@ -119,14 +120,14 @@ impl Bridge {
                 let time_boot_ms = (now_s * 1e3) as u64 as u32;
                 Some(Output::Send(Box::new(convert::command(velocity, &self.config, time_boot_ms))))
             }
-            // The zero that was sent with it is all that MAVLink has for a stop in mode GUIDED.
+            // In mode GUIDED, MAVLink has no way to stop except zero velocity, which is sent together with this order.
             Order::Halt => None,
             Order::Note(text) => Some(Output::Note(text)),
             Order::End => Some(Output::End),
         }
     }
 
-    /// The adapter's heartbeat: a rover holds when its ground station is silent, if it is set up so.
+    /// Sends the adapter's heartbeat. A rover can be set up to hold when its ground station falls silent.
     fn beat(&mut self, now_s: f64, out: &mut Vec<Output>) {
         if now_s < self.beats_s {
             return;
@@ -147,7 +148,7 @@ impl Bridge {
         self.beats = self.beats.wrapping_add(1);
     }
 
-    /// The numbers of the messages that poses come from.
+    /// The numbers of the messages that contain the poses.
     fn wanted(&self) -> &'static [f32] {
         match self.config.pose {
             PoseFrom::LocalPosition => &[32.0, 30.0],
@@ -208,7 +209,8 @@ impl Bridge {
         }
     }
 
-    /// A message of a third participant, which a router has passed on: commands of another ground station matter.
+    /// Takes a message of a third participant, which a router has passed on; only commands of another ground station
+    /// matter.
     fn other(&mut self, from: MavHeader, message: &MavMessage, now_s: f64) {
         let is_command = matches!(
             message,
@@ -233,7 +235,7 @@ impl Bridge {
 
     fn pose(&mut self, pose: Result<Pose, String>, kind: &str, stamp_s: f64, now_s: f64) {
         let Some(pose) = self.right(kind, pose, now_s) else { return };
-        // Doubled or overtaken: its motion is in a pose that has been taken already.
+        // The pose is a duplicate, or a later pose has overtaken it: a pose that was already used contains its motion.
         let is_old =
             self.newest_s.is_some_and(|newest_s| stamp_s <= newest_s && newest_s - stamp_s <= RESTART_S);
         if is_old {
@@ -262,7 +264,7 @@ impl Bridge {
         }
     }
 
-    /// The part of a message, or none if the message cannot be right.
+    /// The part of a message; `None` if the message is invalid.
     fn right<T>(&mut self, kind: &str, part: Result<T, String>, now_s: f64) -> Option<T> {
         part.map_err(|why| self.condition.trouble(format!("{kind}: {why}"), now_s)).ok()
     }

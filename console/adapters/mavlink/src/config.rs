@@ -9,9 +9,9 @@ use tankops_adapter::{
     settings::{Settings, Vehicle, above_zero},
 };
 
-/// Values in a `DEBUG_FLOAT_ARRAY`.
+/// Number of values in a `DEBUG_FLOAT_ARRAY`.
 const VALUES_MAX: usize = 58;
-/// Length of a name in MAVLink.
+/// Maximum length of a name in MAVLink.
 const NAME_MAX: usize = 10;
 
 /// All settings.
@@ -26,15 +26,15 @@ pub(crate) struct Config {
     /// System and component number of the rover's autopilot.
     #[serde(default = "autopilot")]
     pub(crate) rover: Number,
-    /// Which messages the poses come from.
+    /// The messages that contain the poses.
     #[serde(default)]
     pub(crate) pose: PoseFrom,
     /// Time after which a command is sent again, seconds.
     #[serde(default = "command_period")]
     pub(crate) command_period_s: f64,
-    /// What the adapter says about the vehicle.
+    /// The description of the vehicle, for `hello`.
     pub(crate) vehicle: Vehicle,
-    /// Whether `OBSTACLE_DISTANCE` is the scan.
+    /// Whether the scan is taken from `OBSTACLE_DISTANCE`.
     #[serde(default)]
     pub(crate) scan: bool,
     /// Ranges to stations, in a `DEBUG_FLOAT_ARRAY`.
@@ -49,9 +49,9 @@ pub(crate) struct Config {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Number {
-    /// Of the system.
+    /// The number of the system.
     pub(crate) system: u8,
-    /// Of the component in it.
+    /// The number of the component in the system.
     pub(crate) component: u8,
 }
 
@@ -67,7 +67,7 @@ fn command_period() -> f64 {
     0.05
 }
 
-/// Which messages the poses come from.
+/// The messages that contain the poses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum PoseFrom {
@@ -104,7 +104,7 @@ impl Settings for Config {
             }
         }
         if self.own.system == self.rover.system {
-            return Err(format!("own.system: {} is the number of the rover", self.own.system));
+            return Err(format!("own.system: {} is the system number of the rover", self.own.system));
         }
         above_zero("command_period_s", self.command_period_s, self.vehicle.lease_max_s)?;
         self.vehicle.check()?;
@@ -137,7 +137,7 @@ impl Ranging {
             return Err("ae.stations: at least one station is needed".to_owned());
         }
         if self.stations.iter().any(String::is_empty) {
-            return Err("ae.stations: the name of a station is empty".to_owned());
+            return Err("ae.stations: a station has an empty name".to_owned());
         }
         let (values, stations) = (self.stations.len().saturating_mul(self.repetitions), self.stations.len());
         if !(1..=VALUES_MAX).contains(&values) {

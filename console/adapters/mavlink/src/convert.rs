@@ -1,5 +1,5 @@
-//! MAVLink's frames and units to those of the wire, and back. MAVLink has x ahead or north, y right or east, and angles
-//! clockwise; the wire has y left, and angles counter-clockwise.
+//! Converts MAVLink's frames and units to those of the wire, and back. MAVLink has x ahead or north, y right or east,
+//! and angles clockwise; the wire has y left, and angles counter-clockwise.
 
 use crate::config::{Config, Ranging};
 use mavlink::dialects::common::{
@@ -20,11 +20,11 @@ const POSE_MAX_M: f64 = 1e5;
 /// Longest distance to a station, metres.
 const STATION_MAX_M: f64 = 1000.0;
 
-/// The frame of commands: ArduRover takes no frame that succeeds this one.
+/// The frame of commands; ArduRover does not accept the frame that replaces this one in MAVLink.
 #[allow(deprecated)]
 const AHEAD: MavFrame = MavFrame::MAV_FRAME_BODY_NED;
 
-/// A pose in a frame of north and east, as one of east and north.
+/// Converts a pose from x north and y east to x east and y north.
 pub(crate) fn pose(north: f32, east: f32, yaw: f64) -> Result<Pose, String> {
     for (field, value) in [("x", f64::from(north)), ("y", f64::from(east)), ("yaw", yaw)] {
         if !(value.abs() <= POSE_MAX_M) {
@@ -67,7 +67,8 @@ pub(crate) fn command(velocity: Velocity, config: &Config, time_boot_ms: u32) ->
     })
 }
 
-/// The sectors of `OBSTACLE_DISTANCE`, as a scan. Something nearer than the least distance is too near to be measured.
+/// Converts the sectors of `OBSTACLE_DISTANCE` to a scan. An obstacle nearer than the least distance is too near to be
+/// measured.
 pub(crate) fn scan(sectors: &OBSTACLE_DISTANCE_DATA) -> Result<Scan, String> {
     let increment_deg = if sectors.increment_f == 0.0 {
         f64::from(sectors.increment)
@@ -104,7 +105,7 @@ fn metres(cm: u16) -> f64 {
     f64::from(cm) / 100.0
 }
 
-/// The values of an array, as ranges to stations.
+/// Converts the values of an array to ranges to stations.
 pub(crate) fn ranges(array: &DEBUG_FLOAT_ARRAY_DATA, ranging: &Ranging) -> Result<Ae, String> {
     let mut ranges = Vec::with_capacity(ranging.stations.len());
     for (station, values) in ranging.stations.iter().zip(array.data.chunks(ranging.repetitions)) {

@@ -24,9 +24,9 @@ use tankops_adapter::{
     settings::Settings,
 };
 
-/// Messages that wait to be taken; then the threads that read them wait.
+/// Maximum number of messages that wait to be processed; then the threads that read messages wait.
 const WAITING_MAX: usize = 256;
-/// Wait after an error of the socket: a rover that is not there yet is such an error.
+/// Time to wait after an error of the socket; a rover that has not started yet causes such an error.
 const AFTER_ERROR: Duration = Duration::from_millis(20);
 
 fn main() -> ExitCode {
@@ -56,7 +56,7 @@ fn drive(config: Config) -> Result<(), String> {
     Ok(())
 }
 
-/// Lines of the console become inputs.
+/// Returns a function that passes the console's lines on as inputs.
 fn forward(inputs: SyncSender<Input>) -> impl FnMut(Option<String>) -> bool {
     move |line| inputs.send(Input::Console(line)).is_ok()
 }
@@ -74,7 +74,7 @@ fn receive(connection: &Connection<MavMessage>, inputs: &SyncSender<Input>) {
     }
 }
 
-/// Takes what arrives, until the console has left.
+/// Processes inputs until the console has left.
 fn serve(config: Config, connection: &Connection<MavMessage>, arrived: &Receiver<Input>) {
     let started = Instant::now();
     let speaker = Speaker::start();
@@ -89,7 +89,7 @@ fn serve(config: Config, connection: &Connection<MavMessage>, arrived: &Receiver
                 Output::Say(message) => speaker.say(message),
                 Output::Send(message) => {
                     header.sequence = header.sequence.wrapping_add(1);
-                    // What does not arrive is noticed by what the rover says.
+                    // If messages do not reach the rover, its own messages show this.
                     let _ = connection.send(&header, &message);
                 }
                 Output::Note(text) => note(&text),

@@ -31,7 +31,7 @@ SECTORS = 72
 
 
 class Rover:
-    """The messages of the rover, around its motion in ir-sim."""
+    """The messages of a rover that moves in ir-sim."""
 
     def __init__(self, world, address):
         self.robot = irsim_robot.Driven(world)

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Passes datagrams on, badly: `udp_proxy.py LISTEN_PORT TO_PORT [--loss 0.1] [--delay 0.05] [--jitter 0.2] [--double 0.02]
+"""Passes datagrams on like a bad link: `udp_proxy.py LISTEN_PORT TO_PORT [--loss 0.1] [--delay 0.05] [--jitter 0.2] [--double 0.02]
 [--seed 1]`.
 
-A rover that calls LISTEN_PORT reaches the adapter at TO_PORT and is answered by the same way. Each datagram is lost,
-doubled, and delayed by `delay` plus a uniform share of `jitter`, both ways and each by itself, so that datagrams overtake
-each other. Figures go to standard error at the end (SIGTERM).
+A rover that calls LISTEN_PORT reaches the adapter at TO_PORT, and the answers come back the same way. In both directions, each
+datagram may be lost or duplicated, and is delayed by `delay` plus a random share of `jitter`, so that datagrams overtake each
+other. At the end (SIGTERM), the program prints its figures on standard error.
 """
 import argparse
 import heapq

@@ -1,4 +1,5 @@
-//! The adapter without its middleware: messages of the console and of the robot in, messages to both out.
+//! The adapter without its middleware: it receives messages from the console and the robot, and returns messages to
+//! both.
 
 use crate::{
     config::Config,
@@ -18,49 +19,49 @@ mod tests;
 
 use condition::Condition;
 
-/// What arrives.
+/// An input to the adapter.
 #[derive(Debug, Clone)]
 pub(crate) enum Input {
     /// A line from the console; `None` at the end of the connection.
     Console(Option<String>),
-    /// From the topic of odometry.
+    /// A message from the topic of odometry.
     Odometry(Box<Odometry>),
-    /// From the topic of transforms.
+    /// A message from the topic of transforms.
     Tf(TFMessage),
-    /// From the topic of scans.
+    /// A message from the topic of scans.
     Scan(Box<LaserScan>),
-    /// From the topic of ranges.
+    /// A message from the topic of ranges.
     Ranges(Float64MultiArray),
     /// Length of tether paid out, metres.
     Tether(f64),
     /// Whether the bumper is pressed.
     Contact(bool),
-    /// From the topic of the battery.
+    /// A message from the topic of the battery.
     Battery(Box<BatteryState>),
     /// Whether the emergency stop is pressed.
     EmergencyStop(bool),
-    /// Whether a person drives.
+    /// Whether a person is driving the robot.
     Manual(bool),
     /// A command of another publisher.
     OtherCommand,
     /// Other programs on the topic of commands.
     Matched {
-        /// Subscriptions that get the commands.
+        /// Number of subscriptions that receive the commands.
         subscriptions: usize,
-        /// Publishers beside the adapter.
+        /// Number of publishers besides the adapter.
         publishers: usize,
         /// The type of a subscription that cannot read the commands, if there is one.
         wrong_type: Option<String>,
     },
     /// The answer of the stop service, or why it did not answer.
     StopAnswered(Result<(), String>),
-    /// A message that is not of the type of its topic: which, and why.
+    /// A message that does not have the type of its topic; the text states the topic and the reason.
     Unreadable(String),
     /// Only time has passed.
     Tick,
 }
 
-/// How long a message that cannot be right, or a command of another program, is a fault, seconds.
+/// Time for which an invalid message, or a command of another program, counts as a fault, seconds.
 const FAULT_FOR_S: f64 = 2.0;
 /// The adapter's state.
 pub(crate) struct Bridge {
@@ -69,12 +70,12 @@ pub(crate) struct Bridge {
     clock: Clock,
     readings: Assembly,
     condition: Condition,
-    /// The newest pose and its time, until it is said: nothing is, before the introduction.
+    /// The newest pose and its time, until the pose is sent; before the introduction, no readings are sent.
     pose: Option<(message::Pose, f64)>,
 }
 
 impl Bridge {
-    /// Nothing has been heard yet.
+    /// Creates an adapter that has not received any message yet.
     pub(crate) fn new(config: Config, now_s: f64) -> Self {
         Self {
             pilot: Pilot::new(&config.vehicle, config.has(), config.command.period_s, now_s),
@@ -132,7 +133,7 @@ impl Bridge {
         out
     }
 
-    /// The part of a message, or none if the message cannot be right.
+    /// The part of a message; `None` if the message is invalid.
     fn right<T>(&mut self, topic: Option<String>, part: Result<T, String>, now_s: f64) -> Option<T> {
         match part {
             Ok(part) => Some(part),
@@ -192,7 +193,7 @@ impl Bridge {
 fn fits(field: &str, frame: &str, expected: Option<&String>) -> Result<(), String> {
     match expected {
         Some(expected) if expected != frame => {
-            Err(format!("{field}: the messages are in frame {frame}, but the settings say {expected}"))
+            Err(format!("{field}: the messages are in frame `{frame}`, but the settings state `{expected}`"))
         }
         _ => Ok(()),
     }

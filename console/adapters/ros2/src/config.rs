@@ -15,25 +15,25 @@ use tankops_adapter::{
     settings::{Settings, Vehicle, above_zero},
 };
 
-/// The largest DDS domain whose ports exist.
+/// The largest DDS domain whose port numbers are valid.
 const DOMAIN_MAX: u16 = 232;
 
 /// All settings.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Config {
-    /// The DDS domain; without it, that of `ROS_DOMAIN_ID`, or 0.
+    /// The DDS domain; if it is not given, the domain in `ROS_DOMAIN_ID`, or 0.
     pub(crate) domain: Option<u16>,
     /// Name of the adapter's ROS node.
     #[serde(default = "node")]
     pub(crate) node: String,
-    /// What the adapter says about the vehicle.
+    /// The description of the vehicle, for `hello`.
     pub(crate) vehicle: Vehicle,
-    /// Where commands go.
+    /// The topic of the commands.
     pub(crate) command: Command,
-    /// Where poses come from: this or `tf`.
+    /// The topic of the poses: this or `tf`.
     pub(crate) odometry: Option<OdometrySource>,
-    /// Where poses come from: this or `odometry`.
+    /// The topic of the poses: this or `odometry`.
     pub(crate) tf: Option<TfSource>,
     /// `sensor_msgs/LaserScan`.
     pub(crate) scan: Option<ScanSource>,
@@ -47,7 +47,7 @@ pub(crate) struct Config {
     pub(crate) battery: Option<Source>,
     /// `std_msgs/Bool`: whether the emergency stop is pressed.
     pub(crate) emergency_stop: Option<Source>,
-    /// `std_msgs/Bool`: whether a person drives by hand.
+    /// `std_msgs/Bool`: whether a person is driving by hand.
     pub(crate) manual: Option<Source>,
     /// A service that is called whenever the vehicle must stand still.
     pub(crate) stop: Option<StopService>,
@@ -71,7 +71,7 @@ impl Settings for Config {
             (None, None) => {
                 return Err("odometry: missing; the console needs [odometry] or [tf]".to_owned());
             }
-            (Some(_), Some(_)) => return Err("tf: [odometry] is there, too; remove one of them".to_owned()),
+            (Some(_), Some(_)) => return Err("tf: [odometry] is also given; remove one of them".to_owned()),
         }
         for (key, topic, qos) in self.topics() {
             check_name(&format!("{key}.topic"), topic)?;
@@ -105,7 +105,7 @@ impl Config {
         topics
     }
 
-    /// The topic that poses come from.
+    /// The topic of the poses.
     pub(crate) fn pose_topic(&self) -> &str {
         let odometry = self.odometry.as_ref().map(|of| of.topic.as_str());
         odometry.or(self.tf.as_ref().map(|of| of.topic.as_str())).unwrap_or_default()
@@ -137,7 +137,7 @@ fn check_name(key: &str, name: &str) -> Result<(), String> {
 fn check_token(key: &str, token: &str) -> Result<(), String> {
     let is_good = |c: char| c.is_ascii_alphanumeric() || c == '_';
     if token.is_empty() {
-        return Err(format!("{key}: a name is empty"));
+        return Err(format!("{key}: a part of the name is empty"));
     }
     if token.starts_with(|c: char| c.is_ascii_digit()) {
         return Err(format!("{key}: `{token}` starts with a digit"));

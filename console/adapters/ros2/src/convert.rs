@@ -1,4 +1,4 @@
-//! ROS messages to parts of readings. What cannot be right is refused with its field.
+//! Converts ROS messages to parts of readings. An invalid value is refused, and the error names its field.
 
 use crate::{
     config::ScanSource,
@@ -7,11 +7,11 @@ use crate::{
 use std::f64::consts::TAU;
 use tankops_adapter::message::{Ae, Pose, Scan, StationRanges};
 
-/// Most rays of a scan on the wire.
+/// Maximum number of rays of a scan on the wire.
 const RAYS_MAX: usize = 4096;
 /// Longest distance to a station, metres.
 const STATION_MAX_M: f64 = 1000.0;
-/// Most stations, and most distances to each.
+/// Maximum number of stations, and maximum number of distances to each station.
 const STATIONS_MAX: usize = 64;
 const REPETITIONS_MAX: usize = 1000;
 /// Largest coordinate of a pose, metres.
@@ -43,7 +43,9 @@ pub(crate) fn scan(scan: &LaserScan, mounted: &ScanSource) -> Result<Scan, Strin
         return Err(format!("angle_min: {first} and angle_increment: {step} are not angles of a scan"));
     }
     if !(range_max_m > 0.0 && range_max_m <= RANGE_MAX_M) {
-        return Err(format!("range_max: {range_max_m} is not above 0 and at most {RANGE_MAX_M}"));
+        return Err(format!(
+            "range_max: {range_max_m} is out of range: greater than 0 and at most {RANGE_MAX_M} is allowed"
+        ));
     }
     if !(1..=RAYS_MAX).contains(&scan.ranges.len()) {
         return Err(format!("ranges: {} rays; 1 to {RAYS_MAX} are allowed", scan.ranges.len()));
@@ -66,8 +68,8 @@ pub(crate) fn scan(scan: &LaserScan, mounted: &ScanSource) -> Result<Scan, Strin
     })
 }
 
-/// Ranges to stations: a dimension per station with its name as label and the number of its ranges as size; the ranges
-/// follow each other in this order.
+/// Reads ranges to stations. Each station has one dimension, with the name of the station as its label and the number
+/// of ranges as its size; the ranges are stored in the order of the stations.
 pub(crate) fn ranges(array: &Float64MultiArray) -> Result<Ae, String> {
     let stations = &array.layout.dim;
     if stations.len() > STATIONS_MAX {
@@ -78,11 +80,15 @@ pub(crate) fn ranges(array: &Float64MultiArray) -> Result<Ae, String> {
     for station in stations {
         let (label, size) = (&station.label, station.size as usize);
         if label.is_empty() || label.chars().count() > 64 || label.chars().any(char::is_control) {
-            return Err("layout.dim.label: the name of a station has 1 to 64 printable characters".to_owned());
+            return Err(
+                "layout.dim.label: the name of a station must have 1 to 64 printable characters".to_owned()
+            );
         }
         if size > REPETITIONS_MAX || size > rest.len() {
             let there = rest.len();
-            return Err(format!("layout.dim.size: {size} ranges to station {label}, but {there} are there"));
+            return Err(format!(
+                "layout.dim.size: {size} ranges to station {label} are announced; ranges in the message: {there}"
+            ));
         }
         let (ranges_m, after) = rest.split_at(size);
         if let Some(bad) = ranges_m.iter().find(|range_m| !(**range_m > 0.0 && **range_m <= STATION_MAX_M)) {
@@ -92,7 +98,7 @@ pub(crate) fn ranges(array: &Float64MultiArray) -> Result<Ae, String> {
         rest = after;
     }
     if !rest.is_empty() {
-        return Err(format!("data: {} ranges more than the sizes of the stations add up to", rest.len()));
+        return Err(format!("data: ranges beyond the sizes of the stations: {}", rest.len()));
     }
     Ok(Ae { ranges })
 }

@@ -1,4 +1,4 @@
-//! The robot's side: ROS 2 over DDS. A thread per topic waits for its messages.
+//! The connection to the robot: ROS 2 over DDS. One thread per topic waits for messages.
 
 mod commands;
 mod joined;
@@ -15,7 +15,7 @@ use std::{
 use stop::Stop;
 use tankops_adapter::commands::Velocity;
 
-/// The robot, as the shell sees it.
+/// The connection to the robot, for the shell.
 pub(crate) struct Robot {
     joined: Joined,
     commands: Commands,
@@ -26,7 +26,7 @@ impl Robot {
     /// Joins the domain and subscribes; messages go to `inputs`.
     ///
     /// # Errors
-    /// What cannot be created, and why.
+    /// The part that cannot be created, with the reason.
     pub(crate) fn connect(config: &Config, inputs: &SyncSender<Input>) -> Result<Self, String> {
         let mut joined = Joined::join(config)?;
         let commands = Commands::create(&mut joined, &config.command)?;
@@ -38,7 +38,7 @@ impl Robot {
     /// Publishes a command.
     ///
     /// # Errors
-    /// Why it was not published.
+    /// The reason why the command was not published.
     pub(crate) fn publish(&self, velocity: Velocity) -> Result<(), String> {
         self.commands.publish(velocity)
     }
@@ -48,7 +48,7 @@ impl Robot {
         self.stop.as_mut().and_then(Stop::call)
     }
 
-    /// What must be asked for from time to time.
+    /// The inputs that must be polled: matched topics, and answers of the stop service.
     pub(crate) fn news(&mut self) -> Vec<Input> {
         let mut news = self.commands.news(&self.joined);
         news.extend(self.stop.as_mut().and_then(Stop::answer));
@@ -56,7 +56,7 @@ impl Robot {
     }
 }
 
-/// An error of the middleware, with what it is about.
+/// Turns an error of the middleware into a text that begins with the object concerned.
 fn about<E: Display>(what: &str) -> impl Fn(E) -> String {
     move |error| format!("{what}: {error}")
 }

@@ -23,9 +23,10 @@ use tankops_adapter::{
     settings::Settings,
 };
 
-/// Messages that wait to be taken; then the threads that read them wait, and DDS drops the oldest.
+/// Maximum number of messages that wait to be processed; then the threads that read messages wait, and DDS drops the
+/// oldest messages.
 const WAITING_MAX: usize = 256;
-/// Time between two looks at matched topics and answers.
+/// Interval at which matched topics and answers of the stop service are polled.
 const NEWS_EVERY: Duration = Duration::from_millis(100);
 
 fn main() -> ExitCode {
@@ -50,12 +51,12 @@ fn fly(config: Config) -> Result<(), String> {
     Ok(())
 }
 
-/// Lines of the console become inputs.
+/// Returns a function that passes the console's lines on as inputs.
 fn forward(inputs: SyncSender<Input>) -> impl FnMut(Option<String>) -> bool {
     move |line| inputs.send(Input::Console(line)).is_ok()
 }
 
-/// Takes what arrives, until the console has left.
+/// Processes inputs until the console has left.
 fn serve(config: Config, mut robot: Robot, arrived: &Receiver<Input>) {
     let started = Instant::now();
     let speaker = Speaker::start();

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// A message of a topic.
 pub(crate) trait Typed: ros2_client::Message {
-    /// Package and name of its type.
+    /// Package and name of the type.
     const TYPE: (&'static str, &'static str);
 }
 
@@ -36,7 +36,7 @@ pub(crate) struct Time {
 }
 
 impl Time {
-    /// Seconds; none for a message that was not stamped.
+    /// The time in seconds; `None` for a message that was not stamped.
     pub(crate) fn seconds(self) -> Option<f64> {
         (self != Self::default()).then(|| f64::from(self.sec) + 1e-9 * f64::from(self.nanosec))
     }

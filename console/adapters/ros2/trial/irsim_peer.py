@@ -31,7 +31,7 @@ BEST_EFFORT = Qos(Policy.Reliability.BestEffort, Policy.Durability.Volatile, Pol
 
 
 class Robot:
-    """The topics of the robot, around its motion in ir-sim."""
+    """The topics of a robot that moves in ir-sim."""
 
     def __init__(self, world, stamped, by_tf, has_stop):
         self.robot, self.stamped, self.by_tf = irsim_robot.Driven(world), stamped, by_tf

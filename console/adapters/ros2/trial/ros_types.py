@@ -169,7 +169,7 @@ class Bool(IdlStruct, typename=ros("std_msgs/msg/Bool")):
 
 @dataclass
 class TriggerRequest(IdlStruct, typename=ros("std_srvs/srv/Trigger_Request")):
-    client: array[uint8, 16]  # the header of rmw_cyclonedds: sent back as it came
+    client: array[uint8, 16]  # the header of rmw_cyclonedds, which is sent back unchanged
     structure_needs_at_least_one_member: uint8
 
 

@@ -35,7 +35,8 @@ fn hello() -> Value {
     })
 }
 
-/// The robot. Its motors follow the speeds; a real one measures its motion instead of repeating the speeds.
+/// The robot. Its motors follow the speeds exactly; a real robot must measure its motion instead of repeating the
+/// speeds.
 struct Disc;
 
 impl Disc {
@@ -149,7 +150,7 @@ fn robot_process() {
 
 /// The messages of the console so far.
 struct Console {
-    /// Greatest number of a command.
+    /// Greatest number of a command so far.
     newest: i64,
     /// Least time from a stamp to its arrival: the offset of the console's clock plus the shortest delay, seconds.
     least_s: f64,
@@ -202,7 +203,7 @@ impl Console {
 fn say(message: &Value) {
     let mut out = io::stdout().lock();
     if out.write_all(format!("{message}\n").as_bytes()).and_then(|()| out.flush()).is_err() {
-        exit(0); // the console has gone; the robot stands when it reads the end of its orders
+        exit(0); // the console has left; the robot stops when it reads the end of its orders
     }
 }
 

@@ -38,7 +38,7 @@ pub(crate) struct OutArgs {
     pub out: Option<PathBuf>,
 }
 
-/// Where a campaign runs.
+/// The place where a campaign runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Engine {
     /// All cores of this machine

@@ -254,7 +254,7 @@ fn sides(scenario: &Scenario, doubts: &Doubts) -> Vec<String> {
         scenario.sim.world.stations.iter().filter(|station| doubts.mirrored_by.contains(&station.id.0));
     let line = line_of_stations(&stations.cloned().collect::<Vec<_>>());
     let mut lines =
-        vec![format!("{all} fixes have a mirror image on the other side of {line}, which fits equally well")];
+        vec![format!("fixes with an equally good mirror image on the other side of {line}: {all}")];
     if sides_by_walls > 0 {
         lines.push(format!("{sides_by_walls} decided by the wall: the other position is outside it"));
     }
@@ -338,7 +338,7 @@ mod tests {
             (scenario(), Doubts { sides_by_walls: 1, sides_by_track: 2, sides_open: 3, ..Doubts::default() });
         assert_eq!(sides(&scenario, &Doubts::default()), Vec::<String>::new());
         let lines = sides(&scenario, &all);
-        assert!(lines[0].starts_with("6 fixes have a mirror image"), "{lines:?}");
+        assert!(lines[0].starts_with("fixes with an equally good") && lines[0].ends_with(": 6"), "{lines:?}");
         let counts: Vec<&str> = lines[1..].iter().map(|line| &line[..1]).collect();
         assert_eq!(counts, ["1", "2", "3"], "{lines:?}");
         let contradicted = sides(&scenario, &Doubts { contradicts_start: true, ..all });

@@ -78,7 +78,7 @@ fn line(outline: Outline, moved: &Isometry2<f64>) -> (Vec<Point>, bool) {
     let (mut points, is_closed) = match outline {
         Outline::Circle { center, radius_m } => (around(center, radius_m, N_ROUND[0]), true),
         Outline::Chain { points, is_closed, .. } => {
-            // A polyline that ends where it begins is closed, whatever its flag states.
+            // A polyline that ends where it begins is closed, even if its flag states otherwise.
             let ends = points.first().zip(points.last());
             let meets = points.len() > 3 && ends.is_some_and(|(a, b)| (a - b).norm() < 1e-6);
             (points, is_closed || meets)

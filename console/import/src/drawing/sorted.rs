@@ -189,5 +189,5 @@ fn lined_layers(all: &[Drawn]) -> BTreeSet<String> {
 
 fn note_unused(unused: BTreeMap<String, usize>, notes: &mut Vec<String>) {
     let unused = unused.into_iter().filter(|(_, n)| *n > 0);
-    notes.extend(unused.map(|(what, n)| format!("not used: {what}, {n} of them")));
+    notes.extend(unused.map(|(what, n)| format!("not used: {what} ({n})")));
 }

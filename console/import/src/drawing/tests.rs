@@ -2,12 +2,12 @@ use super::*;
 use std::{fmt::Write, fs};
 use world::shape::ring_area_m2;
 
-/// Nothing assumed but a width of pipes.
+/// Assumptions that contain only a width of pipes.
 fn plain() -> Assumed {
     Assumed { unit_m: None, pipe_width_m: 0.1, layers: Layers::default() }
 }
 
-/// A drawing as text: groups `code value` separated by commas, sections and tables left to the caller.
+/// Reads a drawing given as groups `code value`, separated by commas; the caller provides sections and tables.
 fn read_text(units: &str, blocks: &str, entities: &str, assumed: &Assumed) -> Result<FloorPlan, String> {
     let groups = |text: &str| {
         let pairs = text.split(',').map(str::trim).filter(|pair| !pair.is_empty());
@@ -205,7 +205,7 @@ fn a_drawing_that_is_cut_off_is_refused_for_what_is_missing_could_be_columns() {
     );
 }
 
-/// What a drawing becomes if somebody says what its layers hold.
+/// Reads a drawing with roles assigned to its layers.
 fn with_layers(layers: &[(Role, &str)], entities: &str) -> Result<FloorPlan, String> {
     let layers = Layers::new(layers.iter().map(|(role, name)| (*role, (*name).to_owned())).collect());
     read_text(",9 $INSUNITS,70 6", "", entities, &Assumed { layers, ..plain() })
@@ -373,7 +373,7 @@ fn old_encodings_hidden_layers_and_coordinates_of_a_survey() {
     );
 }
 
-/// Names of plates with their areas, in their order.
+/// The names of the plates with their areas, in the order of the plan.
 fn plates(plan: &FloorPlan) -> Vec<(&str, f64)> {
     let area = |plate: &world::DrawnPlate| (ring_area_m2(&plate.vertices_m) * 1e3).round() / 1e3;
     plan.plates.iter().map(|plate| (plate.name.as_str(), area(plate))).collect()
@@ -400,8 +400,8 @@ fn seams_and_the_shell_enclose_plates_that_texts_name() {
     assert!(b.0 == "W-7" && (b.1 - 4.0).abs() < 0.01, "{b:?}");
     assert!(c.0 == "E-7" && (c.1 - 8.0).abs() < 0.01, "{c:?}");
     assert!(d.0 == "P-01" && (d.1 - 12.0 + quarter_m2).abs() < 0.02, "{d:?}");
-    assert!(plan.notes.contains(&"not used: layer TEXTS: MTEXT, 2 of them".into()), "{:?}", plan.notes);
-    assert!(plan.notes.contains(&"not used: layer TEXTS: TEXT, 1 of them".into()), "{:?}", plan.notes);
+    assert!(plan.notes.contains(&"not used: layer TEXTS: MTEXT (2)".into()), "{:?}", plan.notes);
+    assert!(plan.notes.contains(&"not used: layer TEXTS: TEXT (1)".into()), "{:?}", plan.notes);
     // The scenario's outlines are those of the plan.
     let text = plan.scenario("t", "d.dxf", "tether-safe");
     assert!(text.contains("[plates]\noutlines = [\n    { name = \"P-02\", vertices_m = [["), "{text}");
@@ -450,7 +450,7 @@ fn attributes_of_blocks_are_numbers_of_plates() {
     let mut found = plates(&plan);
     found.sort_unstable_by(|a, b| a.0.cmp(b.0));
     assert_eq!(found, [("B7", 12.0), ("B8", 12.0)]);
-    assert!(plan.notes.contains(&"not used: layer PLATES: ATTRIB, 2 of them".into()), "{:?}", plan.notes);
+    assert!(plan.notes.contains(&"not used: layer PLATES: ATTRIB (2)".into()), "{:?}", plan.notes);
 }
 
 #[test]
@@ -464,7 +464,7 @@ fn texts_of_what_else_is_drawn_name_no_plate() {
     let plan = read_text(",9 $INSUNITS,70 6", "", &entities.concat(), &plain()).unwrap();
     let names: Vec<&str> = plates(&plan).into_iter().map(|(name, _)| name).collect();
     assert!(names.contains(&"S-1") && names.contains(&"P-01") && names.len() == 2, "{names:?}");
-    assert!(plan.notes.contains(&"not used: layer MISSED: TEXT, 1 of them".into()), "{:?}", plan.notes);
+    assert!(plan.notes.contains(&"not used: layer MISSED: TEXT (1)".into()), "{:?}", plan.notes);
 }
 
 /// The four sides of a tank of 10 by 8 m in millimetres, with a gap after the first.

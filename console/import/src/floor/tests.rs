@@ -28,7 +28,7 @@ fn obstacles(floor: &MapFloor) -> ObstacleMap {
     ObstacleMap::new(&floor.wall, &all)
 }
 
-/// Distance from a place to the nearest cell outside the free floor of a start, metres, as far as two cells.
+/// Distance from a place to the nearest cell that is not free floor, metres; at most two cells.
 fn cell_distance_m(map: &OccupancyMap, floor: &Component, place: Point) -> f64 {
     let at = map.tank_from_map.inverse_transform_point(&place) / map.cell_m;
     let (x, y) = (at.x.floor() as i32, at.y.floor() as i32);

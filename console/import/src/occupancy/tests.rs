@@ -15,7 +15,7 @@ fn map(yaml: &str, pgm: &[u8]) -> Result<OccupancyMap, ImportError> {
     })
 }
 
-/// Which cells of one row of 8-bit values are free.
+/// Whether each cell in a row of 8-bit values is free.
 fn free(yaml: &str, values: &[u8]) -> Vec<bool> {
     let header = format!("P5 {} 1 255 ", values.len());
     map(yaml, &[header.as_bytes(), values].concat()).unwrap().is_free
@@ -44,7 +44,7 @@ fn modes_thresholds_and_negation_are_those_of_the_map_server() {
     let mode = |mode: &str| format!("{YAML}mode: {mode}\n");
     assert_eq!(free(YAML, &values), [true, true, false, false, false, false, false]);
     assert_eq!(free(&mode("trinary"), &values), free(YAML, &values));
-    // In 100 steps from 0.196 to 0.65, 205 (0.19608) is none, but it is the grey of what nobody has seen.
+    // On the scale of 100 steps from 0.196 to 0.65, 205 (0.19608) rounds to 0, but it is the grey of unseen cells.
     assert_eq!(free(&mode("scale"), &values), [true, true, false, false, false, false, false]);
     // Percentages; above 100 is unknown.
     assert_eq!(free(&mode("raw"), &values), [false, false, false, false, false, true, true]);
@@ -63,10 +63,10 @@ fn what_nobody_has_seen_is_no_floor_whatever_the_thresholds() {
     let (is_free, told) = unseen(&wide, &[205, 254, 205, 204, 0]);
     assert_eq!(is_free, [false, true, false, true, false]);
     assert_eq!(told, Some(Unseen { n_cells: 2, grey: 205, free_thresh: 0.25 }));
-    // Turned to its negative, the map has the negative of that grey.
+    // In a negated map, the grey of unseen cells is negated, too.
     let (is_free, told) = unseen(&wide.replace("negate: 0", "negate: 1"), &[50, 1, 51, 205, 255]);
     assert_eq!((is_free, told.unwrap().grey), (vec![false, true, true, false, false], 50));
-    // Usual thresholds do not make it floor, and percentages have no greys.
+    // The usual thresholds do not make this grey floor, and raw mode has no greys.
     assert_eq!(unseen(YAML, &[205, 254]).1, None);
     assert_eq!(unseen(&format!("{wide}mode: raw\n"), &[205, 20, 50]), (vec![false, true, false], None));
 }

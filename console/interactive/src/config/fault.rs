@@ -8,7 +8,7 @@ use toml_edit::{Document, Item, TableLike};
 pub(super) struct Fault {
     /// The byte offset in the text.
     pub at: usize,
-    /// The problem, and optionally its consequence, as clauses.
+    /// The problem, as a clause; a second clause may state its consequence.
     pub what: String,
     /// The byte offset of a second position that is part of the problem.
     pub other: Option<usize>,

@@ -14,7 +14,7 @@ use std::{
 use toml_edit::{DocumentMut, Item, Table};
 use tui::model::{Preset, parameter};
 
-/// The size of the largest file that is read, in bytes.
+/// The maximum size of a preset file, in bytes.
 const LARGEST: u64 = 1 << 16;
 /// The largest number of presets that are read.
 const MOST: usize = 200;

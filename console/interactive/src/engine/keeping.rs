@@ -49,7 +49,7 @@ impl EngineThread {
         let health = log.health();
         let recording = health.error.map_or(Recording::On, Recording::Failed);
         let reached = self.reached.take(now, self.flight.tick_length());
-        // While the mission waits, its speed does not predict how fast it will continue.
+        // While the mission waits, its measured speed does not show how fast the mission will continue.
         let reached_speed = (!self.waits()).then_some(reached);
         self.send(RunMsg::Health(Health { recording, reached_speed, recorder_lag: health.lag }));
     }

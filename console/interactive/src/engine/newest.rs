@@ -27,7 +27,7 @@ impl Newest {
 }
 
 impl Turn {
-    /// Sends a result unless something newer has begun. A newer result is always sent after an older one.
+    /// Sends a result unless newer work has begun. A newer result is always sent after an older one.
     pub(super) fn give(&self, send: impl FnOnce()) {
         let newest = locked(&self.newest);
         if *newest == self.n {

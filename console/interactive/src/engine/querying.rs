@@ -63,7 +63,7 @@ mod tests {
             let _ = waits.recv();
             way("slow")
         });
-        // The engine gets here although the answer is not ready.
+        // The engine reaches this line although the answer is not ready.
         screen.send(way("something else"));
         assert_eq!(inbox.next(None), Some(Msg::Run(RunId(1), way("something else"))));
         drop(go_on);

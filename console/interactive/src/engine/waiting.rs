@@ -12,7 +12,7 @@ use vehicle::port::Brake;
 
 /// If more messages than this are waiting for the screen, the simulation waits.
 const MOST_BACKLOG: usize = 64;
-/// The interval at which this wait checks again, unless an order arrives.
+/// The interval at which a simulation that waits checks the number of messages again, unless an order arrives.
 const LOOK_AGAIN: Duration = Duration::from_millis(1);
 /// The interval at which ending workers are checked while no ticks pass, and at which requests are checked while a
 /// planner owes an answer.

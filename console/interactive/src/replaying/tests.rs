@@ -1,4 +1,4 @@
-//! Going to a moment shows what playing up to it shows.
+//! A seek to a moment shows the same state as playback up to that moment.
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 

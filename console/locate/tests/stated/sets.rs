@@ -16,7 +16,7 @@ const TOP_M_S: f64 = 0.4;
 /// The values that instruments write when they have heard nothing.
 const SENTINELS: [&str; 8] = ["7132.146", "0", "-1", "9999", "65535", "nan", "0.0", "99999.9"];
 
-/// What is special about a set.
+/// The special property of a set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     Sound,
@@ -302,7 +302,7 @@ impl Set {
         }
     }
 
-    /// Ranges each second and nothing else, with an outage of 40 s, in rows that come at this rate.
+    /// A set with ranges once a second and no other measurements, with an outage of 40 s; its rows come at this rate.
     pub(crate) fn outage(seed: u64, rate_hz: u32) -> Self {
         Self::outage_of(seed, rate_hz, 40.0)
     }

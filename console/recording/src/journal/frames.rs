@@ -60,7 +60,7 @@ impl Walk<'_> {
             let [low, middle, high] = self.take()?;
             let header = u32::from_le_bytes([low, middle, high, 0]);
             let (is_last, kind, size) = (header & 1 == 1, header >> 1 & 3, i64::from(header >> 3));
-            // An RLE block takes one byte in the file, whatever its decompressed length.
+            // An RLE block takes one byte in the file, regardless of its decompressed length.
             let length = if kind == 1 { 1 } else { size } + if is_last { CHECKSUM_BYTES } else { 0 };
             self.file.seek_relative(length)?;
             self.at += BLOCK_HEADER_BYTES + length as u64;

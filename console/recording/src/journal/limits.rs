@@ -19,7 +19,7 @@ const MOST_LASTING: u32 = 20_000;
 /// Largest ratio of the length of the lines to the length of the file. The lines of a mission on hold, which repeat
 /// most, are 11 times as long as the file (decisions.md).
 const MOST_EXPANSION: u64 = 200;
-/// Number of bytes of lines that are allowed whatever the ratio.
+/// Number of bytes of lines that are allowed regardless of the ratio.
 const FREE_BYTES: u64 = 16 << 20;
 
 /// Checks that lines of this total length are plausible, given the size of the file.
@@ -43,7 +43,7 @@ const MOST_WEIGHT: usize = 32 << 20;
 
 /// Whether a line can be parsed as an untyped value without using much more memory than its length.
 pub(super) fn is_light(line: &[u8]) -> bool {
-    // A line this short uses little memory whatever it contains.
+    // A line this short uses little memory, regardless of its content.
     line.len() <= MOST_WEIGHT / 200 || foreign::json_weight(line) <= MOST_WEIGHT
 }
 

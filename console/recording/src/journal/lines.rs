@@ -16,7 +16,7 @@ pub(super) enum Lines {
 }
 
 impl Lines {
-    /// The lines in the bytes of the file with this name, starting at a place.
+    /// The lines of the file with this path, from a given place on; `bytes` is the content of the file from there.
     pub(super) fn of(bytes: impl Read + Send + 'static, path: &Path, at: FrameStart) -> io::Result<Self> {
         let bytes: Box<dyn Read + Send> = Box::new(bytes);
         Ok(if is_packed(path) {

@@ -77,7 +77,7 @@ impl Packer {
     }
 }
 
-/// Lets the compressor append to `out`; returns the result of the compressor.
+/// Calls `step` to run the compressor, which appends to `out`; returns the result of `step`.
 fn with_room(
     out: &mut Vec<u8>,
     step: impl FnOnce(&mut OutBuffer<'_, Vec<u8>>) -> io::Result<usize>,

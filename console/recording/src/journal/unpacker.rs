@@ -6,8 +6,8 @@ use zstd::stream::raw::{DParameter, Decoder, InBuffer, Operation, OutBuffer};
 
 /// Minimum distance between two stored frames, bytes of lines: a file may contain millions of frames.
 const BETWEEN_FRAMES: u64 = 1 << 18;
-/// Largest distance of back references in compressed data, as a power of two in bytes: this program uses 128 kB, and
-/// `zstd` at its usual levels no more than this.
+/// Largest distance of back references in compressed data, bytes, as an exponent of two. This program uses 128 kB, and
+/// `zstd` at its usual levels stays within this limit.
 const MOST_WINDOW: u32 = 23;
 
 /// The start of a frame.

@@ -18,7 +18,7 @@ use std::{
 const FLUSH_AFTER: Duration = Duration::from_millis(500);
 /// Number of bytes of unwritten events at which they are handed to the system.
 const FLUSH_BYTES: usize = 64 * 1024;
-/// Limit of the events that are kept while the file cannot be written, bytes: about 40 minutes of mission time.
+/// Limit on the events that are kept while the file cannot be written, bytes: about 40 minutes of mission time.
 const MOST_WAITING_BYTES: usize = 4 << 20;
 
 /// Writes a journal.
@@ -43,7 +43,7 @@ pub struct JournalWriter {
     file_hasher: Sha256,
     events: u64,
     flushed_at: Instant,
-    /// An event that cannot be written as JSON or compressed ends the journal.
+    /// The reason why an event cannot be written as JSON or compressed; such an event ends the journal.
     unwritable: Option<String>,
     reported: Option<JournalError>,
 }
@@ -167,7 +167,7 @@ impl JournalWriter {
         Ok(JournalEnd { events_sha256, events: self.events, bytes })
     }
 
-    /// Lets the packer append to the waiting bytes; if it lacks memory, the journal ends.
+    /// Calls `step`, in which the packer appends to the waiting bytes. If the packer lacks memory, the journal ends.
     fn pack(&mut self, step: impl FnOnce(&mut Packer, &mut Vec<u8>) -> io::Result<()>) {
         let Some(packer) = &mut self.packer else { return };
         let waiting = self.backlog.waiting();

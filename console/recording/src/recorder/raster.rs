@@ -11,7 +11,7 @@ use world::{Cell, CellRun, FloorClass, KindRun};
 
 /// Mission time between two images of a small floor, seconds.
 const PERIOD_S: f64 = 5.0;
-/// Number of cells for each tick of the interval between images, which is longer on a large floor.
+/// Number of cells of the floor for which the interval between images grows by one tick.
 const CELLS_PER_TICK: usize = 500;
 
 /// Value of a cell of each class; class 0 is not drawn.

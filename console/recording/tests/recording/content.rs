@@ -1,4 +1,4 @@
-//! What a recording holds, without how it was cut into chunks.
+//! The content of a recording, regardless of its division into chunks.
 
 use re_log_encoding::DecoderApp;
 use rerun::{
@@ -34,7 +34,7 @@ pub(crate) fn content(path: &Path) -> Content {
     content
 }
 
-/// How many chunks of data a recording has.
+/// The number of chunks of data in a recording.
 pub(crate) fn chunks(path: &Path) -> usize {
     let messages = DecoderApp::decode_lazy(BufReader::new(File::open(path).expect("the file is there")));
     let is_data = |message: &LogMsg| matches!(message, LogMsg::ArrowMsg(store, _) if store.kind() == StoreKind::Recording);

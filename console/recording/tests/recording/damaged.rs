@@ -1,4 +1,4 @@
-//! Damaged journals: read as far as they go, or refused with a message; never a panic.
+//! Damaged journals are read up to the damage or refused with a message, and never cause a panic.
 
 use crate::{events, journal::read_journal};
 use mutations::{mutated, mutations};
@@ -27,7 +27,7 @@ proptest! {
         let path = folder.path().join("events.jsonl");
         let bytes = mutated(&journal(), &damage);
         fs::write(&path, &bytes).expect("writable");
-        // Line by line and at once, the same is found.
+        // Reading line by line gives the same result as reading all events at once.
         let mut n_lines = 0;
         let by_lines = JournalReader::open(&path).and_then(|mut reader| {
             while let Some(line) = reader.next_line()? {

@@ -13,7 +13,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// A disk with room for so many bytes; the room can change while it is written.
+/// A disk with room for a number of bytes, which can change while the disk is written.
 #[derive(Clone)]
 struct SmallDisk {
     room: Arc<AtomicUsize>,
@@ -55,11 +55,11 @@ impl Write for SmallDisk {
     }
 }
 
-/// A file whose call number `fails_at` fails, and no other.
+/// A file of which only the call with the number `fails_at` fails.
 struct FaultyFile {
     calls: usize,
     fails_at: usize,
-    /// Of how many bytes it takes one, as a disk does that is nearly full.
+    /// The file accepts one in this many bytes of each call, like a disk that is nearly full.
     takes_one_of: usize,
     disk: SmallDisk,
     was_reached: Arc<AtomicUsize>,
@@ -87,7 +87,7 @@ impl Write for FaultyFile {
     }
 }
 
-/// Events a second apart; whatever fails on the way is asked for at the end.
+/// Appends events that are a second apart; returns the errors on the way.
 fn append_slowly(journal: &mut JournalWriter, events: &[Event], begin: Instant) -> Vec<JournalError> {
     let at = |index: usize| begin + Duration::from_secs(index as u64);
     events.iter().enumerate().filter_map(|(index, event)| journal.append(event, at(index)).err()).collect()
@@ -97,11 +97,11 @@ fn packed_to(out: Box<dyn Write + Send>, now: Instant) -> JournalWriter {
     JournalWriter::writing_to(out, now).expect("memory for the compressor")
 }
 
-/// What can be read of the lines in a file.
+/// The readable part of the lines in a file.
 fn unpacked(bytes: &[u8]) -> Vec<u8> {
     let mut lines = Vec::new();
     let mut decoder = zstd::Decoder::new(bytes).expect("memory");
-    // A file that stops within a frame is an error after what can be read.
+    // A file that stops within a frame gives an error after its readable part.
     let _ = decoder.read_to_end(&mut lines);
     lines
 }
@@ -127,7 +127,7 @@ fn a_call_that_fails_once_costs_the_journal_nothing_whichever_it_is() {
         let begin = Instant::now();
         let mut journal = packed_to(Box::new(file), begin);
         let reported = append_slowly(&mut journal, &events, begin);
-        // A fault in the last call of all has nobody to try again.
+        // After a fault in the very last call, no further call can try again.
         match journal.finish() {
             Ok(end) => {
                 assert_eq!(unpacked(&disk.written()), whole, "call {fails_at}");
@@ -149,7 +149,7 @@ fn a_call_that_fails_once_costs_the_recording_nothing_whichever_it_is() {
     let (events, mut n_lost) = (events(3), 0);
     for fails_at in 1.. {
         let (disk, was_reached) = (SmallDisk::new(usize::MAX), Arc::new(AtomicUsize::new(0)));
-        // Whole messages at once: what is left of a message waits as in the journal, and every call costs a recorder.
+        // The file takes whole messages: partial writes are tested with the journal, and each call needs a new recorder.
         let file = FaultyFile {
             calls: 0,
             fails_at,
@@ -164,7 +164,7 @@ fn a_call_that_fails_once_costs_the_recording_nothing_whichever_it_is() {
             recorder.push(event, &Fold::new(), begin).expect("nothing is lost");
         }
         let path = tempfile::NamedTempFile::new().expect("a file");
-        // A fault in the last calls of all has nobody to try again, and is said.
+        // After a fault in the very last call, no further call can try again; the fault is reported.
         match recorder.finish(&Summary::default(), None) {
             Ok(_) => {
                 std::fs::write(path.path(), disk.written()).expect("writable");
@@ -219,7 +219,7 @@ fn a_disk_that_stays_full_ends_the_journal_when_too_much_waits() {
     let mut journal = packed_to(small_disk(1000), begin);
     let events = events(30_000);
     let mut errors = Vec::new();
-    // 4 MB are kept; writing is tried once a second, thousands are kept in between.
+    // Up to 4 MB are kept. Writing is tried once a second; in between, thousands of events are kept.
     for (second, events) in events.chunks(5000).enumerate() {
         let now = begin + Duration::from_secs(second as u64);
         errors.extend(events.iter().filter_map(|event| journal.append(event, now).err()));
@@ -280,7 +280,7 @@ fn a_recorder_is_dropped_soon_after_an_error() {
     let now = Instant::now();
     let mut recorder = Recorder::writing_to(small_disk(100), &Identity::of_run("test"), now).expect("opens");
     for event in events(700) {
-        // Whichever event it hits: the drop is what counts here.
+        // Any event may meet the fault; this test is about the drop.
         let _ = recorder.push(&event, &Fold::new(), now);
     }
     let begin = Instant::now();

@@ -1,4 +1,4 @@
-//! Journals that were made to use up memory or time are refused early; sound ones are read whatever their length.
+//! Journals that were made to use up memory or time are refused early; valid journals of any length are read.
 
 use crate::{events, synthetic};
 use mission::{Event, EventKind, LogLine};
@@ -19,7 +19,7 @@ fn lines(ticks: u64) -> Vec<String> {
     events(ticks).iter().map(|event| serde_json::to_string(event).expect("JSON") + "\n").collect()
 }
 
-/// A journal out of lines, compressed in one piece as `zstd` does it.
+/// A journal made of lines, compressed in one piece as by `zstd`.
 fn packed(lines: impl IntoIterator<Item = impl AsRef<[u8]>>) -> (TempDir, PathBuf) {
     let folder = tempdir().expect("a folder");
     let path = folder.path().join(JOURNAL_FILE);
@@ -31,7 +31,7 @@ fn packed(lines: impl IntoIterator<Item = impl AsRef<[u8]>>) -> (TempDir, PathBu
     (folder, path)
 }
 
-/// How many events are read, and why no more.
+/// The number of events that can be read, and the error after them, if any.
 fn read(path: &Path) -> (usize, Option<String>) {
     let mut reader = JournalReader::open(path).expect("a file");
     let mut n = 0;
@@ -114,7 +114,7 @@ fn frames_without_anything_cost_no_memory_and_are_passed() {
     assert_eq!(read(&path), (events(20).len(), None));
 }
 
-/// A mission that is held for a day: nothing changes but the time. Nothing that is written can be more regular.
+/// A mission that is held for a day: only the time changes. No valid journal is more regular than this one.
 #[test]
 fn a_day_of_a_robot_that_stands_still_is_read() {
     const TICKS: u64 = 864_000;
@@ -147,7 +147,7 @@ fn a_day_of_a_robot_that_stands_still_is_read() {
     assert!(of_end.len() < 20_000 && of_end.last() == Some(&ending), "{}", of_end.len());
 }
 
-/// What is said of an event.
+/// The text of an event in the log.
 fn said(event: &Event) -> String {
     let stations = &[];
     event.log_line(stations).map(|LogLine { text, .. }| text).unwrap_or_default()

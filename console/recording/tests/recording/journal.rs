@@ -1,4 +1,4 @@
-//! The journal, whole, torn and damaged.
+//! Complete, truncated and damaged journals.
 
 use crate::events;
 use mission::{Event, event::JOURNAL_VERSION};
@@ -13,7 +13,7 @@ use std::{
 };
 use tempfile::{TempDir, tempdir};
 
-/// A journal whose lines are not compressed, as somebody has uncompressed it.
+/// A journal that a user has uncompressed.
 fn written(ticks: u64) -> (TempDir, PathBuf) {
     let (folder, packed) = packed(ticks);
     let plain = folder.path().join(PLAIN_JOURNAL_FILE);
@@ -22,7 +22,7 @@ fn written(ticks: u64) -> (TempDir, PathBuf) {
     (folder, plain)
 }
 
-/// A journal as it is written now, a quarter of a second between the events.
+/// A compressed journal whose events were written a quarter of a second apart.
 fn packed(ticks: u64) -> (TempDir, PathBuf) {
     let folder = tempdir().expect("a folder");
     let path = folder.path().join(JOURNAL_FILE);
@@ -122,7 +122,7 @@ fn followed((_folder, path): (TempDir, PathBuf)) {
     let mut at = 10;
     fs::write(&path, &bytes[..at]).expect("writable");
     let writer = path.clone();
-    // Each time that the reader is at the end, a little more is written.
+    // Each time that the reader reaches the end of the file, a few more bytes are written.
     let reader = JournalReader::follow(&path, move || {
         let next = (at + 97).min(bytes.len());
         let mut file = fs::OpenOptions::new().append(true).open(&writer).expect("it is there");

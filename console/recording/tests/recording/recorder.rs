@@ -1,4 +1,4 @@
-//! What ends up in the recording.
+//! The content of a recording.
 
 use crate::{
     content::{Content, content},
@@ -64,7 +64,7 @@ fn every_tick_has_its_row_of_truth_estimate_and_figures() {
     }
 }
 
-/// The value of a figure in every tick, also in those that have no row since nothing changed.
+/// The value of a figure in every tick, including the ticks without a row, in which the figure did not change.
 fn by_tick(content: &Content, figure: &str) -> Vec<Option<String>> {
     let mut rows = rows(content, figure, "Scalars:scalars").iter().peekable();
     let mut last = None;
@@ -133,7 +133,7 @@ fn a_tethered_run_has_the_cable_in_every_tick_and_its_figures() {
         })
         .flat_map(|(event, at)| {
             let length_m = (at - anchor).norm();
-            // Every other tick there is no return path and nothing is touched.
+            // In every other tick, there is no return path and no contact.
             let bears = event.tick % 2 == 0;
             let contact = mission::event::TetherContact { on: "C1".into(), wrap_rad: 1.0, at };
             let kind = EventKind::Tethered {
@@ -159,7 +159,7 @@ fn a_tethered_run_has_the_cable_in_every_tick_and_its_figures() {
         ("map/world/tether", "LineStrips2D:strips", 20),
         ("map/world/tether/contacts", "Points2D:positions", 20),
         ("scalars/tether/return_path", "Scalars:scalars", 10),
-        // It does not change: its first and its last row.
+        // This figure does not change, so only its first and its last row are recorded.
         ("scalars/tether_wrap/largest", "Scalars:scalars", 2),
     ] {
         assert_eq!(rows(&content, entity, component).len(), wanted, "{entity}");
@@ -189,7 +189,7 @@ fn a_layer_that_is_not_drawn_any_more_is_cleared() {
     let repulsion = rows(&content, "map/world/forces/repulsion", "Arrows2D:vectors");
     assert!(repulsion.iter().any(|row| !row.1.is_empty()), "it is drawn near an obstacle");
     assert!(repulsion.iter().any(|row| row.1.is_empty()), "and cleared behind it");
-    // While the robot is held nothing is drawn: one empty row, not one for every tick.
+    // While the robot is held, nothing is drawn: this gives one empty row, not one for every tick.
     let empty = repulsion.windows(2).filter(|pair| pair[0].1.is_empty() && pair[1].1.is_empty()).count();
     assert_eq!(empty, 0);
 }
@@ -311,7 +311,7 @@ fn a_recording_that_cannot_be_merged_in_time_stays_as_it_was_written() {
     record(&whole, &events(TICKS), step);
     record_and_merge(&long, &events(TICKS), step, Some(Instant::now()));
     assert!(crate::content::chunks(&long) > 2 * crate::content::chunks(&whole));
-    // What holds for the whole run was written again with each change; the last counts.
+    // Data for the whole run is written again after each change; only the last value counts.
     let timed = |mut content: Content| {
         for rows in content.values_mut() {
             rows.retain(|(times, _)| !times.is_empty());
@@ -336,7 +336,7 @@ fn a_recording_whose_writer_is_killed_says_the_same_up_to_there() {
         now += Duration::from_millis(700);
     }
     recorder.idle(now + Duration::from_secs(6)).expect("room on the disk");
-    // Nothing is written that only a recorder in good order writes at its end.
+    // A recorder that is dropped must not write the data that marks the end of a complete recording.
     drop(recorder);
     let killed = content(&path);
     record(&whole, &events, Duration::ZERO);
@@ -428,7 +428,7 @@ fn a_tick_takes_no_more_than_600_bytes() {
         record(&path, &events(ticks), Duration::ZERO);
         std::fs::metadata(&path).expect("it is there").len()
     };
-    // Layout, scene and footer are written once, so the difference is what the ticks take.
+    // Layout, scene and footer are written once, so the difference between the sizes is due to the ticks.
     let (short, long) = (size(1000), size(3000));
     assert!(long - short <= 600 * 2000, "{} bytes a tick", (long - short) / 2000);
     assert!(short < 1_200_000, "{short} bytes for 1000 ticks");

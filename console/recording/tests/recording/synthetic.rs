@@ -1,4 +1,4 @@
-//! A made-up run that has a bit of everything: for tests, the bench and the picture.
+//! A made-up run with all kinds of events, for the tests, the benchmark and the picture.
 //!
 //! The robot follows a spiral in a round tank, with a wandering estimate, ranges, a fix every second, forces of a
 //! potential field, an obstacle to discover, a station that falls silent, a hold, a second planner and an end.
@@ -22,7 +22,7 @@ const TICK_S: f64 = 0.1;
 const SPEED_M_PER_S: f64 = 0.4;
 const PITCH_M: f64 = 0.9;
 
-/// A run of so many ticks, tick by tick: `RunOpened` in the first batch, `Ended` in the last.
+/// A run with this number of ticks, one batch for each tick: `RunOpened` is in the first batch, `Ended` in the last.
 pub(crate) fn run(ticks: u64) -> Vec<Vec<Event>> {
     let mut robot = Robot::new();
     (0..ticks).map(|tick| robot.tick(tick, ticks)).collect()
@@ -49,7 +49,7 @@ impl Robot {
         }
     }
 
-    /// Uniform in -1 to 1.
+    /// A random number, uniform from -1 to 1.
     fn noise(&mut self) -> f64 {
         self.chance ^= self.chance << 13;
         self.chance ^= self.chance >> 7;
@@ -259,10 +259,10 @@ impl Robot {
     }
 }
 
-/// A place on the way: inwards along the spiral, this far from its start.
+/// The pose on the way inwards along the spiral, at this distance from its start.
 fn spiral_pose(along_m: f64) -> Pose {
     let outer_m = RADIUS_M - 0.7;
-    // Length of the way to an angle, turned round: 2 pi r dr / pitch.
+    // The inverse of the length of the spiral up to an angle, whose element is 2 pi r dr / pitch.
     let radius_m = (outer_m * outer_m - along_m * PITCH_M / std::f64::consts::PI).max(0.04).sqrt();
     let angle = TAU * (outer_m - radius_m) / PITCH_M;
     Pose::new(radius_m * angle.cos(), radius_m * angle.sin(), angle + TAU / 4.0)
@@ -317,7 +317,7 @@ fn chosen(id: &str, from: Option<String>) -> EventKind {
     }
 }
 
-/// An ask of a tick.
+/// The id of the ask in a tick.
 fn ask(tick: u64) -> AskId {
     AskId { worker: WorkerId(1), n: tick as u32 + 1 }
 }

@@ -64,7 +64,7 @@ fn the_health_reports_bytes_and_that_nothing_waits() {
     );
 }
 
-/// A disk that answers only when it is let.
+/// A disk that blocks every write until it is freed.
 #[derive(Clone, Default)]
 struct StuckDisk(Arc<(Mutex<bool>, Condvar)>);
 
@@ -107,7 +107,7 @@ fn the_sender_waits_when_the_queue_is_full_and_nothing_is_lost() {
     let journal = JournalWriter::writing_to(Box::new(disk.clone()), Instant::now());
     let recorder = Arc::new(RunRecorder::spawn(journal.expect("memory"), None).expect("a thread"));
     let batches = 12_000;
-    // The beginning of a run is long work, and is not what fills the queue.
+    // The beginning of a run takes long to process, but the queue must be filled by the later events.
     let big: Arc<[_]> = events(3).split_off(1).into();
     let sender = {
         let (recorder, big) = (Arc::clone(&recorder), Arc::clone(&big));
@@ -129,7 +129,7 @@ fn the_sender_waits_when_the_queue_is_full_and_nothing_is_lost() {
     assert_eq!(finished.events_sha256, Some(expected.finish().expect("nothing to fail").events_sha256));
 }
 
-/// Waits until the health reports an error, and gives it with the time that took.
+/// Waits until the health reports an error; returns the error and the time that this took.
 fn noticed(recorder: &RunRecorder) -> (String, Duration) {
     let begin = Instant::now();
     loop {
@@ -146,13 +146,13 @@ fn recorder_with_events(folder: &Path) -> RunRecorder {
     for events in synthetic::run(20) {
         recorder.send(events);
     }
-    // So that something is written that can be truncated.
+    // Wait until some data has been written, so that the file can be truncated.
     std::thread::sleep(Duration::from_millis(800));
     assert_eq!(recorder.health().error, None);
     recorder
 }
 
-/// What somebody else does to the folder of a run.
+/// A change that another program makes to the folder of a run.
 type Change = fn(&Path);
 
 #[test]
@@ -187,7 +187,7 @@ fn what_happens_to_the_files_is_noticed_within_a_second_also_while_nothing_is_wr
         assert!(error.starts_with(sentence), "{error}");
         assert!(after < Duration::from_secs(1), "{after:?}");
         let finished = recorder.finish(Duration::from_secs(20));
-        // The end of the journal makes a file that was emptied long again, and no better.
+        // The end of the journal makes an emptied file longer again, but the lost data stays lost.
         let sentence = sentence.split_once(" the file has 0").map_or(sentence, |(sentence, _)| sentence);
         let error = finished.error.expect("it is still so");
         assert!(error.starts_with(sentence), "{error}");
@@ -246,7 +246,7 @@ fn a_failure_leaves_a_sign_in_the_folder_and_a_whole_run_none() {
     let recorder = recorder_with_events(folder.path());
     fs::remove_file(folder.path().join("recording.rrd")).expect("ours");
     let (error, _) = noticed(&recorder);
-    // A kill -9 after this finds the sign on disk.
+    // The report is then on disk, even if the process is killed later.
     let until = Instant::now() + Duration::from_secs(1);
     while recorded_failure(folder.path()).is_none() && Instant::now() < until {
         std::thread::yield_now();

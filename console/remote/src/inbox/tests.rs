@@ -144,7 +144,7 @@ fn each_trouble_is_a_state_of_the_link_with_its_reason() {
         (
             state(Mode::Ready, Commander::OtherProgram),
             LinkState::OtherCommander,
-            "another program sends commands to it",
+            "another program is sending commands to it",
         ),
         (state(Mode::Ready, Commander::You), LinkState::Up, ""),
     ] {
@@ -196,7 +196,7 @@ fn a_stop_is_decided_by_readings_that_were_taken_after_it_was_sent() {
     say(&mut inbox, moved(1, 0.0, 0.0), 1.0);
     inbox.take(Heard::Message(FromVehicle::Pong(Pong { echo_s: 1.0, stamp_s: 100.05 })), 1.0);
     inbox.commanded(false, 1.02);
-    // The stream takes no bytes yet: a vehicle that stands so far proves nothing.
+    // The stream has not taken the stop yet, so a vehicle that stands still at this time proves nothing.
     (2..=5).for_each(|seq| say(&mut inbox, moved(seq, 0.0, 0.0), 0.95 + 0.05 * seq as f64));
     assert_eq!(stood(&mut inbox, 1.2), None);
     inbox.sent(&ToVehicle::Stop(vehicle::wire::message::Stop { seq: 1, stamp_s: 1.2 }));

@@ -22,7 +22,7 @@ use vehicle::{
     },
 };
 
-/// How long an adapter may take to introduce the vehicle.
+/// Longest time that an adapter may take to introduce the vehicle.
 const HELLO_WITHIN: Duration = Duration::from_secs(10);
 /// Interval at which an awaited condition is checked.
 const LOOK_AGAIN: Duration = Duration::from_millis(50);
@@ -135,7 +135,7 @@ impl Connection {
         self.began.elapsed().as_secs_f64()
     }
 
-    /// Why the connection ended, once it has.
+    /// The reason why the connection ended, once it has.
     pub(super) fn closed(&self) -> Option<&str> {
         self.closed.as_deref()
     }

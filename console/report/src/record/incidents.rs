@@ -51,8 +51,10 @@ impl Incidents {
         let mut all = self.all.clone();
         let has_end = all.last().is_some_and(|last| last.kind == "end");
         if self.n_dropped > 0 {
-            let text =
-                format!("{} more incidents are not listed here; the journal contains them", self.n_dropped);
+            let text = format!(
+                "further incidents: {}; they are not listed here, but the journal contains them",
+                self.n_dropped
+            );
             let (t_s, severity) = (self.last_s, Severity::Crit);
             let at = all.len() - usize::from(has_end);
             all.insert(at, Incident { t_s, until_s: None, kind: "alarm", severity, text });

@@ -1,7 +1,7 @@
 //! Answers the mission's asks from the journal, and puts the same asks to the planners again.
 //!
-//! The mission uses the recorded answers alone, so the planners are asked in a separate thread and may lag some ticks
-//! behind.
+//! The mission uses the recorded answers alone, so a separate thread asks the planners, and may be some ticks behind
+//! the mission.
 
 use flight::answers::Answers;
 use mission::{
@@ -158,7 +158,7 @@ impl Asking {
         if let Err(fault) = &answer.result
             && fault.cause.is_external()
         {
-            // The mission closes the worker; it is not expected to fail in the same way.
+            // The mission closes the worker, so the worker is not expected to fail as it did in the run.
             *self.asked.external.entry(fault.planner.clone()).or_default() += 1;
             self.failed.remove(&answer.ask.worker);
             return;
@@ -167,7 +167,8 @@ impl Asking {
         if let Some(Answer { result: Err(fault), .. }) = &own
             && fault.cause.is_external()
         {
-            // The machine determines the time of the fault: if the journal has it later, it is the same fault.
+            // The time of the fault depends on the machine: a fault that is recorded later in the journal is the
+            // same fault.
             let ask = answer.ask;
             self.failed
                 .entry(ask.worker)

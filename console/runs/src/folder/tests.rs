@@ -53,7 +53,7 @@ fn a_clock_out_of_range_is_clamped() {
     assert!(latest.starts_with("9999"), "{latest}");
 }
 
-/// A run of one event that ended, in a folder of its own; `journal` gives back the digest of the journal.
+/// A finished run of one event, in its own folder; also returns the result of the recorder and the summary.
 fn ended(logs: &Path) -> (PathBuf, Finished, Summary) {
     let folder = RunFolder::create(logs, "demo", "rpf", 1).unwrap();
     let recorder = RunRecorder::start(folder.path(), Options { rrd: false, journal: true }).unwrap();
@@ -88,7 +88,7 @@ fn a_report_is_believed_as_long_as_it_fits_the_journal() {
     let logs = tempfile::tempdir().unwrap();
     let (folder, _, summary) = ended(logs.path());
     assert_eq!(standing(&folder), Standing::Ended(Box::new(summary.clone())));
-    // Touched, so that it is hashed; the bytes are the same.
+    // The same bytes are written again, so that the newer file is hashed.
     let journal = folder.join(JOURNAL_FILE);
     fs::write(&journal, fs::read(&journal).unwrap()).unwrap();
     assert_eq!(standing(&folder), Standing::Ended(Box::new(summary)));
@@ -148,7 +148,7 @@ fn a_run_whose_writer_failed_is_distinguished_from_one_that_was_killed() {
     fs::write(folder.join(FAILURE_FILE), "the disk is full\n").unwrap();
     let failure = Some("the disk is full".to_owned());
     assert_eq!(standing(&folder), Standing::JournalOnly { doubt: None, failure });
-    // With a report that could still be written.
+    // A run whose report could still be written.
     let (folder, ..) = ended(logs.path());
     let logs =
         Logs { journal: None, recording: None, error: Some("the disk is full".into()), is_open: false };
@@ -187,7 +187,7 @@ fn a_changed_figure_is_noticed_with_the_journal_and_without() {
     unsealed[last] = unsealed[last].trim_end_matches(',');
     fs::write(folder.join(REPORT_FILE), unsealed.join("\n")).unwrap();
     assert!(figures(&summary).is_some_and(|doubt| doubt.contains("its line report_sha256 is missing")));
-    // Whoever changes a figure may change the digest, too.
+    // A person who changes a figure may change the digest, too.
     let other = Summary { holds: 1, ..summary.clone() };
     let text = ReportFile::text("a", &other, [None; 2], None).unwrap();
     fs::write(folder.join(REPORT_FILE), text).unwrap();

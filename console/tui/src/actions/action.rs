@@ -84,7 +84,7 @@ pub(crate) enum Deed {
     Act(fn(&mut Model) -> Vec<Effect>),
 }
 
-/// One thing the operator can do.
+/// An action of the operator.
 #[derive(Debug, Clone, Copy)]
 pub struct Action {
     /// The action's id.

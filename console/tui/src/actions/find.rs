@@ -110,7 +110,8 @@ mod tests {
             ("whole-tank", "show tank", Some(Match::Description)),
             ("zoom-in", "zn", None),
             ("zoom-in", "xyzzy", None),
-            // What moves the robot or ends the mission is not found by its description or by a part of its name.
+            // An action that moves the robot or ends the mission is not found by its description or by the middle of
+            // its name.
             ("start", "mission", None),
             ("run-uncertified", "plan", None),
             ("run-uncertified", "certified", None),

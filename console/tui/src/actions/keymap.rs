@@ -125,7 +125,7 @@ impl Keymap {
             let taken: Vec<(usize, &Binding)> =
                 bindings.iter().enumerate().filter(|(index, _)| !is_out(*index)).collect();
             let map = Self::of_bindings(preset, &taken);
-            // One at a time: an action that keeps its keys may conflict with another binding.
+            // Remove one binding at a time: the keys that its action keeps may conflict with another binding.
             match taken.iter().find_map(|(index, binding)| map.objection(&base, *index, binding, &taken)) {
                 Some(objection) => objections.push(objection),
                 None => return (map, objections),
@@ -212,7 +212,7 @@ impl Keymap {
 }
 
 fn in_brackets(screens: &[&str]) -> String {
-    // A list of most screens would only mean "everywhere".
+    // If the keys conflict on most screens, a list of these screens does not help the reader.
     if screens.is_empty() || screens.len() > 4 { String::new() } else { format!(" ({})", screens.join(", ")) }
 }
 

@@ -1,4 +1,4 @@
-//! What holds for the table as a whole.
+//! Properties of the table as a whole.
 
 use super::context::together;
 use super::*;

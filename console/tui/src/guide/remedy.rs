@@ -10,9 +10,11 @@ use vehicle::port::LinkState;
 pub struct Guide {
     /// Why the alarm is raised.
     pub cause: &'static str,
-    /// When the cause holds a robot that drives, as a sentence; empty if it does not.
+    /// When the cause holds a moving robot, as a sentence; empty if the cause does not hold the
+    /// robot.
     pub holds: &'static str,
-    /// The other consequences, whatever the mission does; empty if there are none.
+    /// The other consequences, which do not depend on the state of the mission; empty if none are
+    /// known.
     pub effect: &'static str,
     /// What the operator can do; at most four remedies. Those without an action are advice.
     pub remedies: &'static [Remedy],

@@ -16,7 +16,8 @@ struct Level {
 
 /// The scanned floor, with copies reduced in scale by 2, 4, 8 and so on.
 ///
-/// Only changed cells are folded in, and drawing looks up one block per dot, so neither cost grows with the mission.
+/// An update folds in only the changed cells, and a drawing looks up one block per dot. Neither takes longer as the
+/// mission goes on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Raster {
     grid: CoverageGrid,

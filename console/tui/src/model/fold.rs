@@ -211,7 +211,7 @@ impl Run {
         self.planning.choice = Some(run.mission.planner.clone());
     }
 
-    /// Takes the cause of an alarm, under the rule for what the mission does now.
+    /// Takes the cause of an alarm; the rule depends on what the mission is doing.
     fn raise(&mut self, event: &Event, cause: Cause, severity: Severity, text: String) {
         let rule = rule::rule(&cause, severity, self.context());
         self.alarms.occurred(cause, rule, text, event.t_s);

@@ -25,7 +25,7 @@ impl ByMotion {
 }
 
 /// Time from a key press to its frame, milliseconds: one frame of a 30 Hz screen; while the robot stands still, a tenth
-/// of a second, which people do not notice. The alarm clears when the time is a third below that; because of the
+/// of a second, which people do not notice. The alarm clears when the time is a third below its limit. Because of the
 /// delays, a single slow frame has no effect.
 pub const RESPONSE_MS: ByMotion = ByMotion {
     moving: Limit { alarm: 33.0, clear: 22.0, on_delay_s: 2.0, off_delay_s: 5.0 },

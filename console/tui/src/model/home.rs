@@ -13,7 +13,7 @@ pub struct ScenarioEntry {
     pub source: Source,
     /// The name of the scenario.
     pub name: String,
-    /// A description for people; may be empty.
+    /// The description of the scenario; may be empty.
     pub about: String,
     /// `goto`, `follow` or `cover`.
     pub task: String,
@@ -124,7 +124,7 @@ impl HomeList {
     /// The lists, in Tab order.
     pub const ALL: [Self; 3] = [Self::Scenarios, Self::Runs, Self::Attention];
 
-    /// The list that follows by `by` in Tab order.
+    /// The list that is `by` places further on in Tab order.
     #[must_use]
     pub fn turned(self, by: isize) -> Self {
         let at = (self as isize + by).rem_euclid(Self::ALL.len() as isize);

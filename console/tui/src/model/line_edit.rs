@@ -108,7 +108,7 @@ impl LineEdit {
 mod tests {
     use super::*;
 
-    /// What keys make of a line; `|` is the cursor.
+    /// The line after these keys are pressed; `|` is the cursor.
     fn pressed(line: &str, keys: &[Key]) -> String {
         let mut edit = LineEdit { text: line.replace('|', ""), cursor: line.find('|').expect("a cursor") };
         for key in keys {

@@ -107,8 +107,8 @@ pub struct Live {
     pub is_cut_off: bool,
     /// The requested speed of the mission.
     pub speed: Speed,
-    /// The speed to which the mission returns when the better plan on offer has been decided; `None` if it was not
-    /// slowed down for it.
+    /// The speed to which the mission returns when the better plan on offer has been decided; `None` if the mission was
+    /// not slowed down for that plan.
     #[serde(default)]
     pub slowed_from: Option<Speed>,
     /// The health of the engine.
@@ -126,7 +126,8 @@ pub struct Live {
     /// For a re-scan: the names of the runs before it, oldest first; empty until they are known, and for any other run.
     #[serde(default)]
     pub earlier: Vec<String>,
-    /// For a re-scan: where the last run before it left the robot, metres, tank frame; `None` if it is not known.
+    /// For a re-scan: where the last run before it left the robot, metres, tank frame; `None` if this place is not
+    /// known.
     #[serde(default)]
     pub left_at: Option<Point>,
     /// For a re-scan: the floor that this run and the runs before it have scanned together, or why this floor cannot be
@@ -156,14 +157,14 @@ impl Live {
         may_move && !self.is_look_only()
     }
 
-    /// The estimate for the plan that would run now; `None` if it is not known yet.
+    /// The estimate for the plan that would run now; `None` if the estimate is not known yet.
     pub fn estimate(&self) -> Option<&Estimate> {
         let (ask, estimate) = self.plans.estimate.as_ref()?;
         (self.run.planning.plan.as_ref()?.ask == *ask).then_some(estimate)
     }
 
-    /// The figures promised for the plan that would run now or, once the mission has started, for the plan with which it
-    /// started; `None` if it is not known.
+    /// The figures promised for the plan that would run now or, once the mission has started, for the plan with which
+    /// it started; `None` if the figures are not known.
     pub fn promised(&self) -> Option<&Estimate> {
         let started = *self.run.phase() != Phase::Waiting;
         self.estimate().or_else(|| Some(&self.plans.estimate.as_ref().filter(|_| started)?.1))
@@ -260,8 +261,8 @@ impl Live {
         is_open && !self.run.has_ended() && !self.is_look_only()
     }
 
-    /// Records that the mission accepted or refused an order. Nothing else ends the wait for an answer: events from
-    /// an earlier tick may arrive after the order was sent.
+    /// Records that the mission accepted or refused an order. Only this ends the wait for an answer: events from an
+    /// earlier tick may arrive after the order was sent.
     pub(crate) fn answered(&mut self, order: &Order) {
         if self.asked.as_ref() == Some(order) {
             self.asked = None;

@@ -45,7 +45,7 @@ pub fn changed(planner: &PlannerInfo, choice: Option<&PlannerChoice>) -> usize {
     planner.parameters.iter().filter(|info| value(choice, info) != default(&info.kind)).count()
 }
 
-/// A parameter of a planner.
+/// The parameter of a planner with this key.
 pub fn find<'a>(planner: Option<&'a PlannerInfo>, key: &str) -> Option<&'a ParamInfo> {
     planner?.parameters.iter().find(|info| info.key == key)
 }

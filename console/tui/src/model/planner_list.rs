@@ -1,4 +1,4 @@
-//! The list of planners: those that can run the mission, then the others, folded into one line.
+//! The list of planners: those that can run the mission, then those that cannot, folded into one line.
 
 use super::Model;
 use mission::PlannerInfo;

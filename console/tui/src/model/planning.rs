@@ -25,7 +25,7 @@ const MAX_SAID_BYTES: usize = 1000;
 /// A lane of a plan: the first and the last index of its points in [`PlanShown::path`].
 pub type Lane = (usize, usize);
 
-/// What the robot drives before the first lane of a plan.
+/// The stretch that the robot drives before the first lane of a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lead {
     /// Back along the tether, to the place from which the new plan leads on.
@@ -57,7 +57,8 @@ pub struct PlanShown {
     /// The length of the way back along the tether with which the plan begins, metres.
     #[serde(default)]
     pub retract_m: f64,
-    /// The length of all that comes before its first lane: the way back and the way from there, metres.
+    /// The length of the part of the plan before its first lane, metres: the way back along the tether, and the way
+    /// from there to the lane.
     #[serde(default)]
     pub lead_m: f64,
 }
@@ -91,7 +92,8 @@ impl PlanShown {
         part.and_then(|leg| path.get(..=leg.last)).map_or(0.0, polyline::length_m)
     }
 
-    /// The way that the robot drives before the first lane, and how far it still is, metres; `None` once it is there.
+    /// The stretch that the robot drives before the first lane, and its remaining length, metres; `None` once the robot
+    /// has reached the lane.
     pub fn lead_left_m(&self, progress: &Progress) -> Option<(Lead, f64)> {
         let along_m = self.along_m(progress.done).max(0.0);
         let ways = [(Lead::Back, self.retract_m), (Lead::ToLane, self.lead_m)];
@@ -138,7 +140,8 @@ impl PlanShown {
     }
 }
 
-/// A path for drawing, with its lanes: thinned where its points are too many, with more points where they are far apart.
+/// A path for drawing, with its lanes: with fewer points if it has too many, and with more points where they are far
+/// apart.
 pub fn shown(path: &[Point], legs: &[Leg], least_lane_m: f64) -> (Vec<Point>, Vec<Lane>) {
     let thin = Trail::thinned(path);
     let lanes = PlanShown::lanes_of(path, &thin, legs, least_lane_m);
@@ -341,7 +344,7 @@ mod tests {
         }
     }
 
-    /// A plan of two points for each of its long lanes, which returns past its first lane.
+    /// A plan with two points for each of its long lanes; its way back passes the first lane.
     fn long_lanes() -> PlanShown {
         let corners = [
             (0.0, 0.0),

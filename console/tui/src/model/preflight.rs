@@ -180,8 +180,8 @@ impl Model {
         Some(check("robot", outcome, words.unwrap_or_else(near)))
     }
 
-    /// For a re-scan whose plan does not begin where the run before it left the robot: where the robot must stand, as the
-    /// end of a sentence about the robot.
+    /// If the plan of a re-scan does not begin where the run before it left the robot: where the robot must stand, as
+    /// the end of a sentence about the robot.
     pub(crate) fn must_stand(&self) -> Option<String> {
         let left_at = self.live.left_at?;
         let mission = &self.live.run.about.as_ref()?.mission;

@@ -40,7 +40,7 @@ pub struct Reel {
 }
 
 impl Reel {
-    /// Adds what has been loaded since then.
+    /// Adds the part that has been loaded since the last report.
     pub fn grow(&mut self, news: Self) {
         let marks = std::mem::take(&mut self.marks);
         *self = news;

@@ -135,7 +135,7 @@ impl Run {
         &self.standing.phase
     }
 
-    /// What the mission does, as far as alarms depend on it.
+    /// What the mission is doing, as far as alarms depend on it.
     pub fn context(&self) -> Context {
         Context::of(self.phase())
     }
@@ -226,7 +226,7 @@ impl Run {
     /// value.
     pub fn is_overdue(&self, t_s: f64) -> bool {
         let tick_s = self.about.as_ref().map_or(0.1, |about| about.mission.tick_s);
-        // Slightly more than two, because times are sums of ticks.
+        // The factor is slightly more than two, because times are sums of ticks and have rounding errors.
         !self.has_ended() && self.clock.t_s - t_s > 2.01 * tick_s
     }
 

@@ -110,7 +110,7 @@ fn forecast_of(outlook: &Outlook, covers: bool) -> Figures {
     }
 }
 
-/// How a forecast ends that does not complete the task.
+/// How a forecast ends if it does not complete the task, as a clause.
 fn ending(outlook: &Outlook) -> Option<String> {
     match outlook.outcome {
         Some(Outcome::Complete) => None,

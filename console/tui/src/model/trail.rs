@@ -46,7 +46,7 @@ impl Trail {
         points.div_ceil(MAX_POINTS).max(1)
     }
 
-    /// All points of a path; evenly picked points if the path has more than a trail may keep. Both ends are kept.
+    /// The points of a path. If there are more than a trail may keep, evenly picked points; both ends are kept.
     pub fn thinned(path: &[Point]) -> Vec<Point> {
         let step = Self::step(path.len());
         let mut points: Vec<Point> =

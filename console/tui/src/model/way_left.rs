@@ -1,17 +1,18 @@
-//! How far and how long a robot still drives back to the anchor or the start.
+//! The remaining length and time of a drive back to the anchor or the start.
 
 use super::Run;
 use world::{Point, polyline};
 
 impl Run {
-    /// Length left of the way back from the estimated position, metres; `None` unless the robot is driving back.
+    /// Remaining length of the way back from the estimated position, metres; `None` unless the robot is driving back.
     pub fn way_left_m(&self) -> Option<f64> {
         let way = self.way_back.as_ref().filter(|_| self.standing.phase.is_return())?;
         let here = self.position.pose.map(|pose| pose.position);
         Some(here.map_or(way.length_m, |here| left_m(&way.path, here)))
     }
 
-    /// Mission time left of the way back at the robot's full speed, seconds; `None` unless the robot is driving back.
+    /// Remaining mission time of the way back at the robot's full speed, seconds; `None` unless the robot is driving
+    /// back.
     pub(super) fn way_left_s(&self) -> Option<f64> {
         let speed = self.about.as_ref()?.mission.limits.v_max_m_per_s;
         self.way_left_m().filter(|_| speed > 0.0).map(|left_m| left_m / speed)

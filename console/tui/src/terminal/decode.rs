@@ -1,8 +1,8 @@
 //! Decodes the bytes that a terminal sends: keys, mouse reports, pastes, and the terminal's own answers.
 //!
-//! No input may keep a HOLD from the robot. Wherever a space arrives within a sequence that is not a key, it is reported
-//! as [`Input::Stop`], and Ctrl-C is a key everywhere. Control strings and answers are swallowed without being stored,
-//! so that no part of them is taken for keys; a sequence that breaks off ends when nothing follows for
+//! No input may prevent a HOLD from reaching the robot. Wherever a space arrives within a sequence that is not a key,
+//! it is reported as [`Input::Stop`], and Ctrl-C is a key everywhere. Control strings and answers are swallowed without
+//! being stored, so that no part of them is taken for keys; a sequence that breaks off ends when nothing follows for
 //! [`Decoder::patience`].
 
 mod csi;
@@ -17,7 +17,7 @@ use osc::ControlString;
 use std::time::Duration;
 use utf8::Utf8;
 
-/// One thing that the terminal has reported.
+/// An input that the terminal has reported.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Input {
     /// A key went down, or repeats.
@@ -260,7 +260,7 @@ fn control_sequence(mut csi: Csi, byte: u8, inputs: &mut Vec<Input>) -> State {
             State::Ground
         }
         ESC => State::Escape,
-        // Not part of a sequence; nothing of it may count as a key.
+        // The byte is not part of a known sequence, so none of these bytes may count as a key.
         0x00..=0x1f | 0x7f => State::Csi(csi),
         0x80.. => ground(byte, inputs),
     }

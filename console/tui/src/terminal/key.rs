@@ -47,7 +47,7 @@ mod tests {
         assert_eq!(since(press('x'), 3010), Some((None, Freshness::Fresh)));
         assert_eq!(since(press('.'), 3020), Some((None, Freshness::Fresh)));
         assert_eq!(since(repeat, 9000), Some((Some(5980), Freshness::Held)));
-        // A terminal that tells when the key comes up tells that the next press is one.
+        // If the terminal reports that the key was released, the next press is a fresh one.
         assert_eq!(since(Input::OtherKey, 9010), None);
         assert_eq!(since(press('.'), 9020), Some((None, Freshness::Fresh)));
     }

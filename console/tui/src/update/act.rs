@@ -92,7 +92,7 @@ pub(crate) fn interrupt(model: &mut Model) -> Vec<Effect> {
     effects
 }
 
-/// Closes whatever is open: the step line, the list, or the map cursor.
+/// Closes the step line, the list or the map cursor, whichever is open.
 pub(crate) fn cancel(model: &mut Model) -> Vec<Effect> {
     match model.ui.overlay {
         Overlay::Stepping => return end_steps(model),

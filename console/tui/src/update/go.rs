@@ -156,7 +156,7 @@ pub(crate) fn run_at_home(model: &Model) -> Option<String> {
     if model.home.list == HomeList::Runs { selected_run(model) } else { None }
 }
 
-/// Requests what is known about the selected run, if there is room to show it. While the robot moves, the disk and the
+/// Requests the details of the selected run, if there is room to show them. While the robot moves, the disk and the
 /// processor are left to the mission: a run that is being read is given up.
 pub(super) fn glimpse(model: &mut Model) -> Option<Effect> {
     if model.live.may_move() {

@@ -63,7 +63,7 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
         }
         RunMsg::WriterGone => {
             model.live.is_cut_off = true;
-            // The state line says so, too.
+            // The state line reports this, too.
             raise(model, &Cause::Writer, "CONSOLE LOST: the run was not closed".into());
         }
         RunMsg::Health(health) => take_health(model, health),
@@ -171,7 +171,7 @@ fn take_health(model: &mut Model, health: Health) {
     model.live.health = health;
 }
 
-/// The run is over: anybody who was watching it is shown the result.
+/// The run is over: an operator who was watching it is shown the result.
 fn closed(model: &mut Model, result: RunResult) -> Vec<Effect> {
     rest(model, result.is_kept);
     model.live.result = Some(result);
@@ -183,7 +183,8 @@ fn closed(model: &mut Model, result: RunResult) -> Vec<Effect> {
     combine(model).into_iter().chain([Effect::Look]).collect()
 }
 
-/// Nothing is recorded any more, so the alarms about the recorder end. That a run was not kept stays an alarm.
+/// Nothing is recorded any more, so the alarms about the recorder end. The alarm about a run that was not kept
+/// stays.
 fn rest(model: &mut Model, is_kept: bool) {
     let run = &mut model.live.run;
     model.console.watches.recorder_lag = Watch::default();

@@ -1,4 +1,5 @@
-//! A better plan on offer slows a fast simulation to real time, so that the operator can judge it.
+//! While a better plan is on offer, a fast simulation is slowed to real time, so that the operator can judge the
+//! plan.
 
 use super::message::Effect;
 use crate::model::{Model, Speed};

@@ -20,7 +20,7 @@ pub(super) fn take(model: &mut Model, mouse: Mouse) -> Vec<Effect> {
     match mouse {
         Mouse::Click(Target::Map(place)) if zones::point_at(model, place) => {}
         Mouse::Drag { from, to } if zones::drag(model, from, to) => {}
-        // Under a list, a key or screen drawn beneath it does nothing.
+        // While a list is open, a click on a key or line beneath it does nothing.
         Mouse::Click(Target::Key(id)) if works(model, id) => return act(model, id),
         Mouse::Click(Target::Map(place)) if is_open => map::read(model, place),
         Mouse::Click(Target::Row(list, index)) if is_open => return click(model, list, index),

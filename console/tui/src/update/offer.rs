@@ -1,4 +1,5 @@
-//! The actions that are possible now, and why the others are not. Footer and keys use the same checks.
+//! Checks which actions are possible now, with the reason if one is not. The footer and the keys use the
+//! same checks.
 
 use super::go::named_run;
 use super::look_only::{allowed, no_orders};
@@ -210,7 +211,7 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         | Refusal::SwapNeedsHold => Some("<hold>: HOLD"),
         Refusal::Ended(_) => Some("<home> opens another scenario"),
         Refusal::NoShadow => Some(":shadow NAME runs one"),
-        // If anything can be done, these messages already say what to do.
+        // If the operator can do anything, these messages already say what.
         Refusal::Planning
         | Refusal::DrivingBack
         | Refusal::OfferAccepted

@@ -103,7 +103,7 @@ fn largest_residual(model: &Model) -> Option<(StationId, f64)> {
 /// Returns the reason why not, as a sentence.
 pub(crate) fn can(model: &Model, deed: &Deed) -> Result<(), String> {
     match deed {
-        // The parameters can be read at any time, but an alarm asks to change them.
+        // The parameters can be viewed at any time, but the action on an alarm is to change them.
         Deed::Act(ActionId::Parameters) => {
             demand(!model.live.run.has_ended(), "the mission has ended")?;
             offered(model, ActionId::Parameters)

@@ -9,8 +9,8 @@ use crate::model::ui::Ask;
 use crate::model::{Ghost, Model, Overlay, parameter};
 use mission::{Order, ParamValue};
 
-/// Asks whether to send a new value, and has its effect estimated. A value that is in effect already is not sent.
-/// `list` is the line of the list of parameters to which the operator returns.
+/// Asks whether to send a new value, and requests an estimate of its effect. A value that is in effect already is not
+/// sent. `list` is the line of the list of parameters to which the operator returns.
 pub(super) fn propose(model: &mut Model, key: String, value: ParamValue, list: Option<usize>) -> Vec<Effect> {
     if let Err(why) = accepted(model, &Order::SetParameter { key: key.clone(), value: value.clone() }) {
         return refuse(model, why);

@@ -6,7 +6,7 @@ use crate::keys::Key;
 use crate::model::{LineEdit, Model, Overlay, Pane, Screen};
 use mission::{ParamKind, Severity};
 
-/// Whether an input line is open, where letters and spaces are text.
+/// Whether an input line is open, in which letters and spaces are text.
 pub fn is_typing(model: &Model) -> bool {
     use Overlay::{Bookmark, Commands, Filter, Parameters, Shelve};
     let overlay = &model.ui.overlay;

@@ -30,7 +30,7 @@ pub(super) fn estimate(model: &mut Model, changed: PlannerChoice) -> Vec<Effect>
     begin(model, &current.into_iter().chain([changed]).collect::<Vec<_>>())
 }
 
-/// Ends the forecasts of a change. Only those of a held mission that are finished remain of use.
+/// Ends the forecasts of a change. Only finished forecasts of a held mission are kept, because they remain useful.
 pub(super) fn stop_estimate(model: &mut Model) -> Vec<Effect> {
     let is_held = matches!(model.live.run.phase(), Phase::Held(_));
     let Some(what_if) = &mut model.live.what_if else { return Vec::new() };

@@ -139,7 +139,7 @@ pub(super) fn point_at(model: &mut Model, place: Point) -> bool {
 /// Draws a box or circle with the mouse: it begins where the drag began; returns whether a zone is being drawn.
 pub(super) fn drag(model: &mut Model, from: Point, to: Point) -> bool {
     let Some((draft, cursor)) = draft(model) else { return false };
-    // The steps of one drag follow one another.
+    // Each step of a drag begins where the previous one ended.
     let goes_on = cursor == from;
     if !goes_on && draft.form != Form::Polygon {
         draft.points = vec![from];

@@ -31,7 +31,8 @@ const PAGED_TABLE: u16 = 6;
 const PAGED_CAUSE: usize = 2;
 /// Minimum and preferred rows of the chart, including the frame.
 const CHART: (u16, u16) = (7, 16);
-/// Columns and rows of the screen from which everything about an alarm is beside the table.
+/// The minimum columns and rows of the screen at which the details of an alarm are beside the
+/// table.
 const BESIDE: (u16, u16) = (170, 40);
 
 pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
@@ -100,7 +101,7 @@ fn wide(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
         Layout::vertical([Constraint::Length(table), Constraint::Length(about), Constraint::Fill(1)])
             .areas(area);
     let [left, right] = Layout::horizontal([Constraint::Length(DETAIL), Constraint::Fill(1)]).areas(middle);
-    // The actions need all their rows; the chart gets the rest.
+    // The actions need all their rows; the chart gets the remaining rows.
     let rest = right.height.saturating_sub(actions.len() as u16 + 2);
     let chart = if chart > 0 && rest >= CHART.0 { rest } else { 0 };
     let [steps, curve] = Layout::vertical([Constraint::Fill(1), Constraint::Length(chart)]).areas(right);

@@ -9,7 +9,7 @@ use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
-/// Width from which an alarm takes one line, columns.
+/// The minimum width at which an alarm takes one line, columns.
 const BESIDE: usize = 64;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {

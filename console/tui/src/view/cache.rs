@@ -12,7 +12,8 @@ use world::{Floor, PlateMap};
 /// Data kept between frames.
 #[derive(Debug, Default)]
 pub struct Cache {
-    /// The newest one last: the legend needs the shades of the whole area, the map those of the area without it.
+    /// The newest shades are last. The legend needs the shades of the whole area; the map needs the shades of the
+    /// area without the legend.
     shades: Vec<(ShadeKey, Shades)>,
     plate_map: Option<(PlateMapKey, Rc<PlateMap>)>,
     plates: Option<(PlateKey, Rc<PlateDrawing>)>,

@@ -1,4 +1,4 @@
-//! The lines above the keys: the state with the next steps, which nothing covers, and below it the open question or
+//! The lines above the keys: the state with the next steps, which is always visible, and below it the open question or
 //! input line.
 
 use super::field::field;
@@ -103,7 +103,7 @@ fn typed(look: &Look, frame: &mut Frame, area: Rect, (prompt, line): (&str, &Lin
     place_cursor(frame, area, (1 + text::width(prompt) + shown.cursor, 0));
 }
 
-/// The open question, otherwise what comes next.
+/// The clauses of the open question or, if no question is open, of the next steps.
 pub(super) fn clauses(model: &Model) -> Clauses {
     asked(model).map_or_else(|| next::clauses(model), |clauses| (Role::Confirm, clauses))
 }

@@ -17,7 +17,7 @@ const LABEL: usize = 13;
 const WHOLE: usize = 13;
 const BAR: usize = 8;
 
-/// Width from which the pane uses full words, columns.
+/// The minimum width at which the pane uses full words, columns.
 const WIDE: usize = 40;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {

@@ -18,11 +18,11 @@ use ratatui::text::Line;
 
 /// Examples of filter terms.
 const TERMS: &str = "   sev>=watch source=ae,tether station=C t>00:05 \"two words\" -text";
-/// Width from which each event states how long ago it happened, and the width of that column.
+/// The minimum width at which each event states how long ago it happened, and the width of that column.
 const AGED: usize = 100;
 const AGE: usize = 11;
-/// Columns and rows of the screen from which the place of the selected event is shown beside the list, and the width of
-/// its map.
+/// The minimum columns and rows of the screen at which the place of the selected event is shown beside the list, and
+/// the width of the map for it.
 const BESIDE: (u16, u16) = (170, 40);
 const MAP: u16 = 72;
 /// Minimum rows of the list beside the detail, including the frame.

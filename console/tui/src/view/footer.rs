@@ -83,7 +83,7 @@ pub(super) fn line(look: &Look, columns: usize) -> Line<'static> {
 fn fitting(model: &Model, columns: usize) -> Vec<Hint> {
     let mut hints = lasting(model, columns);
     while width(&hints) > columns && hints.len() > 1 {
-        // Of several keys that matter equally, the last one goes.
+        // Of several keys with the same weight, the last one is dropped.
         let least = (0..hints.len()).max_by_key(|index| weight(model, hints[*index].id));
         hints.remove(least.unwrap_or_default());
     }
@@ -101,7 +101,7 @@ fn lasting(model: &Model, columns: usize) -> Vec<Hint> {
     hints
 }
 
-/// Whether an action is the only way to the other panes, because one pane is shown at a time.
+/// Whether an action is the only way to the other panes, because only one pane is shown at a time.
 fn is_way_on(model: &Model, id: ActionId) -> bool {
     id == ActionId::NextPane && model.ui.arrangement() == Arrangement::Paged
 }
@@ -173,7 +173,7 @@ fn place(model: &Model, action: &Action) -> u8 {
     let is_over = model.ui.overlay != Overlay::None;
     match action.id {
         ActionId::Hold if model.live.may_move() => 0,
-        // The effect of Enter is not in any list.
+        // The help and the command list do not show the effect of Enter.
         ActionId::Accept if !is_over => 1,
         id if !is_over && model.ui.screen.row().first == id => 1,
         _ => 2,

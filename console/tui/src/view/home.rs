@@ -67,8 +67,8 @@ fn one(look: &Look, frame: &mut Frame, area: Rect, (found, list, about): (&Found
     }
 }
 
-/// The rows of each list for the rows that it asks for. Every list keeps a part of the screen; the remaining rows go
-/// first to the list that responds to the arrow keys, then to the others in order.
+/// The number of rows that each list gets, given the number that it requests. Every list keeps a part of the screen;
+/// the remaining rows go first to the list that responds to the arrow keys, then to the others in order.
 fn shares(rows: u16, focus: HomeList, wanted: [u16; 3]) -> [u16; 3] {
     let least = [(rows / 3).max(6), (rows / 4).max(5), (rows / 6).max(4)];
     let mut given = [0, 1, 2].map(|list| wanted[list].min(least[list]));

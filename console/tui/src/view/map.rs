@@ -80,7 +80,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     }
 }
 
-/// The text of the worst alarm if it is critical; it has a line of its own under the map of a mission.
+/// The text of the worst alarm if it is critical; it has its own line under the map of a mission.
 fn critical<'a>(look: &Look<'a>) -> Option<&'a str> {
     let worst =
         look.run.alarms.worst().filter(|alarm| alarm.severity == Severity::Crit && alarm.is_active())?;

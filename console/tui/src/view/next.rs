@@ -1,4 +1,4 @@
-//! The line that tells what comes next and whether the operator is needed.
+//! The line that states what happens next and whether the operator must act.
 
 mod held;
 
@@ -26,7 +26,7 @@ pub(super) fn clauses(model: &Model) -> Clauses {
     if matches!(model.ui.overlay, Overlay::Confirm(Ask::Start(_))) {
         clauses = vec!["Ready. The robot does not move yet.".into()];
     }
-    // No console gives orders to a run whose console is gone.
+    // If the console that runs the mission has exited, no console can give orders.
     if model.live.is_look_only() && !model.live.is_cut_off {
         clauses.retain(|clause| !clause.contains(['<', '>']));
         clauses.push(match &model.live.replay {
@@ -102,7 +102,7 @@ pub(crate) fn by_command(model: &Model) -> Vec<String> {
     by_phase(model).1.iter().map(|clause| keys.spelled(clause)).collect()
 }
 
-/// What comes next, without the figures that keep changing.
+/// What happens next, without the figures that keep changing.
 pub(crate) fn standing(model: &Model) -> String {
     if let (Phase::Held(hold), None, false) =
         (model.live.run.phase(), &model.live.asked, model.live.is_cut_off || model.live.is_look_only())

@@ -16,11 +16,11 @@ use std::cmp::Reverse;
 
 /// Width of the figure names, columns.
 const NAMES: usize = 11;
-/// Width from which the map is beside the figures, columns.
+/// The minimum width at which the map is beside the figures, columns.
 const BESIDE: u16 = 76;
 /// Width of the figures beside a map, columns.
 const FIGURES: u16 = 46;
-/// The rows below the figures from which the map is drawn there.
+/// The minimum number of rows below the figures at which the map is drawn there.
 const BELOW: u16 = 9;
 /// The number of missed areas that are marked on the map.
 const MARKED: usize = 9;
@@ -49,7 +49,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, run: &PastRun) {
     }
 }
 
-/// The name of the run's scenario; of its folder if the scenario is unknown.
+/// The name of the run's scenario, or of its folder if the scenario is unknown.
 pub(super) fn name(run: &PastRun) -> &str {
     if run.scenario.is_empty() { &run.name } else { &run.scenario }
 }

@@ -1,5 +1,5 @@
 //! The plan screen: the path on the map, what the plan promises and what it leaves out, its parameters, the pre-flight
-//! checks, and a different planner's plan alongside.
+//! checks, and a second plan, by a different planner.
 
 mod along;
 mod checks;

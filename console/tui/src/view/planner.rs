@@ -44,7 +44,7 @@ fn rows_of(look: &Look, wide: bool, room: usize) -> Vec<(u8, &'static str, Value
     let run = look.run;
     let is_stale = look.is_pose_stale();
     let pose = |value: String| marked(is_stale, (Role::Text, value));
-    // The active planner's name is also in the top line, so it matters more how the planner in shadow differs.
+    // The active planner's name is also in the top line, so the differences of the planner in shadow rank higher.
     let of_name = if run.shadow.is_some() { 3 } else { 2 };
     let mut rows = vec![(of_name, "planner", planner(look))];
     if let Some(fault) = &run.planning.fault {
@@ -159,7 +159,7 @@ fn plan(run: &Run) -> String {
 }
 
 fn scalars(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>> {
-    // A count that is zero says nothing.
+    // A count of zero is left out, because it tells the operator nothing.
     let says = |scalar: &&(String, f64, String)| !(scalar.1 == 0.0 && scalar.2.is_empty());
     let shown = look.run.planning.scalars.iter().filter(says).take(rows);
     shown

@@ -1,4 +1,5 @@
-//! The plugins screen: the files found, with their states and planners, and why others were refused.
+//! The plugins screen: the files found, with their states and planners, and the reasons for refused
+//! files.
 
 use super::look::{Look, Parts, fill};
 use super::{table, text};
@@ -11,7 +12,7 @@ use mission::{ParamInfo, PlannerInfo, Sandbox};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 
-/// Width of the key of a parameter, and of what it allows, columns.
+/// Width of the key of a parameter, and of its allowed values, columns.
 const KEY: usize = 20;
 const ALLOWED: usize = 26;
 /// The number of digits shown of a hash.
@@ -136,7 +137,7 @@ fn parameters(infos: &[ParamInfo]) -> String {
     if keys.is_empty() { "no parameters".into() } else { format!("parameters: {}", keys.join(", ")) }
 }
 
-/// A parameter: its key, what is allowed, and its meaning if there is room.
+/// A parameter: its key, its allowed values, and its meaning if there is room.
 fn parameter_row(info: &ParamInfo, columns: usize) -> Parts {
     let key = text::column(&info.key, KEY);
     let allowed = text::column(&parameter::range(info), ALLOWED);

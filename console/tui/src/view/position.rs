@@ -176,7 +176,7 @@ fn station_lines(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>>
     fits.map_or_else(Vec::new, |(_, lines)| lines.into_iter().map(|line| look.line(line)).collect())
 }
 
-/// Words in lines, and at the end the number of the others.
+/// The words in lines; if not all of them fit, the number left out comes last.
 fn laid_out(words: &[(Role, String)], more: usize, columns: usize) -> Vec<Parts> {
     let mut lines = vec![Parts::new()];
     let mut used = 0;

@@ -50,7 +50,7 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     missed::draw(look, frame, below, result);
 }
 
-/// What fits below the figures: the floor shares and, on a large screen, the plates.
+/// The panes that fit below the figures: the floor shares and, on a large screen, the plates.
 fn side(look: &Look, frame: &mut Frame, area: Rect, (result, size): (&RunResult, usize)) {
     if area.height < FLOOR {
         return;

@@ -21,7 +21,7 @@ pub(super) fn clauses(model: &Model, key: &str, value: &ParamValue) -> Vec<Strin
     vec![format!("Set {change}{default}? <accept>: set, <cancel>: cancel."), when.into(), effect]
 }
 
-/// The estimated effect, as sentences; before the start, it is that on the plan.
+/// The estimated effect, as sentences; before the start, the effect on the plan.
 fn effect_of(effect: &Effect, is_plan: bool) -> String {
     let basis = if is_plan { "New plan" } else { "Forecast from here" };
     match effect {

@@ -75,7 +75,7 @@ fn left(look: &Look) -> Option<String> {
     look.run.is_running().then(|| format!(" time left {}", coverage::left(look, true)))
 }
 
-/// The newest events, for the rows that nothing else needs.
+/// The newest events, for the rows that are still free.
 fn events(look: &Look, columns: usize) -> Vec<Line<'static>> {
     let log = &look.run.log;
     let newest = (log.oldest()..log.end()).rev().filter_map(|number| log.get(number));

@@ -9,7 +9,7 @@ use crate::update::offered;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
-/// The rows of a terminal from which the line of screens has its own row.
+/// The minimum number of rows of a terminal at which the line of screens has its own row.
 const OWN_ROW: u16 = 36;
 
 /// How much of the line is shown.

@@ -114,7 +114,7 @@ fn beside_limit(value: f64, limit: Option<f64>) -> Role {
     }
 }
 
-/// The largest wrap, and the obstacle that it is on.
+/// The largest wrap, with the obstacle round which the tether is wrapped.
 fn worst(look: &Look, tether: &Tether, room: usize) -> String {
     if tether.is_snagged {
         return "UNKNOWN (snagged)".into();

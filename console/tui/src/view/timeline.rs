@@ -129,7 +129,8 @@ fn beside(look: &Look, replay: &Replay, other: &Other, columns: usize) -> Line<'
     } else {
         (" % of reachable: ", format!(" by {align}"))
     };
-    // The colours match those on the map; that of the floor scanned by both is too dark for text.
+    // The colours match those on the map; but the colour of floor scanned by both is too dark for
+    // text.
     let roles = if replay.shows_difference { [Role::Good, Role::Ghost, Role::Text] } else { [Role::Text; 3] };
     let words = [format!("only A {a}, "), format!("only B {b}, "), format!("both {both}")];
     let parts = roles.into_iter().zip(words);

@@ -10,7 +10,7 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use world::Boundary;
 
-/// The width of a terminal from which the counts of alarms are spelled out, columns.
+/// The minimum width of a terminal at which the counts of alarms are spelled out, columns.
 const LONG_ALARMS: u16 = 160;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {

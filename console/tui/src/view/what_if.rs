@@ -16,7 +16,7 @@ const LABEL: usize = 12;
 const TABLE: (u16, u16) = (66, 100);
 /// Columns from which a screen is large.
 const LARGE: u16 = 170;
-/// Width of a candidate's column from which the difference to the first candidate is beside its value.
+/// The minimum width of a candidate's column at which the difference from the first candidate is beside its value.
 const DIFFERENCE: usize = 17;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
@@ -151,7 +151,7 @@ const FIGURES: [Figure; 6] = [
 ];
 
 impl Figure {
-    /// The value with its unit, marked if it is beyond its limit, and its difference to the first candidate.
+    /// The value with its unit, marked if it is beyond its limit, and its difference from the first candidate.
     fn cell(
         &self,
         outlook: &Outlook,

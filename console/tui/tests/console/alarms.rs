@@ -1,4 +1,4 @@
-//! The alarms screen: what the operator does about alarms.
+//! The alarms screen: the operator's actions on alarms.
 
 use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};
@@ -34,7 +34,7 @@ fn pass(screen: &mut Screen, ticks: usize) {
     screen.hear(RunMsg::Events(wait));
 }
 
-/// A position that was lost while a station was rejected, an alarm on the shelf, and some that have cleared.
+/// A run whose position was lost while a station was rejected, with a shelved alarm and some cleared ones.
 fn troubled() -> Screen {
     let mut screen = Screen::tethered();
     let near = TetherAlarm::Reel { out_m: 24.6, reel_length_m: 30.0 };

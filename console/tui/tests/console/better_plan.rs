@@ -1,4 +1,5 @@
-//! A better plan on the screen: what it saves, which key takes it, and the question before.
+//! A better plan on the screen: its saving, the key that takes it, and the question that comes
+//! first.
 
 use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};

@@ -52,7 +52,7 @@ fn offers(screen: &mut Screen, typed: &str) -> Vec<String> {
     choices(&screen.model, palette).into_iter().map(name).collect()
 }
 
-/// What a command line brings; it must be taken.
+/// The effects of a command line, which must be accepted.
 fn run(screen: &mut Screen, line: &str) -> Vec<Effect> {
     screen.press([Key::Esc, Key::Char(':')]);
     screen.type_text(line);

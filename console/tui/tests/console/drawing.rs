@@ -9,7 +9,7 @@ use world::Point;
 
 const ENTER: [Key; 1] = [Key::Enter];
 
-/// A zone that has been begun at a place.
+/// A screen on which a zone has been begun at a point.
 pub(crate) fn begun(at: Point) -> Screen {
     let mut screen = Screen::running();
     screen.type_text("i");
@@ -19,7 +19,7 @@ pub(crate) fn begun(at: Point) -> Screen {
     screen
 }
 
-/// A zone that is asked about, with its cost.
+/// A screen that asks whether to close a zone, with its cost.
 pub(crate) fn asked() -> Screen {
     let mut screen = begun(Point::new(2.0, 1.0));
     screen.model.ui.cursor = Some(Point::new(5.0, 3.0));
@@ -82,7 +82,7 @@ fn the_mouse_draws_from_where_the_drag_began() {
     screen.press(ENTER);
     let drawn = corners(&screen);
     assert_eq!((drawn[0], drawn[2]), (at(1.0, 1.0), at(3.0, 2.0)));
-    // A click does not answer.
+    // A click does not answer the question.
     assert_eq!(screen.send(Msg::Mouse(Mouse::Click(Target::Map(at(0.0, 0.0))))), []);
     assert_eq!(corners(&screen), drawn);
 }

@@ -22,7 +22,7 @@ pub(crate) fn ending() -> Screen {
     screen
 }
 
-/// A robot that drives back.
+/// A mission whose robot is driving back.
 pub(crate) fn driving_back() -> Screen {
     let mut screen = ending();
     screen.press([Key::Down, Key::Enter]);

@@ -232,7 +232,7 @@ pub(crate) struct ScriptedMission {
 }
 
 impl ScriptedMission {
-    /// Before the first tick.
+    /// Creates the mission before its first tick.
     pub(crate) fn new() -> Self {
         let EventKind::RunOpened(run) = opened() else { unreachable!("the run opens first") };
         let path = world::polyline::resampled(&spiral(), STEP_M);
@@ -246,7 +246,7 @@ impl ScriptedMission {
         Self { path, length_m, ..Self::new() }
     }
 
-    /// An event of now.
+    /// An event at the current time.
     pub(crate) fn now(&self, kind: EventKind) -> Event {
         Event { tick: self.tick, t_s: self.tick as f64 * TICK_S, kind }
     }
@@ -256,7 +256,7 @@ impl ScriptedMission {
         vec![self.now(opened()), self.now(self.estimated())]
     }
 
-    /// The plan is made that the operator sees before the start.
+    /// The events in which the plan that the operator sees before the start is made.
     pub(crate) fn planned_ahead(&self) -> Vec<Event> {
         let info = Box::new(planners().remove(1));
         [
@@ -347,7 +347,7 @@ impl ScriptedMission {
     fn estimated(&self) -> EventKind {
         let (here, next) = (self.path[self.at], self.path[self.at + 1]);
         let way = next - here;
-        // The error breathes, so that its history has a shape.
+        // The error rises and falls, so that its history has a shape.
         let breath = 1.0 + 0.4 * (self.tick as f64 * 0.09).sin();
         let sigma_m = self.sigma_m * breath;
         let covariance =
@@ -525,7 +525,7 @@ impl ScriptedMission {
 /// A screen that shows a scripted mission.
 #[derive(Clone)]
 pub(crate) struct Screen {
-    /// Its model.
+    /// The model of the screen.
     pub model: Model,
     /// The mission that it shows.
     pub mission: ScriptedMission,
@@ -616,7 +616,7 @@ impl Screen {
         screen
     }
 
-    /// Sends a message to the model. What the operator does about alarms is written down by the mission in the same tick.
+    /// Sends a message to the model. The mission records the operator's actions on alarms in the same tick.
     pub(crate) fn send(&mut self, msg: Msg) -> Vec<tui::Effect> {
         let effects = update(&mut self.model, msg);
         self.write_notes(&effects);
@@ -639,7 +639,7 @@ impl Screen {
         }
     }
 
-    /// Sends news of the run that is open to the model.
+    /// Sends a message about the open run to the model.
     pub(crate) fn hear(&mut self, msg: RunMsg) -> Vec<tui::Effect> {
         self.send(of_run(msg))
     }
@@ -667,7 +667,7 @@ impl Screen {
     }
 }
 
-/// News of the run that every fixture has open.
+/// A message about the run that is open in every fixture.
 pub(crate) fn of_run(msg: RunMsg) -> Msg {
     Msg::Run(RunId(1), msg)
 }

@@ -35,7 +35,7 @@ fn states() -> Vec<(&'static str, Screen)> {
     ]
 }
 
-/// Keys that open each screen, and what can lie over it.
+/// Keys that open each screen, and the overlays on it.
 const WAYS: [&str; 21] = [
     "1", "2", "3", "4", "5", "6", "7", "8", "4d", "5/x", "5", "3S", "3X", "3P", "3p", "3L", "3i", "?", ":z",
     "2A", "q",

@@ -1,4 +1,5 @@
-//! What stands around the panes: the line of screens, the state, the keys, questions and lists.
+//! The parts of the screen around the panes: the line of screens, the state, the keys, questions
+//! and lists.
 
 use crate::drawing;
 use crate::ending::{driving_back, ending};

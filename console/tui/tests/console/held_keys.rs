@@ -1,11 +1,11 @@
-//! A key that is held down agrees to nothing and moves nothing.
+//! A key that is held down neither confirms a question nor moves the robot.
 
 use crate::fixture::Screen;
 use mission::{Order, StepTo};
 use std::time::Duration;
 use tui::{Effect, Key, KeyPress, Msg, model::Overlay};
 
-/// Presses a key so many milliseconds after itself, and lets the time pass.
+/// Presses a key again after this many milliseconds, and lets the time pass.
 fn again(screen: &mut Screen, key: Key, after_ms: u64) -> Vec<Effect> {
     let mut effects = pass(screen, after_ms);
     let since_same = Some(Duration::from_millis(after_ms));
@@ -61,15 +61,15 @@ fn a_held_step_key_opens_the_line_and_steps_nothing() {
 fn a_step_key_that_is_pressed_steps_once() {
     let mut screen = Screen::held();
     screen.press([Key::Char('.')]);
-    // Long after: at once.
+    // A press long after the first one takes effect at once.
     assert_eq!(moves(&again(&mut screen, Key::Char('.'), 5000)), [&Order::Step]);
     screen.model.live.asked = None;
-    // Soon after: when no repeat has followed.
+    // A press soon after the first one takes effect once no repeat has followed.
     assert_eq!(moves(&again(&mut screen, Key::Char('.'), 600)), Vec::<&Order>::new());
     assert_eq!(moves(&pass(&mut screen, 299)), Vec::<&Order>::new());
     assert_eq!(moves(&pass(&mut screen, 2)), [&Order::Step]);
     screen.model.live.asked = None;
-    // Another key between them: it is not a repeat.
+    // If another key was pressed in between, the press is not a repeat.
     assert_eq!(moves(&screen.press([Key::Char('}')])), [&Order::StepTo(StepTo::LaneEnd)]);
     screen.model.live.asked = None;
     assert_eq!(moves(&screen.press([Key::Enter])), [&Order::Step]);

@@ -147,7 +147,7 @@ fn turn() -> impl Strategy<Value = Msg> {
     prop::sample::select(turns).prop_map(|events| of_run(RunMsg::Events(events)))
 }
 
-/// Messages of an operator who asks for everything and often agrees.
+/// Messages from an operator who tries every action and often confirms.
 fn deed() -> impl Strategy<Value = Vec<Msg>> {
     let press = |key: Key| Msg::Key(key.into());
     let keys = prop::sample::select(vec![
@@ -260,11 +260,13 @@ proptest! {
                 match order {
                     Order::Hold => follows_hold = true,
                     Order::Abort => {}
-                    // Nothing that moves the robot is sent on the strength of a HOLD that was not answered.
+                    // While a HOLD has not been answered, no order that moves the robot is sent in the
+                    // belief that the robot is held.
                     Order::ChoosePlanner(_) if follows_hold => {}
                     order => {
                         prop_assert_eq!(standing.standing().allows(&order), Ok(()), "{:?} in {:?}", order, standing.phase);
-                        // Orders are obeyed in turn: what does not move the robot leaves it held.
+                        // Orders are carried out in sequence: after an order that does not move the
+                        // robot, the robot stays held.
                         follows_hold &= is_harmless(&order);
                     }
                 }

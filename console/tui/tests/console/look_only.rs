@@ -1,4 +1,4 @@
-//! A console that looks on gives no order, whatever is pressed.
+//! A view-only console gives no order, whichever keys are pressed.
 
 use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};
@@ -19,7 +19,7 @@ fn onlookers() -> Vec<Screen> {
     all
 }
 
-/// Whether an effect concerns nothing but this console, its configuration, and runs that are written already.
+/// Whether an effect concerns only this console, its configuration, and runs that have already been written.
 fn looks(effect: &Effect) -> bool {
     use Effect::{Bell, Copy, Do, Look, Mouse, Quit, Redraw, SavePreset, Suspend};
     match effect {

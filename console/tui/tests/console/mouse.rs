@@ -10,7 +10,7 @@ use tui::model::home::{Found, HomeList};
 use tui::{Cache, Effect, Key, Mouse, Msg, Rows, Target, view_cached};
 use world::Point;
 
-/// What lies at a place of the screen.
+/// The screen element at a position on the screen.
 fn at(screen: &Screen, size: (u16, u16), column: u16, row: u16) -> Target {
     let mut cache = Cache::default();
     let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).unwrap();

@@ -1,4 +1,4 @@
-//! What is said to the operator covers neither the state nor a question.
+//! A notice to the operator covers neither the state nor a question.
 
 use crate::fixture::{PLAIN, Screen};
 use crate::screens::{drawn, text};
@@ -72,7 +72,7 @@ fn a_hold_and_a_new_critical_alarm_take_what_was_said_before_away() {
     say(&mut screen);
     hear(&mut screen, EventKind::Held { by: HoldReason::PositionLost, resumes: Resumes::WhenCleared });
     assert_eq!(screen.model.notice(), None);
-    // A critical alarm, which says something itself.
+    // A critical alarm, which shows its own notice.
     let mut screen = Screen::running();
     hear(&mut screen, EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 });
     say(&mut screen);

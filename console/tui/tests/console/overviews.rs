@@ -1,4 +1,5 @@
-//! The screens around a mission: what there is to open, what a plan promises, what was achieved.
+//! The screens around a mission: the scenarios and runs to open, the figures that a plan promises,
+//! and the result.
 
 use crate::fixture::{RICH, Screen, choice};
 use crate::panes::missed_summary;
@@ -318,7 +319,7 @@ fn a_result_shows_the_whole_tank_although_the_mission_was_zoomed() {
     assert_eq!(screen.model.ui.map, tui::model::ui::MapView::default());
 }
 
-/// A run that has ended, and what it leaves.
+/// A run that has ended, and its result.
 pub(crate) fn ended() -> (Screen, RunResult) {
     let mut screen = Screen::running();
     let ended = screen.mission.ended(Outcome::Complete, "end of the preset path reached");

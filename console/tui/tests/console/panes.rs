@@ -1,4 +1,4 @@
-//! What the panes of the mission screen owe the operator at every size: whole texts, and marks on what is old.
+//! At every size, the panes of the mission screen show whole texts and mark stale values.
 
 use crate::fixture::{PLAIN, RICH, Screen, TICK_S, of_run};
 use crate::screens::{drawn, text};
@@ -195,14 +195,14 @@ fn values_without_a_fresh_sample_are_marked_within_two_periods() {
         assert!(!line.is_empty(), "{name} is missing\n{}", text(&drawn(&screen.model, RICH, size)));
         assert!(!line.contains('◌'), "{name} is fresh: {line}");
     }
-    // The clock goes on, ticks come, and nothing of what the panes show is in them.
+    // The clock continues and ticks arrive, but they contain none of the values that the panes show.
     let (tick, t_s) = (screen.model.live.run.clock.tick, screen.model.live.run.clock.t_s);
     let log = |passed: u64| Event {
         tick: tick + passed,
         t_s: t_s + passed as f64 * TICK_S,
         kind: EventKind::Uncounted { runs: vec![] },
     };
-    // Ranging has a period of two ticks, all else of one.
+    // Ranges arrive every second tick; all other values arrive with every tick.
     screen.hear(RunMsg::Events((1..=5).map(log).collect()));
     for (name, line) in values(&screen, size) {
         assert!(line.contains('◌'), "{name} is old: {line}\n{}", text(&drawn(&screen.model, RICH, size)));

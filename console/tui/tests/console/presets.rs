@@ -1,4 +1,4 @@
-//! Parameters under names, and drafts of them for forecasts.
+//! Named parameter presets, and drafts of parameters for forecasts.
 
 use crate::fixture::{RICH, Screen, choice};
 use crate::screens::{drawn, text};
@@ -108,7 +108,7 @@ fn a_draft_is_forecast_and_moves_nothing() {
     assert_eq!(choices.last(), Some(&draft));
     assert_eq!(screen.model.ui.overlay, Overlay::WhatIf);
     assert!(text(&drawn(&screen.model, RICH, (120, 36))).contains("rpf with rpf_gain = 0.8."));
-    // The same once more, and one that is given up.
+    // The same draft once more, and a draft that is given up.
     assert_eq!(screen.type_text("pw"), []);
     assert_eq!(notice(&screen), "planner rpf is already in the comparison");
     screen.press([Key::Char('p'), Key::Esc]);

@@ -1,4 +1,4 @@
-//! Every key that is printed is one that does what is said of it, whatever keys the operator has chosen.
+//! Every key printed on the screen does what the text beside it says, whichever keys the operator has chosen.
 
 use crate::fixture::{RICH, Screen};
 use crate::screens::text;
@@ -42,7 +42,7 @@ fn bound(action: &str, key: char) -> Binding {
 /// Draws a model under every map and looks for keys that do nothing.
 pub(crate) fn check(model: &Model, caps: Caps, size: (u16, u16)) {
     let mut model = model.clone();
-    // It was written under the keys of the model.
+    // This text was written with the keys of the model.
     model.console.notice = None;
     for (name, keys) in maps() {
         model.console.keys = keys.clone();
@@ -94,7 +94,7 @@ fn check_over(model: &Model, caps: Caps, size: (u16, u16)) {
     }
 }
 
-/// The words that are printed as keys and are none, or run nothing.
+/// The words that are printed as keys but are not keys, or are keys without an action.
 fn misprints(shown: &str, keys: &Keymap) -> Vec<String> {
     let known =
         |word: &str| ACTIONS.iter().flat_map(|action| keys.of(action)).any(|key| key.to_string() == word);

@@ -1,4 +1,4 @@
-//! The screen finds the same floor scanned again as the account does, whatever the mission does meanwhile.
+//! The screen counts the same floor as scanned again as the account does, whatever happens in the mission.
 
 use crate::fixture::{ScriptedMission, config, opened};
 use account::Fold;
@@ -78,7 +78,7 @@ fn stretch() -> impl Strategy<Value = Stretch> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
-    /// Every cell that counts as scanned has a pass with an error, and counts on the screen as what it counts as in the account.
+    /// Every scanned cell has a pass with an error, and has the same class on the screen as in the account.
     #[test]
     fn screen_and_account_find_the_same_floor_scanned_again(stretches in prop::collection::vec(stretch(), 1..8)) {
         let (mut run, mut fold) = (Run::default(), Fold::new());

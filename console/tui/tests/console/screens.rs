@@ -1,4 +1,4 @@
-//! Stored screens: the text, and beside it what each cell stands for.
+//! Stored screens: the text, and beside it the role of each cell.
 
 use crate::fixture::{ASCII, PLAIN, RICH, Screen};
 use mission::{EventKind, HoldReason, Order, Outcome, Resumes, TaskConfig};
@@ -11,7 +11,7 @@ use world::Point;
 /// The sizes that the console is made for.
 const SIZES: [(u16, u16); 4] = [(120, 36), (80, 24), (60, 16), (44, 10)];
 
-/// Draws a model, in which no key is printed that does nothing.
+/// Draws a model, and checks that every printed key has an effect.
 pub(crate) fn drawn(model: &Model, caps: Caps, size: (u16, u16)) -> Buffer {
     crate::printed_keys::check(model, caps, size);
     drawn_as_is(model, caps, size)
@@ -34,7 +34,7 @@ fn rows(buffer: &Buffer, show: impl Fn(&ratatui::buffer::Cell) -> String) -> Str
     buffer.content.chunks(width).map(|row| row.iter().map(&show).collect::<String>() + "\n").collect()
 }
 
-/// One letter for what each cell stands for; `_` for blank ones.
+/// One letter for the role of each cell; `_` for a blank cell.
 pub(crate) fn roles(model: &Model, caps: Caps, size: (u16, u16)) -> String {
     let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).unwrap();
     terminal.draw(|frame| view_with(model, &caps, &Theme::labelled(), frame)).unwrap();

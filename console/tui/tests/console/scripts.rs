@@ -310,7 +310,7 @@ fn a_hold_that_ends_by_itself_says_so_on_every_screen() {
         let resumes = match by {
             PositionLost | RangesInconsistent | PlannerSilent { .. } | Tether { .. } => Resumes::WhenCleared,
             PlannerFault { .. } | PlanRefused { .. } => Resumes::ByFallback,
-            // These end by an order only.
+            // Only an order ends these holds.
             _ => continue,
         };
         for size in [(60, 16), (80, 24), (120, 36)] {
@@ -559,12 +559,12 @@ fn another_mission_is_opened_only_when_none_is_in_progress() {
     screen.type_text("k");
     let source = Source::File("one.toml".into());
     screen.model.live.speed = Speed::Times(4.0);
-    // What was set for one mission is not meant for the next.
+    // Settings for one mission do not apply to the next one.
     let opens = Effect::Open { id: RunId(2), source, planner: None, speed: Speed::default() };
     assert_eq!(screen.press([Key::Enter]), [opens]);
     assert_eq!(screen.model.ui.screen, tui::model::Screen::Plan);
     assert_eq!(screen.model.live.speed, Speed::default());
-    // What the run before still says is late.
+    // Messages from the previous run are too late.
     let late = screen.mission.drive(3);
     screen.hear(RunMsg::Events(late));
     assert_eq!(screen.model.live.run, tui::model::Run::default());
@@ -583,7 +583,7 @@ fn a_scenario_that_cannot_be_opened_leaves_the_ready_mission_open() {
     screen.press([Key::Enter]);
     let opening = screen.model.live.id;
     assert!(screen.model.live.is_opening);
-    // What it says meanwhile is not lost.
+    // Messages that arrive meanwhile are not lost.
     let prepared = screen.mission.wait(1);
     screen.send(Msg::Run(id, RunMsg::Events(prepared)));
     screen.send(Msg::Run(opening, RunMsg::OpenFailed("one.toml:3:1: unknown key `tnak`".into())));

@@ -9,7 +9,8 @@ pub(crate) const SIZES: [(u16, u16); 4] = [(60, 16), (80, 24), (120, 36), (200, 
 
 /// Stores a screen at every size: the text, what each cell stands for, and the text without colours if it differs.
 ///
-/// Texts that others chose may be cut: the file lines in which they stand are recognised by `is_free`.
+/// Texts that do not come from the console, such as names and reasons, may be cut; `is_free` recognises the lines
+/// that contain them.
 pub(crate) fn store(name: &str, screen: &mut Screen, is_free: fn(&str) -> bool) {
     let mut cuts = Vec::new();
     for size in SIZES {

@@ -1,4 +1,4 @@
-//! The state line: what the robot does now, and why it stands.
+//! The state line: what the robot is doing, and why it stands still.
 
 use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};

@@ -112,7 +112,7 @@ fn overlays() -> Vec<Overlay> {
     all
 }
 
-/// Where a way to stop stops.
+/// The situations in which a way to stop the robot works.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Where {
     /// On the screens with nothing over them.
@@ -124,7 +124,7 @@ enum Where {
 }
 
 impl Where {
-    /// Said without the code under test.
+    /// Computed without the code under test.
     fn includes(self, overlay: &Overlay) -> bool {
         let is_text = matches!(
             overlay,
@@ -142,8 +142,8 @@ impl Where {
     }
 }
 
-/// The ways to stop, and where they do. `X` belongs to the screens. In a line of text it is typed, and so is the space:
-/// there Ctrl-C stops, and the line above the keys says so.
+/// The ways to stop the robot, and where each one works. `X` works on the screens. In a line of text, `X` and the space
+/// are typed; there Ctrl-C stops the robot, and the line above the keys says so.
 fn ways() -> Vec<(Msg, Where)> {
     let key = |key: Key, place: Where| (Msg::Key(key.into()), place);
     let panicked = Msg::ThreadPanicked { thread: "recorder".into(), message: "out of bounds".into() };
@@ -194,7 +194,7 @@ fn screen_in(phase: &Phase) -> Screen {
     };
     screen.hear(RunMsg::Events(events));
     assert_eq!(screen.model.live.run.phase(), phase);
-    // What is only drawn is of no interest here, and slow to copy.
+    // Data that is only drawn is not needed here, and is slow to copy.
     (screen.model.live.run.coverage, screen.model.live.run.accuracy) = (None, None);
     (screen.model.live.run.trail, screen.model.live.run.log) = Default::default();
     screen.model.live.run.planning.plan = None;
@@ -239,7 +239,7 @@ fn is_loose(model: &Model) -> bool {
     by_itself || model.live.asked.is_some()
 }
 
-/// Whether the console is on its way out: it reads no keys any more.
+/// Whether the console is about to exit, so that it reads no more keys.
 fn is_farewell(way: &Msg) -> bool {
     matches!(way, Msg::Signal(Signal::Terminate | Signal::Hangup | Signal::End(_)))
 }

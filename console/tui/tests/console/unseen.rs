@@ -1,4 +1,5 @@
-//! A question that the operator cannot have read is not answered; whatever stops the robot always counts.
+//! A question that the operator cannot have read is not answered; a key that stops the robot always
+//! counts.
 
 use crate::fixture::Screen;
 use mission::{EventKind, HoldReason, Order, Resumes};

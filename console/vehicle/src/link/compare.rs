@@ -95,7 +95,7 @@ struct Track {
     commanded: f64,
     measured: f64,
     across: f64,
-    /// Sums over the last seconds: of squares, products and sizes.
+    /// Sums, over the last seconds, of squares, products and magnitudes of the rates.
     square: f64,
     product: f64,
     product_across: f64,
@@ -203,7 +203,8 @@ impl Comparison {
     }
 }
 
-/// The difference with the delay that explains the motion best; none if the motion fits with any delay.
+/// The finding for the delay that explains the motion best; `None` if, for at least one delay, the motion fits the
+/// commands.
 fn least_wrong(tracks: &[Track], axis: Axis, needed: f64) -> Option<Finding> {
     let findings: Option<Vec<Finding>> = tracks.iter().map(|track| track.finding(axis, needed)).collect();
     let fit = |track: &Track| track.product.abs().max(track.product_across.abs()) / track.square.sqrt();

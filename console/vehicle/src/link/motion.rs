@@ -3,7 +3,8 @@
 use crate::wire::message::{Odometry, Pose, Readings};
 use std::f64::consts::{PI, TAU};
 
-/// Part of the duration of a motion by which the time since the last one may be longer without a gap.
+/// Largest time between the last motion and the start of the next one, as a share of the duration of the next one; if
+/// more time has passed, a motion is missing in between.
 const GAP_OF_MOTION: f64 = 0.5;
 
 /// Turns readings, in the order of their numbers, into motions.

@@ -1,6 +1,6 @@
 //! Counts the numbered readings that arrived, and the missing ones.
 
-/// How many numbers are remembered, counted down from the highest one.
+/// Number of sequence numbers that are remembered, counted down from the highest one.
 const WINDOW: u64 = 64;
 /// A jump by more numbers than this counts as a new start, not as a loss.
 const RESTART: u64 = 10_000;

@@ -33,7 +33,7 @@ pub enum Hold {
 /// Watches a stop.
 #[derive(Debug, Clone, Default)]
 pub struct Stopping {
-    /// When the stop was commanded, and when it was sent: a stream that takes no bytes delays it.
+    /// Times at which the stop was commanded and sent; a stream that takes no bytes delays the sending.
     asked_s: Option<f64>,
     sent_s: Option<f64>,
     /// Readings in a row without motion, and the time of the first.
@@ -56,7 +56,7 @@ impl Stopping {
         self.sent_s.get_or_insert(now_s);
     }
 
-    /// When the stop was commanded, seconds.
+    /// Time at which the stop was commanded, seconds.
     pub fn asked_s(&self) -> Option<f64> {
         self.asked_s
     }

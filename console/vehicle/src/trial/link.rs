@@ -15,7 +15,7 @@ const LOST_SHARE: f64 = 0.1;
 const JITTER_S: f64 = 0.2;
 /// Greatest error of the clock's offset, seconds.
 const OFFSET_BOUND_S: f64 = 0.1;
-/// Motion of a standing vehicle within the time of listening: metres, radians.
+/// Largest motion that a standing vehicle may report while the trial listens: metres, radians.
 const STILL_M: f64 = 0.01;
 const STILL_RAD: f64 = 0.02;
 
@@ -28,7 +28,7 @@ pub struct Listened {
     pub samples: Vec<Sample>,
     /// The last state.
     pub state: Option<State>,
-    /// The lines that are not as the protocol has them.
+    /// The lines that do not conform to the protocol.
     pub lines: Lines,
     /// Number of pings sent.
     pub pings: u32,
@@ -38,7 +38,7 @@ pub struct Listened {
     pub offset: Option<Offset>,
 }
 
-/// Lines that the protocol does not know.
+/// Lines that do not conform to the protocol, and parts of messages that this version does not know.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Lines {
     /// Number of lines that are not valid messages.
@@ -149,7 +149,7 @@ fn is_sent(part: &str, readings: &[(f64, Readings)]) -> bool {
     })
 }
 
-/// By how much the delay of each reading exceeds that of the quickest one.
+/// Evaluates by how much the delay of each reading exceeds that of the quickest one.
 fn of_jitter(check: &'static str, listened: &Listened) -> Row {
     let mut delays: Vec<f64> =
         listened.readings.iter().map(|(arrival_s, readings)| arrival_s - readings.stamp_s).collect();
@@ -199,7 +199,7 @@ pub fn state(listened: &Listened) -> Row {
     let says = match (mode, commander) {
         (Mode::Ready, Commander::You) => return Row::pass(check, figures, "ready, obeys this console"),
         (Mode::Ready, Commander::OtherConsole) => "it obeys another console; close that console first",
-        (Mode::Ready, Commander::OtherProgram) => "another program commands it; end that program first",
+        (Mode::Ready, Commander::OtherProgram) => "another program is commanding it; end that program first",
         (Mode::Manual, _) => "a person is driving it by hand; that person must hand over control first",
         (Mode::EmergencyStop, _) => "its emergency stop is pressed; release it first",
         (Mode::Fault, _) => "it reports a fault; repair it first",
@@ -220,8 +220,8 @@ pub fn standstill(listened: &Listened) -> Row {
         Figure::new("distance", way_m, "m").at_most(STILL_M),
         Figure::new("turn", turn_rad.abs().to_degrees(), "deg").at_most(STILL_RAD.to_degrees()),
     ];
-    let failed = "the vehicle moves, or reports motion, without a command";
-    Row::judged(check, figures, "stands still without a command", failed)
+    let failed = "the vehicle moved, or reported motion, without a command";
+    Row::judged(check, figures, "stood still without a command", failed)
 }
 
 #[cfg(test)]

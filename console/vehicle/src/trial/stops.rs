@@ -66,7 +66,7 @@ impl Cause {
         }
     }
 
-    /// What to do if the vehicle does not stop in time.
+    /// The remedy if the vehicle does not stop in time.
     fn remedy(self) -> &'static str {
         match self {
             Self::Stop => "correct `stop_time_s` in `hello`, or make the vehicle brake harder",
@@ -134,7 +134,7 @@ pub fn stop(cause: Cause, samples: &[Sample], cause_s: f64, limits: Limits) -> R
         if for_s < limits.time_s {
             return Row::not_measured(check, "the readings do not cover the whole stop");
         }
-        let says = format!("the vehicle still moves after {for_s:.2} s; {}", cause.remedy());
+        let says = format!("the vehicle was still moving after {for_s:.2} s; {}", cause.remedy());
         return Row::fail(check, figures.figures(limits), says);
     }
     let says = format!(
@@ -224,7 +224,7 @@ mod tests {
         let row = stop(Cause::Killed, &samples(2.6, 5.0), 2.0, LIMITS);
         assert!(row.verdict == Verdict::Fail && row.says.contains("separate from the adapter"), "{row:?}");
         let row = stop(Cause::Lease, &samples(9.0, 5.0), 2.0, LIMITS);
-        assert!(row.verdict == Verdict::Fail && row.says.contains("still moves after 3.00 s"), "{row:?}");
+        assert!(row.verdict == Verdict::Fail && row.says.contains("still moving after 3.00 s"), "{row:?}");
     }
 
     #[test]

@@ -23,7 +23,7 @@ const POINTS_MAX: usize = 1000;
 pub struct Misfit {
     /// The field, such as `readings.scan.ranges_m[3]`; empty if the fault concerns the whole line.
     pub field: String,
-    /// What is wrong and what would be right, as a clause that does not name the field.
+    /// The fault and the allowed values, as a clause that does not name the field.
     pub what: String,
 }
 
@@ -208,7 +208,7 @@ impl Outline {
         if self.points_m.len() < least {
             return misfit(
                 field("points_m"),
-                format!("{} points; at least {least} are needed", self.points_m.len()),
+                format!("number of points: {}; required: {least} or more", self.points_m.len()),
             );
         }
         for (k, point) in self.points_m.iter().enumerate() {

@@ -18,7 +18,7 @@ fn greeted() -> Reader<FromVehicle> {
     reader
 }
 
-/// What the last of some lines is told to be.
+/// The meaning of the last of these lines, as text.
 fn told(lines: &[&str]) -> String {
     let mut reader = greeted();
     let mut last = None;

@@ -1,15 +1,15 @@
-//! What the rover has told about whether it can be driven.
+//! The condition of the rover, which determines whether it can be driven.
 
 use mavlink::dialects::common::{HEARTBEAT_DATA, MavModeFlag, MavState};
 use tankops_adapter::message::{Commander, Mode, State};
 
-/// Longest silence between two heartbeats, seconds: three of them may be lost in a row.
+/// Longest time between two heartbeats, seconds: three in a row may be lost.
 const HEARTBEAT_MAX_AGE_S: f64 = 4.5;
-/// Poses older than this are a fault, seconds.
+/// Age of the newest pose, seconds, above which the vehicle is in the mode `fault`.
 const POSE_MAX_AGE_S: f64 = 1.0;
-/// Scans older than this are a fault, seconds, if the rover has any.
+/// Age of the newest scan, seconds, above which a rover that scans is in the mode `fault`.
 const SCAN_MAX_AGE_S: f64 = 1.0;
-/// How long a message that cannot be right, or a command of another ground station, is a fault, seconds.
+/// Time for which an invalid message, or a command of another ground station, counts as a fault, seconds.
 const FAULT_FOR_S: f64 = 2.0;
 
 /// The mode in which ArduRover obeys velocities.
@@ -49,7 +49,7 @@ pub(super) struct Condition {
     /// System number and time of the newest command of another ground station.
     pub(super) other_command: Option<(u32, f64)>,
     heartbeat: Option<Heartbeat>,
-    /// What is wrong with a message, and until when it counts.
+    /// The fault of the last invalid message, and the time until which it counts.
     trouble: Option<(String, f64)>,
 }
 
@@ -62,12 +62,12 @@ struct Heartbeat {
 }
 
 impl Condition {
-    /// Nothing has been heard yet.
+    /// The condition before any message has arrived.
     pub(super) fn new(has_scan: bool) -> Self {
         Self { has_scan, ..Self::default() }
     }
 
-    /// The rover's autopilot is alive.
+    /// Takes a heartbeat of the rover's autopilot.
     pub(super) fn heartbeat(&mut self, beat: &HEARTBEAT_DATA, now_s: f64) {
         self.heartbeat = Some(Heartbeat {
             arrived_s: now_s,
@@ -77,12 +77,12 @@ impl Condition {
         });
     }
 
-    /// A message could not be right.
+    /// Takes the fault of an invalid message.
     pub(super) fn trouble(&mut self, why: String, now_s: f64) {
         self.trouble = Some((why, now_s + FAULT_FOR_S));
     }
 
-    /// The state to say.
+    /// The state to send.
     pub(super) fn state(&self, now_s: f64) -> State {
         let other = self.other_command.filter(|(_, at_s)| now_s - at_s < FAULT_FOR_S);
         let (mode, text) = match self.mode(other.map(|(system, _)| system), now_s) {
@@ -97,13 +97,15 @@ impl Condition {
         let fault = |why: String| Err((Mode::Fault, why));
         let is_alive = |beat: &Heartbeat| now_s - beat.arrived_s <= HEARTBEAT_MAX_AGE_S;
         let Some(beat) = self.heartbeat.filter(is_alive) else {
-            return fault("no heartbeat of the rover arrives: check address and system number".to_owned());
+            return fault(
+                "no heartbeat of the rover is arriving: check the address and the system number".to_owned(),
+            );
         };
         if MANUAL.contains(&beat.mode) {
             return Err((Mode::Manual, format!("mode {}", name(beat.mode))));
         }
         if let Some(system) = other {
-            return fault(format!("ground station {system} commands the rover, too"));
+            return fault(format!("ground station {system} is commanding the rover, too"));
         }
         if beat.mode != GUIDED {
             return fault(format!("the rover is in mode {}; switch it to GUIDED", name(beat.mode)));
@@ -118,10 +120,10 @@ impl Condition {
             return fault(why.clone());
         }
         if self.pose_s.is_none_or(|pose_s| now_s - pose_s > POSE_MAX_AGE_S) {
-            return fault("no pose arrives: check the rates of its messages".to_owned());
+            return fault("no pose is arriving: check the rates of its messages".to_owned());
         }
         if self.has_scan && self.scan_s.is_none_or(|scan_s| now_s - scan_s > SCAN_MAX_AGE_S) {
-            return fault("no scan arrives: check OBSTACLE_DISTANCE".to_owned());
+            return fault("no scan is arriving: check OBSTACLE_DISTANCE".to_owned());
         }
         Ok(())
     }

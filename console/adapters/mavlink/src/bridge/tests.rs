@@ -129,11 +129,11 @@ fn a_silent_rover_is_named() {
     assert!(state(&out).text.unwrap().starts_with("no heartbeat of the rover"));
     let mut bridge = ready();
     let out = bridge.take(Input::Tick, 1.2);
-    assert!(state(&out).text.unwrap().starts_with("no pose arrives"));
+    assert!(state(&out).text.unwrap().starts_with("no pose is arriving"));
     let out = bridge.take(attitude(6200, 0.0, 0.0), 1.21);
     assert!(out.is_empty());
     let out = bridge.take(position(6200, 0.0), 1.21);
-    assert!(state(&out).text.unwrap().starts_with("no scan arrives"));
+    assert!(state(&out).text.unwrap().starts_with("no scan is arriving"));
 }
 
 #[test]
@@ -195,7 +195,7 @@ fn commands_of_another_ground_station_are_a_fault() {
     let manual = || MavMessage::MANUAL_CONTROL(MANUAL_CONTROL_DATA::default());
     let out = bridge.take(from(254, manual()), 0.02);
     assert_eq!((state(&out).mode, state(&out).commander), (Mode::Fault, Commander::OtherProgram));
-    assert_eq!(state(&out).text.as_deref(), Some("ground station 254 commands the rover, too"));
+    assert_eq!(state(&out).text.as_deref(), Some("ground station 254 is commanding the rover, too"));
     assert_eq!(speeds(&out), [(0.0, 0.0)]);
     let out = ready().take(from(255, manual()), 0.6);
     assert_eq!(state(&out).mode, Mode::Ready, "an echo of the adapter itself");

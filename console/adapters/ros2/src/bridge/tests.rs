@@ -85,13 +85,13 @@ fn without_a_robot_the_introduction_says_what_is_missing() {
     assert!(matches!(out[0], Order::Say(FromVehicle::Hello(_))));
     let said = state(&out).unwrap();
     assert_eq!(said.mode, Mode::Fault);
-    assert_eq!(said.text.as_deref(), Some("no pose arrives on /odom: check topic, type and QoS"));
+    assert_eq!(said.text.as_deref(), Some("no pose is arriving on /odom: check topic, type and QoS"));
     let out = bridge.take(odometry(0.0, 1.0), 5.1);
     let text = state(&out).unwrap().text.clone();
-    assert_eq!(text.as_deref(), Some("no scan arrives on /scan: check topic, type and QoS"));
+    assert_eq!(text.as_deref(), Some("no scan is arriving on /scan: check topic, type and QoS"));
     let out = bridge.take(scan(), 5.2);
     let text = state(&out).unwrap().text.clone();
-    assert_eq!(text.as_deref(), Some("the robot does not listen to /cmd_vel: check topic, type and QoS"));
+    assert_eq!(text.as_deref(), Some("the robot does not subscribe to /cmd_vel: check topic, type and QoS"));
 }
 
 #[test]
@@ -148,7 +148,7 @@ fn another_commander_is_a_fault_that_stops_the_robot() {
     let out = bridge.take(Input::OtherCommand, 0.02);
     let said = state(&out).unwrap();
     assert_eq!((said.mode, said.commander), (Mode::Fault, Commander::OtherProgram));
-    assert_eq!(said.text.as_deref(), Some("another program publishes commands on /cmd_vel"));
+    assert_eq!(said.text.as_deref(), Some("another program is publishing commands on /cmd_vel"));
     assert_eq!(published(&out), [0.0]);
     assert_eq!(published(&bridge.take(drive(2), 0.05)), [0.0]);
     bridge.take(scan(), 2.0);
@@ -164,7 +164,7 @@ fn a_robot_that_expects_another_type_of_command_is_named() {
     let text = state(&out).unwrap().text.clone().unwrap();
     assert_eq!(
         text,
-        "the robot listens to /cmd_vel for geometry_msgs::msg::dds_::TwistStamped_: change command.type"
+        "the robot expects geometry_msgs::msg::dds_::TwistStamped_ on /cmd_vel: change command.type"
     );
 }
 
@@ -189,10 +189,10 @@ fn messages_that_cannot_be_right_are_named_and_stop_the_robot() {
         (odometry(f64::NAN, 1000.1), "/odom: position.x: NaN is not between"),
         (
             wrong_frame(),
-            "/odom: child_frame_id: the messages are in frame wheel, but the settings say base_link",
+            "/odom: child_frame_id: the messages are in frame `wheel`, but the settings state `base_link`",
         ),
-        (Input::Scan(Box::default()), "/scan: header.frame_id: the messages are in frame , but"),
-        (Input::Ranges(array), "/ae/ranges: data: 1 ranges more"),
+        (Input::Scan(Box::default()), "/scan: header.frame_id: the messages are in frame ``, but"),
+        (Input::Ranges(array), "/ae/ranges: data: ranges beyond the sizes of the stations: 1"),
         (Input::Tether(f64::NAN), "/tether/paid_out: data: NaN is not a length"),
     ];
     for (input, why) in cases {
@@ -226,7 +226,7 @@ fn a_pose_that_is_too_old_stops_the_robot() {
     let out = bridge.take(Input::Tick, 1.1);
     assert_eq!(
         state(&out).unwrap().text.as_deref(),
-        Some("no pose arrives on /odom: check topic, type and QoS")
+        Some("no pose is arriving on /odom: check topic, type and QoS")
     );
     assert_eq!(published(&out), [0.0]);
 }

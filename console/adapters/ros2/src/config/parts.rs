@@ -2,14 +2,14 @@
 
 use serde::Deserialize;
 
-/// Where commands go.
+/// The topic of the commands.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Command {
     /// The topic.
     #[serde(default = "cmd_vel")]
     pub(crate) topic: String,
-    /// The type of its messages, of `geometry_msgs`.
+    /// The type of its messages, in the package `geometry_msgs`.
     #[serde(rename = "type")]
     pub(crate) kind: CommandType,
     /// `frame_id` of a stamped command.
@@ -44,7 +44,7 @@ pub(crate) enum CommandType {
     TwistStamped,
 }
 
-/// A topic to subscribe.
+/// A topic to which the adapter subscribes.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Source {
@@ -107,7 +107,7 @@ pub(crate) struct ScanSource {
     /// Direction of the sensor's x axis in the robot frame, degrees, counter-clockwise.
     #[serde(default)]
     pub(crate) turned_deg: f64,
-    /// Whether the sensor hangs upside down, so that its angles are clockwise seen from above.
+    /// Whether the sensor is mounted upside down, so that its angles are clockwise when seen from above.
     #[serde(default)]
     pub(crate) upside_down: bool,
     /// QoS of the subscription.
@@ -156,14 +156,14 @@ pub(crate) enum Mapping {
     Basic,
 }
 
-/// Quality of service. Both sides must agree: a reliable subscription does not match a publisher that is not, nor does a
-/// subscription that is transient local match one that is volatile.
+/// Quality of service. Both sides must agree: a reliable subscription does not match a publisher that is best effort,
+/// and a subscription that is transient local does not match a publisher that is volatile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Qos {
     /// Whether lost samples are sent again.
     pub(crate) reliability: Reliability,
-    /// Whether late subscribers get old samples.
+    /// Whether late subscribers receive old samples.
     #[serde(default)]
     pub(crate) durability: Durability,
     /// Number of samples that are kept.
@@ -175,20 +175,20 @@ pub(crate) struct Qos {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Reliability {
-    /// They are.
+    /// Lost samples are sent again.
     Reliable,
-    /// They are not.
+    /// Lost samples are not sent again.
     BestEffort,
 }
 
-/// Whether late subscribers get old samples.
+/// Whether late subscribers receive old samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Durability {
-    /// They do not.
+    /// Late subscribers do not receive old samples.
     #[default]
     Volatile,
-    /// They do.
+    /// Late subscribers receive old samples.
     TransientLocal,
 }
 
@@ -197,12 +197,12 @@ fn depth() -> u16 {
 }
 
 impl Qos {
-    /// A publisher of commands matches every subscriber, and an old command is not worth to be sent again.
+    /// QoS of the publisher of commands: it matches every subscriber, and it does not keep old commands.
     fn of_commands() -> Self {
         Self { reliability: Reliability::Reliable, durability: Durability::Volatile, depth: 1 }
     }
 
-    /// A subscription that matches every publisher.
+    /// QoS of a subscription that matches every publisher.
     pub(crate) fn of_sensors() -> Self {
         Self { reliability: Reliability::BestEffort, durability: Durability::Volatile, depth: depth() }
     }

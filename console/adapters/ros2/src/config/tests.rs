@@ -1,6 +1,6 @@
 use super::*;
 
-/// The example that is delivered with the adapter.
+/// The example settings that are shipped with the adapter.
 const EXAMPLE: &str = include_str!("../../trial/robot.toml");
 
 #[test]
@@ -20,12 +20,12 @@ fn a_wrong_setting_is_named() {
         ("topic = \"/cmd_vel\"", "topic = \"cmd_vel\"", "command.topic: `cmd_vel` does not start with `/`"),
         ("topic = \"/odom\"", "topic = \"/odom-1\"", "odometry.topic: `odom-1` contains `-`"),
         ("topic = \"/odom\"", "topic = \"/a/2b\"", "odometry.topic: `2b` starts with a digit, in `/a/2b`"),
-        ("topic = \"/odom\"", "topic = \"/a//b\"", "odometry.topic: a name is empty, in `/a//b`"),
+        ("topic = \"/odom\"", "topic = \"/a//b\"", "odometry.topic: a part of the name is empty, in `/a//b`"),
         ("[odometry]", "[odometri]", "unknown field `odometri`"),
         (
             "[odometry]",
             "[tf]\nframe = \"a\"\nchild_frame = \"b\"\n[odometry]",
-            "tf: [odometry] is there, too",
+            "tf: [odometry] is also given",
         ),
         ("radius_m = 0.2", "radius_m = -1.0", "vehicle.radius_m: -1 is out of range"),
         ("ahead_m = 0.0", "ahead_m = 20.0", "scan.ahead_m: 20 is not between -10 and 10"),

@@ -89,8 +89,11 @@ fn ranges_follow_each_other_station_by_station() {
 #[test]
 fn ranges_that_are_none_are_named() {
     let cases = [
-        (array(&[("A", 2)], &[1.0]), "layout.dim.size: 2 ranges to station A, but 1 are there"),
-        (array(&[("A", 1)], &[1.0, 2.0]), "data: 1 ranges more than the sizes"),
+        (
+            array(&[("A", 2)], &[1.0]),
+            "layout.dim.size: 2 ranges to station A are announced; ranges in the message: 1",
+        ),
+        (array(&[("A", 1)], &[1.0, 2.0]), "data: ranges beyond the sizes of the stations: 1"),
         (array(&[("A", 1)], &[f64::NAN]), "data: NaN is not a distance to station A"),
         (array(&[("A", 1)], &[-1.0]), "data: -1 is not a distance"),
         (array(&[("", 1)], &[1.0]), "layout.dim.label"),

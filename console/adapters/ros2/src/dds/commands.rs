@@ -1,4 +1,4 @@
-//! The topic of commands: a publisher, and a subscription that hears whether others publish there, too.
+//! The topic of commands: a publisher, and a subscription that detects commands of other programs.
 
 use super::{about, joined::Joined, wall_clock};
 use crate::{
@@ -57,7 +57,7 @@ impl<M: Typed + 'static> Both<M> {
         let name = &command.topic;
         let topic = joined.topic::<M>(name, command.qos)?;
         let publisher = joined.node.create_publisher(&topic, None).map_err(about(name))?;
-        // One that matches every publisher.
+        // The subscription must match every publisher.
         let topic = joined.topic::<M>(name, config::Qos::of_sensors())?;
         let subscription = joined.node.create_subscription(&topic, None).map_err(about(name))?;
         Ok(Self { name: name.clone(), publisher, subscription })

@@ -14,7 +14,7 @@ use ros2_client::{
 };
 use std::{env, pin::pin, sync::mpsc::SyncSender, thread, time::Duration};
 
-/// How long a command may wait for a robot that does not take it.
+/// Longest time for which a command waits for a robot that does not accept it.
 const FULL_FOR: Duration = Duration::from_millis(5);
 
 /// A node in the domain.

@@ -19,7 +19,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// A client of the stop service.
 pub(super) struct Stop {
     client: Client<TriggerRequest, TriggerResponse>,
-    /// When it was called, until it has answered.
+    /// The time of the call, until the service has answered.
     called: Option<Instant>,
 }
 

@@ -79,7 +79,7 @@ fn banner(vehicle: &VehicleRecord) -> String {
     };
     format!(
         "Vehicle {name} at {at}: {heard} readings, {missed} missing, {faulty} faulty{age}; link lost {}; {} \
-         confirmed by odometry{most}{not}. No figure of this report was compared with a true position.",
+         confirmed by odometry{most}{not}. No figure in this report was compared with a true position.",
         counted(*lost, "time"),
         counted(*stops, "stop"),
     )

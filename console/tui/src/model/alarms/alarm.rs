@@ -76,8 +76,8 @@ pub struct Alarm {
     pub first_s: f64,
     /// The alarm's state in its life cycle.
     pub state: State,
-    /// The lower severity to which the alarm has dropped since, and its text; shown once the operator has
-    /// acknowledged the higher severity.
+    /// The lower severity to which the alarm has dropped since it was raised, and the text for it; both are shown once
+    /// the operator has acknowledged the higher severity.
     #[serde(default)]
     pub fallen: Option<(Severity, String)>,
     /// How many times the cause has occurred.
@@ -147,8 +147,8 @@ impl Alarm {
         matches!(self.state, State::Unacknowledged | State::Acknowledged | State::Returned)
     }
 
-    /// The urgency of the alarm; greater is more urgent. A cause that is gone is less urgent than one that persists, and
-    /// more urgent than what is only worth watching.
+    /// The urgency of the alarm; greater is more urgent. A cause that is gone is less urgent than one that persists,
+    /// and more urgent than a WATCH alarm.
     pub(super) fn rank(&self) -> impl Ord + use<> {
         (self.is_unacknowledged(), self.severity >= Severity::Warn, self.is_active(), self.severity)
     }

@@ -13,7 +13,7 @@ pub struct Limit {
     pub clear: f64,
     /// How long the value must be beyond the limit before the alarm is raised, seconds.
     pub on_delay_s: f64,
-    /// How long the value must be back at the clearing value before the alarm clears, seconds.
+    /// How long the figure must stay at or beyond the clearing value before the alarm clears, seconds.
     pub off_delay_s: f64,
 }
 
@@ -82,7 +82,7 @@ mod tests {
     const HIGH: Limit = Limit { alarm: 33.0, clear: 25.0, on_delay_s: 2.0, off_delay_s: 3.0 };
     const LOW: Limit = Limit { alarm: 200.0, clear: 300.0, on_delay_s: 0.0, off_delay_s: 0.0 };
 
-    /// What each value led to, one a second.
+    /// The results of comparing values with a limit, one value a second.
     fn edges(limit: &Limit, values: &[f64]) -> Vec<(usize, Edge)> {
         let mut watch = Watch::default();
         let take = |(second, value): (usize, &f64)| Some((second, watch.take(limit, *value, second as f64)?));

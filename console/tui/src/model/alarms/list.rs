@@ -49,7 +49,8 @@ impl Alarms {
         self.delayed.push(Delayed { cause, next, since_s, delay_s: on_delay_s });
     }
 
-    /// Takes the end of a cause. The alarm clears after the given delay, seconds, unless the cause occurs again before.
+    /// Takes the end of a cause. The alarm clears after the given delay, seconds, unless the cause occurs again before
+    /// then.
     pub fn passed(&mut self, cause: &Cause, off_delay_s: f64, t_s: f64) {
         let began = self.forget_delayed(cause).filter(|delayed| delayed.next == Next::Clear);
         if off_delay_s <= 0.0 {
@@ -110,7 +111,7 @@ impl Alarms {
         }
     }
 
-    /// What happens to the alarm of a cause that waits.
+    /// The pending change of the alarm of a cause that waits.
     fn waiting(&mut self, cause: &Cause) -> Option<&mut Next> {
         self.delayed.iter_mut().find(|delayed| delayed.cause == *cause).map(|delayed| &mut delayed.next)
     }
@@ -171,8 +172,7 @@ impl Alarms {
         }
     }
 
-    /// Applies what the operator did about an alarm. An acknowledgement applies only to the text that the operator
-    /// saw.
+    /// Applies the operator's action on an alarm. An acknowledgement applies only to the text that the operator saw.
     pub fn take(&mut self, Note { what: noted, by }: &Note, t_s: f64) {
         let by = by.as_deref();
         let (Noted::Acknowledged { alarm: key, .. }

@@ -1,8 +1,8 @@
 //! When a cause is an alarm, and how severe the alarm is, by what the mission does (ISA-18.2: delays, and limits by
 //! phase).
 //!
-//! An alarm is critical only if the robot moves or is held for its cause. What passes within its delay has no effect on
-//! the robot: it is an event and not an alarm.
+//! An alarm is critical only if the robot moves or is held for its cause. A cause that disappears within its delay has
+//! no effect on the robot: it is an event, but not an alarm.
 
 use super::Cause;
 use mission::{Gait, Phase, Severity};
@@ -10,7 +10,7 @@ use mission::{Gait, Phase, Severity};
 /// What the mission does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Context {
-    /// It waits for the start; plans are made.
+    /// The mission waits for its start; plans are being made.
     Planning,
     /// The robot drives, or stands still while its planner replans.
     Driving,
@@ -61,8 +61,8 @@ const CYCLE_S: f64 = 1.0;
 /// A tether at the edge of a limit crosses it in both directions while the robot turns, seconds.
 const TURN_S: f64 = 5.0;
 
-/// The rule for a cause whose event has the given severity. A row that is missing raises the alarm at once with the
-/// severity of its event, in every context.
+/// The rule for a cause whose event has the given severity. If the table has no row for a cause, its alarm is raised at
+/// once with the severity of the event, in every context.
 pub fn rule(cause: &Cause, severity: Severity, context: Context) -> Rule {
     let rule = |most: Severity, on_delay_s, off_delay_s| Rule {
         severity: severity.min(most),
@@ -71,7 +71,7 @@ pub fn rule(cause: &Cause, severity: Severity, context: Context) -> Rule {
     };
     let at_once = |most| rule(most, 0.0, 0.0);
     match (cause, context) {
-        // While the robot stands, a bad position costs nothing; it only delays the start or the resumption.
+        // While the robot stands still, a bad position only delays the start or the resumption.
         (Cause::PositionLost | Cause::Contradiction, Context::Planning | Context::Held) => {
             rule(Severity::Warn, CYCLE_S, 0.0)
         }
@@ -82,7 +82,7 @@ pub fn rule(cause: &Cause, severity: Severity, context: Context) -> Rule {
         (Cause::Certificate, Context::Driving | Context::DrivingBack) if severity == Severity::Crit => {
             at_once(Severity::Watch)
         }
-        // Without a planner, a robot that stands only stays where it is.
+        // Without a planner, a stationary robot only stays where it is.
         (Cause::Certificate, _) | (Cause::Planner, Context::Planning | Context::Held) => {
             at_once(Severity::Warn)
         }

@@ -1,4 +1,4 @@
-//! The life of alarms.
+//! Tests of the life cycle of alarms.
 
 use super::{rule::Rule, *};
 use mission::{
@@ -18,13 +18,13 @@ fn note(what: Noted) -> Note {
     Note { what, by: Some("lk".into()) }
 }
 
-/// The operator acknowledges an alarm in the words that it has.
+/// The operator acknowledges an alarm with its current text.
 fn acknowledge_one(alarms: &mut Alarms, cause: &Cause) {
     let text = alarms.get(cause).map(|alarm| alarm.text.clone()).unwrap_or_default();
     alarms.take(&note(Noted::Acknowledged { alarm: cause.key(), text }), 5.0);
 }
 
-/// The operator acknowledges the worst alarm; its words.
+/// The operator acknowledges the most urgent alarm; returns its text.
 fn acknowledge(alarms: &mut Alarms) -> Option<String> {
     let (cause, text) =
         alarms.worst_unacknowledged().map(|alarm| (alarm.cause.clone(), alarm.text.clone()))?;
@@ -49,7 +49,7 @@ enum Step {
     Acknowledge,
     Shelve,
     Unshelve,
-    /// The time of the shelf is over.
+    /// The time for which the alarm is shelved is over.
     Expire,
 }
 

@@ -8,7 +8,7 @@ use world::{FloorClass, Point};
 /// The minimum scanned share at which a piece of floor counts as scanned, and as partially scanned.
 const WHOLLY_SCANNED: f64 = 0.95;
 const PARTLY_SCANNED: f64 = 0.05;
-/// The minimum share of its scanned part that must be scanned again for a piece of floor to count as scanned again.
+/// A piece of floor counts as scanned again if at least this share of its scanned part was scanned again.
 const MOSTLY_AGAIN: f64 = 0.5;
 
 /// The numbers of cells in a block: floor, scanned, and scanned again.
@@ -67,8 +67,8 @@ impl Raster {
         Some((seen(FloorClass::of(self.floor().kind(index), times), has_ended), times))
     }
 
-    /// The class of a cell with next to nothing scanned; to do if the cell itself is not floor, because a block that
-    /// contains floor may have none in its middle.
+    /// The class of a cell with next to nothing scanned; the floor around it counts as to do if the cell itself is
+    /// not floor, as in the middle of a block that contains floor only elsewhere.
     fn unscanned(&self, index: usize) -> FloorClass {
         match FloorClass::of(self.floor().kind(index), 0) {
             FloorClass::Outside => FloorClass::ToDo,

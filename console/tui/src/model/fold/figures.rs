@@ -115,8 +115,8 @@ fn used_residual(residual_m: f64) -> Reading {
     Reading { now: format!("{residual_m:+.2} m"), limit: String::new(), numbers }
 }
 
-/// The figure of a tether alarm with the limit at which it was raised: a share of the tether's own limit until that is
-/// `reached`.
+/// The figure of a tether alarm with the limit at which it was raised: a share of the tether's own limit, or the limit
+/// itself if `reached`.
 fn of_tether(alarm: &TetherAlarm, reached: bool) -> Option<Reading> {
     let share = if reached { 1.0 } else { TetherAlarm::NEAR };
     let reading = |now: f64, limit: f64, written: fn(f64) -> String| Reading {

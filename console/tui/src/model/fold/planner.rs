@@ -53,7 +53,7 @@ impl Run {
                     histories.entry(name.clone()).or_default().add(event.t_s, *value);
                 }
             }
-            // The planner works on with its old values.
+            // The planner continues with its old values.
             EventKind::PlannerFailed { fault, .. } if fault.refuses_change() => {
                 self.planning.ordered = None;
                 change.say(fault.severity(), fault.message.clone());
@@ -111,7 +111,8 @@ impl Run {
         }
     }
 
-    /// Records that a parameter of the active planner was ordered, on top of those ordered before.
+    /// Records an ordered change of a parameter of the active planner, in addition to earlier
+    /// ordered changes.
     pub(super) fn order_parameter(&mut self, key: &str, value: &ParamValue) {
         let planning = &mut self.planning;
         let Some(mut choice) = planning.ordered.take().or_else(|| planning.choice.clone()) else { return };
@@ -119,7 +120,7 @@ impl Run {
         planning.ordered = Some(choice);
     }
 
-    /// Forgets the parameters that were ordered, once they are those of the active planner.
+    /// Forgets the ordered parameters once they are in effect in the active planner.
     fn parameters_settled(&mut self) {
         let planning = &mut self.planning;
         planning.ordered.take_if(|ordered| planning.choice.as_ref() == Some(ordered));

@@ -1,5 +1,5 @@
-//! The lines that pass a filter, kept up to date as lines arrive and the filter changes. Messages of a planner about its
-//! own work that follow each other are one group.
+//! The lines that pass a filter, kept up to date as lines arrive and the filter changes. Consecutive messages of a
+//! planner about its own work form one group.
 
 use super::entry::Entry;
 use super::filter::Filter;
@@ -18,7 +18,7 @@ pub struct Matches {
     filter: Filter,
     /// The lines that pass, ascending.
     found: VecDeque<Group>,
-    /// All lines before this number have already been tested.
+    /// The number of the first line that has not been tested yet.
     seen: u64,
     /// How often the last of these lines had been repeated when it was tested, and its time.
     #[serde(default)]
@@ -79,7 +79,7 @@ impl Matches {
     fn stays(&self, log: &Log, number: u64) -> bool {
         let passes = log.passing(&self.filter, number).next() == Some(number);
         match self.found.back().filter(|group| group.last == number) {
-            // A line on its own may join the group before it.
+            // A single line may join the group before it.
             Some(group) => passes && group.first < number && belongs(log, group.first, number),
             None => !passes,
         }
@@ -185,7 +185,7 @@ mod tests {
         matches.newest(log, 0).map(|listed| listed.entry.text.as_str()).collect()
     }
 
-    /// What refreshing step by step has to agree with.
+    /// The matches found all at once, to which a step-by-step refresh must lead, too.
     fn fresh(text: &str, log: &Log) -> Matches {
         let mut matches = Matches::default();
         matches.refresh(text, log);
@@ -244,7 +244,7 @@ mod tests {
     #[test]
     fn messages_that_are_repeated_join_and_leave_groups_as_in_a_fresh_list() {
         let (mut log, mut matches) = (Log::default(), Matches::default());
-        // The same words again, later, by the same or by another planner.
+        // The same words are repeated later, by the same planner or by another one.
         let steps =
             [("rpf", 0), ("rpf", 1), ("rpf", 1), ("rpf", 1), ("apf", 1), ("rpf", 1), ("apf", 2), ("apf", 2)];
         for text in ["sev>=debug", "sev>=debug t>4", "sev>=debug -1"] {

@@ -108,7 +108,7 @@ impl Track {
 mod tests {
     use super::*;
 
-    /// A way there and back at some speed, after some time of standing.
+    /// The track of a robot that waits for some time and then drives there and back at some speed.
     fn track(speed_m_per_s: f64, waits_s: f64) -> Track {
         let mut track = Track { started_s: waits_s, ..Track::default() };
         let turn_s = 100.0 / speed_m_per_s;

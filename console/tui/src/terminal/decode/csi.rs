@@ -64,7 +64,7 @@ impl Csi {
             b'~' if field(0) == "27" => (character(number(field(2))?), How::of(field(1))),
             b'~' => (numbered(number(field(0))?), How::of(field(1))),
             b'u' => (character(number(field(0))?), How::of(field(1))),
-            // With numbers, R is the position of the cursor.
+            // With numbers, R ends a report of the cursor position.
             b'R' if !text.is_empty() => return None,
             b'A'..=b'D' | b'F' | b'H' | b'P'..=b'S' | b'Z' => (ss3(last), How::of(field(1))),
             _ => return None,

@@ -2,7 +2,7 @@
 
 /// Maximum number of bytes kept of a string: enough for the answer about the background.
 const KEPT: usize = 48;
-/// A longer string never ends properly.
+/// A string longer than this, in bytes, is taken to be broken off.
 const LONGEST: usize = 1 << 20;
 
 /// A control string: OSC, DCS, SOS, PM or APC.
@@ -11,7 +11,8 @@ pub(super) struct ControlString {
     is_osc: bool,
     kept: Vec<u8>,
     length: usize,
-    /// How many bytes of a character are still to come; within a character, 0x9c does not end the string.
+    /// The number of bytes of the current character that are still missing; within a character, 0x9c does
+    /// not end the string.
     continues: u8,
 }
 

@@ -15,8 +15,8 @@ const NUMBERS: [&str; remedies::MOST] =
 /// Rows that a list cannot use: its frame, and the three lines that always stay visible.
 const FRAME: usize = 5;
 
-/// The actions, numbered; while the list is open, the selected action is marked. The advice follows, not numbered: there is
-/// nothing to run.
+/// The actions, numbered; while the list is open, the selected action is marked. The advice follows without numbers,
+/// because there is no action to run.
 pub(super) fn lines(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'static>> {
     let selected = match &look.model.ui.overlay {
         Overlay::Remedies { cause, selected } if *cause == alarm.cause => Some(*selected),

@@ -10,7 +10,7 @@ use ratatui::text::Line;
 
 /// Rows of the text about the selected row, without its title.
 pub(super) const ABOUT: u16 = 2;
-/// The rows of a pane from which it has a text about the selected row.
+/// The minimum rows of a pane at which it has a text about the selected row.
 const LEAST: u16 = 8;
 
 /// The contents of a list.

@@ -12,7 +12,7 @@ use crate::view::text;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
-/// Width of the columns, each with a blank.
+/// Width of the columns, each with one space.
 const BEGAN: usize = 13;
 const END: usize = 11;
 const REACH: usize = 8;

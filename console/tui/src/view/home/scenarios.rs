@@ -46,7 +46,7 @@ fn columns(listed: &[&ScenarioEntry], room: usize) -> Columns {
     let least = Columns { planner: 0, ..short };
     let all = [of(full), of(short), of(least)];
     let fitting = all.into_iter().find(|columns| columns.name >= widest.min(22)).unwrap_or(all[2]);
-    // The remaining width goes to the column `end`, whose texts gain most from it.
+    // The remaining width goes to the column `end`, whose texts benefit most from it.
     Columns {
         end: fitting.end + fitting.name.saturating_sub(widest),
         name: fitting.name.min(widest),

@@ -160,7 +160,7 @@ fn below(look: &Look, selected: Option<&Choice>, room: usize) -> Vec<Row> {
     refused.into_iter().chain(listed).chain([hint(&format!(" {}", joined(&clauses, room)))]).collect()
 }
 
-/// As many values as fit, and the number of the others.
+/// As many values as fit, and the number of values left out.
 fn listing(values: &[String], room: usize) -> String {
     let mut line = String::new();
     for (index, value) in values.iter().enumerate() {

@@ -37,7 +37,7 @@ impl List {
             self.below.len().min(room.saturating_sub(3).max(self.needed_below)).min(room.saturating_sub(1));
         let chosen = self.selected..self.selected + self.selected_rows.max(1);
         let shown = table::window(chosen.end - 1, self.rows.len(), room - below);
-        // A list that is cut says where it is.
+        // If only a part of the list is visible, the title states which part.
         let place = if shown.len() < self.rows.len() {
             let entries = |rows: usize| rows - self.headings.iter().filter(|row| **row < rows).count();
             let range = entries(shown.start)..entries(shown.end);

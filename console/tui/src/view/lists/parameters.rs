@@ -73,7 +73,7 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
     }
 }
 
-/// A cell that does not touch the next one.
+/// A table cell that ends with a space, so that it does not touch the next cell.
 fn spaced(cell: &str, columns: usize) -> String {
     text::column(&text::fit(cell, columns.saturating_sub(1)), columns)
 }

@@ -58,7 +58,7 @@ fn row(look: &Look, line: &PlannerLine) -> Row {
     };
     let drives = Some(planner.id.as_str()) == look.run.planner_id();
     let name = (Role::Title, text::column(&planner.id, 18));
-    // The reason needs the room of the version.
+    // The reason takes the place of the version.
     if let Some(why) = look.run.cannot_fly(planner).filter(|_| !drives) {
         return vec![name, (Role::Dim, why.into())];
     }

@@ -1,4 +1,4 @@
-//! The paths on the map: the plan, where it leads and how far it has been driven, other plans, and the trail.
+//! The paths on the map: the plan with its direction and the part that has been driven, other plans, and the trail.
 
 use super::ink::{self, Ink};
 use super::pen::{Pen, within};
@@ -63,7 +63,7 @@ pub(super) fn parts(look: &Look, course: &Course) -> Vec<(Lane, bool)> {
     divided(course.track.path, course.track.lanes, lane_m, course.ahead)
 }
 
-/// Which lanes of the plan are drawn, and which of a second plan beside it.
+/// The lanes that are drawn: those of the plan, and those of a second plan beside it.
 pub(super) fn thinnings(look: &Look, window: Window) -> [Thinning; 2] {
     let lane_m = look.run.about.as_ref().map_or(0.0, |about| about.mission.lane_m());
     let shadow = look.run.shown_shadow().filter(|_| !look.run.is_running());

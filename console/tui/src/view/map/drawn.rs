@@ -18,7 +18,7 @@ pub(super) const KINDS: [(Ink, &str); 3] =
 pub(super) fn shown<'a>(look: &Look<'a>) -> &'a [Drawing] {
     let planning = &look.run.planning;
     let old = look.run.clock.tick.saturating_sub(planning.drawings_tick) > SHOWN_TICKS;
-    // The plan screen shows what is planned, not what is steered.
+    // The plan screen shows the plan, and not how the planner steers the robot.
     let old = old || look.model.ui.screen == Screen::Plan;
     if old || !look.model.ui.layers.shows(MapLayer::Drawings) { &[] } else { &planning.drawings }
 }

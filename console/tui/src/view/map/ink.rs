@@ -41,9 +41,9 @@ pub(super) const SHADOW: Ink = ink(Role::Ghost, Pattern::Sparse, ';');
 pub(super) const BLOCKED: Ink = ink(Role::NoGo, Pattern::Thick, 'x');
 /// The tether.
 pub(super) const TETHER: Ink = ink(Role::Tether, Pattern::Double, '~');
-/// What pulls the robot, among the planner's drawings.
+/// A planner drawing of a force that attracts the robot.
 pub(super) const PULL: Ink = ink(Role::Pull, Pattern::Jagged, '{');
-/// What pushes the robot away, among the planner's drawings.
+/// A planner drawing of a force that repels the robot.
 pub(super) const PUSH: Ink = ink(Role::Push, Pattern::Beaded, '}');
 /// The planner's other drawings.
 pub(super) const DRAWN: Ink = ink(Role::Drawn, Pattern::DashDotted, '\'');

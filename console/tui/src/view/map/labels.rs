@@ -1,4 +1,5 @@
-//! The letters on the map: names, marks, numbers of lanes. A label that is less important gives way.
+//! The letters on the map: names, marks, numbers of lanes. If two labels would overlap, the less important one is
+//! moved or left out.
 
 use super::course::{self, Track};
 use super::ink::{self, Ink};
@@ -58,7 +59,7 @@ pub(super) fn draw(look: &Look, window: Window, area: Rect, buffer: &mut Buffer)
 }
 
 impl Board<'_, '_> {
-    /// The cursor and the robots, which nothing covers.
+    /// The cursor and the robots, which no other label covers.
     fn robots(&mut self) {
         let look = self.look;
         if let Some(cursor) = look.model.ui.cursor {
@@ -78,7 +79,7 @@ impl Board<'_, '_> {
         }
     }
 
-    /// Frees the robot from the lines beside it.
+    /// Clears the lines beside the robot, so that its mark stands out.
     fn halo(&mut self, at: Point) {
         let Some((column, row)) = self.window.cell_of(at) else { return };
         for column in [column.checked_sub(1), column.checked_add(1)].into_iter().flatten() {

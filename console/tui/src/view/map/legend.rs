@@ -45,7 +45,7 @@ impl Entry {
     }
 }
 
-/// The places of the entries beside the floor: column, row and index; and the entries for which there is none.
+/// The places of the entries beside the floor (column, row and index), and the entries that have no place there.
 pub(super) struct Placed {
     beside: Vec<(u16, u16, Entry)>,
     /// The entries that do not fit beside the floor.
@@ -327,7 +327,7 @@ mod tests {
         let of_mission = |ink, word| match word {
             "compared" | "driven" => !mission,
             "trail" | RUN_B => mission,
-            // Either as it was before the start, or as it is ahead of the robot.
+            // The plan is drawn either as before the start, or as ahead of the robot.
             _ => ink != ink::PLAN,
         };
         let lines = LINES.into_iter().map(|(ink, word, _)| (ink, word));

@@ -180,7 +180,7 @@ fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
                 floor(raster, at, edge_m, run.has_missed()).map(|shade| shade.when(&not_reached, raster, at))
             }
         };
-        // Half a character that is partly beyond the wall stays blank; a whole one is the wall's.
+        // Half a character that is partly beyond the wall stays blank; a whole character there belongs to the wall.
         let is_inside = |at, edge_m| rows_per_row == 1 || is_floor(raster, at, edge_m);
         let shade = |(at, edge_m)| shade((at, edge_m)).filter(|_| is_inside(at, edge_m));
         window.dots(rows_per_row).map(shade).collect()

@@ -9,7 +9,8 @@ use super::thin::Thin;
 use crate::model::ui::MapLayer;
 use ratatui::widgets::canvas::Context;
 
-/// How much of its plan is drawn while the robot moves, metres; while the robot is held, all of it is drawn.
+/// The length of its plan that is drawn while the robot moves, metres; while the robot is held, the whole
+/// plan is drawn.
 const AHEAD_M: f64 = 4.0;
 
 impl Pen<'_> {

@@ -10,11 +10,12 @@ use world::{Point, polyline};
 const APART_COLUMNS: f64 = 2.2;
 /// The distance between the lanes drawn if not all are, columns.
 const THINNED_COLUMNS: f64 = 2.0;
-/// Maximum number of lanes of which one is drawn.
+/// Maximum number n if only every n-th lane is drawn.
 const MOST: usize = 99;
 /// A way between two lanes that is longer than this many lane widths leads to a different part of the floor.
 const TRANSIT_LANES: f64 = 8.0;
-/// Two lanes are one line, which an obstacle interrupts, if their directions differ by less than this, radians.
+/// If the directions of two lanes differ by less than this, radians, they count as one line that an obstacle
+/// interrupts.
 const SAME_LINE_RAD: f64 = 0.3;
 /// A link spans at most this many times the distance between the lanes drawn.
 const LINK: f64 = 2.5;
@@ -155,7 +156,7 @@ fn apart(path: &[Point], gap_m: f64) -> Vec<Lane> {
         let (x, y) = tile(at);
         let around = (-1..=1).flat_map(|right| (-1..=1).map(move |up| (x + right, y + up)));
         let mut near = around.filter_map(|tile| drawn.get(&tile)).flatten();
-        // The stretch that leads here does not count.
+        // The stretch that leads to this point does not count.
         let is_near = |other: &usize| {
             (path[*other] - at).norm() < gap_m && along_m[index] - along_m[*other] > 3.0 * gap_m
         };

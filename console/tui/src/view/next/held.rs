@@ -29,11 +29,11 @@ pub(super) fn clauses(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String>
 /// The first word of the state: whether the robot stands still.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Head {
-    /// It stands; in a live run, odometry has confirmed this.
+    /// The robot stands still; in a live run, odometry has confirmed this.
     Held,
-    /// It has been commanded to stop.
+    /// The robot has been commanded to stop.
     Stopping,
-    /// It should stand, but odometry does not show it.
+    /// The robot should stand still, but odometry does not show that it does.
     NotConfirmed,
 }
 
@@ -58,7 +58,8 @@ impl Head {
     }
 }
 
-/// A vehicle that cannot be driven now, whatever the robot is held for; `None` if it can be driven.
+/// The state line for a vehicle that cannot be driven now, whatever the reason for the hold; `None` if the vehicle can
+/// be driven.
 fn undrivable(head: Head, by: &HoldReason, link: &LinkSeen) -> Option<Vec<String>> {
     let (what, needs) = match link.state {
         LinkState::Up => return None,
@@ -66,7 +67,7 @@ fn undrivable(head: Head, by: &HoldReason, link: &LinkSeen) -> Option<Vec<String
         LinkState::Closed => ("link to vehicle closed", "Cannot resume: only a new run connects again."),
         LinkState::Faulty => ("vehicle sends faulty messages", "Cannot resume until they are correct."),
         LinkState::Restarted => ("vehicle has restarted", "Cannot resume yet."),
-        LinkState::Manual => ("vehicle is driven by hand", "Cannot resume until it is released."),
+        LinkState::Manual => ("vehicle is being driven by hand", "Cannot resume until it is released."),
         LinkState::EmergencyStop => ("emergency stop is pressed", "Cannot resume until it is released."),
         LinkState::OtherCommander => {
             ("vehicle obeys another console", "Cannot resume until that one has ended.")

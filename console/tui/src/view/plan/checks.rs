@@ -22,7 +22,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     });
     let passed: Vec<String> = passed.collect();
     let full = text::wrap_items(&passed, columns, "   ");
-    // If the findings do not fit, the names do.
+    // If the findings do not fit, only the names of the checks are shown.
     let names: Vec<String> = good.iter().map(|check| check.what.clone()).collect();
     let fits = lines.len() + full.len() <= rows;
     let passed = if fits { full } else { text::wrap_items(&names, columns.saturating_sub(4), ", ") };
@@ -47,7 +47,7 @@ fn is_bad(check: &Check) -> bool {
     matches!(check.outcome, CheckOutcome::Failed | CheckOutcome::Warning)
 }
 
-/// Whether the finding is short enough to stand in a summary.
+/// Whether the finding is short enough for a summary.
 fn has_figure(check: &Check) -> bool {
     check.outcome == CheckOutcome::Passed && text::width(&check.found) <= 24
 }

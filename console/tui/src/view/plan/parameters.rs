@@ -1,4 +1,5 @@
-//! The parameters of the planner: first those that were changed, then the others as far as there is room.
+//! The parameters of the planner: first those that were changed, then as many of the unchanged ones as
+//! fit.
 
 use crate::model::{Pane, parameter};
 use crate::theme::Role;
@@ -11,7 +12,7 @@ use ratatui::text::Line;
 
 /// Blanks between parameters in a line.
 const GAP: &str = "   ";
-/// Width of a key and of a value if each parameter has its line, columns.
+/// Width of a key and of a value if each parameter has its own line, columns.
 const KEY: usize = 22;
 const VALUE: usize = 20;
 

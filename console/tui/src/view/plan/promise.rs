@@ -15,7 +15,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 const LABEL: usize = 12;
 const VALUE: usize = 9;
 const LIMIT: usize = 8;
-/// Width from which limits stand beside two columns of figures, columns.
+/// The minimum width at which limits are shown beside two columns of figures, columns.
 const WITH_LIMIT: usize = 42;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
@@ -40,7 +40,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         )
     };
     let estimate = look.model.live.promised();
-    // A figure that the estimate of this mission cannot have, such as a tether's, has no row.
+    // A figure that does not apply to this mission has no row, for example a figure of the tether in a mission without
+    // one.
     let has =
         |figure: &Figure| estimate.is_none_or(|estimate| (figure.promised)(estimate, look.run).is_some());
     for figure in FIGURES.into_iter().filter(has) {

@@ -59,7 +59,7 @@ fn lines(look: &Look, result: &RunResult, columns: usize) -> Vec<Line<'static>> 
     lines.extend(table.map(|(role, [what, predicted, actual, limit])| {
         // Without colours, the mark shows that a limit has been exceeded.
         let mark = if role == Role::Warn { "!" } else { " " };
-        // A narrow table leaves out what the value refers to.
+        // A narrow table omits the words after a value that state what the value refers to.
         let name = what.split(" (").next().unwrap_or_default().to_owned();
         let what = text::wording([what, name], label);
         look.line([

@@ -166,7 +166,8 @@ fn time_s(value: &str) -> Result<f64, String> {
     }
 }
 
-/// Whether the words name this station, and not one whose name merely begins in the same way.
+/// Whether the words name this station. A station whose name only begins with this name does not
+/// count.
 fn names_station(words: &str, station: &str) -> bool {
     let ends = |at: usize| !words[at..].starts_with(char::is_alphanumeric);
     words.match_indices(station).any(|(at, _)| ends(at + station.len()))

@@ -1,4 +1,4 @@
-//! What filters understand, and what they say of what they do not.
+//! Tests of filters: the terms that they accept, and the reasons for refused terms.
 
 use super::super::{Entry, Log, Occurrence, What};
 use super::*;
@@ -19,7 +19,7 @@ fn lines() -> Vec<Entry> {
     ]
 }
 
-/// Which lines pass.
+/// The indices of the lines that pass a filter.
 fn passing(text: &str) -> Vec<usize> {
     let filter = Filter::parse(text);
     assert_eq!(filter.problems, [], "{text}");

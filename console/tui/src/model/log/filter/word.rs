@@ -4,7 +4,7 @@ use std::ops::Range;
 
 /// A word of a filter: text between separators, or in quotes.
 pub(super) struct Word {
-    /// The position in the text, bytes.
+    /// The range of bytes in the text of the filter.
     pub at: Range<usize>,
     /// The word without its quotes.
     pub text: String,
