@@ -19,8 +19,8 @@ const SWAPS_AT: [u64; 3] = [5, 40, 120];
 /// A planner's memory is measured after `WARM_UP` steps, and again after `STEPS` more.
 const WARM_UP: usize = 300;
 const STEPS: usize = 3000;
-/// Maximum growth of the memory between the two measurements, bytes. At this rate, 0.7 kB per step, a mission of eight hours takes 200
-/// MB.
+/// Maximum growth of the memory between the two measurements, bytes. At this rate, 0.7 kB per step, a
+/// mission of eight hours takes 200 MB.
 const MAY_GROW: u64 = 2 << 20;
 /// The number of ticks for which a planner is watched after an intervention.
 const LOOK_FOR: u64 = 30;

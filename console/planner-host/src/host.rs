@@ -269,8 +269,8 @@ impl Host {
         self.planners.iter_mut().any(|planner| planner.id == id && planner.has_ended_idle())
     }
 
-    /// Waits until something happens or the time limit is reached, and then handles the events. Returns whether the host
-    /// was woken.
+    /// Waits until something happens or the time limit is reached, and then handles the events. Returns whether
+    /// the host was woken.
     fn look(&mut self, until: Option<Instant>) -> bool {
         if self.is_answered_at_once() {
             return false;

@@ -1,4 +1,4 @@
-//! Keeps the output and the crashes of planners until the caller collects them.
+//! Keeps the output, crashes and bad ends of planners until the caller collects them.
 
 use crate::remains::{BadEnd, Crash, Printed};
 
