@@ -122,7 +122,7 @@ fn a_planner_that_breaks_a_rule_fails_its_checks() {
     );
     let stiff = checked("step, reconfigure, NULL", "step, NULL, NULL");
     assert!(
-        stiff.code == Some(1) && stiff.out.contains("FAIL  accepts changes of its live parameters"),
+        stiff.code == Some(1) && stiff.out.contains("FAIL  accepts changes to its live parameters"),
         "{stiff:?}"
     );
     let clock = "static double noise; noise += (double)(size_t)in / 1e18; host->scalar(host->ctx, (tp_str)TP_STR(\"n\"), \

@@ -19,8 +19,8 @@ const SWAPS_AT: [u64; 3] = [5, 40, 120];
 /// A planner's memory is measured after `WARM_UP` steps, and again after `STEPS` more.
 const WARM_UP: usize = 300;
 const STEPS: usize = 3000;
-/// Maximum growth of the memory in between, bytes. At this rate, 0.7 kB per step, a mission of eight hours takes 200
-/// MB.
+/// Maximum growth of the memory between the two measurements, bytes. At this rate, 0.7 kB per step, a
+/// mission of eight hours takes 200 MB.
 const MAY_GROW: u64 = 2 << 20;
 /// The number of ticks for which a planner is watched after an intervention.
 const LOOK_FOR: u64 = 30;
@@ -81,7 +81,7 @@ pub(crate) fn all(subject: &Subject<'_>, flown: &[Flown], first_seed: u64) -> Ve
         check("answers steps in time", in_time(flown)),
         check("repeats its mission exactly", subject.twice()),
         check("works at the limits of its parameters", subject.extremes()),
-        check("accepts changes of its live parameters", subject.changes()),
+        check("accepts changes to its live parameters", subject.changes()),
         check("stops planning when it is asked to", subject.stops()),
         check("takes over during a mission", subject.takes_over()),
     ];
@@ -96,7 +96,7 @@ pub(crate) fn all(subject: &Subject<'_>, flown: &[Flown], first_seed: u64) -> Ve
     checks
 }
 
-/// Returns the first sentence about a tank, preceded by the seed of the tank.
+/// Returns the first sentence that `about` gives for a tank, preceded by the seed of the tank.
 fn named(flown: &[Flown], first_seed: u64, about: impl Fn(&Flown) -> Option<&str>) -> Option<String> {
     let mut tanks = (0..).zip(flown);
     tanks.find_map(|(n, flown)| {

@@ -25,7 +25,7 @@ pub struct NotUtf8 {
 }
 
 impl NotUtf8 {
-    /// Finds what makes some bytes not UTF-8: an invalid byte, or signs of a different encoding. Returns `None` if
+    /// Finds the reason why bytes are not UTF-8: an invalid byte, or signs of a different encoding. Returns `None` if
     /// they are plain UTF-8.
     ///
     /// ```

@@ -50,7 +50,7 @@ pub fn open_waiting(path: &Path) -> io::Result<File> {
         OpenOptions::new().read(true).custom_flags(OFlags::NONBLOCK.bits().cast_signed()).open(path)?;
     let kind = file.metadata()?.file_type();
     if kind.is_file() {
-        // A file of the system, such as the kernel's log, might wait for data for ever.
+        // A file of the system, such as the kernel's log, might wait for data forever.
         return Ok(file);
     }
     if kind.is_fifo() {

@@ -132,7 +132,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// One of each kind.
+    /// One character of each kind that is not plain.
     const HIDDEN: &str = "\u{0}\u{7}\u{8}\u{1b}\u{7f}\u{90}\u{9b}\u{9d}\u{ad}\u{61c}\u{115f}\u{180e}\u{200b}\u{200d}\u{200f}\u{202a}\u{202e}\
                           \u{2060}\u{2066}\u{2069}\u{206a}\u{3164}\u{fe0f}\u{feff}\u{fff9}\u{fffe}\u{e0001}\u{e0041}\u{e007f}\u{e0100}";
 

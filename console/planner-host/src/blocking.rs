@@ -28,7 +28,7 @@ pub struct BlockingHost {
     /// The worker of the active planner.
     active: Option<WorkerId>,
     n_asks: u32,
-    /// Log messages from calls with results that cannot contain them.
+    /// Log messages from calls whose results cannot contain log messages.
     unheard: Vec<(LogLevel, String)>,
     /// The number of calls made while no planner was chosen.
     n_unanswered: u64,

@@ -129,7 +129,7 @@ impl Host {
         std::mem::take(&mut self.kept.bad_ends)
     }
 
-    /// Returns how long a plan may take.
+    /// Returns the budget for a plan.
     pub fn plan_budget(&self) -> Duration {
         self.config.plan_deadline
     }
@@ -269,8 +269,8 @@ impl Host {
         self.planners.iter_mut().any(|planner| planner.id == id && planner.has_ended_idle())
     }
 
-    /// Waits until something happens or the time limit is reached, and then does what is due. Returns whether the host
-    /// was woken.
+    /// Waits until something happens or the time limit is reached, and then handles the events. Returns whether
+    /// the host was woken.
     fn look(&mut self, until: Option<Instant>) -> bool {
         if self.is_answered_at_once() {
             return false;

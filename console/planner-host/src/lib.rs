@@ -6,7 +6,7 @@
 //! with one sentence, within the budget of the request.
 //!
 //! [`Host`] answers the asks of a mission and waits only where the caller requests it. [`BlockingHost`] is for callers
-//! that have nothing to do but wait. [`survey`] lists the plugins found. The hidden command `worker` runs
+//! that only wait for answers. [`survey`] lists the plugins found. The hidden command `worker` runs
 //! [`worker_main`]. This crate needs a Unix system.
 //!
 //! Coordinate frames and units are those of `planner_api`.

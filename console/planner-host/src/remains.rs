@@ -1,5 +1,5 @@
-//! What planners leave behind besides their answers: their printed output, and the remains of planners that failed.
-//! When these arrive depends on the machine, so they are kept out of both the journal and the recording.
+//! The printed output of planners, the remains of planners that failed, and the bad ends of planners.
+//! The time at which these arrive depends on the machine, so they are kept out of both the journal and the recording.
 
 use mission::{Cause, Fault};
 use std::fmt;

@@ -18,7 +18,7 @@ const PASSED_M: f64 = 0.35;
 /// Initial clearance beside the path, in addition to the distance that the window keeps, metres; halved until a path is
 /// found.
 const ROOM_M: f64 = 0.25;
-/// Number of attempts with less and less clearance.
+/// Number of attempts, each with less clearance than the previous one.
 const ATTEMPTS: u32 = 6;
 /// Interval between checks whether the path is still free, steps. The path is replanned if it is not free, and whenever
 /// the map changes.
@@ -58,7 +58,7 @@ pub struct Field {
     pub keep_m: f64,
 }
 
-/// The virtual goals, and what is remembered about them from step to step.
+/// The virtual goals, and their state from step to step.
 #[derive(Debug, Clone)]
 pub struct Guide {
     goals: VirtualGoals,

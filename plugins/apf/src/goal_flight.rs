@@ -62,7 +62,7 @@ impl GoalFlight {
     /// the map.
     ///
     /// # Errors
-    /// When the console requests a stop.
+    /// The console requests a stop.
     pub(crate) fn step(
         &mut self,
         sensed: &Sensed<'_>,
@@ -97,7 +97,7 @@ fn map_of(site: &Site<'_>, evades: bool) -> KnownMap {
 }
 
 impl Checked {
-    /// Turns a walk into a plan. Logs what is wrong with it, followed by the advice `instead`.
+    /// Turns a walk into a plan. Logs the faults of the walk, followed by the advice `instead`.
     pub(crate) fn plan_of(&self, walk: Walk, map: &KnownMap, instead: &str, ctx: &Ctx<'_>) -> Plan {
         let clearance_m = map.path_clearance_m(&walk.path, self.demanded_m + 1.0);
         walk.into_plan_or(clearance_m, self.demanded_m, instead, ctx)

@@ -31,7 +31,7 @@ pub struct Descent {
 /// Walks until the goal is reached, the law is trapped or the moves are used up.
 ///
 /// # Errors
-/// When the console requests a stop.
+/// The console requests a stop.
 pub fn descend(scene: &Scene, settings: &FieldSettings, trip: &Descent, ctx: &Ctx<'_>) -> Result<Walk> {
     let mut walker = Walker::new(scene, settings, trip.start);
     let moves = (DETOUR * (trip.goal - trip.start).norm() / trip.step_m) as usize + PATIENCE_MOVES;

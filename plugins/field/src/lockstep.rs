@@ -22,7 +22,7 @@ const TAIL_SHARE: f64 = 0.02;
 /// last point, or at the end of the list.
 ///
 /// # Errors
-/// When the console requests a stop.
+/// The console requests a stop.
 pub fn follow(
     scene: &Scene,
     settings: &FieldSettings,

@@ -59,7 +59,7 @@ impl ForcePilot {
     /// Returns the command for one tick, and draws the forces.
     ///
     /// # Errors
-    /// When the console requests a stop.
+    /// The console requests a stop.
     pub fn step(&mut self, settings: &FieldSettings, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
         let (movers, standing) = evade::sorted_if(settings.evades, sensed, self.pilot.bodies(sensed));

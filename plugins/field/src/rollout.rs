@@ -24,7 +24,7 @@ const SPARE_TICKS: usize = 4000;
 /// direction.
 ///
 /// # Errors
-/// When the console requests a stop.
+/// The console requests a stop.
 pub fn fly(
     scene: &Scene,
     settings: &FieldSettings,

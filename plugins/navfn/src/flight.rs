@@ -23,7 +23,7 @@ impl Flyer {
     /// Returns the command for one tick. Without a plan, the robot waits for one.
     ///
     /// # Errors
-    /// When the console requests a stop.
+    /// The console requests a stop.
     pub(crate) fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
         if sensed.path_ahead.is_empty() {

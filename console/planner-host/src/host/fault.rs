@@ -141,7 +141,7 @@ fn of_refusal(refusal: Refusal, planner: &str, phase: Phase) -> Fault {
     }
 }
 
-/// What a refusal in this phase leaves as it was.
+/// Returns the end of the message about a refusal: it states what stays in effect, if this is known for the phase.
 fn kept(phase: Phase) -> &'static str {
     if phase == Phase::Reconfigure { "; its old values stay in effect" } else { "" }
 }

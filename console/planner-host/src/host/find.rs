@@ -25,7 +25,7 @@ pub(super) struct Catalog {
     known: BTreeMap<String, Option<Candidate>>,
 }
 
-/// How far a search for a planner has progressed.
+/// The progress of a search for a planner.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(super) enum Search {
     #[default]
@@ -110,7 +110,7 @@ impl Catalog {
         self.known.insert(id.to_owned(), file);
     }
 
-    /// Explains why no planner has this id, as far as the reason is known without loading anything.
+    /// Explains why no planner has this id, as far as this is known without loading a plugin.
     pub(super) fn not_found(&self, id: &str) -> String {
         let named_so = |plugin: &&PluginFile| plugin.name().contains(&id.replace('-', "_"));
         if let Some((plugin, Err(why))) =
@@ -156,7 +156,7 @@ mod tests {
         (folder, catalog)
     }
 
-    /// Names of the files that are found, search by search.
+    /// The names of the files that each search finds, one list for each search.
     fn found(catalog: &mut Catalog, may_read_again: bool) -> Vec<Vec<String>> {
         let mut search = Search::default();
         let files = std::iter::from_fn(|| catalog.search_on("faulty", &mut search, may_read_again));

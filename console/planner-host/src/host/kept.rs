@@ -1,4 +1,4 @@
-//! Keeps what planners leave behind besides their answers until it is collected.
+//! Keeps the output, crashes and bad ends of planners until the caller collects them.
 
 use crate::remains::{BadEnd, Crash, Printed};
 

@@ -52,7 +52,7 @@ impl Together {
         }
     }
 
-    /// Whether the two threads share a processor and nothing but an answer is expected for now. If not, everything must
+    /// Whether the two threads share a processor and only an answer is expected for now. If not, all events must
     /// be checked.
     pub(super) fn may_look_later(&mut self) -> bool {
         let may = self.until.is_some() && self.asked.saturating_duration_since(self.looked) < LOOK_EVERY;

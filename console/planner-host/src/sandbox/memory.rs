@@ -117,7 +117,7 @@ mod tests {
     fn address_space_is_the_memory_and_a_gigabyte() {
         let mut uncounted = Uncounted::of(256 * MB);
         assert_eq!(uncounted.verdict(&mmap(128 * MB, PRIVATE)), ALLOWED);
-        // Nothing in this process changes, so the next check finds what the first one found.
+        // The address space of this process does not change, so the next check has the same result as the first.
         assert_eq!(uncounted.verdict(&mmap(2048 * MB, PRIVATE)), REFUSED);
         let grow = |from, to, flags| Call::of(libc::SYS_mremap, [0, from, to, flags, 0, 0]);
         assert_eq!(uncounted.verdict(&grow(2000 * MB, 2001 * MB, 1)), ALLOWED);

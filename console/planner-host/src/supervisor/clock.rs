@@ -47,7 +47,7 @@ impl FairClock {
         self.cpu = load.map(|load| load.cpu).or(self.cpu);
     }
 
-    /// Returns what is left of a budget.
+    /// Returns the part of a budget that is left.
     pub(super) fn evaluate(&self, budget: Duration) -> Verdict {
         match budget.saturating_sub(self.charged) {
             Duration::ZERO => Verdict::Exhausted,
@@ -57,7 +57,7 @@ impl FairClock {
     }
 }
 
-/// What is left of a budget.
+/// The part of a budget that is left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
     /// This much time is left.

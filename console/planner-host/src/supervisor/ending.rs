@@ -1,4 +1,4 @@
-//! Describes how a process ended, in words that do not differ from run to run.
+//! Describes how a process ended, in words that are the same in every run.
 
 use crate::wire::CHANNEL_LOST;
 use foreign::is_plain;

@@ -7,14 +7,14 @@ use foreign::plain;
 const MOST: usize = 256;
 /// The maximum length of a line, bytes.
 const LONGEST: usize = 400;
-/// Appended to a line that was cut.
+/// The mark at the end of a line that was shortened.
 const CUT: &[u8] = b" (rest of the line dropped)";
 
 /// Lines that were printed but not yet collected.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
     partial: Vec<u8>,
-    /// Whether the current line was cut; if so, the rest of the line is ignored.
+    /// Whether the current line was shortened; if so, its remaining bytes are ignored.
     is_cut: bool,
     whole: Vec<String>,
     n_dropped: usize,
@@ -33,7 +33,7 @@ impl Lines {
         }
     }
 
-    /// Cuts a line that is too long, because it might never end.
+    /// Shortens a line that is too long, because it might never end.
     fn cut_line(&mut self) {
         self.partial.extend_from_slice(CUT);
         self.end_line();

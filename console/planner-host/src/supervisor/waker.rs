@@ -139,7 +139,7 @@ mod tests {
         assert!(is_woken(&wake_ups));
     }
 
-    /// Threads ask for something, wake the receiver, and continue when their request has been granted. If a wake-up is
+    /// Threads make a request, wake the receiver, and continue when the request has been granted. If a wake-up is
     /// lost, all of them end up waiting for each other.
     #[test]
     fn no_wake_up_is_lost() {

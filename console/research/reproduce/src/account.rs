@@ -26,7 +26,7 @@ pub enum State {
 }
 
 impl State {
-    /// The state in words for people.
+    /// The state in human-readable words.
     pub fn words(self) -> &'static str {
         match self {
             Self::Reproduced => "reproduced",
@@ -76,7 +76,7 @@ const fn item(
     Item { place, what, state, command, why }
 }
 
-/// Formats the account for people.
+/// Formats the account as human-readable text.
 pub(crate) fn text() -> String {
     let mut text = String::new();
     for paper in PAPERS {

@@ -31,7 +31,7 @@ fn unknown(name: &str) -> String {
     format!("there is no study `{name}`{hint}; `tankops reproduce --list` lists all studies")
 }
 
-/// The list of all studies, and the account of the papers, for people.
+/// The list of all studies and the account of the papers, as human-readable text.
 pub fn list() -> String {
     let width = studies().map(|study| study.name.len()).max().unwrap_or_default();
     let line = |study: &Study| format!("{:width$}  {} ({})\n", study.name, study.about, study.layouts);

@@ -1,4 +1,4 @@
-//! Tests that plan and flight keep the required clearance, or that the plan reports its lack.
+//! Tests that plan and flight keep the required clearance, or that the plan reports a lack of clearance.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use super::*;

@@ -119,7 +119,7 @@ fn fly(values: &[(&str, f64)], motion: Motion, swap_at: Option<u64>) -> Flown {
         if swap_at == Some(tick) {
             planner = bench.configure(values, &site).unwrap();
         }
-        // A pose that is off by a few centimetres, slowly.
+        // The estimated position is off by a few centimetres, and the error changes slowly.
         let off = Vector::new((tick as f64 * 0.01).sin(), (tick as f64 * 0.013).cos()) * 0.03;
         let believed = pose.position + off;
         if (believed - GOAL).norm() < 0.2 {

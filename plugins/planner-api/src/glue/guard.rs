@@ -37,7 +37,7 @@ pub(super) fn run(services: &HostServices, call: impl FnOnce() -> Result<()>) ->
 
 /// Runs the author's code and ignores a panic.
 pub(super) fn quietly(call: impl FnOnce()) {
-    // A report would not be read: the instance is gone either way.
+    // A report would be useless: the instance is destroyed in any case.
     let _ = caught(call);
 }
 

@@ -1,4 +1,4 @@
-//! The paper's methods as planners of ours with their parameters.
+//! The paper's methods, each as one of our planners with its parameters.
 
 use super::{
     fit::Pair,
