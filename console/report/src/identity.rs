@@ -120,7 +120,11 @@ struct Outline {
 }
 
 impl Identity {
-    fn of(run: &RunOpened, stated: &Stated) -> Self {
+    /// The identity of the floor of a run. Zones that an operator drew in any of the runs do not count: they say where a
+    /// robot was allowed to drive, not on which floor.
+    fn of(run: &RunOpened, stated: &Stated, drawn: &[&Zone]) -> Self {
+        let is_drawn =
+            |zone: &&Zone| drawn.iter().any(|drawn| drawn.kind == zone.kind && drawn.shape == zone.shape);
         let outline = |obstacle: &world::Obstacle| Outline {
             name: obstacle.name.clone(),
             shape: obstacle.shape.clone(),
@@ -129,7 +133,7 @@ impl Identity {
             inspection: FloorFacts::of(&stated.inspection),
             tank: run.world.boundary.clone(),
             obstacles: run.world.obstacles.iter().map(outline).collect(),
-            zones: run.world.zones.clone(),
+            zones: run.world.zones.iter().filter(|zone| !is_drawn(zone)).cloned().collect(),
             plates: run.plates.clone(),
             cell_m: run.floor.cell_m,
             swath_m: run.mission.swath_m,
@@ -157,14 +161,14 @@ struct Candidate<'a> {
 }
 
 impl<'a> Candidate<'a> {
-    fn of(past: &'a PastRun) -> Result<Option<Self>, String> {
+    fn of(past: &'a PastRun, drawn: &[&Zone]) -> Result<Option<Self>, String> {
         let Some(run) = past.fold.run() else { return Ok(None) };
         let stated = Stated::by(run).map_err(|why| format!("run {}: {why}", past.name))?;
         Ok(Some(Self {
             name: &past.name,
             scenario: &run.scenario,
             journal_sha256: past.files.journal_sha256.as_deref(),
-            identity: Identity::of(run, &stated),
+            identity: Identity::of(run, &stated, drawn),
             stated,
         }))
     }
@@ -185,8 +189,9 @@ impl<'a> Candidate<'a> {
 /// first difference and both values. A run with a different scenario must be a re-scan that names the journal of one of
 /// the other runs.
 pub(crate) fn require_one_floor(runs: &[PastRun]) -> Result<(), String> {
-    let all: Vec<Candidate<'_>> =
-        runs.iter().map(Candidate::of).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
+    let drawn: Vec<&Zone> = runs.iter().flat_map(zones_drawn).collect();
+    let all = runs.iter().map(|past| Candidate::of(past, &drawn)).collect::<Result<Vec<_>, _>>()?;
+    let all: Vec<Candidate<'_>> = all.into_iter().flatten().collect();
     let Some((first, others)) = all.split_first() else { return Ok(()) };
     let refused = |other: &Candidate<'_>, why: &str| {
         format!("runs {} and {} are not on the same floor: {why}", first.name, other.name)
@@ -200,6 +205,12 @@ pub(crate) fn require_one_floor(runs: &[PastRun]) -> Result<(), String> {
         Some(other) => Err(refused(other, &no_link(first, other))),
         None => Ok(()),
     }
+}
+
+/// The zones that were drawn after the scenario of a run was opened; they follow those of the scenario.
+fn zones_drawn(past: &PastRun) -> &[Zone] {
+    let zones = past.fold.run().map_or(&[][..], |run| &run.world.zones);
+    &zones[zones.len().saturating_sub(past.summary.zones_drawn.len())..]
 }
 
 /// The first run that is not linked to the other runs.

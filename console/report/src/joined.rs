@@ -64,6 +64,7 @@ pub(crate) fn joined_or_located(runs: &[PastRun]) -> Result<Joined<'_>, String> 
         all.evidence.to_mut().name_found(|name| found_name(name, before.len(), runs.len()));
     }
     let known: BTreeSet<ObstacleId> = all.evidence.found().map(|(id, _)| id).chain(drawn).collect();
+    let zones = all.evidence.no_go().count();
     for (index, past) in before.iter().enumerate() {
         let other = alone(past)?;
         require_aligned((&past.name, &other), (&last.name, &all))?;
@@ -72,8 +73,8 @@ pub(crate) fn joined_or_located(runs: &[PastRun]) -> Result<Joined<'_>, String> 
         evidence.name_found(|name| found_name(name, index, runs.len()));
         all.evidence.to_mut().join(&evidence);
     }
-    if all.evidence.found().any(|(id, _)| !known.contains(&id)) {
-        // Floor that is blocked by an obstacle found only in another run is excluded, too.
+    if all.evidence.found().any(|(id, _)| !known.contains(&id)) || all.evidence.no_go().count() > zones {
+        // Floor that is blocked by an obstacle found, or in a zone drawn, only in another run is excluded, too.
         let grid = all.scanned.believed().floor();
         let updated = updated_floor(all.run, grid, &all.evidence, all.run.mission.swath_m);
         let changes = updated.into_floor().kinds();

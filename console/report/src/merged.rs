@@ -204,6 +204,26 @@ mod tests {
     }
 
     #[test]
+    fn a_zone_that_was_drawn_in_one_of_the_runs_closes_the_floor_of_both() {
+        let tank = round_tank(0.1);
+        let zone = world::Zone {
+            name: "no-go 1".into(),
+            kind: world::ZoneKind::NoGo,
+            shape: Shape::Polygon {
+                vertices: world::shape::rectangle(world::Point::new(-3.0, 0.0), world::Point::new(-2.0, 1.0)),
+            },
+        };
+        let world = world::World { zones: vec![zone.clone()], ..tank.world.clone() };
+        let closed = FloorMaker::of(&tank.floor, &world, 0.45, 0.6, world::Point::origin()).into_floor();
+        let events = vec![EventKind::ZoneDrawn { zone }, EventKind::FloorChanged { changes: closed.kinds() }];
+        let drawn = || opened("a", tank.clone(), events.clone());
+        let free = || opened("b", tank.clone(), vec![]);
+        let (forth, back) = (merged(&[drawn(), free()]).unwrap(), merged(&[free(), drawn()]).unwrap());
+        assert!(forth.floor.reachable.area_m2 < merged(&[free()]).unwrap().floor.reachable.area_m2 - 1.0);
+        assert_eq!((forth.floor.whole, forth.floor.reachable), (back.floor.whole, back.floor.reachable));
+    }
+
+    #[test]
     fn what_counted_under_a_looser_limit_is_reported_with_that_limit() {
         let mut tight = round_tank(0.1);
         tight.mission.scan.position_limit_m = Some(0.1);

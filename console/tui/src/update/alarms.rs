@@ -161,9 +161,11 @@ fn parse_shelving(text: &str) -> Result<(f64, String), String> {
     Ok((minutes, unit.unwrap_or(reason).trim().to_owned()))
 }
 
-/// Opens the action list of the selected alarm.
+/// Opens the action list of the selected alarm. The alarm stays selected, whatever alarms come before it in the table
+/// from then on.
 pub(crate) fn open_actions(model: &mut Model) -> Vec<Effect> {
     let Some(cause) = selected_cause(model) else { return refuse(model, "no alarms".into()) };
+    model.ui.alarm = Some(cause.clone());
     model.ui.overlay = Overlay::Remedies { cause, selected: 0 };
     Vec::new()
 }

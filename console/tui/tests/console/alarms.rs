@@ -508,3 +508,25 @@ fn a_refused_plan_is_no_critical_alarm_while_another_one_is_made() {
     screen.hear(RunMsg::Events(refused));
     assert_eq!(screen.model.live.run.alarms.count(Severity::Crit), 1);
 }
+
+#[test]
+fn the_alarm_whose_actions_are_open_stays_selected() {
+    let mut screen = Screen::tethered();
+    screen.model.ui.go(SHOWN);
+    screen.mission.sigma_m = 0.2;
+    hear(&mut screen, EventKind::RangesInconsistent { chi2: 250.0, degrees_of_freedom: 1 });
+    pass(&mut screen, 40);
+    screen.press(ENTER);
+    let near = TetherAlarm::NoReturnPath;
+    hear(&mut screen, EventKind::TetherAlarmRaised { alarm: near, reached: true });
+    hear(&mut screen, EventKind::RangesConsistent);
+    pass(&mut screen, 40);
+    assert_eq!(screen.model.live.run.alarms.table()[0].cause, Cause::Tether("return path".into()));
+    assert_eq!(screen.model.selected_alarm().unwrap().cause, Cause::Contradiction);
+    screen.press([Key::Esc]);
+    assert_eq!(
+        screen.model.selected_alarm().unwrap().cause,
+        Cause::Contradiction,
+        "after the list is closed, too"
+    );
+}
