@@ -154,7 +154,7 @@ mod tests {
         at(60_000, EventKind::Ended { outcome: Outcome::Aborted, reason: "ended".into() });
         let all = incidents.all();
         assert_eq!((all.len(), all[0].until_s, all[MOST - 1].until_s), (MOST + 2, Some(1.0), Some(50_000.0)));
-        assert!(all[MOST].text.starts_with("3 more incidents") && all[MOST].needs_review());
+        assert!(all[MOST].text.starts_with("further incidents: 3;") && all[MOST].needs_review());
         assert_eq!(all[MOST + 1].kind, "end");
     }
 }
