@@ -3,8 +3,7 @@
 use crate::{identity::require_one_floor, past_run::PastRun};
 use account::{Account, Evidence, Scanned, account, updated_floor};
 use mission::{TaskConfig, event::RunOpened};
-use std::{borrow::Cow, collections::BTreeSet};
-use world::ObstacleId;
+use std::borrow::Cow;
 
 /// The combined scan of several runs on one floor.
 pub(crate) struct Joined<'a> {
@@ -59,12 +58,11 @@ pub(crate) fn joined_or_located(runs: &[PastRun]) -> Result<Joined<'_>, String> 
     let mut all = alone(last)?;
     require_different(runs)?;
     require_one_floor(runs)?;
-    let drawn = all.run.world.obstacles.iter().filter(|obstacle| obstacle.known).map(|obstacle| obstacle.id);
     if !before.is_empty() {
         all.evidence.to_mut().name_found(|name| found_name(name, before.len(), runs.len()));
     }
-    let known: BTreeSet<ObstacleId> = all.evidence.found().map(|(id, _)| id).chain(drawn).collect();
-    let zones = all.evidence.no_go().count();
+    let closing = |evidence: &Evidence| evidence.found().count() + evidence.no_go().count();
+    let own = closing(&all.evidence);
     for (index, past) in before.iter().enumerate() {
         let other = alone(past)?;
         require_aligned((&past.name, &other), (&last.name, &all))?;
@@ -73,8 +71,9 @@ pub(crate) fn joined_or_located(runs: &[PastRun]) -> Result<Joined<'_>, String> 
         evidence.name_found(|name| found_name(name, index, runs.len()));
         all.evidence.to_mut().join(&evidence);
     }
-    if all.evidence.found().any(|(id, _)| !known.contains(&id)) || all.evidence.no_go().count() > zones {
-        // Floor that is blocked by an obstacle found, or in a zone drawn, only in another run is excluded, too.
+    if closing(&all.evidence) > own {
+        // Floor that is blocked by an obstacle found, or in a zone drawn, in another run is excluded, too. Each run numbers
+        // the obstacles that it finds from the same id on, so equal ids do not mean the same obstacle.
         let grid = all.scanned.believed().floor();
         let updated = updated_floor(all.run, grid, &all.evidence, all.run.mission.swath_m);
         let changes = updated.into_floor().kinds();

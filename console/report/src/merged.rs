@@ -204,6 +204,28 @@ mod tests {
     }
 
     #[test]
+    fn obstacles_that_two_runs_found_under_one_id_are_both_no_floor() {
+        let tank = round_tank(0.1);
+        let found = |x: f64| {
+            let shape = Shape::Disc { center: world::Point::new(x, 2.0), radius_m: 0.3 };
+            let found = Obstacle { id: ObstacleId(2_000_000), name: "object 1".into(), shape, known: false };
+            let obstacles = vec![tank.world.obstacles.clone(), vec![found.clone()]].concat();
+            let world = world::World { obstacles, ..tank.world.clone() };
+            let floor = FloorMaker::of(&tank.floor, &world, 0.45, 0.6, world::Point::origin()).into_floor();
+            vec![
+                EventKind::ObstacleFound { obstacle: found },
+                EventKind::FloorChanged { changes: floor.kinds() },
+            ]
+        };
+        let area_m2 = |runs: &[(&str, f64)]| {
+            let runs: Vec<_> = runs.iter().map(|(name, x)| opened(name, tank.clone(), found(*x))).collect();
+            merged(&runs).unwrap().floor.whole.area_m2
+        };
+        let (alone, both) = (area_m2(&[("b", 2.0)]), area_m2(&[("a", -2.0), ("b", 2.0)]));
+        assert!((alone - both - std::f64::consts::PI * 0.09).abs() < 0.05, "{alone} {both}");
+    }
+
+    #[test]
     fn a_zone_that_was_drawn_in_one_of_the_runs_closes_the_floor_of_both() {
         let tank = round_tank(0.1);
         let zone = world::Zone {

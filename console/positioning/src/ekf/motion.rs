@@ -89,9 +89,9 @@ impl Ekf {
     /// has the shortest longer axis. Several short motions give the same result as one long motion. Here the covariance
     /// is a bound, not a probability: a robot that drives straight at its top speed is at the rim.
     pub fn wander(&mut self, most_m: f64, most_rad: f64) {
-        if !(0.0..=MOTION_LIMIT).contains(&most_m) || !(0.0..=MOTION_LIMIT).contains(&most_rad) {
-            return;
-        }
+        // More than this is as good as lost; a bound that is not a number is none.
+        let bounded = |most: f64| if most.is_nan() { MOTION_LIMIT } else { most.clamp(0.0, MOTION_LIMIT) };
+        let (most_m, most_rad) = (bounded(most_m), bounded(most_rad));
         let half_m = self.error_95_m().max(1e-9);
         let stretch = (half_m + most_m) / half_m;
         let mut stretched = Covariance::identity();

@@ -150,3 +150,15 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn after_an_unmeasured_motion_the_error_is_at_least_as_long_however_long_it_was() {
+    for (most_m, at_least_m) in
+        [(0.4, 0.4), (40.0, 40.0), (1e3, 1e3), (1440.0, 1e3), (f64::INFINITY, 1e3), (f64::NAN, 1e3)]
+    {
+        let mut filter = Ekf::new(Pose::new(0.0, 0.0, 0.0), 0.01, 0.01, MotionNoise::default());
+        filter.wander(most_m, most_m);
+        assert!(filter.error_95_m() >= at_least_m, "{most_m}: {}", filter.error_95_m());
+        assert!(filter.covariance().iter().all(|value| value.is_finite()));
+    }
+}
