@@ -34,7 +34,7 @@
 #define CAPS TP_CAP_LOCAL
 #endif
 
-/* Returns the path of a file of the console's process in /proc. */
+/* Returns the path of a file in /proc that belongs to the console's process. */
 static const char *of_parent(const char *what) {
   static char path[64];
   sprintf(path, "/proc/%d/%s", getppid(), what);

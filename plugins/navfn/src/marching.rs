@@ -6,9 +6,9 @@
 //!
 //! When cells are blocked, every cell whose value no longer follows from its neighbours is cleared, spreading outward.
 //! The cleared area is then marched again from its rim. When cells are freed, the march starts from them. Nothing else
-//! is touched. Marching stops when the robot's cell is settled; the rest is left for the next call.
+//! is touched. Marching stops when the robot's cell is settled; the remaining cells are left for the next call.
 
-/// A value is considered supported by its neighbours up to this error, as a share of a cell.
+/// Error up to which a value is considered supported by its neighbours, as a share of a cell.
 const ROUNDING: f32 = 1e-4;
 
 /// Distances to the goal.
@@ -22,8 +22,8 @@ pub struct Field {
     /// Distance from the goal, metres; infinite for cells that are blocked or not yet reached.
     distance_m: Vec<f32>,
     is_source: Vec<bool>,
-    /// The cells that may lower their neighbours, in buckets by distance, each with its distance at the time it was
-    /// added.
+    /// The cells that may lower the values of their neighbours, in buckets by distance, each with its distance at the
+    /// time it was added.
     buckets: Vec<Vec<(u32, f32)>>,
     /// Emptied buckets for reuse, so that only the front of the march takes memory.
     spare: Vec<Vec<(u32, f32)>>,
@@ -72,7 +72,7 @@ impl Field {
         self.n_settled
     }
 
-    /// Blocks cells: clears everything that they supported, and prepares the march to recompute it.
+    /// Blocks cells: clears every value that they supported, and prepares the march to recompute it.
     pub fn block(&mut self, cells: &[usize]) {
         let mut emptied: Vec<usize> = Vec::new();
         for &cell in cells {

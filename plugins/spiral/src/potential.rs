@@ -12,7 +12,7 @@ use std::marker::PhantomData;
 pub trait Kind: 'static {
     /// The planner's id.
     const ID: &'static str;
-    /// The name for people.
+    /// The human-readable name.
     const NAME: &'static str;
     /// One sentence about the field, including its source.
     const ABOUT: &'static str;

@@ -155,7 +155,7 @@ fn moved(at: Point, heading_rad: f64, velocity: Vector, limits: &Limits) -> (Poi
     match drive_for(Drive::Velocity(velocity), heading_rad, limits, TURN_FIRST_RAD) {
         Drive::Velocity(velocity) => (at + velocity * STEP_S, heading_rad),
         Drive::Twist { v_m_per_s, w_rad_per_s } => {
-            // Turn no further than the heading error: a step is long.
+            // The turn must not exceed the heading error, although a step is long.
             let error_rad = heading_error_rad(velocity, heading_rad);
             let turn_rad = (w_rad_per_s * STEP_S).clamp(-error_rad.abs(), error_rad.abs());
             let middle_rad = heading_rad + turn_rad / 2.0;
@@ -190,8 +190,8 @@ mod tests {
         Body::new(1, &Outline::Disc { center: at, radius_m }).unwrap()
     }
 
-    /// Flies to the east among movers that start within sight; returns the smallest distance to them, and how far the
-    /// robot got.
+    /// Flies to the east among movers that start within sight; returns the smallest distance to them and the final
+    /// position.
     fn flown(movers: &[(Point, Vector)], limits: Limits) -> (f64, Point) {
         let mut pose = exact_pose(Point::origin());
         let mut least_m = f64::INFINITY;
@@ -228,7 +228,7 @@ mod tests {
             for k in 0..24 {
                 let bearing = std::f64::consts::TAU * f64::from(k) / 24.0;
                 let towards = Vector::new(bearing.cos(), bearing.sin());
-                // The mover would meet the robot on its straight way after ten seconds.
+                // On its straight path, the robot would meet the mover after ten seconds.
                 let meeting = Point::new(4.0, 0.0);
                 let (least_m, end) = flown(&[(meeting - towards * 4.0, towards * 0.4)], limits);
                 if (meeting - towards * 4.0).coords.norm() > 1.5 {
