@@ -33,7 +33,7 @@ pub struct Field {
 }
 
 impl Field {
-    /// Creates a field that is not yet marched, over cells in rows of `columns`. The outermost cells are blocked; the
+    /// Creates a field over cells in rows of `columns` cells, before any march. The outermost cells are blocked; the
     /// march starts from sources at known distances.
     pub fn new(columns: usize, cell_m: f64, blocked: Vec<bool>, sources: &[(usize, f64)]) -> Self {
         let n = blocked.len();
@@ -114,7 +114,7 @@ impl Field {
             let mut bucket = std::mem::take(&mut self.buckets[self.first]);
             // Rounding can make a settled cell add cells to the same bucket again.
             while let Some((cell, distance_m)) = bucket.pop() {
-                // A cell that has been lowered or cleared since is in another bucket, or has nothing to pass on.
+                // An entry is out of date if its cell has been lowered or cleared since the entry was added.
                 if self.distance_m[cell as usize].to_bits() == distance_m.to_bits() {
                     self.settle(cell as usize);
                 }

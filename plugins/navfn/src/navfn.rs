@@ -11,7 +11,7 @@ use planner_api::{
 use steering::params as p;
 use world::shortest::{GrownFloor, NoWay, Way};
 
-/// Distance from a path within which it is pulled taut around everything, in cells.
+/// Distance from a path, in cells, within which its taut version may turn about solids.
 const REACH_CELLS: f64 = 4.0;
 
 const CELLS: ParamSpec = int("cells", "Cells along the longer side", "", 20, 2000, 240)

@@ -1,8 +1,9 @@
 //! Chooses the side on which the robot passes whatever blocks the path: the side of the smaller detour. The chosen side
 //! is then kept.
 //!
-//! Wang et al. 2023 turn counter-clockwise around single points. That pushes the robot back at half of the points, and
-//! cancels out between two of them. Here, obstacles with no passage between them, or to the wall, are bypassed as one.
+//! In Wang et al. 2023, the robot turns counter-clockwise around single points. That pushes the robot back at half of
+//! the points, and cancels out between two of them. Here, obstacles with no passage between them, or to the wall, are
+//! bypassed as one.
 
 use crate::{
     blockage::{Blockage, View},

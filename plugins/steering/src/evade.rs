@@ -22,13 +22,14 @@ const STANDING_S: f64 = 1.6;
 /// Number of headings tried, and the speeds tried as shares of the maximum.
 const HEADINGS: u32 = 24;
 const SHARES: [f64; 3] = [1.0, 0.6, 0.3];
-/// Extra distance from a moving obstacle, in addition to the clearance, metres: kept if possible, and preferred.
+/// Distances from a moving obstacle in addition to the clearance, metres: one that is kept if possible, and a larger
+/// one that is preferred.
 const ROOM_M: f64 = 0.1;
 const LIKED_M: f64 = 0.8;
 /// Growth rate of the uncertainty of a moving obstacle's predicted position, metres per second.
 const DOUBT_M_PER_S: f64 = 0.04;
-/// Cost of each metre by which the extra distance falls short, expressed as deviation from the desired velocity, metres
-/// per second.
+/// Cost of each metre by which the preferred distance is missed, expressed as deviation from the desired velocity,
+/// metres per second.
 const WORTH_PER_S: f64 = 0.25;
 
 /// Whether an obstacle moves.
@@ -155,7 +156,7 @@ fn moved(at: Point, heading_rad: f64, velocity: Vector, limits: &Limits) -> (Poi
     match drive_for(Drive::Velocity(velocity), heading_rad, limits, TURN_FIRST_RAD) {
         Drive::Velocity(velocity) => (at + velocity * STEP_S, heading_rad),
         Drive::Twist { v_m_per_s, w_rad_per_s } => {
-            // The turn must not exceed the heading error, although a step is long.
+            // A step is long, so the turn is limited to the heading error.
             let error_rad = heading_error_rad(velocity, heading_rad);
             let turn_rad = (w_rad_per_s * STEP_S).clamp(-error_rad.abs(), error_rad.abs());
             let middle_rad = heading_rad + turn_rad / 2.0;

@@ -13,7 +13,7 @@ pub struct Tangent {
 }
 
 /// The tangent from `at` to a disc on one side (Xu et al. 2022, eq. 10). The printed form is singular where the tangent
-/// is vertical; as vectors it is `(L c +- R c') / |c|^2`.
+/// is vertical; written with vectors, it is `(L c +- R c') / |c|^2`.
 ///
 /// From inside the disc, the tangent points along the circle and slightly outward.
 pub fn to_disc(at: Point, center: Point, radius_m: f64, side: Side) -> Tangent {

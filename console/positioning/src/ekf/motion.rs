@@ -86,8 +86,8 @@ impl Ekf {
     ///
     /// Every place in the 95 % ellipse, moved by up to `most_m`, lies in the new ellipse; its longer semi-axis is
     /// longer by exactly `most_m`. Of all ellipses that contain the sum of an ellipse and a disc (Kurzhanski), this one
-    /// has the shortest longer axis. Several short motions give the same result as one long motion. Here the covariance
-    /// is a bound, not a probability: a robot that drives straight at its top speed is at the rim.
+    /// has the shortest longer axis. Several short motions give the same result as one long motion. Here, the
+    /// covariance is a bound, not a probability: a robot that drives straight at its top speed is at the rim.
     pub fn wander(&mut self, most_m: f64, most_rad: f64) {
         if !(0.0..=MOTION_LIMIT).contains(&most_m) || !(0.0..=MOTION_LIMIT).contains(&most_rad) {
             return;
