@@ -1,5 +1,5 @@
-//! Shared by all potential fields on a preset path: a plan simulates a walk over the known map, and during the mission
-//! the field acts tick by tick.
+//! The code shared by all potential fields on a preset path. A plan simulates a walk over the known map; during the
+//! mission, the field acts tick by tick.
 
 use crate::course;
 use field::{FieldSettings, ForcePilot, offline};
