@@ -52,7 +52,7 @@ impl PlanningProblem {
     /// The task is not a goal, or the hull touches something at the start or at the goal.
     pub(crate) fn new(request: &PlanRequest<'_>, clearance_m: f64) -> Result<Self> {
         let Task::Goto { goal, .. } = request.task else {
-            let message = "only plans to single goals; choose another planner for preset paths or coverage";
+            let message = "this planner needs a single goal; choose another one for preset paths or coverage";
             return Err(PlannerError::new(Code::Unsupported, message));
         };
         let (site, start) = (request.site, request.start.position);
