@@ -1,6 +1,6 @@
-/* A planner that attacks, for tests. The macro ATTACK is the attack, in C. One of these macros determines when the attack
- * happens:
- *  - IN_CONSTRUCTOR, IN_DESTRUCTOR, IN_CREATE, IN_DESTROY: in this function;
+/* A planner for tests that attacks the console. The macro ATTACK contains the code of the attack, in C. One of these
+ * macros determines when the attack happens:
+ *  - IN_CONSTRUCTOR, IN_DESTRUCTOR, IN_CREATE, IN_DESTROY: in the function of that name;
  *  - IN_STEP: in the fourth step;
  *  - IN_THREAD: during the steps, in a thread that the constructor starts;
  *  - IN_LEFTOVER: within 40 ms after the fourth step, in a thread that this step leaves behind;
@@ -34,7 +34,7 @@
 #define CAPS TP_CAP_LOCAL
 #endif
 
-/* Returns the path of a file of the console's process in /proc. */
+/* Returns the path of a file in /proc that belongs to the console's process. */
 static const char *of_parent(const char *what) {
   static char path[64];
   sprintf(path, "/proc/%d/%s", getppid(), what);

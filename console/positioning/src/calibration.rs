@@ -111,8 +111,8 @@ impl Calibration {
         (self.common().offset_m, self.offset_sigma_m)
     }
 
-    /// Returns a calibration without data that starts from the estimate of this one. Cycles are linearised about the
-    /// estimate at that time, so a second pass over the session removes the errors of the first.
+    /// Returns a calibration without data that starts from the estimate of this one. Each cycle is linearised about the
+    /// estimate at the time when the cycle is added, so a second pass over the session removes the errors of the first.
     #[must_use]
     pub fn again(&self) -> Self {
         Self { estimate: self.estimate.clone(), ..Self::new(&self.stations, self.unknowns) }

@@ -36,8 +36,8 @@ pub enum WrongRanges {
 /// Fits all subsets of three stations, keeps the position with which the fewest stations disagree, and fits again to
 /// those that agree.
 ///
-/// With fewer than four stations, it behaves like [`crate::Nls`]. With six to eight stations, it tolerates one station
-/// in five being hidden behind an obstacle.
+/// With fewer than four stations, the solver behaves like [`crate::Nls`]. With six to eight stations, it tolerates one
+/// station in five being hidden behind an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Consensus {
     /// The kind of errors to expect.

@@ -81,7 +81,7 @@ impl Update {
 
 /// A filter for the pose and its covariance, moved by odometry and corrected by fixes or single ranges.
 ///
-/// Besides the pose it estimates the slip and the gyro's bias, because both persist. Ranges alone contain no
+/// Besides the pose, it estimates the slip and the gyro's bias, because both persist. Ranges alone contain no
 /// information about the heading; it becomes known because motion correlates heading and position. Input that is not
 /// a number is refused, so the state is always finite.
 #[derive(Debug, Clone, PartialEq)]

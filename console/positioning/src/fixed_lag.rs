@@ -11,7 +11,8 @@ use world::{Odometry, Point, Pose, Station, geometry::wrap_angle_rad};
 /// An [`Ekf`] that remembers its last motions and smooths them backwards in time (Rauch, Tung and Striebel).
 ///
 /// Ranges measured after a motion also constrain where the motion began. Ten motions back, the error is a third smaller
-/// than that of the filter; the estimate of the present does not improve. Useful for maps and reports, not for driving.
+/// than that of the filter; the estimate of the present does not improve. The smoothed poses are useful for maps and
+/// reports, but not for driving.
 #[derive(Debug, Clone)]
 pub struct FixedLag {
     filter: Ekf,

@@ -1,7 +1,7 @@
 //! Locates the robot: turns acoustic-emission ranges into fixes, and fixes and odometry into a pose.
 //!
-//! Nothing here uses the truth, a clock or a file. Frame and units as in [`world`]. Cost: a few microseconds for a
-//! fix, less than one for a filter step.
+//! Nothing here uses the truth, a clock or a file. Frame and units are as in [`world`]. Cost: a few microseconds for a
+//! fix, less than one microsecond for a filter step.
 
 pub mod fix;
 pub mod noise;

@@ -29,7 +29,7 @@ pub(crate) fn solve_pair(first: &Anchor, second: &Anchor, near: Option<Point>) -
     }
     let (along, across) = (baseline / d, Vector::new(-baseline.y, baseline.x) / d);
     let (r1, r2) = (first.range_m, second.range_m);
-    // In the frame of the baseline the crossings are (x, +-y).
+    // In the frame of the baseline, the crossings are (x, +-y).
     let x = (d * d + r1 * r1 - r2 * r2) / (2.0 * d);
     let y2 = r1 * r1 - x * x;
     let x_by = Vector::new(r1 / d, -r2 / d);

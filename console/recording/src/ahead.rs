@@ -114,7 +114,7 @@ mod tests {
         let giving = {
             let given = Arc::clone(&given);
             thread::spawn(move || {
-                // Every tenth is heavier than the whole queue may be.
+                // Every tenth item is heavier than the whole queue may be.
                 (0..500).all(|n| {
                     giver.give(n, if n % 10 == 9 { 25 } else { 3 }) && {
                         given.fetch_add(1, Ordering::SeqCst);

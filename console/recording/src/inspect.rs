@@ -22,7 +22,7 @@ pub struct Summary {
     pub rows: u64,
     /// First and last tick.
     pub ticks: Option<(i64, i64)>,
-    /// Last recorded share of the reachable floor, percent.
+    /// Last recorded coverage of the reachable floor, per cent.
     pub last_coverage_percent: Option<f64>,
     /// Number of lines of the event log.
     pub log_lines: u64,
@@ -43,7 +43,7 @@ impl Summary {
     }
 }
 
-/// Reads the content of a recording; one that is cut off is read up to that point.
+/// Reads the content of a recording; a recording that is cut off is read up to the point where it ends.
 ///
 /// # Errors
 /// [`RecordingError::Read`] if there is no such file.

@@ -29,7 +29,7 @@ pub const JOURNAL_FILE: &str = "events.jsonl.zst";
 /// Name of an uncompressed journal.
 pub const PLAIN_JOURNAL_FILE: &str = "events.jsonl";
 
-/// The path of the journal in the folder of a run, compressed or not. If there is none, the path that it would have.
+/// The path of the journal in the folder of a run, compressed or not; the path of a compressed one if there is none.
 pub fn journal_of(folder: &Path) -> PathBuf {
     let (packed, plain) = (folder.join(JOURNAL_FILE), folder.join(PLAIN_JOURNAL_FILE));
     if !packed.exists() && plain.exists() { plain } else { packed }

@@ -72,7 +72,8 @@ struct Export {
 struct Run {
     stations: Vec<Station>,
     coverage: CoverageGrid,
-    /// Time of the last picture of the scanned floor; `None` if nothing was scanned since then.
+    /// Time at which floor was first scanned after the last picture of the scanned floor; `None` if nothing was scanned
+    /// since then.
     changed_since_s: Option<f64>,
     track: Vec<(f64, Pose)>,
     now_s: f64,

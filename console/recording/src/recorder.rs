@@ -179,7 +179,8 @@ impl Recorder {
         let Some(watch) = &self.watch else { return Ok(None) };
         let sha256 = self.health.sha256();
         watch.check_content(self.health.bytes(), &sha256)?;
-        // Needed even if all rows were sent in one piece: only a merged file has the table of contents of the format.
+        // Merging is needed even if all rows were sent in one piece: only a merged file has the table of contents of
+        // the format.
         if let Err(error) = merge::merge(watch.path(), until) {
             // The recording is complete, but slower to open.
             tracing::warn!("{error}");

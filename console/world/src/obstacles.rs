@@ -69,7 +69,7 @@ pub struct ObstacleMap {
 }
 
 impl ObstacleMap {
-    /// Creates a map of obstacles within a wall, at a single cost of `n log n`.
+    /// Creates a map of obstacles within a wall, at a one-time cost of `n log n`.
     ///
     /// ```
     /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape};

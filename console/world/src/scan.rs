@@ -5,7 +5,7 @@ use geometry::{Point, Vector};
 use nalgebra::Rotation2;
 use serde::{Deserialize, Serialize};
 
-/// The distance of a ray without an echo, and of one that is longer than 65.534 m.
+/// The stored distance of a ray without an echo, and of a ray whose distance exceeds 65.534 m.
 pub const NO_ECHO: u16 = u16::MAX;
 
 /// Number of neighbouring rays on each side with which a distance is averaged.

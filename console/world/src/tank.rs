@@ -19,7 +19,7 @@ impl ObstacleId {
 pub struct Obstacle {
     /// Unique within the world.
     pub id: ObstacleId,
-    /// The name on the drawing, for people.
+    /// The human-readable name on the drawing.
     pub name: String,
     /// The outline, tank frame.
     pub shape: Shape,
@@ -36,7 +36,7 @@ pub struct StationId(pub u32);
 pub struct Station {
     /// Unique within the world.
     pub id: StationId,
-    /// The name on the drawing, for people.
+    /// The human-readable name on the drawing.
     pub name: String,
     /// Surveyed position, metres, tank frame.
     pub position: Point,

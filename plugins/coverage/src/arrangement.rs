@@ -132,7 +132,7 @@ mod tests {
             let borders = sides(&border(&rings, NEAR_M));
             let is_inside = |ring: &Vec<Point>, at: Point| share_within(ring, at, at, 1e-3).is_some();
             for (a, b) in rings.iter().flat_map(|ring| edges(ring)) {
-                // Corners lie on halves of a metre; here there are none.
+                // Corners lie at multiples of half a metre, so this point is not a corner.
                 let at = a + (b - a).normalize() * 0.473;
                 let out = at + (b - a).normalize().yx().component_mul(&world::Vector::new(1.0, -1.0)) * 0.01;
                 let is_border = !rings.iter().any(|ring| is_inside(ring, at) || is_inside(ring, out));

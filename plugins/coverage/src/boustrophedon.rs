@@ -27,8 +27,8 @@ const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.05)
     .group("Plan");
 const SHELL_LAP: ParamSpec = flag("shell_lap", "Shell lap", false)
     .help(
-        "After the lanes, a lap along the shell, as close to it as hull and clearance allow. Floors \
-         between inner walls always get one.",
+        "After the lanes, the robot drives a lap along the shell, as close to it as hull and clearance \
+         allow. Floors between inner walls always get one.",
     )
     .group("Plan");
 

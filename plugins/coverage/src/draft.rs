@@ -1,4 +1,5 @@
-//! From lanes to a path: a first tour, good enough to estimate the value of a candidate, and the finished path.
+//! Makes a path from lanes: first a tour that is good enough to estimate the value of a candidate, then the finished
+//! path.
 
 use crate::floor::{Grain, ReachableFloor, SweptFloor};
 use crate::jobs::Job;
@@ -116,7 +117,7 @@ impl<'a> Draft<'a> {
         let large = missed.iter().take_while(|group| group.len() > least);
         let fresh = large.flat_map(|group| touch_up(&self.domain, &swept, group)).collect();
         self.lanes.extend(self.wanted(fresh));
-        // The first tour used little effort; from here on the order matters.
+        // The first tour used little effort; from here on, the order matters.
         job.stage(0.4);
         let pieces = self.toured(1.0, job)?;
         job.stage(0.5);

@@ -115,7 +115,7 @@ impl SweptFloor {
 struct Exchanged {
     /// Net number of reachable cells lost.
     lost: i64,
-    /// Whether every reachable cell had as many sweeps as were removed from it.
+    /// Whether every reachable cell had at least as many sweeps as were removed from it.
     is_sound: bool,
 }
 

@@ -17,10 +17,10 @@ use world::{Boundary, Point, polyline, tether::crossings};
 const LOOK_M: f64 = 0.25;
 /// Distance ahead within which the path is checked for obstacles, metres.
 const WATCH_M: f64 = 1.0;
-/// Shift of the path, in standard deviations of the position, with which an obstacle must still be in the way to count
-/// as blocking the path.
+/// Number of standard deviations of the position by which an obstacle may come closer to the path than the required
+/// distance before it counts as blocking the path.
 const PATH_SIGMAS: f64 = 2.0;
-/// Distance from the point from which the cuts apply within which that point counts as reached, metres.
+/// Distance within which the robot counts as having reached the point from which the cuts apply, metres.
 const THERE_M: f64 = 0.3;
 /// Largest share of the mission's clearance that the guard maintains. A path is planned with the full clearance; a
 /// guard that maintained all of it would push the robot off lanes beside walls and columns.

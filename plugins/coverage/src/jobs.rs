@@ -1,4 +1,4 @@
-//! Independent work on all cores that the console can cancel. The results do not depend on the number of cores.
+//! Independent work on all cores, which the console can cancel. The results do not depend on the number of cores.
 
 use crate::stages::Stage;
 use planner_api::{Ctx, PlannerError, Result, on_own_thread};
@@ -21,7 +21,7 @@ pub(crate) struct Job {
 }
 
 impl Job {
-    /// Returns an error once the console has cancelled. Call this in every loop.
+    /// Returns an error once the console has cancelled the work. Call this in every loop.
     pub(crate) fn check(&self) -> Result<()> {
         self.end.get().map_or(Ok(()), |error| Err(error.clone()))
     }

@@ -1,7 +1,7 @@
 //! Repair of the current plan: it changes only around the obstacles found during the mission.
 //!
 //! The cuts stay. An obstacle not connected by any cut gets a new cut, placed where it crosses the rest of the path as
-//! seldom as possible. Parts of the path that can still be driven are kept as sections: long sections far away, single
+//! rarely as possible. Parts of the path that can still be driven are kept as sections: long sections far away, single
 //! lanes near the change. The sections are reordered, starting from their planned order. The connectors between them
 //! are polished like those of any path.
 

@@ -43,7 +43,7 @@ impl<'a> Scope<'a> {
             return Err(PlannerError::new(
                 Code::Unsupported,
                 format!(
-                    "{id} only covers floors; for this mission choose a planner for goals or preset paths"
+                    "{id} only covers floors; for this mission, choose a planner for goals or preset paths"
                 ),
             ));
         };

@@ -168,14 +168,14 @@ impl<'a> SlitDomain<'a> {
         self.spot(at).is_some()
     }
 
-    /// The start of a path from a position: the position itself, or the nearest point if it is outside the domain, or
-    /// else home.
+    /// The start of a path from a position: the position itself or, if it is outside the domain, the nearest point in
+    /// the domain; home if there is no such point nearby.
     pub(crate) fn start(&self, at: Point) -> Point {
         self.beside(at).unwrap_or(self.workspace.home)
     }
 
-    /// The position, or the nearest point in the domain: a robot may be slightly too close to an obstacle that it has
-    /// just found.
+    /// The position itself or, if it is outside the domain, the nearest point in the domain: a robot may be slightly
+    /// too close to an obstacle that it has just found.
     pub(crate) fn beside(&self, at: Point) -> Option<Point> {
         let is_open = |place: &Point| self.contains(*place) && !self.crosses_cut(at, *place);
         places_around(at, self.workspace.keep_m).find(is_open)

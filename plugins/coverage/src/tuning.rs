@@ -24,7 +24,7 @@ pub(crate) mod cuts {
     /// of the cable's slack, which is the preferred maximum length less the minimum length; 0 is the minimum length.
     /// The limits are tried in this order until the cable stays within its own limits.
     pub(crate) const SLACKS_ACROSS: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
-    /// The same limits for straight lanes, which cuts may run along. They may exceed 1, because the cable is rarely as
+    /// The same limits for straight lanes, beside which cuts may run. They may exceed 1, because the cable is rarely as
     /// long as a single cut suggests.
     pub(crate) const SLACKS_ALONG: [f64; 7] = [3.0, 2.2, 1.7, 1.3, 1.0, 0.8, 0.5];
     /// Allowance for the hull, which passes columns at a greater distance than the cable does, metres; the same for
@@ -50,7 +50,7 @@ pub(crate) mod lanes {
     pub(crate) const INTO_LAP: f64 = 0.5;
     /// Spacing of straight lanes in a round tank: slightly less than the swath, so that no row of cells is missed.
     pub(crate) const SPACING: f64 = 0.997;
-    /// Number of times that the minimum length of a lane fits into the swath, if touch-ups follow. Shorter lanes are
+    /// The minimum length of a lane is the swath divided by this number, if touch-ups follow. Shorter lanes are
     /// dropped.
     pub(crate) const LEAST_IN_SWATH: f64 = 3.0;
     /// The same number if no touch-ups follow.
@@ -177,7 +177,8 @@ pub(crate) mod touch_ups {
 pub(crate) mod shell {
     /// Width of the zone examined, metres.
     pub(crate) const ZONE_M: f64 = 0.075;
-    /// Unscanned width that is tolerated, metres: lanes keep a little slack, and no robot drives to the millimetre.
+    /// Unscanned width that is tolerated, metres: lanes keep a little slack, and no robot drives with millimetre
+    /// accuracy.
     pub(crate) const NEAR_M: f64 = 0.0101;
     /// Excess distance from the shell up to which a path is moved to its minimum distance, metres.
     pub(crate) const PRESSED_M: f64 = 0.03;
@@ -237,11 +238,13 @@ pub(crate) mod choice {
     pub(crate) const CLOSE: f64 = 0.01;
     /// Distance from home within which no cable lies across a cut, swaths.
     pub(crate) const FAR: f64 = 4.0;
-    /// Share of the reachable floor with which a plan is complete if the reel has no limit, even if more is requested.
+    /// Share of the reachable floor that a plan must scan to be complete if the reel has no limit, even if more is
+    /// requested.
     pub(crate) const COMPLETE: f64 = 0.99;
-    /// Shortfall from the requested coverage with which a plan is still complete if the reel has a limit, as a share.
+    /// Largest shortfall from the requested coverage with which a plan is still complete if the reel has a limit, as a
+    /// share.
     pub(crate) const BY_REEL: f64 = 0.001;
-    /// Maximum number of cells of a floor. More cells cost memory and time. In a large tank the edges, where cell size
+    /// Maximum number of cells of a floor. More cells cost memory and time. In a large tank, the edges, where cell size
     /// matters, are a smaller share of the floor (tuning.md).
     pub(crate) const MOST_CELLS: f64 = 4e6;
 }
@@ -252,9 +255,9 @@ pub(crate) mod rooms {
     pub(crate) const MOST_LANES_M: f64 = 8_000.0;
     /// Maximum number of convex obstacles that can be planned well within a minute on one core.
     pub(crate) const MOST_PARTS: usize = 3_000;
-    /// Share of the reachable floor with which a plan between inner walls is complete. Coverage is counted with the
-    /// lane width, which is the tool width less the overlap. The tool also scans corners beyond that width: maps with
-    /// 98.3 to 98.9 % by lane width have 99.8 to 99.9 % by tool width (decisions.md).
+    /// Share of the reachable floor that a plan between inner walls must scan to be complete. Coverage is counted with
+    /// the lane width, which is the tool width less the overlap. The tool also scans corners beyond that width: a
+    /// coverage of 98.3 to 98.9 % by lane width is 99.8 to 99.9 % by tool width (decisions.md).
     pub(crate) const COMPLETE: f64 = 0.98;
     /// Number of convex obstacles above which a floor with straight walls is treated as divided by inner walls.
     pub(crate) const FEW_PARTS: usize = 200;
@@ -281,15 +284,15 @@ pub(crate) mod repair {
     pub(crate) const KICKS: f64 = 30.0;
     /// Length of the pieces into which lanes that cannot be driven as a whole are divided, metres.
     pub(crate) const BIT_M: f64 = 0.1;
-    /// Length at the beginning of the old path, metres. If the robot is blocked, a new path must be at least
-    /// `AS_BEFORE_M` away from this part of the old path somewhere.
+    /// Length at the beginning of the old path, metres. If the robot is blocked, a new path must deviate from this part
+    /// of the old path by at least `AS_BEFORE_M` at some point.
     pub(crate) const AHEAD_M: f64 = 1.0;
     /// Minimum distance of a new path from the old one, metres; a mere bend deviates by less.
     pub(crate) const AS_BEFORE_M: f64 = 0.35;
     /// Share of all floor that a repaired path may miss in addition to what the previous plan could miss.
     pub(crate) const MORE_LEFT: f64 = 0.0005;
-    /// Share of the rest of the old path by which a repaired path may be longer, in addition to `LONGER_M`; a new plan
-    /// is tried if it exceeds both together.
+    /// Share of the rest of the old path by which a repaired path may be longer. A new plan is tried if the repaired
+    /// path is longer by more than this share and `LONGER_M` together.
     pub(crate) const LONGER: f64 = 0.06;
     /// Length by which a repaired path may be longer, in addition to `LONGER`, metres.
     pub(crate) const LONGER_M: f64 = 12.0;

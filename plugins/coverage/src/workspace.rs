@@ -41,7 +41,7 @@ pub(crate) struct Workspace {
     /// The space for the hull centre, with exact distances.
     pub room: Room,
     /// Whether inner walls bend paths on the floor: a straight wall has inward corners, an obstacle leaves no passage
-    /// to it, or there are too many obstacles for them to be columns.
+    /// between itself and the wall, or there are too many obstacles for them to be columns.
     pub is_room: bool,
     triangulation: OnceLock<Triangulation>,
     /// The floor that the tool can reach if no cut seals any off, for several cell sizes; computed when first

@@ -1,4 +1,4 @@
-//! A planner that misbehaves in every way the tests can think of.
+//! A planner for tests that fails in a chosen way.
 //!
 //! The planner drives straight to the target, as a correct one would, until its step number `at_step`. At that step, it
 //! commits the fault named by the parameter `fault`. Faults whose names begin with `configure_` or `plan_` occur in

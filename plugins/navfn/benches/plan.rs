@@ -9,7 +9,7 @@ use planner_navfn::{navfn::Navfn, shortest::Shortest};
 use std::hint::black_box;
 use trials::traps::{Kind, Trap};
 
-/// Layouts of each kind.
+/// The number of layouts of each kind.
 const LAYOUTS: u64 = 40;
 /// Sensing range of the discoveries, metres.
 const RANGE_M: f64 = 6.0;
@@ -43,7 +43,8 @@ fn from_scratch<P: Planner>(c: &mut Criterion, name: &str, values: &[(&str, f64)
     });
 }
 
-/// The whole way to the goal, on which discs within range are discovered step by step; one iteration is one new plan.
+/// Measures the plans on the whole way to the goal. Discs within range are discovered step by step; one iteration is
+/// one new plan.
 fn replans(c: &mut Criterion) {
     let (traps, corners) = (traps(), Trap::corners());
     let all: Vec<Vec<Obstacle<'static>>> = traps.iter().map(|trap| trap.obstacles(true)).collect();

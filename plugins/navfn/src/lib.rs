@@ -1,4 +1,4 @@
-//! Goal planners that always arrive, or prove that the goal cannot be reached.
+//! Goal planners that either arrive or prove that the goal cannot be reached.
 #![forbid(unsafe_code)]
 
 pub mod navfn;

@@ -6,9 +6,9 @@
 //!
 //! When cells are blocked, every cell whose value no longer follows from its neighbours is cleared, spreading outward.
 //! The cleared area is then marched again from its rim. When cells are freed, the march starts from them. Nothing else
-//! is touched. Marching stops when the robot's cell is settled; the rest is left for the next call.
+//! is touched. Marching stops when the robot's cell is settled; the remaining cells are left for the next call.
 
-/// A value is considered supported by its neighbours up to this error, as a share of a cell.
+/// Error up to which a value is considered supported by its neighbours, as a share of a cell.
 const ROUNDING: f32 = 1e-4;
 
 /// Distances to the goal.
@@ -22,8 +22,8 @@ pub struct Field {
     /// Distance from the goal, metres; infinite for cells that are blocked or not yet reached.
     distance_m: Vec<f32>,
     is_source: Vec<bool>,
-    /// The cells that may lower their neighbours, in buckets by distance, each with its distance at the time it was
-    /// added.
+    /// The cells that may lower the values of their neighbours, in buckets by distance, each with its distance at the
+    /// time it was added.
     buckets: Vec<Vec<(u32, f32)>>,
     /// Emptied buckets for reuse, so that only the front of the march takes memory.
     spare: Vec<Vec<(u32, f32)>>,
@@ -33,7 +33,7 @@ pub struct Field {
 }
 
 impl Field {
-    /// Creates a field that is not yet marched, over cells in rows of `columns`. The outermost cells are blocked; the
+    /// Creates a field over cells in rows of `columns` cells, before any march. The outermost cells are blocked; the
     /// march starts from sources at known distances.
     pub fn new(columns: usize, cell_m: f64, blocked: Vec<bool>, sources: &[(usize, f64)]) -> Self {
         let n = blocked.len();
@@ -72,7 +72,7 @@ impl Field {
         self.n_settled
     }
 
-    /// Blocks cells: clears everything that they supported, and prepares the march to recompute it.
+    /// Blocks cells: clears every value that they supported, and prepares the march to recompute it.
     pub fn block(&mut self, cells: &[usize]) {
         let mut emptied: Vec<usize> = Vec::new();
         for &cell in cells {
@@ -114,7 +114,7 @@ impl Field {
             let mut bucket = std::mem::take(&mut self.buckets[self.first]);
             // Rounding can make a settled cell add cells to the same bucket again.
             while let Some((cell, distance_m)) = bucket.pop() {
-                // A cell that has been lowered or cleared since is in another bucket, or has nothing to pass on.
+                // An entry is out of date if its cell has been lowered or cleared since the entry was added.
                 if self.distance_m[cell as usize].to_bits() == distance_m.to_bits() {
                     self.settle(cell as usize);
                 }

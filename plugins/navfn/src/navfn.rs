@@ -11,7 +11,7 @@ use planner_api::{
 use steering::params as p;
 use world::shortest::{GrownFloor, NoWay, Way};
 
-/// Distance from a path within which it is pulled taut around everything, in cells.
+/// Distance from a path, in cells, within which its taut version may turn about solids.
 const REACH_CELLS: f64 = 4.0;
 
 const CELLS: ParamSpec = int("cells", "Cells along the longer side", "", 20, 2000, 240)
@@ -21,11 +21,11 @@ const CELLS: ParamSpec = int("cells", "Cells along the longer side", "", 20, 200
     )
     .group("Plan");
 
-/// Fast marching from the goal over the cells of the floor, then descent of the field from the robot; the resulting
-/// path is pulled taut.
+/// Marches from the goal over the cells of the floor, descends the field from the robot and pulls the resulting path
+/// taut.
 ///
 /// The field is kept between plans and repaired when an obstacle is discovered. If the cells show no path, the exact
-/// search decides, so the planner either arrives or proves that the goal cannot be reached.
+/// search decides, so either the robot arrives or the planner proves that the goal cannot be reached.
 pub struct Navfn {
     clearance_m: f64,
     cells: usize,
@@ -37,7 +37,7 @@ impl Planner for Navfn {
     const ID: &'static str = "navfn";
     const NAME: &'static str = "Navigation function";
     const ABOUT: &'static str = "Eikonal distance to the goal on a grid, repaired when the map changes, \
-                                 and a path pulled taut. Proves when no path exists. Evades moving \
+                                 and a path pulled taut. If no path exists, it proves this. Evades moving \
                                  obstacles.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] =

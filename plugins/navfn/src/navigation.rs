@@ -124,7 +124,7 @@ impl Navigation {
         let here_m = self.field.distance_m(cell);
         let next = at + self.downhill(cell) * (STEP_CELLS * self.raster.cell_m());
         let next_cell = self.raster.cell_at(next);
-        // Within the same cell the path continues straight, so that it leaves the cell.
+        // Within the same cell, the path continues straight, so that it leaves the cell.
         if next_cell == cell || self.field.distance_m(next_cell) < here_m {
             return next;
         }

@@ -1,4 +1,5 @@
-//! A request for a point robot: start and goal among shapes grown by the hull, and how unsolvable requests are refused.
+//! The planning problem of a point robot: start and goal among shapes grown by the hull. Unsolvable problems are
+//! refused.
 
 use planner_api::{
     Code, Ctx, LogLevel, Plan, PlanRequest, PlannerError, Reason, Result, Site, Task, ZoneKind,
@@ -44,14 +45,14 @@ pub(crate) struct PlanningProblem {
 }
 
 impl PlanningProblem {
-    /// Creates the problem of a request for a robot that keeps this clearance, or the mission's if that is larger,
-    /// metres.
+    /// Creates the problem of a request for a robot that keeps a clearance of `clearance_m`, or the mission's clearance
+    /// if that is larger.
     ///
     /// # Errors
     /// The task is not a goal, or the hull touches something at the start or at the goal.
     pub(crate) fn new(request: &PlanRequest<'_>, clearance_m: f64) -> Result<Self> {
         let Task::Goto { goal, .. } = request.task else {
-            let message = "plans to single goals only; choose another planner for preset paths or coverage";
+            let message = "this planner needs a single goal; choose another one for preset paths or coverage";
             return Err(PlannerError::new(Code::Unsupported, message));
         };
         let (site, start) = (request.site, request.start.position);
@@ -95,8 +96,8 @@ impl PlanningProblem {
 
     /// Turns a path into a plan, and logs a warning if something was discovered on the goal.
     ///
-    /// The plan leads up to a disc, because moving obstacles are seen as discs and the console replans only when
-    /// something enters the path. It ends in front of any other shape.
+    /// If that obstacle is a disc, the plan still leads to the goal: it may be a moving obstacle, and the console would
+    /// not replan when it moves away. If it has any other shape, the plan ends in front of it.
     pub(crate) fn plan_of(&self, way: &Way, ctx: &Ctx<'_>) -> Plan {
         let mut path = polyline::resampled(&way.points(), SPACING_M);
         for (name, grown) in &self.on_goal {

@@ -1,5 +1,5 @@
-//! Shared by the tests of our own planners: plans for the paper's layouts, and the figures of these plans over many
-//! seeds.
+//! Helpers shared by the tests of our own planners: they make plans for the paper's layouts, and compute the figures of
+//! these plans over many seeds.
 
 use planner_api::{Motion, Plan, PlanRequest, Planner, Reason, Result, Task, testing::Bench};
 use std::time::Duration;

@@ -38,7 +38,7 @@ impl Course {
             Task::Goto { goal, tolerance_m } => (vec![goal], tolerance_m),
             Task::Follow { targets, tolerance_m } => (targets.to_vec(), tolerance_m),
             Task::Cover { .. } => {
-                let message = "it drives to points and along paths, but does not cover floors";
+                let message = "this planner drives to points and along paths, but does not cover floors";
                 return Err(PlannerError::new(Code::Unsupported, message));
             }
         };
@@ -90,9 +90,9 @@ impl Course {
     }
 }
 
-/// Returns the space for the robot. Its clearance from obstacles is this clearance or the mission's, whichever is
-/// larger. Its clearance from the wall is the mission's, unless the course itself passes closer; the hull never touches
-/// the wall.
+/// Returns the space for the robot. The robot keeps `clearance_m` or the mission's clearance from obstacles, whichever
+/// is larger. From the wall, it keeps the mission's clearance unless the course itself passes closer; the hull never
+/// touches the wall.
 ///
 /// # Errors
 /// [`Code::Config`] when hull and clearance exceed the distance between the turns.
@@ -148,7 +148,7 @@ pub(crate) fn check_start(
     let distances_m = solid_parts(request.site).map(|(_, part)| part.distance(start).0);
     let outline_m = distances_m.fold(f64::INFINITY, f64::min);
     if outline_m < hull_m / 2.0 || outline_m <= 0.0 {
-        let message = format!("at {place} the hull is {:.2} m inside an obstacle", hull_m - outline_m);
+        let message = format!("at {place}, the hull is {:.2} m inside an obstacle", hull_m - outline_m);
         return Err(PlannerError::new(Code::StartOccupied, message));
     }
     if room.spare_m(course.points[0]) < 0.0 {
@@ -215,7 +215,7 @@ pub(crate) fn nearest_free(course: &Course, room: &Room) -> Point {
     places_about(start, 0..80).find(|place| room.spare_m(*place) >= 0.0).unwrap_or(start)
 }
 
-/// Returns points around a center, nearest first, on rings that are 2.5 cm apart.
+/// Returns points around a centre, nearest first, on rings that are 2.5 cm apart.
 pub(crate) fn places_about(center: Point, rings: Range<u32>) -> impl Iterator<Item = Point> {
     rings.map(|k| f64::from(k) * 0.025).flat_map(move |radius_m| {
         let bearings = (0..48).map(|k| f64::from(k) * TAU / 48.0);

@@ -1,5 +1,5 @@
-//! Shared by all potential fields on a preset path: a plan simulates a walk over the known map, and during the mission
-//! the field acts tick by tick.
+//! The code shared by all potential fields on a preset path. A plan simulates a walk over the known map; during the
+//! mission, the field acts tick by tick.
 
 use crate::course;
 use field::{FieldSettings, ForcePilot, offline};
@@ -12,7 +12,7 @@ use std::marker::PhantomData;
 pub trait Kind: 'static {
     /// The planner's id.
     const ID: &'static str;
-    /// The name for people.
+    /// The human-readable name.
     const NAME: &'static str;
     /// One sentence about the field, including its source.
     const ABOUT: &'static str;

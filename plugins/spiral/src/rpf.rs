@@ -6,10 +6,10 @@ use planner_api::{Config, ParamSpec};
 
 /// The rotating potential field of Wang et al. 2023, in both interpretations.
 ///
-/// For a point robot, planning applies the force law step by step, as in the paper. For a robot with a hull this nearly
-/// always fails, so planning simulates a mission over the known map instead. During the mission the rotating force acts
-/// around whatever is in the way, on the side of the smaller detour, unless configured differently; as printed in the
-/// paper, the method gets stuck.
+/// For a point robot, planning applies the force law step by step, as in the paper. For a robot with a hull, this
+/// nearly always fails, so planning simulates a mission over the known map instead. During the mission, the rotating
+/// force acts around whatever is in the way, on the side of the smaller detour, unless configured differently; as
+/// printed in the paper, the method gets stuck.
 pub type Rpf = Potential<Rotating>;
 
 /// Selects the force law of [`Rpf`].

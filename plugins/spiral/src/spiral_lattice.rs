@@ -30,7 +30,7 @@ const MAX_OFFSET: ParamSpec = float("max_offset_m", "Largest offset", "m", 0.1, 
 /// Plans along a preset path: where the path is free, the plan stays on it; elsewhere, the plan passes beside it at the
 /// lowest cost.
 ///
-/// Clearance, wall and change of heading are hard limits of the search. During the mission the robot follows the plan
+/// Clearance, wall and change of heading are hard limits of the search. During the mission, the robot follows the plan
 /// with the guard active; obstacles found on the way are bypassed with a new plan.
 pub struct SpiralLattice {
     wishes: Wishes,
@@ -97,7 +97,7 @@ fn plan_of(path: lattice::Path, course: &Course, room: &Room, ctx: &Ctx<'_>) -> 
         ctx.log(
             LogLevel::Warn,
             &format!(
-                "between ({:.2}, {:.2}) and ({:.2}, {:.2}) the only possible path exceeds the turn limit",
+                "between ({:.2}, {:.2}) and ({:.2}, {:.2}), the only possible path exceeds the turn limit",
                 from.x, from.y, to.x, to.y
             ),
         );

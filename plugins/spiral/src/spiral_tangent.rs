@@ -25,7 +25,7 @@ const RANGE: ParamSpec = float("range_m", "Sensing range", "m", 0.5, 10.0, 1.2)
     .group("Plan");
 const STEP: ParamSpec = float("step_m", "Longest move", "m", 0.01, 0.3, 0.1)
     .help(
-        "Length of a move in the plan; with shorter moves, the path passes obstacles at a distance closer to \
+        "Length of a move in the plan; with shorter moves, the path passes obstacles at a distance nearer to \
          the clearance.",
     )
     .group("Plan");

@@ -15,7 +15,7 @@ use world::{Point, polyline};
 const LOOK_M: f64 = 0.2;
 /// The maximum number of moves, as a multiple of those that the course takes.
 const DETOUR: f64 = 4.0;
-/// Number of moves between two checks whether the console has requested a stop.
+/// Number of moves between two checks of whether the console has requested a stop.
 const ASK_EVERY: usize = 32;
 
 /// A walk along a course by a robot that senses only what is within its range.

@@ -19,7 +19,7 @@ const MOST_BODIES: usize = 48;
 /// Share of the guard distance within which an obstacle beside the path blocks it. At a larger distance, the guard lets
 /// the robot slide past.
 const BLOCKING_SHARE: f64 = 0.7;
-/// Length of the last part of the path to a preset point, which need not be free, metres. Preset points pass close to
+/// Length of the last part of the path to a preset point, which need not be free, metres. Preset paths pass close to
 /// obstacles, and the mission looks half a metre ahead.
 const PASSING_M: f64 = 0.35;
 

@@ -1,8 +1,9 @@
 //! Chooses the side on which the robot passes whatever blocks the path: the side of the smaller detour. The chosen side
 //! is then kept.
 //!
-//! Wang et al. 2023 turn counter-clockwise around single points. That pushes the robot back at half of the points, and
-//! cancels out between two of them. Here obstacles with no passage between them, or to the wall, are bypassed as one.
+//! In Wang et al. 2023, the robot turns counter-clockwise around single points. That pushes the robot back at half of
+//! the points, and cancels out between two of them. Here, obstacles with no passage between them, or to the wall, are
+//! bypassed as one.
 
 use crate::{
     blockage::{Blockage, View},
@@ -36,8 +37,8 @@ struct Kept {
     members: BTreeSet<u32>,
     side: Side,
     seen_s: f64,
-    /// Whether the wall has been considered. After that the wall does not change the side again, because left and right
-    /// of the path swap as the robot goes around.
+    /// Whether the wall has been considered. After that, the wall does not change the side again, because left and
+    /// right of the path swap as the robot goes around.
     knows_wall: bool,
 }
 

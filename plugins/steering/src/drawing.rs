@@ -8,7 +8,7 @@ use planner_api::{Ctx, Layer};
 pub const FAR_M: f64 = 1.0;
 /// Longest arrow, metres: repulsion grows without bound near an outline.
 const LONGEST_M: f64 = 1.5;
-/// Shorter arrows are not drawn, metres.
+/// Length below which an arrow is not drawn, metres.
 const SHORTEST_M: f64 = 0.02;
 
 /// The separate forces on a robot at one position, for drawing.

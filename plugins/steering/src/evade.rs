@@ -22,13 +22,14 @@ const STANDING_S: f64 = 1.6;
 /// Number of headings tried, and the speeds tried as shares of the maximum.
 const HEADINGS: u32 = 24;
 const SHARES: [f64; 3] = [1.0, 0.6, 0.3];
-/// Extra distance from a moving obstacle, in addition to the clearance, metres: kept if possible, and preferred.
+/// Distances from a moving obstacle in addition to the clearance, metres: one that is kept if possible, and a larger
+/// one that is preferred.
 const ROOM_M: f64 = 0.1;
 const LIKED_M: f64 = 0.8;
 /// Growth rate of the uncertainty of a moving obstacle's predicted position, metres per second.
 const DOUBT_M_PER_S: f64 = 0.04;
-/// Cost of each metre by which the extra distance falls short, expressed as deviation from the desired velocity, metres
-/// per second.
+/// Cost of each metre by which the preferred distance is missed, expressed as deviation from the desired velocity,
+/// metres per second.
 const WORTH_PER_S: f64 = 0.25;
 
 /// Whether an obstacle moves.
@@ -155,7 +156,7 @@ fn moved(at: Point, heading_rad: f64, velocity: Vector, limits: &Limits) -> (Poi
     match drive_for(Drive::Velocity(velocity), heading_rad, limits, TURN_FIRST_RAD) {
         Drive::Velocity(velocity) => (at + velocity * STEP_S, heading_rad),
         Drive::Twist { v_m_per_s, w_rad_per_s } => {
-            // Turn no further than the heading error: a step is long.
+            // A step is long, so the turn is limited to the heading error.
             let error_rad = heading_error_rad(velocity, heading_rad);
             let turn_rad = (w_rad_per_s * STEP_S).clamp(-error_rad.abs(), error_rad.abs());
             let middle_rad = heading_rad + turn_rad / 2.0;
@@ -190,8 +191,8 @@ mod tests {
         Body::new(1, &Outline::Disc { center: at, radius_m }).unwrap()
     }
 
-    /// Flies to the east among movers that start within sight; returns the smallest distance to them, and how far the
-    /// robot got.
+    /// Flies to the east among movers that start within sight; returns the smallest distance to them and the final
+    /// position.
     fn flown(movers: &[(Point, Vector)], limits: Limits) -> (f64, Point) {
         let mut pose = exact_pose(Point::origin());
         let mut least_m = f64::INFINITY;
@@ -228,7 +229,7 @@ mod tests {
             for k in 0..24 {
                 let bearing = std::f64::consts::TAU * f64::from(k) / 24.0;
                 let towards = Vector::new(bearing.cos(), bearing.sin());
-                // The mover would meet the robot on its straight way after ten seconds.
+                // On its straight path, the robot would meet the mover after ten seconds.
                 let meeting = Point::new(4.0, 0.0);
                 let (least_m, end) = flown(&[(meeting - towards * 4.0, towards * 0.4)], limits);
                 if (meeting - towards * 4.0).coords.norm() > 1.5 {

@@ -3,8 +3,8 @@
 use crate::contact::Contact;
 use geometry::{Braking, Vector};
 
-/// Time over which a distance may be used up, seconds: several ticks, so that the hull stops before contact. A robot
-/// that needs longer to stop is driven more slowly.
+/// Shortest time in which the hull may use up its distance to a solid, seconds: several ticks, so that it stops before
+/// contact. A robot that needs longer to stop is driven more slowly.
 const BRAKING_S: f64 = 0.5;
 /// Maximum speed at which the guard moves the robot away from something too close, as a share of the robot's maximum
 /// speed.
@@ -45,7 +45,8 @@ pub fn slide(wanted: Vector, contacts: &[Contact], keep_m: f64, v_max: f64, brak
     safe.unwrap_or_else(Vector::zeros).cap_magnitude(v_max)
 }
 
-/// Returns the velocity, slowed down so that a robot with a different heading stays clear while it turns.
+/// Returns the velocity, slowed down so that a robot that must first turn into this direction stays clear while it
+/// turns.
 pub fn braked(
     velocity: Vector,
     heading: Vector,
@@ -91,7 +92,7 @@ mod tests {
     use crate::contact::Source;
     use proptest::prelude::*;
 
-    /// Stops as quickly as it likes.
+    /// The limits of a robot that stops almost at once.
     const QUICK: Braking = Braking { acceleration_m_per_s2: 1e3, tick_s: 0.1 };
 
     fn contact(bearing_rad: f64, distance_m: f64) -> Contact {

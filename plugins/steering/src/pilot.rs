@@ -20,17 +20,17 @@ use planner_api::{Command, Ctx, Drive, PoseEstimate, Sensed, Site, Status};
 const SPARE_M: f64 = 0.02;
 /// Maximum widening of the guard distance because of the position error, metres, so that a lost robot can still move.
 const MOST_WIDENING_M: f64 = 0.15;
-/// Share of the desired speed below which the guard has wedged the robot.
+/// Share of the desired speed below which the robot counts as wedged by the guard.
 const WEDGED_SHARE: f64 = 0.05;
 /// Distance from the last point within which the robot slows down, metres.
 const ARRIVING_M: f64 = 0.5;
 /// Interval between remedies, as a share of the time after which the robot is considered stuck.
 const REMEDY_SHARE: f64 = 0.3;
-/// Longest distance between two commands, metres: the robot aims only slightly ahead.
+/// Longest distance that the robot drives between two commands, metres: it aims only slightly ahead.
 const TICK_MOST_M: f64 = 0.1;
 /// Share of the turn rate that an arc to the target may use; the rest is for corrections.
 const TURN_SHARE: f64 = 0.9;
-/// Distance of the target below which the arc does not get any tighter, metres.
+/// Distance to the target below which the arc does not get any tighter, metres.
 const LEAST_REACH_M: f64 = 0.15;
 /// Weight of the previous direction, so that noise does not shake the robot.
 const SMOOTHING: f64 = 0.5;
@@ -117,7 +117,7 @@ impl Pilot {
         let keep_m = self.keep_m(flight, &tick.pose);
         let spare_m = flight.guard_m.max(self.clearance_m + SPARE_M) - self.clearance_m;
         let safe = self.guarded(velocity, tick, keep_m);
-        // The guard wedged the robot where the plan, which keeps only the mission's clearance, can pass.
+        // The guard may have wedged the robot where the plan, which keeps only the mission's clearance, can pass.
         let is_wedged = safe.norm() < WEDGED_SHARE * velocity.norm();
         if is_wedged { self.guarded(velocity, tick, keep_m - spare_m) } else { safe }
     }

@@ -2,7 +2,7 @@
 
 use geometry::Point;
 
-/// Radius of a circle that a moving robot leaves, metres.
+/// Radius of the circle that a robot must leave to count as moving, metres.
 const MOVING_M: f64 = 0.5;
 /// Distance by which a robot must come closer to its target to make progress, metres.
 const GAIN_M: f64 = 0.1;

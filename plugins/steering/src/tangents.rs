@@ -13,7 +13,7 @@ pub struct Tangent {
 }
 
 /// The tangent from `at` to a disc on one side (Xu et al. 2022, eq. 10). The printed form is singular where the tangent
-/// is vertical; as vectors it is `(L c +- R c') / |c|^2`.
+/// is vertical; written with vectors, it is `(L c +- R c') / |c|^2`.
 ///
 /// From inside the disc, the tangent points along the circle and slightly outward.
 pub fn to_disc(at: Point, center: Point, radius_m: f64, side: Side) -> Tangent {
@@ -34,8 +34,8 @@ pub fn to_disc(at: Point, center: Point, radius_m: f64, side: Side) -> Tangent {
     Tangent { direction, length_m: 0.0 }
 }
 
-/// The outermost tangent to several discs on one side; `None` if there are no discs. The discs must lie within half a
-/// turn.
+/// The outermost tangent to several discs on one side; `None` if there are no discs. Seen from `at`, the discs must lie
+/// within half a turn.
 pub fn outermost(at: Point, discs: impl Iterator<Item = (Point, f64)>, side: Side) -> Option<Tangent> {
     discs.map(|(center, radius_m)| to_disc(at, center, radius_m, side)).reduce(|best, next| {
         if best.direction.perp(&next.direction) * side.sign() > 0.0 { next } else { best }

@@ -86,8 +86,8 @@ impl Ekf {
     ///
     /// Every place in the 95 % ellipse, moved by up to `most_m`, lies in the new ellipse; its longer semi-axis is
     /// longer by exactly `most_m`. Of all ellipses that contain the sum of an ellipse and a disc (Kurzhanski), this one
-    /// has the shortest longer axis. Several short motions give the same result as one long motion. Here the covariance
-    /// is a bound, not a probability: a robot that drives straight at its top speed is at the rim.
+    /// has the shortest longer axis. Several short motions give the same result as one long motion. Here, the
+    /// covariance is a bound, not a probability: a robot that drives straight at its top speed is at the rim.
     pub fn wander(&mut self, most_m: f64, most_rad: f64) {
         // More than this is as good as lost; a bound that is not a number is none.
         let bounded = |most: f64| if most.is_nan() { MOTION_LIMIT } else { most.clamp(0.0, MOTION_LIMIT) };

@@ -65,7 +65,7 @@ proptest! {
         ranges.iter_mut().zip(&errors).for_each(|(r, e)| r.range_m += e);
         let found = LinearLs.solve(&ranges, &stations, None).unwrap().position;
         let reference = (stations[5].position, ranges[5].range_m);
-        // At the least squares the misfits are orthogonal to the columns.
+        // At the least squares, the misfits are orthogonal to the columns.
         let slope: Vector = stations[..5].iter().zip(&ranges).map(|(s, r)| {
             let offset = s.position - reference.0;
             let squares = reference.1.powi(2) - r.range_m.powi(2) + offset.norm_squared();

@@ -127,7 +127,7 @@ mod tests {
         }
         assert!((1..MOST_TICK_LINES).all(|_| pace.take(&event(8, 0.8), 60).is_ok()));
         let mut longer = pace;
-        assert!(longer.take(&event(9, 0.9), 60).is_ok(), "another tick begins anew");
+        assert!(longer.take(&event(9, 0.9), 60).is_ok(), "the next tick is counted separately");
         assert!(pace.take(&event(8, 0.8), 60).is_ok() && pace.take(&event(8, 0.8), 60).is_err());
         assert!(Pace::default().take(&event(0, 0.0), MOST_TICK_BYTES as usize + 1).is_err());
     }

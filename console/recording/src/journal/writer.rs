@@ -25,8 +25,8 @@ const MOST_WAITING_BYTES: usize = 4 << 20;
 ///
 /// Events are collected, compressed and handed to the operating system at least every half second or every 64 kB, so
 /// that a killed process loses no more than that. The deadline is checked at every event and by
-/// [`JournalWriter::tick`]. Equal runs therefore have equal lines, but the division of the compressed data depends on
-/// the clock.
+/// [`JournalWriter::tick`], so the division of the compressed data depends on the clock. The lines themselves do not:
+/// equal runs have equal lines.
 ///
 /// Data that cannot be written, for example because the disk is full, is kept, and writing is tried again every half
 /// second, so that the journal is complete in the end. If more than 4 MB are waiting, the journal ends; later events

@@ -93,7 +93,7 @@ fn drawn_zones(zones: &[Zone]) -> rr::LineStrips2D {
         .with_draw_order(-5.0)
 }
 
-/// The seams of the plates, and the name of each plate where most of it is.
+/// The seams of the plates, and the name of each plate at the middle of its floor.
 fn draw_plates(stream: &Stream, run: &RunOpened) -> Done {
     let Some(layout) = &run.plates else { return Ok(()) };
     let seams = layout.seams(&run.world.boundary);

@@ -46,7 +46,7 @@ impl<T: Row + Send> Series for Rows<T> {
     }
 }
 
-/// Only the first and the last of equal consecutive rows are kept; this does not change the curve.
+/// A series that keeps only the first and the last of equal consecutive rows; this does not change the curve.
 struct Changes<T> {
     lane: Lane<T>,
     of: fn(&Tick) -> Option<T>,

@@ -73,7 +73,7 @@ impl States {
     pub(crate) fn apply(&mut self, stream: &Stream, event: &EventKind, at: At) -> Done {
         match event {
             EventKind::Ordered { order } if order.is_start() => self.enter(stream, MOVING, at),
-            // The beginning of a drive back precedes the event that the robot may move again.
+            // A drive back begins before the event that the robot may move again.
             EventKind::Resumed if self.mission == RETURNING => Ok(()),
             EventKind::Resumed => self.enter(stream, MOVING, at),
             EventKind::ReturnBegan { .. } => self.enter(stream, RETURNING, at),

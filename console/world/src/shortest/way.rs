@@ -2,9 +2,9 @@
 
 use geometry::{Point, unit_vector};
 
-/// Maximum distance of the chain of points for an arc outside the circle, metres.
+/// Maximum distance by which the chain of points for an arc lies outside the circle, metres.
 const ARC_EXCESS_M: f64 = 4e-5;
-/// Maximum turn of the chain of points for an arc at each corner, radians.
+/// Maximum turn at each corner of the chain of points for an arc, radians.
 const ARC_STEP_RAD: f64 = 0.2;
 
 /// A piece of a shortest path.

@@ -9,7 +9,7 @@ use geometry::{Boundary, Point, Shape};
 use serde::{Deserialize, Serialize};
 use std::{ops::ControlFlow, sync::Arc};
 
-/// Contacts with a wrap below this do not count, radians.
+/// Wrap below which a contact does not count, radians.
 const LEAST_WRAP_RAD: f64 = 1e-7;
 /// Angle between the points of an arc when the cable is drawn as a line, radians.
 const ARC_STEP_RAD: f64 = 0.1;

@@ -13,7 +13,7 @@ use std::{
     sync::Arc,
 };
 
-/// Differences in length below this do not matter, metres.
+/// Difference below which two lengths count as equal, metres.
 const SAME_M: f64 = 1e-9;
 
 /// The tangent graph of the posts, searched once from the anchor by Dijkstra's algorithm.

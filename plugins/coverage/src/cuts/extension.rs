@@ -20,7 +20,7 @@ pub(crate) struct Extension<'a> {
     pub cuts: &'a [Vec<Point>],
     /// The tether as it lies: no new cut may cross it.
     pub tether: &'a [Point],
-    /// The rest of the path: a new cut crosses it as seldom as possible.
+    /// The rest of the path: a new cut crosses it as rarely as possible.
     pub path: &'a [(Point, Point)],
 }
 

@@ -1,7 +1,8 @@
 //! Rows of square cells over the floor.
 //!
-//! The rows are rotated relative to the tank's axes. Otherwise, a planner that shortens paths without losing cells
-//! would keep half a cell farther from every straight wall, because no row of centres represents that strip.
+//! The rows are rotated relative to the tank's axes. In rows parallel to a straight wall, no centre would lie in the
+//! strip along the wall that is half a cell wide. A planner that shortens paths without losing cells would then keep
+//! half a cell farther from that wall.
 
 use crate::plane::{direction, extent, left_of};
 use std::ops::Range;

@@ -11,7 +11,7 @@ fn empty() -> SweptFloor {
     SweptFloor::new(ReachableFloor::new(&domain, 0.1))
 }
 
-/// Cells under the bar on its way along a path; some may come several times.
+/// Cells under the bar on its way along a path; some may appear several times.
 fn runs(floor: &SweptFloor, path: &[Point]) -> Vec<Run> {
     let mut runs = Vec::new();
     floor.floor.raster.along(path, |cells| runs.push(Run::from(cells)));

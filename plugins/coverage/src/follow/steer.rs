@@ -1,8 +1,8 @@
 //! Steers a tracked robot along a path: on circular arcs that end on the path, slower at bends.
 //!
 //! This is pure pursuit: the robot drives on the one arc that begins along its heading and meets the aim. On a path of
-//! constant curvature, it follows without an offset. A robot that merely turned towards its aim would have an offset,
-//! and would cut inside the path around a column.
+//! constant curvature, the robot follows without an offset. A robot that merely turned towards its aim would have an
+//! offset, and would cut inside the path around a column.
 
 use planner_api::{Drive, Limits};
 use std::collections::VecDeque;
@@ -15,7 +15,7 @@ use world::{
 const TURN_FIRST_RAD: f64 = 0.5;
 /// Turn rate per angle to the aim when turning on the spot, 1/s.
 const TURN_GAIN_PER_S: f64 = 2.5;
-/// Distance of the aim below which the arc does not get any tighter, metres.
+/// Distance to the aim below which the arc does not get any tighter, metres.
 const LEAST_REACH_M: f64 = 0.15;
 /// Share of the turn rate that an arc may use; the rest is for corrections.
 const TURN_SHARE: f64 = 0.9;
@@ -155,7 +155,7 @@ mod tests {
                 panic!("tracks take twists")
             };
             prop_assert!(w_rad_per_s.abs() <= 1.0 && v_m_per_s <= speed + 1e-12);
-            // Along the arc to where the heading has turned by twice the angle to the aim.
+            // The end of the arc, where the heading has turned by twice the angle to the aim.
             let (turn, ahead) = (2.0 * off, Vector::new(heading.cos(), heading.sin()));
             let left = Vector::new(-ahead.y, ahead.x);
             let radius = v_m_per_s / w_rad_per_s;

@@ -120,7 +120,7 @@ fn the_cuts_hold_from_the_end_of_the_way_home_on() {
     let (here, there) = beside_a_cut(tank.anchor, &cuts);
     let mut status =
         |tick, at, target| planner.step(&sensed(tick, at, 0.0, &[target], &[]), &bench.ctx()).unwrap().status;
-    // Asked to plan from the anchor, but the cable lies across a cut: the return path comes first.
+    // The task begins at the anchor, but the cable lies across a cut: the return path comes first.
     for (tick, (at, target)) in
         [(here, there), (there, tank.anchor), (tank.anchor, here)].into_iter().enumerate()
     {

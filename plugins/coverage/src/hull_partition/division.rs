@@ -66,7 +66,7 @@ fn tree(cells: &[Cell], borders: &[Border], first: usize) -> Vec<usize> {
     gate.into_iter().flatten().collect()
 }
 
-/// Adds one gate where discs divide a cell so that the tree leaves a part of it without a gate.
+/// Adds one gate if discs divide a cell and the tree leaves a part of that cell without a gate.
 ///
 /// The gate is the widest border along the sealed floor through which the robot can enter. It joins parts that were
 /// separate, so it opens no path around a column.

@@ -15,7 +15,7 @@ use world::{Point, Vector};
 
 /// A bend that may be worthwhile.
 struct Offer {
-    /// Metres of path and turning per square metre of floor.
+    /// The cost, in metres of path and turning per square metre of floor.
     rate: f64,
     at: Point,
     base: usize,

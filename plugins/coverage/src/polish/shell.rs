@@ -1,7 +1,7 @@
-//! The pass along the shell. Between a straight side and a round wall, some of the critical zone stays unscanned: less
-//! than a cell of the floor. A shortcut that loses no cell may therefore still lose part of the zone. So the zone is
-//! treated last: the path is moved back to the minimum distance from the shell, and lanes are added where the zone is
-//! still open.
+//! The pass along the shell. Between a straight side of the path and a round wall, a part of the critical zone that is
+//! smaller than a cell stays unscanned. A shortcut that loses no cell may therefore still lose part of the zone. So the
+//! zone is treated last: the path is moved back to the minimum distance from the shell, and lanes are added where the
+//! zone is still open.
 
 use crate::inflation::SLACK_M;
 use crate::lanes::{Lane, thinned};

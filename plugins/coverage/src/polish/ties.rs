@@ -11,7 +11,7 @@ use world::{Point, Vector, polyline};
 
 /// A lane that may be tied in.
 struct Offer {
-    /// Metres of path and turning per square metre of floor.
+    /// The cost, in metres of path and turning per square metre of floor.
     rate: f64,
     lane: Lane,
 }

@@ -31,7 +31,7 @@ const DIRECTIONS: ParamSpec = int("directions", "Directions tried", "", 1, 24, 1
 const ALPHA: ParamSpec = float("alpha_deg", "Cut angle", "deg", 0.0, 80.0, 50.0)
     .help(
         "Largest angle between a cut and the ray from the anchor. 0 gives the shortest cable; larger \
-           angles give shorter paths. Between straight walls the planner also tries larger angles, up to \
+           angles give shorter paths. Between straight walls, the planner also tries larger angles, up to \
            80 deg.",
     )
     .group("Tether");

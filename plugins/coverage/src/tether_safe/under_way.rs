@@ -143,7 +143,7 @@ impl RepairLimits<'_> {
     }
 }
 
-/// Whether a path begins the way the current plan continues.
+/// Whether a path begins as the current plan continues.
 fn goes_on(current: &CurrentPlan, path: &[Point]) -> bool {
     let first = |path: &[Point], far_m: f64| {
         let fine = polyline::resampled(path, 0.1);

@@ -2,8 +2,8 @@
 
 use rustc_hash::FxHashMap;
 
-/// Index of a lane end: `2 * lane` is its first point, `2 * lane + 1` its last. After the last lane come home, where
-/// the tour ends, and the start.
+/// Index of a lane end: `2 * lane` is its first point, `2 * lane + 1` its last. Two more ends follow the last lane:
+/// home, where the tour ends, and the start.
 pub(crate) type End = usize;
 
 /// A tour: the end at which each lane is entered, home first.

@@ -106,7 +106,7 @@ impl Chains {
         lane
     }
 
-    /// Joins two ends, unless one is taken or both belong to one chain.
+    /// Joins two ends, unless one of them is already joined or both belong to the same chain.
     fn join(&mut self, u: End, v: End) {
         let (a, b) = (self.root(u / 2), self.root(v / 2));
         if self.joined[u].is_none() && self.joined[v].is_none() && a != b {

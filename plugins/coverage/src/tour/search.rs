@@ -43,7 +43,7 @@ struct Join {
     joined_m: f64,
 }
 
-/// A change of the tour.
+/// A change to the tour.
 struct Change {
     gain_m: f64,
     /// The ends that are now joined differently.
@@ -182,7 +182,7 @@ impl Search<'_> {
     fn reverse(&mut self, i: usize, j: usize) {
         let n = self.entries.len();
         if j + 1 - i > n / 2 + 1 {
-            // Reversing the rest of the ring instead gives the same tour and is shorter.
+            // Reversing the rest of the ring instead gives the same tour in fewer steps.
             let (from, count) = (j + 1, n - (j + 1 - i));
             for k in 0..count / 2 {
                 self.entries.swap((from + k) % n, (from + count - 1 - k) % n);

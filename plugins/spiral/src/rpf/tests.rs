@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use trials::{Layout, Outcome, Robot, Score, cross, exact_pose, fly, score, sensed_at_rest};
 use world::{Point, polyline, spiral::Spiral};
 
-/// Choices by the index of their word.
+/// Parameters that are choices, each given as the index of the chosen word.
 const LITERAL: [(&str, f64); 2] = [("reading", 0.0), ("repulsion", 0.0)];
 const GATED: [(&str, f64); 2] = [("reading", 1.0), ("repulsion", 0.0)];
 /// Wang et al. 2023, first distribution.

@@ -67,7 +67,7 @@ fn hold(figures: &Figures, rmse_m: f64, precision: f64) {
     assert!(figures.mean(|s| s.rmse_m) <= rmse_m, "{summary}");
     assert!(figures.mean(|s| s.precision) >= precision, "{summary}");
     assert!(figures.refusals.iter().all(|(_, reason)| reason.contains("proved")), "{summary}");
-    // In a few layouts the only path turns faster, and the planner says so.
+    // In a few layouts, the only path turns faster, and the planner says so.
     let slow = figures.safeties.iter().filter(|s| s.heading_step_rad <= 30.1_f64.to_radians());
     assert!(slow.count() * 10 >= figures.safeties.len() * 9, "{summary}");
 }

@@ -250,7 +250,7 @@ fn place(from: Point, length_m: f64, angle_rad: f64) -> Point {
 }
 
 impl Room {
-    /// Returns the necks of the passages that are narrower or wider than the robot needs by up to `more_m`.
+    /// Returns the necks of the passages whose width differs by at most `more_m` from the width that the robot needs.
     fn necks(&self, more_m: f64) -> Vec<Neck> {
         let needs_m = 2.0 * self.keep_m;
         let mut necks = Vec::new();

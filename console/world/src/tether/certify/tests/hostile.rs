@@ -1,4 +1,4 @@
-//! Paths that try to get a certificate they do not deserve, and harmless ones that look odd.
+//! Paths that must not get a certificate although they look harmless, and harmless paths that look odd.
 
 use super::*;
 use geometry::Vector;
@@ -111,7 +111,7 @@ fn loops_are_refused_until_every_one_is_undone() {
 
 #[test]
 fn a_knot_that_winds_round_no_column_in_sum_is_refused() {
-    // Round one, round the other, back round the one, back round the other: every winding number is 0.
+    // Round one column, round the other, back round the first, back round the second: every winding number is 0.
     let columns = [column(0, 0.0, 5.0), column(1, 5.0, 0.0)];
     let rings = [(0.0, 5.0, 1.0), (5.0, 0.0, 1.0), (0.0, 5.0, -1.0), (5.0, 0.0, -1.0)];
     let knot = home_and_out(&rings.map(|(x, y, turns)| ring(x, y, turns)));
