@@ -72,11 +72,12 @@ fn fly_beside(
     shadowing: Option<Shadowing>,
     vehicle: Option<&Wanted>,
 ) -> anyhow::Result<ExitCode> {
-    let stop = stop_signal::listen();
     planners::check_installed(scenario, plugins)?;
     warn_of_shadowed(scenario, plugins);
     warn_of_positions(scenario);
     let flight = remote::connected(Flight::prepare(scenario, false), scenario, vehicle)?;
+    // Until now, a signal ends the process at once: nothing has begun.
+    let stop = stop_signal::listen();
     let mut log = if options.record {
         RunLog::create(&logs.folder(), &scenario.name, &scenario.mission.planner.id, scenario.seed)?
     } else {
