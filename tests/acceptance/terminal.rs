@@ -156,21 +156,21 @@ fn keys_typed_ahead_of_a_question_do_not_answer_it() {
     let mut session = Session::open(&goto(), 120, 36);
     session.see("Press S to start");
     session.press("S\r");
-    session.see("Question just appeared: press Enter again");
+    session.see("The question has just appeared; press Enter again");
     session.see("Enter: start, Esc: cancel.");
     assert!(session.bench.runs().is_empty());
     session.agree();
     session.see("▶ RUN");
-    session.until("the closed notice", |session| !session.text().contains("Question just appeared"));
+    session.until("the closed notice", |session| !session.text().contains("The question has just appeared"));
     session.press("X\r");
-    session.see("Question just appeared: press Enter again");
+    session.see("The question has just appeared; press Enter again");
     session.see("‖ HOLD");
     session.see("End the mission?");
     session.press("\x1b");
     session.until("the closed question", |session| !session.text().contains("End the mission?"));
-    session.until("the closed notice", |session| !session.text().contains("Question just appeared"));
+    session.until("the closed notice", |session| !session.text().contains("The question has just appeared"));
     session.press(" \r");
-    session.see("Question just appeared: press Enter again");
+    session.see("The question has just appeared; press Enter again");
     session.see("Resume?");
     let moved =
         |session: &Session| kinds(&session.run()).iter().any(|kind| kind == "resumed" || kind == "ended");

@@ -9,7 +9,7 @@ use crate::model::{
 use crate::update::offered;
 use crate::view::text;
 use crate::view::{by_command, question, shares, standing};
-use mission::{EventKind, Outcome};
+use mission::{EventKind, Outcome, Severity};
 use world::coverage::percent;
 
 /// What has been printed so far.
@@ -37,7 +37,11 @@ impl Said {
         // The sentence about the state already says that the robot is held; in a live run, it does so only once the
         // stop is confirmed.
         let is_hold = |entry: &Entry| matches!(entry.what.event(), Some(of) if matches!(of.kind, EventKind::Held { .. }));
-        let entries: Vec<Entry> = self.entries(model).into_iter().filter(|entry| !is_hold(entry)).collect();
+        // Planners' messages about their own work are hidden on the screen, too, until the operator asks for them.
+        let least =
+            if model.ui.events.matches.filter().shows_debug() { Severity::Debug } else { Severity::Info };
+        let is_said = |entry: &Entry| entry.severity >= least && !is_hold(entry);
+        let entries: Vec<Entry> = self.entries(model).into_iter().filter(is_said).collect();
         lines.extend(entries.iter().map(Entry::line));
         let notice = model.notice().map(|notice| notice.text.clone());
         let is_said = |text: &String| entries.iter().any(|entry| entry.text == *text);

@@ -20,7 +20,7 @@ pub(super) fn name(word: &str) -> String {
 pub(super) fn guide(word: &str) -> Guide {
     match word {
         "reel" => Guide {
-            cause: "The alarm is raised when more than 80 % of the tether is out.",
+            cause: "More than 80 % of the tether is out, and more than a certified plan promises.",
             holds: "When the reel is empty, the robot is held.",
             effect: "",
             remedies: const {

@@ -106,7 +106,10 @@ impl Model {
     fn planner_check(&self) -> Check {
         let planning = &self.live.run.planning;
         match (&planning.fault, self.planner()) {
-            (Some(fault), _) => check("planner", CheckOutcome::Failed, fault.message.clone()),
+            (Some(fault), _) => {
+                let found = format!("{}; `:plan-again` replans, `:planner` changes it", fault.message);
+                check("planner", CheckOutcome::Failed, found)
+            }
             (None, Some(info)) => {
                 let hash = info.sha256.get(..8).unwrap_or(&info.sha256);
                 check(

@@ -13,6 +13,12 @@ pub struct Figures {
     pub time_s: f64,
     /// The scanned share of the reachable floor, 0 to 1; `None` for missions without a scan.
     pub scanned: Option<f64>,
+    /// The minimum distance from the hull to anything solid, metres; `None` if it is not known.
+    pub clearance_m: Option<f64>,
+    /// The maximum length of tether out, metres; `None` without a tether.
+    pub tether_m: Option<f64>,
+    /// The largest wrap on one obstacle, radians; `None` without a tether.
+    pub wrap_rad: Option<f64>,
 }
 
 /// The estimated effect of a change.
@@ -99,7 +105,15 @@ impl Live {
 }
 
 fn planned(estimate: &Estimate) -> Figures {
-    Figures { length_m: estimate.length_m, time_s: estimate.time_s, scanned: estimate.reachable }
+    let tether = estimate.tether.as_ref();
+    Figures {
+        length_m: estimate.length_m,
+        time_s: estimate.time_s,
+        scanned: estimate.reachable,
+        clearance_m: estimate.clearance_min.map(|worst| worst.value),
+        tether_m: tether.map(|tether| tether.length_max.value),
+        wrap_rad: tether.map(|tether| tether.wrap_max.value),
+    }
 }
 
 fn forecast_of(outlook: &Outlook, covers: bool) -> Figures {
@@ -107,6 +121,9 @@ fn forecast_of(outlook: &Outlook, covers: bool) -> Figures {
         length_m: outlook.length_m,
         time_s: outlook.after_s,
         scanned: covers.then_some(outlook.reachable),
+        clearance_m: outlook.clearance_min_m.is_finite().then_some(outlook.clearance_min_m),
+        tether_m: outlook.tether_length_max_m,
+        wrap_rad: outlook.wrap_max_rad,
     }
 }
 

@@ -30,6 +30,12 @@ pub struct Tether {
     pub line: Vec<Point>,
     /// Whether the current plan, or the plan last refused, is certified; `None` without such a plan.
     pub certified: Option<bool>,
+    /// The longest tether out that the certified current plan promises, metres; `None` without such a plan.
+    #[serde(default)]
+    pub promised_m: Option<f64>,
+    /// Whether the mission has reported that most of the reel is out.
+    #[serde(default)]
+    pub is_near_end: bool,
     /// Mission time at which the geometry of the cable was last known, seconds; `None` if it has never been known.
     pub t_s: Option<f64>,
     /// The history of the length out, metres.

@@ -34,16 +34,17 @@ pub(super) struct Series<'a> {
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, chart: Chart) {
     let Some(series) = series(look, chart) else { return };
-    let block = look.pane(Pane::Chart(chart), series.title, &note(&series, area));
+    let block = look.pane(Pane::Chart(chart), series.title, &note(look, &series, area));
     framed(look, frame, area, block, &series);
 }
 
-/// The value now, the limit and the time that a chart covers, as far as they fit above the chart.
-fn note(series: &Series, area: Rect) -> String {
+/// The value now or at the end of the run, the limit and the time that a chart covers, as far as they fit above the chart.
+fn note(look: &Look, series: &Series, area: Rect) -> String {
     let room = usize::from(area.width).saturating_sub(text::width(series.title) + 8);
     let said = |value: f64| text::number(value, series.decimals);
+    let when = if look.run.has_ended() { "end" } else { "now" };
     let now =
-        series.values.last(SLOT_S).last().map_or_else(String::new, |now| format!("now {}, ", said(now)));
+        series.values.last(SLOT_S).last().map_or_else(String::new, |last| format!("{when} {}, ", said(last)));
     let limit = series.limit.map_or_else(String::new, |limit| format!("limit {}, ", said(limit)));
     let minutes = text::minutes(series.values, HISTORY_S);
     text::wording([format!("{now}{limit}{minutes}"), format!("{limit}{minutes}"), minutes], room)
@@ -51,7 +52,7 @@ fn note(series: &Series, area: Rect) -> String {
 
 /// Draws a chart of a figure that no pane of the mission screen shows.
 pub(super) fn figure(look: &Look, frame: &mut Frame, area: Rect, series: &Series) {
-    let block = look.block(Role::Border, series.title, &note(series, area));
+    let block = look.block(Role::Border, series.title, &note(look, series, area));
     framed(look, frame, area, block, series);
 }
 

@@ -20,6 +20,8 @@ use ratatui::widgets::Paragraph;
 
 /// Maximum rows of a question.
 const MOST_ROWS: usize = 3;
+/// The clauses of a question in several lines that are never left out: the question, and what matters most.
+const ALWAYS: usize = 2;
 
 /// The rows of the lines: one for the state, and as many as the open question needs.
 pub(super) fn rows(look: &Look, columns: u16) -> u16 {
@@ -48,7 +50,10 @@ fn question_lines(model: &Model, columns: u16) -> Vec<String> {
     if !is_whole {
         return vec![next::joined(&clauses, columns)];
     }
-    let mut lines = text::wrap(&clauses.join(" "), columns);
+    // What does not fit is left out whole, the least important clause first.
+    let wrapped = |n: usize| text::wrap(&clauses[..n].join(" "), columns);
+    let fits = (ALWAYS..=clauses.len()).rev().find(|n| wrapped(*n).len() <= MOST_ROWS);
+    let mut lines = wrapped(fits.unwrap_or(ALWAYS).min(clauses.len()));
     lines.truncate(MOST_ROWS);
     lines
 }
@@ -108,13 +113,18 @@ pub(super) fn clauses(model: &Model) -> Clauses {
     asked(model).map_or_else(|| next::clauses(model), |clauses| (Role::Confirm, clauses))
 }
 
-/// The open question, with the keys that answer it.
+/// The open question, with the keys that answer it, but without the progress of its estimate.
 pub(crate) fn question(model: &Model) -> Option<String> {
-    asked(model).map(|clauses| clauses.join(" "))
+    asked_with(model, false).map(|clauses| clauses.join(" "))
 }
 
 /// The clauses of the open question. The first one contains the question and its keys, and is never left out.
 fn asked(model: &Model) -> Option<Vec<String>> {
+    asked_with(model, true)
+}
+
+/// The clauses of the open question, with or without the progress of its estimate.
+fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
     let drives = format!("Planner {}.", model.live.run.planner_id().unwrap_or("unknown"));
     let clauses = match &model.ui.overlay {
         Overlay::Confirm(Ask::Start(_)) => {
@@ -167,7 +177,7 @@ fn asked(model: &Model) -> Option<Vec<String>> {
             vec!["Close this floor? <accept>: close, <cancel>: cancel.".into(), zone_cost(model)]
         }
         Overlay::ZoneDraft(draft) => vec![drawing(draft.form), "Mouse: drag.".into()],
-        Overlay::Confirm(Ask::Set { key, value, .. }) => setting::clauses(model, key, value),
+        Overlay::Confirm(Ask::Set { key, value, .. }) => setting::clauses(model, key, value, has_progress),
         Overlay::Confirm(Ask::Promote) => {
             let shadow = model.live.run.shadow.as_ref();
             let next = text::fit(shadow.map_or("-", |shadow| &shadow.choice.id), 18);

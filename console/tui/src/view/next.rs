@@ -125,6 +125,7 @@ fn more(model: &Model) -> String {
     match model.ui.screen {
         Screen::Result if model.live.missed().is_empty() => "<again>: replan, <home>: home.",
         Screen::Result => "<again>: replan, <rescan>: re-scan, <home>: home.",
+        Screen::Home => "<result>: result.",
         _ => "<result>: result. <home>: home.",
     }
     .into()
@@ -197,6 +198,17 @@ fn idle(model: &Model) -> Clauses {
         return (Role::Title, vec!["Start when the plan is ready.".into()]);
     }
     let preflight = "<preflight>: pre-flight check.";
+    if let Some(fault) = &model.live.run.planning.fault {
+        let planner = text::fit(model.live.run.planner_id().unwrap_or("unknown"), 18);
+        let clauses = [
+            format!("Start blocked: planner {planner} failed ({}).", fault.cause),
+            "<plan-again>: replan.".into(),
+            "<planner>: change planner.".into(),
+            format!("{}.", text::capitalized(&fault.message)),
+            preflight.into(),
+        ];
+        return (Role::Warn, clauses.into());
+    }
     // A planner that is still being opened does not block the start yet.
     if let Some(failed) = model.blocking_check().filter(|_| is_opened) {
         let (what, why) =

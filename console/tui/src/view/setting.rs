@@ -5,8 +5,9 @@ use crate::model::setting::{Effect, Figures};
 use crate::model::{Model, log::clock, parameter};
 use mission::{ParamValue, Phase};
 
-/// The clauses of the question. The first one contains the question and its keys.
-pub(super) fn clauses(model: &Model, key: &str, value: &ParamValue) -> Vec<String> {
+/// The clauses of the question, the most important first. The first one contains the question and its keys; the second
+/// one is the effect that matters most. The progress of the estimate is left out on request.
+pub(super) fn clauses(model: &Model, key: &str, value: &ParamValue, has_progress: bool) -> Vec<String> {
     let planner = model.planner();
     let change = parameter::change(planner, model.live.run.planning.choice.as_ref(), key, value);
     let default = parameter::find(planner, key)
@@ -17,39 +18,82 @@ pub(super) fn clauses(model: &Model, key: &str, value: &ParamValue) -> Vec<Strin
         Phase::Waiting | Phase::Ended(_) => "The planner makes a new plan.",
     };
     let effect = model.live.with_parameter(key, value).map(|changed| model.live.effect_of(&changed));
-    let effect = effect.map_or_else(String::new, |effect| effect_of(&effect, model.live.waits()));
-    vec![format!("Set {change}{default}? <accept>: set, <cancel>: cancel."), when.into(), effect]
+    let effect = effect.map(|effect| match effect {
+        Effect::Computing(_) if !has_progress => Effect::Computing(None),
+        effect => effect,
+    });
+    let required_m = model.live.run.about.as_ref().map(|about| about.mission.clearance_m);
+    let mut clauses =
+        effect.map_or_else(Vec::new, |effect| effect_of(&effect, model.live.waits(), required_m));
+    clauses.insert(1.min(clauses.len()), when.into());
+    clauses.insert(0, format!("Set {change}{default}? <accept>: set, <cancel>: cancel."));
+    clauses
 }
 
-/// The estimated effect, as sentences; before the start, the effect on the plan.
-fn effect_of(effect: &Effect, is_plan: bool) -> String {
+/// The estimated effect, as sentences; before the start, the effect on the plan. `required_m` is the clearance that the
+/// scenario requires, metres.
+fn effect_of(effect: &Effect, is_plan: bool, required_m: Option<f64>) -> Vec<String> {
     let basis = if is_plan { "New plan" } else { "Forecast from here" };
     match effect {
         Effect::Computing(share) => {
             let share = share.map_or_else(String::new, |share| {
                 format!(" {} %", text::number((100.0 * share).floor().clamp(0.0, 99.0), 0))
             });
-            format!("Computing the effect{share}... <accept> sets it without.")
+            vec![format!("Computing the effect{share}... <accept> sets it without.")]
         }
-        Effect::Unknown(why) => format!("Effect not known: {why}."),
+        Effect::Unknown(why) => vec![format!("Effect not known: {why}.")],
         Effect::Known { now, then, remark } => {
-            let remark = remark.as_ref().map_or_else(String::new, |remark| format!("; {remark}"));
-            format!("{basis}: {}{remark}.", figures(now.as_ref(), then))
+            let clearance = clearance(now.as_ref(), then, required_m);
+            let mut first = remark.iter().cloned().chain([clearance]);
+            let most = format!("{basis}: {}.", first.next().unwrap_or_default());
+            let rest = first.chain(figures(now.as_ref(), then));
+            std::iter::once(most).chain(rest.map(|words| format!("{}.", text::capitalized(&words)))).collect()
         }
     }
 }
 
-/// The figures with the change, each with the present one beside it.
-fn figures(now: Option<&Figures>, then: &Figures) -> String {
-    let beside = |figure: &dyn Fn(&Figures) -> String| match now {
+/// A figure with the change, and the present one beside it.
+fn beside(now: Option<&Figures>, then: &Figures, figure: &dyn Fn(&Figures) -> String) -> String {
+    match now {
         Some(now) => format!("{} (now {})", figure(then), figure(now)),
         None => figure(then),
+    }
+}
+
+/// The clearance, with a warning if it is below the required one.
+fn clearance(now: Option<&Figures>, then: &Figures, required_m: Option<f64>) -> String {
+    let metres = |figures: &Figures| {
+        figures.clearance_m.map_or_else(|| "unknown".into(), |m| format!("{} m", text::number(m, 2)))
+    };
+    // Values that print the same are treated as equal.
+    let shown = |m: f64| (100.0 * m).round();
+    let short =
+        required_m.filter(|required_m| then.clearance_m.is_some_and(|m| shown(m) < shown(*required_m)));
+    let warning =
+        short.map_or_else(String::new, |m| format!(", BELOW the required {} m", text::number(m, 2)));
+    format!("clearance {}{warning}", beside(now, then, &metres))
+}
+
+/// The other figures, most important first. The tether's are named only if the change affects them.
+fn figures(now: Option<&Figures>, then: &Figures) -> Vec<String> {
+    let beside = |figure: &dyn Fn(&Figures) -> String| beside(now, then, figure);
+    let or_dash = |words: Option<String>| words.unwrap_or_else(|| "-".into());
+    let tether = |figures: &Figures| or_dash(figures.tether_m.map(|m| format!("{} m", text::number(m, 1))));
+    let wrap = |figures: &Figures| {
+        or_dash(figures.wrap_rad.map(|wrap_rad| format!("{}°", text::number(wrap_rad.to_degrees(), 0))))
+    };
+    let changed = |name: &str, figure: &dyn Fn(&Figures) -> String| {
+        let is_changed = now.is_none_or(|now| figure(now) != figure(then));
+        is_changed.then(|| format!("{name} {}", beside(figure)))
     };
     let time = beside(&|figures| clock(figures.time_s));
     let length = beside(&|figures| format!("{} m", text::number(figures.length_m, 1)));
     let scanned = then.scanned.map(|_| {
-        beside(&|figures| format!("{} %", figures.scanned.map_or_else(|| "-".into(), text::percent)))
+        let share =
+            |figures: &Figures| or_dash(figures.scanned.map(|share| format!("{} %", text::percent(share))));
+        format!("scanned {}", beside(&share))
     });
-    let scanned = scanned.map_or_else(String::new, |scanned| format!(", scanned {scanned}"));
-    format!("time {time}, path {length}{scanned}")
+    let tether = then.tether_m.and_then(|_| changed("tether out", &tether));
+    let wrap = then.wrap_rad.and_then(|_| changed("wrap", &wrap));
+    [Some(format!("time {time}, path {length}")), scanned, tether, wrap].into_iter().flatten().collect()
 }

@@ -343,6 +343,51 @@ fn an_alarm_that_has_cleared_shows_its_peak_and_no_stale_value() {
 }
 
 #[test]
+fn a_reel_is_nearly_out_only_beyond_what_a_certified_plan_promises() {
+    let reel = Cause::Tether("reel".into());
+    let mut screen = Screen::tethered();
+    let mut certified = screen.mission.certified(&[]);
+    if let EventKind::Certified { certificate, .. } = &mut certified.kind {
+        certificate.tether_length_max_m = 26.0;
+    }
+    screen.hear(RunMsg::Events(vec![certified]));
+    let out = |screen: &mut Screen, out_m: f64| {
+        for _ in 0..20 {
+            screen.mission.wait(1);
+            let mut cable = screen.mission.cable();
+            if let EventKind::Tethered { paid_out_m, .. } = &mut cable.kind {
+                *paid_out_m = Some(out_m);
+            }
+            screen.hear(RunMsg::Events(vec![cable]));
+        }
+    };
+    let is_active =
+        |screen: &Screen| screen.model.live.run.alarms.get(&reel).is_some_and(tui::model::Alarm::is_active);
+    let near = TetherAlarm::Reel { out_m: 25.3, reel_length_m: 30.0 };
+    hear(&mut screen, EventKind::TetherAlarmRaised { alarm: near, reached: false });
+    out(&mut screen, 25.3);
+    assert!(!is_active(&screen), "the plan needs 26 m");
+    out(&mut screen, 27.5);
+    assert!(is_active(&screen), "26 m, 2 % and 0.5 m are exceeded");
+    let shown = text(&{
+        screen.type_text("4");
+        drawn(&screen.model, RICH, (120, 36))
+    });
+    let row = shown.lines().find(|line| line.contains("reel nearly out") && line.contains('>')).unwrap();
+    assert!(row.contains("27.5 m") && row.contains("27.0 m"), "the limit is that of the alarm\n{shown}");
+    out(&mut screen, 25.3);
+    assert!(!is_active(&screen), "it is back within the promise");
+    // A plan that is not certified promises nothing.
+    let refused = vec![screen.mission.certified(&["collision"])];
+    screen.hear(RunMsg::Events(refused));
+    out(&mut screen, 25.3);
+    assert!(is_active(&screen));
+    let empty = TetherAlarm::Reel { out_m: 30.0, reel_length_m: 30.0 };
+    hear(&mut screen, EventKind::TetherAlarmRaised { alarm: empty, reached: true });
+    assert_eq!(screen.model.live.run.alarms.get(&reel).unwrap().severity, Severity::Crit);
+}
+
+#[test]
 fn the_place_of_an_alarm_is_shown_in_the_middle_of_the_map() {
     let mut screen = Screen::running();
     screen.type_text("4");

@@ -222,3 +222,22 @@ fn every_event_with_a_line_is_described_field_by_field() {
         screen.press([Key::Up]);
     }
 }
+
+#[test]
+fn sentences_leave_planner_messages_out_until_they_are_asked_for() {
+    let mut screen = Screen::running();
+    let mut said = tui::plain::Said::default();
+    said.next(&screen.model);
+    let log = |screen: &mut Screen, message: &str| {
+        let (planner, level) = ("rpf".to_owned(), planner_api::LogLevel::Debug);
+        let event = screen.mission.now(EventKind::PlannerLogged { planner, level, message: message.into() });
+        screen.hear(RunMsg::Events(vec![event]));
+    };
+    log(&mut screen, "lane 3 of 9");
+    assert!(!said.next(&screen.model).concat().contains("lane 3"));
+    assert!(tui::plain::help(&screen.model).iter().any(|line| line.starts_with("planner-messages: ")));
+    screen.act(tui::actions::ActionId::PlannerMessages);
+    said.next(&screen.model);
+    log(&mut screen, "lane 4 of 9");
+    assert!(said.next(&screen.model).concat().contains("lane 4 of 9"));
+}

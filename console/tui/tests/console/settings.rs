@@ -4,7 +4,7 @@ use crate::fixture::{RICH, Screen, spiral};
 use crate::screens::{drawn, text};
 use mission::{EventKind, Order, Outcome, Outlook, ParamValue, PlannerChoice};
 use tui::model::{Forecast, GhostPlan, Overlay, ui::Ask};
-use tui::{Effect, Key, RunMsg};
+use tui::{Effect, Key, Msg, RunMsg};
 
 const ENTER: [Key; 1] = [Key::Enter];
 
@@ -92,7 +92,11 @@ fn before_the_start_the_plan_with_the_value_is_compared_first() {
     let made = GhostPlan::new(&run.mission, &spiral(), &[], estimate, None);
     let length = format!("path {:.1} m", made.estimate.length_m);
     screen.hear(RunMsg::Compared(with, Ok(Box::new(made))));
-    assert!(shown(&screen).contains("New plan: time 00:"), "{}", shown(&screen));
+    assert!(
+        shown(&screen).contains("New plan: clearance ") && shown(&screen).contains("Time 00:"),
+        "{}",
+        shown(&screen)
+    );
     assert!(shown(&screen).contains(&length), "{}", shown(&screen));
     let sent = screen.press(ENTER);
     assert_eq!(sent, [order(1.5), Effect::Order(Order::Plan), Effect::StopComparing]);
@@ -111,10 +115,69 @@ fn under_way_a_forecast_with_the_value_is_shown_first() {
         assert!(shown(&screen).contains("Computing the effect 34 %... Enter sets it without."));
         screen.hear(forecast(&now, 80.0, 600.0));
         screen.hear(forecast(&with, 90.0, 500.0));
-        let effect = "time 00:08:20 (now 00:10:00), path 90.0 m (now 80.0 m)";
+        let effect = "Time 00:08:20 (now 00:10:00), path 90.0 m (now 80.0 m).";
         assert!(shown(&screen).contains(effect), "{}", shown(&screen));
         assert_eq!(screen.press(ENTER), [order(1.5), Effect::StopForecasting]);
     }
+}
+
+/// A forecast of a robot on a tether.
+fn tethered(choice: &PlannerChoice, clearance_min_m: f64, tether_m: f64, wrap_rad: f64) -> RunMsg {
+    let RunMsg::Forecast(choice, Ok(mut made)) = forecast(choice, 80.0, 600.0) else { unreachable!() };
+    made.outlook.clearance_min_m = clearance_min_m;
+    made.outlook.tether_length_max_m = Some(tether_m);
+    made.outlook.wrap_max_rad = Some(wrap_rad);
+    RunMsg::Forecast(choice, Ok(made))
+}
+
+#[test]
+fn a_clearance_that_gets_worse_is_shown_at_every_size() {
+    for (width, height) in [(200, 60), (120, 36), (80, 24), (60, 16)] {
+        let mut screen = Screen::held();
+        screen.send(Msg::Resize { width, height });
+        let now = screen.model.live.run.planning.choice.clone().expect("a planner");
+        let with = changed(&screen, 1.5);
+        type_value(&mut screen, "1.5");
+        screen.hear(tethered(&now, 0.24, 12.0, 0.5));
+        screen.hear(tethered(&with, 0.08, 12.0, 1.0));
+        let words = text(&drawn(&screen.model, RICH, (width, height)));
+        let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+        let clearance = "Forecast from here: clearance 0.08 m (now 0.24 m), BELOW the required 0.10 m.";
+        assert!(words.contains(clearance), "{width}x{height}: {words}");
+        // A clause is shown whole or left out.
+        assert!(!words.contains("Wrap") || words.contains("Wrap 57° (now 29°)."), "{words}");
+        assert!(words.contains("Wrap") || width <= 80, "{words}");
+        assert!(!words.contains("Tether out"), "the length does not change: {words}");
+    }
+}
+
+#[test]
+fn a_clearance_that_prints_as_the_required_one_is_no_warning() {
+    let mut screen = Screen::held();
+    let with = changed(&screen, 1.5);
+    type_value(&mut screen, "1.5");
+    screen.hear(tethered(&with, 0.0996, 12.0, 1.0));
+    let words = shown(&screen);
+    assert!(words.contains("Forecast from here: clearance 0.10 m. "), "{words}");
+    assert!(words.contains("Tether out 12.0 m."), "nothing to compare it with: {words}");
+}
+
+#[test]
+fn sentences_give_the_result_of_an_estimate_once_and_no_progress() {
+    let mut screen = Screen::held();
+    let mut said = tui::plain::Said::default();
+    said.next(&screen.model);
+    let now = screen.model.live.run.planning.choice.clone().expect("a planner");
+    let with = changed(&screen, 1.5);
+    type_value(&mut screen, "1.5");
+    assert!(said.next(&screen.model).concat().contains("Computing the effect..."));
+    for share in [0.1, 0.2, 0.9] {
+        screen.hear(RunMsg::ForecastAt(with.clone(), share));
+        assert_eq!(said.next(&screen.model), Vec::<String>::new());
+    }
+    screen.hear(forecast(&now, 80.0, 600.0));
+    screen.hear(forecast(&with, 90.0, 500.0));
+    assert!(said.next(&screen.model).concat().contains("path 90.0 m (now 80.0 m)."));
 }
 
 #[test]

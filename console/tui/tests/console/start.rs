@@ -132,3 +132,21 @@ fn a_start_that_is_blocked_is_neither_offered_nor_asked_for() {
     assert_eq!(screen.press([Key::Char('S'), Key::Enter]), []);
     assert_eq!(screen.model.ui.overlay, Overlay::None);
 }
+
+#[test]
+fn a_planner_that_died_before_the_start_is_named_with_the_cause_and_what_to_do() {
+    for (width, height) in [(200, 60), (120, 36), (80, 24), (60, 16)] {
+        let mut screen = Screen::opened();
+        let failed = screen.mission.planner_fails().remove(0);
+        screen.hear(RunMsg::Events(vec![failed]));
+        screen.send(Msg::Resize { width, height });
+        let shown = text(&drawn(&screen.model, PLAIN, (width, height)));
+        let cause = screen.model.live.run.planning.fault.as_ref().expect("a fault").cause.to_string();
+        assert!(shown.contains(&format!("Start blocked: planner rpf failed ({cause}).")), "{shown}");
+        assert!(shown.contains(":plan-again: replan.") || width < 80, "{shown}");
+        assert!(shown.contains("P: change planner.") || width < 100, "{shown}");
+        let (outcome, found) = check(&screen, "planner");
+        assert_eq!(outcome, CheckOutcome::Failed);
+        assert!(found.ends_with("; `:plan-again` replans, `:planner` changes it"), "{found}");
+    }
+}

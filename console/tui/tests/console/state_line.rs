@@ -187,3 +187,33 @@ fn the_time_left_is_that_of_the_plan_until_the_pace_is_known() {
     let shown = text(&drawn(&screen.model, RICH, (120, 36)));
     assert!(shown.contains(", ends T+") && !shown.contains("time left    -"), "{shown}");
 }
+
+#[test]
+fn the_screen_that_is_open_is_not_offered() {
+    let mut screen = Screen::running();
+    let ended = screen.mission.ended(mission::Outcome::Complete, "path driven");
+    screen.hear(RunMsg::Events(vec![ended]));
+    assert!(state(&screen).contains("7: result. 1: home."), "{}", state(&screen));
+    screen.type_text("1");
+    assert!(state(&screen).contains("7: result.") && !state(&screen).contains("home."), "{}", state(&screen));
+}
+
+#[test]
+fn a_question_keeps_the_state_of_a_held_robot_at_every_size() {
+    for key in ["X", "P", "p", ".", " "] {
+        for size in [(120, 36), (80, 24), (60, 16)] {
+            let mut screen = Screen::held();
+            screen.send(tui::Msg::Resize { width: size.0, height: size.1 });
+            let alarms = &mut screen.model.live.run.alarms;
+            alarms.raise(
+                tui::model::Cause::Disk,
+                mission::Severity::Warn,
+                "disk space left: 150 MB".into(),
+                1.0,
+            );
+            screen.type_text(key);
+            let shown = text(&drawn(&screen.model, RICH, size));
+            assert!(shown.contains("HELD by operator"), "{key}\n{shown}");
+        }
+    }
+}

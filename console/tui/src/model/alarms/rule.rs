@@ -5,7 +5,7 @@
 //! no effect on the robot: it is an event, but not an alarm.
 
 use super::Cause;
-use mission::{Gait, Phase, Severity};
+use mission::{Gait, Phase, Severity, event::TetherAlarm};
 
 /// What the mission does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,6 +98,17 @@ fn is_length_or_wrap(word: &str) -> bool {
     matches!(word, "reel" | "wrap" | "total wrap")
 }
 
+/// What sag, stretch and position errors may add to the tether that a plan promises: metres, and a share of its length.
+const REEL_MARGIN: (f64, f64) = (0.5, 0.02);
+
+/// The length of tether out at which its reel counts as nearly out, metres. A certified plan that promises a length,
+/// metres, may use it: the alarm is raised only beyond that promise.
+pub fn reel_limit_m(reel_length_m: f64, promised_m: Option<f64>) -> f64 {
+    let (margin_m, share) = REEL_MARGIN;
+    let promised_m = promised_m.map_or(0.0, |promised_m| promised_m * (1.0 + share) + margin_m);
+    promised_m.max(TetherAlarm::NEAR * reel_length_m).min(reel_length_m)
+}
+
 /// The severity of the alarm of a cause for which the robot is held.
 pub fn held_for(cause: &Cause) -> Option<Severity> {
     match cause {
@@ -122,6 +133,15 @@ mod tests {
                     assert!(rule.severity < Severity::Crit || rule.on_delay_s == 0.0 || waits, "{cause:?}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn a_certified_plan_may_use_the_tether_that_it_promises() {
+        let limits_m = [None, Some(50.0), Some(90.0), Some(99.0)].map(|m| reel_limit_m(100.0, m));
+        // A short plan leaves the limit where it is; no limit is beyond the reel.
+        for (limit_m, expected_m) in limits_m.into_iter().zip([80.0, 80.0, 92.3, 100.0]) {
+            assert!((limit_m - expected_m).abs() < 1e-9, "{limits_m:?}");
         }
     }
 

@@ -1,6 +1,6 @@
 //! Copies figures from events into alarms whose cause persists.
 
-use crate::model::alarms::Reading;
+use crate::model::alarms::{Reading, rule::reel_limit_m};
 use crate::model::{Cause, Run};
 use mission::{EventKind, Severity, event::TetherAlarm};
 use positioning::{Exclusion, Fix, FixError};
@@ -19,7 +19,8 @@ impl Run {
                 self.read(&Cause::Station(*station), || residual(reason));
             }
             EventKind::TetherAlarmRaised { alarm, reached } => {
-                if let Some(reading) = of_tether(alarm, *reached) {
+                let promised_m = self.tether.as_ref().and_then(|tether| tether.promised_m);
+                if let Some(reading) = of_tether(alarm, *reached, promised_m) {
                     self.read(&Cause::Tether(alarm.word().to_owned()), || reading);
                 }
             }
@@ -72,14 +73,14 @@ impl Run {
         let Some(config) = self.about.as_ref().and_then(|about| about.mission.tether.as_ref()) else {
             return;
         };
-        let (out_m, total_rad) = (tether.length_m, tether.wrap_total_rad);
+        let (out_m, total_rad, promised_m) = (tether.length_m, tether.wrap_total_rad, tether.promised_m);
         let limits = config.limits;
         let reel = TetherAlarm::Reel { out_m, reel_length_m: limits.reel_length_m };
         let total = TetherAlarm::WrapTotal { sum_rad: total_rad, limit_rad: limits.wrap_total_max_rad };
         for alarm in [reel, total] {
             let cause = Cause::Tether(alarm.word().to_owned());
             let reached = self.alarms.get(&cause).is_some_and(|alarm| alarm.severity == Severity::Crit);
-            self.read(&cause, || of_tether(&alarm, reached).unwrap_or_default());
+            self.read(&cause, || of_tether(&alarm, reached, promised_m).unwrap_or_default());
         }
     }
 }
@@ -115,9 +116,9 @@ fn used_residual(residual_m: f64) -> Reading {
     Reading { now: format!("{residual_m:+.2} m"), limit: String::new(), numbers }
 }
 
-/// The figure of a tether alarm with the limit at which it was raised: a share of the tether's own limit, or the limit
-/// itself if `reached`.
-fn of_tether(alarm: &TetherAlarm, reached: bool) -> Option<Reading> {
+/// The figure of a tether alarm with the limit at which it was raised: a share of the tether's own limit until that is
+/// `reached`, or what the certified plan promises, metres, if that is more.
+fn of_tether(alarm: &TetherAlarm, reached: bool, promised_m: Option<f64>) -> Option<Reading> {
     let share = if reached { 1.0 } else { TetherAlarm::NEAR };
     let reading = |now: f64, limit: f64, written: fn(f64) -> String| Reading {
         now: written(now),
@@ -127,7 +128,12 @@ fn of_tether(alarm: &TetherAlarm, reached: bool) -> Option<Reading> {
     let metres = |m: f64| format!("{m:.1} m");
     let degrees = |degrees: f64| format!("{degrees:.0}°");
     match alarm {
-        TetherAlarm::Reel { out_m, reel_length_m } => Some(reading(*out_m, share * reel_length_m, metres)),
+        TetherAlarm::Reel { out_m, reel_length_m } if reached => {
+            Some(reading(*out_m, *reel_length_m, metres))
+        }
+        TetherAlarm::Reel { out_m, reel_length_m } => {
+            Some(reading(*out_m, reel_limit_m(*reel_length_m, promised_m), metres))
+        }
         TetherAlarm::Wrap { wrap_rad: now_rad, limit_rad, .. }
         | TetherAlarm::WrapTotal { sum_rad: now_rad, limit_rad } => {
             Some(reading(now_rad.to_degrees(), share * limit_rad.to_degrees(), degrees))

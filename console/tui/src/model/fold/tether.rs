@@ -1,20 +1,27 @@
 //! Folds tether events into a run.
 
+use crate::model::alarms::rule;
 use crate::model::{Cause, Run};
 use mission::{Event, EventKind, Severity, event::TetherAlarm};
 
 impl Run {
     /// Forgets the last certificate, because its plan no longer runs.
     pub(super) fn forget_certificate(&mut self) {
-        self.tether.iter_mut().for_each(|tether| tether.certified = None);
+        self.tether.iter_mut().for_each(|tether| (tether.certified, tether.promised_m) = (None, None));
     }
 
     /// Folds in a tether event.
     pub(super) fn tethered(&mut self, event: &Event) {
         match &event.kind {
-            EventKind::TetherAlarmRaised { alarm, .. } => {
+            EventKind::TetherAlarmRaised { alarm, reached } => {
                 if matches!(alarm, TetherAlarm::Snag { .. }) {
                     self.tether.get_or_insert_default().is_snagged = true;
+                }
+                if let (TetherAlarm::Reel { out_m, .. }, false) = (alarm, reached) {
+                    self.tether.get_or_insert_default().is_near_end = true;
+                    if *out_m <= self.reel_limit_m().unwrap_or(0.0) {
+                        return;
+                    }
                 }
                 self.raise_as_logged(event, Cause::Tether(alarm.word().to_owned()));
             }
@@ -22,13 +29,18 @@ impl Run {
                 if matches!(alarm, TetherAlarm::Snag { .. }) {
                     self.tether.get_or_insert_default().is_snagged = false;
                 }
+                if matches!(alarm, TetherAlarm::Reel { .. }) {
+                    self.tether.get_or_insert_default().is_near_end = false;
+                }
                 self.clear(&Cause::Tether(alarm.word().to_owned()));
             }
             // The planner is a candidate; the reason why it does not take over is reported when the planner is
             // rejected.
             EventKind::Certified { .. } if self.planning.proposed => {}
             EventKind::Certified { planner, refused, certificate } => {
-                self.tether.get_or_insert_default().certified = Some(certificate.certified);
+                let tether = self.tether.get_or_insert_default();
+                tether.certified = Some(certificate.certified);
+                tether.promised_m = certificate.certified.then_some(certificate.tether_length_max_m);
                 if certificate.certified {
                     self.clear(&Cause::Certificate);
                 } else {
@@ -43,7 +55,43 @@ impl Run {
                 let ends =
                     anchor.map(|tether| tether.anchor).zip(self.position.pose.map(|pose| pose.position));
                 self.tether.get_or_insert_default().lie(event.t_s, other, ends);
+                self.watch_reel(event);
             }
+        }
+    }
+
+    /// The length of tether out at which its reel counts as nearly out, metres: 80 % of it, or more if a certified plan
+    /// promises more. `None` if it is that share, which the mission itself reports.
+    fn reel_limit_m(&self) -> Option<f64> {
+        let reel_length_m = self.about.as_ref()?.mission.tether.as_ref()?.limits.reel_length_m;
+        let promised_m = self.tether.as_ref()?.promised_m?;
+        Some(rule::reel_limit_m(reel_length_m, Some(promised_m)))
+    }
+
+    /// Raises the alarm about the reel when the tether out exceeds what the plan promises, and clears it when a plan
+    /// promises more.
+    fn watch_reel(&mut self, event: &Event) {
+        let Some(out_m) =
+            self.tether.as_ref().filter(|tether| tether.is_near_end).map(|tether| tether.length_m)
+        else {
+            return;
+        };
+        let Some(config) = self.about.as_ref().and_then(|about| about.mission.tether.as_ref()) else {
+            return;
+        };
+        let alarm = TetherAlarm::Reel { out_m, reel_length_m: config.limits.reel_length_m };
+        let cause = Cause::Tether(alarm.word().to_owned());
+        let active = self.alarms.get(&cause).filter(|alarm| alarm.is_active());
+        // A reel that is empty stays an alarm until the mission reports that it is not.
+        if active.is_some_and(|alarm| alarm.severity == Severity::Crit) {
+            return;
+        }
+        // An acknowledgement applies to the text that the operator saw.
+        let text = active.map_or_else(|| alarm.to_string(), |alarm| alarm.text.clone());
+        if self.reel_limit_m().is_none_or(|limit_m| out_m > limit_m) {
+            self.raise(event, cause, Severity::Warn, text);
+        } else if active.is_some() {
+            self.clear(&cause);
         }
     }
 }

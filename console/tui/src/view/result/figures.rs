@@ -25,6 +25,13 @@ struct Figure {
     is_beyond: bool,
 }
 
+impl Figure {
+    /// Whether the mission has the figure: a row without an estimate, a value and a limit says nothing.
+    fn applies(&self) -> bool {
+        self.cells[1..].iter().any(|cell| *cell != dash())
+    }
+}
+
 /// The rows that the table needs.
 pub(super) fn rows(look: &Look, result: &RunResult, columns: u16) -> u16 {
     lines(look, result, columns.into()).len() as u16
@@ -114,6 +121,9 @@ fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {
     let metres = |decimals| move |m: f64| format!("{} m", text::number(m, decimals));
     let degrees = |rad: f64| format!("{}°", text::number(rad.to_degrees(), 0));
     let clearance = promised.and_then(|p| p.clearance_min).map(|worst| worst.value);
+    let promised_m = promised.map(|p| p.length_m);
+    let trail = run.trail.points();
+    let driven_m = (trail.len() > 1).then(|| world::polyline::length_m(trail));
     // The estimate and the limit do not include the time during which the mission waits.
     let moving_s = Some(run.clock.moving_s);
     let mut figures = vec![
@@ -122,7 +132,11 @@ fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {
             text::clock,
             [promised.map(|p| p.time_s), moving_s, mission.map(|mission| mission.time_limit_s)],
         ),
-        at_most("path", metres(1), [promised.map(|p| p.length_m), summary.path_length_m, None]),
+        match summary.path_length_m {
+            Some(_) => at_most("path", metres(1), [promised_m, summary.path_length_m, None]),
+            // Without a true position, the length is that of the estimated one.
+            None => at_most("path (est.)", metres(1), [promised_m, driven_m, None]),
+        },
     ];
     let required = mission.map(|mission| mission.clearance_m);
     figures.push(match summary.clearance_min_m {
@@ -161,6 +175,7 @@ fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {
             mission.map(|mission| mission.position_limit_m),
         ],
     ));
+    figures.retain(Figure::applies);
     figures
 }
 
