@@ -7,6 +7,11 @@ use crate::model::{History, Speed};
 use ratatui::text::Span;
 use world::{Point, coverage::percent_text};
 
+/// Width of the bar of a meter, columns.
+pub(crate) const METER: usize = 8;
+/// The share of its limit from which a value is close to it.
+pub(crate) const CLOSE: f64 = 0.8;
+
 /// A share as a percentage, without the per cent sign.
 pub(crate) fn percent(share: f64) -> String {
     if share.is_finite() { percent_text(share, 1) } else { number(share, 1) }
@@ -179,6 +184,13 @@ pub(crate) fn bar(share: f64, columns: usize) -> String {
     "█".repeat(full) + &"░".repeat(columns - full)
 }
 
+/// A meter: a bar that is full at the limit, with a mark at the share from which a value is close to the limit.
+pub(crate) fn meter(share: f64) -> String {
+    let mark = (CLOSE * METER as f64) as usize;
+    let place = |(column, glyph)| if column == mark { '┊' } else { glyph };
+    bar(share, METER).chars().enumerate().map(place).collect()
+}
+
 /// A sparkline of at most `most_s` seconds of a history, from 0 to `top`; each column shows the largest of its values.
 pub(crate) fn sparkline(history: &History, most_s: usize, top: f64, columns: usize) -> String {
     const STEPS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
@@ -203,6 +215,12 @@ pub(crate) fn sparkline(history: &History, most_s: usize, top: f64, columns: usi
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_meter_marks_where_the_limit_is_close() {
+        assert_eq!([0.0, 0.5, 1.2].map(meter), ["░░░░░░┊░", "████░░┊░", "██████┊█"]);
+        assert_eq!(meter(f64::NAN), "░░░░░░┊░");
+    }
 
     #[test]
     fn numbers_without_a_value_are_a_dash_and_zero_has_no_sign() {

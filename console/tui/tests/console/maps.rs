@@ -9,7 +9,7 @@ use mission::{
 };
 use planner_api::{Leg, LegTag, Reason};
 use ratatui::style::Color;
-use tui::model::{Continued, GhostPlan};
+use tui::model::{Continued, GhostPlan, Pane};
 use tui::{Key, Msg, RunMsg};
 use world::Point;
 
@@ -151,6 +151,16 @@ fn store(name: &str, screen: &mut Screen) {
 #[test]
 fn the_plan_before_the_start() {
     store("plan_of_lanes", &mut planned());
+}
+
+#[test]
+fn what_the_plan_leaves_out() {
+    let mut screen = planned();
+    screen.send(Msg::Resize { width: 80, height: 24 });
+    while screen.model.ui.pane != Pane::LeftOut {
+        screen.press([Key::Tab]);
+    }
+    store("left_out", &mut screen);
 }
 
 #[test]
