@@ -93,14 +93,17 @@ pub(crate) fn wording<const N: usize>(wordings: [String; N], columns: usize) -> 
 }
 
 /// As many leading clauses of a sentence as fit, for a row whose full sentence is shown elsewhere. The text ends in an
-/// ellipsis only if not even the first clause fits.
+/// ellipsis only if not even the first clause fits. A clause has at least two words and does not end within
+/// parentheses.
 pub(crate) fn clauses(sentence: &str, columns: usize) -> String {
     if width(sentence) <= columns {
         return sentence.to_owned();
     }
     let ends = sentence.match_indices([';', ':', ',']).map(|(at, _)| at);
     let ends = ends.filter(|at| sentence[at + 1..].starts_with(' '));
-    let fitting = ends.map(|at| &sentence[..at]).rfind(|head| width(head) <= columns);
+    let is_clause =
+        |head: &&str| head.contains(' ') && head.matches('(').count() == head.matches(')').count();
+    let fitting = ends.map(|at| &sentence[..at]).filter(is_clause).rfind(|head| width(head) <= columns);
     fitting.map_or_else(|| fit(sentence, columns), str::to_owned)
 }
 
@@ -251,6 +254,10 @@ mod tests {
         let at = |columns| clauses(sentence, columns);
         assert_eq!([at(37), at(36), at(23)], [sentence, "12 MB free, 91 MB needed", "12 MB free"]);
         assert_eq!([at(5), clauses("at 14:10:00", 9)], ["12 M…", "at 14:10…"]);
+        assert_eq!(
+            clauses("spiral: floor left out around (-5.7, 4.2): too narrow", 36).chars().last(),
+            Some('…')
+        );
         let at = |columns| names(&["apf", "rpf", "navfn"], columns);
         assert_eq!([at(13), at(12), at(6), at(1)], ["apf rpf navfn", "apf rpf +1", "apf +2", "3"]);
     }
