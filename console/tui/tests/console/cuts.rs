@@ -11,6 +11,7 @@ fn titles(row: &str) -> impl Iterator<Item = &str> {
 }
 
 #[test]
+#[expect(clippy::disallowed_methods, reason = "the stored screens are files")]
 fn no_frame_cuts_its_title() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/console/snapshots");
     let mut n_titles = 0;
