@@ -18,8 +18,8 @@ pub(in crate::view) enum Pattern {
     Ticked,
     /// Two dots wide.
     Thick,
-    /// Long dashes, as long as the gaps.
-    Sparse,
+    /// Long dashes.
+    LongDashed,
     /// Two lines side by side.
     Double,
     /// A line that jumps from side to side.
@@ -47,7 +47,7 @@ impl Pattern {
             Self::DashDotted => step % 6 != 3 && step % 6 != 5,
             Self::Dashed => step % 5 < 3,
             Self::Dotted => step.is_multiple_of(3),
-            Self::Sparse => step % 10 < 5,
+            Self::LongDashed => step % 8 < 5,
         }
     }
 
@@ -129,7 +129,7 @@ mod tests {
             Pattern::Dotted,
             Pattern::Ticked,
             Pattern::Thick,
-            Pattern::Sparse,
+            Pattern::LongDashed,
             Pattern::Double,
             Pattern::Jagged,
             Pattern::Beaded,
