@@ -4,7 +4,7 @@ use ratatui::buffer::Buffer;
 
 /// The replacements.
 const PLAIN: &[(&str, char)] = &[
-    ("│", '|'),
+    ("│┊", '|'),
     ("┌┐└┘├┤┼●▅▆", '+'),
     ("─▃▄", '-'),
     ("▶▸→↗", '>'),

@@ -183,7 +183,7 @@ fn listed_row(listed: &Listed, columns: usize) -> Parts {
     parts
 }
 
-/// A log line, cut to a given width.
+/// A log line: as many clauses as fit in a given width.
 pub(super) fn row(entry: &Entry, columns: usize) -> Parts {
     let again = if entry.count > 1 { format!(" (×{})", entry.count) } else { String::new() };
     let front = format!(" T+{} ", text::clock(entry.t_s));
@@ -194,7 +194,7 @@ pub(super) fn row(entry: &Entry, columns: usize) -> Parts {
         (Role::Dim, front),
         (role(entry.severity), severity),
         (Role::Dim, format!(" {source}")),
-        (Role::Text, text::fit(&entry.text, room)),
+        (Role::Text, text::clauses(&entry.text, room)),
         (Role::Dim, again),
     ]
 }

@@ -1,6 +1,7 @@
 //! The map, on one canvas: scanned floor at the bottom; walls, obstacles, paths and forces on top.
 
 mod course;
+mod crowd;
 mod drawn;
 mod ink;
 mod labels;
@@ -22,7 +23,7 @@ pub(super) use plates::{Key as PlateKey, PlateDrawing};
 pub(super) use shade::{Key as ShadeKey, Shades};
 pub(super) use shapes::{Stroke, Window};
 
-use super::look::Look;
+use super::look::{Look, Parts};
 use super::text;
 use crate::model::{Model, Overlay, Pane, Screen};
 use crate::theme::Role;
@@ -100,8 +101,15 @@ fn floor_and_legend(look: &Look, frame: &mut Frame, area: Rect) {
     let placed = if rows > 0 { legend::Placed::new(look, window, &entries) } else { placed };
     draw_floor(look, frame, floor, window);
     legend::draw(look, frame, floor, &placed);
-    legend::draw_lines(look, frame, lines, &placed.left_over);
+    let left_over = legend::fitting(look, &placed.left_over, (rows, usize::from(lines.width)));
+    legend::draw_lines(look, frame, lines, &left_over);
     look.cache.borrow_mut().place_map(floor, window);
+}
+
+/// The legend of the map that has been drawn in this frame, in lines of a given width; empty without a map.
+pub(super) fn legend(look: &Look, columns: usize) -> Vec<Parts> {
+    let window = look.cache.borrow().places().window();
+    window.map_or_else(Vec::new, |window| legend::in_lines(look, window, columns))
 }
 
 fn title(model: &Model) -> String {

@@ -12,9 +12,8 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use ratatui::widgets::Paragraph;
 
-/// The most events, and the width of the mission time before them.
-const EVENTS: usize = 12;
-const AT: usize = 12;
+/// The rank of the lines of events.
+const EVENTS_RANK: u8 = 160;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let framed = area.width >= 24 && area.height >= 7;
@@ -50,7 +49,6 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     add(6, way(look).map(|way| plain(look, &way, columns)).into_iter().collect());
     add(8, vec![plain(look, &ranging(look), columns)]);
     add(9, left(look).map(|left| plain(look, &left, columns)).into_iter().collect());
-    add(10, events(look, columns));
     add(2, vec![footer::line(look, columns)]);
     add(
         7,
@@ -58,6 +56,11 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
             look.span(Role::Dim, text::fit(" Map requires 60x16. Controls work here.", columns)),
         )],
     );
+    let rows = usize::from(inner.height).saturating_sub(lines.len());
+    let events = events(look, (columns, rows)).into_iter().map(|line| (EVENTS_RANK, line));
+    // The keys and the hint are below the events.
+    let above = lines.len() - 2;
+    lines.splice(above..above, events);
     frame.render_widget(Paragraph::new(ranked(lines, usize::from(inner.height))), inner);
 }
 
@@ -75,19 +78,33 @@ fn left(look: &Look) -> Option<String> {
     look.run.is_running().then(|| format!(" time left {}", coverage::left(look, true)))
 }
 
-/// The newest events, for the rows that are still free.
-fn events(look: &Look, columns: usize) -> Vec<Line<'static>> {
+/// The newest events that fit without being cut, for the rows that are still free.
+fn events(look: &Look, (columns, rows): (usize, usize)) -> Vec<Line<'static>> {
     let log = &look.run.log;
     let newest = (log.oldest()..log.end()).rev().filter_map(|number| log.get(number));
-    let shown = newest.filter(|entry| entry.severity >= Severity::Info).take(EVENTS);
-    let line = |entry: &Entry| {
-        let words = text::clauses(&entry.text, columns.saturating_sub(AT));
-        look.line([
-            (Role::Dim, format!(" T+{} ", text::clock(entry.t_s))),
-            (super::events::role(entry.severity), words),
-        ])
-    };
-    shown.map(line).collect()
+    let shown = newest.filter(|entry| entry.severity >= Severity::Info);
+    let mut lines = Vec::new();
+    for entry in shown {
+        let event = event(look, entry, columns);
+        if lines.len() + event.len() > rows {
+            break;
+        }
+        lines.extend(event);
+    }
+    lines
+}
+
+/// The lines of an event: the first one begins with its time.
+fn event(look: &Look, entry: &Entry, columns: usize) -> Vec<Line<'static>> {
+    let role = super::events::role(entry.severity);
+    let front = format!(" T+{} ", text::clock(entry.t_s));
+    let indent = " ".repeat(text::width(&front));
+    let room = columns.saturating_sub(text::width(&front));
+    let clauses = text::clauses(&entry.text, room);
+    // A single clause that does not fit takes several lines.
+    let words = if clauses.ends_with('…') { text::wrap(&entry.text, room) } else { vec![clauses] };
+    let fronts = std::iter::once(front).chain(std::iter::repeat(indent));
+    fronts.zip(words).map(|(front, words)| look.line([(Role::Dim, front), (role, words)])).collect()
 }
 
 /// The tether: length out, reel, and largest wrap; a dash for a length that is not known yet.
@@ -101,7 +118,8 @@ fn tether(look: &Look) -> Option<String> {
         format!(", wrap {}° on {}", text::number(contact.wrap_rad.abs().to_degrees(), 0), contact.on)
     });
     let snag = if tether.is_snagged { " SNAGGED" } else { "" };
-    Some(format!(" tether {out} of {reel} m{wrap}{snag}"))
+    let meter = text::meter(super::tether::out_share(look, tether));
+    Some(format!(" {meter} tether {out} of {reel} m{wrap}{snag}"))
 }
 
 /// The path driven, and the planner.
@@ -133,11 +151,15 @@ fn alarm(look: &Look, columns: usize) -> Vec<Line<'static>> {
 
 fn position(look: &Look) -> String {
     let model = look.model;
-    let scanned = coverage::shares(&model.live.run).0;
+    let scanned = match coverage::shares(&model.live.run).0.as_str() {
+        // The share is not known before the first step.
+        "-" => String::new(),
+        share => format!("{share} % of reachable floor, "),
+    };
     let error =
         model.live.run.position.error_m().map_or_else(|| "-".into(), |error_m| text::number(error_m, 2));
     let lost = if model.live.run.position.lost { " LOST" } else { "" };
-    format!(" {scanned} % of reachable floor, ±{error} m{lost}")
+    format!(" {scanned}±{error} m{lost}")
 }
 
 /// Clauses, wrapped into lines.

@@ -39,15 +39,13 @@ fn wide_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> 
         (rank, vec![(Role::Dim, format!(" {label:<12}")), marked(is_stale, value)])
     };
     let (out, left) = (metres(tether.length_m), metres(tether.free_m));
-    let reel = limits(look).map_or_else(|| "-".into(), |limits| metres(limits.reel_length_m));
-    let out = text::wording(
-        [format!("{out} m of {reel} m, {left} m left"), format!("{out} m, {left} m left")],
-        room,
-    );
+    let reel = reel(look);
+    let out = [format!("{out} of {reel}, {left} m left"), format!("{out} of {reel} m")];
+    let out = metered(out_share(look, tether), out, room);
     let still_out = format!("{} m still out", metres(tether.length_m));
     let mut lines = vec![
         row(1, "paid out", (out_role(look, tether), out)),
-        row(2, "wrap", (wrap_role(look, tether), worst(look, tether, room))),
+        row(2, "wrap", (wrap_role(look, tether), worst(look, tether, ("", room)))),
         row(3, "total wrap", (Role::Text, total(tether))),
         row(5, "contacts", (Role::Text, contacts(tether))),
         row(0, "return path", home(tether)),
@@ -76,10 +74,12 @@ fn narrow_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)
     let row = |rank: u8, label: &str, value: (Role, String)| {
         (rank, vec![(Role::Text, format!(" {label}")), marked(is_stale, value)])
     };
-    let out = format!("{} m out, {} m left", metres(tether.length_m), metres(tether.free_m));
+    let room = columns.saturating_sub(2);
+    let (out, reel) = (metres(tether.length_m), reel(look));
+    let out = [format!("{out} of {reel} m out"), format!("{out} of {reel} m")];
     vec![
-        row(1, "", (out_role(look, tether), out)),
-        row(2, "wrap ", (wrap_role(look, tether), worst(look, tether, columns.saturating_sub(7)))),
+        row(1, "", (out_role(look, tether), metered(out_share(look, tether), out, room))),
+        row(2, "", (wrap_role(look, tether), worst(look, tether, ("wrap ", room)))),
         row(3, "total ", (Role::Text, total(tether))),
         row(0, "return path ", home(tether)),
     ]
@@ -87,6 +87,15 @@ fn narrow_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)
 
 fn limits(look: &Look) -> Option<world::tether::Limits> {
     Some(look.run.about.as_ref()?.mission.tether.as_ref()?.limits)
+}
+
+fn reel(look: &Look) -> String {
+    limits(look).map_or_else(|| "-".into(), |limits| metres(limits.reel_length_m))
+}
+
+/// The fullest wording that fits beside a meter.
+fn metered(share: f64, words: [String; 2], room: usize) -> String {
+    format!("{} {}", text::meter(share), text::wording(words, room.saturating_sub(text::METER + 1)))
 }
 
 fn metres(length_m: f64) -> String {
@@ -97,33 +106,44 @@ fn degrees(rad: f64) -> String {
     text::number(rad.to_degrees(), 0)
 }
 
+/// The length out, as a share of the reel.
+pub(super) fn out_share(look: &Look, tether: &Tether) -> f64 {
+    limits(look).map_or(f64::NAN, |limits| tether.length_m / limits.reel_length_m)
+}
+
+/// The largest wrap, as a share of its limit.
+fn wrap_share(look: &Look, tether: &Tether) -> f64 {
+    let most_rad = tether.largest().map_or(0.0, |contact| contact.wrap_rad.abs());
+    limits(look).map_or(f64::NAN, |limits| most_rad / limits.wrap_max_rad)
+}
+
 fn out_role(look: &Look, tether: &Tether) -> Role {
-    beside_limit(tether.length_m, limits(look).map(|limits| limits.reel_length_m))
+    beside_limit(out_share(look, tether))
 }
 
 fn wrap_role(look: &Look, tether: &Tether) -> Role {
-    let most_rad = tether.largest().map_or(0.0, |contact| contact.wrap_rad.abs());
-    beside_limit(most_rad, limits(look).map(|limits| limits.wrap_max_rad))
+    beside_limit(wrap_share(look, tether))
 }
 
-fn beside_limit(value: f64, limit: Option<f64>) -> Role {
-    match limit {
-        Some(limit) if value > limit => Role::Crit,
-        Some(limit) if value > 0.8 * limit => Role::Warn,
+fn beside_limit(share: f64) -> Role {
+    match share {
+        share if share > 1.0 => Role::Crit,
+        share if share > text::CLOSE => Role::Warn,
         _ => Role::Text,
     }
 }
 
-/// The largest wrap, with the obstacle round which the tether is wrapped.
-fn worst(look: &Look, tether: &Tether, room: usize) -> String {
+/// The largest wrap, with the obstacle round which the tether is wrapped, after a label.
+fn worst(look: &Look, tether: &Tether, (label, room): (&str, usize)) -> String {
     if tether.is_snagged {
-        return "UNKNOWN (snagged)".into();
+        return format!("{label}UNKNOWN (snagged)");
     }
-    let Some(most) = tether.largest() else { return "none, tether straight".into() };
+    let Some(most) = tether.largest() else { return format!("{label}none, tether straight") };
     let limit = limits(look).map_or_else(|| "-".into(), |limits| degrees(limits.wrap_max_rad));
     let turn = if most.wrap_rad > 0.0 { "CCW" } else { "CW" };
     let wrap = format!("{}° {turn} on {}", degrees(most.wrap_rad.abs()), most.on);
-    text::wording([format!("{wrap}, max {limit}°"), wrap], room)
+    let whole = if label.is_empty() { format!("{wrap}, max {limit}°") } else { format!("{label}{wrap}") };
+    metered(wrap_share(look, tether), [whole, wrap], room)
 }
 
 fn total(tether: &Tether) -> String {

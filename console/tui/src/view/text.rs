@@ -7,6 +7,11 @@ use crate::model::{History, Speed};
 use ratatui::text::Span;
 use world::{Point, coverage::percent_text};
 
+/// Width of the bar of a meter, columns.
+pub(crate) const METER: usize = 8;
+/// The share of its limit from which a value is close to it.
+pub(crate) const CLOSE: f64 = 0.8;
+
 /// A share as a percentage, without the per cent sign.
 pub(crate) fn percent(share: f64) -> String {
     if share.is_finite() { percent_text(share, 1) } else { number(share, 1) }
@@ -88,14 +93,17 @@ pub(crate) fn wording<const N: usize>(wordings: [String; N], columns: usize) -> 
 }
 
 /// As many leading clauses of a sentence as fit, for a row whose full sentence is shown elsewhere. The text ends in an
-/// ellipsis only if not even the first clause fits.
+/// ellipsis only if not even the first clause fits. A clause has at least two words and does not end within
+/// parentheses.
 pub(crate) fn clauses(sentence: &str, columns: usize) -> String {
     if width(sentence) <= columns {
         return sentence.to_owned();
     }
     let ends = sentence.match_indices([';', ':', ',']).map(|(at, _)| at);
     let ends = ends.filter(|at| sentence[at + 1..].starts_with(' '));
-    let fitting = ends.map(|at| &sentence[..at]).rfind(|head| width(head) <= columns);
+    let is_clause =
+        |head: &&str| head.contains(' ') && head.matches('(').count() == head.matches(')').count();
+    let fitting = ends.map(|at| &sentence[..at]).filter(is_clause).rfind(|head| width(head) <= columns);
     fitting.map_or_else(|| fit(sentence, columns), str::to_owned)
 }
 
@@ -179,6 +187,13 @@ pub(crate) fn bar(share: f64, columns: usize) -> String {
     "█".repeat(full) + &"░".repeat(columns - full)
 }
 
+/// A meter: a bar that is full at the limit, with a mark at the share from which a value is close to the limit.
+pub(crate) fn meter(share: f64) -> String {
+    let mark = (CLOSE * METER as f64) as usize;
+    let place = |(column, glyph)| if column == mark { '┊' } else { glyph };
+    bar(share, METER).chars().enumerate().map(place).collect()
+}
+
 /// A sparkline of at most `most_s` seconds of a history, from 0 to `top`; each column shows the largest of its values.
 pub(crate) fn sparkline(history: &History, most_s: usize, top: f64, columns: usize) -> String {
     const STEPS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
@@ -203,6 +218,12 @@ pub(crate) fn sparkline(history: &History, most_s: usize, top: f64, columns: usi
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_meter_marks_where_the_limit_is_close() {
+        assert_eq!([0.0, 0.5, 1.2].map(meter), ["░░░░░░┊░", "████░░┊░", "██████┊█"]);
+        assert_eq!(meter(f64::NAN), "░░░░░░┊░");
+    }
 
     #[test]
     fn numbers_without_a_value_are_a_dash_and_zero_has_no_sign() {
@@ -233,6 +254,10 @@ mod tests {
         let at = |columns| clauses(sentence, columns);
         assert_eq!([at(37), at(36), at(23)], [sentence, "12 MB free, 91 MB needed", "12 MB free"]);
         assert_eq!([at(5), clauses("at 14:10:00", 9)], ["12 M…", "at 14:10…"]);
+        assert_eq!(
+            clauses("spiral: floor left out around (-5.7, 4.2): too narrow", 36).chars().last(),
+            Some('…')
+        );
         let at = |columns| names(&["apf", "rpf", "navfn"], columns);
         assert_eq!([at(13), at(12), at(6), at(1)], ["apf rpf navfn", "apf rpf +1", "apf +2", "3"]);
     }

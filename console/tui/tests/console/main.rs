@@ -4,6 +4,7 @@
 mod alarms;
 mod better_plan;
 mod commands;
+mod cuts;
 mod drawing;
 mod ending;
 mod events;

@@ -8,8 +8,8 @@ use mission::{
     AskId, CheckOutcome, Event, EventKind, HoldReason, Order, Outcome, Resumes, TaskConfig, WorkerId,
 };
 use planner_api::{Leg, LegTag, Reason};
-use ratatui::style::Color;
-use tui::model::{Continued, GhostPlan};
+use ratatui::style::{Color, Modifier};
+use tui::model::{Continued, GhostPlan, Pane};
 use tui::{Key, Msg, RunMsg};
 use world::Point;
 
@@ -151,6 +151,16 @@ fn store(name: &str, screen: &mut Screen) {
 #[test]
 fn the_plan_before_the_start() {
     store("plan_of_lanes", &mut planned());
+}
+
+#[test]
+fn what_the_plan_leaves_out() {
+    let mut screen = planned();
+    screen.send(Msg::Resize { width: 80, height: 24 });
+    while screen.model.ui.pane != Pane::LeftOut {
+        screen.press([Key::Tab]);
+    }
+    store("left_out", &mut screen);
 }
 
 #[test]
@@ -359,6 +369,20 @@ fn the_fill_of_scanned_floor_stays_within_the_wall() {
         let filled = outside.iter().filter(|cell| cell.bg != Color::Reset || "▀▄".contains(cell.symbol()));
         assert_eq!(filled.count(), 0, "row {y}");
     }
+}
+
+#[test]
+fn the_labels_of_the_map_stand_on_the_background_of_the_terminal() {
+    let mut screen = under_way();
+    screen.send(Msg::Resize { width: 120, height: 36 });
+    let buffer = drawn(&screen.model, RICH, (120, 36));
+    let on_map = |x: &u16, y: &u16| (1..69).contains(x) && (3..29).contains(y);
+    let cells = (0..120).flat_map(|x| (0..36).map(move |y| (x, y))).filter(|(x, y)| on_map(x, y));
+    let labels: Vec<_> =
+        cells.map(|at| &buffer[at]).filter(|cell| cell.modifier.contains(Modifier::BOLD)).collect();
+    assert!(
+        labels.iter().any(|cell| cell.symbol() == "C") && labels.iter().all(|cell| cell.bg == Color::Reset)
+    );
 }
 
 #[test]

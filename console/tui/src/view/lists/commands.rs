@@ -7,6 +7,7 @@ use crate::theme::Role;
 use crate::update::{Choice, Group, choices, group, offered, values};
 use crate::view::field::field;
 use crate::view::look::{Look, Parts as Row};
+use crate::view::map;
 use crate::view::next::joined;
 use crate::view::text;
 
@@ -20,11 +21,13 @@ pub(super) fn list(look: &Look, palette: &Palette, columns: u16) -> List {
     let room = usize::from(columns).saturating_sub(3);
     let is_whole = palette.line.text().trim().is_empty();
     let (rows, headings, selected) = grouped(look, &found, palette.selected, (columns, is_whole));
-    let below = if palette.help {
-        let why = why_not(look, found.get(palette.selected), room);
-        why.into_iter().chain(rules(&look.model.console.keys, room)).collect()
+    let (below, needed_below) = if palette.help {
+        let why: Vec<Row> = why_not(look, found.get(palette.selected), room).into_iter().collect();
+        let legend = legend(look, room);
+        let needed = why.len() + legend.len();
+        (why.into_iter().chain(legend).chain(rules(&look.model.console.keys, room)).collect(), needed)
     } else {
-        below(look, found.get(palette.selected), room)
+        (below(look, found.get(palette.selected), room), 0)
     };
     let (above, cursor) = line(palette, found.len(), (is_whole, room));
     List {
@@ -35,6 +38,7 @@ pub(super) fn list(look: &Look, palette: &Palette, columns: u16) -> List {
         headings,
         selected,
         below,
+        needed_below,
         cursor: Some((0, cursor)),
         ..List::default()
     }
@@ -173,6 +177,15 @@ fn listing(values: &[String], room: usize) -> String {
         line.push_str("  ");
     }
     line.trim_end().to_owned()
+}
+
+/// The legend of the map.
+fn legend(look: &Look, room: usize) -> Vec<Row> {
+    let indented = |mut line: Row| {
+        line.insert(0, (Role::Dim, " ".into()));
+        line
+    };
+    map::legend(look, room.saturating_sub(1)).into_iter().map(indented).collect()
 }
 
 /// General rules; the keys that they mention come from the table.

@@ -32,9 +32,11 @@ impl List {
     pub(super) fn draw(self, look: &Look, frame: &mut Frame, area: Rect) {
         let inner = look.list_block("", "").inner(area);
         let room = usize::from(inner.height).saturating_sub(self.above.len());
-        // The selected line takes precedence over anything below the list.
-        let below =
-            self.below.len().min(room.saturating_sub(3).max(self.needed_below)).min(room.saturating_sub(1));
+        // The selected line takes precedence over anything below the list, and most of a list over the last lines
+        // there.
+        let spare = room.saturating_sub(self.rows.len()).max(room / 4).min(room.saturating_sub(3));
+        let below = self.below.len().min(spare.max(self.needed_below));
+        let below = below.min(room.saturating_sub(self.rows.len().min(1)));
         let chosen = self.selected..self.selected + self.selected_rows.max(1);
         let shown = table::window(chosen.end - 1, self.rows.len(), room - below);
         // If only a part of the list is visible, the title states which part.
@@ -57,10 +59,23 @@ impl List {
             let row = if line < above { line } else { line - above + lines.len() };
             place_cursor(frame, inner, (column, row));
         }
-        lines.extend(self.below.into_iter().take(below).map(|row| look.line(row)));
+        lines.extend(
+            shortened(self.below, below, usize::from(inner.width)).into_iter().map(|row| look.line(row)),
+        );
         frame.render_widget(Clear, area);
         frame.render_widget(Paragraph::new(lines).block(block), area);
     }
+}
+
+/// The first rows of a text; if there are more, the last one ends in an ellipsis.
+fn shortened(mut rows: Vec<Row>, most: usize, columns: usize) -> Vec<Row> {
+    let is_cut = rows.len() > most;
+    rows.truncate(most);
+    if let Some((_, words)) = rows.last_mut().filter(|_| is_cut).and_then(|row| row.last_mut()) {
+        let lines = text::first_lines(vec![std::mem::take(words), String::new()], 1, columns);
+        *words = lines.concat();
+    }
+    rows
 }
 
 /// Shows the terminal's cursor at a column and row in an area, if the position is within the area.

@@ -55,8 +55,8 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
         }
         let about = format!("{}. {}", info.label, info.help);
         below.extend(paragraph(Role::Text, &about, room));
-        // The texts of the selected parameter take precedence over other parameters.
-        needed_below = below.len();
+        // While a value is being typed, the texts of its parameter take precedence over other parameters.
+        needed_below = if edit.is_some() { below.len() } else { 0 };
     }
     let is_draft = look.model.live.what_if.as_ref().is_some_and(|what_if| what_if.draft.is_some());
     let what = if is_draft { "Forecast with parameters" } else { "Parameters" };

@@ -36,7 +36,7 @@ pub(super) const OFFER: Ink = ink(Role::Watch, Pattern::Dotted, '=');
 /// The plan or the forecast of a different planner, or the trail of a different run.
 pub(super) const OTHER: Ink = ink(Role::Ghost, Pattern::Ticked, 'b');
 /// The plan of the planner in shadow.
-pub(super) const SHADOW: Ink = ink(Role::Ghost, Pattern::Sparse, ';');
+pub(super) const SHADOW: Ink = ink(Role::Ghost, Pattern::LongDashed, ';');
 /// The part of the plan that a zone blocks.
 pub(super) const BLOCKED: Ink = ink(Role::NoGo, Pattern::Thick, 'x');
 /// The tether.

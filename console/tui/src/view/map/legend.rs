@@ -22,6 +22,8 @@ const MARK: usize = 3;
 const BESIDE: (f64, f64) = (1.0, 3.0);
 /// Rows of the map for each line of the legend below the floor.
 const ROWS_PER_LINE: u16 = 5;
+/// The entries on each side of the floor fill at most this part of its rows: one in so many.
+const SHARE: u16 = 3;
 /// The trail of the run with which a replay is compared.
 const RUN_B: &str = "run B";
 /// Blanks between entries in a line.
@@ -58,13 +60,13 @@ impl Placed {
         let blanks: Vec<(u16, u16)> = look.run.about.as_ref().map_or_else(Vec::new, |about| {
             (0..window.size.1).map(|row| blank(&about.world.boundary, window, row)).collect()
         });
-        let mut next = [0, 0];
+        let (mut next, mut free) = ([0, 0], [usize::from(window.size.1 / SHARE); 2]);
         let (mut beside, mut left_over) = (Vec::new(), Vec::new());
         let wanted = floor.iter().map(|entry| (0, entry)).chain(marks.iter().map(|entry| (1, entry)));
         for (side, entry) in wanted {
             let room =
                 |side: usize, row: usize| usize::from(if side == 0 { blanks[row].0 } else { blanks[row].1 });
-            let place = [side, 1 - side].into_iter().find_map(|side| {
+            let place = [side, 1 - side].into_iter().filter(|side| free[*side] > 0).find_map(|side| {
                 let row = (next[side]..blanks.len()).find(|row| room(side, *row) >= entry.width())?;
                 Some((side, row))
             });
@@ -72,7 +74,7 @@ impl Placed {
                 left_over.push(entry.clone());
                 continue;
             };
-            next[side] = row + 1;
+            (next[side], free[side]) = (row + 1, free[side] - 1);
             let column = if side == 0 { 0 } else { window.size.0 - entry.width() as u16 };
             beside.push((column, row as u16, entry.clone()));
         }
@@ -110,6 +112,35 @@ pub(super) fn rows(left_over: &[Entry], area: Rect) -> u16 {
     (lines(left_over, usize::from(area.width)).len() as u16).min(area.height / ROWS_PER_LINE)
 }
 
+/// The entries that fit in a number of lines below the floor; if not all of them fit, the last one names the key that
+/// shows the others.
+pub(super) fn fitting(look: &Look, left_over: &[Entry], (rows, columns): (u16, usize)) -> Vec<Entry> {
+    let fits = |entries: &[Entry]| lines(entries, columns).len() <= usize::from(rows);
+    if fits(left_over) {
+        return left_over.to_vec();
+    }
+    let shortened = |left_out: usize| {
+        let more =
+            Entry { role: Role::Key, mark: look.keys("<help>"), word: format!("{left_out} more").into() };
+        let first = left_over.iter().take(left_over.len() - left_out).cloned();
+        first.chain([more]).collect::<Vec<_>>()
+    };
+    (1..=left_over.len()).map(shortened).find(|entries| fits(entries)).unwrap_or_default()
+}
+
+/// The whole legend, in lines of a given width.
+pub(super) fn in_lines(look: &Look, window: Window, columns: usize) -> Vec<Parts> {
+    let (floor, marks) = entries(look, window);
+    let entries: Vec<Entry> = floor.into_iter().chain(marks).collect();
+    lines(&entries, columns).into_iter().map(line_parts).collect()
+}
+
+/// The parts of a line of entries.
+fn line_parts(entries: Vec<&Entry>) -> Parts {
+    let gap = || (Role::Text, GAP.to_owned());
+    entries.into_iter().flat_map(|entry| entry.parts().into_iter().chain([gap()])).collect()
+}
+
 /// The entries in lines of the given width.
 fn lines(entries: &[Entry], columns: usize) -> Vec<Vec<&Entry>> {
     let mut lines: Vec<(usize, Vec<&Entry>)> = Vec::new();
@@ -137,9 +168,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, placed: &Placed) 
 /// Draws the entries below the floor.
 pub(super) fn draw_lines(look: &Look, frame: &mut Frame, area: Rect, left_over: &[Entry]) {
     for (entries, place) in lines(left_over, usize::from(area.width)).into_iter().zip(area.rows()) {
-        let gap = || (Role::Text, GAP.to_owned());
-        let parts = entries.into_iter().flat_map(|entry| entry.parts().into_iter().chain([gap()]));
-        frame.render_widget(look.line(parts), place);
+        frame.render_widget(look.line(line_parts(entries)), place);
     }
 }
 
@@ -152,7 +181,8 @@ pub(super) fn entries(look: &Look, window: Window) -> (Vec<Entry>, Vec<Entry>) {
     };
     let floor = shade::shown(look, window).map(entry).collect();
     let lines = lines_shown(look, window).into_iter();
-    (floor, lines.chain(marks(look, window)).chain(drawings(look, window)).collect())
+    let marks = places(look, window).into_iter().chain(marks(look, window)).chain(drawings(look, window));
+    (floor, lines.chain(marks).collect())
 }
 
 fn shade_mark(shade: Shade) -> String {
@@ -264,8 +294,7 @@ fn marks(look: &Look, window: Window) -> Vec<Entry> {
         (plates::plates(look, window).is_some(), Role::Plate, outline, "plate"),
     ];
     let marks = marks.into_iter().filter(|(shown, ..)| *shown);
-    let marks = marks.map(|(_, role, mark, word)| Entry { role, mark, word: word.into() });
-    marks.chain(places(look, window)).collect()
+    marks.map(|(_, role, mark, word)| Entry { role, mark, word: word.into() }).collect()
 }
 
 /// The first and the last name of the stations.
@@ -302,7 +331,7 @@ fn places(look: &Look, window: Window) -> Vec<Entry> {
         mark: labels::RESUMES.into(),
         word: "scan resumes".into(),
     });
-    entries.chain(left_out).chain(resumes).collect()
+    left_out.into_iter().chain(resumes).chain(entries).collect()
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ const TICK_DOTS: usize = 5;
 pub(in crate::view) enum Pattern {
     /// Every dot.
     Solid,
-    /// Long dashes.
+    /// Short dashes.
     Dashed,
     /// Every third dot.
     Dotted,
@@ -18,8 +18,8 @@ pub(in crate::view) enum Pattern {
     Ticked,
     /// Two dots wide.
     Thick,
-    /// Every fifth dot.
-    Sparse,
+    /// Long dashes.
+    LongDashed,
     /// Two lines side by side.
     Double,
     /// A line that jumps from side to side.
@@ -45,9 +45,9 @@ impl Pattern {
             Self::Solid | Self::Double | Self::Thick | Self::Ticked | Self::Jagged => true,
             Self::Beaded => step % 4 < 2,
             Self::DashDotted => step % 6 != 3 && step % 6 != 5,
-            Self::Dashed => step % 8 < 5,
+            Self::Dashed => step % 5 < 3,
             Self::Dotted => step.is_multiple_of(3),
-            Self::Sparse => step.is_multiple_of(5),
+            Self::LongDashed => step % 8 < 5,
         }
     }
 
@@ -129,7 +129,7 @@ mod tests {
             Pattern::Dotted,
             Pattern::Ticked,
             Pattern::Thick,
-            Pattern::Sparse,
+            Pattern::LongDashed,
             Pattern::Double,
             Pattern::Jagged,
             Pattern::Beaded,
@@ -138,7 +138,7 @@ mod tests {
         let samples = all.map(|pattern| pattern.sample(4));
         assert_eq!(
             samples,
-            ["⠤⠤⠤⠤", "⠤⠤⠄ ", "⠄⠠ ⠄", "⠤⡦⠤⢴", "⣤⣤⣤⣤", "⠄ ⠠ ", "⣒⣒⣒⣒", "⢄⢄⢄⢄", "⣤ ⣤ ", "⠤⠄⠄⠤"]
+            ["⠤⠤⠤⠤", "⠤⠄⠠⠤", "⠄⠠ ⠄", "⠤⡦⠤⢴", "⣤⣤⣤⣤", "⠤⠤⠄ ", "⣒⣒⣒⣒", "⢄⢄⢄⢄", "⣤ ⣤ ", "⠤⠄⠄⠤"]
                 .map(str::to_owned)
         );
     }

@@ -6,6 +6,7 @@ use crate::theme::Role;
 use crate::view::look::Look;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
+use ratatui::style::Modifier;
 use std::rc::Rc;
 use world::{FloorClass, Point};
 
@@ -153,7 +154,8 @@ fn paint_cell(look: &Look, upper: Option<Shade>, lower: Option<Shade>, cell: &mu
     }
     // A background fills the whole character, so that it would spill over the wall if one half were beyond it.
     let ground = upper.filter(|_| lower.is_some()).and_then(Shade::ground).filter(|_| !look.is_plain());
-    if let Some(ground) = ground {
+    // Labels are bold; they stand on the terminal's background, so that every colour can be read.
+    if let Some(ground) = ground.filter(|_| !cell.modifier.contains(Modifier::BOLD)) {
         cell.set_bg(look.theme.color(ground));
     }
 }

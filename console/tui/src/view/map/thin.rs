@@ -1,5 +1,6 @@
 //! Thins a path whose lanes would merge on the map: draws every n-th lane, and straight links between the lanes drawn.
 
+use super::crowd::Crowd;
 use super::shapes::Window;
 use crate::model::Lane;
 use std::collections::BTreeMap;
@@ -9,7 +10,9 @@ use world::{Point, polyline};
 /// neighbouring rows, which are two columns high.
 const APART_COLUMNS: f64 = 2.2;
 /// The distance between the lanes drawn if not all are, columns.
-const THINNED_COLUMNS: f64 = 2.0;
+const THINNED_COLUMNS: f64 = 3.0;
+/// Lines of a thinned path that are closer than this share of the distance between the lanes drawn merge.
+const MERGE: f64 = 0.8;
 /// Maximum number n if only every n-th lane is drawn.
 const MOST: usize = 99;
 /// A way between two lanes that is longer than this many lane widths leads to a different part of the floor.
@@ -30,6 +33,8 @@ pub(super) struct Thinning {
     first: usize,
     /// Distance between lanes, metres.
     lane_m: f64,
+    /// Lines that are closer than this merge, metres.
+    merge_m: f64,
 }
 
 impl Thinning {
@@ -40,7 +45,8 @@ impl Thinning {
         let is_apart = !lane_columns.is_finite() || lane_columns <= 0.0 || lane_columns >= APART_COLUMNS;
         let enough = |every: &usize| *every as f64 * lane_columns >= THINNED_COLUMNS;
         let every = if is_apart { 1 } else { (3..MOST).step_by(2).find(enough).unwrap_or(MOST) };
-        Self { every, first: (which * every / paths.max(1)).min(every - 1), lane_m }
+        let merge_m = MERGE * THINNED_COLUMNS * window.column_m;
+        Self { every, first: (which * every / paths.max(1)).min(every - 1), lane_m, merge_m }
     }
 }
 
@@ -73,7 +79,8 @@ impl<'a> Thin<'a> {
         let (kept, lanes) = if lanes.is_empty() {
             (apart(path, gap_m - 0.5 * thinning.lane_m), Vec::new())
         } else {
-            every_nth(path, lanes, thinning)
+            let (ways, drawn) = every_nth(path, lanes, thinning);
+            uncrowded(path, lanes, (&ways, drawn), thinning.merge_m)
         };
         Self { path, pieces: linked(path, &joined(kept), LINK * gap_m), lanes }
     }
@@ -89,9 +96,9 @@ impl<'a> Thin<'a> {
     }
 }
 
-/// The stretches of a path on every n-th lane and on the ways to other parts of the floor, and the lanes drawn.
+/// The ways of a path that lead to lanes drawn, and the indices of every n-th lane.
 fn every_nth(path: &[Point], lanes: &[Lane], thinning: Thinning) -> (Vec<Lane>, Vec<usize>) {
-    let (mut stretches, mut drawn): (Vec<Lane>, Vec<usize>) = (vec![(0, lanes[0].0)], Vec::new());
+    let (mut ways, mut drawn): (Vec<Lane>, Vec<usize>) = (vec![(0, lanes[0].0)], Vec::new());
     let mut row = 0;
     for (index, lane) in lanes.iter().enumerate() {
         let before = index.checked_sub(1).map(|before| lanes[before]);
@@ -99,21 +106,43 @@ fn every_nth(path: &[Point], lanes: &[Lane], thinning: Thinning) -> (Vec<Lane>, 
             let way = (before.1, lane.0.max(before.1));
             let is_same_line = is_continued(path, before, *lane, thinning.lane_m);
             if is_same_line && drawn.last() == Some(&(index - 1)) {
-                stretches.push(way);
+                ways.push(way);
             } else if is_same_line {
             } else if is_transit(path, way, thinning.lane_m) {
-                stretches.push(way);
+                ways.push(way);
                 row = 0;
             } else {
                 row += 1;
             }
         }
         if row % thinning.every == thinning.first {
-            stretches.push(*lane);
             drawn.push(index);
         }
     }
-    stretches.extend(lanes.last().map(|lane| (lane.1, path.len() - 1)));
+    ways.extend(lanes.last().map(|lane| (lane.1, path.len() - 1)));
+    (ways, drawn)
+}
+
+/// The stretches on lanes and ways that do not merge with others, in the order of the path, and the lanes drawn. Ways
+/// give way to lanes.
+fn uncrowded(
+    path: &[Point],
+    lanes: &[Lane],
+    (ways, drawn): (&[Lane], Vec<usize>),
+    merge_m: f64,
+) -> (Vec<Lane>, Vec<usize>) {
+    let mut crowd = Crowd::new(merge_m);
+    let is_kept = |stretch: &Lane, end_m: f64, crowd: &mut Crowd| {
+        let points = polyline::resampled(&path[stretch.0..=stretch.1], 0.5 * merge_m);
+        let is_free = !crowd.merges(&polyline::without_ends(&points, end_m));
+        is_free.then(|| crowd.add(points)).is_some()
+    };
+    let drawn: Vec<usize> =
+        drawn.into_iter().filter(|lane| is_kept(&lanes[*lane], 0.0, &mut crowd)).collect();
+    // A way begins and ends at a lane.
+    let ways = ways.iter().filter(|way| way.0 < way.1 && is_kept(way, merge_m, &mut crowd));
+    let mut stretches: Vec<Lane> = ways.copied().chain(drawn.iter().map(|lane| lanes[*lane])).collect();
+    stretches.sort_unstable();
     (stretches, drawn)
 }
 

@@ -8,13 +8,18 @@ use crate::view::{table, text};
 use account::{Area, Cause, LeftOut, Measure, MissReason};
 use ratatui::Frame;
 use ratatui::layout::Rect;
+use ratatui::text::Line;
 
 /// Width of an area, columns.
 const AREA: usize = 8;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let left_out = look.model.live.left_out();
-    let block = look.pane(Pane::LeftOut, &title(left_out), &keys(look, usize::from(area.width)));
+    let block = look.pane(
+        Pane::LeftOut,
+        &title(left_out, usize::from(area.width)),
+        &keys(look, usize::from(area.width)),
+    );
     let inner = block.inner(area);
     let size = (usize::from(inner.width), usize::from(inner.height));
     let Some(left_out) = left_out else {
@@ -34,11 +39,22 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     }
     let is_focused = look.model.ui.pane == Pane::LeftOut;
     let selected = is_focused.then(|| look.model.ui.left_out.min(n_areas.saturating_sub(1)));
+    let about = selected.and_then(|index| left_out.areas.get(index)).map_or_else(Vec::new, |area| {
+        let [whole, ..] = reason(area.reason, &area.causes);
+        text::wrap(&format!("{}.", text::capitalized(&whole)), size.0.saturating_sub(2))
+    });
+    let spare = size.1.saturating_sub(rows.len() + 1);
+    let about = if about.len() <= spare { about } else { Vec::new() };
     table::place(look, inner, Rows::LeftOut, table::window(selected.unwrap_or(0), n_areas, size.1));
-    fill(frame, area, block, table::rows(look, rows, selected, size));
+    let mut lines = table::rows(look, rows, selected, size);
+    if !about.is_empty() {
+        lines.push(Line::default());
+        lines.extend(about.into_iter().map(|line| look.line([(Role::Dim, format!(" {line}"))])));
+    }
+    fill(frame, area, block, lines);
 }
 
-fn title(left_out: Option<&LeftOut>) -> String {
+fn title(left_out: Option<&LeftOut>, columns: usize) -> String {
     let Some(left_out) = left_out else { return "Left out".into() };
     let share = text::percent(1.0 - left_out.scanned());
     let listed = match left_out.areas.len() {
@@ -46,7 +62,12 @@ fn title(left_out: Option<&LeftOut>) -> String {
         1 => ", 1 area".to_owned(),
         n => format!(", {n} areas"),
     };
-    format!("Left out  {share} %, {} m²{listed}", text::number(left_out.area_m2(), 2))
+    let area = format!("Left out  {share} %, {} m²", text::number(left_out.area_m2(), 2));
+    // Beside the title: the frame, the key of the pane, and the mark of the focus.
+    text::wording(
+        [format!("{area}{listed}"), area, format!("Left out  {share} %")],
+        columns.saturating_sub(10),
+    )
 }
 
 fn keys(look: &Look, columns: usize) -> String {
@@ -62,8 +83,9 @@ fn row(area: &Area<MissReason>, place: usize, columns: usize) -> Parts {
     let room = columns.saturating_sub(AREA + 2);
     let place = text::column(&text::place(area.at), place);
     let [whole, brief, word] = reason(area.reason, &area.causes);
-    let [whole, brief, short] = [whole, brief, word.clone()].map(|reason| format!("{place} {reason}"));
-    let words = text::wording([whole, brief, short, word], room);
+    let [whole, brief, word] = [whole, brief, word].map(|reason| format!("{place} {reason}"));
+    // Where there is no room for a reason, it is below the rows.
+    let words = text::wording([whole, brief, word, place], room);
     vec![(Role::Text, format!("{:>AREA$} ", square_metres(area.area_m2))), (Role::Text, words)]
 }
 
