@@ -12,7 +12,7 @@ use planner_api::{
 use steering::{Forces, KnownMap, Nearby};
 use world::{Point, Vector};
 
-/// Attraction and repulsion, and in a local minimum a virtual goal on a square around the goal (Yang et al. 2021).
+/// Attraction and repulsion; in a local minimum, also a virtual goal on a square around the goal (Yang et al. 2021).
 pub(crate) struct ApfVirtualGoals {
     law: Law,
     flight: GoalFlight,
@@ -57,8 +57,8 @@ const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.1)
     .group("Plan");
 const STEP_RULE: ParamSpec = choice("step_rule", "Step length rule", &["fixed", "proportional"], 1)
     .help(
-        "proportional: steps are shorter where the force is weaker than the attraction gain, which comes \
-         closer to the paper's tables.",
+        "proportional: steps are shorter where the force, in newtons, is below the attraction gain. The \
+        lengths of such paths are closer to those in the paper's tables.",
     )
     .group("Plan");
 const STEPS: ParamSpec = int("steps_max", "Maximum steps", "", 0, 1_000_000, 0)
@@ -123,7 +123,7 @@ impl Planner for ApfVirtualGoals {
         };
         let walk = goal_walk::walk(&trip, next, || ctx.check())?;
         if goals.used > 0 {
-            ctx.log(LogLevel::Info, &format!("the path uses {} virtual goals", goals.used));
+            ctx.log(LogLevel::Info, &format!("number of virtual goals that the path uses: {}", goals.used));
         }
         ctx.scalar("virtual_goals", f64::from(goals.used), "");
         let instead = format!(

@@ -32,7 +32,7 @@ const FLIGHT_WINDOWS: f64 = 1.5;
 /// path is simulated.
 const PARTS_MOST: usize = 4000;
 /// Advice logged when the planner finds no path.
-const INSTEAD: &str = "in rooms choose shortest or navfn, which find a path wherever one exists";
+const INSTEAD: &str = "in rooms, choose shortest or navfn, which find a path wherever one exists";
 
 /// The potential field of Xu et al. 2022 with virtual obstacles.
 pub(crate) struct BvoApf {
