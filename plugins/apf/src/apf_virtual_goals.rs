@@ -32,7 +32,7 @@ struct Law {
 const FIELD: &str = "Field";
 const GOALS: &str = "Virtual goals";
 const K_ATT: ParamSpec = float("k_att", "Attraction gain", "N/m", 0.001, 1000.0, 15.0)
-    .help("Pull toward the goal per metre of distance; Table 2 of the paper has 15.")
+    .help("Pull towards the goal per metre of distance; Table 2 of the paper has 15.")
     .group(FIELD);
 const K_REP: ParamSpec = float("k_rep", "Repulsion gain", "N m3", 0.0, 1000.0, 5.0)
     .help("Gain of the push from obstacles; Table 2 of the paper has 5.")
@@ -68,7 +68,7 @@ const STEPS: ParamSpec = int("steps_max", "Maximum steps", "", 0, 1_000_000, 0)
 impl Planner for ApfVirtualGoals {
     const ID: &'static str = "apf-virtual-goals";
     const NAME: &'static str = "Field with virtual goals";
-    const ABOUT: &'static str = "Leaves local minima toward virtual goals on a square around the goal and \
+    const ABOUT: &'static str = "Leaves local minima towards virtual goals on a square around the goal and \
                                  keeps its pull near the goal, after Yang et al. 2021. Evades moving \
                                  obstacles.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);

@@ -23,7 +23,7 @@ const RHO_1: ParamSpec = float("rho_1_m", "Near-law range", "m", 0.01, 100.0, 1.
     .group(FIELD);
 const NEAR_LAW: ParamSpec = choice("near_law", "Near law", &["corrected", "printed"], 0)
     .help(
-        "corrected: the pull grows toward the goal, as the paper's text says. printed: it vanishes \
+        "corrected: the pull grows towards the goal, as the paper's text says. printed: it vanishes \
            there, as in the paper's formula.",
     )
     .group(FIELD);

@@ -1,6 +1,6 @@
 //! Escapes from a trap that add a force for a while: a virtual target, or a sideways push.
 //!
-//! Wang et al. 2023 compare their method with both escapes, but do not describe them. The positions, gains and
+//! Wang et al. 2023 compare their method with both escapes, but hardly describe them. The positions, gains and
 //! durations here are our reconstruction, so the results of these planners are not evidence about the original methods.
 
 use crate::law::{Law, nearest_obstacle};

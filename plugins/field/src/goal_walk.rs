@@ -21,7 +21,7 @@ pub struct Trip {
 
 /// Walks until the goal is reached or `next` returns no more steps. `check` can end the walk early.
 ///
-/// The walk ends as soon as it is within `tolerance_m` of the goal; the mission drives the rest.
+/// The walk ends as soon as it is within `tolerance_m` of the goal; the mission covers the remaining distance.
 ///
 /// # Errors
 /// The error that `check` returns.

@@ -69,7 +69,7 @@ pub fn improved_repulsion(
 /// The rotating force of Wang et al. 2023, eq. 3: `k_rot rho_0 / rho` along the tangent. The paper's direction,
 /// counter-clockwise, passes on the right.
 ///
-/// At `rho_0` it jumps from `k_rot` to zero.
+/// At `rho_0`, the force jumps from `k_rot` to zero.
 pub fn rotation(k_rot: f64, rho_0_m: f64, side: Side, contact: &Contact) -> Vector {
     let within = contact.distance_m < rho_0_m;
     let strength = if within { k_rot * rho_0_m / contact.distance_m.max(FLOOR_M) } else { 0.0 };

@@ -34,7 +34,7 @@ pub struct SquareLaw {
     pub d_0_m: f64,
     /// Distance of the virtual goals from the goal, metres; the paper gives no value.
     pub square_m: f64,
-    /// Whether virtual goals and the constant pull are used. Without them the field is the classical one.
+    /// Whether virtual goals and the constant pull are used. Without them, the field is the classical one.
     pub improved: bool,
     /// Maximum number of steps for which a virtual goal is kept.
     pub hold_steps: usize,

@@ -105,8 +105,8 @@ impl Judge {
         }
     }
 
-    /// Describes a failure by the fault that the console would report. After a timeout this adds the budget, which is
-    /// possible because nothing is compared with this text.
+    /// Describes a failure by the fault that the console would report. After a timeout, the text also contains the
+    /// budget; unlike the fault of a mission, it is not written to a journal, so it may contain times.
     pub(super) fn fault(&self, failure: Failure, budget: Duration) -> Fault {
         let is_of_time = matches!(failure, Failure::Hung | Failure::Late | Failure::Starved);
         let mut fault = fault::of(failure, &self.planner, self.phase());

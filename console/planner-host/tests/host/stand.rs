@@ -20,12 +20,12 @@ pub(crate) fn worker() -> WorkerCommand {
     WorkerCommand::new(env!("CARGO_BIN_EXE_planner-worker"))
 }
 
-/// Patient enough for a busy machine.
+/// Budgets that are large enough for a busy machine.
 pub(crate) fn config() -> HostConfig {
     HostConfig { worker_command: worker(), ..HostConfig::new(Duration::from_secs(3)) }
 }
 
-/// For planners that are meant to be late.
+/// Budgets for tests of planners that are late on purpose.
 pub(crate) fn impatient() -> HostConfig {
     HostConfig {
         configure_deadline: Duration::from_millis(150),

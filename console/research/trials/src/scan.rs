@@ -17,7 +17,7 @@ const CRITICAL_ZONE_M: f64 = 0.075;
 /// Speeds of the robot for computing the time of a path: 0.4 m/s and 60 degrees a second.
 const SPEED_M_PER_S: f64 = 0.4;
 const TURN_RAD_PER_S: f64 = std::f64::consts::PI / 3.0;
-/// Step along a lane that may come into contact with something, metres.
+/// Distance between the points at which a lane is checked for room, metres.
 const LANE_STEP_M: f64 = 0.02;
 
 /// The figures of a path over a floor.
