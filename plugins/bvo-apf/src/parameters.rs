@@ -56,7 +56,7 @@ const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.05)
     .group("Plan");
 const MARGIN: ParamSpec = float("margin_m", "Detour margin", "m", 0.02, 5.0, 0.14)
     .help(
-        "Distance kept from whatever the robot bypasses. Gaps that leave less than this on either side of \
+        "Distance kept from the obstacles that the robot bypasses. Gaps that leave less than this on either side of \
          the hull are treated as closed.",
     )
     .group(TRAP);

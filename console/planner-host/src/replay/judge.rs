@@ -29,7 +29,7 @@ pub(super) struct Judge {
 }
 
 impl Judge {
-    /// Notes a request.
+    /// Keeps the parts of a request that are needed to judge later answers.
     pub(super) fn hear(&mut self, request: &Incoming) -> Read<()> {
         let body = request.body();
         self.kind = request.kind();

@@ -60,8 +60,8 @@ fn account(rows: &[Row]) -> String {
         };
         let _ = writeln!(
             text,
-            "{} rows with a printed value: {} reproduced (within 5 %, or in the interval of one draw where \
-             one is printed), {} better, {} not reproduced{fitted}",
+            "rows with a printed value: {}; {} reproduced (within 5 %, or in the interval of one draw where \
+            one is printed), {} better, {} not reproduced{fitted}",
             printed.len(),
             count("reproduced"),
             count("better"),
@@ -82,7 +82,7 @@ fn account(rows: &[Row]) -> String {
         };
         let _ = writeln!(
             text,
-            "--first-seed has no effect on {n} {rows} that do not depend on random draws: {}{more}",
+            "--first-seed has no effect on {n} {rows}, because no random draws are involved: {}{more}",
             named.join("; ")
         );
     }

@@ -31,7 +31,8 @@ pub struct Scan {
     pub coverage_whole: f64,
     /// Scanned share of the critical zone along the shell.
     pub critical_zone: f64,
-    /// The share of the critical zone that one lane along the shell scans, wherever hull and clearance have room.
+    /// The share of the critical zone that one lane along the shell would scan, if the robot drove it wherever there is
+    /// room for hull and clearance.
     pub critical_zone_possible: f64,
     /// Length, metres.
     pub length_m: f64,
