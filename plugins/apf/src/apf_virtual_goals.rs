@@ -58,7 +58,7 @@ const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.1)
 const STEP_RULE: ParamSpec = choice("step_rule", "Step length rule", &["fixed", "proportional"], 1)
     .help(
         "proportional: steps are shorter where the force, in newtons, is below the attraction gain. The \
-        lengths of such paths are closer to those in the paper's tables.",
+         lengths of such paths are closer to those in the paper's tables.",
     )
     .group("Plan");
 const STEPS: ParamSpec = int("steps_max", "Maximum steps", "", 0, 1_000_000, 0)

@@ -28,9 +28,9 @@ const RHO_0: ParamSpec = float("rho_0_m", "Obstacle range", "m", 0.05, 50.0, 2.0
 const TANGENT: ParamSpec = choice("tangent", "Tangent force", &["off", "always", "blocking"], 2)
     .help(
         "always: towards the left tangent of every obstacle in range. With a weight of 0.02 and an \
-        obstacle of 1 m radius, or with a weight of 1 and a radius of 3.2 to 3.55 m (both fitted), the \
-        robot stops where the paper says. blocking: around whatever blocks the path to the goal. off: \
-        the classical field.",
+         obstacle of 1 m radius, or with a weight of 1 and a radius of 3.2 to 3.55 m (both fitted), the \
+         robot stops where the paper says. blocking: around whatever blocks the path to the goal. off: \
+         the classical field.",
     )
     .group(FIELD);
 const WEIGHT: ParamSpec = float("tangent_weight", "Tangent force weight", "", 0.0, 100.0, 1.0)
@@ -51,7 +51,7 @@ const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.05)
 const WINDOW: ParamSpec = float("window_m", "Oscillation window", "m", 0.1, 50.0, 2.0)
     .help(
         "The planned path counts as trapped when its last steps, which together have this length, make \
-        almost no headway.",
+         almost no headway.",
     )
     .group("Plan");
 

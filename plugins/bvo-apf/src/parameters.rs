@@ -69,7 +69,7 @@ const TAUT_MARGIN: ParamSpec = float("taut_margin_m", "Taut path margin", "m", 0
 const WINDOW: ParamSpec = float("window_m", "Oscillation window", "m", 0.1, 50.0, 2.0)
     .help(
         "The robot is considered trapped when its latest steps, which together have this length, make \
-        almost no headway.",
+         almost no headway.",
     )
     .group(TRAP);
 const ESCAPES: ParamSpec = int("escapes_max", "Maximum escapes", "", 1, 1000, 12)

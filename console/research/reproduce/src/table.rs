@@ -61,7 +61,7 @@ fn account(rows: &[Row]) -> String {
         let _ = writeln!(
             text,
             "rows with a printed value: {}; {} reproduced (within 5 %, or in the interval of one draw where \
-            one is printed), {} better, {} not reproduced{fitted}",
+             one is printed), {} better, {} not reproduced{fitted}",
             printed.len(),
             count("reproduced"),
             count("better"),
