@@ -18,8 +18,8 @@
  *    beyond that size. Where an array has a stride, step by the stride and not by sizeof.
  *  - The planner runs in a separate process: a crash or an endless loop ends that process, not the console.
  *  - The planner may allocate up to 256 MB of memory (1 GB on coverage missions) and start up to 62 threads. Memory
-*    counts whether it is used or not. The stack of a thread counts in full: 8 MB unless its size is set with
-*    pthread_attr_setstacksize. Threads must end within the call that starts them.
+ *    counts whether it is used or not. The stack of a thread counts in full: 8 MB unless its size is set with
+ *    pthread_attr_setstacksize. Threads must end within the call that starts them.
  *
  * Units and frame: SI units; the tank frame has x east and y north; angles in radians, counter-clockwise from east.
  */
