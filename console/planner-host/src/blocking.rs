@@ -51,8 +51,8 @@ impl BlockingHost {
         HostStats { faults: stats.faults + self.n_unanswered, ..stats }
     }
 
-    /// Opens a planner, which becomes active from the next call on; the previous planner is closed. After a fault the
-    /// previous planner stays active.
+    /// Opens a planner, which becomes active from the next call on; the previous planner is closed. After a fault,
+    /// the previous planner stays active.
     ///
     /// # Errors
     /// The planner was not found, was refused, or failed while it was being loaded or configured.

@@ -1,5 +1,5 @@
-//! Checks a planner's answers against the limits of the robot; [`limits`] checks them against the limits on what a
-//! worker may send at all.
+//! Checks that the robot can follow a planner's answers. [`limits`] checks that whatever a worker sends is small enough
+//! and valid.
 
 pub(crate) mod limits;
 

@@ -28,7 +28,7 @@ pub struct PluginDirs {
 }
 
 impl PluginDirs {
-    /// Uses these folders, with plugins loaded even if their processes cannot be fully sandboxed, and without a cache.
+    /// Uses these folders without a cache. Plugins are loaded even if their processes cannot be fully sandboxed.
     pub fn of(folders: Vec<PathBuf>) -> Self {
         Self { folders, requires_sandbox: false, cache: None }
     }
@@ -94,7 +94,7 @@ pub struct PluginFile {
     pub(crate) words: Words,
 }
 
-/// The data from which to find out which planners a plugin contains.
+/// The data that shows which planners a plugin contains.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Words {
     /// The complete list of the planners' ids.
@@ -163,8 +163,8 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     if bytes.len() as u64 > MOST_BYTES { Err(too_large(bytes.len() as u64)) } else { Ok(bytes) }
 }
 
-/// Returns why no process on this machine can make a private copy of a plugin; `None` if a process can make the copy,
-/// or if the file is too large to be a plugin.
+/// Returns the reason why no process on this machine can make a private copy of a plugin. Returns `None` if a process
+/// can make the copy, or if the file is too large to be a plugin.
 pub(crate) fn too_large_for_machine(path: &Path) -> Option<String> {
     let length = path.metadata().ok().filter(std::fs::Metadata::is_file)?.len();
     let limit = getrlimit(Resource::Fsize).current.filter(|limit| *limit < length && length <= MOST_BYTES)?;

@@ -94,7 +94,7 @@ pub fn digest_of(frames: &[u8]) -> String {
 /// Checks that recorded requests are complete, and counts them.
 ///
 /// # Errors
-/// The fault of the requests; the text completes a sentence that begins with the name of their file.
+/// What is wrong with the requests; the text completes a sentence that begins with the name of their file.
 fn whole(frames: &[u8]) -> Result<usize, String> {
     if frames.is_empty() {
         return Err("is empty: no request was recorded".to_owned());

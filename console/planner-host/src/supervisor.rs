@@ -45,8 +45,8 @@ impl WorkerCommand {
 }
 
 impl Default for WorkerCommand {
-    /// Runs this same program with the argument `worker`. On Linux this is the very file that is running, even if it
-    /// has been replaced on disk, so that console and worker are always the same build.
+    /// Runs this same program with the argument `worker`. On Linux, this is the very file that is running, even if
+    /// it has been replaced on disk, so that console and worker are always the same build.
     fn default() -> Self {
         let running = PathBuf::from("/proc/self/exe");
         let is_there = cfg!(target_os = "linux") && running.exists();

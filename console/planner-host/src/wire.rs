@@ -4,8 +4,8 @@
 //! everything after the length itself; the soft deadline is in microseconds, and zero means no deadline. Every request
 //! gets one answer with the same sequence number. A CANCEL may follow a request and is never answered. Before the
 //! answer to a PLAN, and nowhere else, any number of PROGRESS frames may be sent with the sequence number of the
-//! request; they are never answered. Before the answer to a LOAD, one SEALED frame is sent, before any code of the
-//! plugin runs.
+//! request; they are never answered. The answer to a LOAD is preceded by one SEALED frame, which is sent before any
+//! code of the plugin runs.
 
 pub(crate) mod answer;
 pub(crate) mod body;
@@ -22,7 +22,7 @@ pub(crate) const VERSION: u32 = 6;
 /// The maximum length of a frame, bytes.
 pub(crate) const LONGEST: usize = 16 << 20;
 /// The signal with which a worker ends itself when it can no longer communicate with its console. An exit code would
-/// not do, because any exit code may be the planner's own. On Linux nothing else uses this signal.
+/// not do, because any exit code may be the planner's own. On Linux, nothing else uses this signal.
 #[cfg(target_os = "linux")]
 pub(crate) const CHANNEL_LOST: Signal = Signal::STKFLT;
 #[cfg(not(target_os = "linux"))]

@@ -25,11 +25,12 @@ const ATTEMPTS: u32 = 6;
 const LOOK_STEPS: usize = 20;
 /// Number of steps after which the path is replanned in any case, because the robot has moved sideways.
 const FRESH_STEPS: usize = 40;
-/// Distance of the point to aim for beyond the end of the path at which the path counts as too short, metres.
+/// The path is replanned if its end is more than this distance from the point to aim for, metres.
 const AIM_MOVED_M: f64 = 1.0;
 /// Interval between checks whether a moving obstacle blocks the path, steps.
 const MOVING_STEPS: usize = 5;
-/// Clearance that a path may lack, compared with the clearance that the window keeps, and still count as free, metres.
+/// A path counts as free even if its clearance is smaller, by at most this distance, than what the window keeps,
+/// metres.
 const SLACK_M: f64 = 0.03;
 /// On a map of many parts, the push is limited to these shares of the pull: against the direction of the pull, and
 /// across it.

@@ -9,8 +9,7 @@ use crate::{
 use steering::{Forces, KnownMap};
 use world::{Amphibious, Medium, Mode, Pace, Point, Pose, Zone, polyline};
 
-/// Distance from the goal, or from a point to pass, within which the robot drives no faster than it can turn there,
-/// metres.
+/// Distance from the goal within which the robot is slowed down so that it can turn towards the goal, metres.
 const TURNING_M: f64 = 1.2;
 /// Angle between the robot's heading and its target above which the robot turns first, radians.
 const ASIDE_RAD: f64 = 0.35;
@@ -101,7 +100,7 @@ impl Hybrid {
         &self.guide
     }
 
-    /// The share of the swimming mode, 0 to 1.
+    /// How far the robot has changed from walking (0) to swimming (1); `None` before the first step.
     pub fn mode(&self) -> Option<f64> {
         self.mode.map(Mode::weight)
     }
@@ -143,7 +142,7 @@ impl Hybrid {
     }
 }
 
-/// The maximum speed near the goal from which an arc at the maximum turn rate still reaches the goal. A faster robot
+/// The maximum speed near the goal at which an arc with the maximum turn rate still reaches the goal. A faster robot
 /// would circle around the goal forever.
 fn drivable(state: &State, goal: Point, pace: Pace) -> f64 {
     let way = goal - state.pose.position;
@@ -170,7 +169,7 @@ pub fn distances_m(map: &KnownMap, at: Point) -> Vec<f64> {
     all
 }
 
-/// A simulated run of the loop at the exact pose.
+/// A simulated run of the loop, in which the pose is known exactly.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
     /// The position at every tick, starting with the start.

@@ -76,7 +76,8 @@ impl NearThings {
                 self.discs.push(Disc { center: solid.center, radius_m: solid.radius_m });
             }
             Part::Capsule { a, b, half_width_m } => self.bars.push(Bar::new(*a, *b, *half_width_m)),
-            // The hull is wider than the distance between two points, so no point can jump across a side.
+            // The sides suffice: checked points are closer together than the hull is wide, so a path into the polygon
+            // has a point near a side.
             Part::Polygon { vertices } => {
                 self.bars.extend(edges(vertices).map(|(a, b)| Bar::new(a, b, 0.0)));
             }

@@ -20,7 +20,7 @@ const GUIDE: ParamSpec = choice("guide", "Virtual goals", &["square", "corners"]
     )
     .group(FIELD);
 const K_ATT: ParamSpec = float("k_att", "Attraction gain", "N/m", 0.001, 1000.0, 15.0)
-    .help("Pull toward the goal per metre of distance; Table 2 of the paper has 15.")
+    .help("Pull towards the goal per metre of distance; Table 2 of the paper has 15.")
     .group(FIELD);
 const K_REP: ParamSpec = float("k_rep", "Repulsion gain", "N m3", 0.0, 1000.0, 5.0)
     .help("Gain of the push from obstacles; Table 2 of the paper has 5.")

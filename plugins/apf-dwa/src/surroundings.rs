@@ -11,11 +11,11 @@ use std::collections::HashSet;
 use steering::{Body, KnownMap, Solid};
 use world::{Boundary, Point, Shape, shortest::GrownFloor};
 
-/// Maximum number of parts of the drawing that are kept, unless the window reaches more.
+/// Maximum number of parts of the drawing that are kept, unless more are within reach of the window.
 const PARTS_MOST: usize = 100;
 /// Distance after which the nearby parts are looked up again, metres.
 const SLACK_M: f64 = 1.0;
-/// Distance at which a wall no longer has any effect, metres.
+/// Radius of a round wall so far away that it has no effect, metres.
 const FAR_M: f64 = 1e6;
 
 /// The map around a robot.
@@ -114,7 +114,7 @@ impl Surroundings {
         Changed { parts: true, ways }
     }
 
-    /// The nearby floor for a robot that keeps this distance, metres.
+    /// The nearby floor for a robot whose centre keeps this distance from solids, metres.
     pub fn floor(&self, keep_m: f64) -> GrownFloor {
         let mut shapes: Vec<Shape> = self.here.solids.iter().map(|solid| solid.part.to_shape()).collect();
         let (Some(cut), Boundary::Polygon { vertices }) = (&self.cut, &self.here.wall) else {
@@ -148,8 +148,7 @@ impl Surroundings {
         true
     }
 
-    /// The distance that the affordable number of parts covers, metres; infinite if the map has no more parts than
-    /// that.
+    /// The distance within which there are as many parts as a step has time for, metres; infinite for a small map.
     fn affordable_m(&self, at: Point) -> f64 {
         if Self::is_small(&self.charted) {
             return f64::INFINITY;

@@ -14,7 +14,7 @@ const HORIZON_S: f64 = 3.0;
 const STEP_S: f64 = 0.2;
 /// Number of points checked on an arc.
 const N_PLACES: usize = 15;
-/// Upper limit for clearances in excess of the distance to keep, metres.
+/// The clearance in excess of the distance to keep counts only up to this value, metres.
 const CAP_M: f64 = 1.0;
 /// Turn rate when no arc is allowed, as a share of the maximum.
 const TURN_SHARE: f64 = 0.3;

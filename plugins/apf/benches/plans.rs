@@ -1,4 +1,5 @@
-//! Measures the cost of one plan for the paper's whole spiral, on layouts of its first distribution with 39 obstacles.
+//! Measures the time for one plan of the whole spiral of Wang et al. 2023, on layouts of the paper's first
+//! distribution, which has 39 obstacles.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use planner_apf::apf::Apf;

@@ -14,7 +14,7 @@ pub struct Apf {
 impl Planner for Apf {
     const ID: &'static str = "apf";
     const NAME: &'static str = "Artificial potential field";
-    const ABOUT: &'static str = "Attraction and repulsion after Khatib 1986, toward a goal or along a \
+    const ABOUT: &'static str = "Attraction and repulsion after Khatib 1986, towards a goal or along a \
                                  preset path. Gets stuck in local minima. Evades moving obstacles.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] = &[

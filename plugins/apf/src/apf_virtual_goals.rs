@@ -12,7 +12,7 @@ use planner_api::{
 use steering::{Forces, KnownMap, Nearby};
 use world::{Point, Vector};
 
-/// Attraction and repulsion, and in a local minimum a virtual goal on a square around the goal (Yang et al. 2021).
+/// Attraction and repulsion; in a local minimum, also a virtual goal on a square around the goal (Yang et al. 2021).
 pub(crate) struct ApfVirtualGoals {
     law: Law,
     flight: GoalFlight,
@@ -32,7 +32,7 @@ struct Law {
 const FIELD: &str = "Field";
 const GOALS: &str = "Virtual goals";
 const K_ATT: ParamSpec = float("k_att", "Attraction gain", "N/m", 0.001, 1000.0, 15.0)
-    .help("Pull toward the goal per metre of distance; Table 2 of the paper has 15.")
+    .help("Pull towards the goal per metre of distance; Table 2 of the paper has 15.")
     .group(FIELD);
 const K_REP: ParamSpec = float("k_rep", "Repulsion gain", "N m3", 0.0, 1000.0, 5.0)
     .help("Gain of the push from obstacles; Table 2 of the paper has 5.")
@@ -57,8 +57,8 @@ const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.1)
     .group("Plan");
 const STEP_RULE: ParamSpec = choice("step_rule", "Step length rule", &["fixed", "proportional"], 1)
     .help(
-        "proportional: steps are shorter where the force is weaker than the attraction gain, which comes \
-         closer to the paper's tables.",
+        "proportional: steps are shorter where the force, in newtons, is below the attraction gain. The \
+         lengths of such paths are closer to those in the paper's tables.",
     )
     .group("Plan");
 const STEPS: ParamSpec = int("steps_max", "Maximum steps", "", 0, 1_000_000, 0)
@@ -68,7 +68,7 @@ const STEPS: ParamSpec = int("steps_max", "Maximum steps", "", 0, 1_000_000, 0)
 impl Planner for ApfVirtualGoals {
     const ID: &'static str = "apf-virtual-goals";
     const NAME: &'static str = "Field with virtual goals";
-    const ABOUT: &'static str = "Leaves local minima toward virtual goals on a square around the goal and \
+    const ABOUT: &'static str = "Leaves local minima towards virtual goals on a square around the goal and \
                                  keeps its pull near the goal, after Yang et al. 2021. Evades moving \
                                  obstacles.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
@@ -123,7 +123,7 @@ impl Planner for ApfVirtualGoals {
         };
         let walk = goal_walk::walk(&trip, next, || ctx.check())?;
         if goals.used > 0 {
-            ctx.log(LogLevel::Info, &format!("the path uses {} virtual goals", goals.used));
+            ctx.log(LogLevel::Info, &format!("number of virtual goals that the path uses: {}", goals.used));
         }
         ctx.scalar("virtual_goals", f64::from(goals.used), "");
         let instead = format!(

@@ -29,7 +29,8 @@ pub(crate) struct Checked {
 }
 
 impl GoalFlight {
-    /// Creates a flight over a site as configured, for a law with this reach.
+    /// Creates a flight over a site, with the configured parameters. `reach_m` is the largest distance from the hull at
+    /// which an obstacle acts on the robot.
     pub(crate) fn new(site: &Site<'_>, config: &Config<'_>, reach_m: f64) -> Self {
         let evades = config.flag("evade");
         let map = map_of(site, evades);
@@ -37,8 +38,8 @@ impl GoalFlight {
         Self { nearby: Nearby::new(reach_m + map.hull_m), map, flight, evades, pilot }
     }
 
-    /// Applies new values of the live parameters; the map stays, and a change of `evade` applies to it from the next
-    /// plan.
+    /// Applies new values of the live parameters. The map is kept; a change to `evade` affects it only from the next
+    /// plan on.
     pub(crate) fn set(&mut self, config: &Config<'_>) {
         self.flight = params::flight(config);
         self.evades = config.flag("evade");
@@ -72,7 +73,7 @@ impl GoalFlight {
     ) -> Result<Command> {
         ctx.check()?;
         let (movers, standing) = evade::sorted_if(self.evades, sensed, self.pilot.bodies(sensed));
-        // A moving obstacle appears stationary when it is first seen.
+        // A moving obstacle appears stationary when it is first seen, and was added to the map then.
         let forgot = self.map.forget(&movers.iter().map(|mover| mover.body.id).collect::<Vec<_>>());
         if self.map.learn(&standing) || forgot {
             self.nearby.forget();
@@ -97,7 +98,7 @@ fn map_of(site: &Site<'_>, evades: bool) -> KnownMap {
 }
 
 impl Checked {
-    /// Turns a walk into a plan. Logs the faults of the walk, followed by the advice `instead`.
+    /// Turns a walk into a plan. If the plan is not complete, logs the reason, followed by the advice `instead`.
     pub(crate) fn plan_of(&self, walk: Walk, map: &KnownMap, instead: &str, ctx: &Ctx<'_>) -> Plan {
         let clearance_m = map.path_clearance_m(&walk.path, self.demanded_m + 1.0);
         walk.into_plan_or(clearance_m, self.demanded_m, instead, ctx)

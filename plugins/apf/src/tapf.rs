@@ -27,10 +27,10 @@ const RHO_0: ParamSpec = float("rho_0_m", "Obstacle range", "m", 0.05, 50.0, 2.0
     .group(FIELD);
 const TANGENT: ParamSpec = choice("tangent", "Tangent force", &["off", "always", "blocking"], 2)
     .help(
-        "always: towards the left tangent of every obstacle in range. The robot stops where the paper \
-         says it does if the weight is 0.02 and the obstacle has a radius of 1 m, or if the weight is 1 \
-         and the radius is 3.2 to 3.55 m (both fitted). blocking: around whatever blocks the path to the goal. off: the classical \
-         field.",
+        "always: towards the left tangent of every obstacle in range. With a weight of 0.02 and an \
+         obstacle of 1 m radius, or with a weight of 1 and a radius of 3.2 to 3.55 m (both fitted), the \
+         robot stops where the paper says. blocking: around whatever blocks the path to the goal. off: \
+         the classical field.",
     )
     .group(FIELD);
 const WEIGHT: ParamSpec = float("tangent_weight", "Tangent force weight", "", 0.0, 100.0, 1.0)
@@ -50,8 +50,8 @@ const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.05)
     .group("Plan");
 const WINDOW: ParamSpec = float("window_m", "Oscillation window", "m", 0.1, 50.0, 2.0)
     .help(
-        "The planned path counts as trapped when it makes almost no headway over its last steps, taken \
-           over this length.",
+        "The planned path counts as trapped when its last steps, which together have this length, make \
+         almost no headway.",
     )
     .group("Plan");
 

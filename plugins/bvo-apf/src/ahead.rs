@@ -27,15 +27,15 @@ pub enum By {
 const ATTEMPTS: [By; 5] =
     [By::Thought, By::Mode(Mode::Rollout), By::Mode(Mode::Hull), By::Mode(Mode::Literal), By::Outlines];
 
-/// The order on a map with many parts. There, each simpler mode takes a long time to find out that it is trapped in a
-/// room.
+/// The order on a map with many parts. On such a map, each simpler mode takes a long time before it gives up in a room
+/// that traps it.
 const ATTEMPTS_IN_ROOMS: [By; 5] =
     [By::Thought, By::Outlines, By::Mode(Mode::Rollout), By::Mode(Mode::Hull), By::Mode(Mode::Literal)];
 /// Number of parts above which a map counts as a map with many parts.
 const MANY_PARTS: usize = 200;
 
-/// Maximum number of parts of a map for which the result of the paper's own mode is shown as well if the outlines were
-/// followed.
+/// Maximum number of parts of a map on which the paper's own mode is also tried, to show its result, if the path
+/// follows the outlines.
 const SHOWN_PARTS: usize = 1000;
 
 /// The outcome of an attempt.

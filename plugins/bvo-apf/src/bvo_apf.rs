@@ -32,7 +32,7 @@ const FLIGHT_WINDOWS: f64 = 1.5;
 /// path is simulated.
 const PARTS_MOST: usize = 4000;
 /// Advice logged when the planner finds no path.
-const INSTEAD: &str = "in rooms choose shortest or navfn, which find a path wherever one exists";
+const INSTEAD: &str = "in rooms, choose shortest or navfn, which find a path wherever one exists";
 
 /// The potential field of Xu et al. 2022 with virtual obstacles.
 pub(crate) struct BvoApf {
@@ -55,7 +55,7 @@ impl Planner for BvoApf {
     const ID: &'static str = "bvo-apf";
     const NAME: &'static str = "Field with virtual obstacles";
     const ABOUT: &'static str = "Backs out of traps, seals them with virtual obstacles and goes around \
-                                 them, after Xu et al. 2022. By default the detour begins before the robot \
+                                 them, after Xu et al. 2022. By default, the detour begins before the robot \
                                  enters the trap. Evades moving obstacles.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] = parameters::PARAMS;

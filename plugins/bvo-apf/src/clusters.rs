@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use steering::{KnownMap, Solid};
 
-/// Sets of solids that the robot cannot pass between.
+/// Sets of solids; the robot cannot pass between the solids of one set.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Clusters {
     of: Vec<usize>,

@@ -72,7 +72,7 @@ impl Escape {
         self.hugs = true;
     }
 
-    /// Continues until the robot is closer to the goal than this, metres.
+    /// Makes the detour continue until the robot is closer to the goal than this, metres.
     pub fn gain(&mut self, until_m: f64) {
         self.until_m = until_m;
     }

@@ -1,8 +1,8 @@
 //! The potential field with virtual obstacles of Xu et al. 2022 (BVO-APF), as published and with our improvements.
 //!
-//! In a trap the robot retreats along its own track, closes the mouth of the trap with virtual circles and goes around
-//! the whole trap. If the wall forms the trap, the robot follows the outlines. Frame: the tank frame, metres, radians.
-//! Distances are measured from the hull.
+//! In a trap, the robot retreats along its own track, closes the mouth of the trap with virtual circles, and goes
+//! around the whole trap. If the wall forms the trap, the robot follows the outlines. Frame: the tank frame, metres,
+//! radians. Distances are measured from the hull.
 #![forbid(unsafe_code)]
 
 pub mod clusters;

@@ -67,7 +67,7 @@ pub struct Machine {
     pub retreats: u32,
     /// Number of escapes.
     pub escapes: u32,
-    /// Events that have not been taken out yet.
+    /// The events so far; the planner removes them once it has reported them.
     pub news: Vec<News>,
     phase: Phase,
     clusters: Clusters,

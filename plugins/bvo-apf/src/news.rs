@@ -66,7 +66,7 @@ impl fmt::Display for News {
             }
             Self::Resumes { at } => write!(f, "clear of the obstacle at ({:.2}, {:.2})", at.x, at.y),
             Self::GivesUp { at, escapes } => {
-                write!(f, "giving up at ({:.2}, {:.2}) after {escapes} escapes", at.x, at.y)
+                write!(f, "giving up at ({:.2}, {:.2}); number of escapes: {escapes}", at.x, at.y)
             }
         }
     }

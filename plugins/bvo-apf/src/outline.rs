@@ -24,7 +24,7 @@ const ROUND_EDGES: u32 = 256;
 /// Id of the edges of the wall. Ids of obstacles count up; ids of no-go zones count down from the largest number.
 const WALL: u32 = LAST_VIRTUAL;
 
-/// Distance beyond the distance to keep within which the robot detects an outline, metres.
+/// The robot detects outlines within the distance to keep plus this distance, metres.
 const HAND_M: f64 = 0.2;
 /// Angle from its last move by which the robot turns back if it detects no outline, radians.
 const HAND_RAD: f64 = 0.6 * PI;

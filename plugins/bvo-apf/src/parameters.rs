@@ -23,7 +23,7 @@ const RHO_1: ParamSpec = float("rho_1_m", "Near-law range", "m", 0.01, 100.0, 1.
     .group(FIELD);
 const NEAR_LAW: ParamSpec = choice("near_law", "Near law", &["corrected", "printed"], 0)
     .help(
-        "corrected: the pull grows toward the goal, as the paper's text says. printed: it vanishes \
+        "corrected: the pull grows towards the goal, as the paper's text says. printed: it vanishes \
            there, as in the paper's formula.",
     )
     .group(FIELD);
@@ -56,7 +56,7 @@ const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.05)
     .group("Plan");
 const MARGIN: ParamSpec = float("margin_m", "Detour margin", "m", 0.02, 5.0, 0.14)
     .help(
-        "Distance kept from whatever the robot bypasses. Gaps that leave less than this on either side of \
+        "Distance kept from the obstacles that the robot bypasses. Gaps that leave less than this on either side of \
          the hull are treated as closed.",
     )
     .group(TRAP);
@@ -68,8 +68,8 @@ const TAUT_MARGIN: ParamSpec = float("taut_margin_m", "Taut path margin", "m", 0
     .group(TRAP);
 const WINDOW: ParamSpec = float("window_m", "Oscillation window", "m", 0.1, 50.0, 2.0)
     .help(
-        "The robot is considered trapped when it makes almost no headway over its latest steps, taken \
-           over this length.",
+        "The robot is considered trapped when its latest steps, which together have this length, make \
+         almost no headway.",
     )
     .group(TRAP);
 const ESCAPES: ParamSpec = int("escapes_max", "Maximum escapes", "", 1, 1000, 12)

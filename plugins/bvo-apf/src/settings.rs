@@ -41,8 +41,8 @@ pub struct MachineSettings {
     pub law: GoalLaw,
     /// Length of a step, metres.
     pub step_m: f64,
-    /// Distance kept from what the robot goes around, metres. Gaps that leave less than this on both sides are treated
-    /// as closed.
+    /// Distance kept from the solids that the robot goes around, metres. Gaps that leave less than this on both sides
+    /// are treated as closed.
     pub margin_m: f64,
     /// Distance between the hull and the solids around which a path is pulled taut, metres.
     pub taut_margin_m: f64,

@@ -96,7 +96,7 @@ fn largest_share(is_free: impl Fn(f64) -> bool) -> f64 {
 
 /// The path in steps of equal length; the last step is shorter.
 ///
-/// At bends a step is the chord, so the result is slightly shorter than the path.
+/// At bends, a step is the chord, so the result is slightly shorter than the path.
 pub fn paced(way: &[Point], step_m: f64) -> Vec<Point> {
     let mut path: Vec<Point> = way.first().copied().into_iter().collect();
     let mut left_m = step_m;

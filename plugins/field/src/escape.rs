@@ -1,7 +1,7 @@
 //! Escapes from a trap that add a force for a while: a virtual target, or a sideways push.
 //!
-//! Wang et al. 2023 compare their method with both by name only. Positions, gains and durations here are reconstructed,
-//! so results of these planners are not evidence about the originals.
+//! Wang et al. 2023 compare their method with both escapes, but hardly describe them. The positions, gains and
+//! durations here are our reconstruction, so the results of these planners are not evidence about the original methods.
 
 use crate::law::{Law, nearest_obstacle};
 use geometry::{Point, Vector};
@@ -15,9 +15,9 @@ const TARGET_OFF: f64 = 0.7;
 const TARGET_PULL: f64 = 3.0;
 /// Duration of a held push, moves.
 const PUSH_MOVES: usize = 5;
-/// Strength of a held push, as a multiple of the target's pull.
+/// Component of a held push across the path, as a multiple of the target's pull.
 const PUSH: f64 = 2.0;
-/// The component of a held push towards the target, as a multiple of the target's pull.
+/// Component of a held push towards the target, as a share of the component across the path.
 const PUSH_AHEAD: f64 = 0.5;
 /// Strength of a half-pull push, as a multiple of the target's pull.
 const HALF: f64 = 0.5;
@@ -27,7 +27,7 @@ const FIRST_RANDOM: u64 = 0x9e37_79b9_7f4a_7c15;
 /// The response to a trap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Escape {
-    /// None.
+    /// No response.
     None,
     /// A target beside the nearest obstacle, on the obstacle's side that faces the path, after Yang 2018.
     VirtualTarget,
@@ -43,7 +43,8 @@ pub enum Escape {
 /// The strength of a sideways push.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PushStrength {
-    /// Twice the pull, half of it ahead, for five moves; our choice.
+    /// Twice the pull of the target across the path to it, and half as much towards the target, for five moves; our
+    /// choice.
     Held,
     /// Half the pull of the target, across the path to it, for one move.
     HalfPull,
@@ -76,7 +77,7 @@ pub struct Escaping {
     left: usize,
 }
 
-/// The situation at a move.
+/// The situation before a move.
 #[derive(Debug, Clone, Copy)]
 pub struct Situation<'a> {
     /// The robot's position.
@@ -97,7 +98,7 @@ impl Escaping {
         Self { rule, target: None, side: 1.0, random: FIRST_RANDOM, left: 0 }
     }
 
-    /// Processes the situation before the next move, and whether it is a trap. Returns the force to add.
+    /// Takes the situation before the next move, and whether the robot is trapped. Returns the force to add.
     pub fn update(&mut self, now: &Situation<'_>, is_trapped: bool) -> Vector {
         let Some(ahead) = (now.goal - now.at).try_normalize(1e-9) else { return Vector::zeros() };
         match self.rule {
@@ -146,7 +147,7 @@ impl Escaping {
         }
     }
 
-    /// 1 for left, -1 for right.
+    /// The side of the push: 1 for left, -1 for right.
     fn chosen(&mut self, rule: PushSide, now: &Situation<'_>, left: Vector) -> f64 {
         let is_left = match rule {
             PushSide::Repulsion => now.without_rotation().repulsion.dot(&left) >= 0.0,

@@ -21,7 +21,7 @@ pub struct Trip {
 
 /// Walks until the goal is reached or `next` returns no more steps. `check` can end the walk early.
 ///
-/// If the goal is no further than `tolerance_m`, the last step is left to the mission.
+/// The walk ends as soon as it is within `tolerance_m` of the goal; the mission covers the remaining distance.
 ///
 /// # Errors
 /// The error that `check` returns.
@@ -50,7 +50,7 @@ pub fn walk<E>(
     Ok(Walk { path, shortfall })
 }
 
-/// Takes steps of one length along a force, until they make no more headway.
+/// Returns a function that takes steps of equal length along a force, until the steps make almost no headway.
 pub fn descent<'a>(
     trip: &Trip,
     step_m: f64,
@@ -76,7 +76,7 @@ mod tests {
         Trip { start: Point::new(0.0, 0.0), goal: Point::new(1.0, 0.0), tolerance_m: 0.01, steps_max: 100 };
 
     fn walked(force: impl FnMut(Point) -> Vector) -> Walk {
-        walk::<()>(&TRIP, descent(&TRIP, 0.1, 0.5, force), || Ok(())).expect("nobody stops it")
+        walk::<()>(&TRIP, descent(&TRIP, 0.1, 0.5, force), || Ok(())).expect("no stop is requested")
     }
 
     #[test]

@@ -9,12 +9,12 @@ use steering::{Contact, Forces, Side, Source};
 pub enum Repulsion {
     /// Khatib's repulsion.
     Classic,
-    /// Weighted with the distance to the goal, with a component towards the goal (Ge and Cui 2000).
+    /// Weighted by the distance to the goal, with a component towards the goal (Ge and Cui 2000).
     Improved {
         /// Power of the distance to the goal.
         exponent: f64,
     },
-    /// Weighted with the distance to the goal, without a component towards the goal; one interpretation of Wang et al.
+    /// Weighted by the distance to the goal, without a component towards the goal; one interpretation of Wang et al.
     /// 2023.
     Scaled {
         /// Power of the distance to the goal.

@@ -23,7 +23,7 @@ pub fn repulsion(k_rep: f64, rho_0_m: f64, contact: &Contact) -> Vector {
 pub enum PushForm {
     /// Khatib's `(1/rho - 1/rho_0) / rho^2`.
     Khatib,
-    /// `1/rho - 1/rho_0`: one interpretation of Wang et al. 2023, whose text does not print the force.
+    /// `1/rho - 1/rho_0`: one interpretation of Wang et al. 2023, who do not print the formula.
     Inverse,
     /// `1/rho`, which ends at `rho_0` with a jump: eq. 8 of Xu et al. 2022. The paper gives no range and, according to
     /// its eq. 9, the force points towards the obstacle; here it points away.
@@ -47,7 +47,7 @@ impl PushForm {
     }
 }
 
-/// Repulsion weighted with the distance to the goal, so that a goal beside an obstacle can be reached (GNRON, Ge and
+/// Repulsion weighted by the distance to the goal, so that a goal beside an obstacle can be reached (GNRON, Ge and
 /// Cui 2000): `k_rep (1/rho - 1/rho_0) rho_g^n / rho^2` away from the outline plus `n/2 k_rep (1/rho - 1/rho_0)^2
 /// rho_g^(n-1)` towards the goal. Wang et al. 2023 give no `n`; two is the textbook value. `form` states how the first
 /// part decreases with `rho`.
@@ -69,7 +69,7 @@ pub fn improved_repulsion(
 /// The rotating force of Wang et al. 2023, eq. 3: `k_rot rho_0 / rho` along the tangent. The paper's direction,
 /// counter-clockwise, passes on the right.
 ///
-/// At `rho_0` it jumps from `k_rot` to zero.
+/// At `rho_0`, the force jumps from `k_rot` to zero.
 pub fn rotation(k_rot: f64, rho_0_m: f64, side: Side, contact: &Contact) -> Vector {
     let within = contact.distance_m < rho_0_m;
     let strength = if within { k_rot * rho_0_m / contact.distance_m.max(FLOOR_M) } else { 0.0 };

@@ -183,7 +183,7 @@ mod tests {
             seed: 0,
         };
         let preset = PresetPath { start, points, tolerance_m };
-        follow(&Scene::new(&site), &SETTINGS, &preset, &Bench::new().ctx()).expect("nobody stops it")
+        follow(&Scene::new(&site), &SETTINGS, &preset, &Bench::new().ctx()).expect("no stop is requested")
     }
 
     fn line(n_points: u32, spacing_m: f64) -> Vec<Point> {

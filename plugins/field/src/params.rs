@@ -19,7 +19,7 @@ const FLIGHT: &str = "Flight";
 
 /// Gain of the pull.
 pub const K_ATT: ParamSpec = float("k_att", "Attraction gain", "N/m", 0.001, 1000.0, 1.0)
-    .help("Pull toward the target per metre of distance. Only the ratios of the gains matter.")
+    .help("Pull towards the target per metre of distance. Only the ratios of the gains matter.")
     .group(FIELD)
     .live();
 /// Gain of the push.
@@ -44,7 +44,7 @@ pub const REPULSION_IMPROVED: ParamSpec =
 const REPULSIONS: &[&str] = &["classic", "improved", "scaled"];
 const REPULSION_HELP: &str = "Improved repulsion fades near the target, so that a target beside an \
                               obstacle can be reached, but it passes obstacles more closely. Scaled \
-                              repulsion fades, too, but lacks the improved form's component toward the \
+                              repulsion fades, too, but lacks the improved form's component towards the \
                               target.";
 /// Power of the distance to the goal.
 pub const EXPONENT: ParamSpec = float("exponent", "Improved repulsion exponent", "", 0.0, 4.0, 2.0)
@@ -105,8 +105,8 @@ pub const STEP: ParamSpec = float("step_m", "Step on a preset path", "m", 0.01, 
     .group(PLAN)
     .live();
 /// Length of a move towards a goal.
-pub const GOTO_STEP: ParamSpec = float("goto_step_m", "Step toward a goal", "m", 0.005, 1.0, 0.05)
-    .help("Length of a move when planning toward a goal.")
+pub const GOTO_STEP: ParamSpec = float("goto_step_m", "Step towards a goal", "m", 0.005, 1.0, 0.05)
+    .help("Length of a move when planning towards a goal.")
     .group(PLAN)
     .live();
 /// Whether moves may be longer while the robot lags.

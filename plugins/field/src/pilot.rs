@@ -17,7 +17,7 @@ use steering::{
 
 /// Factor by which the speed is multiplied if the force reverses.
 const TURNED_BACK: f64 = 0.5;
-/// Factor by which the speed is multiplied otherwise.
+/// Factor by which the speed is multiplied if the force does not reverse.
 const GOES_ON: f64 = 1.2;
 /// Minimum speed, as a share of the speed that the pilot allows.
 const LEAST_SHARE: f64 = 0.02;
@@ -51,7 +51,8 @@ impl ForcePilot {
         Self { pilot: Pilot::pursuing(site), response, settling, due_s: f64::NEG_INFINITY }
     }
 
-    /// Applies changed settings during the flight, and keeps its state.
+    /// Applies changed settings during the flight. The rotating force starts over with its gate closed; all other state
+    /// is kept.
     pub fn reset(&mut self, settings: &FieldSettings) {
         self.response.turning = Turning::new(settings.reading, settings.rule, settings.gate);
     }
@@ -149,9 +150,9 @@ impl ForcePilot {
     }
 }
 
+/// Reduces the speed when the force reverses and increases it otherwise, as Riedmiller and Braun 1993 adapt step sizes.
 /// A tick is much longer than a move of a plan. In a local minimum, a robot at full speed would therefore oscillate
-/// around the point where the plan stops, and bounce along a wall far from that point. So the robot's speed is adapted
-/// according to the sign of the force, as Riedmiller and Braun 1993 adapt steps.
+/// around the point where the plan stops, and bounce along a wall far from that point.
 #[derive(Debug, Clone, Copy)]
 struct Settling {
     share: f64,

@@ -3,7 +3,7 @@
 use geometry::{Point, Vector};
 use std::f64::consts::LN_2;
 
-/// Minimum distance from the goal with which the laws are evaluated, metres: they are singular at the goal.
+/// Minimum distance from the goal at which the laws are evaluated, metres; they are singular at the goal itself.
 const FLOOR_M: f64 = 1e-9;
 
 /// The interpretation of the logarithmic pull near the goal.

@@ -20,8 +20,8 @@ const RANGE_M: f64 = 4.5;
 const DETOUR: f64 = 4.0;
 const SPARE_TICKS: usize = 4000;
 
-/// Returns the path of a robot that moves as the pilot decides, at its exact position. The robot can move in any
-/// direction.
+/// Returns the path of a simulated robot that moves as the pilot decides. The robot can move in any direction, and the
+/// pilot knows its exact position.
 ///
 /// # Errors
 /// The console requests a stop.

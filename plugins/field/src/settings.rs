@@ -13,13 +13,14 @@ use steering::Flight;
 pub enum Planning {
     /// As in the paper: moves according to the law, towards targets in lock step.
     Walked,
-    /// By simulated flight over the known map at the exact position, which predicts what the robot will do.
+    /// By simulating the flight over the known map with an exactly known position, which predicts what the robot will
+    /// do.
     Flown,
     /// Walked for a robot without extent, as in the paper; flown for a robot with a hull.
     ByHull,
 }
 
-/// The preset point that follows a move.
+/// The rule that chooses the next preset point after a move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Targets {
     /// The next point in the list, whatever the result of the move.
@@ -42,7 +43,7 @@ pub enum MoveLength {
 pub struct Walking {
     /// Longest move towards a preset point, metres; the paper's `s`.
     pub step_m: f64,
-    /// The preset point that follows a move.
+    /// The rule that chooses the next preset point after a move.
     pub targets: Targets,
     /// The length of a move towards a preset point.
     pub length: MoveLength,

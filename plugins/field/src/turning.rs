@@ -15,21 +15,23 @@ pub enum Reading {
     Off,
     /// As printed: around every obstacle in range, always.
     Literal,
-    /// Only while the gate is open. Of all interpretations tried, only this kind comes close to the printed figures.
+    /// Only while the gate is open. Of all interpretations tried, only those with a gate come close to the printed
+    /// figures.
     Gated,
 }
 
 /// How the direction of rotation is chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SenseRule {
-    /// Always counter-clockwise, as printed. Helps at obstacles on the left and pushes back at those on the right.
+    /// Always counter-clockwise, as printed. The force helps the robot past obstacles on its left, and pushes it back
+    /// at obstacles on its right.
     CounterClockwise,
     /// The direction that points more towards the target when the force begins to act; kept while the obstacle is in
     /// range.
     SideAware,
 }
 
-/// Gate and sides of the rotating force along a walk.
+/// The gate of the rotating force and its side at each obstacle, updated along a walk.
 #[derive(Debug, Clone)]
 pub struct Turning {
     reading: Reading,

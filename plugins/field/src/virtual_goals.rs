@@ -1,7 +1,8 @@
 //! The improved field of Yang et al. 2021: virtual goals on a square around the goal, and a pull that does not fade.
 //!
-//! The printed formulas have lost signs and roots. Implemented here: attraction towards the goal, repulsion away from
-//! obstacles, a constant pull `k d_0` at the goal, and a score for virtual goals that avoids the blocked direction.
+//! In the printed formulas, signs and roots are missing. This module implements attraction towards the goal, repulsion
+//! away from obstacles, a constant pull `k d_0` near the goal, and a score for virtual goals that avoids the blocked
+//! direction.
 
 use crate::{
     goal_law::{GoalLaw, TangentUse},
@@ -15,11 +16,11 @@ use steering::KnownMap;
 /// Share of the attraction gain below which a force counts as zero (eq. 17 says "= 0", which discrete steps never
 /// meet).
 const ZERO_SHARE: f64 = 0.5;
-/// Number of steps over which the robot must have moved.
+/// Number of steps over which the robot's displacement is measured.
 const STALL_STEPS: usize = 6;
-/// Displacement, in steps, above which the robot counts as moving.
+/// Displacement, in steps, below which the robot counts as stalled.
 const STALL_SHARE: f64 = 1.5;
-/// Distance from a virtual goal, in steps, within which the goal counts as reached.
+/// Distance from a virtual goal, in steps, within which that virtual goal counts as reached.
 const REACHED_STEPS: f64 = 2.0;
 /// Maximum number of steps for which a virtual goal is kept.
 pub const HOLD_STEPS: usize = 30;
@@ -33,7 +34,7 @@ pub struct SquareLaw {
     pub d_0_m: f64,
     /// Distance of the virtual goals from the goal, metres; the paper gives no value.
     pub square_m: f64,
-    /// Whether virtual goals and the constant pull are used. Without them the field is the classical one.
+    /// Whether virtual goals and the constant pull are used. Without them, the field is the classical one.
     pub improved: bool,
     /// Maximum number of steps for which a virtual goal is kept.
     pub hold_steps: usize,
@@ -62,7 +63,7 @@ impl SquareLaw {
         }
     }
 
-    /// The matching push from obstacles and wall. Gain and ranges are as in [`GoalLaw`].
+    /// The push from obstacles and wall that belongs to this pull. The gain and ranges are those of [`GoalLaw`].
     pub fn push(&self, k_rep: f64, rho_m: f64, wall_gain: f64) -> GoalLaw {
         let pull = Pull::Capped { k: self.k_att, d_0_m: self.d_0_m };
         let push = PushForm::Khatib;

@@ -58,8 +58,8 @@ impl<'a> Walker<'a> {
         self.at
     }
 
-    /// The position where the walk was first trapped: 25 moves led less than a step away, with the target more than one
-    /// step away throughout and more than two steps at the end.
+    /// The position where the walk was first trapped. A walk is trapped if 25 moves led less than a step away, while
+    /// the target was always more than one step away and, at the end, more than two.
     pub fn trap(&self) -> Option<Point> {
         self.trap
     }

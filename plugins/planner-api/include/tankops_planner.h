@@ -10,15 +10,15 @@
  * Rules
  *  - Neither side frees the other's memory. Inputs belong to the console and are valid only during the call. Results
  *    are passed to the console's functions in tp_host, which copy them before they return.
- *  - Functions return TP_OK or one of TP_E_...; before returning an error, pass a sentence for the operator to
- *    host->error.
+ *  - Functions return TP_OK or one of TP_E_...; before you return an error, call host->error with a sentence for the
+ *    operator.
  *  - One instance is called from one thread, one call at a time. Call host->should_stop in every long loop.
  *  - No exception and no longjmp may leave a function.
  *  - Structs grow only at the end. `size` is the size of the struct as its writer knew it: read and write nothing
  *    beyond that size. Where an array has a stride, step by the stride and not by sizeof.
  *  - The planner runs in a separate process: a crash or an endless loop ends that process, not the console.
  *  - The planner may allocate up to 256 MB of memory (1 GB on coverage missions) and start up to 62 threads. Memory
- *    counts whether it is used or not. The stack of a thread counts in full: 8 MB unless set with
+ *    counts whether it is used or not. The stack of a thread counts in full: 8 MB unless its size is set with
  *    pthread_attr_setstacksize. Threads must end within the call that starts them.
  *
  * Units and frame: SI units; the tank frame has x east and y north; angles in radians, counter-clockwise from east.
@@ -131,7 +131,7 @@ typedef struct tp_site {
   uint32_t motion, reserved;
   double v_max, w_max;      /* largest speed and turn rate of the robot */
   double radius;            /* radius of the smallest circle that encloses the robot */
-  double sensing_range;     /* how far the robot senses obstacles */
+  double sensing_range;     /* distance within which the robot senses obstacles */
   double swath;             /* lane spacing: the width scanned in one pass, less the overlap */
   double clearance;         /* distance to keep between the hull and anything solid */
   /* since 1.4 */
@@ -175,7 +175,7 @@ typedef struct tp_step_in {
   tp_pose pose;
   double covariance[6];
   double v, w;              /* forward speed and turn rate that were last commanded */
-  tp_vec2 target;           /* where to go next */
+  tp_vec2 target;           /* the point to go to next */
   const tp_vec2 *targets_ahead;
   uint32_t n_targets_ahead, n_path_ahead;
   const tp_vec2 *path_ahead;

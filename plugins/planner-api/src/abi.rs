@@ -39,7 +39,7 @@ pub struct Str {
 unsafe impl Sync for Str {}
 
 impl Str {
-    /// Lends a text; the pointer is valid for as long as the text exists.
+    /// Lends a string; the pointer is valid for as long as the string exists.
     pub const fn of(text: &str) -> Self {
         Self { ptr: text.as_ptr(), len: text.len() }
     }

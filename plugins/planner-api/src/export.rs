@@ -67,7 +67,7 @@ pub const fn table<P: Planner>(version: &'static str) -> abi::Planner {
     }
 }
 
-/// Whether a text is a valid planner id: 1 to 32 characters from a-z, 0-9, `_` and `-`.
+/// Whether a string is a valid planner id: 1 to 32 characters from a-z, 0-9, `_` and `-`.
 ///
 /// ```
 /// use planner_api::export::is_id;

@@ -1,6 +1,6 @@
 //! The functions of the C ABI for any [`Planner`]; only `export_planners!` and the console's tests refer to them.
 //!
-//! All of the author's code runs under `catch_unwind`, including in `destroy`. An instance that panicked is poisoned:
+//! All of the author's code runs under `catch_unwind`, including its `drop`. An instance that panicked is poisoned:
 //! every further call returns [`Code::Poisoned`].
 
 mod guard;

@@ -1,6 +1,6 @@
 //! The messages from the console to a planner, each defined once.
 //!
-//! The type parameters (`P` and others) determine how a message stores its arrays. By default it owns them, so that it
+//! The type parameters (`P` and others) determine how a message stores its arrays. By default, it owns them, so that it
 //! can be stored or sent to another process. Planners receive borrowed messages: [`crate::Site`],
 //! [`crate::PlanRequest`] and [`crate::Sensed`] are the same types with slices, and `lend` turns an owned message into
 //! a borrowed one.
@@ -104,7 +104,7 @@ pub enum Task<P = Vec<Point>, R = Vec<Vec<Point>>> {
 pub struct PlanRequest<P = Vec<Point>, R = Vec<Vec<Point>>, W = Reason, S = Arc<Site>, Y = Plan> {
     /// The reason why the plan is requested.
     pub reason: W,
-    /// Where the robot starts.
+    /// The pose from which the robot starts.
     pub start: PoseEstimate,
     /// The task to plan for.
     pub task: Task<P, R>,
@@ -135,7 +135,7 @@ pub struct Sensed<P = Vec<Point>, O = Vec<Obstacle>> {
     pub v_m_per_s: f64,
     /// Turn rate that was last commanded, radians per second.
     pub w_rad_per_s: f64,
-    /// Where to go next: the goal, or the next preset point.
+    /// The point to go to next: the goal, or the next preset point.
     pub target: Point,
     /// The preset points of the next few metres, starting with the target.
     pub targets_ahead: P,

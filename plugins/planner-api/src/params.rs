@@ -207,7 +207,7 @@ impl<'a> Config<'a> {
     /// Returns the value of a real parameter.
     ///
     /// # Panics
-    /// If the planner does not declare this parameter. The first test of the planner reveals such a mistake.
+    /// The planner does not declare this parameter. The first test of the planner reveals such a mistake.
     pub fn float(&self, key: &str) -> f64 {
         self.number(key)
     }

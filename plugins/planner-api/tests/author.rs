@@ -1,4 +1,4 @@
-//! Tests the crate of a plugin author: it forbids unsafe code, yet the macro exports a table and a stamp.
+//! Tests that `export_planners!` exports a table and a stamp from a crate that forbids unsafe code.
 #![forbid(unsafe_code)]
 
 use planner_api::{

@@ -141,7 +141,8 @@ fn of_refusal(refusal: Refusal, planner: &str, phase: Phase) -> Fault {
     }
 }
 
-/// Returns the end of the message about a refusal: it states what stays in effect, if this is known for the phase.
+/// Returns the end of the message about a refusal. If the planner refused changed parameters, it states that the old
+/// values stay in effect; otherwise it is empty.
 fn kept(phase: Phase) -> &'static str {
     if phase == Phase::Reconfigure { "; its old values stay in effect" } else { "" }
 }

@@ -105,7 +105,7 @@ impl Catalog {
             .collect()
     }
 
-    /// Notes that a planner was loaded, and from which file if that file is the first to contain it.
+    /// Records that a planner was loaded. `file` is given only if it is the first file that contains the planner.
     pub(super) fn learn(&mut self, id: &str, file: Option<Candidate>) {
         self.known.insert(id.to_owned(), file);
     }

@@ -9,7 +9,7 @@ const MOST_CRASHES: usize = 4;
 /// The maximum number of entries kept about planners that ended badly.
 const MOST_BAD_ENDS: usize = 16;
 
-/// What has been left behind since the last collection.
+/// The output, crashes and bad ends that the caller has not collected yet.
 #[derive(Default)]
 pub(super) struct Kept {
     pub(super) printed: Vec<Printed>,

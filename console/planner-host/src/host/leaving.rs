@@ -27,13 +27,13 @@ impl Host {
         self.answers.retain(|answer| answer.ask.worker != id);
     }
 
-    /// Asks a worker to exit, and lets it finish.
+    /// Asks a worker to exit, and keeps it until its process has ended.
     pub(super) fn dismiss(&mut self, planner: &str, mut worker: Worker) {
         worker.shut_down();
         self.leave(planner, worker);
     }
 
-    /// Lets a worker finish.
+    /// Keeps a worker until its process has ended.
     pub(super) fn leave(&mut self, planner: &str, mut worker: Worker) {
         self.kept.note_printed(planner, worker.take_printed());
         if !worker.is_gone() {

@@ -38,7 +38,7 @@ impl Together {
         self.asked = now;
         match self.until {
             Some(until) if now < until => {}
-            // For this command the two threads are separate, so the system may wake each on a different processor.
+            // For this command, the two threads are separate, so the system may wake each on a different processor.
             Some(_) => self.part(std::iter::once(worker)),
             None if self.all.is_some() && sched_getcpu() < CpuSet::MAX_CPU => {
                 let mut here = CpuSet::new();

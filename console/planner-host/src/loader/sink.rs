@@ -96,7 +96,7 @@ impl<'a> Sink<'a> {
         let mut said = std::mem::take(&mut self.said);
         if self.n_dropped > 0 {
             let dropped = format!(
-                "{} drawings, figures or messages were dropped: too many, or not finite",
+                "dropped drawings, figures or messages: {}; there were too many, or they were not finite",
                 self.n_dropped
             );
             said.logs.push((LogLevel::Warn, dropped));

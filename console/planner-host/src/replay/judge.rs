@@ -29,7 +29,7 @@ pub(super) struct Judge {
 }
 
 impl Judge {
-    /// Notes a request.
+    /// Keeps the parts of a request that are needed to judge later answers.
     pub(super) fn hear(&mut self, request: &Incoming) -> Read<()> {
         let body = request.body();
         self.kind = request.kind();
@@ -105,8 +105,8 @@ impl Judge {
         }
     }
 
-    /// Describes a failure by the fault that the console would report. After a timeout this adds the budget, which is
-    /// possible because nothing is compared with this text.
+    /// Describes a failure by the fault that the console would report. After a timeout, the text also contains the
+    /// budget; unlike the fault of a mission, it is not written to a journal, so it may contain times.
     pub(super) fn fault(&self, failure: Failure, budget: Duration) -> Fault {
         let is_of_time = matches!(failure, Failure::Hung | Failure::Late | Failure::Starved);
         let mut fault = fault::of(failure, &self.planner, self.phase());

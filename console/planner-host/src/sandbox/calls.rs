@@ -62,7 +62,7 @@ const FREE: &[i64] = &[
 
 #[cfg(target_arch = "x86_64")]
 const OLD_FREE: &[i64] = &[libc::SYS_poll, libc::SYS_time, libc::SYS_alarm];
-/// Newer processor architectures do not have the older calls.
+/// Empty, because newer processor architectures do not have the older calls.
 #[cfg(not(target_arch = "x86_64"))]
 const OLD_FREE: &[i64] = &[];
 

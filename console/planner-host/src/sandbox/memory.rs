@@ -8,8 +8,8 @@
 use super::listener::Call;
 use super::verdict::Verdict;
 
-/// Maximum memory that may be made read-only in large pieces, bytes: enough for the address tables that libraries fix
-/// up.
+/// Maximum amount of memory that may be made read-only in large pieces, bytes: enough for the address tables that
+/// libraries fix up.
 pub(crate) const MAY_HIDE: u64 = 32 << 20;
 /// Smaller pieces are guard pages of threads and are always allowed. Hiding a lot of memory in small pieces takes so
 /// long that the supervisor, which measures the memory of the process ([`crate::supervisor`]), notices it.
@@ -35,7 +35,7 @@ impl Uncounted {
         Self { limit, ..Self::default() }
     }
 
-    /// Decides on a call that concerns such memory; `None` for any other call.
+    /// Decides on a call that concerns uncounted memory; `None` for any other call.
     pub(crate) fn verdict(&mut self, call: &Call) -> Option<Verdict> {
         let [_, length, new_length, flags, ..] = call.arguments;
         match call.number {

@@ -102,8 +102,8 @@ fn on_clone(call: &Call) -> Verdict {
 }
 
 /// Decides on opening a file for reading. While the plugin is being loaded, libraries can be opened; afterwards, only
-/// the plugin's own bytes, which contain the names of its functions. By then Landlock allows nothing else to be opened,
-/// even if the path has changed meanwhile.
+/// the plugin's own bytes, which contain the names of its functions. By then, Landlock allows nothing else to be
+/// opened, even if the path has changed meanwhile.
 fn opened(call: &Call, index: usize, stage: Stage, flags: i32, sought: &mut String) -> Verdict {
     let Some(path) = path_at(call.thread, call.arguments[index]) else {
         return Verdict::Forbid(name(call.number));

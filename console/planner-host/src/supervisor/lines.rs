@@ -58,7 +58,7 @@ impl Lines {
         let dropped = std::mem::take(&mut self.n_dropped);
         let mut lines = std::mem::take(&mut self.whole);
         if dropped > 0 {
-            lines.push(format!("({dropped} more lines dropped)"));
+            lines.push(format!("(lines dropped here: {dropped})"));
         }
         lines
     }
@@ -91,7 +91,7 @@ mod tests {
         let mut lines = Lines::default();
         lines.extend(&b"x\n".repeat(MOST + 3));
         let taken = lines.take();
-        assert_eq!((taken.len(), taken[MOST].as_str()), (MOST + 1, "(3 more lines dropped)"));
+        assert_eq!((taken.len(), taken[MOST].as_str()), (MOST + 1, "(lines dropped here: 3)"));
         lines.extend(&[b'x'; 10 * LONGEST]);
         let cut = lines.take_rest();
         assert_eq!((cut.len(), cut[0].len()), (1, LONGEST + CUT.len()), "without its end");

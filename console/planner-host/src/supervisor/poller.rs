@@ -33,7 +33,7 @@ pub(crate) fn wait<'a>(
     let left = wake_at.map(|at| at.saturating_duration_since(Instant::now()));
     let left = if woken { Some(Duration::ZERO) } else { left };
     let timeout = left.and_then(|left| Timespec::try_from(left).ok());
-    // After a signal or a timeout nothing has happened; the caller checks the clock and waits again.
+    // After a signal or a timeout, nothing has happened; the caller checks the clock and waits again.
     if !matches!(poll(&mut watched, timeout.as_ref()), Ok(1..)) {
         return woken;
     }

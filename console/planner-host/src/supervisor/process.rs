@@ -143,7 +143,7 @@ fn pidfd_of(child: &Child) -> Option<OwnedFd> {
     rustix::process::pidfd_open(Pid::from_child(child), rustix::process::PidfdFlags::empty()).ok()
 }
 
-/// On other systems the process is polled.
+/// Other systems have no such descriptor; there, the process is polled.
 #[cfg(not(target_os = "linux"))]
 fn pidfd_of(_: &Child) -> Option<OwnedFd> {
     None

@@ -17,7 +17,7 @@ pub(super) struct Tape {
 }
 
 impl Tape {
-    /// Notes a request.
+    /// Records a request.
     pub(super) fn note(&mut self, kind: u8, frame: &[u8]) {
         match kind {
             kind::LOAD | kind::CONFIGURE | kind::RECONFIGURE | kind::RESTORE

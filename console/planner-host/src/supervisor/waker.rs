@@ -1,10 +1,10 @@
 //! Wakes the thread that is waiting for planners.
 //!
 //! A flag states whether a wake-up is pending; the socket only ends a wait that has already begun. A sender first sets
-//! the flag and then writes to the socket. The receiver begins to wait only if it has found the flag cleared and has
-//! not read from the socket since, so if a sender sets the flag later, nothing else reads the byte that it writes. If
-//! the receiver takes the flag before the sender has written, the byte stays in the socket. The byte then ends one wait
-//! too early, which does no harm.
+//! the flag and then writes a byte to the socket. Before the receiver waits, it checks that the flag is cleared, and it
+//! does not read from the socket between this check and the wait. If a sender sets the flag after the check, its byte
+//! therefore ends the wait. If the receiver clears the flag before the sender has written, the byte stays in the socket
+//! and ends a later wait too early, which does no harm.
 
 use std::io::{Read, Write};
 use std::os::fd::{AsFd, BorrowedFd};

@@ -46,8 +46,8 @@ pub(crate) struct Worker {
     tape: Tape,
     /// Whether the worker was idle when it was asked to exit.
     leaves_idle: bool,
-    /// The way in which a worker ended that was asked to exit but did not exit cleanly; completes a sentence that
-    /// begins with the planner's name.
+    /// How the worker ended, if it was asked to exit but did not exit cleanly; completes a sentence that begins with
+    /// the planner's name.
     bad_end: Option<String>,
 }
 
@@ -165,7 +165,7 @@ impl Worker {
             return Err(Failure::Gone);
         }
         if self.incoming.has_more() {
-            // After its last answer the worker sent something without being asked.
+            // After its last answer, the worker sent something without being asked.
             self.kill();
             return Err(Failure::Protocol);
         }
@@ -251,7 +251,8 @@ impl Worker {
         at.into_iter().chain(look).min()
     }
 
-    /// Does what is due. Returns the outcome of the request once there is one; after `Ok` its answer can be taken.
+    /// Handles the events and deadlines that are due. Returns the outcome of the request once there is one; after `Ok`,
+    /// its answer can be taken.
     pub(crate) fn advance(
         &mut self,
         ready: Ready,

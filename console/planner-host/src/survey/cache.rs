@@ -18,8 +18,8 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 /// The maximum number of entries, beyond which the folder is emptied. Every build that an author makes adds an entry.
 const MOST_ENTRIES: usize = 256;
 
-/// Age of a file below which it could change again without a change of its modification time, because file times are
-/// coarse.
+/// A file that changed less than this time ago could change again and keep its modification time, because file times
+/// are coarse.
 const SETTLED: Duration = Duration::from_secs(1);
 
 /// A folder with one file for each plugin content, which lists the planners, and one file for each path, which
@@ -130,7 +130,7 @@ fn hash_of(path: &Path) -> Option<String> {
     Some(sha256_hex(absolute.as_os_str().as_encoded_bytes()))
 }
 
-/// Returns what distinguishes a file from other files and from its own earlier contents, and the time since it changed.
+/// Returns the identity of a file's content, and the time since the file changed.
 fn identity_of(path: &Path) -> Option<(Identity, Duration)> {
     let about = fs::metadata(path).ok()?;
     let changed =

@@ -35,7 +35,7 @@ impl Writer {
         self.0
     }
 
-    /// Appends raw bytes, which the other side takes from the rest of the body.
+    /// Appends raw bytes; the other side reads them as the rest of the body.
     pub(crate) fn written(&mut self, bytes: &[u8]) -> &mut Self {
         self.0.extend_from_slice(bytes);
         self

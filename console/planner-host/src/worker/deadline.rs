@@ -1,5 +1,5 @@
-//! The soft deadline of the current request, as the planner sees it. It charges only the processor time of its own
-//! process, so that a planner is not late merely because the machine did not schedule it. The console's own clock also
+//! The soft deadline of the current request, as the planner sees it. Only the processor time of the worker's process is
+//! charged, so that a planner is not late merely because the machine did not schedule it. The console's own clock also
 //! charges a planner for time in which it sleeps.
 
 use super::Socket;
@@ -14,7 +14,7 @@ use std::cell::Cell;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Minimum interval between two checks of the socket and of the processor time. Between requests a process computes
+/// Minimum interval between two checks of the socket and of the processor time. Between requests, a process computes
 /// nothing, so this is also the accuracy with which the processor time at the start of a request is known.
 const CHECK_PERIOD: Duration = Duration::from_millis(1);
 

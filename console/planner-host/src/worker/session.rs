@@ -105,7 +105,7 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Enters the sandbox: from here on the process can only compute. Returns whether access to files must still be
+    /// Enters the sandbox: from here on, the process can only compute. Returns whether access to files must still be
     /// removed.
     fn close_off(
         &self,

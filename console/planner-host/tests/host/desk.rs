@@ -1,4 +1,4 @@
-//! Does what a mission does: sends asks to workers and numbers the asks itself.
+//! Takes the place of a mission: sends asks to workers, and numbers the asks.
 
 use crate::stand::{GOAL, pose, sensed, with_site, words};
 use crate::state::counted;

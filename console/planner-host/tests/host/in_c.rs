@@ -97,7 +97,7 @@ fn answers_that_are_none_are_caught() {
     assert_eq!(spoilt(""), "planner counter gave no command during step 0");
     assert_eq!(
         spoilt("out->drive = TP_TWIST; out->status = 77; out->a = out->b = 0.0;"),
-        "planner counter gave unknown status 77 during step 0"
+        "planner counter gave the unknown status 77 during step 0"
     );
     assert_eq!(
         spoilt("h->error(h->ctx, \"odd\", 3); return 4711;"),

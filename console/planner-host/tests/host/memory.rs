@@ -116,7 +116,7 @@ fn memory_of(moment: &str, attack: &str) -> Result<u64, Fault> {
     let source = HOSTILE.replacen("static void attack", HELPERS, 1);
     let (_folder, dirs) =
         folder_with("hostile", &format!("#define {moment}\n#define ATTACK {attack}\n{source}"));
-    // On a busy machine the attack may take long, but the memory limit must end the attack, not the deadline.
+    // On a busy machine, the attack may take long, but the memory limit must end the attack, not the deadline.
     let patient = Duration::from_mins(1);
     let config = HostConfig {
         memory_limit_bytes: LIMIT,

@@ -20,12 +20,12 @@ pub(crate) fn worker() -> WorkerCommand {
     WorkerCommand::new(env!("CARGO_BIN_EXE_planner-worker"))
 }
 
-/// Patient enough for a busy machine.
+/// Budgets that are large enough for a busy machine.
 pub(crate) fn config() -> HostConfig {
     HostConfig { worker_command: worker(), ..HostConfig::new(Duration::from_secs(3)) }
 }
 
-/// For planners that are meant to be late.
+/// Budgets for tests of planners that are late on purpose.
 pub(crate) fn impatient() -> HostConfig {
     HostConfig {
         configure_deadline: Duration::from_millis(150),
@@ -97,7 +97,7 @@ pub(crate) fn plan(host: &mut BlockingHost) -> Result<Reply<Plan>, Fault> {
     plan_for(host, Task::Goto { goal: GOAL, tolerance_m: 0.1 })
 }
 
-/// Asks to cover two triangles on a tether.
+/// Requests a plan that covers two triangles with a tethered robot.
 pub(crate) fn plan_to_cover(host: &mut BlockingHost) -> Result<Reply<Plan>, Fault> {
     let triangle = [Point2::new(1.0, 0.0), Point2::new(2.0, 0.0), Point2::new(1.0, 1.0)];
     let tether = TetherLimits { reel_length_m: 40.0, wrap_max_rad: 1.5, wrap_total_max_rad: 2.5 };

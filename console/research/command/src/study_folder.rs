@@ -13,10 +13,10 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
-/// The request, and the program that computes it.
+/// The file with the request, and with the identity of the program that computes it.
 const FROZEN: &str = "study.json";
 const PARTS: &str = "parts";
-/// The results, once every part is complete.
+/// The file with the results, which is written once every part is complete.
 const RESULT: &str = "result.json";
 
 /// Length of the trailer of a part, bytes. A part consists of its results and this trailer: the SHA-256 of the

@@ -1,4 +1,4 @@
-//! The program as it is started.
+//! Tests the program by starting it.
 
 use std::process::Command;
 

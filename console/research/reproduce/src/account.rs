@@ -11,13 +11,13 @@ use std::fmt::Write;
 /// The state of an item of a paper in tankops.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum State {
-    /// Implemented, and it agrees.
+    /// Implemented, and our result agrees with the paper.
     Reproduced,
-    /// It agrees, but a number or a layout was fitted to the printed values.
+    /// Our result agrees, but a number or a layout was fitted to the printed values.
     Fitted,
     /// Implemented with our interpretation, because the text leaves details open or prints them wrong.
     Read,
-    /// Replaced or extended by something of ours.
+    /// Replaced or extended by our own work.
     Ours,
     /// Computed, but our result differs from the paper.
     Missed,
@@ -102,7 +102,7 @@ mod tests {
         PAPERS.iter().flat_map(|paper| paper.items)
     }
 
-    /// The words after `tankops` of a command.
+    /// The words of a command, without `tankops`.
     fn words(item: &'static Item) -> Vec<&'static str> {
         item.command.split_whitespace().skip(1).collect()
     }

@@ -1,7 +1,8 @@
 //! Coverage planners and the tether, in tanks like those of the original study and in random tanks.
 //!
-//! Pan 2025 prints no figures to compare with. Figures are those of `trials::tanks`: a flat bar across the heading,
-//! cells of 0.05 m, swath 0.6 m, hull and clearance 0.3 m together, the return included.
+//! Pan 2025 prints no figures to compare with. Our figures use the settings of `trials::tanks`: the tool is a flat bar
+//! across the heading with a swath of 0.6 m, coverage is counted in cells of 0.05 m, and the radius of the hull plus
+//! the clearance is 0.3 m. The figures include the return path.
 
 mod measured;
 mod rows;

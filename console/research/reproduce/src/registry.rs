@@ -28,7 +28,7 @@ pub fn study(name: &str) -> Result<&'static Study> {
 fn unknown(name: &str) -> String {
     let nearest = nearest(name, studies().map(|study| study.name));
     let hint = nearest.map(|known| format!("; did you mean `{known}`?")).unwrap_or_default();
-    format!("there is no study `{name}`{hint}; `tankops reproduce --list` lists all studies")
+    format!("unknown study `{name}`{hint}; `tankops reproduce --list` lists all studies")
 }
 
 /// The list of all studies and the account of the papers, as human-readable text.
@@ -37,7 +37,7 @@ pub fn list() -> String {
     let line = |study: &Study| format!("{:width$}  {} ({})\n", study.name, study.about, study.layouts);
     let lines: String = studies().map(line).collect();
     format!(
-        "{lines}\nIn brackets: layouts or draws of each case, unless changed by --layouts.\n\nThe papers, item by item:\n{}",
+        "{lines}\nIn brackets: number of layouts or draws of each case, unless changed by --layouts.\n\nThe papers, item by item:\n{}",
         account::text()
     )
 }
@@ -51,7 +51,7 @@ pub fn gallery(study: &Study, folder: &Path) -> Result<Gallery> {
     if !draws(study) {
         let drawn: Vec<String> =
             studies().filter(|study| draws(study)).map(|drawn| format!("`{}`", drawn.name)).collect();
-        let why = format!("--svg draws plans and curves; only {} have any", drawn.join(", "));
+        let why = format!("--svg draws plans and curves; only these studies have any: {}", drawn.join(", "));
         return Err(StudyError::Refused(format!("{}: {why}", study.name)));
     }
     Gallery::new(folder)

@@ -131,7 +131,7 @@ impl Job<'_> {
         let known: Vec<String> = others.iter().map(id).take(KNOWN_SHOWN).collect();
         let more = if others.len() > KNOWN_SHOWN { ", ..." } else { "" };
         let (name, prefixes, known) = (self.study.name, prefixes.join(", "), known.join(", "));
-        let why = format!("{name}: no {what} begins with --{what} {prefixes}; known: {known}{more}");
+        let why = format!("{name}: no {what} id begins with {prefixes} (--{what}); known: {known}{more}");
         Err(StudyError::Refused(why))
     }
 
@@ -172,8 +172,8 @@ mod tests {
         let options = Options { cases: unknown.clone(), methods: unknown, ..Options::default() };
         let [cases, methods] =
             chosen(&options, ["E1", "E2", "E3"]).map(|chosen| chosen.unwrap_err().to_string());
-        assert_eq!(cases, "pan-maps: no case begins with --case nope, c; known: E1, E2, E3");
-        assert_eq!(methods, "pan-maps: no method begins with --method nope, c; known: E1, E2, E3");
+        assert_eq!(cases, "pan-maps: no case id begins with nope, c (--case); known: E1, E2, E3");
+        assert_eq!(methods, "pan-maps: no method id begins with nope, c (--method); known: E1, E2, E3");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Formats rows for people and for spreadsheets.
+//! Formats rows as human-readable text and for spreadsheets.
 
 use crate::study::{Row, without_seed, wrong_signs};
 use std::fmt::Write;
@@ -6,8 +6,8 @@ use std::fmt::Write;
 /// Maximum number of blocks without a seed that are named; the others are only counted.
 const MOST_NAMED: usize = 12;
 
-/// Formats the rows for people: a block for each case and method with its notes below; then the claims that are not
-/// reproduced, and the rows that do not depend on a seed.
+/// Formats the rows as human-readable text: a block for each case and method, with its notes below it; then the claims
+/// that are not reproduced, and the rows that do not depend on a seed.
 pub fn table(rows: &[Row]) -> String {
     let mut text = String::new();
     for block in rows.chunk_by(|a, b| (&a.case, &a.method) == (&b.case, &b.method)) {
@@ -60,7 +60,7 @@ fn account(rows: &[Row]) -> String {
         };
         let _ = writeln!(
             text,
-            "{} rows with a printed value: {} reproduced (within 5 %, or in the interval of one draw where \
+            "rows with a printed value: {}; {} reproduced (within 5 %, or in the interval of one draw where \
              one is printed), {} better, {} not reproduced{fitted}",
             printed.len(),
             count("reproduced"),
@@ -78,11 +78,11 @@ fn account(rows: &[Row]) -> String {
         let named: Vec<&str> = blocks.iter().take(MOST_NAMED).map(|(name, _)| name.as_str()).collect();
         let more = match blocks.len().saturating_sub(MOST_NAMED) {
             0 => String::new(),
-            more => format!("; and {more} more blocks"),
+            more => format!("; blocks not named here: {more}"),
         };
         let _ = writeln!(
             text,
-            "--first-seed has no effect on {n} {rows} that do not depend on random draws: {}{more}",
+            "--first-seed has no effect on {n} {rows}, because no random draws are involved: {}{more}",
             named.join("; ")
         );
     }

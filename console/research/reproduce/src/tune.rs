@@ -200,7 +200,7 @@ fn default_keys(planner: &PlannerInfo) -> Vec<String> {
 }
 
 impl Tuned {
-    /// Formats the result for people.
+    /// Formats the result as human-readable text.
     pub fn text(&self, tuning: &Tuning<'_>) -> String {
         let (before, after) = self.loss;
         let values: Vec<String> = self.values.iter().map(|(key, value)| format!("{key} = {value}")).collect();

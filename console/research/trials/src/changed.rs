@@ -22,8 +22,8 @@ pub struct Changed {
     pub fresh: Command,
 }
 
-/// Has a planner with these `fixed` values decide the same tick, beside a column 0.7 m ahead on the left, before and
-/// after a change of live parameters to the values of `live`.
+/// Has a planner with the `fixed` values decide the same tick before and after its live parameters change to the values
+/// of `live`. A column stands 0.7 m ahead of the robot, on the left.
 ///
 /// # Panics
 /// The planner refuses the values, or a step fails.

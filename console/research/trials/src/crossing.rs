@@ -43,8 +43,8 @@ const SITE: Site<'static> = Site {
     seed: 0,
 };
 
-/// Lets a planner drive without a plan over an open floor to a goal 12 m to the east, while a cart that starts at
-/// `from_y_m` crosses its way at a constant speed.
+/// Has a planner drive without a plan over an open floor to a goal 12 m to the east, while a cart that starts at
+/// `from_y_m` crosses the robot's way at a constant speed.
 ///
 /// # Panics
 /// The planner refuses its parameters, or a step fails.

@@ -98,7 +98,7 @@ fn excess_m(cable: &Cable, length_m: f64, least: &Geodesic) -> f64 {
 fn is_ahead(cable: &Cable, contacts: &[Contact], move_m: Vector) -> bool {
     let from = contacts.last().map_or(cable.anchor(), |contact| contact.last);
     let back = from - cable.tip();
-    // Within the last centimetres there is no cable to drive over.
+    // If the next contact is only centimetres away, the cable is too short to drive over.
     back.norm() > DETOUR_M && back.perp(&move_m).atan2(back.dot(&move_m)).abs() <= AHEAD_RAD
 }
 

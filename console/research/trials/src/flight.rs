@@ -56,7 +56,7 @@ pub struct Outcome {
     pub time_s: f64,
 }
 
-/// Lets a planner drive along the preset path of a layout.
+/// Has a planner drive along the preset path of a layout.
 ///
 /// # Errors
 /// The planner refuses its parameters, or a call fails.

@@ -17,7 +17,7 @@ const CRITICAL_ZONE_M: f64 = 0.075;
 /// Speeds of the robot for computing the time of a path: 0.4 m/s and 60 degrees a second.
 const SPEED_M_PER_S: f64 = 0.4;
 const TURN_RAD_PER_S: f64 = std::f64::consts::PI / 3.0;
-/// Step along a lane that may come into contact with something, metres.
+/// Distance between the points at which a lane is checked for room, metres.
 const LANE_STEP_M: f64 = 0.02;
 
 /// The figures of a path over a floor.
@@ -31,7 +31,8 @@ pub struct Scan {
     pub coverage_whole: f64,
     /// Scanned share of the critical zone along the shell.
     pub critical_zone: f64,
-    /// The share of the critical zone that one lane along the shell scans, wherever hull and clearance have room.
+    /// The share of the critical zone that one lane along the shell would scan, if the robot drove it wherever there is
+    /// room for hull and clearance.
     pub critical_zone_possible: f64,
     /// Length, metres.
     pub length_m: f64,

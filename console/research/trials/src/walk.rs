@@ -1,5 +1,4 @@
-//! The criterion for a successful walk along the spiral, since the paper uses the word "success" without a
-//! definition.
+//! Our criterion for a successful walk along the spiral; the paper uses the word "success" without defining it.
 
 use crate::score::ARRIVED_M;
 use serde::{Deserialize, Serialize};

@@ -61,7 +61,7 @@ fn sensed<'a>(pose: Pose, tick: u64, twist: Twist, obstacles: &'a [Obstacle<'a>]
     }
 }
 
-/// Flies with a pose that shakes; at the tick `new_at`, a new planner takes over.
+/// Flies with a noisy pose; at the tick `new_at`, a new planner takes over.
 fn fly(seed: u64, new_at: Option<u64>) -> (bool, f64) {
     let layout = AmphibiousLayout::random(Group::Block, seed);
     let obstacles = layout.obstacles();

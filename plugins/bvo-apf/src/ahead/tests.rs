@@ -137,7 +137,8 @@ fn the_paper_s_own_result_stands_beside_a_way_along_the_outlines() {
 /// Side of a room, metres.
 const SIDE_M: f64 = 3.0;
 
-/// Rooms on a grid, joined by doors of 0.9 m: every room has a door to the north, and those of the south row to the east.
+/// Rooms on a grid, joined by doors of 0.9 m: every room has a door to the north, and the rooms of the south row also
+/// have one to the east.
 fn rooms(seed: u64) -> KnownMap {
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     let (n_x, n_y) = (rng.random_range(2..5_u32), rng.random_range(2..5_u32));

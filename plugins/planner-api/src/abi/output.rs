@@ -127,8 +127,8 @@ impl StepOut {
     /// Reads the command from the numbers.
     ///
     /// # Errors
-    /// States which number is invalid, for the operator; the text completes a sentence that begins with the planner's
-    /// name.
+    /// States which number is invalid. The text is for the operator, and completes a sentence that begins with the
+    /// planner's name.
     pub fn get(&self) -> Result<Command, String> {
         let status = match self.status {
             0 => Status::Moving,
@@ -136,13 +136,13 @@ impl StepOut {
             2 => Status::Stuck,
             3 => Status::Waiting,
             u32::MAX => return Err("gave no command".to_owned()),
-            unknown => return Err(format!("gave unknown status {unknown}")),
+            unknown => return Err(format!("gave the unknown status {unknown}")),
         };
         let drive = match self.drive {
             u32::MAX => return Err("gave a status but no drive".to_owned()),
             DRIVE_TWIST => Drive::Twist { v_m_per_s: self.a, w_rad_per_s: self.b },
             DRIVE_VELOCITY => Drive::Velocity(nalgebra::Vector2::new(self.a, self.b)),
-            unknown => return Err(format!("gave unknown drive kind {unknown}")),
+            unknown => return Err(format!("gave the unknown drive kind {unknown}")),
         };
         Ok(Command { drive, status })
     }
@@ -158,8 +158,8 @@ impl Leg {
     /// Reads the leg.
     ///
     /// # Errors
-    /// States that the tag is unknown, for the operator; the text completes a sentence that begins with the planner's
-    /// name.
+    /// States that the tag is unknown. The text is for the operator, and completes a sentence that begins with the
+    /// planner's name.
     pub fn get(&self) -> Result<crate::Leg, String> {
         let tag = LegTag::from_number(self.tag)
             .ok_or_else(|| format!("gave a leg of unknown kind {}", self.tag))?;

@@ -102,8 +102,8 @@ pub struct Stamp {
 }
 
 /// The content of the stamp's section in a Rust library: the stamp, followed by the planner ids, each terminated by a
-/// zero byte. The console reads the ids from it before it loads anything. Libraries that list no ids there, such as
-/// those written in C, are searched for them.
+/// zero byte. The console reads the ids from it before it loads anything. If a library lists no ids there (libraries
+/// written in C do not), the console searches the whole file for the ids.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Label<const N: usize> {

@@ -66,8 +66,8 @@ fn caught<T>(call: impl FnOnce() -> T) -> std::result::Result<T, String> {
     without_unwinding(call)
 }
 
-/// The source location is known once a call from the console has set the hook; tests that call planners directly keep
-/// their own hook.
+/// Runs the author's code and returns the sentence for a panic. The sentence contains the source location only if a
+/// call from the console has set the panic hook; tests that call planners directly keep their own hook.
 fn without_unwinding<T>(call: impl FnOnce() -> T) -> std::result::Result<T, String> {
     catch_unwind(AssertUnwindSafe(call)).map_err(|payload| {
         let place = WHERE.with_borrow(Clone::clone);

@@ -157,8 +157,8 @@ impl SiteParts<'_> {
     }
 }
 
-/// The acceleration assumed if the console does not state one, metres per second squared. In older consoles robots
-/// stopped instantly.
+/// The acceleration assumed if the console does not state one, metres per second squared. In older consoles,
+/// robots stopped instantly.
 const AT_ONCE_M_PER_S2: f64 = 1e3;
 
 fn acceleration(site: &abi::Site) -> f64 {
@@ -221,7 +221,7 @@ pub(super) unsafe fn reason_of(raw: &abi::PlanIn) -> Reason {
     }
 }
 
-/// Reads the regions that a request states as still to be covered.
+/// Reads the regions that are still to be covered according to a request.
 ///
 /// # Safety
 /// `raw.regions` points to outlines that do not change while the result is used.

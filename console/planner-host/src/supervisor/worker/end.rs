@@ -98,7 +98,7 @@ impl Worker {
         }
     }
 
-    /// A worker that was interrupted did not exit on its own.
+    /// Notes a bad end, unless the worker was interrupted during a request: only an idle worker can exit cleanly.
     fn end_badly(&mut self, how: String) {
         if self.leaves_idle {
             self.bad_end.get_or_insert(how);

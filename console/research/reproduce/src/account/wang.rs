@@ -186,7 +186,7 @@ const ITEMS: &[Item] = &[
         "choice of parameters by search",
         Ours,
         "tankops tune --planner rpf --on wang-d1-square",
-        "CMA-ES on training layouts, evaluated on others; with --out a search can be resumed",
+        "CMA-ES on training layouts, evaluated on others; with --out, a search can be resumed",
     ),
     item(
         "Future work",

@@ -156,7 +156,7 @@ const ITEMS: &[Item] = &[
         "pull and push along the path",
         Read,
         "tankops reproduce xu-forces --svg forces",
-        "in our copy the figures have no numbers",
+        "in our copy, the figures have no numbers",
     ),
     item(
         "Claim",

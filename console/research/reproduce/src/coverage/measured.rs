@@ -30,10 +30,10 @@ pub(super) struct Measured {
     pub plan_time_ms: Option<f64>,
 }
 
-/// Asks a planner for a plan for a tank, identified by case and seed, and draws the plan if drawings are requested.
+/// Requests a plan for a tank, and draws the plan if drawings are requested. Case and seed identify the tank.
 ///
 /// # Errors
-/// The planner does not exist, or it refuses its parameters. Anything else is a result.
+/// The planner does not exist, or it refuses its parameters. Any other failure is a result.
 pub(super) fn measure(
     runner: &Runner<'_>,
     planners: &Planners,

@@ -9,7 +9,7 @@ use world::tether::capstan_factor;
 const FRICTION: f64 = 0.3;
 /// Required coverage of the reachable floor.
 const GOAL: f64 = 0.995;
-/// Length still out on return, metres, up to which a cable counts as reeled in.
+/// The cable counts as reeled in if at most this length is still out on return, metres.
 const IN_M: f64 = 0.3;
 /// Maximum number of layouts named in a note.
 const NAMED_MAX: usize = 12;
@@ -98,8 +98,8 @@ fn is_reeled_in(one: &Measured) -> bool {
 
 /// The rows for measurements on the layouts of these seeds.
 ///
-/// Rates are shares of all layouts; figures are those of the layouts with a path, and state the number of these
-/// layouts.
+/// Rates are shares of all layouts. All other figures are computed from the layouts with a path, and their rows state
+/// the number of these layouts.
 pub(super) fn rows(block: &Block<'_>, all: &[(u64, &Measured)]) -> Vec<Row> {
     let mut rows: Vec<Row> = RATES.iter().map(|rate| rate.row(block, all)).collect();
     rows.extend(FIGURES.iter().flat_map(|figure| figure.rows(block, all)));
@@ -138,7 +138,7 @@ impl Figure {
     }
 }
 
-/// The layouts that do not meet a condition; the first ones with the reason.
+/// Lists the layouts that do not meet a condition: the first few with the reason, then the number of all others.
 fn named(metric: &str, missed: &[&(u64, &Measured)]) -> String {
     let listed: Vec<String> =
         missed.iter().take(NAMED_MAX).map(|(seed, one)| named_one(metric, *seed, one)).collect();

@@ -24,7 +24,7 @@ const PAPER: &str = "virtual goals on a square round the goal, used in a local m
                      size of the square is not printed";
 const LAYOUT: &str = "the paper shows one layout per group, without coordinates; ours are random";
 
-/// The planner with this number of transition steps.
+/// A planner, set up with a number of transition steps.
 struct Entry {
     method: Method,
     transition_steps: u32,
@@ -115,7 +115,8 @@ fn measure(
     })
 }
 
-/// The largest excess of the speed between two places over the limit at that moment, metres per second.
+/// The largest amount by which the speed between two consecutive places exceeds the limit at that moment, metres per
+/// second.
 fn overspeed_m_per_s(path: &[Point], water: &[Point], transition_steps: u32) -> f64 {
     let zone = Zone {
         name: String::new(),
@@ -179,7 +180,7 @@ fn differences(block: &Block<'_>, measured: [&[Measured]; 2]) -> Vec<Row> {
         };
         block.row(metric, mean, unit, sample.len()).note(format!(
             "mean of paired differences, {conclusion}; the paper claims an effect from a single picture. \
-             With a longer transition the robot exceeds the speed limit on land for longer"
+             With a longer transition, the robot exceeds the speed limit on land for longer"
         ))
     };
     let steps: Sample = pairs().map(|(a, b)| a.steps - b.steps).collect();

@@ -11,7 +11,7 @@ use std::f64::consts::FRAC_PI_4;
 use trials::amphibious::{AmphibiousLayout, Group};
 use world::Pose;
 
-const NO_NUMBERS: &str = "recorded during a drive; in our copy the paper's figure has no numbers";
+const NO_NUMBERS: &str = "recorded during a drive; in our copy, the paper's figure has no numbers";
 const DISTANCES: &str = "recorded during a drive, with virtual goals on a square round the goal as \
                          published; the paper shows one layout per group, without coordinates, and ours \
                          are random";

@@ -66,7 +66,7 @@ impl GotoLayout {
         planners.plan(method, self.start(), task, &self.site(&corners, &obstacles))
     }
 
-    /// Lets a planner drive on the layout for at most `most_s` seconds, at one metre per second.
+    /// Has a planner drive on the layout for at most `most_s` seconds, at one metre per second.
     ///
     /// # Errors
     /// The planner is missing, refuses its parameters or fails.

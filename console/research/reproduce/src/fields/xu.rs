@@ -188,10 +188,10 @@ fn left_open(case: &str) -> Option<&'static str> {
              gives a path of 98.41 m (+11 %)"
         }
         "table2" => {
-            "the position of the trap and the step size, 0.0071 m, were chosen to match the printed figures. The paper states \
-             neither the side of the detour, nor the distance in front of the seal, nor the oscillation \
-             rule: an independent implementation with other choices takes 17,030 steps (12.7 % more than \
-             printed; ours 1.4 % fewer), so agreement within about 15 % confirms nothing"
+            "the position of the trap and the step size, 0.0071 m, were chosen to match the printed figures. \
+             The paper states neither the side of the detour, nor the distance in front of the seal, nor the \
+             oscillation rule: an independent implementation with other choices takes 17,030 steps (12.7 % \
+             more than printed; ours takes 1.4 % fewer), so agreement within about 15 % confirms nothing"
         }
         _ => return None,
     })

@@ -16,8 +16,8 @@ const TRADITIONAL: &str = "linear pull, no virtual goals; steps proportional to 
                            printed lengths of failed runs fit neither this nor fixed steps, which always \
                            give 20 m";
 const IMPROVED: &str = "gains and ranges of the paper's Table 2. Interpreted as follows: eq. 15 repels (as \
-                        printed it attracts), eq. 17c with the constant pull k d_0 (its potential has no \
-                        slope), eq. 18 with the second vector reversed (as printed the blocked direction \
+                        printed, it attracts), eq. 17c with the constant pull k d_0 (its potential has no \
+                        slope), eq. 18 with the second vector reversed (as printed, the blocked direction \
                         scores best), \"F = 0\" as a force below k_att / 2 or six steps without progress";
 const TUNED: &str = "layout not printed: start, goal and obstacles tuned to the printed length";
 const DERIVED: &str = "layout not printed: any free path from (0, 0) to (10, 10) gives this length";

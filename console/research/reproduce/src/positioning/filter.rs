@@ -30,7 +30,7 @@ const MOTION: MotionNoise = MotionNoise {
 };
 /// Number of steps that the smoother looks back.
 const LAG: usize = 10;
-/// Standard deviations of the surveyed manway, metres and radians.
+/// Standard deviations of position and heading at the start, a surveyed manway, metres and radians.
 const START: (f64, f64) = (0.01, 0.01);
 const PARTICLES: usize = 2000;
 

@@ -15,7 +15,7 @@ const POINTS: usize = 50;
 const RUNS: usize = 30;
 const LEVELS: [f64; 5] = [0.01, 0.02, 0.03, 0.04, 0.05];
 const ENVIRONMENTS: u64 = 12;
-/// Statistic of the printed table and metric id.
+/// Every statistic of the printed table, with its metric id.
 const STATISTICS: [(&str, &str); 5] =
     [("best", "best"), ("mean", "mean_error"), ("worst", "worst"), ("std", "std"), ("ttest_p", "p_value")];
 
@@ -94,7 +94,7 @@ fn run(job: &Job<'_>) -> Result<Vec<Row>> {
 fn row(job: &Job<'_>, case: &str, metric: &str, ours: Option<f64>, n: usize) -> Row {
     let note = match metric {
         "p_value" => {
-            "one-sample two-sided t-test of the 30 means against 0; median over the tables. It changes by \
+            "one-sample two-sided t-test of the 30 means against 0; median over the tables. The p-value changes by \
              orders of magnitude with the errors, so its printed digits can be matched only by chance"
         }
         _ if case.ends_with("parity") => {

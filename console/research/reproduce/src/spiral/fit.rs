@@ -42,7 +42,8 @@ pub(super) struct Planned<'a> {
     pub plans: &'a [Vec<Measured>],
 }
 
-/// The rows of a pair for obstacles drawn in this way: distance to the table, and claims.
+/// The rows of a pair: its distance to the table, and the claims. `sampling` names the region in which the obstacles
+/// are drawn.
 pub(super) fn rows(job: &Job<'_>, planned: Planned<'_>, pair: &Pair, sampling: &str) -> Vec<Row> {
     let case = format!("mean/{sampling}");
     let n = planned.plans.first().map_or(0, Vec::len);
@@ -96,7 +97,7 @@ pub(super) fn share_of_layouts(plans: &[Measured], printed: Printed) -> Option<f
 }
 
 impl Planned<'_> {
-    /// Whether the readings were selected with the printed table.
+    /// Whether the readings were selected to fit the printed table.
     fn is_selected(&self) -> bool {
         self.runs.iter().any(|run| run.set != Set::Text)
     }
@@ -117,7 +118,7 @@ impl Planned<'_> {
         (means.len() == 3).then(|| means.iter().sum::<f64>() / 3.0)
     }
 
-    /// Mean of the logarithms of our values divided by the printed ones; `None` unless every cell was run.
+    /// Mean of `|ln(ours / printed)|` over the cells of the table; `None` unless every cell was run.
     fn distance(&self, ids: &[String], sampling: &str, without: Option<usize>) -> Option<f64> {
         let mut logarithms = Vec::new();
         for (id, suffix) in ids.iter().flat_map(|id| ["", "+ir"].map(|suffix| (id, suffix))) {

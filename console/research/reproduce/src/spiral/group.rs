@@ -5,7 +5,7 @@ use trials::{Distribution, Sampling};
 /// Clearance at which collisions are counted, metres.
 pub(super) const CLEARANCE_M: f64 = 0.3;
 
-/// One kind of layouts.
+/// One kind of layout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Group {
     /// Number and range of obstacles.

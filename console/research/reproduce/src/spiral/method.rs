@@ -47,7 +47,7 @@ const FORWARD: &str =
     "reactive: the path's own points are compared with the nearest place ahead on the preset path";
 const LITERAL: &str = "rotating force always on, as in the text; cannot give the printed figures";
 
-/// The methods of Table 1, the rotating field in both readings, without and with improved repulsion.
+/// The methods of Table 1, each without and with improved repulsion; the rotating field in both readings.
 pub(super) fn of_table1() -> Vec<Entry> {
     let both = |improved: bool| {
         let rows = if improved { &printed::TABLE1_IMPROVED } else { &printed::TABLE1_CLASSIC };
@@ -91,7 +91,7 @@ fn method(planner: &str, reading: Option<&str>, improved: bool, note: &'static s
     words.iter().fold(method, |m, (key, word)| m.word(key, word)).number("k_rot", 200.0)
 }
 
-/// With the gains of Table 1.
+/// Sets the gains of Table 1.
 pub(super) fn base(method: Method) -> Method {
     let gains = [("k_att", 200.0), ("k_rep", 200.0), ("step_m", 0.2), ("wall_gain", 0.0)];
     gains.iter().fold(method, |method, (key, value)| method.number(key, *value))

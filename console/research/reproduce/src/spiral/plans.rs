@@ -43,7 +43,7 @@ impl Measured {
         }
     }
 
-    /// Whether there is a path at all.
+    /// Whether the answer contains a path.
     pub(super) fn has_path(&self) -> bool {
         self.planned.has_path()
     }

@@ -35,7 +35,7 @@ impl Planned {
         &self.plan.path
     }
 
-    /// Whether there is a path at all.
+    /// Whether the answer contains a path.
     pub(crate) fn has_path(&self) -> bool {
         self.path().len() > 1
     }

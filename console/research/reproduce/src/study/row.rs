@@ -105,7 +105,7 @@ pub(crate) struct Block<'a> {
 impl Block<'_> {
     /// A row over this number of layouts or draws, without a printed value.
     ///
-    /// A value that is not finite counts as none: JSON has no such numbers.
+    /// A value that is not finite is treated as missing, because JSON cannot represent it.
     pub(crate) fn row(&self, metric: &str, ours: impl Into<Option<f64>>, unit: &str, n: usize) -> Row {
         Row {
             table: self.table.into(),

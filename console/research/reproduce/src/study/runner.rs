@@ -103,7 +103,8 @@ impl<'a> Runner<'a> {
 
     /// Computes every case for every draw; one list for each case, in the order of the draws.
     ///
-    /// Computes draw by draw, so that the progress shown is that of the whole study.
+    /// It finishes all cases of one draw before it begins the next draw, so that the progress shown is that of the
+    /// whole study.
     ///
     /// # Errors
     /// The first error in the order of the draws.

@@ -12,7 +12,7 @@ const EQUAL: f64 = 1e-9;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// Within 5 % of the printed figure, or in the interval of a single draw where a single draw is printed.
+    /// Within 5 % of the printed figure or, if the paper prints a single draw, within the 95 % interval of one draw.
     Reproduced,
     /// Equally close, but with a number or a layout that was fitted to the printed values.
     Fitted,
@@ -23,7 +23,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// The verdict in words for people.
+    /// The verdict in human-readable words.
     pub fn words(self) -> &'static str {
         match self {
             Self::Reproduced => "reproduced",

@@ -15,9 +15,9 @@ use world::{Point, polyline};
 
 /// Length of the part of its plan, ahead of the robot, that the planner receives, metres.
 const SHOWN_M: f64 = 4.0;
-/// Maximum number of moves of a drive, as a multiple of the moves that the straight line takes.
+/// Maximum number of moves of a drive, as a multiple of the number that the straight line takes.
 const PATIENCE: f64 = 30.0;
-/// Number of reports in a row of being stuck after which a drive ends, too.
+/// A drive also ends after more than this number of consecutive reports of being stuck.
 const MOST_STUCK: u32 = 600;
 
 /// A point robot on its way: moves of at most 0.05 m, one per tick.
@@ -136,7 +136,7 @@ impl Journey<'_> {
             Err(fault) if matches!(fault.cause, Cause::Planner(_)) => return Ok(Status::Stuck),
             Err(fault) => return Err(StudyError::planner(&method.id, fault)),
         };
-        // At 1 m/s the duration of a tick in seconds equals the length of a step in metres.
+        // At 1 m/s, the duration of a tick in seconds equals the length of a step in metres.
         let velocity = match command.drive {
             Drive::Velocity(velocity) => velocity,
             Drive::Twist { v_m_per_s, .. } => Vector2::new(v_m_per_s, 0.0),

@@ -17,7 +17,7 @@ use world::{Boundary, Pose};
 /// Range within which the discs of an unknown map are discovered, metres.
 const RANGE_M: f64 = 6.0;
 
-const UNKNOWN: &str = "unknown map: discs within 6 m are discovered, even behind others; the robot follows \
+const UNKNOWN: &str = "unknown map: discs within 6 m are discovered, even those behind others; the robot follows \
                        the planner's commands at 1 m/s";
 
 /// A planner, and whether it knows the map.
