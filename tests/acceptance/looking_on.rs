@@ -50,10 +50,10 @@ impl Console {
     pub(crate) fn order_until(&mut self, order: &str, done: &str, refused: &str) {
         loop {
             self.order(order);
-            let is_done = self.hear_until(|line| match line.contains(done) {
-                true => Some(true),
-                false => line.contains(refused).then_some(false),
+            let is_done = self.hear_until(|line| {
+                [(done, true), (refused, false)].into_iter().find(|(words, _)| line.contains(words))
             });
+            let is_done = is_done.map(|(_, is_done)| is_done);
             if is_done.unwrap_or_else(|heard| panic!("neither {done:?} nor {refused:?} in {heard:#?}")) {
                 return;
             }

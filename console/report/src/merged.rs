@@ -209,7 +209,7 @@ mod tests {
         let found = |x: f64| {
             let shape = Shape::Disc { center: world::Point::new(x, 2.0), radius_m: 0.3 };
             let found = Obstacle { id: ObstacleId(2_000_000), name: "object 1".into(), shape, known: false };
-            let obstacles = vec![tank.world.obstacles.clone(), vec![found.clone()]].concat();
+            let obstacles = [tank.world.obstacles.clone(), vec![found.clone()]].concat();
             let world = world::World { obstacles, ..tank.world.clone() };
             let floor = FloorMaker::of(&tank.floor, &world, 0.45, 0.6, world::Point::origin()).into_floor();
             vec![

@@ -8,7 +8,7 @@ const FLIGHT: &str = "Flight";
 /// Guard distance.
 pub const GUARD: ParamSpec = float("guard_m", "Guard distance", "m", 0.0, 1.0, 0.1)
     .help(
-        "No motion toward an obstacle is allowed if the hull is closer to it than this distance, which \
+        "No motion towards an obstacle is allowed if the hull is closer to it than this distance, which \
          always slightly exceeds the mission's clearance.",
     )
     .group(FLIGHT)

@@ -86,7 +86,7 @@ const KICKS: ParamSpec = float("kicks", "Search", "", 0.0, 200.0, 4.0)
 /// Distance that the robot keeps from obstacles when it leaves its path.
 const GUARD: ParamSpec = float("guard_m", "Guard distance", "m", 0.0, 1.0, 0.1)
     .help(
-        "No motion toward an obstacle is allowed if the hull is closer to it than this distance, which \
+        "No motion towards an obstacle is allowed if the hull is closer to it than this distance, which \
          never exceeds three quarters of the mission's clearance.",
     )
     .group("Flight")
