@@ -217,10 +217,11 @@ fn a_question_about_a_change_leaves_the_comparison_of_the_operator() {
         what_if.candidates.iter().map(|candidate| candidate.choice.clone()).collect()
     };
     screen.press([Key::Char('w')]);
+    screen.hear(forecast(&compared(&screen)[0], 80.0, 600.0));
+    type_value(&mut screen, "1.7");
+    screen.press([Key::Char('w'), Key::Esc]);
     let before = compared(&screen);
-    assert!(before.len() > 1, "{before:?}");
-    screen.hear(forecast(&before[0], 80.0, 600.0));
-    screen.press([Key::Esc]);
+    assert_eq!(before[1..], [changed(&screen, 1.7)]);
     type_value(&mut screen, "1.5");
     assert!(compared(&screen).contains(&changed(&screen, 1.5)));
     let given_up = screen.press([Key::Esc]);
