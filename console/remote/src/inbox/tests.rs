@@ -163,6 +163,33 @@ fn each_trouble_is_a_state_of_the_link_with_its_reason() {
     assert_eq!(seen(&inbox, 1.0).0, LinkState::Closed);
 }
 
+/// The reason for which the link is lost after readings every 50 ms for 2 s.
+fn lost_by(readings: impl Fn(u32) -> Readings) -> String {
+    let mut inbox = inbox();
+    for n in 0..=40_u32 {
+        let now_s = 0.05 * f64::from(n);
+        let echo_s = (now_s - 0.001).max(0.0);
+        inbox.take(Heard::Message(FromVehicle::Pong(Pong { echo_s, stamp_s: 100.0 + now_s })), now_s);
+        say(&mut inbox, readings(n), now_s);
+    }
+    let link = inbox.link(2.0);
+    assert_eq!(link.state, LinkState::Lost, "{link:?}");
+    link.why
+}
+
+#[test]
+fn readings_that_arrive_without_being_new_are_told_from_readings_that_stopped() {
+    let repeated = lost_by(|n| Readings { seq: 1, ..moved(n.into(), 0.0, 0.0) });
+    assert_eq!(repeated, "its readings repeat the numbers of earlier ones");
+    let frozen = lost_by(|n| Readings { stamp_s: 100.0, ..moved(n.into(), 0.0, 0.0) });
+    assert_eq!(frozen, "the stamps of its readings (`stamp_s`) stand still");
+    let mut inbox = inbox();
+    for seq in [1, 1] {
+        say(&mut inbox, moved(seq, 0.0, 0.0), 0.1);
+    }
+    assert_eq!(inbox.link(2.0).why, "its readings stopped");
+}
+
 #[test]
 fn a_vehicle_that_restarts_is_told_at_once_and_its_numbers_and_poses_begin_again() {
     for first in [1, 700] {

@@ -260,9 +260,9 @@ pub(super) fn resumes(resumption: &Resumption) -> String {
 fn continues(model: &Model) -> Option<String> {
     let run = &model.live.run;
     let progress = run.progress.as_ref()?;
-    let rest = run.planning.plan.as_ref().filter(|plan| !plan.path.is_empty());
-    let rest = rest.map_or_else(String::new, |plan| {
-        format!(", {} m of the plan left", text::number(plan.rest_m(progress), 1))
+    let plan = run.planning.plan.as_ref().filter(|plan| !plan.path.is_empty());
+    let rest = plan.zip(run.position.pose).map_or_else(String::new, |(plan, pose)| {
+        format!(", {} m of the plan left", text::number(plan.rest_m(pose.position, progress.done), 1))
     });
     Some(format!("The robot continues at {} (×){rest}.", text::place(progress.target)))
 }

@@ -257,8 +257,8 @@ const FIGURES: [Figure; 9] = [
     Figure {
         promised: |e, _| Some(Found::of(e.length_m)),
         now: |run| {
-            let plan = run.planning.plan.as_ref()?;
-            Some(left(format!("{} m", text::number(plan.rest_m(run.progress.as_ref()?), 1))))
+            let (plan, robot) = (run.planning.plan.as_ref()?, run.position.pose?.position);
+            Some(left(format!("{} m", text::number(plan.rest_m(robot, run.progress.as_ref()?.done), 1))))
         },
         ..figure("path", "", " m", 1)
     },
