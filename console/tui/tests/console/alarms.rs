@@ -508,3 +508,16 @@ fn a_refused_plan_is_no_critical_alarm_while_another_one_is_made() {
     screen.hear(RunMsg::Events(refused));
     assert_eq!(screen.model.live.run.alarms.count(Severity::Crit), 1);
 }
+
+#[test]
+fn an_obstacle_that_scans_do_not_show_raises_an_alarm_at_its_place() {
+    let mut screen = Screen::tethered();
+    let about = screen.model.live.run.about.as_ref().unwrap();
+    let drawn = about.world.obstacles.iter().find(|obstacle| obstacle.known).unwrap().clone();
+    hear(&mut screen, EventKind::NotThere { id: drawn.id, name: drawn.name.clone(), scans: 40 });
+    let alarm = screen.model.live.run.alarms.get(&Cause::NotThere(drawn.name.clone())).unwrap();
+    assert_eq!((alarm.severity, alarm.place), (Severity::Warn, Some(drawn.shape.center())));
+    assert!(alarm.text.contains("40 scans went through its place"), "{}", alarm.text);
+    screen.model.ui.go(SHOWN);
+    assert!(shown(&screen, (120, 36)).contains("Correct the drawing"), "{}", shown(&screen, (120, 36)));
+}
