@@ -4,7 +4,7 @@ use crate::{rays::Rays, uncertain::Uncertain};
 use geometry::{Boundary, Vector};
 use nalgebra::UnitComplex;
 use std::f64::consts::PI;
-use world::ObstacleMap;
+use world::{ObstacleMap, scan::LONGEST_M};
 
 /// Number of rays that are compared with the drawing.
 const RAYS: usize = 36;
@@ -39,7 +39,8 @@ pub(crate) struct Agreement {
 }
 
 impl Agreement {
-    /// Compares a scan with the drawing if a comparison is due.
+    /// Compares a scan with the drawing if a comparison is due. `range_m` is the maximum distance that can be measured,
+    /// if it is known; otherwise rays without an echo show nothing.
     pub(crate) fn compare(
         &mut self,
         rays: &Rays,
@@ -54,7 +55,7 @@ impl Agreement {
         }
         let ahead = rays.frame().rotation;
         let expected_m = |direction: Vector| {
-            let most_m = range_m.unwrap_or(60.0);
+            let most_m = range_m.unwrap_or(LONGEST_M);
             let wall_m = boundary.ray_m(rays.eye(), direction);
             let hit_m = map.ray_m(rays.eye(), direction, most_m).unwrap_or(f64::INFINITY).min(wall_m);
             Some(hit_m).filter(|hit_m| *hit_m < 0.9 * most_m)
@@ -68,7 +69,7 @@ impl Agreement {
             let wanted = [direction, mirrored, UnitComplex::new(PI) * direction];
             for (way, direction) in wanted.into_iter().enumerate() {
                 let Some(expected_m) = expected_m(direction) else { continue };
-                if way == 0 {
+                if way == 0 && (range_m.is_some() || measured_m.is_finite()) {
                     must += 1;
                     echo += usize::from(measured_m.is_finite());
                 }

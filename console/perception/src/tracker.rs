@@ -87,7 +87,10 @@ pub struct Perception {
     /// Number of scans that passed through each drawn obstacle.
     through: BTreeMap<ObstacleId, u32>,
     agreement: Agreement,
-    rays_wanted: Option<u32>,
+    /// Number of rays of the first scan.
+    rays_at_first: Option<usize>,
+    /// Maximum distance that the scanner can measure, metres, if it is known.
+    range_m: Option<f64>,
     trouble: Option<String>,
     /// The correction of the estimated pose, in the robot frame.
     correction: Isometry2<f64>,
@@ -105,7 +108,8 @@ impl Perception {
     /// Creates the state before the first scan.
     pub fn new(sensor: Sensor) -> Self {
         Self {
-            rays_wanted: sensor.rays,
+            rays_at_first: None,
+            range_m: None,
             sensor,
             tracks: Vec::new(),
             next_id: FIRST_ID,
@@ -141,7 +145,8 @@ impl Perception {
         self.rays.take(view.scan, &estimate);
         let scanned_from = *self.rays.frame();
         let given = Uncertain::estimated(self.sensor.sigma_m, &view.covariance);
-        self.agreement.compare(&self.rays, (view.boundary, view.map), &given, self.sensor.range_m);
+        self.range_m = self.sensor.range_m.or(view.scan.range_max_m);
+        self.agreement.compare(&self.rays, (view.boundary, view.map), &given, self.range_m);
         self.trouble = self.agreement.trouble();
         let reach_m = self.rays.range_m.iter().copied().filter(|m| m.is_finite()).fold(1.0, f64::max) + 1.0;
         let drawn = view.charted.iter().filter(|obstacle| obstacle.id.0 < FIRST_ID);
@@ -192,8 +197,15 @@ impl Perception {
         if !is_finite || !scan.step_rad.is_normal() {
             return Some("the angles of the scan are not numbers, or all the same".into());
         }
-        let wanted = *self.rays_wanted.get_or_insert(n as u32);
-        (n != wanted as usize).then(|| format!("the scan has {n} rays instead of {wanted}"))
+        if let Some(wanted) = self.sensor.rays {
+            return (n != wanted as usize).then(|| format!("the scan has {n} rays instead of {wanted}"));
+        }
+        // Some scanners leave out rays without an echo, so the number of rays is not always the same.
+        let first = *self.rays_at_first.get_or_insert(n);
+        let least = first.div_ceil(2);
+        (n < least).then(|| {
+            format!("the scan has {n} rays; it must have at least {least}, half as many as the first scan")
+        })
     }
 
     /// Assigns each point that the drawing does not explain to the track with the nearest outline.
@@ -261,7 +273,7 @@ impl Perception {
             }
             if !track.is_seen {
                 let through = own.is_empty()
-                    && through::look(rays, &track.shape(), pose, self.sensor.range_m) == Look::Through;
+                    && through::look(rays, &track.shape(), pose, self.range_m) == Look::Through;
                 track.miss(through);
             }
         }
@@ -306,7 +318,7 @@ impl Perception {
     fn missing(&mut self, drawing: &Drawing<'_>, pose: &Uncertain) -> Vec<(ObstacleId, u32)> {
         let mut missing = Vec::new();
         for (obstacle, ..) in &drawing.obstacles {
-            match through::look(&self.rays, &obstacle.shape, pose, self.sensor.range_m) {
+            match through::look(&self.rays, &obstacle.shape, pose, self.range_m) {
                 Look::Hidden => {}
                 Look::Hit => {
                     self.through.remove(&obstacle.id);

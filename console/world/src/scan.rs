@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 
 /// The distance of a ray without an echo, and of one that is longer than 65.534 m.
 pub const NO_ECHO: u16 = u16::MAX;
+/// The longest distance that a scan can contain, metres.
+pub const LONGEST_M: f64 = 65.534;
 
 /// Number of neighbouring rays on each side with which a distance is averaged.
 pub const EVENED: usize = 2;
@@ -31,6 +33,10 @@ pub struct Scan {
     /// Place of the sensor in the robot frame, metres.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub sensor_m: [f64; 2],
+    /// Maximum distance that the sensor can measure, metres, as a vehicle states it; `None` in a simulation, where the
+    /// scenario states it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub range_max_m: Option<f64>,
     /// Motion of the robot from the scan to the end of the readings that it is part of.
     #[serde(default, skip_serializing_if = "is_still")]
     pub since: Odometry,
@@ -255,6 +261,7 @@ mod tests {
             first_rad: 0.0,
             step_rad: 0.1,
             sensor_m: [0.2, 0.0],
+            range_max_m: None,
             since,
             ranges_mm: RangesMm(vec![1000, NO_ECHO]),
         };
