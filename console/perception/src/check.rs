@@ -27,15 +27,38 @@ const WRONG: f64 = 0.5;
 const RIGHT: f64 = 0.75;
 const NOTHING: f64 = 0.2;
 
+/// A running mean of the shares of rays in the comparisons so far.
+#[derive(Debug, Clone, Copy, Default)]
+struct Share {
+    mean: f64,
+    compared: u32,
+}
+
+impl Share {
+    /// Adds a comparison in which `of` rays count, unless they are too few.
+    fn add(&mut self, rays: usize, of: usize) {
+        if of < LEAST_RAYS {
+            return;
+        }
+        let weight = if self.compared == 0 { 1.0 } else { SMOOTHING };
+        self.compared = self.compared.saturating_add(1);
+        self.mean += weight * (rays as f64 / of as f64 - self.mean);
+    }
+
+    /// The mean, once enough comparisons have been made.
+    fn known(&self) -> Option<f64> {
+        (self.compared >= LEAST).then_some(self.mean)
+    }
+}
+
 /// The agreement of the scans with the drawing so far.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Agreement {
     scans: u32,
-    compared: u32,
-    /// Share of the rays that fit if the scan is taken as it is, mirrored, or turned by half a turn.
-    fits: [f64; 3],
     /// Of the rays that must hit something, the share that have an echo.
-    echoes: f64,
+    echoes: Share,
+    /// Share of the rays that fit if the scan is taken as it is, mirrored, or turned by half a turn.
+    fits: [Share; 3],
 }
 
 impl Agreement {
@@ -49,7 +72,7 @@ impl Agreement {
         range_m: Option<f64>,
     ) {
         self.scans = self.scans.wrapping_add(1);
-        let is_due = self.compared < AT_ONCE || self.scans.is_multiple_of(LATER);
+        let is_due = self.echoes.compared < AT_ONCE || self.scans.is_multiple_of(LATER);
         if !is_due || pose.point_m2(0.0).sqrt() > LOST_M {
             return;
         }
@@ -80,26 +103,22 @@ impl Agreement {
                 }
             }
         }
-        if must < LEAST_RAYS {
-            return;
+        self.echoes.add(echo, must);
+        for (way, share) in self.fits.iter_mut().enumerate() {
+            share.add(fits[way], of[way]);
         }
-        let weight = if self.compared == 0 { 1.0 } else { SMOOTHING };
-        self.compared = self.compared.saturating_add(1);
-        self.echoes += weight * (echo as f64 / must as f64 - self.echoes);
-        for (way, fits) in fits.into_iter().enumerate().filter(|(way, _)| of[*way] >= LEAST_RAYS) {
-            self.fits[way] += weight * (fits as f64 / of[way] as f64 - self.fits[way]);
-        }
+    }
+
+    /// Whether scans have been compared, but not often enough for a verdict.
+    pub(crate) fn is_open(&self) -> bool {
+        self.echoes.compared > 0 && self.echoes.known().is_none()
     }
 
     /// The reason why the scans cannot be right, as a clause; `None` if they can.
     pub(crate) fn trouble(&self) -> Option<String> {
-        if self.compared < LEAST {
-            return None;
-        }
-        let [straight, mirrored, turned] = self.fits;
         let percent = |share: f64| (100.0 * share).round();
-        if self.echoes < NOTHING {
-            let share = percent(self.echoes);
+        if let Some(echoes) = self.echoes.known().filter(|echoes| *echoes < NOTHING) {
+            let share = percent(echoes);
             return Some(format!(
                 "only {share} % of the rays that must hit the wall or a column have an echo; check the scanner"
             ));
@@ -107,10 +126,13 @@ impl Agreement {
         let only_if = |how: &str, check: &str| {
             Some(format!("the scan fits the drawing only if it is {how}; check {check}"))
         };
-        if straight < WRONG && mirrored > RIGHT && mirrored >= turned {
+        let [straight, mirrored, turned] = self.fits.map(|share| share.known());
+        let straight = straight?;
+        let (is_mirrored, is_turned) = (mirrored > Some(RIGHT), turned > Some(RIGHT));
+        if straight < WRONG && is_mirrored && mirrored >= turned {
             return only_if("mirrored", "the direction of its angles");
         }
-        if straight < WRONG && turned > RIGHT {
+        if straight < WRONG && is_turned {
             return only_if("turned by half a turn", "how the scanner is mounted");
         }
         (straight < NOTHING).then(|| {

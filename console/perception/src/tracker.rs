@@ -136,18 +136,13 @@ impl Perception {
 
     /// Processes a scan.
     pub fn look(&mut self, view: &View<'_>) -> Looked {
-        self.trouble = self.layout_trouble(view.scan);
+        let given = Uncertain::estimated(self.sensor.sigma_m, &view.covariance);
+        self.trouble = self.scan_trouble(view, &given);
         if self.trouble.is_some() {
             self.tracks.iter_mut().for_each(|track| track.is_seen = false);
             return Looked::default();
         }
-        let estimate = view.pose.tank_from_robot();
-        self.rays.take(view.scan, &estimate);
         let scanned_from = *self.rays.frame();
-        let given = Uncertain::estimated(self.sensor.sigma_m, &view.covariance);
-        self.range_m = self.sensor.range_m.or(view.scan.range_max_m);
-        self.agreement.compare(&self.rays, (view.boundary, view.map), &given, self.range_m);
-        self.trouble = self.agreement.trouble();
         let reach_m = self.rays.range_m.iter().copied().filter(|m| m.is_finite()).fold(1.0, f64::max) + 1.0;
         let drawn = view.charted.iter().filter(|obstacle| obstacle.id.0 < FIRST_ID);
         let drawing = Drawing::near(view.boundary, drawn, self.rays.eye(), reach_m);
@@ -159,7 +154,10 @@ impl Perception {
         self.join_groups(&pose);
         self.update(&pose, view.now_s);
         self.begin_tracks(&pose, view.now_s);
-        self.give_ids(view.reach_m);
+        // The chart must not contain what a wrong scan shows.
+        if !self.agreement.is_open() {
+            self.give_ids(view.reach_m);
+        }
         let mut not_there = self.missing(&drawing, &pose);
         not_there.extend(self.tracks.iter().filter_map(|track| Some((track.id?, track.is_gone()?))));
         self.drop_tracks(view.now_s);
@@ -185,6 +183,18 @@ impl Perception {
     /// Number of objects that are followed now, whether they are obstacles yet or not.
     pub fn tracks(&self) -> usize {
         self.tracks.len()
+    }
+
+    /// Takes the rays of a scan; returns the reason why the scan cannot be used, or `None` if it can.
+    fn scan_trouble(&mut self, view: &View<'_>, given: &Uncertain) -> Option<String> {
+        let trouble = self.layout_trouble(view.scan);
+        if trouble.is_some() {
+            return trouble;
+        }
+        self.rays.take(view.scan, &view.pose.tank_from_robot());
+        self.range_m = self.sensor.range_m.or(view.scan.range_max_m);
+        self.agreement.compare(&self.rays, (view.boundary, view.map), given, self.range_m);
+        self.agreement.trouble()
     }
 
     /// The reason why scans of this layout cannot be used; `None` if they can.
