@@ -148,10 +148,10 @@ impl Track {
         self.radius.variance_m2 = self.radius.variance_m2.max(FLOOR_M * FLOOR_M);
     }
 
-    /// Prepares the track for a new scan.
-    pub(crate) fn begin(&mut self, now_s: f64) {
+    /// Prepares the track for a new scan, which was made `later_s` seconds after the last one.
+    pub(crate) fn begin(&mut self, later_s: f64) {
         if let Some(velocity) = self.drift.velocity() {
-            self.center += velocity * (now_s - self.seen_s).clamp(0.0, 0.5);
+            self.center += velocity * later_s.clamp(0.0, OUT_OF_SIGHT_S);
         }
         self.recent <<= 1;
         self.is_seen = false;

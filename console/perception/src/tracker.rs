@@ -92,6 +92,8 @@ pub struct Perception {
     /// Maximum distance that the scanner can measure, metres, if it is known.
     range_m: Option<f64>,
     trouble: Option<String>,
+    /// Time of the last scan that was used, seconds.
+    looked_s: Option<f64>,
     /// The correction of the estimated pose, in the robot frame.
     correction: Isometry2<f64>,
     rays: Rays,
@@ -117,6 +119,7 @@ impl Perception {
             through: BTreeMap::new(),
             agreement: Agreement::default(),
             trouble: None,
+            looked_s: None,
             correction: Isometry2::identity(),
             rays: Rays::default(),
             buffers: Buffers::default(),
@@ -149,7 +152,8 @@ impl Perception {
         let pose = drawing.correct(&mut self.rays, &given, &mut self.buffers);
         self.correction = scanned_from.inverse() * self.rays.frame();
         drawing.explain(&self.rays, &pose, &mut self.explained);
-        self.tracks.iter_mut().for_each(|track| track.begin(view.now_s));
+        let later_s = self.looked_s.replace(view.now_s).map_or(0.0, |looked_s| view.now_s - looked_s);
+        self.tracks.iter_mut().for_each(|track| track.begin(later_s));
         self.share_out(&pose);
         self.join_groups(&pose);
         self.update(&pose, view.now_s);

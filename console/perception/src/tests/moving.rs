@@ -19,3 +19,24 @@ fn a_mover_keeps_one_id_and_is_no_row_of_columns() {
     assert!((seen[0].shape.center() - Point::new(1.98, 1.5)).norm() < 0.1, "{:?}", seen[0].shape);
     assert_eq!(drive.perception.tracks(), 1);
 }
+
+#[test]
+fn a_cart_that_passes_behind_a_column_keeps_its_id() {
+    let hides = column(1, 0.0, 0.5, 0.25);
+    let mut drive = Drive::new(vec![hides.clone(), column(7, 0.0, 0.0, 0.2)], vec![hides]);
+    let pose = Pose::new(0.0, -1.0, 0.3);
+    let (mut ids, mut hidden) = (std::collections::BTreeSet::new(), 0);
+    for k in 0..120 {
+        let x = -2.0 + 0.035 * f64::from(k);
+        drive.real[1] = column(7, x, 1.5, 0.2);
+        drive.scan(&pose);
+        let seen: Vec<_> = drive.perception.seen(&pose).map(|seen| seen.id).collect();
+        hidden += u32::from(!ids.is_empty() && seen.is_empty());
+        // The cart is visible if its centre is not in the shadow of the column.
+        let is_visible = (x / 2.5).atan().abs() > (0.25_f64 / 1.5).asin() + 0.02;
+        assert!(ids.is_empty() || !is_visible || seen.len() == 1, "{k}: {seen:?}");
+        ids.extend(seen);
+    }
+    assert!(hidden >= 8, "{hidden}");
+    assert_eq!(ids.len(), 1, "{ids:?}");
+}
