@@ -92,11 +92,13 @@ impl Agreement {
             let wanted = [direction, mirrored, UnitComplex::new(PI) * direction];
             for (way, direction) in wanted.into_iter().enumerate() {
                 let Some(expected_m) = expected_m(direction) else { continue };
-                if way == 0 && (range_m.is_some() || measured_m.is_finite()) {
+                // An echo from too near is an echo, too, but does not fit.
+                let has_echo = measured_m < f64::INFINITY;
+                if way == 0 && (range_m.is_some() || has_echo) {
                     must += 1;
-                    echo += usize::from(measured_m.is_finite());
+                    echo += usize::from(has_echo);
                 }
-                if measured_m.is_finite() {
+                if has_echo {
                     of[way] += 1;
                     let room_m = ROOM_M + pose.gate_m(expected_m) + 0.05 * expected_m;
                     fits[way] += usize::from((measured_m - expected_m).abs() <= room_m);

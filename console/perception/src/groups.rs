@@ -47,7 +47,7 @@ fn are_joined(rays: &Rays, one: usize, next: usize, sigma_m: f64) -> bool {
     }
     let skipped_have_no_echo = (1..between)
         .filter_map(|by| rays.neighbour(one, by as isize))
-        .all(|ray| rays.range_m[ray].is_infinite());
+        .all(|ray| !rays.range_m[ray].is_finite());
     let apart_m = rays.range_m[one].min(rays.range_m[next]) * between as f64 * rays.step_rad();
     let most_m = JUMP * sigma_m + apart_m / GRAZING;
     skipped_have_no_echo && (rays.range_m[one] - rays.range_m[next]).abs() <= most_m

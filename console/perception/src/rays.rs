@@ -5,6 +5,10 @@ use nalgebra::{Isometry2, UnitComplex};
 use std::f64::consts::TAU;
 use world::{NO_ECHO, Scan};
 
+/// The distance of a ray that hit something too near to be measured, or the robot itself: the ray shows neither an
+/// object nor free space.
+pub(crate) const TOO_NEAR: f64 = f64::NEG_INFINITY;
+
 /// The rays of a scan, as seen from an estimated pose. The buffers are reused for the next scan.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Rays {
@@ -16,7 +20,7 @@ pub(crate) struct Rays {
     sensor: Vector,
     /// The transform from the robot frame at the time of the scan to the tank frame.
     tank_from_robot: Isometry2<f64>,
-    /// Distances, metres; infinite without an echo.
+    /// Distances, metres; infinite without an echo, and [`TOO_NEAR`] for an echo from a place that is not known.
     pub range_m: Vec<f64>,
 }
 
@@ -35,9 +39,22 @@ impl Rays {
         let moved = Vector::new(scan.since.forward_m, scan.since.sideways_m);
         let since = Isometry2::new(moved, scan.since.turn_rad);
         self.tank_from_robot = tank_from_robot * since.inverse();
-        let metres = |mm: &u16| if *mm == NO_ECHO { f64::INFINITY } else { f64::from(*mm) / 1000.0 };
+        let metres = |mm: &u16| match *mm {
+            NO_ECHO => f64::INFINITY,
+            0 => TOO_NEAR,
+            mm => f64::from(mm) / 1000.0,
+        };
         self.range_m.clear();
         self.range_m.extend(scan.ranges_mm.0.iter().map(metres));
+    }
+
+    /// Ignores echoes from inside the hull, a disc with this radius in metres.
+    pub(crate) fn ignore_hull(&mut self, hull_m: f64) {
+        for (range_m, direction) in self.range_m.iter_mut().zip(&self.in_robot) {
+            if range_m.is_finite() && (self.sensor + direction * *range_m).norm() < hull_m {
+                *range_m = TOO_NEAR;
+            }
+        }
     }
 
     /// Moves the pose from which the scan was made by a small correction: along x and y in metres, and a turn about the

@@ -93,6 +93,7 @@ impl Drive {
             boundary: &self.boundary,
             charted: &self.drawn,
             map: &map,
+            hull_m: 0.2,
             reach_m: 4.0,
         };
         let looked = self.perception.look(&view);

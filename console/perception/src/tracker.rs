@@ -48,6 +48,8 @@ pub struct View<'a> {
     pub charted: &'a [Obstacle],
     /// An index of these obstacles for queries.
     pub map: &'a ObstacleMap,
+    /// Radius of the hull, metres; echoes from inside it are ignored.
+    pub hull_m: f64,
     /// Distance from the scanner, metres, within which a track can become an obstacle; farther away, it is only
     /// followed.
     pub reach_m: f64,
@@ -196,6 +198,7 @@ impl Perception {
             return trouble;
         }
         self.rays.take(view.scan, &view.pose.tank_from_robot());
+        self.rays.ignore_hull(view.hull_m);
         self.range_m = self.sensor.range_m.or(view.scan.range_max_m);
         self.agreement.compare(&self.rays, (view.boundary, view.map), given, self.range_m);
         self.agreement.trouble()

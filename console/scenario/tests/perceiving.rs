@@ -116,6 +116,7 @@ fn drive(scenario: &Scenario, seed: u64, tally: &mut Tally) {
                     boundary: &drawing.boundary,
                     charted: &drawing.obstacles,
                     map: &map,
+                    hull_m: HULL_M,
                     reach_m: HULL_M + scenario.mission.limits.sensing_range_m,
                 };
                 let began = Instant::now();

@@ -107,3 +107,20 @@ fn a_way_that_could_not_be_compared_is_no_misfit() {
         assert_eq!(drive.perception.trouble(), None, "{k}");
     }
 }
+
+#[test]
+fn echoes_from_too_near_are_no_obstacles_and_no_free_space() {
+    let drawn = column(1, 1.5, 0.0, 0.2);
+    for too_near_mm in [0, 150] {
+        let mut drive = Drive::new(vec![drawn.clone()], vec![drawn.clone()]);
+        for _ in 0..60 {
+            let pose = Pose::new(0.0, 0.0, 0.0);
+            let mut scan = scan_of(&drive.scanner, &drive.boundary, &drive.real, &pose, drive.tick);
+            // An object at the hull covers the drawn column.
+            scan.ranges_mm.0[160..200].fill(too_near_mm);
+            drive.take(&scan, &pose);
+            assert!(drive.shapes().is_empty(), "{too_near_mm}: {:?}", drive.shapes());
+        }
+        assert_eq!((drive.perception.trouble(), &drive.looked), (None, &Looked::default()));
+    }
+}
