@@ -10,8 +10,12 @@ pub const NO_ECHO: u16 = u16::MAX;
 /// The longest distance that a scan can contain, metres.
 pub const LONGEST_M: f64 = 65.534;
 
-/// Number of neighbouring rays on each side with which a distance is averaged.
-pub const EVENED: usize = 2;
+/// Maximum number of neighbouring rays on each side with which a distance is averaged, and the maximum length of the
+/// arc, metres, that these rays span at that distance.
+const EVENED: usize = 2;
+const EVENED_ARC_M: f64 = 0.1;
+/// Maximum distance by which averaging moves a point away from the sensor, in standard deviations.
+const EVENED_BACK: f64 = 2.0;
 /// Minimum difference between distances on two surfaces, in standard deviations; a smaller difference may be noise on
 /// one surface.
 pub const APART: f64 = 5.0;
@@ -81,9 +85,11 @@ impl Scan {
         }
     }
 
-    /// The same scan with less noise: each distance is replaced by the mean of itself and of those neighbours, up to
-    /// [`EVENED`] rays to each side, that may lie on the same surface because they differ by less than [`APART`]
-    /// standard deviations. A distance that differs more from all these neighbours stays unchanged.
+    /// The same scan with less noise: each distance is replaced by the mean of itself and of those neighbours, up to two
+    /// rays to each side within an arc of 0.1 m, that may lie on the same surface because they differ by less than
+    /// [`APART`] standard deviations. A distance that differs more from all these neighbours stays unchanged, and so does
+    /// 0, which means too near to be measured. No distance grows by more than two standard deviations, so that a thin
+    /// post in front of a wall is not averaged away.
     ///
     /// ```
     /// use world::{Scan, scan::RangesMm};
@@ -97,18 +103,21 @@ impl Scan {
         let n = ranges.len();
         let is_round = n as f64 * self.step_rad.abs() > std::f64::consts::TAU - 0.5 * self.step_rad.abs();
         let apart_mm = APART * 1000.0 * sigma_m;
+        let most_back_mm = EVENED_BACK * 1000.0 * sigma_m;
         let even = |(at, mm): (usize, &u16)| {
-            if *mm == NO_ECHO {
-                return NO_ECHO;
+            if matches!(*mm, 0 | NO_ECHO) {
+                return *mm;
             }
-            let places = (at + n - EVENED.min(n))..=(at + n + EVENED.min(n));
+            let step_m = self.step_rad.abs() * f64::from(*mm) / 1000.0;
+            let beside = EVENED.min((0.5 * EVENED_ARC_M / step_m) as usize).min(n);
+            let places = (at + n - beside)..=(at + n + beside);
             let places = places.filter(|place| is_round || (n..2 * n).contains(place));
-            let beside = places.map(|place| ranges[place % n]).filter(|other| *other != NO_ECHO);
+            let beside = places.map(|place| ranges[place % n]).filter(|other| !matches!(*other, 0 | NO_ECHO));
             let (mut sum, mut count) = (0.0, 0.0);
             for other in beside.filter(|other| f64::from(other.abs_diff(*mm)) < apart_mm) {
                 (sum, count) = (sum + f64::from(other), count + 1.0);
             }
-            if count > 0.0 { (sum / count).round() as u16 } else { *mm }
+            if count > 0.0 { (sum / count).min(f64::from(*mm) + most_back_mm).round() as u16 } else { *mm }
         };
         let evened = ranges.iter().enumerate().map(even).collect();
         Self { ranges_mm: RangesMm(evened), ..self.clone() }
@@ -252,6 +261,21 @@ mod tests {
             (0..360).map(|n| 3000 + (f64::from(n) * 0.7).sin() as u16 * 10 + n % 7).collect();
         assert!(text(&wall).len() < 366, "{}", text(&wall).len());
         assert!(ranges("\u{7f}").is_none() && ranges("~").is_some() && ranges("|").is_none());
+    }
+
+    #[test]
+    fn evening_hides_no_post_and_mixes_no_distant_places() {
+        let evened = |step_rad: f64, ranges_mm: &[u16]| {
+            let scan = Scan { step_rad, ranges_mm: RangesMm(ranges_mm.to_vec()), ..Scan::default() };
+            scan.evened(0.02).ranges_mm.0
+        };
+        // A post 9 cm in front of a wall moves back by 2 standard deviations, not to the wall.
+        assert_eq!(evened(0.01, &[1000, 1000, 910, 1000, 1000])[2], 950);
+        // Neighbours that are 0.2 m apart may show different objects.
+        assert_eq!(evened(0.2, &[1000, 1000, 960, 1000, 1000]), [1000, 1000, 960, 1000, 1000]);
+        assert_eq!(evened(0.1, &[500, 500, 470, 500, 500])[2], 490, "one neighbour on each side");
+        // Too near to be measured stays so, and is the distance of nothing else.
+        assert_eq!(evened(0.01, &[40, 0, 40, NO_ECHO, 60]), [40, 0, 47, NO_ECHO, 50]);
     }
 
     #[test]
