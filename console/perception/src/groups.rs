@@ -39,6 +39,16 @@ pub(crate) fn groups(rays: &Rays, left: &[usize], sigma_m: f64, found: &mut Vec<
     }
 }
 
+/// The largest of several groups, unless points outside it are within `near_m` metres of it.
+pub(crate) fn apart<'a>(rays: &Rays, list: &'a [usize], parts: &[Group], near_m: f64) -> Option<&'a [usize]> {
+    let largest = parts.iter().max_by_key(|part| part.rays.len())?.rays.clone();
+    let part = &list[largest.clone()];
+    let is_apart =
+        |other: &usize| part.iter().all(|ray| (rays.point(*ray) - rays.point(*other)).norm() > near_m);
+    let mut others = list[..largest.start].iter().chain(&list[largest.end..]);
+    others.all(is_apart).then_some(part)
+}
+
 /// Whether two consecutive points can lie on one surface.
 fn are_joined(rays: &Rays, one: usize, next: usize, sigma_m: f64) -> bool {
     let between = (next + rays.len() - one) % rays.len();

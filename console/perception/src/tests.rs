@@ -1,5 +1,6 @@
 //! Tests with whole scans, from the first scan to obstacles on the chart.
 
+mod many;
 mod moving;
 mod wrong;
 
@@ -171,4 +172,11 @@ fn what_has_been_removed_is_gone() {
     drive.real.clear();
     drive.along((0.0, 0.0), (0.0, 2.0), 60);
     assert_eq!(drive.looked, Looked { not_there: vec![(ObstacleId(FIRST_ID), 20)] });
+    assert_eq!(drive.perception.tracks(), 0);
+    // What is back at a place on the chart is the same obstacle.
+    drive.drawn = vec![column(FIRST_ID, 1.0, 1.0, 0.2)];
+    drive.real = vec![column(7, 1.0, 1.0, 0.2)];
+    drive.along((0.0, 2.0), (0.0, 0.0), 40);
+    let ids: Vec<_> = drive.perception.seen(&Pose::new(0.0, 0.0, 0.0)).map(|seen| seen.id).collect();
+    assert_eq!(ids, [ObstacleId(FIRST_ID)]);
 }

@@ -17,7 +17,7 @@ use world::{Obstacle, ObstacleId, ObstacleMap, Scan};
 
 /// The first id of obstacles that are found in scans; drawings and the trackers of vehicles use smaller ids.
 pub const FIRST_ID: u32 = 2_000_000;
-/// Maximum number of tracks; further groups are ignored until a track is dropped.
+/// Maximum number of tracks.
 const MOST: usize = 512;
 /// Maximum distance from a track, metres, at which a group belongs to the track.
 const JOIN_M: f64 = 0.12;
@@ -106,6 +106,15 @@ pub struct Perception {
     left: Vec<usize>,
     groups: Vec<Group>,
     own: Vec<usize>,
+    parts: Vec<Group>,
+}
+
+/// Drops the track of the obstacle on the chart that has been out of sight for the longest time; returns whether one was
+/// dropped.
+fn make_room(tracks: &mut Vec<Track>) -> bool {
+    let charted = tracks.iter().enumerate().filter_map(|(k, track)| Some((k, track.charted_s()?)));
+    let oldest = charted.min_by(|a, b| a.1.total_cmp(&b.1));
+    oldest.map(|(k, _)| tracks.remove(k)).is_some()
 }
 
 impl Perception {
@@ -131,6 +140,7 @@ impl Perception {
             left: Vec::new(),
             groups: Vec::new(),
             own: Vec::new(),
+            parts: Vec::new(),
         }
     }
 
@@ -159,10 +169,15 @@ impl Perception {
         self.share_out(&pose);
         self.join_groups(&pose);
         self.update(&pose, view.now_s);
-        self.begin_tracks(&pose, view.now_s);
+        if !self.begin_tracks(&pose, view.now_s) {
+            self.trouble = Some(format!(
+                "the scans show more than {MOST} objects that are not drawn; check the scanner, the position and the \
+                 drawing"
+            ));
+        }
         // The chart must not contain what a wrong scan shows.
         if !self.agreement.is_open() {
-            self.give_ids(view.reach_m);
+            self.give_ids(view.charted, view.reach_m);
         }
         let mut not_there = self.missing(&drawing, &pose);
         not_there.extend(self.tracks.iter().filter_map(|track| Some((track.id?, track.is_gone()?))));
@@ -279,7 +294,7 @@ impl Perception {
 
     /// Updates each track with its points.
     fn update(&mut self, pose: &Uncertain, now_s: f64) {
-        let Self { tracks, rays, owners, own, .. } = self;
+        let Self { tracks, rays, owners, own, parts, .. } = self;
         for (k, track) in tracks.iter_mut().enumerate() {
             let (center, radius_m) = track.around();
             own.clear();
@@ -287,6 +302,12 @@ impl Perception {
             own.extend(rays.towards(center, reach_m).filter(|ray| usize::from(owners[*ray]) == k));
             if own.len() >= LEAST_POINTS {
                 track.see(rays, own, pose, now_s);
+            }
+            if track.is_seen && track.cross(through::look(rays, &track.shape(), pose, self.range_m)) {
+                groups(rays, own, pose.sigma_m, parts);
+                if let Some(part) = groups::apart(rays, own, parts, JOIN_M) {
+                    track.restart(rays, part, pose, now_s);
+                }
             }
             if !track.is_seen {
                 let through = own.is_empty()
@@ -296,19 +317,21 @@ impl Perception {
         }
     }
 
-    /// Begins a track for each group that belongs to no track.
-    fn begin_tracks(&mut self, pose: &Uncertain, now_s: f64) {
+    /// Begins a track for each group that belongs to no track; returns whether there was room for all.
+    fn begin_tracks(&mut self, pose: &Uncertain, now_s: f64) -> bool {
         let Self { tracks, rays, owners, left, groups: found, .. } = self;
-        for group in found.iter().filter(|group| owners[left[group.rays.start]] == NONE) {
-            if tracks.len() < MOST {
+        found.iter().filter(|group| owners[left[group.rays.start]] == NONE).all(|group| {
+            let has_room = tracks.len() < MOST || make_room(tracks);
+            if has_room {
                 tracks.extend(Track::new(rays, &left[group.rays.clone()], pose, now_s));
             }
-        }
+            has_room
+        })
     }
 
-    /// Turns the tracks that are certain enough into obstacles. A track that lies on an existing obstacle is dropped
-    /// instead.
-    fn give_ids(&mut self, reach_m: f64) {
+    /// Turns the tracks that are certain enough into obstacles. A track that lies on another obstacle that is tracked is
+    /// dropped instead; one that lies on an obstacle of the chart that is not tracked is that obstacle.
+    fn give_ids(&mut self, charted: &[Obstacle], reach_m: f64) {
         let mut at = 0;
         while at < self.tracks.len() {
             let track = &self.tracks[at];
@@ -322,7 +345,15 @@ impl Perception {
                 self.tracks.remove(at);
                 continue;
             }
-            let id = self.free_ids.pop().unwrap_or_else(|| {
+            let is_tracked = |id: ObstacleId| self.tracks.iter().any(|track| track.id == Some(id));
+            let is_back = |obstacle: &&Obstacle| {
+                obstacle.id.0 >= FIRST_ID
+                    && obstacle.shape.distance_m(center) < 0.0
+                    && !is_tracked(obstacle.id)
+            };
+            let back = charted.iter().find(is_back).map(|obstacle| obstacle.id);
+            self.free_ids.retain(|id| Some(*id) != back);
+            let id = back.or_else(|| self.free_ids.pop()).unwrap_or_else(|| {
                 self.next_id += 1;
                 ObstacleId(self.next_id - 1)
             });
@@ -357,7 +388,7 @@ impl Perception {
         let free_ids = &mut self.free_ids;
         self.tracks.retain(|track| {
             let is_over = track.is_over(now_s);
-            free_ids.extend(track.id.filter(|_| is_over));
+            free_ids.extend(track.id.filter(|_| is_over && track.moves()));
             !is_over
         });
     }

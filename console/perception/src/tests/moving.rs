@@ -40,3 +40,26 @@ fn a_cart_that_passes_behind_a_column_keeps_its_id() {
     assert!(hidden >= 8, "{hidden}");
     assert_eq!(ids.len(), 1, "{ids:?}");
 }
+
+#[test]
+fn movers_that_touched_and_parted_are_two_discs() {
+    let mut drive = Drive::new(Vec::new(), Vec::new());
+    let pose = Pose::new(0.0, -1.0, 0.3);
+    let mut was_one = false;
+    let mut apart_m = 0.16;
+    for k in 0..160 {
+        if k >= 60 {
+            apart_m += 0.02;
+        }
+        drive.real = vec![column(7, -apart_m, 1.0, 0.2), column(8, apart_m, 1.0, 0.2)];
+        drive.scan(&pose);
+        was_one |= matches!(drive.shapes()[..], [Shape::Polygon { .. }]);
+    }
+    assert!(was_one, "the movers must have looked like one object");
+    let shapes = drive.shapes();
+    for at in [-apart_m, apart_m] {
+        let is_it = |shape: &Shape| matches!(shape, Shape::Disc { center, .. } if (center - Point::new(at, 1.0)).norm() < 0.15);
+        assert_eq!(shapes.iter().filter(|shape| is_it(shape)).count(), 1, "{at} {shapes:?}");
+    }
+    assert_eq!((shapes.len(), drive.perception.tracks()), (2, 2), "{shapes:?}");
+}
