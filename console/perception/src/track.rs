@@ -123,9 +123,12 @@ impl Track {
             self.misfit += SMOOTHING * (fit.misfit.min(20.0) - self.misfit);
         }
         self.is_disc = if self.is_disc { self.misfit < MISFIT.0 } else { self.misfit < MISFIT.1 };
-        // If a disc is fitted to an object that is not a disc, its centre moves with the robot.
+        // If a disc is fitted to an object that is not a disc, its centre moves with the robot. If an object is partly
+        // hidden, its centre seems to move with the edge of what hides it.
         if self.is_disc && fit.misfit < ROUND && self.extent_m() < MOVABLE_M {
-            self.drift.see(now_s, fit.center);
+            if self.view_sigma_m < SURE_PLACE_M {
+                self.drift.see(now_s, fit.center);
+            }
         } else if !self.is_disc {
             self.drift = Drift::default();
         }

@@ -1,4 +1,4 @@
-//! How well obstacles are found in scans, measured in random tanks: in two by default. More take minutes:
+//! How well obstacles are found in scans, measured in random tanks: in ten by default. More take minutes:
 //!
 //! ```text
 //! TANKS=50 FIRST_SEED=1000 cargo test --release -p scenario --test perceiving -- --nocapture
@@ -226,7 +226,7 @@ fn obstacles_are_found_in_random_tanks() {
     let number = |name: &str, default: u64| {
         std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(default)
     };
-    let (tanks, first) = (number("TANKS", 2), number("FIRST_SEED", 1));
+    let (tanks, first) = (number("TANKS", 10), number("FIRST_SEED", 1));
     let mut tally = Tally::default();
     for seed in first..first + tanks {
         drive(&tank(seed), seed, &mut tally);
