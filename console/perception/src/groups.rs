@@ -2,6 +2,7 @@
 
 use crate::rays::Rays;
 use std::ops::Range;
+use world::scan::APART;
 
 /// Number of rays without an echo that a group may contain in a row.
 const LOST: usize = 2;
@@ -10,8 +11,6 @@ pub(crate) const LEAST: usize = 3;
 /// Largest extent of a group, metres. A longer surface is divided into several groups, so that their convex outlines
 /// stay close to it.
 const LONGEST_M: f64 = 1.0;
-/// Maximum difference of distance between neighbouring points of one surface, in standard deviations.
-const JUMP: f64 = 5.0;
 /// Cosine of the largest angle between a ray and the normal of a surface at which neighbouring points still count as
 /// one surface.
 const GRAZING: f64 = 0.2;
@@ -59,7 +58,7 @@ fn are_joined(rays: &Rays, one: usize, next: usize, sigma_m: f64) -> bool {
         .filter_map(|by| rays.neighbour(one, by as isize))
         .all(|ray| !rays.range_m[ray].is_finite());
     let apart_m = rays.range_m[one].min(rays.range_m[next]) * between as f64 * rays.step_rad();
-    let most_m = JUMP * sigma_m + apart_m / GRAZING;
+    let most_m = APART * sigma_m + apart_m / GRAZING;
     skipped_have_no_echo && (rays.range_m[one] - rays.range_m[next]).abs() <= most_m
 }
 

@@ -77,7 +77,7 @@ impl Rays {
 
     /// Whether the rays go all around.
     pub(crate) fn is_round(&self) -> bool {
-        self.len() as f64 * self.step_rad.abs() > TAU - 0.5 * self.step_rad.abs()
+        world::scan::is_round(self.len(), self.step_rad)
     }
 
     /// Angle between neighbouring rays, radians.

@@ -33,8 +33,8 @@ const MISSED: u32 = 5;
 const GONE_AFTER: u32 = 20;
 /// An outline is given up after this number of scans that show some of its points, but nothing in its middle.
 const CROSSED: u32 = 10;
-/// Time out of sight, seconds, after which a moving obstacle is dropped.
-const OUT_OF_SIGHT_S: f64 = 2.0;
+/// Time out of sight, seconds, after which a moving obstacle could be anywhere and is forgotten.
+pub const OUT_OF_SIGHT_S: f64 = 2.0;
 /// Mean misfit above which an object no longer counts as a disc, and below which it counts as a disc again.
 const MISFIT: (f64, f64) = (2.2, 1.6);
 /// Maximum misfit of a view that can show a disc.

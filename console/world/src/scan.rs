@@ -4,6 +4,7 @@ use crate::Odometry;
 use geometry::{Point, Vector};
 use nalgebra::Rotation2;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// The distance of a ray without an echo, and of one that is longer than 65.534 m.
 pub const NO_ECHO: u16 = u16::MAX;
@@ -68,6 +69,11 @@ impl TryFrom<String> for RangesMm {
     }
 }
 
+/// Whether this number of rays at this angle, radians, from one to the next goes all around.
+pub fn is_round(rays: usize, step_rad: f64) -> bool {
+    rays as f64 * step_rad.abs() > TAU - 0.5 * step_rad.abs()
+}
+
 fn is_zero(place: &[f64; 2]) -> bool {
     *place == [0.0, 0.0]
 }
@@ -101,7 +107,7 @@ impl Scan {
     pub fn evened(&self, sigma_m: f64) -> Self {
         let ranges = &self.ranges_mm.0;
         let n = ranges.len();
-        let is_round = n as f64 * self.step_rad.abs() > std::f64::consts::TAU - 0.5 * self.step_rad.abs();
+        let is_round = is_round(n, self.step_rad);
         let apart_mm = APART * 1000.0 * sigma_m;
         let most_back_mm = EVENED_BACK * 1000.0 * sigma_m;
         let even = |(at, mm): (usize, &u16)| {
