@@ -90,11 +90,17 @@ impl Agreement {
             let in_robot = ahead.inverse() * direction;
             let mirrored = ahead * Vector::new(in_robot.x, -in_robot.y);
             let wanted = [direction, mirrored, UnitComplex::new(PI) * direction];
-            for (way, direction) in wanted.into_iter().enumerate() {
+            // An echo from too near is an echo, too, but does not fit.
+            let has_echo = measured_m < f64::INFINITY;
+            // Only the scan as it is shows whether a ray without an echo must have one.
+            let ways = match (has_echo, range_m) {
+                (true, _) => 3,
+                (false, Some(_)) => 1,
+                (false, None) => 0,
+            };
+            for (way, direction) in wanted.into_iter().take(ways).enumerate() {
                 let Some(expected_m) = expected_m(direction) else { continue };
-                // An echo from too near is an echo, too, but does not fit.
-                let has_echo = measured_m < f64::INFINITY;
-                if way == 0 && (range_m.is_some() || has_echo) {
+                if way == 0 {
                     must += 1;
                     echo += usize::from(has_echo);
                 }

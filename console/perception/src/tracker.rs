@@ -106,6 +106,8 @@ pub struct Perception {
     left: Vec<usize>,
     groups: Vec<Group>,
     own: Vec<usize>,
+    /// For each track, whether it owns a ray.
+    owned: Vec<bool>,
     parts: Vec<Group>,
 }
 
@@ -140,6 +142,7 @@ impl Perception {
             left: Vec::new(),
             groups: Vec::new(),
             own: Vec::new(),
+            owned: Vec::new(),
             parts: Vec::new(),
         }
     }
@@ -163,7 +166,7 @@ impl Perception {
         let drawing = Drawing::near(view.boundary, drawn, self.rays.eye(), reach_m);
         let pose = drawing.correct(&mut self.rays, &given, &mut self.buffers);
         self.correction = scanned_from.inverse() * self.rays.frame();
-        drawing.explain(&self.rays, &pose, &mut self.explained);
+        drawing.explain(&self.rays, &pose, &mut self.buffers, &mut self.explained);
         let later_s = self.looked_s.replace(view.now_s).map_or(0.0, |looked_s| view.now_s - looked_s);
         self.tracks.iter_mut().for_each(|track| track.begin(later_s));
         self.share_out(&pose);
@@ -294,12 +297,19 @@ impl Perception {
 
     /// Updates each track with its points.
     fn update(&mut self, pose: &Uncertain, now_s: f64) {
-        let Self { tracks, rays, owners, own, parts, .. } = self;
+        let Self { tracks, rays, owners, own, owned, parts, .. } = self;
+        owned.clear();
+        owned.resize(tracks.len(), false);
+        for owner in owners.iter().filter(|owner| **owner != NONE) {
+            owned[usize::from(*owner)] = true;
+        }
         for (k, track) in tracks.iter_mut().enumerate() {
-            let (center, radius_m) = track.around();
             own.clear();
-            let reach_m = radius_m + GROWS_TO_M;
-            own.extend(rays.towards(center, reach_m).filter(|ray| usize::from(owners[*ray]) == k));
+            if owned[k] {
+                let (center, radius_m) = track.around();
+                let reach_m = radius_m + GROWS_TO_M;
+                own.extend(rays.towards(center, reach_m).filter(|ray| usize::from(owners[*ray]) == k));
+            }
             if own.len() >= LEAST_POINTS {
                 track.see(rays, own, pose, now_s);
             }
