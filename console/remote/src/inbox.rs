@@ -15,7 +15,10 @@ use vehicle::{
         message::{Commander, Hello, Mode, Odometry, Readings, Scan, State},
     },
 };
-use world::{RangeSet, StationId, scan::RangesMm};
+use world::{
+    RangeSet, StationId,
+    scan::{LONGEST_M, RangesMm},
+};
 
 /// Longest time from `hello` until the first `readings`, `state` and `pong`, seconds.
 const FIRST_WITHIN_S: f64 = 10.0;
@@ -422,6 +425,7 @@ fn scanned(scan: &Scan) -> world::Scan {
         first_rad: scan.first_rad,
         step_rad: scan.step_rad,
         sensor_m: scan.sensor_m,
+        range_max_m: Some(scan.range_max_m.min(LONGEST_M)),
         since: world::Odometry::default(),
         ranges_mm: RangesMm(ranges_mm),
     }

@@ -91,7 +91,10 @@ fn a_scan_is_carried_to_the_end_of_its_tick() {
     say(&mut inbox, Readings { scan: Some(scan(2.0)), ..moved(2, 0.5, 0.0) }, 0.15);
     say(&mut inbox, moved(3, 0.25, 0.0), 0.2);
     say(&mut inbox, moved(4, 0.25, 0.0), 0.2);
-    let points: Vec<_> = inbox.sense(0.2).readings.scan.iter().flat_map(world::Scan::points).collect();
+    let carried = inbox.sense(0.2).readings.scan;
+    // Longer distances do not fit into a scan.
+    assert_eq!(carried.as_ref().and_then(|scan| scan.range_max_m), Some(LONGEST_M));
+    let points: Vec<_> = carried.iter().flat_map(world::Scan::points).collect();
     let [point] = points[..] else { panic!("{points:?}") };
     assert!((point - world::Point::new(1.6, 0.0)).norm() < 1e-12, "{point}");
     assert_eq!(inbox.sense(0.3).readings.scan, None);

@@ -575,3 +575,16 @@ fn the_alarm_whose_actions_are_open_stays_selected() {
         "after the list is closed, too"
     );
 }
+
+#[test]
+fn an_obstacle_that_scans_do_not_show_raises_an_alarm_at_its_place() {
+    let mut screen = Screen::tethered();
+    let about = screen.model.live.run.about.as_ref().unwrap();
+    let drawn = about.world.obstacles.iter().find(|obstacle| obstacle.known).unwrap().clone();
+    hear(&mut screen, EventKind::NotThere { id: drawn.id, name: drawn.name.clone(), scans: 40 });
+    let alarm = screen.model.live.run.alarms.get(&Cause::NotThere(drawn.name.clone())).unwrap();
+    assert_eq!((alarm.severity, alarm.place), (Severity::Warn, Some(drawn.shape.center())));
+    assert!(alarm.text.contains("40 scans went through its place"), "{}", alarm.text);
+    screen.model.ui.go(SHOWN);
+    assert!(shown(&screen, (120, 36)).contains("Correct the drawing"), "{}", shown(&screen, (120, 36)));
+}
