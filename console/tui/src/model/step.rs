@@ -4,7 +4,7 @@ use crate::actions::ActionId;
 use world::StationId;
 
 /// The effect of an action on an alarm.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Deed {
     /// Carries out an action of the console.
     Act(ActionId),

@@ -127,7 +127,7 @@ pub(super) fn run(model: &mut Model, number: usize) -> Vec<Effect> {
         let why = if steps.is_empty() { "this alarm has advice only" } else { "no action with this number" };
         return refuse(model, why.into());
     };
-    let deed = step.deed;
+    let deed = step.deed.clone();
     let holds = deed == Deed::Act(ActionId::Hold) && model.live.may_move();
     // The list stays open with an action that is not possible now, and the operator reads why.
     match can(model, &deed) {
