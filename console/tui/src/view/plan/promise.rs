@@ -46,7 +46,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         |figure: &Figure| estimate.is_none_or(|estimate| (figure.promised)(estimate, look.run).is_some());
     for figure in FIGURES.into_iter().filter(has) {
         let mut mine = cell(figure, estimate, (Role::Text, widths.first));
-        let lanes = look.run.planning.plan.as_ref().map_or(0, |plan| plan.lanes.len());
+        let lanes = look.model.live.plans.lanes;
         if figure.label == "path" && lanes > 0 {
             mine.1 = text::wording(
                 [format!("{}, {}", mine.1, text::counted(lanes, "lane")), mine.1],
