@@ -177,37 +177,37 @@ impl Driver<'_> {
             connection_gone(&mut onlooker, &mut samples, self.patience(limits.time_s), cause_s);
             lines.extend(onlooker.map(|onlooker| onlooker.heard.lines.clone()).unwrap_or_default());
         } else {
-            samples = self.until_silent(&mut connection, cause_s, self.patience(limits.time_s));
+            samples = until_silent(&mut connection, cause_s, self.patience(limits.time_s));
             lines = std::mem::take(&mut connection.heard.lines);
         }
         (cause_s.map(|cause_s| Seen { samples, cause_s, again: false }), lines)
     }
+}
 
-    /// Follows the rest of the stream and the log of a robot whose adapter has lost its console or has ended, until the
-    /// robot stands still. A robot process may end as soon as the robot stands still; its log then ends with a
-    /// standstill.
-    fn until_silent(&self, connection: &mut Connection, cause_s: Option<f64>, until: Instant) -> Vec<Sample> {
-        let mut grown = (0, Instant::now());
-        loop {
-            connection.take_until(Instant::now() + COMMAND_EVERY);
-            let mut samples = connection.heard.samples.clone();
-            if let (Some(log), Some(cause_s)) = (&connection.log, cause_s) {
-                samples = merged(samples, &log.samples(), cause_s);
-            }
-            let last = samples.last().copied().filter(|last| Some(last.t_s) > cause_s);
-            if (last.is_some() && stands(&samples)) || Instant::now() >= until {
-                return samples;
-            }
-            if samples.len() != grown.0 {
-                grown = (samples.len(), Instant::now());
-            }
-            let is_ended =
-                connection.closed().is_some() && grown.1.elapsed().as_secs_f64() > 2.0 * trial::QUIET_S;
-            if let Some(last) = last.filter(|last| is_ended && !last.moves()) {
-                let (over_s, way_m, turn_rad) = (trial::QUIET_S, 0.0, 0.0);
-                samples.push(Sample { t_s: last.t_s + over_s, over_s, way_m, turn_rad });
-                return samples;
-            }
+/// Follows the rest of the stream and the log of a robot whose adapter has lost its console or has ended, until the
+/// robot stands still. A robot process may end as soon as the robot stands still; its log then ends with a
+/// standstill.
+fn until_silent(connection: &mut Connection, cause_s: Option<f64>, until: Instant) -> Vec<Sample> {
+    let mut grown = (0, Instant::now());
+    loop {
+        connection.take_until(Instant::now() + COMMAND_EVERY);
+        let mut samples = connection.heard.samples.clone();
+        if let (Some(log), Some(cause_s)) = (&connection.log, cause_s) {
+            samples = merged(samples, &log.samples(), cause_s);
+        }
+        let last = samples.last().copied().filter(|last| Some(last.t_s) > cause_s);
+        if (last.is_some() && stands(&samples)) || Instant::now() >= until {
+            return samples;
+        }
+        if samples.len() != grown.0 {
+            grown = (samples.len(), Instant::now());
+        }
+        let is_ended =
+            connection.closed().is_some() && grown.1.elapsed().as_secs_f64() > 2.0 * trial::QUIET_S;
+        if let Some(last) = last.filter(|last| is_ended && !last.moves()) {
+            let (over_s, way_m, turn_rad) = (trial::QUIET_S, 0.0, 0.0);
+            samples.push(Sample { t_s: last.t_s + over_s, over_s, way_m, turn_rad });
+            return samples;
         }
     }
 }
