@@ -75,10 +75,9 @@ pub fn guide(cause: &Cause) -> Guide {
             remedies: const {
                 &[
                     SHOW,
-                    check("Check the place: has the obstacle been removed or moved?"),
+                    check("Check on site that the obstacle was removed or moved."),
                     check("If other obstacles are displaced too, check the position of the robot."),
                     check("Correct the drawing before the next mission."),
-                    HOLD,
                 ]
             },
         },
