@@ -11,7 +11,8 @@ use world::Point;
 /// # Errors
 /// Why the runs cannot be found, as a sentence.
 pub(super) fn before(scenario_toml: &str, logs: &Path) -> Result<Option<Continued>, String> {
-    let runs = review::continued(scenario_toml, logs).map_err(|error| format!("{error:#}"))?;
+    let runs = review::continued(scenario_toml, logs, || true).map_err(|error| format!("{error:#}"))?;
+    let runs = runs.unwrap_or_default();
     let left_at = runs.last().map(|last| left_at(last, logs));
     Ok(left_at.map(|left_at| Continued { runs, left_at }))
 }
@@ -27,25 +28,38 @@ fn left_at(run: &str, logs: &Path) -> Option<Point> {
     places.last()
 }
 
-/// The combined scan of runs, the last of which is the re-scan.
+/// The combined scan of runs, the last of which is the re-scan; `None` if `goes_on` refuses.
 ///
 /// # Errors
 /// Why the runs cannot be combined, as a sentence.
-pub(super) fn combined(runs: &[String], logs: &Path) -> Result<Combination, String> {
+pub(super) fn combined(
+    runs: &[String],
+    logs: &Path,
+    goes_on: impl Fn() -> bool,
+) -> Result<Option<Combination>, String> {
     let earlier = runs.split_last().map_or_else(Vec::new, |(_, earlier)| earlier.to_vec());
-    let merged = review::combined(runs, logs).map_err(|error| format!("{error:#}"))?;
-    Ok(Combination { earlier, floor: merged.floor, scanned: merged.scanned })
+    let merged = review::combined(runs, logs, goes_on).map_err(|error| format!("{error:#}"))?;
+    Ok(merged.map(|merged| Combination {
+        earlier,
+        floor: merged.floor,
+        kinds: merged.kinds,
+        scanned: merged.scanned,
+    }))
 }
 
-/// The combined scan of a past run and the runs that its scenario continues; `None` if it continues none.
+/// The combined scan of a past run and the runs that its scenario continues; `None` if it continues none, or if `goes_on`
+/// refuses.
 ///
 /// # Errors
 /// Why the runs cannot be found or combined, as a sentence.
-pub(super) fn of_rescan(run: &str, scenario_toml: &str, logs: &Path) -> Result<Option<Combination>, String> {
-    let earlier = review::continued(scenario_toml, logs).map_err(|error| format!("{error:#}"))?;
-    if earlier.is_empty() {
-        return Ok(None);
-    }
+pub(super) fn of_rescan(
+    run: &str,
+    scenario_toml: &str,
+    logs: &Path,
+    goes_on: impl Fn() -> bool,
+) -> Result<Option<Combination>, String> {
+    let earlier = review::continued(scenario_toml, logs, &goes_on).map_err(|error| format!("{error:#}"))?;
+    let Some(earlier) = earlier.filter(|earlier| !earlier.is_empty()) else { return Ok(None) };
     let runs: Vec<String> = earlier.into_iter().chain([run.to_owned()]).collect();
-    combined(&runs, logs).map(Some)
+    combined(&runs, logs, goes_on)
 }

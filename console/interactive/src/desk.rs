@@ -331,7 +331,9 @@ impl Desk {
         let screen = RunOutbox { run: *run, outbox: self.tools.outbox.clone() };
         let logs = self.tools.logs.clone();
         let began = thread::Builder::new().name("combine".into()).spawn(move || {
-            let _ = screen.send(RunMsg::Combined(combining::combined(&runs, &logs).map(Box::new)));
+            if let Some(found) = combining::combined(&runs, &logs, || true).transpose() {
+                let _ = screen.send(RunMsg::Combined(found.map(Box::new)));
+            }
         });
         if let Err(error) = began {
             jobs::report(&self.tools.outbox, &format!("failed to combine the runs: {error}"));

@@ -112,7 +112,10 @@ fn glimpse(folder: &Path, logs: &Path, goes_on: impl Fn() -> bool) -> Result<Opt
     }
     run.log = Log::default();
     let name = folder.to_string_lossy();
-    let combined = combining::of_rescan(&name, &scenario_toml, logs).transpose();
+    let combined = combining::of_rescan(&name, &scenario_toml, logs, &goes_on).transpose();
+    if !goes_on() {
+        return Ok(None);
+    }
     let combined =
         combined.map(|found| found.map(|found| Box::new(Together::new(found, run.coverage.as_ref()))));
     Ok(Some(Glimpse { run, summary: summary(folder), combined }))

@@ -10,7 +10,7 @@ use crate::{
 };
 use account::{Account, Coverage, Summary};
 use serde::Serialize;
-use world::{CellRun, coverage::runs_of};
+use world::{CellRun, KindRun, coverage::runs_of};
 
 /// The combined scan of several runs. Every run keeps its own recording.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -24,6 +24,10 @@ pub struct Merged {
     /// The cells that count as scanned, in the order of the floor's cells; not part of the file.
     #[serde(skip)]
     pub scanned: Vec<CellRun>,
+    /// The kinds of the cells of the joined floor: obstacles found and zones drawn in any run are applied; not part of the
+    /// file.
+    #[serde(skip)]
+    pub kinds: Vec<KindRun>,
 }
 
 /// One of several runs.
@@ -65,7 +69,14 @@ pub fn merged(runs: &[PastRun]) -> Result<Merged, String> {
     let listed: Vec<MergedRun> = listed.collect();
     let grid = all.scanned.believed();
     let scanned = runs_of((0..grid.floor().len()).filter(|index| grid.is_covered(*index)));
-    Ok(Merged { coverage: all.scanned.coverage(true), floor: all.account(runs), scanned, runs: listed })
+    let kinds = grid.floor().kinds();
+    Ok(Merged {
+        coverage: all.scanned.coverage(true),
+        floor: all.account(runs),
+        scanned,
+        kinds,
+        runs: listed,
+    })
 }
 
 impl Merged {
@@ -242,6 +253,7 @@ mod tests {
         let free = || opened("b", tank.clone(), vec![]);
         let (forth, back) = (merged(&[drawn(), free()]).unwrap(), merged(&[free(), drawn()]).unwrap());
         assert!(forth.floor.reachable.area_m2 < merged(&[free()]).unwrap().floor.reachable.area_m2 - 1.0);
+        assert_eq!(forth.kinds, closed.kinds(), "the map shows the same floor as the account");
         assert_eq!((forth.floor.whole, forth.floor.reachable), (back.floor.whole, back.floor.reachable));
     }
 

@@ -19,24 +19,34 @@ pub fn read_all(runs: &[PathBuf], logs: &Path) -> anyhow::Result<Vec<Past>> {
     runs.iter().map(|run| Ok(Past::read(&find(run, logs)?)?)).collect()
 }
 
-/// The combined scan of several runs on one floor.
+/// The combined scan of several runs on one floor. `goes_on` is asked before each journal is read and before the runs are
+/// combined; the result is `None` if it refuses.
 ///
 /// # Errors
 /// A run does not exist, its journal cannot be read, or the runs are not on one floor.
-pub fn combined(runs: &[String], logs: &Path) -> anyhow::Result<Merged> {
-    let runs: Vec<PathBuf> = runs.iter().map(PathBuf::from).collect();
-    let past: Vec<PastRun> = read_all(&runs, logs)?.into_iter().map(|past| past.run).collect();
-    merged(&past).map_err(bad_input)
+pub fn combined(runs: &[String], logs: &Path, goes_on: impl Fn() -> bool) -> anyhow::Result<Option<Merged>> {
+    let mut past: Vec<PastRun> = Vec::with_capacity(runs.len());
+    for run in runs {
+        if !goes_on() {
+            return Ok(None);
+        }
+        past.push(Past::read(&find(run.as_ref(), logs)?)?.run);
+    }
+    if goes_on() { merged(&past).map(Some).map_err(bad_input) } else { Ok(None) }
 }
 
 /// The names of the runs that a re-scan continues, oldest first, from the scenario of the re-scan; empty for any other
-/// scenario.
+/// scenario. `goes_on` is asked before a journal is read; the result is `None` if it refuses.
 ///
 /// # Errors
 /// The scenario is not TOML, or a run is not in the folder of the runs.
-pub fn continued(scenario_toml: &str, logs: &Path) -> anyhow::Result<Vec<String>> {
+pub fn continued(
+    scenario_toml: &str,
+    logs: &Path,
+    goes_on: impl Fn() -> bool,
+) -> anyhow::Result<Option<Vec<String>>> {
     let digests = report::continued(scenario_toml).map_err(bad_input)?;
-    Ok(if digests.is_empty() { Vec::new() } else { by_journal(&digests, logs)? })
+    Ok(if digests.is_empty() { Some(Vec::new()) } else { by_journal(&digests, logs, goes_on)? })
 }
 
 /// The human-readable report of the run in a folder.
@@ -90,4 +100,19 @@ pub fn summary(Past { opened, run, .. }: &Past) -> anyhow::Result<Summary> {
     let (logs, files) = (Some(run.logs.clone()), &run.files);
     let (events_sha256, recording_sha256) = (files.journal_sha256.clone(), files.recording_sha256.clone());
     Ok(expect.evaluated(Summary { logs, events_sha256, recording_sha256, ..run.summary.clone() }))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+
+    #[test]
+    fn runs_that_are_not_wanted_any_more_are_not_read() {
+        let runs = ["a".to_owned(), "b".to_owned()];
+        let nowhere = Path::new("not-a-folder");
+        assert!(combined(&runs, nowhere, || true).is_err(), "they would be read");
+        assert_eq!(combined(&runs, nowhere, || false).unwrap(), None);
+    }
 }

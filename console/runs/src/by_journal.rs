@@ -6,16 +6,23 @@ use std::{cell::OnceCell, path::Path};
 
 /// The names of the runs whose journals have these SHA-256 digests (hexadecimal), in the order of the digests.
 ///
-/// Only journals whose digest is not in a report are read, each at most once.
+/// Only journals whose digest is not in a report are read, each at most once. `goes_on` is asked before each of them; the
+/// result is `None` if it refuses.
 ///
 /// # Errors
 /// The folder cannot be read, or a run is not in it.
-pub fn by_journal(sha256: &[String], logs: &Path) -> Result<Vec<String>, RunError> {
+pub fn by_journal(
+    sha256: &[String],
+    logs: &Path,
+    goes_on: impl Fn() -> bool,
+) -> Result<Option<Vec<String>>, RunError> {
     let folders = past_runs(logs)?;
     let stated: Vec<Option<String>> = folders.iter().map(|folder| stated(folder)).collect();
     let read: Vec<OnceCell<Option<String>>> = vec![OnceCell::new(); folders.len()];
-    let digest_of =
-        |index: usize| read[index].get_or_init(|| events_sha256(&journal_of(&folders[index])).ok()).as_ref();
+    let digest_of = |index: usize| {
+        let digest = || events_sha256(&journal_of(&folders[index])).ok();
+        read[index].get_or_init(|| goes_on().then(digest).flatten()).as_ref()
+    };
     let find = |wanted: &String| {
         let reported = stated.iter().position(|sha256| sha256.as_ref() == Some(wanted));
         let unreported = || {
@@ -31,7 +38,9 @@ pub fn by_journal(sha256: &[String], logs: &Path) -> Result<Vec<String>, RunErro
             ))
         })
     };
-    sha256.iter().map(find).collect()
+    let found: Result<Vec<String>, RunError> = sha256.iter().map(find).collect();
+    // What a reader that was given up did not find may be there.
+    if goes_on() { found.map(Some) } else { Ok(None) }
 }
 
 /// The digest of the journal according to the report of the run.
@@ -60,9 +69,11 @@ mod tests {
         write("20261122T030000Z-killed", PLAIN_JOURNAL_FILE, "{}\n");
         write("20261122T040000Z-closed", "report.json", "{\"events_sha256\":\"c10\"}");
         let killed = sha256_of(b"{}\n");
-        let found = by_journal(&["c10".into(), killed], place.path()).unwrap();
+        let found = by_journal(&["c10".into(), killed], place.path(), || true).unwrap().unwrap();
         assert_eq!(found, ["20261122T040000Z-closed", "20261122T030000Z-killed"]);
-        let why = by_journal(&["0123456789abcdef".into()], place.path()).unwrap_err().to_string();
+        let why = by_journal(&["0123456789abcdef".into()], place.path(), || true).unwrap_err().to_string();
         assert!(why.contains("the run with journal 0123456789ab... is not in"), "{why}");
+        let given_up = by_journal(&["0123456789abcdef".into()], place.path(), || false).unwrap();
+        assert_eq!(given_up, None, "not an error: it was not looked for");
     }
 }

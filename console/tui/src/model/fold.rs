@@ -13,7 +13,7 @@ use super::{About, Cause, Change, Progress, Raster, Run, Withdrawn};
 use mission::{
     Event, EventKind, Hold, HoldReason, Order, Outcome, Phase, Severity, TaskConfig, event::RunOpened,
 };
-use positioning::AccuracyMap;
+use positioning::{Accuracy, AccuracyMap};
 use world::{Obstacle, ObstacleId};
 
 /// The number of cells of the accuracy forecast along the longer side of the floor.
@@ -207,7 +207,9 @@ impl Run {
         self.coverage = Some(Raster::new(run.floor.clone()));
         let (low, high) = run.world.boundary.bounds();
         let forecast = run.mission.forecast((high - low).amax() / FORECAST_CELLS);
-        self.accuracy = Some(AccuracyMap::new(&run.world.as_drawn(), &forecast));
+        let accuracy = AccuracyMap::new(&run.world.as_drawn(), &forecast);
+        self.accuracy_stamp = accuracy_stamp(&accuracy, run.mission.position_limit_m);
+        self.accuracy = Some(accuracy);
         self.planning.choice = Some(run.mission.planner.clone());
     }
 
@@ -275,6 +277,16 @@ impl Run {
         };
         self.raise(event, Cause::Ended, severity, format!("ended ({}): {reason}", outcome.word()));
     }
+}
+
+/// Mixes the forecast errors and their limit into a stamp (FNV-1a).
+fn accuracy_stamp(map: &AccuracyMap, limit_m: f64) -> u64 {
+    let error_m = |cell: &Option<Accuracy>| cell.and_then(|cell| cell.error_95_m).unwrap_or(f64::INFINITY);
+    let errors_m = map.cells.iter().map(error_m);
+    [map.origin.x, map.origin.y, map.cell_m, map.width as f64, limit_m]
+        .into_iter()
+        .chain(errors_m)
+        .fold(0xcbf2_9ce4_8422_2325, |stamp, value| (stamp ^ value.to_bits()).wrapping_mul(0x0100_0000_01b3))
 }
 
 /// Whether an order given before the start makes the current plan obsolete.

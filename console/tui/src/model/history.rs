@@ -9,30 +9,47 @@ pub const HISTORY_S: usize = 480;
 /// once per slot.
 pub const SLOT_S: usize = 4;
 
+/// The number of slots kept.
+const KEPT: usize = HISTORY_S / SLOT_S;
+
 /// The spans of curves, seconds; a curve covers the shortest one that holds everything since the start of the mission.
 const SPANS_S: [usize; 4] = [60, 120, 240, HISTORY_S];
 /// A curve that no longer begins at the start of the mission shifts by this part of its span.
 const SHIFTS: f64 = 8.0;
 
 /// The largest value in each slot of [`SLOT_S`] seconds of mission time over the last [`HISTORY_S`] seconds, newest
-/// last.
+/// last. A slot without a value, such as one while the robot was held, is empty.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct History {
-    values: VecDeque<f32>,
+    values: VecDeque<Option<f32>>,
     slot: u64,
 }
 
 impl History {
-    /// Adds a value.
+    /// Adds a value at a mission time, seconds; times do not decrease.
     pub fn add(&mut self, t_s: f64, value: f64) {
         let slot = t_s.max(0.0) as u64 / SLOT_S as u64;
         let value = value as f32;
         match self.values.back_mut() {
-            Some(last) if slot == self.slot => *last = last.max(value),
-            _ => self.values.push_back(value),
+            Some(last) if slot <= self.slot => {
+                *last = Some(last.map_or(value, |before| before.max(value)));
+                return;
+            }
+            Some(_) => self.leave_empty(slot - self.slot - 1),
+            None => {}
         }
+        self.push(Some(value));
         self.slot = slot;
-        if self.values.len() > HISTORY_S / SLOT_S {
+    }
+
+    /// Adds empty slots, at most as many as are kept.
+    fn leave_empty(&mut self, slots: u64) {
+        (0..slots.min(KEPT as u64)).for_each(|_| self.push(None));
+    }
+
+    fn push(&mut self, value: Option<f32>) {
+        self.values.push_back(value);
+        if self.values.len() > KEPT {
             self.values.pop_front();
         }
     }
@@ -55,19 +72,20 @@ impl History {
         [to_s - most_s as f64, to_s]
     }
 
-    /// The mission time at which each slot from `from_s` on begins, seconds, and its value; newest last.
-    pub fn since(&self, from_s: f64) -> impl Iterator<Item = (f64, f64)> + '_ {
+    /// The mission time at which each slot from `from_s` on begins, seconds, and its value, `None` if it is empty;
+    /// newest last.
+    pub fn since(&self, from_s: f64) -> impl Iterator<Item = (f64, Option<f64>)> + '_ {
         let (newest_s, last) = (self.newest_s(), self.values.len().saturating_sub(1));
         let values = self.values.iter().enumerate();
         let timed = values
-            .map(move |(index, value)| (newest_s - ((last - index) * SLOT_S) as f64, f64::from(*value)));
+            .map(move |(index, value)| (newest_s - ((last - index) * SLOT_S) as f64, value.map(f64::from)));
         timed.filter(move |(t_s, _)| *t_s >= from_s)
     }
 
-    /// The values from the last `seconds`, newest last.
-    pub fn last(&self, seconds: usize) -> impl ExactSizeIterator<Item = f64> + '_ {
+    /// The values from the last `seconds`, newest last; empty slots are left out.
+    pub fn last(&self, seconds: usize) -> impl Iterator<Item = f64> + '_ {
         let skipped = self.values.len().saturating_sub(seconds / SLOT_S);
-        self.values.iter().skip(skipped).map(|value| f64::from(*value))
+        self.values.iter().skip(skipped).flatten().map(|value| f64::from(*value))
     }
 }
 
@@ -102,7 +120,23 @@ mod tests {
         for tick in 0..10_000 {
             history.add(f64::from(tick) * 0.1, if tick % 10 == 3 { 1.0 } else { 0.1 });
         }
-        assert_eq!((history.last(HISTORY_S).len(), history.last(120).len()), (120, 30));
+        assert_eq!((history.last(HISTORY_S).count(), history.last(120).count()), (120, 30));
         assert!(history.last(HISTORY_S).all(|value| value > 0.9));
+    }
+
+    #[test]
+    fn values_before_a_hold_keep_their_times() {
+        let mut history = History::default();
+        for (t_s, value) in [(0.0, 1.0), (4.0, 2.0), (304.0, 3.0)] {
+            history.add(t_s, value);
+        }
+        let known = |history: &History| {
+            history.since(0.0).filter_map(|(t_s, value)| Some((t_s, value?))).collect::<Vec<_>>()
+        };
+        assert_eq!(known(&history), [(0.0, 1.0), (4.0, 2.0), (304.0, 3.0)]);
+        assert_eq!(history.since(0.0).count(), 77, "the slots of the hold are empty");
+        history.add(1e12, 4.0);
+        assert_eq!(known(&history).len(), 1);
+        assert_eq!(history.since(0.0).count(), KEPT, "a long gap takes no more room");
     }
 }

@@ -32,6 +32,10 @@ pub struct Run {
     pub coverage: Option<Raster>,
     /// The forecast accuracy of fixes across the floor.
     pub accuracy: Option<AccuracyMap>,
+    /// Differs between forecasts and position error limits; a drawing of the forecast remains valid as long as it stays the
+    /// same.
+    #[serde(default)]
+    pub accuracy_stamp: u64,
     /// The mission's progress; `None` before the first step.
     pub progress: Option<Progress>,
     /// The history of the scanned share of the reachable floor, per cent.

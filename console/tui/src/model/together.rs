@@ -3,7 +3,7 @@
 use super::Raster;
 use account::Account;
 use serde::{Deserialize, Serialize};
-use world::{CellRun, Point};
+use world::{CellRun, KindRun, Point};
 
 /// The runs that a re-scan continues.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -21,6 +21,9 @@ pub struct Combination {
     pub earlier: Vec<String>,
     /// The account of the floor over all runs.
     pub floor: Account,
+    /// The kinds of the cells of this floor: obstacles found and zones drawn in any of the runs are applied.
+    #[serde(default)]
+    pub kinds: Vec<KindRun>,
     /// The cells that any of the runs scanned.
     pub scanned: Vec<CellRun>,
 }
@@ -37,12 +40,9 @@ pub struct Together {
 }
 
 impl Together {
-    /// Adds what the earlier runs scanned to the floor of the re-scan.
-    pub fn new(Combination { earlier, floor, scanned }: Combination, own: Option<&Raster>) -> Self {
-        let raster = own.cloned().map(|mut raster| {
-            raster.apply(&scanned);
-            raster
-        });
+    /// Adds what the earlier runs found and scanned to the floor of the re-scan.
+    pub fn new(Combination { earlier, floor, kinds, scanned }: Combination, own: Option<&Raster>) -> Self {
+        let raster = own.map(|own| joined(own, &kinds, &scanned));
         Self { earlier, floor, raster }
     }
 
@@ -52,5 +52,34 @@ impl Together {
             1 => "the run before it".to_owned(),
             n => format!("the {n} runs before it"),
         }
+    }
+}
+
+/// The floor of a re-scan with the kinds of the joined floor and all scanned cells.
+fn joined(own: &Raster, kinds: &[KindRun], scanned: &[CellRun]) -> Raster {
+    let mut raster = own.clone();
+    raster.change(kinds);
+    raster.apply(scanned);
+    raster
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use world::{Boundary, Floor, World};
+
+    #[test]
+    fn floor_that_only_an_earlier_run_closed_is_closed_on_the_map() {
+        let boundary = Boundary::Circle { radius_m: 3.0 };
+        let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+        let own = Floor::new(&tank, 0.1, 0.3, 0.6, Point::origin());
+        let closed = Floor::new(&tank, 0.1, 1.0, 0.6, Point::origin());
+        assert_ne!(own, closed);
+        let scanned = [CellRun(0, own.len() as u32)];
+        let raster = joined(&Raster::new(own), &closed.kinds(), &scanned);
+        assert_eq!(raster.floor(), &closed);
+        let mut expected = Raster::new(closed);
+        expected.apply(&scanned);
+        assert_eq!(raster.reachable(), expected.reachable());
     }
 }

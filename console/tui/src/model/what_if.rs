@@ -20,6 +20,9 @@ pub struct WhatIf {
     /// A planner whose parameters are being changed for another forecast.
     #[serde(default)]
     pub draft: Option<PlannerChoice>,
+    /// The candidate that was added to estimate the effect of a change while the operator is asked about it.
+    #[serde(default)]
+    pub estimated: Option<PlannerChoice>,
 }
 
 /// A planner with its forecast.
@@ -49,6 +52,16 @@ impl WhatIf {
     /// The selected candidate.
     pub fn candidate(&self) -> Option<&Candidate> {
         self.candidates.get(self.selected)
+    }
+
+    /// The index of the candidate with this planner and these parameters.
+    pub fn position(&self, choice: &PlannerChoice) -> Option<usize> {
+        self.candidates.iter().position(|candidate| candidate.choice == *choice)
+    }
+
+    /// The candidates whose forecasts are not finished.
+    pub fn open(&self) -> impl Iterator<Item = &PlannerChoice> {
+        self.candidates.iter().filter(|candidate| candidate.made.is_none()).map(|candidate| &candidate.choice)
     }
 
     /// The figures of the finished forecasts.

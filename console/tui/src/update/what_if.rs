@@ -18,52 +18,68 @@ pub(crate) fn open(model: &mut Model) -> Vec<Effect> {
         .filter(|info| Some(info.id.as_str()) != run.planner_id())
         .map(|info| PlannerChoice { id: info.id.clone(), parameters: Parameters::new() });
     let choices: Vec<PlannerChoice> = current.into_iter().chain(others).take(MOST).collect();
-    begin(model, &choices)
+    begin(model, &choices, MOST)
 }
 
 /// Forecasts the active planner unchanged and changed, so that the effect of the change can be shown before it is sent.
+/// The comparison of the operator keeps its candidates; it has at most one more until the question is closed.
 pub(super) fn estimate(model: &mut Model, changed: PlannerChoice) -> Vec<Effect> {
-    if let Some(what_if) = &mut model.live.what_if {
-        what_if.candidates.truncate(MOST - 1);
-    }
+    drop_outdated(model);
+    let is_known = model.live.what_if.as_ref().is_some_and(|what_if| what_if.position(&changed).is_some());
     let current = model.live.run.planning.choice.clone();
-    begin(model, &current.into_iter().chain([changed]).collect::<Vec<_>>())
+    let choices: Vec<PlannerChoice> = current.into_iter().chain([changed.clone()]).collect();
+    let effects = begin(model, &choices, MOST + 1);
+    if let Some(what_if) = &mut model.live.what_if {
+        what_if.estimated = (!is_known).then_some(changed);
+    }
+    effects
 }
 
-/// Ends the forecasts of a change. Only finished forecasts of a held mission are kept, because they remain useful.
+/// Ends the forecast of a change. The comparison of a held mission goes on; it keeps the forecast of the change if that
+/// is finished and the comparison has room for it.
 pub(super) fn stop_estimate(model: &mut Model) -> Vec<Effect> {
     let is_held = matches!(model.live.run.phase(), Phase::Held(_));
     let Some(what_if) = &mut model.live.what_if else { return Vec::new() };
-    what_if.candidates.retain(|candidate| is_held && candidate.made.is_some());
-    what_if.selected = 0;
-    let current = model.live.run.planning.choice.as_ref();
-    if what_if.candidates.first().map(|first| &first.choice) != current {
+    let added = what_if.estimated.take();
+    let has_room = what_if.candidates.len() <= MOST;
+    what_if.candidates.retain(|candidate| {
+        added.as_ref() != Some(&candidate.choice) || (has_room && candidate.made.is_some())
+    });
+    what_if.selected = what_if.selected.min(what_if.candidates.len().saturating_sub(1));
+    let open: Vec<_> = what_if.open().cloned().collect();
+    // The active planner alone is no comparison yet.
+    if !is_held || (what_if.candidates.len() < 2 && what_if.n_done() == 0) {
         model.live.what_if = None;
+        return vec![Effect::StopForecasting];
     }
-    vec![Effect::StopForecasting]
+    vec![if open.is_empty() { Effect::StopForecasting } else { Effect::Forecast(open) }]
 }
 
-/// Adds planners to the comparison and has them forecast first. Finished forecasts are kept.
-fn begin(model: &mut Model, choices: &[PlannerChoice]) -> Vec<Effect> {
-    let current = model.live.run.planning.choice.clone();
+/// Drops a comparison with a planner that is not active any more.
+fn drop_outdated(model: &mut Model) {
+    let current = model.live.run.planning.choice.as_ref();
     let first = |what_if: &WhatIf| what_if.candidates.first().map(|first| first.choice.clone());
-    model.live.what_if.take_if(|what_if| first(what_if) != current);
+    model.live.what_if.take_if(|what_if| first(what_if).as_ref() != current);
+}
+
+/// Adds planners to the comparison, up to `most`, and has them forecast first. Finished forecasts are kept.
+fn begin(model: &mut Model, choices: &[PlannerChoice], most: usize) -> Vec<Effect> {
+    drop_outdated(model);
+    let current = model.live.run.planning.choice.clone();
     let t_s = model.live.run.clock.t_s;
-    let fresh = || WhatIf { t_s, candidates: Vec::new(), selected: 0, draft: None };
+    let fresh = || WhatIf { t_s, candidates: Vec::new(), selected: 0, draft: None, estimated: None };
     let what_if = model.live.what_if.get_or_insert_with(fresh);
     let before = what_if.candidates.len();
     for choice in choices {
-        if what_if.candidates.len() < MOST && what_if.candidates.iter().all(|known| known.choice != *choice) {
+        if what_if.candidates.len() < most && what_if.position(choice).is_none() {
             what_if.candidates.push(candidate(choice.clone()));
         }
     }
     if what_if.candidates.len() == before {
         return Vec::new();
     }
-    let open = what_if.candidates.iter().filter(|candidate| candidate.made.is_none());
     let is_urgent = |choice: &PlannerChoice| choices.contains(choice) || current.as_ref() == Some(choice);
-    let (first, later): (Vec<_>, Vec<_>) =
-        open.map(|candidate| candidate.choice.clone()).partition(is_urgent);
+    let (first, later): (Vec<_>, Vec<_>) = what_if.open().cloned().partition(is_urgent);
     vec![Effect::Forecast(first.into_iter().chain(later).collect())]
 }
 
@@ -71,16 +87,23 @@ fn candidate(choice: PlannerChoice) -> Candidate {
     Candidate { choice, at: None, made: None }
 }
 
-/// Adds a planner; existing forecasts are kept.
+/// Adds a planner to the comparison with the active one, and selects it; existing forecasts are kept.
 pub(super) fn add(model: &mut Model, choice: PlannerChoice) -> Vec<Effect> {
     model.ui.overlay = Overlay::WhatIf;
-    let Some(what_if) = &mut model.live.what_if else { return Vec::new() };
-    if what_if.candidates.iter().any(|candidate| candidate.choice == choice) {
-        return refuse(model, format!("planner {} is already in the comparison", choice.id));
+    drop_outdated(model);
+    if let Some(what_if) = &mut model.live.what_if {
+        if what_if.position(&choice).is_some() {
+            return refuse(model, format!("planner {} is already in the comparison", choice.id));
+        }
+        what_if.candidates.truncate(MOST - 1);
     }
-    what_if.candidates.truncate(MOST - 1);
-    what_if.selected = what_if.candidates.len();
-    begin(model, &[choice])
+    let current = model.live.run.planning.choice.clone();
+    let choices: Vec<PlannerChoice> = current.into_iter().chain([choice.clone()]).collect();
+    let effects = begin(model, &choices, MOST);
+    if let Some(what_if) = &mut model.live.what_if {
+        what_if.selected = what_if.position(&choice).unwrap_or(0);
+    }
+    effects
 }
 
 /// Opens the parameters of the selected candidate so that they can be changed for another forecast.
@@ -141,7 +164,7 @@ pub(super) fn choose(model: &mut Model) -> Vec<Effect> {
         Some(Ok(_)) => {}
     }
     let noted = Effect::Order(Order::NoteOutlooks(what_if.outlooks()));
-    if what_if.selected == 0 {
+    if model.live.run.planning.choice.as_ref() == Some(&choice) {
         model.ui.overlay = Overlay::None;
         let text = format!("planner {} stays active; <hold>: resume", choice.id);
         model.say(Severity::Info, model.console.keys.spelled(&text));

@@ -143,7 +143,7 @@ fn actions_block<'t>(look: &Look, alarm: &Alarm, title: &str) -> ratatui::widget
 
 /// Whether the figure of an alarm can be drawn as a curve.
 fn is_charted(alarm: &Alarm) -> bool {
-    alarm.history.last(HISTORY_S).len() > 1
+    alarm.history.last(HISTORY_S).nth(1).is_some()
 }
 
 /// The figure of an alarm over the last minutes, with the limit of the alarm.

@@ -103,11 +103,14 @@ fn series<'a>(look: &Look<'a>, chart: Chart) -> Option<Series<'a>> {
 
 fn plot(look: &Look, frame: &mut Frame, area: Rect, series: &Series<'_>) {
     let x = series.values.span_s(HISTORY_S);
-    let points = series.values.since(x[0]).map(|(t_s, value)| Point::new(t_s, value)).collect();
+    let slots: Vec<_> =
+        series.values.since(x[0]).map(|(t_s, value)| value.map(|value| Point::new(t_s, value))).collect();
+    let stretches = slots.split(Option::is_none).map(|points| points.iter().flatten().copied().collect());
+    let stretches = stretches.filter(|points: &Vec<Point>| !points.is_empty()).collect();
     let has_axis = area.width >= AXIS.0 + LABELS && area.height >= AXIS.1;
     let [area, below] =
         Layout::vertical([Constraint::Fill(1), Constraint::Length(has_axis.into())]).areas(area);
-    curve(look, frame, area, &Curve { points, x, limit: series.limit, decimals: series.decimals });
+    curve(look, frame, area, &Curve { stretches, x, limit: series.limit, decimals: series.decimals });
     if has_axis {
         axis(look, frame, Rect { x: below.x + LABELS, width: below.width - LABELS, ..below }, x);
     }
@@ -126,8 +129,8 @@ fn axis(look: &Look, frame: &mut Frame, area: Rect, [from_s, to_s]: [f64; 2]) {
 
 /// A curve with its limit.
 pub(super) struct Curve {
-    /// The points: the abscissa, and the value.
-    pub points: Vec<Point>,
+    /// The points of each stretch without a gap: the abscissa, and the value.
+    pub stretches: Vec<Vec<Point>>,
     /// The abscissas at the left and at the right edge.
     pub x: [f64; 2],
     pub limit: Option<f64>,
@@ -136,7 +139,8 @@ pub(super) struct Curve {
 
 /// Draws a curve with the largest value and the limit beside it.
 pub(super) fn curve(look: &Look, frame: &mut Frame, area: Rect, curve: &Curve) {
-    let largest = curve.points.iter().map(|at| at.y).filter(|value| value.is_finite()).fold(0.0, f64::max);
+    let values = curve.stretches.iter().flatten().map(|at| at.y);
+    let largest = values.filter(|value| value.is_finite()).fold(0.0, f64::max);
     let limit = curve.limit.filter(|limit| limit.is_finite() && *limit > 0.0);
     let top = HEADROOM * largest.max(limit.unwrap_or(0.0));
     let top = if top > 0.0 && top.is_finite() { top } else { 1.0 };
@@ -154,7 +158,12 @@ pub(super) fn curve(look: &Look, frame: &mut Frame, area: Rect, curve: &Curve) {
                 Pattern::Dotted,
             );
         }
-        stroke(&curve.points, Role::Watch, Pattern::Solid);
+        for points in &curve.stretches {
+            stroke(points, Role::Watch, Pattern::Solid);
+            if let [point] = points[..] {
+                stroke(&[point; 2], Role::Watch, Pattern::Solid);
+            }
+        }
     });
     frame.render_widget(canvas, plot);
     let mut label = |value: f64| label(look, frame, area, (value, curve.decimals), top);

@@ -194,13 +194,14 @@ pub(crate) fn meter(share: f64) -> String {
     bar(share, METER).chars().enumerate().map(place).collect()
 }
 
-/// A sparkline of at most `most_s` seconds of a history, from 0 to `top`; each column shows the largest of its values.
+/// A sparkline of at most `most_s` seconds of a history, from 0 to `top`; each column shows the largest of its values
+/// and is blank if it has none.
 pub(crate) fn sparkline(history: &History, most_s: usize, top: f64, columns: usize) -> String {
     const STEPS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
     let mut largest: Vec<Option<f64>> = vec![None; columns];
     let [from_s, to_s] = history.span_s(most_s);
     let column = |t_s: f64| (t_s - from_s) / (to_s - from_s) * columns as f64;
-    for (t_s, value) in history.since(from_s) {
+    for (t_s, value) in history.since(from_s).filter_map(|(t_s, value)| Some((t_s, value?))) {
         // A value stands for its whole slot, which can be several columns wide.
         let first = column(t_s).floor() as usize;
         let end = (column(t_s + SLOT_S as f64).ceil() as usize).clamp(first + 1, columns.max(first + 1));
@@ -278,6 +279,15 @@ mod tests {
         let at = |columns| sparkline(&history, 120, 1.0, columns);
         assert_eq!([at(5), at(15)], ["█    ", "▁█▅            "]);
         assert_eq!(at(30).trim_end(), "▁▁██▅▅", "the first minute from the left, without gaps");
+    }
+
+    #[test]
+    fn a_curve_has_a_gap_while_no_values_came() {
+        let mut history = History::default();
+        for t_s in [0.0, 4.0, 52.0, 56.0] {
+            history.add(t_s, 1.0);
+        }
+        assert_eq!(sparkline(&history, 60, 1.0, 15), "██           ██");
     }
 
     #[test]

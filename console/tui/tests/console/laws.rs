@@ -411,7 +411,7 @@ fn what_is_drawn_does_not_grow_with_the_mission() {
     screen.hear(RunMsg::Events(events));
     assert!(screen.model.live.run.trail.points().len() <= 2048);
     let seconds = tui::model::history::HISTORY_S;
-    assert!(screen.model.live.run.position.history_m.last(usize::MAX).len() <= seconds);
+    assert!(screen.model.live.run.position.history_m.since(0.0).count() <= seconds);
     for i in 0..120_000 {
         screen.send(Msg::Notice { severity: Severity::Info, text: format!("line {i}") });
     }

@@ -293,7 +293,12 @@ fn result_of_a_rescan() {
     all.missed.truncate(0);
     let cells = screen.model.live.run.coverage.as_ref().unwrap().floor().len() as u32;
     let (earlier, scanned) = (screen.model.live.earlier.clone(), vec![world::CellRun(0, cells)]);
-    screen.hear(RunMsg::Combined(Ok(Box::new(Combination { earlier, floor: all, scanned }))));
+    screen.hear(RunMsg::Combined(Ok(Box::new(Combination {
+        earlier,
+        floor: all,
+        kinds: Vec::new(),
+        scanned,
+    }))));
     for size in [(60, 16), (80, 24), (120, 36), (200, 60)] {
         let shown = text(&drawn(&screen.model, RICH, size)).split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(shown.contains("99.1 %"), "the figure of all runs at {size:?}\n{shown}");

@@ -210,6 +210,46 @@ fn forecasts_of_a_change_stay_in_the_comparison_of_a_held_mission() {
 }
 
 #[test]
+fn a_question_about_a_change_leaves_the_comparison_of_the_operator() {
+    let mut screen = Screen::held();
+    let compared = |screen: &Screen| -> Vec<PlannerChoice> {
+        let what_if = screen.model.live.what_if.as_ref().expect("a comparison");
+        what_if.candidates.iter().map(|candidate| candidate.choice.clone()).collect()
+    };
+    screen.press([Key::Char('w')]);
+    let before = compared(&screen);
+    assert!(before.len() > 1, "{before:?}");
+    screen.hear(forecast(&before[0], 80.0, 600.0));
+    screen.press([Key::Esc]);
+    type_value(&mut screen, "1.5");
+    assert!(compared(&screen).contains(&changed(&screen, 1.5)));
+    let given_up = screen.press([Key::Esc]);
+    assert_eq!(given_up, [Effect::Forecast(before[1..].to_vec())], "the others are forecast on");
+    assert_eq!(compared(&screen), before);
+}
+
+#[test]
+fn a_planner_added_after_the_active_one_changed_is_the_one_that_is_chosen() {
+    let mut screen = Screen::held();
+    screen.press([Key::Char('w'), Key::Char('p')]);
+    let mut active = screen.model.live.run.planning.choice.clone().expect("a planner");
+    active.parameters.insert("rpf_gain".into(), ParamValue::Float(1.5));
+    screen.model.live.run.planning.choice = Some(active.clone());
+    screen.press([Key::Enter, Key::Backspace, Key::Backspace, Key::Backspace]);
+    screen.type_text("1.7");
+    screen.press(ENTER);
+    let with = changed(&screen, 1.7);
+    assert_eq!(screen.press([Key::Char('w')]), [Effect::Forecast(vec![active, with.clone()])]);
+    screen.hear(forecast(&with, 90.0, 500.0));
+    screen.press(ENTER);
+    assert!(
+        matches!(&screen.model.ui.overlay, Overlay::Confirm(Ask::Swap(choice)) if *choice == with),
+        "{:?}",
+        screen.model.ui.overlay
+    );
+}
+
+#[test]
 fn a_change_by_a_command_is_asked_for_and_leaves_no_list() {
     let mut screen = Screen::running();
     screen.type_text(":set rpf_gain=1.5");

@@ -81,13 +81,47 @@ impl Shade {
     }
 }
 
-/// The shades in a window, row by row from the north-west.
-pub(crate) type Shades = Rc<[Option<Shade>]>;
+/// The shades in a window, and which of them occur.
+#[derive(Debug)]
+pub(crate) struct Painted {
+    /// Row by row from the north-west.
+    dots: Vec<Option<Shade>>,
+    /// For each line of [`LEGEND`], whether its shade occurs.
+    occurs: [bool; LEGEND.len()],
+}
 
-/// The inputs from which the floor's shades are computed: the stamp of the raster, the window, shade rows per
-/// character row, whether the mission has ended, and the stamp of the raster with which it is compared.
+/// The shades in a window, shared with the cache.
+pub(crate) type Shades = Rc<Painted>;
+
+impl FromIterator<Option<Shade>> for Painted {
+    fn from_iter<T: IntoIterator<Item = Option<Shade>>>(dots: T) -> Self {
+        let (mut occurs, mut last) = ([false; LEGEND.len()], None);
+        let note = |shade: Option<Shade>| {
+            // Neighbours mostly have the same shade.
+            if shade != last {
+                let line = LEGEND.iter().position(|(known, _)| Some(*known) == shade);
+                line.into_iter().for_each(|line| occurs[line] = true);
+                last = shade;
+            }
+            shade
+        };
+        let dots = dots.into_iter().map(note).collect();
+        Self { dots, occurs }
+    }
+}
+
+/// The inputs from which the shades are computed; the stamps are those of the raster, of the raster with which it is
+/// compared, and of the forecast if it is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Key(u64, Window, u16, bool, Option<u64>);
+pub(crate) struct Key {
+    raster: Option<u64>,
+    other: Option<u64>,
+    forecast: Option<u64>,
+    window: Window,
+    /// Shade rows per character row.
+    rows_per_row: u16,
+    has_missed: bool,
+}
 
 /// The shades in the order of the legend, the most important first, each with its legend text.
 pub(super) const LEGEND: [(Shade, &str); 12] = [
@@ -108,7 +142,7 @@ pub(super) const LEGEND: [(Shade, &str); 12] = [
 /// The shades that are on the map now, with their legend texts.
 pub(super) fn shown(look: &Look, window: Window) -> impl Iterator<Item = (Shade, &'static str)> {
     let shades = shades(look, window, if look.is_plain() { 1 } else { 2 });
-    LEGEND.into_iter().filter(move |(shade, _)| shades.contains(&Some(*shade)))
+    LEGEND.into_iter().enumerate().filter(move |(line, _)| shades.occurs[*line]).map(|(_, entry)| entry)
 }
 
 /// Paints the floor where nothing else is drawn, and the background under lines.
@@ -120,7 +154,7 @@ pub(super) fn paint(look: &Look, window: Window, area: Rect, buffer: &mut Buffer
         for (column, x) in (area.left()..area.right()).enumerate() {
             let at = |half: usize| {
                 let row = if halves { 2 * row + half } else { row };
-                shades.get(row * columns + column).copied().flatten()
+                shades.dots.get(row * columns + column).copied().flatten()
             };
             paint_cell(look, at(0), at(1), &mut buffer[(x, y)]);
         }
@@ -160,32 +194,37 @@ fn paint_cell(look: &Look, upper: Option<Shade>, lower: Option<Shade>, cell: &mu
     }
 }
 
-/// The shades of the forecast if it is shown; otherwise the shades of the floor, which rarely change and are cached
+/// The shades of the forecast if it is shown; otherwise the shades of the floor. They rarely change, so they are cached
 /// between frames.
 fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
     let (run, layers) = (look.run, look.model.ui.layers);
     let raster = look.model.live.scanned().filter(|_| layers.shows(MapLayer::Scanned));
-    if layers.shows(MapLayer::Accuracy) {
-        return window
-            .dots(rows_per_row)
-            .map(|(at, edge_m)| forecast(look, at).or_else(|| floor(raster?, at, edge_m, run.has_missed())))
-            .collect();
-    }
-    let Some(raster) = raster else { return Rc::new([]) };
-    let other = compared(look);
-    let key = Key(raster.stamp(), window, rows_per_row, run.has_missed(), other.map(Raster::stamp));
+    let shows_forecast = layers.shows(MapLayer::Accuracy);
+    let (other, has_missed) = (compared(look).filter(|_| !shows_forecast), run.has_missed());
+    let key = Key {
+        raster: raster.map(Raster::stamp),
+        other: other.map(Raster::stamp),
+        forecast: shows_forecast.then_some(run.accuracy_stamp),
+        window,
+        rows_per_row,
+        has_missed,
+    };
     look.cache.borrow_mut().shades(key, || {
+        let dots = window.dots(rows_per_row);
+        if shows_forecast {
+            let shade = |(at, edge_m)| forecast(look, at).or_else(|| floor(raster?, at, edge_m, has_missed));
+            return Rc::new(dots.map(shade).collect());
+        }
+        let Some(raster) = raster else { return Rc::new(Painted::from_iter([])) };
         let not_reached = run.not_reached();
         let shade = |(at, edge_m)| match other {
             Some(other) => Scans::in_square(raster, other, at, edge_m).and_then(difference),
-            None => {
-                floor(raster, at, edge_m, run.has_missed()).map(|shade| shade.when(&not_reached, raster, at))
-            }
+            None => floor(raster, at, edge_m, has_missed).map(|shade| shade.when(&not_reached, raster, at)),
         };
         // Half a character that is partly beyond the wall stays blank; a whole character there belongs to the wall.
         let is_inside = |at, edge_m| rows_per_row == 1 || is_floor(raster, at, edge_m);
         let shade = |(at, edge_m)| shade((at, edge_m)).filter(|_| is_inside(at, edge_m));
-        window.dots(rows_per_row).map(shade).collect()
+        Rc::new(dots.map(shade).collect())
     })
 }
 

@@ -27,7 +27,12 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let words = format!(" AE error along the path, m, start to end ({} m)", text::number(length_m, 1));
     frame.render_widget(look.line([(Role::Dim, words)]), title);
     let limit = Some(about.mission.position_limit_m);
-    charts::curve(look, frame, below, &Curve { points, x: [0.0, length_m], limit, decimals: 2 });
+    charts::curve(
+        look,
+        frame,
+        below,
+        &Curve { stretches: vec![points], x: [0.0, length_m], limit, decimals: 2 },
+    );
 }
 
 /// The distance along a path and the error expected there, metres, at points `every_m` apart that get a fix.
