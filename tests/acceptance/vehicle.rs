@@ -426,7 +426,7 @@ fn what_a_lying_adapter_says_is_named_with_its_field_and_holds_the_robot() {
     let cases = [
         (nan, "readings.odometry.forward_m: NaN is not a finite number"),
         (jump, "readings.odometry.forward_m: 5 m in 0.1 s"),
-        (half, "3 malformed lines in a row; readings"),
+        (half, "3 malformed lines without good readings in between; readings"),
         (restarted, "the vehicle has restarted"),
         (long, "the line is longer than"),
         (stopped, "the emergency stop of the vehicle is pressed"),

@@ -13,6 +13,10 @@ pub struct VehicleRecord {
     pub at: String,
     /// Number of readings that arrived.
     pub heard: u64,
+    /// Whether the journal ends before the last figures of the link. `heard` then also counts the later ticks with
+    /// readings, and all numbers of messages are minima.
+    #[serde(default)]
+    pub at_least: bool,
     /// Number of readings that are missing according to the sequence numbers.
     pub missed: u64,
     /// Number of faulty messages.
@@ -47,10 +51,15 @@ impl VehicleRecord {
             EventKind::Link(LinkSeen { state, age_p99_s, heard, missed, faulty, unmeasured_s, .. }) => {
                 self.unmeasured_s = *unmeasured_s;
                 (self.heard, self.missed, self.faulty) = (*heard, *missed, *faulty);
+                self.at_least = false;
                 self.age_p99_s = age_p99_s.or(self.age_p99_s);
                 let is_lost = matches!(state, LinkState::Lost | LinkState::Closed);
                 self.lost += u64::from(is_lost && self.is_heard);
                 self.is_heard = !is_lost;
+            }
+            EventKind::Sensed { .. } => {
+                self.heard += 1;
+                self.at_least = true;
             }
             EventKind::Sent { drive: Some(_), .. } => self.stands = None,
             EventKind::Stood { confirmed: true, after_s, .. } => {
@@ -64,5 +73,23 @@ impl VehicleRecord {
             }
             _ => {}
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn readings_after_the_last_figures_of_the_link_count() {
+        let mut record = VehicleRecord::default();
+        let sensed = EventKind::Sensed { source_t_s: 1.0, arrival_t_s: 1.0, readings: Box::default() };
+        let figures = |heard| EventKind::Link(LinkSeen { heard, ..LinkSeen::default() });
+        for event in [&figures(0), &sensed, &sensed] {
+            record.apply(event);
+        }
+        assert_eq!((record.heard, record.at_least), (2, true));
+        record.apply(&figures(5));
+        assert_eq!((record.heard, record.at_least), (5, false));
     }
 }

@@ -35,7 +35,8 @@ def robot(hello, body):  # lines with speed, turn rate and lease in, readings ou
         if seq % 25 == 0: say({"type": "state", "stamp_s": now, "mode": "ready"})
 
 def command(line, hello, heard):  # its line for the robot; an error if it is bad. `heard`: greatest number, least delay of a stamp
-    heard[1] = min(heard[1] + 1e-4, late := time.monotonic() - line.get("stamp_s", float("-inf")))  # + 1e-4: clocks drift
+    late = time.monotonic() - float(line["stamp_s"] if line["type"] in ("drive", "ping") else line.get("stamp_s", "-inf"))
+    heard[1] = min(heard[1] + 1e-4, late)  # + 1e-4: clocks drift
     if line["type"] == "ping": say({"type": "pong", "echo_s": line["stamp_s"], "stamp_s": time.monotonic()})
     if line["type"] not in ("drive", "stop") or line["seq"] <= heard[0]: return "0 0 0\n" * (line["type"] == "bye")
     heard[0] = int(line["seq"])
@@ -52,7 +53,7 @@ def adapter(hello, program):  # between the console (stdin, stdout) and the robo
         if child.stdout in ready: os.write(1, os.read(child.stdout.fileno(), 65536) or sys.exit("the robot process has ended"))
         *lines, rest = (rest + (data if 0 in ready else b"")).split(b"\n") if len(rest) < 65536 else (b"too long", b"")
         for line in filter(None, lines):
-            try: order = command(json.loads(line), hello, heard)
+            try: order = command(json.loads(line, parse_constant=int), hello, heard)  # NaN is bad
             except Exception as why: order = print("stopped by a bad line:", repr(why)[:200], file=sys.stderr) or "0 0 0\n"
             os.write(child.stdin.fileno(), order.encode())
 

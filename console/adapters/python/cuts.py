@@ -19,6 +19,8 @@ STILL = 1e-9  # metres or radians per second
 WATCH_S = 2.5  # after the cut
 LEASE_S = 0.3  # lease and one period, as the rules demand
 TOLD_S = 1.0
+LIMIT_S = 120  # for one command of tankops
+OPTIONS = os.environ.get("TANKOPS_OPTIONS", "").split()
 
 
 def relay(listener, way, after_s, program, env):
@@ -87,6 +89,10 @@ def told(events):
     return None if lost is None else round(lost - max(heard), 3)
 
 
+def read(tankops, *command):
+    return subprocess.run([tankops, *OPTIONS, *command], capture_output=True, timeout=LIMIT_S)
+
+
 def one(tankops, scenario, number, seed, folder):
     chance = random.Random(f"{seed} {number}")
     way, after_s = WAYS[number % len(WAYS)], chance.uniform(0.2, 3.0)
@@ -95,17 +101,18 @@ def one(tankops, scenario, number, seed, folder):
     with socket.socket(socket.AF_UNIX) as listener:
         listener.bind(at)
         listener.listen(1)
-        command = [tankops, *os.environ.get("TANKOPS_OPTIONS", "").split(), "run", scenario, "--vehicle", f"unix:{at}",
-                   "--logs", logs, *os.environ.get("SET", "").split()]
+        command = [tankops, *OPTIONS, "run", scenario, "--vehicle", f"unix:{at}", "--logs", logs,
+                   *os.environ.get("SET", "").split()]
         run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         program = [sys.executable, os.path.abspath(adapter.__file__)]
         drove, cut = relay(listener, way, after_s, program, {**os.environ, "ROBOT_LOG": log})
-        said = run.communicate(timeout=120)[0].decode()
+        said = run.communicate(timeout=LIMIT_S)[0].decode()
     if cut is None:
         return {"cut": number, "way": way, "wrong": [f"the run ended before the cut: {said}"]}
     kept = sorted(os.listdir(logs))
-    proved = subprocess.run([tankops, "verify", os.path.join(logs, kept[-1])], capture_output=True)
-    listed = subprocess.run([tankops, "events", os.path.join(logs, kept[-1])], capture_output=True, check=True)
+    proved = read(tankops, "verify", os.path.join(logs, kept[-1]))
+    listed = read(tankops, "events", os.path.join(logs, kept[-1]))
+    listed.check_returncode()
     events = [json.loads(line) for line in listed.stdout.splitlines()]
     with open(log) as lines:
         stand_s, speed, is_still = stands(lines, cut)

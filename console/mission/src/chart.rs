@@ -7,7 +7,7 @@ use crate::{
     governor::{Outline, Solid},
 };
 use nalgebra::{Isometry2, Translation2};
-use perception::{Drift, change_m};
+use perception::{Drift, OUT_OF_SIGHT_S, change_m};
 use planner_api as api;
 use std::sync::Arc;
 use world::{Obstacle, ObstacleId, ObstacleMap, Point, Pose, Shape, Sighting, World, Zone, ZoneKind};
@@ -17,9 +17,6 @@ use world::{Obstacle, ObstacleId, ObstacleMap, Point, Pose, Shape, Sighting, Wor
 const MOVED_M: f64 = 0.05;
 /// Number of sightings in the running mean of a found obstacle's position.
 const MEMORY: f64 = 50.0;
-/// Time out of sight, seconds, after which a moving obstacle is forgotten.
-const OUT_OF_SIGHT_S: f64 = 2.0;
-
 /// Maximum distance, metres, by which an outline from a tracker may extend beyond the drawn obstacle that it shows. It
 /// allows for errors of the position and of the tracker. An object this close to a drawn obstacle is not added to the
 /// chart; the robot still stops before it.

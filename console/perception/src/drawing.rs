@@ -11,6 +11,9 @@ use world::Obstacle;
 
 /// Number of standard deviations within which a point belongs to the drawing.
 pub(crate) const GATE: f64 = 3.0;
+/// A point is compared with a surface unless it is farther away than its gate by this distance, metres: rounding must not
+/// decide.
+const SPARE_M: f64 = 1e-6;
 /// Number of rounds in which the pose is corrected with the points near the drawing.
 const ROUNDS: usize = 3;
 
@@ -45,21 +48,22 @@ impl<'a> Drawing<'a> {
     }
 
     /// Finds, for each ray, the surface nearest to its point; `None` if the point is too far from every surface.
-    fn beside(&self, rays: &Rays, pose: &Uncertain, found: &mut Vec<Option<Beside>>) {
+    fn beside(&self, rays: &Rays, pose: &Uncertain, buffers: &mut Buffers) {
+        let Buffers { beside: found, gates_m } = buffers;
         found.clear();
         found.extend((0..rays.len()).map(|ray| {
-            let range_m = rays.range_m[ray];
-            let beside = range_m.is_finite().then(|| self.beside_wall(rays.point(ray)))?;
-            (beside.distance_m.abs() <= pose.gate_m(range_m)).then_some(beside)
+            let beside = rays.range_m[ray].is_finite().then(|| self.beside_wall(rays.point(ray)))?;
+            (beside.distance_m.abs() <= gates_m[ray]).then_some(beside)
         }));
         for (obstacle, center, radius_m) in &self.obstacles {
-            for ray in rays.towards(*center, radius_m + pose.gate_m((center - rays.eye()).norm())) {
+            let far_m = (center - rays.eye()).norm();
+            for ray in rays.towards(*center, radius_m + pose.gate_m(far_m)) {
                 let range_m = rays.range_m[ray];
-                if !range_m.is_finite() {
+                if !range_m.is_finite() || (range_m - far_m).abs() > radius_m + gates_m[ray] + SPARE_M {
                     continue;
                 }
                 let beside = beside_shape(&obstacle.shape, rays.point(ray));
-                let best_m = found[ray].map_or(pose.gate_m(range_m), |best| best.distance_m.abs());
+                let best_m = found[ray].map_or(gates_m[ray], |best| best.distance_m.abs());
                 if beside.distance_m.abs() <= best_m {
                     found[ray] = Some(beside);
                 }
@@ -81,10 +85,11 @@ impl<'a> Drawing<'a> {
     /// Corrects the pose so that the scan fits the drawing; returns the uncertainty that remains.
     pub(crate) fn correct(&self, rays: &mut Rays, pose: &Uncertain, buffers: &mut Buffers) -> Uncertain {
         let Some(prior) = pose.information() else { return *pose };
+        gates(rays, pose, &mut buffers.gates_m);
         let mut corrected = Vector3::zeros();
         let mut information = prior;
         for _ in 0..ROUNDS {
-            self.beside(rays, pose, &mut buffers.beside);
+            self.beside(rays, pose, buffers);
             let robot = rays.frame().translation.vector;
             let (mut normal, mut right) = (prior, -(prior * corrected));
             let weight = 1.0 / (pose.sigma_m * pose.sigma_m);
@@ -108,18 +113,25 @@ impl<'a> Drawing<'a> {
 
     /// Determines, for each ray, whether the drawing explains it: the ray has no echo, or its point is on or behind the
     /// wall, or on or in an obstacle.
-    pub(crate) fn explain(&self, rays: &Rays, pose: &Uncertain, explained: &mut Vec<bool>) {
+    pub(crate) fn explain(
+        &self,
+        rays: &Rays,
+        pose: &Uncertain,
+        buffers: &mut Buffers,
+        explained: &mut Vec<bool>,
+    ) {
+        let gates_m = &mut buffers.gates_m;
+        gates(rays, pose, gates_m);
         explained.clear();
         explained.extend((0..rays.len()).map(|ray| {
-            let range_m = rays.range_m[ray];
-            !range_m.is_finite() || self.beside_wall(rays.point(ray)).distance_m <= pose.gate_m(range_m)
+            !rays.range_m[ray].is_finite() || self.beside_wall(rays.point(ray)).distance_m <= gates_m[ray]
         }));
         for (obstacle, center, radius_m) in &self.obstacles {
             let far_m = (center - rays.eye()).norm();
             for ray in rays.towards(*center, radius_m + pose.gate_m(far_m + radius_m)) {
+                let is_away = (rays.range_m[ray] - far_m).abs() > radius_m + gates_m[ray] + SPARE_M;
                 explained[ray] = explained[ray]
-                    || beside_shape(&obstacle.shape, rays.point(ray)).distance_m
-                        <= pose.gate_m(rays.range_m[ray]);
+                    || !is_away && beside_shape(&obstacle.shape, rays.point(ray)).distance_m <= gates_m[ray];
             }
         }
     }
@@ -129,6 +141,14 @@ impl<'a> Drawing<'a> {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Buffers {
     beside: Vec<Option<Beside>>,
+    /// For each ray, the maximum distance of its point from the surface that it shows, metres.
+    gates_m: Vec<f64>,
+}
+
+/// Computes the gate of each ray.
+fn gates(rays: &Rays, pose: &Uncertain, gates_m: &mut Vec<f64>) {
+    gates_m.clear();
+    gates_m.extend(rays.range_m.iter().map(|range_m| pose.gate_m(*range_m)));
 }
 
 /// A disc around a shape.
@@ -190,12 +210,13 @@ mod tests {
         let covariance = Matrix3::from_diagonal(&Vector3::new(0.0036, 0.0036, 4e-4));
         let pose = Uncertain::estimated(0.02, &covariance);
         let drawing = Drawing::near(&boundary, [&drawn].into_iter(), estimate.position, 9.0);
-        let left = drawing.correct(&mut rays, &pose, &mut Buffers::default());
+        let mut buffers = Buffers::default();
+        let left = drawing.correct(&mut rays, &pose, &mut buffers);
         let off = rays.frame().translation.vector - truth.position.coords;
         assert!(off.norm() < 0.02, "{off}");
         assert!((rays.frame().rotation.angle() - 0.3).abs() < 0.01);
         let mut explained = Vec::new();
-        drawing.explain(&rays, &left, &mut explained);
+        drawing.explain(&rays, &left, &mut buffers, &mut explained);
         for ray in (0..rays.len()).filter(|ray| !explained[*ray]) {
             assert!(found.shape.distance_m(rays.point(ray)).abs() < 0.15, "{}", rays.point(ray));
         }

@@ -2,6 +2,7 @@
 
 use crate::rays::Rays;
 use std::ops::Range;
+use world::scan::APART;
 
 /// Number of rays without an echo that a group may contain in a row.
 const LOST: usize = 2;
@@ -10,8 +11,6 @@ pub(crate) const LEAST: usize = 3;
 /// Largest extent of a group, metres. A longer surface is divided into several groups, so that their convex outlines
 /// stay close to it.
 const LONGEST_M: f64 = 1.0;
-/// Maximum difference of distance between neighbouring points of one surface, in standard deviations.
-const JUMP: f64 = 5.0;
 /// Cosine of the largest angle between a ray and the normal of a surface at which neighbouring points still count as
 /// one surface.
 const GRAZING: f64 = 0.2;
@@ -39,6 +38,16 @@ pub(crate) fn groups(rays: &Rays, left: &[usize], sigma_m: f64, found: &mut Vec<
     }
 }
 
+/// The largest of several groups, unless points outside it are within `near_m` metres of it.
+pub(crate) fn apart<'a>(rays: &Rays, list: &'a [usize], parts: &[Group], near_m: f64) -> Option<&'a [usize]> {
+    let largest = parts.iter().max_by_key(|part| part.rays.len())?.rays.clone();
+    let part = &list[largest.clone()];
+    let is_apart =
+        |other: &usize| part.iter().all(|ray| (rays.point(*ray) - rays.point(*other)).norm() > near_m);
+    let mut others = list[..largest.start].iter().chain(&list[largest.end..]);
+    others.all(is_apart).then_some(part)
+}
+
 /// Whether two consecutive points can lie on one surface.
 fn are_joined(rays: &Rays, one: usize, next: usize, sigma_m: f64) -> bool {
     let between = (next + rays.len() - one) % rays.len();
@@ -47,9 +56,9 @@ fn are_joined(rays: &Rays, one: usize, next: usize, sigma_m: f64) -> bool {
     }
     let skipped_have_no_echo = (1..between)
         .filter_map(|by| rays.neighbour(one, by as isize))
-        .all(|ray| rays.range_m[ray].is_infinite());
+        .all(|ray| !rays.range_m[ray].is_finite());
     let apart_m = rays.range_m[one].min(rays.range_m[next]) * between as f64 * rays.step_rad();
-    let most_m = JUMP * sigma_m + apart_m / GRAZING;
+    let most_m = APART * sigma_m + apart_m / GRAZING;
     skipped_have_no_echo && (rays.range_m[one] - rays.range_m[next]).abs() <= most_m
 }
 

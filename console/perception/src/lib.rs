@@ -26,6 +26,7 @@ mod uncertain;
 pub use drift::Drift;
 pub use outline::change_m;
 pub use sensor::Sensor;
+pub use track::OUT_OF_SIGHT_S;
 pub use tracker::{FIRST_ID, Looked, Perception, Seen, View};
 
 #[cfg(test)]

@@ -5,6 +5,10 @@ use nalgebra::{Isometry2, UnitComplex};
 use std::f64::consts::TAU;
 use world::{NO_ECHO, Scan};
 
+/// The distance of a ray that hit something too near to be measured, or the robot itself: the ray shows neither an
+/// object nor free space.
+pub(crate) const TOO_NEAR: f64 = f64::NEG_INFINITY;
+
 /// The rays of a scan, as seen from an estimated pose. The buffers are reused for the next scan.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Rays {
@@ -16,7 +20,13 @@ pub(crate) struct Rays {
     sensor: Vector,
     /// The transform from the robot frame at the time of the scan to the tank frame.
     tank_from_robot: Isometry2<f64>,
-    /// Distances, metres; infinite without an echo.
+    /// What follows from this transform: the heading, radians, and, in the tank frame, the position of the sensor, the
+    /// directions of the rays, and the points that they hit.
+    heading_rad: f64,
+    eye: Point,
+    directions: Vec<Vector>,
+    points: Vec<Point>,
+    /// Distances, metres; infinite without an echo, and [`TOO_NEAR`] for an echo from a place that is not known.
     pub range_m: Vec<f64>,
 }
 
@@ -35,9 +45,36 @@ impl Rays {
         let moved = Vector::new(scan.since.forward_m, scan.since.sideways_m);
         let since = Isometry2::new(moved, scan.since.turn_rad);
         self.tank_from_robot = tank_from_robot * since.inverse();
-        let metres = |mm: &u16| if *mm == NO_ECHO { f64::INFINITY } else { f64::from(*mm) / 1000.0 };
+        let metres = |mm: &u16| match *mm {
+            NO_ECHO => f64::INFINITY,
+            0 => TOO_NEAR,
+            mm => f64::from(mm) / 1000.0,
+        };
         self.range_m.clear();
         self.range_m.extend(scan.ranges_mm.0.iter().map(metres));
+        self.place();
+    }
+
+    /// Computes what follows from the pose.
+    fn place(&mut self) {
+        let turn = self.tank_from_robot.rotation;
+        self.heading_rad = turn.angle();
+        let eye = self.tank_from_robot * Point::from(self.sensor);
+        self.eye = eye;
+        self.directions.clear();
+        self.directions.extend(self.in_robot.iter().map(|direction| turn * direction));
+        self.points.clear();
+        let rays = self.directions.iter().zip(&self.range_m);
+        self.points.extend(rays.map(|(direction, range_m)| eye + direction * *range_m));
+    }
+
+    /// Ignores echoes from inside the hull, a disc with this radius in metres.
+    pub(crate) fn ignore_hull(&mut self, hull_m: f64) {
+        for (range_m, direction) in self.range_m.iter_mut().zip(&self.in_robot) {
+            if range_m.is_finite() && (self.sensor + direction * *range_m).norm() < hull_m {
+                *range_m = TOO_NEAR;
+            }
+        }
     }
 
     /// Moves the pose from which the scan was made by a small correction: along x and y in metres, and a turn about the
@@ -46,6 +83,7 @@ impl Rays {
         let place = self.tank_from_robot.translation.vector + Vector::new(by.x, by.y);
         let turn = self.tank_from_robot.rotation * UnitComplex::new(by.z);
         self.tank_from_robot = Isometry2::from_parts(place.into(), turn);
+        self.place();
     }
 
     /// The transform from the robot frame at the time of the scan to the tank frame.
@@ -60,7 +98,7 @@ impl Rays {
 
     /// Whether the rays go all around.
     pub(crate) fn is_round(&self) -> bool {
-        self.len() as f64 * self.step_rad.abs() > TAU - 0.5 * self.step_rad.abs()
+        world::scan::is_round(self.len(), self.step_rad)
     }
 
     /// Angle between neighbouring rays, radians.
@@ -70,17 +108,17 @@ impl Rays {
 
     /// Position of the sensor in the tank.
     pub(crate) fn eye(&self) -> Point {
-        self.tank_from_robot * Point::from(self.sensor)
+        self.eye
     }
 
     /// Direction of a ray in the tank.
     pub(crate) fn direction(&self, ray: usize) -> Vector {
-        self.tank_from_robot.rotation * self.in_robot[ray]
+        self.directions[ray]
     }
 
     /// The point that a ray hit; only for rays with an echo.
     pub(crate) fn point(&self, ray: usize) -> Point {
-        self.eye() + self.direction(ray) * self.range_m[ray]
+        self.points[ray]
     }
 
     /// The direction halfway between a ray and the previous one, tank frame.
@@ -116,7 +154,7 @@ impl Rays {
         let half_rad = if far > radius_m { (radius_m / far).asin() } else { TAU };
         let n = self.len() as f64;
         let around = TAU / self.step_rad();
-        let bearing_rad = to.y.atan2(to.x) - self.tank_from_robot.rotation.angle() - self.first_rad;
+        let bearing_rad = to.y.atan2(to.x) - self.heading_rad - self.first_rad;
         let half = (half_rad / self.step_rad()).min(0.5 * around);
         let from = (bearing_rad / self.step_rad - half).rem_euclid(around);
         let part = move |from: f64| {

@@ -8,11 +8,11 @@ use world::Scanner;
 pub struct Sensor {
     /// Standard deviation of a distance, metres.
     pub sigma_m: f64,
-    /// Maximum distance that can be measured, metres; `None` if it is unknown, so that a ray without an echo contains
-    /// no information.
+    /// Maximum distance that can be measured, metres; `None` if only the scans may state it. If neither states it, a ray
+    /// without an echo contains no information.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub range_m: Option<f64>,
-    /// Number of rays of a scan; `None` to expect as many as in the first scan.
+    /// Number of rays of a scan; `None` to expect at least half as many as in the first scan.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rays: Option<u32>,
 }

@@ -1,5 +1,9 @@
 //! Tests with whole scans, from the first scan to obstacles on the chart.
 
+mod many;
+mod moving;
+mod wrong;
+
 use super::*;
 use geometry::{Boundary, Point, Pose, Shape};
 use nalgebra::{Matrix3, Vector3};
@@ -90,6 +94,7 @@ impl Drive {
             boundary: &self.boundary,
             charted: &self.drawn,
             map: &map,
+            hull_m: 0.2,
             reach_m: 4.0,
         };
         let looked = self.perception.look(&view);
@@ -167,54 +172,11 @@ fn what_has_been_removed_is_gone() {
     drive.real.clear();
     drive.along((0.0, 0.0), (0.0, 2.0), 60);
     assert_eq!(drive.looked, Looked { not_there: vec![(ObstacleId(FIRST_ID), 20)] });
-}
-
-#[test]
-fn a_mover_keeps_one_id_and_is_no_row_of_columns() {
-    let mut drive = Drive::new(vec![column(7, -2.0, 1.5, 0.25)], Vec::new());
-    let mut most = 0;
-    for k in 0..200 {
-        drive.real[0] = column(7, -2.0 + 0.02 * f64::from(k), 1.5, 0.25);
-        drive.scan(&Pose::new(0.0, -1.0, 0.3));
-        most = most.max(drive.shapes().len());
-    }
-    assert_eq!(most, 1);
-    let pose = Pose::new(0.0, -1.0, 0.3);
-    let seen: Vec<_> = drive.perception.seen(&pose).collect();
-    let velocity = seen[0].drift.velocity().unwrap();
-    assert!((velocity - geometry::Vector::new(0.2, 0.0)).norm() < 0.05, "{velocity}");
-    assert!((seen[0].shape.center() - Point::new(1.98, 1.5)).norm() < 0.1, "{:?}", seen[0].shape);
-    assert_eq!(drive.perception.tracks(), 1);
-}
-
-#[test]
-fn scans_that_cannot_be_right_are_named() {
-    let drawn = vec![column(1, 2.0, 2.0, 0.2), column(2, -3.0, 0.0, 0.25), column(3, 0.5, -2.5, 0.3)];
-    let pose = Pose::new(3.0, -2.0, 0.4);
-    let named = |spoil: &dyn Fn(&mut Scan)| {
-        let mut drive = Drive::new(drawn.clone(), drawn.clone());
-        for _ in 0..10 {
-            let mut scan = scan_of(&drive.scanner, &drive.boundary, &drive.real, &pose, drive.tick);
-            spoil(&mut scan);
-            drive.take(&scan, &pose);
-        }
-        assert!(drive.shapes().is_empty() || drive.perception.trouble().is_some());
-        drive.perception.trouble().map(str::to_owned).unwrap_or_default()
-    };
-    assert_eq!(named(&|_| {}), "");
-    let reverse = |scan: &mut Scan| scan.ranges_mm.0.reverse();
-    let half = |scan: &mut Scan| scan.ranges_mm.0.rotate_left(180);
-    for (spoil, wanted) in [
-        (&reverse as &dyn Fn(&mut Scan), "only if it is mirrored"),
-        (&half, "only if it is turned by half a turn"),
-        (&|scan| scan.ranges_mm.0.fill(world::NO_ECHO), "only 0 % of the rays"),
-        (&|scan| scan.ranges_mm.0.fill(0), "% of the scan fits the drawing"),
-        (&|scan| scan.ranges_mm.0.clear(), "the scan has no rays"),
-        (&|scan| scan.ranges_mm.0.truncate(180), "the scan has 180 rays instead of 360"),
-        (&|scan| scan.step_rad = f64::NAN, "are not numbers"),
-        (&|scan| scan.step_rad = 0.0, "are not numbers"),
-    ] {
-        let found = named(spoil);
-        assert!(found.contains(wanted), "{wanted}: {found:?}");
-    }
+    assert_eq!(drive.perception.tracks(), 0);
+    // What is back at a place on the chart is the same obstacle.
+    drive.drawn = vec![column(FIRST_ID, 1.0, 1.0, 0.2)];
+    drive.real = vec![column(7, 1.0, 1.0, 0.2)];
+    drive.along((0.0, 2.0), (0.0, 0.0), 40);
+    let ids: Vec<_> = drive.perception.seen(&Pose::new(0.0, 0.0, 0.0)).map(|seen| seen.id).collect();
+    assert_eq!(ids, [ObstacleId(FIRST_ID)]);
 }

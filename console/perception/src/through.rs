@@ -39,7 +39,7 @@ pub(crate) fn look(rays: &Rays, shape: &Shape, pose: &Uncertain, range_m: Option
     let (mut through, mut silent) = (0, 0);
     for ray in rays.towards(center, core_m) {
         let measured_m = rays.range_m[ray];
-        if measured_m.is_infinite() {
+        if measured_m == f64::INFINITY {
             silent += usize::from(range_m.is_some_and(|most_m| deepest_m < most_m));
         } else if measured_m > deepest_m {
             through += 1;

@@ -5,6 +5,7 @@ use crate::{
     disc::{self, Fit, Radius},
     outline::Outline,
     rays::Rays,
+    through::Look,
     uncertain::Uncertain,
 };
 use geometry::{Point, Shape, Vector};
@@ -30,8 +31,10 @@ const NEAR_M: f64 = 1.2;
 const MISSED: u32 = 5;
 /// An obstacle is reported as gone after this number of scans that pass through its place, if none in between shows it.
 const GONE_AFTER: u32 = 20;
-/// Time out of sight, seconds, after which a moving obstacle is dropped.
-const OUT_OF_SIGHT_S: f64 = 2.0;
+/// An outline is given up after this number of scans that show some of its points, but nothing in its middle.
+const CROSSED: u32 = 10;
+/// Time out of sight, seconds, after which a moving obstacle could be anywhere and is forgotten.
+pub const OUT_OF_SIGHT_S: f64 = 2.0;
 /// Mean misfit above which an object no longer counts as a disc, and below which it counts as a disc again.
 const MISFIT: (f64, f64) = (2.2, 1.6);
 /// Maximum misfit of a view that can show a disc.
@@ -64,6 +67,8 @@ pub(crate) struct Track {
     /// through it.
     through: u32,
     is_through: bool,
+    /// Number of scans in a row whose rays passed through the middle of the outline, although they showed points of it.
+    crossed: u32,
     /// Whether the last scan showed the track.
     pub is_seen: bool,
     seen_s: f64,
@@ -90,6 +95,7 @@ impl Track {
             missed: 0,
             through: 0,
             is_through: false,
+            crossed: 0,
             is_seen: false,
             seen_s: now_s,
             view_sigma_m: 0.0,
@@ -117,9 +123,12 @@ impl Track {
             self.misfit += SMOOTHING * (fit.misfit.min(20.0) - self.misfit);
         }
         self.is_disc = if self.is_disc { self.misfit < MISFIT.0 } else { self.misfit < MISFIT.1 };
-        // If a disc is fitted to an object that is not a disc, its centre moves with the robot.
+        // If a disc is fitted to an object that is not a disc, its centre moves with the robot. If an object is partly
+        // hidden, its centre seems to move with the edge of what hides it.
         if self.is_disc && fit.misfit < ROUND && self.extent_m() < MOVABLE_M {
-            self.drift.see(now_s, fit.center);
+            if self.view_sigma_m < SURE_PLACE_M {
+                self.drift.see(now_s, fit.center);
+            }
         } else if !self.is_disc {
             self.drift = Drift::default();
         }
@@ -148,10 +157,10 @@ impl Track {
         self.radius.variance_m2 = self.radius.variance_m2.max(FLOOR_M * FLOOR_M);
     }
 
-    /// Prepares the track for a new scan.
-    pub(crate) fn begin(&mut self, now_s: f64) {
+    /// Prepares the track for a new scan, which was made `later_s` seconds after the last one.
+    pub(crate) fn begin(&mut self, later_s: f64) {
         if let Some(velocity) = self.drift.velocity() {
-            self.center += velocity * (now_s - self.seen_s).clamp(0.0, 0.5);
+            self.center += velocity * later_s.clamp(0.0, OUT_OF_SIGHT_S);
         }
         self.recent <<= 1;
         self.is_seen = false;
@@ -164,13 +173,35 @@ impl Track {
         self.is_through = through;
     }
 
-    /// Whether the track is to be dropped. An obstacle that stands still is kept even if it is gone, because it is on
-    /// the chart.
+    /// Records what the last scan shows in the middle of an outline; returns whether it has become certain that nothing
+    /// is there, so that the points of the outline belong to several objects.
+    pub(crate) fn cross(&mut self, look: Look) -> bool {
+        self.crossed = match look {
+            Look::Through if !self.is_disc => self.crossed + 1,
+            Look::Hidden => self.crossed,
+            _ => 0,
+        };
+        self.crossed >= CROSSED
+    }
+
+    /// Forgets the shape, and begins again with points in the order of the scan.
+    pub(crate) fn restart(&mut self, rays: &Rays, of: &[usize], pose: &Uncertain, now_s: f64) {
+        if let Some(track) = Self::new(rays, of, pose, now_s) {
+            *self = Self { id: self.id, recent: self.recent, ..track };
+        }
+    }
+
+    /// Whether the track is to be dropped. An obstacle that is gone stays on the chart.
     pub(crate) fn is_over(&self, now_s: f64) -> bool {
         match self.id {
             None => self.missed >= MISSED,
-            Some(_) => self.moves() && now_s - self.seen_s > OUT_OF_SIGHT_S,
+            Some(_) => self.is_gone().is_some() || self.moves() && now_s - self.seen_s > OUT_OF_SIGHT_S,
         }
+    }
+
+    /// Time, seconds, at which the track was last seen, if it can be dropped because the chart has it.
+    pub(crate) fn charted_s(&self) -> Option<f64> {
+        (self.id.is_some() && !self.is_seen && !self.moves()).then_some(self.seen_s)
     }
 
     /// Returns the number of scans that passed through the track's place if the last scan has made it certain that the

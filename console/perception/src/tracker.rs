@@ -17,7 +17,7 @@ use world::{Obstacle, ObstacleId, ObstacleMap, Scan};
 
 /// The first id of obstacles that are found in scans; drawings and the trackers of vehicles use smaller ids.
 pub const FIRST_ID: u32 = 2_000_000;
-/// Maximum number of tracks; further groups are ignored until a track is dropped.
+/// Maximum number of tracks.
 const MOST: usize = 512;
 /// Maximum distance from a track, metres, at which a group belongs to the track.
 const JOIN_M: f64 = 0.12;
@@ -48,6 +48,8 @@ pub struct View<'a> {
     pub charted: &'a [Obstacle],
     /// An index of these obstacles for queries.
     pub map: &'a ObstacleMap,
+    /// Radius of the hull, metres; echoes from inside it are ignored.
+    pub hull_m: f64,
     /// Distance from the scanner, metres, within which a track can become an obstacle; farther away, it is only
     /// followed.
     pub reach_m: f64,
@@ -87,8 +89,13 @@ pub struct Perception {
     /// Number of scans that passed through each drawn obstacle.
     through: BTreeMap<ObstacleId, u32>,
     agreement: Agreement,
-    rays_wanted: Option<u32>,
+    /// Number of rays of the first scan.
+    rays_at_first: Option<usize>,
+    /// Maximum distance that the scanner can measure, metres, if it is known.
+    range_m: Option<f64>,
     trouble: Option<String>,
+    /// Time of the last scan that was used, seconds.
+    looked_s: Option<f64>,
     /// The correction of the estimated pose, in the robot frame.
     correction: Isometry2<f64>,
     rays: Rays,
@@ -99,13 +106,25 @@ pub struct Perception {
     left: Vec<usize>,
     groups: Vec<Group>,
     own: Vec<usize>,
+    /// For each track, whether it owns a ray.
+    owned: Vec<bool>,
+    parts: Vec<Group>,
+}
+
+/// Drops the track of the obstacle on the chart that has been out of sight for the longest time; returns whether one was
+/// dropped.
+fn make_room(tracks: &mut Vec<Track>) -> bool {
+    let charted = tracks.iter().enumerate().filter_map(|(k, track)| Some((k, track.charted_s()?)));
+    let oldest = charted.min_by(|a, b| a.1.total_cmp(&b.1));
+    oldest.map(|(k, _)| tracks.remove(k)).is_some()
 }
 
 impl Perception {
     /// Creates the state before the first scan.
     pub fn new(sensor: Sensor) -> Self {
         Self {
-            rays_wanted: sensor.rays,
+            rays_at_first: None,
+            range_m: None,
             sensor,
             tracks: Vec::new(),
             next_id: FIRST_ID,
@@ -113,6 +132,7 @@ impl Perception {
             through: BTreeMap::new(),
             agreement: Agreement::default(),
             trouble: None,
+            looked_s: None,
             correction: Isometry2::identity(),
             rays: Rays::default(),
             buffers: Buffers::default(),
@@ -122,6 +142,8 @@ impl Perception {
             left: Vec::new(),
             groups: Vec::new(),
             own: Vec::new(),
+            owned: Vec::new(),
+            parts: Vec::new(),
         }
     }
 
@@ -132,29 +154,34 @@ impl Perception {
 
     /// Processes a scan.
     pub fn look(&mut self, view: &View<'_>) -> Looked {
-        self.trouble = self.layout_trouble(view.scan);
+        let given = Uncertain::estimated(self.sensor.sigma_m, &view.covariance);
+        self.trouble = self.scan_trouble(view, &given);
         if self.trouble.is_some() {
             self.tracks.iter_mut().for_each(|track| track.is_seen = false);
             return Looked::default();
         }
-        let estimate = view.pose.tank_from_robot();
-        self.rays.take(view.scan, &estimate);
         let scanned_from = *self.rays.frame();
-        let given = Uncertain::estimated(self.sensor.sigma_m, &view.covariance);
-        self.agreement.compare(&self.rays, (view.boundary, view.map), &given, self.sensor.range_m);
-        self.trouble = self.agreement.trouble();
         let reach_m = self.rays.range_m.iter().copied().filter(|m| m.is_finite()).fold(1.0, f64::max) + 1.0;
         let drawn = view.charted.iter().filter(|obstacle| obstacle.id.0 < FIRST_ID);
         let drawing = Drawing::near(view.boundary, drawn, self.rays.eye(), reach_m);
         let pose = drawing.correct(&mut self.rays, &given, &mut self.buffers);
         self.correction = scanned_from.inverse() * self.rays.frame();
-        drawing.explain(&self.rays, &pose, &mut self.explained);
-        self.tracks.iter_mut().for_each(|track| track.begin(view.now_s));
+        drawing.explain(&self.rays, &pose, &mut self.buffers, &mut self.explained);
+        let later_s = self.looked_s.replace(view.now_s).map_or(0.0, |looked_s| view.now_s - looked_s);
+        self.tracks.iter_mut().for_each(|track| track.begin(later_s));
         self.share_out(&pose);
         self.join_groups(&pose);
         self.update(&pose, view.now_s);
-        self.begin_tracks(&pose, view.now_s);
-        self.give_ids(view.reach_m);
+        if !self.begin_tracks(&pose, view.now_s) {
+            self.trouble = Some(format!(
+                "the scans show more than {MOST} objects that are not drawn; check the scanner, the position and the \
+                 drawing"
+            ));
+        }
+        // The chart must not contain what a wrong scan shows.
+        if !self.agreement.is_open() {
+            self.give_ids(view.charted, view.reach_m);
+        }
         let mut not_there = self.missing(&drawing, &pose);
         not_there.extend(self.tracks.iter().filter_map(|track| Some((track.id?, track.is_gone()?))));
         self.drop_tracks(view.now_s);
@@ -182,6 +209,19 @@ impl Perception {
         self.tracks.len()
     }
 
+    /// Takes the rays of a scan; returns the reason why the scan cannot be used, or `None` if it can.
+    fn scan_trouble(&mut self, view: &View<'_>, given: &Uncertain) -> Option<String> {
+        let trouble = self.layout_trouble(view.scan);
+        if trouble.is_some() {
+            return trouble;
+        }
+        self.rays.take(view.scan, &view.pose.tank_from_robot());
+        self.rays.ignore_hull(view.hull_m);
+        self.range_m = self.sensor.range_m.or(view.scan.range_max_m);
+        self.agreement.compare(&self.rays, (view.boundary, view.map), given, self.range_m);
+        self.agreement.trouble()
+    }
+
     /// The reason why scans of this layout cannot be used; `None` if they can.
     fn layout_trouble(&mut self, scan: &Scan) -> Option<String> {
         let n = scan.ranges_mm.0.len();
@@ -192,8 +232,15 @@ impl Perception {
         if !is_finite || !scan.step_rad.is_normal() {
             return Some("the angles of the scan are not numbers, or all the same".into());
         }
-        let wanted = *self.rays_wanted.get_or_insert(n as u32);
-        (n != wanted as usize).then(|| format!("the scan has {n} rays instead of {wanted}"))
+        if let Some(wanted) = self.sensor.rays {
+            return (n != wanted as usize).then(|| format!("the scan has {n} rays instead of {wanted}"));
+        }
+        // Some scanners leave out rays without an echo, so the number of rays is not always the same.
+        let first = *self.rays_at_first.get_or_insert(n);
+        let least = first.div_ceil(2);
+        (n < least).then(|| {
+            format!("the scan has {n} rays; it must have at least {least}, half as many as the first scan")
+        })
     }
 
     /// Assigns each point that the drawing does not explain to the track with the nearest outline.
@@ -250,36 +297,51 @@ impl Perception {
 
     /// Updates each track with its points.
     fn update(&mut self, pose: &Uncertain, now_s: f64) {
-        let Self { tracks, rays, owners, own, .. } = self;
+        let Self { tracks, rays, owners, own, owned, parts, .. } = self;
+        owned.clear();
+        owned.resize(tracks.len(), false);
+        for owner in owners.iter().filter(|owner| **owner != NONE) {
+            owned[usize::from(*owner)] = true;
+        }
         for (k, track) in tracks.iter_mut().enumerate() {
-            let (center, radius_m) = track.around();
             own.clear();
-            let reach_m = radius_m + GROWS_TO_M;
-            own.extend(rays.towards(center, reach_m).filter(|ray| usize::from(owners[*ray]) == k));
+            if owned[k] {
+                let (center, radius_m) = track.around();
+                let reach_m = radius_m + GROWS_TO_M;
+                own.extend(rays.towards(center, reach_m).filter(|ray| usize::from(owners[*ray]) == k));
+            }
             if own.len() >= LEAST_POINTS {
                 track.see(rays, own, pose, now_s);
             }
+            if track.is_seen && track.cross(through::look(rays, &track.shape(), pose, self.range_m)) {
+                groups(rays, own, pose.sigma_m, parts);
+                if let Some(part) = groups::apart(rays, own, parts, JOIN_M) {
+                    track.restart(rays, part, pose, now_s);
+                }
+            }
             if !track.is_seen {
                 let through = own.is_empty()
-                    && through::look(rays, &track.shape(), pose, self.sensor.range_m) == Look::Through;
+                    && through::look(rays, &track.shape(), pose, self.range_m) == Look::Through;
                 track.miss(through);
             }
         }
     }
 
-    /// Begins a track for each group that belongs to no track.
-    fn begin_tracks(&mut self, pose: &Uncertain, now_s: f64) {
+    /// Begins a track for each group that belongs to no track; returns whether there was room for all.
+    fn begin_tracks(&mut self, pose: &Uncertain, now_s: f64) -> bool {
         let Self { tracks, rays, owners, left, groups: found, .. } = self;
-        for group in found.iter().filter(|group| owners[left[group.rays.start]] == NONE) {
-            if tracks.len() < MOST {
+        found.iter().filter(|group| owners[left[group.rays.start]] == NONE).all(|group| {
+            let has_room = tracks.len() < MOST || make_room(tracks);
+            if has_room {
                 tracks.extend(Track::new(rays, &left[group.rays.clone()], pose, now_s));
             }
-        }
+            has_room
+        })
     }
 
-    /// Turns the tracks that are certain enough into obstacles. A track that lies on an existing obstacle is dropped
-    /// instead.
-    fn give_ids(&mut self, reach_m: f64) {
+    /// Turns the tracks that are certain enough into obstacles. A track that lies on another obstacle that is tracked is
+    /// dropped instead; one that lies on an obstacle of the chart that is not tracked is that obstacle.
+    fn give_ids(&mut self, charted: &[Obstacle], reach_m: f64) {
         let mut at = 0;
         while at < self.tracks.len() {
             let track = &self.tracks[at];
@@ -293,7 +355,15 @@ impl Perception {
                 self.tracks.remove(at);
                 continue;
             }
-            let id = self.free_ids.pop().unwrap_or_else(|| {
+            let is_tracked = |id: ObstacleId| self.tracks.iter().any(|track| track.id == Some(id));
+            let is_back = |obstacle: &&Obstacle| {
+                obstacle.id.0 >= FIRST_ID
+                    && obstacle.shape.distance_m(center) < 0.0
+                    && !is_tracked(obstacle.id)
+            };
+            let back = charted.iter().find(is_back).map(|obstacle| obstacle.id);
+            self.free_ids.retain(|id| Some(*id) != back);
+            let id = back.or_else(|| self.free_ids.pop()).unwrap_or_else(|| {
                 self.next_id += 1;
                 ObstacleId(self.next_id - 1)
             });
@@ -306,7 +376,7 @@ impl Perception {
     fn missing(&mut self, drawing: &Drawing<'_>, pose: &Uncertain) -> Vec<(ObstacleId, u32)> {
         let mut missing = Vec::new();
         for (obstacle, ..) in &drawing.obstacles {
-            match through::look(&self.rays, &obstacle.shape, pose, self.sensor.range_m) {
+            match through::look(&self.rays, &obstacle.shape, pose, self.range_m) {
                 Look::Hidden => {}
                 Look::Hit => {
                     self.through.remove(&obstacle.id);
@@ -328,7 +398,7 @@ impl Perception {
         let free_ids = &mut self.free_ids;
         self.tracks.retain(|track| {
             let is_over = track.is_over(now_s);
-            free_ids.extend(track.id.filter(|_| is_over));
+            free_ids.extend(track.id.filter(|_| is_over && track.moves()));
             !is_over
         });
     }

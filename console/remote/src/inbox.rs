@@ -15,7 +15,10 @@ use vehicle::{
         message::{Commander, Hello, Mode, Odometry, Readings, Scan, State},
     },
 };
-use world::{RangeSet, StationId, scan::RangesMm};
+use world::{
+    RangeSet, StationId,
+    scan::{LONGEST_M, RangesMm},
+};
 
 /// Longest time from `hello` until the first `readings`, `state` and `pong`, seconds.
 const FIRST_WITHIN_S: f64 = 10.0;
@@ -24,6 +27,11 @@ const FIRST_WITHIN_S: f64 = 10.0;
 const STATE_WITHIN_S: f64 = 6.0;
 /// Longest time, seconds, for which all readings may be ignored because their numbers are not new.
 const UNREAD_S: f64 = 0.8;
+/// Readings that are not new still arrive if the last ones are not older than this, seconds and periods.
+const ARRIVED_S: f64 = 0.4;
+const ARRIVED_PERIODS: f64 = 2.0;
+/// The reason for a loss if the numbers of readings are not new.
+const REPEATED: &str = "its readings repeat the numbers of earlier ones";
 /// Ranges that are older than this are dropped: the robot has moved on since then.
 const RANGES_MAX_AGE_S: f64 = 0.5;
 /// Interval at which the figures of the link are reported, seconds.
@@ -46,8 +54,12 @@ pub(crate) struct Inbox {
     link: Link,
     motions: Motions,
     sequence: Sequence,
-    /// The time since which no readings have had new numbers, seconds.
-    unread_since_s: Option<f64>,
+    /// The time since which no readings have had new numbers, and the arrival of the last such readings, seconds.
+    unread: Option<(f64, f64)>,
+    /// The stamp of the last readings with a new number, and the arrival of the last readings whose stamp was not later
+    /// than the one before it, seconds; `None` once a stamp is later again.
+    stamp_s: Option<f64>,
+    standing_stamp_s: Option<f64>,
     /// The readings since the last tick, and their stamps.
     readings: world::Readings,
     stamps: Option<Stamps>,
@@ -81,7 +93,9 @@ impl Inbox {
             link: Link::default(),
             motions: Motions::default(),
             sequence: Sequence::default(),
-            unread_since_s: None,
+            unread: None,
+            stamp_s: None,
+            standing_stamp_s: None,
             readings: world::Readings::default(),
             stamps: None,
             faulty: 0,
@@ -180,7 +194,8 @@ impl Inbox {
     /// A vehicle that introduces itself again has started again: its poses are in a new frame, its numbers begin again.
     fn greet(&mut self, hello: Box<Hello>, now_s: f64) {
         self.has_restarted |= self.hello.is_some();
-        (self.motions, self.state, self.unread_since_s) = (Motions::default(), None, None);
+        (self.motions, self.state, self.unread) = (Motions::default(), None, None);
+        (self.stamp_s, self.standing_stamp_s) = (None, None);
         (self.told_stood, self.has_answered, self.greeted_s, self.bad_hello) = (None, false, now_s, None);
         self.sequence.restart();
         self.outlines.greet(hello.has.drawn_ids);
@@ -196,11 +211,13 @@ impl Inbox {
     /// Adds readings. Readings that arrive twice, or after later ones, are left out: their motion would count twice.
     fn read(&mut self, readings: &Readings, now_s: f64) {
         if !self.sequence.add(readings.seq) {
-            self.unread_since_s.get_or_insert(now_s);
+            self.unread = Some((self.unread.map_or(now_s, |(since_s, _)| since_s), now_s));
             return;
         }
-        self.unread_since_s = None;
+        self.unread = None;
         let source_t_s = readings.stamp_s;
+        let is_later = self.stamp_s.replace(source_t_s).is_none_or(|before_s| source_t_s > before_s);
+        self.standing_stamp_s = (!is_later).then_some(now_s);
         self.stamps = Some(Stamps { source_t_s, arrival_t_s: now_s });
         let offset = self.link.clock().at(now_s);
         let age_s = offset.map(|offset| (now_s - (source_t_s - offset.offset_s)).max(0.0));
@@ -314,6 +331,20 @@ impl Inbox {
         sent.into_iter().filter(|(is_sent, _)| !is_sent).map(|(_, kind)| kind).collect()
     }
 
+    /// Why no readings count as new, although some may still arrive.
+    fn why_lost(&self, now_s: f64) -> &'static str {
+        let recent_s =
+            ARRIVED_S.max(ARRIVED_PERIODS * self.hello.as_ref().map_or(0.0, |hello| hello.period_s));
+        let is_recent = |last_s: Option<f64>| last_s.is_some_and(|last_s| now_s - last_s <= recent_s);
+        if is_recent(self.unread.map(|(_, last_s)| last_s)) {
+            REPEATED
+        } else if is_recent(self.standing_stamp_s) {
+            "the stamps of its readings (`stamp_s`) stand still"
+        } else {
+            "its readings stopped"
+        }
+    }
+
     fn state(&self, now_s: f64) -> (LinkState, String) {
         if let Some(why) = &self.closed {
             return (LinkState::Closed, why.clone());
@@ -325,11 +356,11 @@ impl Inbox {
             Reached::Lost if self.link.is_deaf(now_s) => {
                 return (LinkState::Lost, "it has stopped answering, so it may not receive commands".into());
             }
-            Reached::Lost => return (LinkState::Lost, "its readings stopped".into()),
+            Reached::Lost => return (LinkState::Lost, self.why_lost(now_s).into()),
             Reached::Late | Reached::Alive
-                if self.unread_since_s.is_some_and(|since_s| now_s - since_s > UNREAD_S) =>
+                if self.unread.is_some_and(|(since_s, _)| now_s - since_s > UNREAD_S) =>
             {
-                return (LinkState::Lost, "its readings repeat the numbers of earlier ones".into());
+                return (LinkState::Lost, REPEATED.into());
             }
             Reached::Fault => {
                 let fault = self.link.fault().unwrap_or_default();
@@ -394,6 +425,7 @@ fn scanned(scan: &Scan) -> world::Scan {
         first_rad: scan.first_rad,
         step_rad: scan.step_rad,
         sensor_m: scan.sensor_m,
+        range_max_m: Some(scan.range_max_m.min(LONGEST_M)),
         since: world::Odometry::default(),
         ranges_mm: RangesMm(ranges_mm),
     }

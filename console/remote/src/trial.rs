@@ -78,8 +78,12 @@ pub fn try_vehicle(
     tell: &dyn Fn(&str),
     is_stopped: &dyn Fn() -> bool,
 ) -> Result<Trial, ConnectError> {
-    let log = log::RobotLog::new().ok();
-    let mut connection = Connection::open(address, options.network, log.as_ref())?;
+    if matches!(address, Address::Run(_)) && std::env::var_os("ROBOT_LOG").is_some() {
+        tell(
+            "the check names its own logs to the robot; the file in the environment variable ROBOT_LOG stays as it is",
+        );
+    }
+    let mut connection = Connection::open(address, options.network)?;
     let hello = connection.hello().clone();
     let mut rows = vec![trial::introduction(&hello)];
     tell(&format!("listening to {} for {} s; nothing moves", foreign::plain(&hello.name), LISTEN.as_secs()));
@@ -101,7 +105,7 @@ pub fn try_vehicle(
     } else if !interrupted {
         tell(&warning(&hello, options));
         let lines = Lines::default();
-        let mut driver = Driver { address, options, hello: &hello, log: log.as_ref(), is_stopped, lines };
+        let mut driver = Driver { address, options, hello: &hello, is_stopped, lines };
         let early = driver.drive(connection, &mut rows, tell);
         rows[messages] = trial::messages(&driver.lines);
         interrupted = matches!(early, Some(Early::Interrupted));

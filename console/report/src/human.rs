@@ -3,7 +3,7 @@
 pub(crate) mod floor;
 mod short;
 pub(crate) mod text;
-mod vehicle;
+pub(crate) mod vehicle;
 
 pub use short::short;
 

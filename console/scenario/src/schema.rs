@@ -328,12 +328,12 @@ static ROBOT: &[Key] = &[
 ];
 
 static SCANNER: &[Key] = &[
-    key("rays", "", Kind::Whole(8, 4096)).or_whole(360),
+    key("rays", "", Kind::Whole(18, 4096)).or_whole(360),
     number("field_of_view_deg", "deg", above(0.0).up_to(360.0)).or(360.0),
     number("range_m", "m", above(0.0).up_to(60.0)).or(8.0),
     number("rate_hz", "Hz", at_least(4.0).because("the guard must not drive blind").up_to(100.0)).or(10.0),
     number("sigma_m", "m", at_least(0.0).up_to(0.5)).or(0.02),
-    number("lost_share", "", at_least(0.0).up_to(0.9)).or(0.02),
+    number("lost_share", "", at_least(0.0).up_to(0.7)).or(0.02),
     key("offset_m", "m", Kind::Pair(at_least(-10.0).up_to(10.0))).or_none("`[0, 0]`"),
     number("heading_deg", "deg", ANGLE).or(0.0),
 ];

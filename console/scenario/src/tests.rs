@@ -654,11 +654,11 @@ fn a_scanner_is_read_with_its_defaults_and_wrong_ones_are_named() {
     assert_eq!(found.mission.sensor, Some(mission::Sensor::of(&wanted)));
     assert!(found.mission.guard_reaction_s.is_some() && read(SMALL).mission.guard_reaction_s.is_none());
     for (keys, key, why) in [
-        ("rays = 3", "robot.scanner.rays", "at least 8"),
+        ("rays = 17", "robot.scanner.rays", "at least 18"),
         ("rate_hz = 1.0", "robot.scanner.rate_hz", "the guard must not drive blind"),
         ("offset_m = [3.0, 0.0]", "robot.scanner.offset_m", "within the hull"),
         ("range_m = 0.1", "robot.scanner.range_m", "greater than the radius of the hull"),
-        ("lost_share = 1.0", "robot.scanner.lost_share", "at most 0.9"),
+        ("lost_share = 0.71", "robot.scanner.lost_share", "at most 0.7"),
         ("ray = 9", "robot.scanner.ray", "rays"),
     ] {
         let text = errors(&with(keys)).render();

@@ -1,4 +1,4 @@
-//! Measures how well obstacles are found in scans, in random tanks: two by default. More tanks take minutes:
+//! Measures how well obstacles are found in scans, in random tanks: ten by default. More tanks take minutes:
 //!
 //! ```text
 //! TANKS=50 FIRST_SEED=1000 cargo test --release -p scenario --test perceiving -- --nocapture
@@ -116,6 +116,7 @@ fn drive(scenario: &Scenario, seed: u64, tally: &mut Tally) {
                     boundary: &drawing.boundary,
                     charted: &drawing.obstacles,
                     map: &map,
+                    hull_m: HULL_M,
                     reach_m: HULL_M + scenario.mission.limits.sensing_range_m,
                 };
                 let began = Instant::now();

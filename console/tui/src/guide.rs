@@ -25,6 +25,7 @@ pub fn name(cause: &Cause, of: &Run) -> String {
             format!("station {} rejected", of.station_name(*id).trim_start_matches("station "))
         }
         Cause::Map => "new obstacle, not on drawing".into(),
+        Cause::NotThere(name) => format!("{} not found", text::fit(name, 18)),
         Cause::Tether(word) => tether::name(word),
         Cause::Certificate => "plan not certified for tether".into(),
         Cause::Zone(zone) => format!("hull in zone {}", text::fit(zone, 18)),
@@ -65,6 +66,20 @@ pub fn guide(cause: &Cause) -> Guide {
             effect: "Planners avoid it. The floor under it is not counted; floor that it blocks becomes \
             unreachable.",
             remedies: const { &[SHOW, check("Check what it is: nozzle, sump, debris."), HOLD] },
+        },
+        Cause::NotThere(_) => Guide {
+            cause: "The scanner sees through the place of an obstacle: it was removed, has moved, or is drawn in the \
+            wrong place; or the robot's position is wrong.",
+            holds: "",
+            effect: "Planners still avoid its place, so the floor around it may stay unscanned.",
+            remedies: const {
+                &[
+                    SHOW,
+                    check("Check on site that the obstacle was removed or moved."),
+                    check("If other obstacles are displaced too, check the position of the robot."),
+                    check("Correct the drawing before the next mission."),
+                ]
+            },
         },
         Cause::Tether(word) => tether::guide(word),
         Cause::Link => vehicle::LINK,

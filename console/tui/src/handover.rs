@@ -116,10 +116,7 @@ fn or_none(reason: &str) -> &str {
 fn zones(model: &Model) -> Vec<String> {
     let about = model.live.run.about.iter();
     let zones = about.flat_map(|about| &about.world.zones).filter(|zone| zone.kind == ZoneKind::NoGo);
-    let line = |zone: &world::Zone| {
-        let (low, high) = zone.shape.bounds();
-        format!("{}: {:.2}, {:.2} m to {:.2}, {:.2} m", zone.name, low.x, low.y, high.x, high.y)
-    };
+    let line = |zone: &world::Zone| format!("{}: {}", zone.name, mission::outline::of(&zone.shape));
     zones.map(line).collect()
 }
 

@@ -27,7 +27,7 @@ pub mod review;
 pub mod run;
 pub mod setting;
 pub mod shadow;
-
+pub mod step;
 pub mod tether;
 pub mod together;
 pub mod trail;

@@ -85,14 +85,18 @@ impl Link {
         self.count(now_s);
         match heard {
             Heard::Message(message) => {
-                self.malformed_in_row = 0;
+                // A vehicle may answer pings although it sends readings that cannot be used.
+                if matches!(message, FromVehicle::Readings(_) | FromVehicle::Hello(_)) {
+                    self.malformed_in_row = 0;
+                }
                 self.message(message, now_s);
             }
             Heard::Malformed(misfit) => {
                 self.malformed_in_row += 1;
                 if self.malformed_in_row >= FAULT_AFTER {
-                    self.fault
-                        .get_or_insert_with(|| format!("{FAULT_AFTER} malformed lines in a row; {misfit}"));
+                    self.fault.get_or_insert_with(|| {
+                        format!("{FAULT_AFTER} malformed lines without good readings in between; {misfit}")
+                    });
                 }
             }
             Heard::Unknown(_) => {}

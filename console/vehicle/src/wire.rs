@@ -31,5 +31,5 @@ pub const PROTOCOL: u32 = 1;
 /// Maximum length of a line without its line feed, bytes.
 pub const LINE_MAX: usize = 256 * 1024;
 
-/// This many malformed lines in a row are a fault of the link.
+/// This many malformed lines without good readings in between are a fault of the link.
 pub const FAULT_AFTER: u32 = 3;

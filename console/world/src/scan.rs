@@ -4,12 +4,19 @@ use crate::Odometry;
 use geometry::{Point, Vector};
 use nalgebra::Rotation2;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// The stored distance of a ray without an echo, and of a ray whose distance exceeds 65.534 m.
 pub const NO_ECHO: u16 = u16::MAX;
+/// The longest distance that a scan can contain, metres.
+pub const LONGEST_M: f64 = 65.534;
 
-/// Number of neighbouring rays on each side with which a distance is averaged.
-pub const EVENED: usize = 2;
+/// Maximum number of neighbouring rays on each side with which a distance is averaged, and the maximum length of the
+/// arc, metres, that these rays span at that distance.
+const EVENED: usize = 2;
+const EVENED_ARC_M: f64 = 0.1;
+/// Maximum distance by which averaging moves a point away from the sensor, in standard deviations.
+const EVENED_BACK: f64 = 2.0;
 /// Minimum difference between distances on two surfaces, in standard deviations; a smaller difference may be noise on
 /// one surface.
 pub const APART: f64 = 5.0;
@@ -31,6 +38,10 @@ pub struct Scan {
     /// Place of the sensor in the robot frame, metres.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub sensor_m: [f64; 2],
+    /// Maximum distance that the sensor can measure, metres, as a vehicle states it; `None` in a simulation, where the
+    /// scenario states it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub range_max_m: Option<f64>,
     /// Motion of the robot from the scan to the end of the readings that it is part of.
     #[serde(default, skip_serializing_if = "is_still")]
     pub since: Odometry,
@@ -58,6 +69,11 @@ impl TryFrom<String> for RangesMm {
     }
 }
 
+/// Whether this number of rays at this angle, radians, from one to the next goes all around.
+pub fn is_round(rays: usize, step_rad: f64) -> bool {
+    rays as f64 * step_rad.abs() > TAU - 0.5 * step_rad.abs()
+}
+
 fn is_zero(place: &[f64; 2]) -> bool {
     *place == [0.0, 0.0]
 }
@@ -75,9 +91,11 @@ impl Scan {
         }
     }
 
-    /// The same scan with less noise: each distance is replaced by the mean of itself and of those neighbours, up to
-    /// [`EVENED`] rays to each side, that may lie on the same surface because they differ by less than [`APART`]
-    /// standard deviations. A distance that differs more from all these neighbours stays unchanged.
+    /// The same scan with less noise: each distance is replaced by the mean of itself and of those neighbours, up to two
+    /// rays to each side within an arc of 0.1 m, that may lie on the same surface because they differ by less than
+    /// [`APART`] standard deviations. A distance that differs more from all these neighbours stays unchanged, and so does
+    /// 0, which means too near to be measured. No distance grows by more than two standard deviations, so that a thin
+    /// post in front of a wall is not averaged away.
     ///
     /// ```
     /// use world::{Scan, scan::RangesMm};
@@ -89,20 +107,23 @@ impl Scan {
     pub fn evened(&self, sigma_m: f64) -> Self {
         let ranges = &self.ranges_mm.0;
         let n = ranges.len();
-        let is_round = n as f64 * self.step_rad.abs() > std::f64::consts::TAU - 0.5 * self.step_rad.abs();
+        let is_round = is_round(n, self.step_rad);
         let apart_mm = APART * 1000.0 * sigma_m;
+        let most_back_mm = EVENED_BACK * 1000.0 * sigma_m;
         let even = |(at, mm): (usize, &u16)| {
-            if *mm == NO_ECHO {
-                return NO_ECHO;
+            if matches!(*mm, 0 | NO_ECHO) {
+                return *mm;
             }
-            let places = (at + n - EVENED.min(n))..=(at + n + EVENED.min(n));
+            let step_m = self.step_rad.abs() * f64::from(*mm) / 1000.0;
+            let beside = EVENED.min((0.5 * EVENED_ARC_M / step_m) as usize).min(n);
+            let places = (at + n - beside)..=(at + n + beside);
             let places = places.filter(|place| is_round || (n..2 * n).contains(place));
-            let beside = places.map(|place| ranges[place % n]).filter(|other| *other != NO_ECHO);
+            let beside = places.map(|place| ranges[place % n]).filter(|other| !matches!(*other, 0 | NO_ECHO));
             let (mut sum, mut count) = (0.0, 0.0);
             for other in beside.filter(|other| f64::from(other.abs_diff(*mm)) < apart_mm) {
                 (sum, count) = (sum + f64::from(other), count + 1.0);
             }
-            if count > 0.0 { (sum / count).round() as u16 } else { *mm }
+            if count > 0.0 { (sum / count).min(f64::from(*mm) + most_back_mm).round() as u16 } else { *mm }
         };
         let evened = ranges.iter().enumerate().map(even).collect();
         Self { ranges_mm: RangesMm(evened), ..self.clone() }
@@ -249,12 +270,28 @@ mod tests {
     }
 
     #[test]
+    fn evening_hides_no_post_and_mixes_no_distant_places() {
+        let evened = |step_rad: f64, ranges_mm: &[u16]| {
+            let scan = Scan { step_rad, ranges_mm: RangesMm(ranges_mm.to_vec()), ..Scan::default() };
+            scan.evened(0.02).ranges_mm.0
+        };
+        // A post 9 cm in front of a wall moves back by 2 standard deviations, not to the wall.
+        assert_eq!(evened(0.01, &[1000, 1000, 910, 1000, 1000])[2], 950);
+        // Neighbours that are 0.2 m apart may show different objects.
+        assert_eq!(evened(0.2, &[1000, 1000, 960, 1000, 1000]), [1000, 1000, 960, 1000, 1000]);
+        assert_eq!(evened(0.1, &[500, 500, 470, 500, 500])[2], 490, "one neighbour on each side");
+        // Too near to be measured stays so, and is the distance of nothing else.
+        assert_eq!(evened(0.01, &[40, 0, 40, NO_ECHO, 60]), [40, 0, 47, NO_ECHO, 50]);
+    }
+
+    #[test]
     fn points_are_where_they_are_after_the_motion() {
         let since = Odometry { forward_m: 0.5, sideways_m: 0.0, turn_rad: std::f64::consts::FRAC_PI_2 };
         let scan = Scan {
             first_rad: 0.0,
             step_rad: 0.1,
             sensor_m: [0.2, 0.0],
+            range_max_m: None,
             since,
             ranges_mm: RangesMm(vec![1000, NO_ECHO]),
         };

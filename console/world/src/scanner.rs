@@ -1,6 +1,9 @@
 //! A range scanner on the robot: its rays, its errors and its mounting.
 
-use crate::{NO_ECHO, Scan, scan::RangesMm};
+use crate::{
+    NO_ECHO, Scan,
+    scan::{RangesMm, is_round},
+};
 use geometry::{Point, Pose};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -54,15 +57,13 @@ impl Scanner {
         Self { sigma_m: 0.0, lost_share: 0.0, ..self }
     }
 
-    /// Whether the scanner sees all around.
-    fn is_round(&self) -> bool {
-        self.field_of_view_rad > TAU - 1e-9
-    }
-
     /// Angle from one ray to the next, radians.
     pub fn step_rad(&self) -> f64 {
-        let steps = if self.is_round() { self.rays } else { self.rays.saturating_sub(1) };
-        self.field_of_view_rad / f64::from(steps.max(1))
+        let all_around_rad = self.field_of_view_rad / f64::from(self.rays.max(1));
+        if is_round(self.rays as usize, all_around_rad) {
+            return all_around_rad;
+        }
+        self.field_of_view_rad / f64::from(self.rays.saturating_sub(1).max(1))
     }
 
     /// Direction of the first ray in the robot frame, radians.

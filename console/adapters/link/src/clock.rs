@@ -1,4 +1,4 @@
-//! Converts stamps of the robot and of the console to the adapter's clock.
+//! Converts stamps of the robot's sensors to the adapter's clock.
 //!
 //! The clock of a sender need not agree with the adapter's. The least difference between arrival and stamp in the last
 //! seconds is taken as the offset. A message with a greater difference was delayed on its way, not stamped later.

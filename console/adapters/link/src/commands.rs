@@ -1,9 +1,6 @@
 //! The console's commands and their lease, which determine the current velocity.
 
-use crate::{
-    clock::Clock,
-    message::{Drive, Limits, Motion, ToVehicle},
-};
+use crate::message::{Drive, Limits, Motion, ToVehicle};
 
 /// A velocity in the robot frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -47,21 +44,24 @@ pub struct Commands {
     motion: Motion,
     limits: Limits,
     lease_max_s: f64,
-    /// The stamps of the console on the clock of the adapter.
-    clock: Clock,
+    /// Least time from a stamp to its arrival: the offset of the console's clock plus the shortest delay, seconds.
+    least_s: f64,
     /// Greatest number of a command so far.
     newest: Option<u64>,
     /// The last velocity, and the time at which its lease lapses, seconds.
     lease: Option<(Velocity, f64)>,
 }
 
+/// Increase of the least time per message, seconds, so that it follows clocks that drift. It is so small that commands
+/// that wait in a queue stay late for as long as the queue lasts.
+const DRIFT_S: f64 = 1e-4;
 /// Tolerance for limits, because they are converted to decimal numbers and back.
 const SLACK: f64 = 1e-9;
 
 impl Commands {
     /// The state before the first command: the vehicle stands still.
     pub fn new(motion: Motion, limits: Limits, lease_max_s: f64) -> Self {
-        Self { motion, limits, lease_max_s, clock: Clock::default(), newest: None, lease: None }
+        Self { motion, limits, lease_max_s, least_s: f64::INFINITY, newest: None, lease: None }
     }
 
     /// Takes a line from the console.
@@ -83,20 +83,20 @@ impl Commands {
         match message {
             ToVehicle::Drive(drive) if self.is_new(drive.seq) => {
                 let velocity = self.checked(&drive)?;
-                let sent_s = self.clock.measured_s(drive.stamp_s, now_s);
                 // It waited while the adapter was stopped or busy; the console may be gone by now.
-                if now_s - sent_s > drive.lease_s {
+                if self.age_s(drive.stamp_s, now_s) > drive.lease_s {
                     return Ok(Heard::Nothing);
                 }
                 self.lease = Some((velocity, now_s + drive.lease_s));
                 Ok(Heard::Drive)
             }
-            ToVehicle::Stop { seq } if self.is_new(seq) => {
+            ToVehicle::Stop { seq, stamp_s } if self.is_new(seq) => {
+                stamp_s.map(|stamp_s| self.age_s(stamp_s, now_s));
                 self.stand();
                 Ok(Heard::Stop)
             }
             ToVehicle::Ping { stamp_s } => {
-                self.clock.measured_s(Some(stamp_s), now_s);
+                self.age_s(stamp_s, now_s);
                 Ok(Heard::Ping { stamp_s })
             }
             ToVehicle::Bye => {
@@ -105,6 +105,13 @@ impl Commands {
             }
             ToVehicle::Drive(_) | ToVehicle::Stop { .. } | ToVehicle::Unknown => Ok(Heard::Nothing),
         }
+    }
+
+    /// Time since a message was sent, beyond the shortest delay, seconds.
+    fn age_s(&mut self, stamp_s: f64, now_s: f64) -> f64 {
+        let late_s = now_s - stamp_s;
+        self.least_s = late_s.min(self.least_s + DRIFT_S);
+        late_s - self.least_s
     }
 
     fn is_new(&mut self, seq: u64) -> bool {
@@ -198,6 +205,32 @@ mod tests {
     }
 
     #[test]
+    fn drives_that_wait_in_a_standing_queue_stay_late() {
+        let mut commands = commands();
+        let stamped = |seq: u32, stamp_s: f64| {
+            drive(seq.into(), 0.3).replace("\"stamp_s\": 0", &format!("\"stamp_s\": {stamp_s}"))
+        };
+        assert_eq!(commands.hear(&stamped(1, 0.0), 500.0), Heard::Drive);
+        // For a minute, each line arrives 2 s after it was sent; commands and pings wait in the same queue.
+        for n in 2..1200 {
+            let sent_s = 0.05 * f64::from(n);
+            commands.hear(&format!(r#"{{"type": "ping", "stamp_s": {sent_s}}}"#), 502.0 + sent_s);
+            assert_eq!(commands.hear(&stamped(n, sent_s), 502.0 + sent_s), Heard::Nothing, "{sent_s}");
+        }
+        assert_eq!(commands.hear(&stamped(2000, 100.0), 600.1), Heard::Drive);
+    }
+
+    #[test]
+    fn a_clock_that_drifts_is_followed() {
+        let mut commands = commands();
+        for n in 1..10_000_u32 {
+            let sent_s = 0.05 * f64::from(n);
+            let line = drive(n.into(), 0.3).replace("\"stamp_s\": 0", &format!("\"stamp_s\": {sent_s}"));
+            assert_eq!(commands.hear(&line, 1.001 * sent_s), Heard::Drive, "{sent_s}");
+        }
+    }
+
+    #[test]
     fn a_late_drive_does_not_undo_a_stop() {
         let mut commands = commands();
         commands.hear(&drive(5, 0.3), 0.0);
@@ -218,7 +251,8 @@ mod tests {
             (drive(2, 0.3).replace("\"turn", "\"sideways_m_per_s\": 0.1, \"turn"), "drive.sideways_m_per_s"),
             (drive(2, 0.3).replace("0.3", "NaN"), "expected value"),
             (drive(2, 0.3)[..40].to_owned(), "EOF"),
-            (r#"{"type": "drive", "seq": 2}"#.to_owned(), "missing field `lease_s`"),
+            (r#"{"type": "drive", "seq": 2, "stamp_s": 0}"#.to_owned(), "missing field `lease_s`"),
+            (drive(2, 0.3).replace("\"stamp_s\": 0, ", ""), "missing field `stamp_s`"),
             ("hello".to_owned(), "expected value"),
         ];
         for (line, why) in lines {

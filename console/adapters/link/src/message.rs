@@ -32,6 +32,8 @@ pub enum ToVehicle {
     Stop {
         /// Number of the command.
         seq: u64,
+        /// Time of sending, seconds of the console's clock; a stop without it stops the vehicle, too.
+        stamp_s: Option<f64>,
     },
     /// Asks for a pong.
     Ping {
@@ -51,7 +53,7 @@ pub struct Drive {
     /// Number of the command; drives and stops are counted together.
     pub seq: u64,
     /// Time of sending, seconds of the console's clock.
-    pub stamp_s: Option<f64>,
+    pub stamp_s: f64,
     /// The vehicle stands still if no other drive arrives within this time, seconds.
     pub lease_s: f64,
     /// Speed ahead, metres per second.

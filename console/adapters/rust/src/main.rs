@@ -169,8 +169,8 @@ impl Console {
     fn take(&mut self, line: &str, now_s: f64) -> Result<Option<Order>, Box<dyn Error>> {
         let message: Value = serde_json::from_str(line)?;
         let number = |key: &str| message[key].as_f64().ok_or_else(|| format!("{key} is not a number"));
-        let late_s = number("stamp_s").map_or(f64::NEG_INFINITY, |stamp_s| now_s - stamp_s);
-        if late_s.is_finite() {
+        let late_s = number("stamp_s").map(|stamp_s| now_s - stamp_s);
+        if let Ok(late_s) = late_s {
             self.least_s = late_s.min(self.least_s + DRIFT_S);
         }
         match message["type"].as_str() {
@@ -195,7 +195,7 @@ impl Console {
             return Err("beyond the limits".into());
         }
         // A command that waited while this adapter was stopped is older than its lease: the console may be gone.
-        let is_current = late_s - self.least_s <= lease_s;
+        let is_current = late_s? - self.least_s <= lease_s;
         Ok(is_current.then_some(Order::Drive(v, w, lease_s)))
     }
 }
@@ -304,6 +304,9 @@ mod tests {
         {
             assert!(Console::new().take(&bad, 0.0).is_err(), "{bad}");
         }
+        let unstamped = drive(1, 0.1).replace("\"stamp_s\": 1, ", "");
+        let why = Console::new().take(&unstamped, 0.0).unwrap_err();
+        assert_eq!(why.to_string(), "stamp_s is not a number");
     }
 
     #[test]

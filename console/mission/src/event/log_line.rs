@@ -7,6 +7,7 @@ use super::{
 use crate::engine::side;
 use crate::{
     order::{Check, CheckOutcome, Injection, Note, Noted, Order, RangeFault},
+    outline,
     phase::{Outcome, StepTo},
 };
 use planner_api::LogLevel;
@@ -76,9 +77,8 @@ impl Event {
                 )
             }
             EventKind::ZoneDrawn { zone } => {
-                let (low, high) = zone.shape.bounds();
-                let corners = format!("{:.2}, {:.2} to {:.2}, {:.2} m", low.x, low.y, high.x, high.y);
-                line(Severity::Watch, "map", format!("{} drawn by the operator: {corners}", zone.name))
+                let outline = outline::of(&zone.shape);
+                line(Severity::Watch, "map", format!("{} drawn by the operator: {outline}", zone.name))
             }
             EventKind::ZoneBreached { zone, depth_m } => {
                 line(Severity::Crit, "robot", format!("hull {depth_m:.2} m inside zone {zone}"))

@@ -91,7 +91,10 @@ fn a_scan_is_carried_to_the_end_of_its_tick() {
     say(&mut inbox, Readings { scan: Some(scan(2.0)), ..moved(2, 0.5, 0.0) }, 0.15);
     say(&mut inbox, moved(3, 0.25, 0.0), 0.2);
     say(&mut inbox, moved(4, 0.25, 0.0), 0.2);
-    let points: Vec<_> = inbox.sense(0.2).readings.scan.iter().flat_map(world::Scan::points).collect();
+    let carried = inbox.sense(0.2).readings.scan;
+    // Longer distances do not fit into a scan.
+    assert_eq!(carried.as_ref().and_then(|scan| scan.range_max_m), Some(LONGEST_M));
+    let points: Vec<_> = carried.iter().flat_map(world::Scan::points).collect();
     let [point] = points[..] else { panic!("{points:?}") };
     assert!((point - world::Point::new(1.6, 0.0)).norm() < 1e-12, "{point}");
     assert_eq!(inbox.sense(0.3).readings.scan, None);
@@ -161,6 +164,33 @@ fn each_trouble_is_a_state_of_the_link_with_its_reason() {
     assert!(state == LinkState::Faulty && why.ends_with(&misfit().to_string()), "{why}");
     inbox.close("the adapter has closed the link".into());
     assert_eq!(seen(&inbox, 1.0).0, LinkState::Closed);
+}
+
+/// The reason for which the link is lost after readings every 50 ms for 2 s.
+fn lost_by(readings: impl Fn(u32) -> Readings) -> String {
+    let mut inbox = inbox();
+    for n in 0..=40_u32 {
+        let now_s = 0.05 * f64::from(n);
+        let echo_s = (now_s - 0.001).max(0.0);
+        inbox.take(Heard::Message(FromVehicle::Pong(Pong { echo_s, stamp_s: 100.0 + now_s })), now_s);
+        say(&mut inbox, readings(n), now_s);
+    }
+    let link = inbox.link(2.0);
+    assert_eq!(link.state, LinkState::Lost, "{link:?}");
+    link.why
+}
+
+#[test]
+fn readings_that_arrive_without_being_new_are_told_from_readings_that_stopped() {
+    let repeated = lost_by(|n| Readings { seq: 1, ..moved(n.into(), 0.0, 0.0) });
+    assert_eq!(repeated, "its readings repeat the numbers of earlier ones");
+    let frozen = lost_by(|n| Readings { stamp_s: 100.0, ..moved(n.into(), 0.0, 0.0) });
+    assert_eq!(frozen, "the stamps of its readings (`stamp_s`) stand still");
+    let mut inbox = inbox();
+    for seq in [1, 1] {
+        say(&mut inbox, moved(seq, 0.0, 0.0), 0.1);
+    }
+    assert_eq!(inbox.link(2.0).why, "its readings stopped");
 }
 
 #[test]

@@ -53,17 +53,16 @@ pub(super) struct Connection {
     pub heard: Listened,
     closed: Option<String>,
     pub end: End,
+    /// The log of a robot whose adapter was started here; `None` if no log can be written.
+    pub log: Option<RobotLog>,
 }
 
 impl Connection {
-    /// Connects, and waits for the introduction. An adapter that is started here receives the name of the log.
-    pub(super) fn open(
-        address: &Address,
-        network: bool,
-        log: Option<&RobotLog>,
-    ) -> Result<Self, ConnectError> {
+    /// Connects, and waits for the introduction. An adapter that is started here receives the name of its log.
+    pub(super) fn open(address: &Address, network: bool) -> Result<Self, ConnectError> {
+        let log = RobotLog::new().ok();
         let failed = |why: String| ConnectError::at(address, &why);
-        let address = &log.map_or_else(|| address.clone(), |log| log.named_to(address));
+        let address = &log.as_ref().map_or_else(|| address.clone(), |log| log.named_to(address));
         let Stream { read, mut write, said, end } =
             Stream::open(address, network).map_err(|error| failed(error.to_string()))?;
         let (tell, pieces) = sync_channel(MOST_WAITING);
@@ -84,6 +83,7 @@ impl Connection {
                         match one {
                             Heard::Message(FromVehicle::Hello(hello)) => {
                                 let mut connection = Self::of(*hello, write, pieces, began, end);
+                                connection.log = log;
                                 heard.for_each(|more| connection.take(arrival_s, more));
                                 return Ok(connection);
                             }
@@ -124,6 +124,7 @@ impl Connection {
             heard: Listened::default(),
             closed: None,
             end,
+            log: None,
         }
     }
 

@@ -2,10 +2,7 @@
 
 mod stops;
 
-use super::{
-    AHEAD_M, AHEAD_M_PER_S, Early, TURN_RAD, TURN_RAD_PER_S, TrialOptions, connection::Connection,
-    log::RobotLog,
-};
+use super::{AHEAD_M, AHEAD_M_PER_S, Early, TURN_RAD, TURN_RAD_PER_S, TrialOptions, connection::Connection};
 use crate::{address::Address, stream::End};
 use std::{
     f64::consts::{PI, TAU},
@@ -31,7 +28,6 @@ pub(super) struct Driver<'a> {
     pub address: &'a Address,
     pub options: &'a TrialOptions,
     pub hello: &'a Hello,
-    pub log: Option<&'a RobotLog>,
     pub is_stopped: &'a dyn Fn() -> bool,
     /// The lines of the connections that have ended.
     pub lines: Lines,
@@ -200,7 +196,7 @@ impl Driver<'_> {
     }
 
     fn connect(&self) -> Result<Connection, crate::ConnectError> {
-        let mut connection = Connection::open(self.address, self.options.network, self.log)?;
+        let mut connection = Connection::open(self.address, self.options.network)?;
         connection.await_readings(self.is_stopped);
         Ok(connection)
     }

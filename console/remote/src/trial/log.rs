@@ -1,19 +1,26 @@
 //! The log of a robot process that outlives its adapter: the file that is named in `ROBOT_LOG`.
 
 use crate::address::Address;
-use std::{fs, io, path::PathBuf};
+use std::{
+    fs, io,
+    path::PathBuf,
+    sync::atomic::{AtomicU64, Ordering},
+};
 use vehicle::trial::Sample;
 
 /// Maximum number of bytes that are read, from the end of the log.
 const READ_BYTES: usize = 1 << 20;
 
 /// A file to which a robot writes its motion: in each period a line with time, speed ahead and turn rate, separated by
-/// spaces, on the clock of its stamps.
+/// spaces, on the clock of its stamps. Each start of an adapter has its own file, because the robot of an earlier start
+/// may still write.
 pub(super) struct RobotLog(PathBuf);
 
 impl RobotLog {
     pub(super) fn new() -> io::Result<Self> {
-        let name = format!("tankops-robot-{}.log", std::process::id());
+        static STARTS: AtomicU64 = AtomicU64::new(0);
+        let start = STARTS.fetch_add(1, Ordering::Relaxed);
+        let name = format!("tankops-robot-{}-{start}.log", std::process::id());
         let path = std::env::temp_dir().join(name);
         fs::write(&path, "")?;
         Ok(Self(path))
@@ -35,12 +42,6 @@ impl RobotLog {
         let bytes = fs::read(&self.0).unwrap_or_default();
         let text = String::from_utf8_lossy(&bytes[bytes.len().saturating_sub(READ_BYTES)..]).into_owned();
         samples(&text)
-    }
-
-    /// Empties the log, so that a new robot begins with its own lines.
-    pub(super) fn clear(&self) {
-        // A log that cannot be emptied still ends with the newest lines.
-        let _ = fs::write(&self.0, "");
     }
 }
 
@@ -91,8 +92,7 @@ mod tests {
                 && of("run:x").starts_with("run:export ROBOT_LOG='")
         );
         fs::write(&log.0, "1 0 0\n2 0.5 0\n").unwrap();
-        assert_eq!(log.samples().len(), 1);
-        log.clear();
-        assert!(log.samples().is_empty());
+        let next = RobotLog::new().unwrap();
+        assert_eq!((log.samples().len(), next.samples().len()), (1, 0), "each start has its own log");
     }
 }

@@ -34,9 +34,9 @@ impl Risk {
 pub enum Topic {
     /// The mission and its planner.
     Mission,
-    /// Alarms, zones and stations.
+    /// Alarms, events, zones and stations.
     Alarms,
-    /// Past runs.
+    /// Scenarios and runs.
     Runs,
     /// The map.
     Map,
@@ -51,8 +51,8 @@ impl Topic {
     pub fn name(self) -> &'static str {
         match self {
             Self::Mission => "Mission and planner",
-            Self::Alarms => "Alarms, zones, stations",
-            Self::Runs => "Past runs",
+            Self::Alarms => "Alarms, events, zones, stations",
+            Self::Runs => "Scenarios and runs",
             Self::Map => "Map",
             Self::Console => "Console",
             Self::Screens => "Screens",

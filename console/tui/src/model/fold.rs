@@ -78,6 +78,7 @@ impl Run {
             EventKind::ZoneBreached { zone, .. } => self.raise_as_logged(event, Cause::Zone(zone.clone())),
             EventKind::ZoneLeft { zone } => self.clear(&Cause::Zone(zone.clone())),
             EventKind::ObstacleMoved { id, obstacle } => self.moved(*id, obstacle),
+            EventKind::NotThere { name, .. } => self.raise_as_logged(event, Cause::NotThere(name.clone())),
             EventKind::PlannerPrepared { .. }
             | EventKind::PlannerChosen { .. }
             | EventKind::ParametersChanged { .. }
@@ -132,7 +133,6 @@ impl Run {
             | EventKind::MediumKnown { .. }
             | EventKind::PlannerLogged { .. }
             | EventKind::Uncounted { .. }
-            | EventKind::NotThere { .. }
             | EventKind::Scanned { .. }
             | EventKind::Sensed { .. } => {}
             EventKind::Link(_) | EventKind::Stood { .. } | EventKind::Sent { .. } => self.linked(event),

@@ -100,17 +100,23 @@ impl PlanShown {
         ways.into_iter().map(|(lead, end_m)| (lead, end_m - along_m)).find(|(_, left_m)| *left_m > 0.0)
     }
 
-    /// The length of the path that is left, metres.
-    pub fn rest_m(&self, progress: &Progress) -> f64 {
-        polyline::length_m(&self.path[self.reached(progress)..])
+    /// The length of the path from the point nearest to the robot to its end, metres. The next target does not tell it:
+    /// for some planners, the target is the goal.
+    pub fn rest_m(&self, robot: Point, done: f64) -> f64 {
+        polyline::length_m(&self.path[self.nearest(robot, done)..])
     }
 
-    /// The index of the path point at the robot's next target; 0 if the path is empty. Where the path passes the target
-    /// several times, the distance driven so far decides.
+    /// The index of the path point at the robot's next target; 0 if the path is empty.
     pub fn reached(&self, progress: &Progress) -> usize {
-        let away_m = |point: &Point| (point - progress.target).norm();
+        self.nearest(progress.target, progress.done)
+    }
+
+    /// The index of the path point at a place; 0 if the path is empty. Where the path passes the place several times, the
+    /// distance driven so far decides.
+    fn nearest(&self, place: Point, done: f64) -> usize {
+        let away_m = |point: &Point| (point - place).norm();
         let nearest_m = self.path.iter().map(away_m).fold(f64::INFINITY, f64::min);
-        let along_m = self.along_m(progress.done);
+        let along_m = self.along_m(done);
         let points = self.path.iter().zip(polyline::stations_m(&self.path)).enumerate();
         let near = points.filter(|(_, (point, _))| away_m(point) <= nearest_m + SPACING_M);
         near.map(|(index, (point, at_m))| (index, (at_m - along_m).abs() + away_m(point)))
@@ -364,15 +370,20 @@ mod tests {
     }
 
     #[test]
+    fn the_rest_is_counted_from_the_robot_even_if_the_target_is_the_goal() {
+        let path: Vec<Point> = (0..=40).map(|n| Point::new(0.1 * f64::from(n), 0.0)).collect();
+        let plan = plan(path, Vec::new(), 4.0);
+        assert!((plan.rest_m(Point::new(0.52, 0.03), 0.13) - 3.5).abs() < 1e-9);
+    }
+
+    #[test]
     fn a_place_on_a_long_lane_is_found_where_the_robot_drives_it() {
         let plan = long_lanes();
         let length_m = plan.length_m;
         // The target is far from both ends of its lane, and the way back passes close to it.
         let at = plan.reached(&progress(Point::new(9.6, 0.0), 9.6 / length_m));
         assert_eq!(plan.leg_at(at), plan.lanes[0]);
-        assert!(
-            (plan.rest_m(&progress(Point::new(9.6, 0.0), 9.6 / length_m)) - (length_m - 9.6)).abs() < 0.3
-        );
+        assert!((plan.rest_m(Point::new(9.6, 0.0), 9.6 / length_m) - (length_m - 9.6)).abs() < 0.3);
         let back = plan.reached(&progress(Point::new(9.6, 0.1), 1.0 - 9.6 / length_m));
         assert!(back > plan.lanes[2].1, "on the way back");
     }

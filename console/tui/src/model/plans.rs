@@ -12,6 +12,9 @@ use world::Point;
 pub struct Plans {
     /// The estimate for the mission's plan, and the ask that the plan answers.
     pub estimate: Option<(Option<AskId>, Estimate)>,
+    /// The number of lanes of the plan that the estimate is for; 0 if it has no lanes.
+    #[serde(default)]
+    pub lanes: usize,
     /// The floor that the mission's plan leaves out, and the ask that the plan answers.
     #[serde(default)]
     pub left_out: Option<(Option<AskId>, LeftOut)>,

@@ -243,7 +243,15 @@ impl Run {
     pub fn place_of(&self, what: &What) -> Option<Point> {
         let station = |id| self.stations().iter().find(|station| station.id == id);
         let place = || what.place(|id| station(id).map(|station| station.position));
-        what.event().and_then(|event| self.wound(&event.kind)).or_else(place)
+        let of_kind = |kind| self.wound(kind).or_else(|| self.not_there(kind));
+        what.event().and_then(|event| of_kind(&event.kind)).or_else(place)
+    }
+
+    /// The centre of an obstacle that the scans do not show.
+    fn not_there(&self, kind: &EventKind) -> Option<Point> {
+        let EventKind::NotThere { id, .. } = kind else { return None };
+        let mut obstacles = self.about.iter().flat_map(|about| &about.world.obstacles);
+        obstacles.find(|obstacle| obstacle.id == *id).map(|obstacle| obstacle.shape.center())
     }
 
     /// Where the tether is wound, according to an alarm: the obstacle that it names or, for the total, the largest wrap.

@@ -2,6 +2,7 @@
 
 use super::line_edit::LineEdit;
 use super::palette::Palette;
+use super::step::Step;
 use super::{Cause, EventList, ZoneDraft};
 use crate::screens::Screen;
 use crate::theme::ThemeName;
@@ -285,6 +286,9 @@ pub enum Overlay {
     Remedies {
         /// The cause of the alarm.
         cause: Cause,
+        /// The actions at the time when the list was opened, in the order of their numbers.
+        #[serde(skip)]
+        steps: Vec<Step>,
         /// The index of the selected line.
         selected: usize,
     },

@@ -2,7 +2,7 @@
 
 use super::message::Effect;
 use super::offer::{accepted, demand, on_screen, refuse};
-use super::place;
+use super::{place, remedies};
 use crate::guide::name;
 use crate::model::alarms::State;
 use crate::model::ui::Shelving;
@@ -166,7 +166,8 @@ fn parse_shelving(text: &str) -> Result<(f64, String), String> {
 pub(crate) fn open_actions(model: &mut Model) -> Vec<Effect> {
     let Some(cause) = selected_cause(model) else { return refuse(model, "no alarms".into()) };
     model.ui.alarm = Some(cause.clone());
-    model.ui.overlay = Overlay::Remedies { cause, selected: 0 };
+    let steps = remedies::steps_now(model, &cause);
+    model.ui.overlay = Overlay::Remedies { cause, steps, selected: 0 };
     Vec::new()
 }
 

@@ -47,7 +47,11 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
             };
         }
         RunMsg::Checked(found) => return preflight::checked(model, found),
-        RunMsg::Estimated(ask, estimate) => model.live.plans.estimate = Some((ask, *estimate)),
+        RunMsg::Estimated(ask, estimate) => {
+            let plan = model.live.run.planning.plan.as_ref().filter(|plan| plan.ask == ask);
+            model.live.plans.lanes = plan.map_or(0, |plan| plan.lanes.len());
+            model.live.plans.estimate = Some((ask, *estimate));
+        }
         RunMsg::WayBack(way) => finish::found(model, way),
         RunMsg::ZoneCost(corners, cost) => zones::priced(model, &corners, cost),
         RunMsg::LeftOut(ask, left_out) => model.live.plans.left_out = Some((ask, *left_out)),

@@ -8,7 +8,7 @@ use super::preflight;
 use super::preset::take as take_preset;
 use super::replay;
 use super::send::send;
-use super::{finish, palette, remedies, setting, shadow, typing, what_if, zones};
+use super::{finish, palette, setting, shadow, typing, what_if, zones};
 use crate::actions::ActionId;
 use crate::model::ui::{Ask, Edit, MapLayer, Purpose};
 use crate::model::{Ghost, Model, Overlay, Palette, parameter, planner_list::PlannerLine, preset};
@@ -279,7 +279,7 @@ pub(super) fn select(model: &mut Model, by: isize) {
         Overlay::Preflight { .. } => model.checks().len(),
         Overlay::Messages { .. } => model.console.messages.len(),
         Overlay::Finish { .. } => finish::WAYS,
-        Overlay::Remedies { cause, .. } => remedies::steps(model, cause).len(),
+        Overlay::Remedies { steps, .. } => steps.len(),
         Overlay::None
         | Overlay::Confirm(_)
         | Overlay::Stepping

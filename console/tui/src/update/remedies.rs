@@ -5,33 +5,27 @@ use super::message::Effect;
 use super::offer::{accepted, demand, offered, refuse};
 use crate::actions::ActionId;
 use crate::guide;
+use crate::model::step::{Deed, Step};
 use crate::model::{Cause, Model, Overlay};
 use mission::Order;
 use positioning::Exclusion;
+use std::borrow::Cow;
 use world::StationId;
 
 /// The number of actions that have a key.
 pub(crate) const MOST: usize = 5;
 
-/// The effect of an action on an alarm.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Deed {
-    /// Carries out an action of the console.
-    Act(ActionId),
-    /// Excludes a station from the fix, or uses it again.
-    UseStation(StationId, bool),
+/// The actions on an alarm, in the order of their numbers. An open list keeps the actions with which it was opened, so
+/// that a number never gets another action under the operator's hand.
+pub(crate) fn steps<'a>(model: &'a Model, cause: &Cause) -> Cow<'a, [Step]> {
+    match &model.ui.overlay {
+        Overlay::Remedies { cause: open, steps, .. } if open == cause => Cow::Borrowed(steps),
+        _ => Cow::Owned(steps_now(model, cause)),
+    }
 }
 
-/// An action on an alarm.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Step {
-    /// The action as a sentence, with keys written as `<end>`.
-    pub text: String,
-    pub deed: Deed,
-}
-
-/// The actions on an alarm, in the order of their numbers.
-pub(crate) fn steps(model: &Model, cause: &Cause) -> Vec<Step> {
+/// The actions that an alarm has now.
+pub(super) fn steps_now(model: &Model, cause: &Cause) -> Vec<Step> {
     let remedies = guide::remedies(cause, &model.live.run);
     let of_guide = remedies.filter_map(|remedy| Some((remedy.text, remedy.action?)));
     let of_guide = of_guide.map(|(text, action)| Step { text: text.to_owned(), deed: Deed::Act(action) });
@@ -108,6 +102,10 @@ pub(crate) fn can(model: &Model, deed: &Deed) -> Result<(), String> {
             demand(!model.live.run.has_ended(), "the mission has ended")?;
             offered(model, ActionId::Parameters)
         }
+        Deed::Act(ActionId::Hold) => {
+            offered(model, ActionId::Hold)?;
+            demand(model.live.is_replay() || model.live.may_move(), "already held")
+        }
         Deed::Act(action) => offered(model, *action),
         Deed::UseStation(station, used) => accepted(model, &order(model, *station, *used)),
     }
@@ -129,14 +127,18 @@ pub(super) fn run(model: &mut Model, number: usize) -> Vec<Effect> {
         let why = if steps.is_empty() { "this alarm has advice only" } else { "no action with this number" };
         return refuse(model, why.into());
     };
+    let deed = step.deed.clone();
+    let holds = deed == Deed::Act(ActionId::Hold) && model.live.may_move();
+    // The list stays open with an action that is not possible now, and the operator reads why.
+    match can(model, &deed) {
+        Err(why) if !holds => return refuse(model, why),
+        _ => {}
+    }
     model.ui.alarm = Some(cause);
     model.ui.overlay = Overlay::None;
-    match step.deed {
+    match deed {
         Deed::Act(ActionId::Hold) => hold_only(model),
         Deed::Act(action) => act(model, action),
-        Deed::UseStation(station, used) => match can(model, &step.deed) {
-            Ok(()) => vec![Effect::Order(order(model, station, used))],
-            Err(why) => refuse(model, why),
-        },
+        Deed::UseStation(station, used) => vec![Effect::Order(order(model, station, used))],
     }
 }

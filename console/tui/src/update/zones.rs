@@ -8,8 +8,9 @@ use super::unseen;
 use crate::model::ui::Ask;
 use crate::model::zone_draft::Form;
 use crate::model::{Model, Overlay, ZoneDraft};
+use crate::view::text;
 use mission::{Order, ZoneCost, outline};
-use world::Point;
+use world::{Point, Shape, polyline};
 
 /// Checks that a zone can be drawn now.
 ///
@@ -154,6 +155,36 @@ pub(crate) fn asked(model: &Model) -> Option<Vec<Point>> {
         Overlay::Confirm(Ask::DrawZone(corners)) => Some(corners.clone()),
         _ => None,
     }
+}
+
+/// The zone as drawn so far, and its distance to the hull, as a sentence; `None` if no zone is being drawn.
+pub(crate) fn drawn_words(model: &Model) -> Option<String> {
+    let Overlay::ZoneDraft(draft) = &model.ui.overlay else { return None };
+    let corners = drawn(model)?;
+    let words = match (draft.form, corners.len()) {
+        (Form::Polygon, n) => text::counted(n, "corner"),
+        (_, 3..) => text::capitalized(&outline::words(&corners)),
+        _ => "No area yet".to_owned(),
+    };
+    let hull = hull_gap_m(model, &corners).map_or_else(String::new, |gap_m| {
+        if gap_m <= 0.0 {
+            ", touches the hull".to_owned()
+        } else {
+            format!(", {} m from the hull", text::number(gap_m, 2))
+        }
+    });
+    Some(format!("{words}{hull}."))
+}
+
+/// The gap between the hull and a zone with these corners, metres; zero or less if they overlap.
+fn hull_gap_m(model: &Model, corners: &[Point]) -> Option<f64> {
+    let run = &model.live.run;
+    let at = run.position.pose.as_ref()?.position;
+    let radius_m = run.about.as_ref()?.mission.limits.radius_m;
+    let shape = Shape::Polygon { vertices: outline::turned(corners) };
+    let inside = corners.len() >= 3 && shape.distance_m(at) <= 0.0;
+    let off_m = if inside { 0.0 } else { polyline::distance_to_ring_m(corners, at) };
+    Some(off_m - radius_m)
 }
 
 /// The outline to show on the map: of the zone being drawn or of the zone in the open question.

@@ -11,6 +11,7 @@ use crate::model::ui::{Ask, Shelving};
 use crate::model::zone_draft::Form;
 use crate::model::{LineEdit, Model, Offer, Overlay, Shadow, log::clock};
 use crate::theme::Role;
+use crate::update::zones;
 use account::Resumption;
 use mission::WayBack;
 use ratatui::Frame;
@@ -176,7 +177,10 @@ fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
         Overlay::Confirm(Ask::DrawZone(_)) => {
             vec!["Close this floor? <accept>: close, <cancel>: cancel.".into(), zone_cost(model)]
         }
-        Overlay::ZoneDraft(draft) => vec![drawing(draft.form), "Mouse: drag.".into()],
+        Overlay::ZoneDraft(draft) => {
+            let drawn = zones::drawn_words(model).into_iter();
+            std::iter::once(drawing(draft.form)).chain(drawn).chain(["Mouse: drag.".into()]).collect()
+        }
         Overlay::Confirm(Ask::Set { key, value, .. }) => setting::clauses(model, key, value, has_progress),
         Overlay::Confirm(Ask::Promote) => {
             let shadow = model.live.run.shadow.as_ref();
@@ -260,9 +264,9 @@ pub(super) fn resumes(resumption: &Resumption) -> String {
 fn continues(model: &Model) -> Option<String> {
     let run = &model.live.run;
     let progress = run.progress.as_ref()?;
-    let rest = run.planning.plan.as_ref().filter(|plan| !plan.path.is_empty());
-    let rest = rest.map_or_else(String::new, |plan| {
-        format!(", {} m of the plan left", text::number(plan.rest_m(progress), 1))
+    let plan = run.planning.plan.as_ref().filter(|plan| !plan.path.is_empty());
+    let rest = plan.zip(run.position.pose).map_or_else(String::new, |(plan, pose)| {
+        format!(", {} m of the plan left", text::number(plan.rest_m(pose.position, progress.done), 1))
     });
     Some(format!("The robot continues at {} (×){rest}.", text::place(progress.target)))
 }

@@ -53,7 +53,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         Overlay::Finish { selected } => finish::list(look, *selected, columns),
         Overlay::Messages { selected } => messages::list(look, *selected, columns),
         Overlay::Layers { selected } => layers(look, *selected),
-        Overlay::Remedies { cause, selected } if !alarm_screen::shows_actions(look.model) => {
+        Overlay::Remedies { cause, selected, .. } if !alarm_screen::shows_actions(look.model) => {
             alarm_screen::action_list(look, cause, *selected, columns)
         }
         _ => return,

@@ -150,13 +150,13 @@ fn draw_floor(look: &Look, frame: &mut Frame, area: Rect, window: Window) {
     let canvas = Canvas::default().marker(marker).x_bounds(window.x).y_bounds(window.y).paint(|ctx| {
         pen.plates(ctx);
         pen.no_go(ctx, world);
-        pen.zone(ctx);
         pen.paths(ctx);
         pen.blocked(ctx);
         pen.drawings(ctx);
         pen.solids(ctx, world);
         pen.tether(ctx);
         pen.shadow(ctx);
+        pen.zone(ctx);
         pen.robot(ctx);
     });
     frame.render_widget(canvas, area);

@@ -18,7 +18,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let Some(account) = account(look) else { return };
     let block = look.pane(
         Pane::Missed,
-        &format!("Missed areas  {}", account.missed.len()),
+        &format!("Missed areas  {}{}", account.missed.len(), small(account)),
         &look.keys("<result> result"),
     );
     let inner = block.inner(area);
@@ -48,6 +48,14 @@ fn row(area: &Area<MissReason>, columns: usize) -> String {
         ],
         columns,
     )
+}
+
+/// The missed areas that are too small to be listed, as an addition to those that are; empty if there are none.
+pub(super) fn small(floor: &Account) -> String {
+    match &floor.slivers {
+        slivers if slivers.count == 0 => String::new(),
+        slivers => format!(" (+ {} under 0.01 m², {} m²)", slivers.count, text::number(slivers.area_m2, 2)),
+    }
 }
 
 /// The main reason for a missed area, and the number of further reasons.

@@ -7,6 +7,7 @@ use crate::guide;
 use crate::model::planning::Lead;
 use crate::model::{Alarm, Busy, Model, Offer, Overlay, Replay, Screen, ui::Ask};
 use crate::theme::Role;
+use held::Head;
 use mission::{Outcome, Phase, Readiness, Severity};
 
 const ACKNOWLEDGE: &str = "<acknowledge>: acknowledge.";
@@ -65,8 +66,8 @@ fn by_phase(model: &Model) -> Clauses {
         (Some(_), _) => (Role::Title, vec!["Order sent...".into()]),
         (None, Phase::Held(hold)) => {
             let mut clauses = held::clauses(model, hold);
-            // The warning that the robot will move automatically comes before the work of a planner.
-            let at = if hold.resumes.is_never() { 1 } else { 2 }.min(clauses.len());
+            // Warnings that the robot may or will move come before the work of a planner.
+            let at = held::leading(model, hold).min(clauses.len());
             clauses.splice(at..at, work.into_iter().flatten());
             (Role::Hold, clauses)
         }
@@ -85,13 +86,23 @@ fn by_phase(model: &Model) -> Clauses {
             }
             None => running(model),
         },
-        (None, Phase::Ended(Outcome::Complete)) => {
-            (Role::Good, vec![format!("DONE: {}.", model.live.run.end_reason), more(model)])
+        (None, Phase::Ended(outcome)) => ended(model, *outcome),
+    }
+}
+
+/// The end of a mission. It is not good as long as the vehicle may still move.
+fn ended(model: &Model, outcome: Outcome) -> Clauses {
+    let run = &model.live.run;
+    let (role, state) = match outcome {
+        Outcome::Complete => (Role::Good, format!("DONE: {}.", run.end_reason)),
+        outcome => (Role::Warn, format!("ENDED ({}): {}.", outcome.word(), run.end_reason)),
+    };
+    match held::head(run) {
+        Head::Held => (role, vec![state, more(model)]),
+        Head::Stopping => (Role::Warn, vec![state, "The stop is not confirmed yet.".into(), more(model)]),
+        Head::NotConfirmed => {
+            (Role::Crit, vec![state, "STOP NOT CONFIRMED: go to the vehicle.".into(), more(model)])
         }
-        (None, Phase::Ended(outcome)) => (
-            Role::Warn,
-            vec![format!("ENDED ({}): {}.", outcome.word(), model.live.run.end_reason), more(model)],
-        ),
     }
 }
 

@@ -164,9 +164,10 @@ fn figures(summary: &Summary, together: Option<&Together>) -> Vec<Field> {
     if let Some(floor) = together.map(|all| &all.floor).or(summary.floor.as_ref()) {
         let missed: Vec<_> = floor.missed.iter().filter(|area| area.reason != MissReason::NotAsked).collect();
         let area_m2: f64 = missed.iter().map(|area| area.area_m2).sum();
+        let small = super::missed::small(floor);
         fields.push((
             "missed",
-            format!("{}, {} m²", text::counted(missed.len(), "area"), text::number(area_m2, 2)),
+            format!("{}, {} m²{small}", text::counted(missed.len(), "area"), text::number(area_m2, 2)),
         ));
     }
     for violation in summary.violations.iter().flatten() {

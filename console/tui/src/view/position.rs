@@ -79,6 +79,15 @@ pub(super) fn is_fix_stale(look: &Look) -> bool {
     expects && (look.model.silent_s().is_some() || position.is_fix_stale(look.run.clock.t_s))
 }
 
+/// The age of the figures of the stations, if they are not those of the last ranging cycle: the last fix is stale, or the
+/// last cycle gave no fix.
+pub(super) fn old_figures(look: &Look) -> Option<String> {
+    let position = &look.run.position;
+    let is_old = is_fix_stale(look) || (position.failure.is_some() && !look.run.has_ended());
+    let age_s = position.fix_age_s(look.run.clock.t_s).filter(|_| is_old)?;
+    Some(format!("{} s old", text::number(age_s, 0)))
+}
+
 fn is_ranging_stale(look: &Look) -> bool {
     let position = &look.run.position;
     let expects = !look.run.has_ended() && position.ranged_t_s.is_some();
@@ -163,11 +172,20 @@ fn state(run: &Run) -> (Role, &'static str) {
 fn station_lines(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>> {
     let mut words = Parts::new();
     if let Some(fix) = &look.run.position.fix {
-        words.extend(fix.excluded.iter().map(|(id, why)| (Role::Watch, rejected(look.run, *id, why))));
+        let age = old_figures(look);
+        let word = |role: Role, words: String| match &age {
+            Some(age) => marked(true, (Role::Text, format!("{words}, {age}"))),
+            None => (role, words),
+        };
+        let rejected = fix.excluded.iter().map(|(id, why)| word(Role::Watch, rejected(look.run, *id, why)));
+        words.extend(rejected);
+        // A figure of an earlier fix does not say that the station is heard now.
+        let ok = if age.is_some() { "" } else { "ok " };
         words.extend(fix.residuals.iter().map(|residual| {
             let residual_mm = text::number(residual.residual_m * 1000.0, 0);
             let sign = if residual.residual_m >= 0.0005 { "+" } else { "" };
-            (Role::Text, format!("{} ok {sign}{residual_mm} mm", look.run.station_name(residual.station)))
+            let name = look.run.station_name(residual.station);
+            word(Role::Text, format!("{name} {ok}{sign}{residual_mm} mm"))
         }));
     }
     let all = words.len();

@@ -24,7 +24,9 @@ const TABLE: [(&str, usize, u8); 8] = [
 ];
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
-    let block = look.pane(Pane::Stations, "Stations", "in the last fix");
+    let is_old = position::old_figures(look).is_some();
+    let note = if is_old { "in an earlier fix" } else { "in the last fix" };
+    let block = look.pane(Pane::Stations, "Stations", note);
     let columns = usize::from(block.inner(area).width);
     let stations = look.run.about.as_ref().map_or(&[][..], |about| &about.world.stations);
     let head = vec![(Role::Dim, format!(" {}", laid_out(TABLE.map(|(head, ..)| head.to_owned()), columns)))];
@@ -65,7 +67,7 @@ fn row(look: &Look, station: &Station, columns: usize) -> Parts {
             .map_or_else(|| "-".into(), |share| format!("{} %", text::number(100.0 * share, 0))),
         rejected.to_string(),
     ];
-    let (role, words) = marked(position::is_fix_stale(look), (role, laid_out(cells, columns)));
+    let (role, words) = marked(position::old_figures(look).is_some(), (role, laid_out(cells, columns)));
     vec![(role, if words.starts_with('◌') { words } else { format!(" {words}") })]
 }
 

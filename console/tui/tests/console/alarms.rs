@@ -575,3 +575,49 @@ fn the_alarm_whose_actions_are_open_stays_selected() {
         "after the list is closed, too"
     );
 }
+
+#[test]
+fn an_obstacle_that_scans_do_not_show_raises_an_alarm_at_its_place() {
+    let mut screen = Screen::tethered();
+    let about = screen.model.live.run.about.as_ref().unwrap();
+    let drawn = about.world.obstacles.iter().find(|obstacle| obstacle.known).unwrap().clone();
+    hear(&mut screen, EventKind::NotThere { id: drawn.id, name: drawn.name.clone(), scans: 40 });
+    let alarm = screen.model.live.run.alarms.get(&Cause::NotThere(drawn.name.clone())).unwrap();
+    assert_eq!((alarm.severity, alarm.place), (Severity::Warn, Some(drawn.shape.center())));
+    assert!(alarm.text.contains("40 scans went through its place"), "{}", alarm.text);
+    screen.model.ui.go(SHOWN);
+    assert!(shown(&screen, (120, 36)).contains("Correct the drawing"), "{}", shown(&screen, (120, 36)));
+}
+
+#[test]
+fn the_numbers_of_an_open_list_of_actions_keep_their_actions() {
+    let mut screen = Screen::running();
+    screen.send(Msg::Resize { width: 120, height: 36 });
+    let first =
+        |cause: &Cause| tui::guide::remedies(cause, &screen.model.live.run).find_map(|remedy| remedy.action);
+    let cause =
+        Cause::every().into_iter().find(|cause| first(cause) == Some(ActionId::Hold)).expect("a cause");
+    let alarms = &mut screen.model.live.run.alarms;
+    alarms.raise(cause.clone(), Severity::Warn, "what is wrong".into(), 1.0);
+    screen.model.ui.go(SHOWN);
+    screen.model.ui.alarm = Some(cause);
+    screen.press(ENTER);
+    let numbered = |screen: &Screen| {
+        let text = text(&drawn(&screen.model, RICH, (120, 36)));
+        let rows = text.lines().filter_map(|line| line.rsplit_once("││").map(|(_, right)| right.to_owned()));
+        let is_numbered = |row: &String| {
+            row.trim_start_matches([' ', '>']).starts_with(|digit: char| digit.is_ascii_digit())
+        };
+        rows.filter(is_numbered).collect::<Vec<_>>()
+    };
+    let before = numbered(&screen);
+    assert!(before[0].contains("HOLD the robot"), "{before:?}");
+    let held = screen.mission.held(HoldReason::Operator);
+    screen.hear(RunMsg::Events(vec![held]));
+    assert_eq!(numbered(&screen), before);
+    assert_eq!(screen.type_text("1"), []);
+    assert_eq!(notice(&screen), "already held");
+    assert!(matches!(screen.model.ui.overlay, Overlay::Remedies { .. }), "the list stays open");
+    screen.press([Key::Esc, Key::Enter]);
+    assert_ne!(numbered(&screen), before, "opened again, it has the actions of a hold");
+}

@@ -127,3 +127,23 @@ fn a_view_draws_nothing() {
     let said = screen.model.notice().map(|notice| notice.text.clone()).unwrap_or_default();
     assert!(said.starts_with("VIEW only"), "{said}");
 }
+
+#[test]
+fn a_zone_being_drawn_is_on_the_map_with_its_corners_and_its_distance_to_the_hull() {
+    let mut screen = begun(Point::new(-5.0, 5.0));
+    screen.type_text("ss");
+    let at = |x, y| Point::new(x, y);
+    for corner in [at(-3.0, 5.0), at(-3.0, 6.5)] {
+        screen.model.ui.cursor = Some(corner);
+        screen.press(ENTER);
+    }
+    screen.model.ui.cursor = Some(at(-4.0, 7.0));
+    for size in [(120, 36), (200, 60)] {
+        let shown = text(&drawn(&screen.model, RICH, size));
+        assert_eq!(shown.matches('■').count(), 3, "{shown}");
+        let flat = shown.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(flat.contains("4 corners, ") && flat.contains(" m from the hull."), "{shown}");
+    }
+    screen.press([Key::Esc]);
+    assert!(!text(&drawn(&screen.model, RICH, (120, 36))).contains('■'));
+}

@@ -148,6 +148,7 @@ fn a_hold_names_the_link_and_offers_only_what_it_allows() {
     );
     let line = state(&screen);
     assert!(line.starts_with("STOP NOT CONFIRMED: link to vehicle lost"), "{line}");
+    assert!(line.contains("It may move: use its emergency stop."), "{line}");
     assert!(!line.contains("resume.") && line.contains("Cannot resume until the link is back."), "{line}");
     hear(&mut screen, [link(LinkState::Closed, "the adapter has ended")]);
     let line = state(&screen);
@@ -216,4 +217,25 @@ fn a_question_keeps_the_state_of_a_held_robot_at_every_size() {
             assert!(shown.contains("HELD by operator"), "{key}\n{shown}");
         }
     }
+}
+
+#[test]
+fn the_end_of_a_live_mission_is_good_only_when_the_stop_is_confirmed() {
+    let mut screen = live();
+    let outcome = mission::Outcome::Complete;
+    hear(
+        &mut screen,
+        [
+            EventKind::Sent { drive: None, lease_s: 0.25 },
+            EventKind::Ended { outcome, reason: "floor scanned".into() },
+        ],
+    );
+    let line = state(&screen);
+    assert!(line.starts_with("DONE: floor scanned. The stop is not confirmed yet."), "{line}");
+    hear(&mut screen, [EventKind::Stood { confirmed: false, after_s: 1.0, moved: false }]);
+    let line = state(&screen);
+    assert!(line.starts_with("DONE: floor scanned. STOP NOT CONFIRMED: go to the vehicle."), "{line}");
+    hear(&mut screen, [EventKind::Stood { confirmed: true, after_s: 1.0, moved: false }]);
+    let line = state(&screen);
+    assert!(line.starts_with("DONE: floor scanned. ") && !line.contains("onfirmed"), "{line}");
 }

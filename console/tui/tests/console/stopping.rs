@@ -72,7 +72,7 @@ fn overlays() -> Vec<Overlay> {
         Overlay::Preflight { selected: 0 },
         Overlay::WhatIf,
         Overlay::Filter("a".into()),
-        Overlay::Remedies { cause: Cause::PositionLost, selected: 0 },
+        Overlay::Remedies { cause: Cause::PositionLost, steps: Vec::new(), selected: 0 },
         Overlay::Shelve(Shelving { cause: Cause::Stuck, line: "15".into(), refusal: None }),
         Overlay::Bookmark("pump".into()),
     ];

@@ -29,6 +29,8 @@ const SWAPPED: f64 = 0.5;
 /// The range within which slip and friction explain the ratio of measured to commanded motion.
 const RATIO_MIN: f64 = 0.4;
 const RATIO_MAX: f64 = 1.6;
+/// Squared correlation of measured and commanded motion above which their ratio counts as steady.
+const STEADY: f64 = 0.9;
 
 /// A direction of motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,8 +50,15 @@ pub enum Finding {
     Reversed(Axis),
     /// The odometry moves sideways while the vehicle is commanded ahead.
     Swapped,
-    /// The odometry has a different scale: measured divided by commanded motion.
-    Scale(Axis, f64),
+    /// The odometry has a different scale.
+    Scale {
+        /// The direction of motion.
+        axis: Axis,
+        /// Measured divided by commanded motion.
+        ratio: f64,
+        /// Whether the ratio was the same all the time, so that a mix-up of units can be its cause.
+        is_steady: bool,
+    },
 }
 
 impl fmt::Display for Finding {
@@ -66,9 +75,10 @@ impl fmt::Display for Finding {
                 out.write_str("turns are mirrored: counter-clockwise must be positive")
             }
             Self::Swapped => out.write_str("axes are swapped: odometry moves sideways, but x must be ahead"),
-            Self::Scale(axis, ratio) => {
+            Self::Scale { axis, ratio, is_steady } => {
                 let what = if *axis == Axis::Forward { "odometry" } else { "turning" };
-                write!(out, "{what} is {ratio:.2} times the commanded motion{}", unit(*axis, *ratio))
+                let unit = if *is_steady { unit(*axis, *ratio) } else { "" };
+                write!(out, "{what} is {ratio:.2} times the commanded motion{unit}")
             }
         }
     }
@@ -97,6 +107,7 @@ struct Track {
     across: f64,
     /// Sums, over the last seconds, of squares, products and magnitudes of the rates.
     square: f64,
+    square_measured: f64,
     product: f64,
     product_across: f64,
     path: f64,
@@ -112,6 +123,7 @@ impl Track {
         let kept = (-over_s / FORGOTTEN_S).exp();
         let grow = |sum: &mut f64, rate: f64| *sum = *sum * kept + rate * over_s;
         grow(&mut self.square, self.commanded * self.commanded);
+        grow(&mut self.square_measured, self.measured * self.measured);
         grow(&mut self.product, self.commanded * self.measured);
         grow(&mut self.product_across, self.commanded * self.across);
         grow(&mut self.path, self.commanded.abs());
@@ -123,14 +135,18 @@ impl Track {
             return None;
         }
         let (ratio, across) = (self.product / self.square, self.product_across / self.square);
-        if self.path_measured < FROZEN * self.path {
+        let fits = (RATIO_MIN..=RATIO_MAX).contains(&ratio);
+        // Motion that was measured before the odometry froze leaves the sums only slowly.
+        let stands = self.measured.hypot(self.across) < FROZEN * self.commanded.abs();
+        if self.path_measured < FROZEN * self.path || (stands && !fits) {
             Some(Finding::Frozen(axis))
         } else if across.abs() > SWAPPED && ratio.abs() < RATIO_MIN {
             Some(Finding::Swapped)
         } else if ratio < REVERSED {
             Some(Finding::Reversed(axis))
-        } else if !(RATIO_MIN..=RATIO_MAX).contains(&ratio) {
-            Some(Finding::Scale(axis, ratio))
+        } else if !fits {
+            let is_steady = self.product * self.product > STEADY * self.square * self.square_measured;
+            Some(Finding::Scale { axis, ratio, is_steady })
         } else {
             None
         }
@@ -214,7 +230,7 @@ fn least_wrong(tracks: &[Track], axis: Axis, needed: f64) -> Option<Finding> {
 
 fn is_same(one: Finding, other: Finding) -> bool {
     match (one, other) {
-        (Finding::Scale(one, _), Finding::Scale(other, _)) => one == other,
+        (Finding::Scale { axis: one, .. }, Finding::Scale { axis: other, .. }) => one == other,
         _ => one == other,
     }
 }
@@ -271,6 +287,25 @@ mod tests {
         assert!(told(found(&round, 0, turned(57.3))).ends_with("degrees instead of radians?"));
         let swapped = |honest: Odometry| Odometry { forward_m: 0.0, sideways_m: honest.forward_m, ..honest };
         assert_eq!(found(&ahead, 4, swapped), Some(Finding::Swapped));
+    }
+
+    #[test]
+    fn odometry_that_freezes_during_a_drive_is_not_taken_for_a_mix_up_of_units() {
+        for honest in [20, 60, 200] {
+            let ahead = vec![(0.3, 0.0); honest + 200];
+            let seen = std::cell::Cell::new(0);
+            let fades = |to: f64| {
+                seen.set(0);
+                let lie = |odometry: Odometry| {
+                    seen.set(seen.get() + 1);
+                    let factor = if seen.get() > honest { to } else { 1.0 };
+                    Odometry { forward_m: factor * odometry.forward_m, ..odometry }
+                };
+                found(&ahead, 2, lie).map_or(String::new(), |finding| finding.to_string())
+            };
+            assert_eq!(fades(0.0), Finding::Frozen(Axis::Forward).to_string(), "{honest}");
+            assert!(fades(0.15).ends_with("times the commanded motion"), "{honest}: {}", fades(0.15));
+        }
     }
 
     #[test]

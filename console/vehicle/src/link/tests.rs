@@ -103,7 +103,17 @@ fn three_malformed_lines_in_a_row_are_a_fault_until_the_vehicle_connects_again()
     link.heard(&readings(2, 0.0), 0.1);
     link.heard(&hello(), 0.1);
     assert_eq!(link.state(0.1), State::Fault);
-    assert_eq!(link.fault(), Some("3 malformed lines in a row; pong.stamp_s: NaN"));
+    assert_eq!(link.fault(), Some("3 malformed lines without good readings in between; pong.stamp_s: NaN"));
+}
+
+#[test]
+fn readings_that_cannot_be_used_are_a_fault_although_pings_are_answered() {
+    let mut link = connected();
+    for _ in 0..3 {
+        link.heard(&Heard::Malformed(Misfit { field: "readings.seq".into(), what: "NaN".into() }), 0.1);
+        link.heard(&Heard::Message(FromVehicle::Pong(Pong { echo_s: 0.1, stamp_s: 0.1 })), 0.1);
+    }
+    assert_eq!(link.fault(), Some("3 malformed lines without good readings in between; readings.seq: NaN"));
 }
 
 #[test]

@@ -45,7 +45,7 @@ pub fn ahead(check: &'static str, commanded_m: f64, moved: Moved) -> Row {
     } else if ratio < 0.0 {
         Some(Finding::Reversed(Axis::Forward).to_string())
     } else if (ratio - 1.0).abs() > TOLERANCE {
-        Some(Finding::Scale(Axis::Forward, ratio).to_string())
+        Some(Finding::Scale { axis: Axis::Forward, ratio, is_steady: true }.to_string())
     } else if across.abs() > TOLERANCE {
         Some("the vehicle moves sideways while it is driven ahead: x must point ahead".into())
     } else if turned_rad > TOLERANCE {
@@ -71,7 +71,7 @@ pub fn turned(check: &'static str, commanded_rad: f64, moved: Moved) -> Row {
     } else if ratio < 0.0 {
         Some(Finding::Reversed(Axis::Turn).to_string())
     } else if (ratio - 1.0).abs() > TOLERANCE {
-        Some(Finding::Scale(Axis::Turn, ratio).to_string())
+        Some(Finding::Scale { axis: Axis::Turn, ratio, is_steady: true }.to_string())
     } else if way_m > TOLERANCE * commanded_rad {
         Some(format!("the origin moved by {way_m:.2} m during the turn: it must be the centre of rotation"))
     } else {

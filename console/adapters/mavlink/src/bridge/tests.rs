@@ -44,7 +44,7 @@ fn position(ms: u32, north: f32) -> Input {
 
 fn drive(seq: u64) -> Input {
     Input::Console(Some(format!(
-        r#"{{"type": "drive", "seq": {seq}, "lease_s": 0.25, "forward_m_per_s": 0.25, "turn_rad_per_s": 0.5}}"#
+        r#"{{"type": "drive", "seq": {seq}, "stamp_s": 0, "lease_s": 0.25, "forward_m_per_s": 0.25, "turn_rad_per_s": 0.5}}"#
     )))
 }
 

@@ -10,7 +10,7 @@ use crate::{
 use geometry::{Braking, Drive};
 use perception::{Perception, Sensor};
 use planner_api::Command;
-use world::{Point, Readings, Scan, scan::carried};
+use world::{Odometry, Point, Readings, Scan, scan::carried};
 
 /// Maximum age, seconds, of a scan that the guard can use.
 const SCAN_MAX_AGE_S: f64 = 0.5;
@@ -21,9 +21,9 @@ const FIRST_WITHIN_S: f64 = 2.0;
 /// Distance, metres, that is added to the stopping distance at full speed; points farther from the hull than the sum
 /// are dropped. This distance is longer than the one that the robot travels before its scan is too old.
 const KEPT_M: f64 = 2.0;
-/// The robot is held after this many ticks in a row in which the hull could touch a point although the robot brakes. A
-/// single such tick may be noise; the robot brakes at once in any case.
-const LATE_TICKS: u32 = 2;
+/// The robot is held after this many scans in a row by which the hull could touch a point although the robot brakes. A
+/// single such scan may be noise; the robot brakes at once in any case.
+const LATE_SCANS: u32 = 2;
 /// The robot is held if the guard has kept it from moving for this long, seconds.
 const BLOCKED_S: f64 = 2.0;
 /// Share of the requested speed below which the robot does not move.
@@ -36,9 +36,9 @@ const NAMED_AFTER_S: f64 = 0.5;
 pub(in crate::engine) struct ScanGuard {
     /// The points of the last scan, in the robot frame now.
     points: Vec<Point>,
-    /// The same points with less noise, if the noise of the scanner is known. The robot brakes for every single point,
-    /// but noise alone does not hold the robot.
-    evened: Option<Vec<Point>>,
+    /// The last scan and the motion since then, if the noise of the scanner is known: the robot brakes for every single
+    /// point, but noise alone does not hold the robot.
+    noisy: Option<Noisy>,
     /// Whether a scan has arrived.
     has_scan: bool,
     /// Age of the last scan, or of the mission before the first one, seconds.
@@ -47,9 +47,34 @@ pub(in crate::engine) struct ScanGuard {
     sent: Vec<Sent>,
     /// The point that limits the robot: distance from the hull, metres, and direction, radians.
     before: Option<(f64, f64)>,
-    late_ticks: u32,
+    /// The number of scans in a row by which the hull could touch a point, and whether the first is of this tick.
+    late_scans: u32,
+    is_late_now: bool,
     blocked_s: f64,
     limited: Limited,
+}
+
+/// A scan from which noise can be removed.
+#[derive(Debug, Clone)]
+struct Noisy {
+    scan: Scan,
+    sigma_m: f64,
+    /// The motion of each tick since the scan.
+    moved: Vec<Odometry>,
+}
+
+impl Noisy {
+    /// The points with less noise within a distance in metres from the robot, robot frame now.
+    fn evened(&self, far_m: f64) -> Vec<Point> {
+        let now = |point: Point| self.moved.iter().fold(point, carried);
+        let points = near(&self.scan.evened(self.sigma_m), far_m);
+        points.into_iter().map(now).collect()
+    }
+}
+
+/// The points of a scan within a distance in metres from the robot.
+fn near(scan: &Scan, far_m: f64) -> Vec<Point> {
+    scan.points().filter(|point| point.coords.norm() <= far_m).collect()
 }
 
 impl Known {
@@ -62,14 +87,17 @@ impl Known {
         let sigma_m = self.config.sensor.filter(Sensor::is_known).map(|sensor| sensor.sigma_m);
         let guard = &mut self.scan_guard;
         if let Some(scan) = &readings.scan {
-            let near = |scan: &Scan| scan.points().filter(|point| point.coords.norm() <= far_m).collect();
-            guard.points = near(scan);
-            guard.evened = sigma_m.map(|sigma_m| near(&scan.evened(sigma_m)));
+            guard.points = near(scan, far_m);
+            guard.noisy = sigma_m.map(|sigma_m| Noisy { scan: scan.clone(), sigma_m, moved: Vec::new() });
             (guard.has_scan, guard.age_s) = (true, 0.0);
             return;
         }
-        for point in guard.points.iter_mut().chain(guard.evened.iter_mut().flatten()) {
+        for point in &mut guard.points {
             *point = carried(*point, &readings.odometry);
+        }
+        // A scan that is too old holds the robot, whatever it shows.
+        if let Some(noisy) = guard.noisy.as_mut().filter(|_| guard.age_s <= SCAN_MAX_AGE_S) {
+            noisy.moved.push(readings.odometry);
         }
         guard.age_s += self.config.tick_s;
     }
@@ -85,13 +113,17 @@ impl Known {
         let here = self.as_governed();
         let guard = Guard::new(&self.scan_guard.points, &here, &self.scan_guard.sent);
         let Guarded { drive, before, is_late } = guard.guarded(&self.governor.momentum, command.drive);
-        let evened = self.scan_guard.evened.as_ref().filter(|_| is_late);
-        let is_late = evened.map_or(is_late, |evened| {
-            Guard::new(evened, &here, &self.scan_guard.sent).touches(&self.governor.momentum)
+        let noisy = self.scan_guard.noisy.as_ref().filter(|_| is_late);
+        let is_late = noisy.map_or(is_late, |noisy| {
+            let evened = noisy.evened(reach_m(&self.config));
+            Guard::new(&evened, &here, &self.scan_guard.sent).touches(&self.governor.momentum)
         });
         let state = &mut self.scan_guard;
         state.before = before;
-        state.late_ticks = if is_late { state.late_ticks + 1 } else { 0 };
+        // Between two scans, the points are the same with the same noise.
+        let is_new = state.age_s == 0.0 || state.late_scans == 0;
+        state.is_late_now = is_late && state.late_scans == 0;
+        state.late_scans = if is_late { state.late_scans + u32::from(is_new) } else { 0 };
         let is_blocked = before.is_some() && speed(drive) < BLOCKED_SHARE * speed(command.drive);
         state.blocked_s = if is_blocked { state.blocked_s + self.config.tick_s } else { 0.0 };
         if before.is_some() { rounded_command(Command { drive, ..command }) } else { command }
@@ -112,7 +144,7 @@ impl Known {
     pub(in crate::engine) fn note_guard(&mut self, asked: Drive, sent: Drive) -> Option<EventKind> {
         let state = &mut self.scan_guard;
         let is_named = state.limited.update(state.before.is_some(), self.config.tick_s, NAMED_AFTER_S);
-        let (gap_m, direction_rad) = state.before.filter(|_| is_named || state.late_ticks == 1)?;
+        let (gap_m, direction_rad) = state.before.filter(|_| is_named || state.is_late_now)?;
         let (asked_m_per_s, sent_m_per_s) = (speed(asked), speed(sent));
         Some(EventKind::Guarded { asked_m_per_s, sent_m_per_s, gap_m, direction_rad })
     }
@@ -132,7 +164,7 @@ impl Known {
             return Some("the vehicle has not sent a scan yet, so the guard is blind".into());
         }
         let (gap_m, direction_rad) = guard.before?;
-        if guard.late_ticks < LATE_TICKS && guard.blocked_s < BLOCKED_S {
+        if guard.late_scans < LATE_SCANS && guard.blocked_s < BLOCKED_S {
             return None;
         }
         let (gap_m, side) = (gap_m.max(0.0), side(direction_rad));
@@ -168,7 +200,7 @@ impl Mission {
             return false;
         }
         let Some(message) = self.known.guard_stop() else { return false };
-        self.known.scan_guard.late_ticks = 0;
+        self.known.scan_guard.late_scans = 0;
         self.known.scan_guard.blocked_s = 0.0;
         self.hold(Hold { by: HoldReason::Guard { message }, resumes: Resumes::Never });
         self.go_on_or_help();

@@ -136,3 +136,28 @@ fn a_scan_that_cannot_be_right_holds_the_robot() {
     };
     assert_eq!(message, "the scan has 360 rays instead of 180");
 }
+
+/// A robot under way whose scans show an object that it cannot avoid in some ticks, and no object in others; `None` is a
+/// tick without a scan. Returns whether the robot was held.
+fn is_held_after(ticks: &[Option<bool>]) -> bool {
+    let mut flight = guarded(config());
+    flight.tick(&[Order::Start]);
+    let from = flight.pose.position;
+    flight.fly(20);
+    for shows in ticks {
+        let at = flight.pose.position + (flight.pose.position - from).normalize() * 0.36;
+        let discs = shows.filter(|shows| *shows).map(|_| (at, 0.1));
+        flight.scanner = Some((discs.into_iter().collect(), shows.is_some()));
+        flight.tick(&[]);
+    }
+    flight.held_by().is_some()
+}
+
+#[test]
+fn one_noisy_scan_holds_no_robot_and_two_do() {
+    let (noise, clear, none) = (Some(true), Some(false), None);
+    assert!(!is_held_after(&[noise, none, none, none, clear, clear, clear]));
+    assert!(!is_held_after(&[noise, clear, clear, clear]));
+    assert!(is_held_after(&[noise, noise, clear]));
+    assert!(is_held_after(&[noise, none, noise, clear]));
+}

@@ -36,6 +36,7 @@ impl Driver<'_> {
         let is_socket = !matches!(connection.end, End::Process(_));
         // A second connection to the adapter only listens.
         let mut onlooker = if cause == Cause::Cut && is_socket { self.connect().ok() } else { None };
+        let has_log = connection.log.is_some();
         self.reach(connection, speed)?;
         let limits = self.limits(cause, connection, speed);
         let seen = match cause {
@@ -57,22 +58,20 @@ impl Driver<'_> {
             }
             None => Row::not_measured(cause.check(), "no stamps arrived before the stop"),
         };
-        Ok(self.hinted(row, cause))
+        Ok(self.hinted(row, cause, has_log))
     }
 
     /// If a stop was not measured, adds how it can be measured.
-    fn hinted(&self, row: Row, cause: Cause) -> Row {
+    fn hinted(&self, row: Row, cause: Cause, has_log: bool) -> Row {
         if row.verdict != Verdict::NotMeasured {
             return row;
         }
-        let how = match (cause, self.log) {
+        let how = match (cause, has_log) {
             (Cause::Cut, _) if !matches!(self.address, Address::Run(_)) => {
                 "have the adapter also send readings to a second connection"
             }
-            (_, Some(_)) => {
-                "have the robot write `time speed turn_rate` lines to the file named in ROBOT_LOG"
-            }
-            (_, None) => "the log cannot be written to the folder for temporary files",
+            (_, true) => "have the robot write `time speed turn_rate` lines to the file named in ROBOT_LOG",
+            (_, false) => "the log cannot be written to the folder for temporary files",
         };
         Row { says: format!("{}; {how}", row.says), ..row }
     }
@@ -91,9 +90,6 @@ impl Driver<'_> {
     /// Drives until the speed is reached.
     fn reach(&self, connection: &mut Connection, speed: f64) -> Result<(), Early> {
         connection.forget();
-        if let Some(log) = self.log {
-            log.clear();
-        }
         let ramp_s = speed.abs() / self.hello.limits.acceleration_m_per_s2;
         let until = Instant::now() + Duration::from_secs_f64(ramp_s + REACH_S);
         let is_reached = |connection: &Connection| {
@@ -146,7 +142,7 @@ impl Driver<'_> {
             self.take(connection, Instant::now() + COMMAND_EVERY)?;
         }
         let mut samples = connection.heard.samples.clone();
-        if let (Some(log), Some(cause_s)) = (self.log, cause_s) {
+        if let (Some(log), Some(cause_s)) = (&connection.log, cause_s) {
             samples = merged(samples, &log.samples(), cause_s);
         }
         self.stand(connection)?;
@@ -181,37 +177,37 @@ impl Driver<'_> {
             connection_gone(&mut onlooker, &mut samples, self.patience(limits.time_s), cause_s);
             lines.extend(onlooker.map(|onlooker| onlooker.heard.lines.clone()).unwrap_or_default());
         } else {
-            samples = self.until_silent(&mut connection, cause_s, self.patience(limits.time_s));
+            samples = until_silent(&mut connection, cause_s, self.patience(limits.time_s));
             lines = std::mem::take(&mut connection.heard.lines);
         }
         (cause_s.map(|cause_s| Seen { samples, cause_s, again: false }), lines)
     }
+}
 
-    /// Follows the rest of the stream and the log of a robot whose adapter has lost its console or has ended, until the
-    /// robot stands still. A robot process may end as soon as the robot stands still; its log then ends with a
-    /// standstill.
-    fn until_silent(&self, connection: &mut Connection, cause_s: Option<f64>, until: Instant) -> Vec<Sample> {
-        let mut grown = (0, Instant::now());
-        loop {
-            connection.take_until(Instant::now() + COMMAND_EVERY);
-            let mut samples = connection.heard.samples.clone();
-            if let (Some(log), Some(cause_s)) = (self.log, cause_s) {
-                samples = merged(samples, &log.samples(), cause_s);
-            }
-            let last = samples.last().copied().filter(|last| Some(last.t_s) > cause_s);
-            if (last.is_some() && stands(&samples)) || Instant::now() >= until {
-                return samples;
-            }
-            if samples.len() != grown.0 {
-                grown = (samples.len(), Instant::now());
-            }
-            let is_ended =
-                connection.closed().is_some() && grown.1.elapsed().as_secs_f64() > 2.0 * trial::QUIET_S;
-            if let Some(last) = last.filter(|last| is_ended && !last.moves()) {
-                let (over_s, way_m, turn_rad) = (trial::QUIET_S, 0.0, 0.0);
-                samples.push(Sample { t_s: last.t_s + over_s, over_s, way_m, turn_rad });
-                return samples;
-            }
+/// Follows the rest of the stream and the log of a robot whose adapter has lost its console or has ended, until the
+/// robot stands still. A robot process may end as soon as the robot stands still; its log then ends with a
+/// standstill.
+fn until_silent(connection: &mut Connection, cause_s: Option<f64>, until: Instant) -> Vec<Sample> {
+    let mut grown = (0, Instant::now());
+    loop {
+        connection.take_until(Instant::now() + COMMAND_EVERY);
+        let mut samples = connection.heard.samples.clone();
+        if let (Some(log), Some(cause_s)) = (&connection.log, cause_s) {
+            samples = merged(samples, &log.samples(), cause_s);
+        }
+        let last = samples.last().copied().filter(|last| Some(last.t_s) > cause_s);
+        if (last.is_some() && stands(&samples)) || Instant::now() >= until {
+            return samples;
+        }
+        if samples.len() != grown.0 {
+            grown = (samples.len(), Instant::now());
+        }
+        let is_ended =
+            connection.closed().is_some() && grown.1.elapsed().as_secs_f64() > 2.0 * trial::QUIET_S;
+        if let Some(last) = last.filter(|last| is_ended && !last.moves()) {
+            let (over_s, way_m, turn_rad) = (trial::QUIET_S, 0.0, 0.0);
+            samples.push(Sample { t_s: last.t_s + over_s, over_s, way_m, turn_rad });
+            return samples;
         }
     }
 }

@@ -11,8 +11,8 @@ use super::{
     },
     task,
 };
-use crate::human::text::counted;
-use account::{Shares, VehicleRecord};
+use crate::human::{text::counted, vehicle};
+use account::Shares;
 use mission::Outcome;
 
 /// Builds the page without its sections.
@@ -33,7 +33,7 @@ pub(super) fn page(document: &Document, sections: Vec<Section>) -> Page {
     let css = |text: String| foreign::markup(&text).replace(is_end, " ");
     Page {
         heading: "Tank floor inspection: coverage and position record",
-        banner: document.live.as_ref().map_or_else(String::new, banner),
+        banner: document.live.as_ref().map_or_else(String::new, vehicle::sentences),
         title: format!("Inspection report {tank} revision {}", document.revision),
         css: "",
         head: css(format!(
@@ -66,23 +66,6 @@ fn mark(document: &Document) -> &'static str {
         (false, Some(_)) => "LIVE",
         (false, None) => "",
     }
-}
-
-/// The vehicle and its link, for a live run.
-fn banner(vehicle: &VehicleRecord) -> String {
-    let VehicleRecord { name, at, heard, missed, faulty, lost, stops, stops_not_confirmed, .. } = vehicle;
-    let age = vehicle.age_p99_s.map(|s| format!(", p99 age {:.0} ms", 1e3 * s)).unwrap_or_default();
-    let most = vehicle.stop_max_s.map(|s| format!(" within {s:.2} s")).unwrap_or_default();
-    let not = match stops_not_confirmed {
-        0 => String::new(),
-        n => format!(", STOP NOT CONFIRMED {}", counted(*n, "time")),
-    };
-    format!(
-        "Vehicle {name} at {at}: {heard} readings, {missed} missing, {faulty} faulty{age}; link lost {}; {} \
-         confirmed by odometry{most}{not}. No figure in this report was compared with a true position.",
-        counted(*lost, "time"),
-        counted(*stops, "stop"),
-    )
 }
 
 fn fields(document: &Document) -> Vec<Field> {

@@ -1,4 +1,4 @@
-//! Alarms, missed areas and events, and the actions on them.
+//! Alarms, events, zones and stations, and the actions on them.
 
 use crate::actions::action::{Action, Reach, action};
 use crate::actions::argument::{may, must};
@@ -7,9 +7,8 @@ use crate::actions::{ActionId, Kind};
 use crate::keys::Key;
 use crate::model::Screen;
 use crate::screens::EACH;
-use crate::update::act::select;
-use crate::update::offer::{self, demand};
-use crate::update::{alarms, events, go, stations, zones};
+use crate::update::offer::demand;
+use crate::update::{alarms, events, stations, zones};
 
 #[rustfmt::skip]
 pub(super) const ROWS: &[Action] = &[
@@ -17,12 +16,6 @@ pub(super) const ROWS: &[Action] = &[
         .when(alarms::can_acknowledge).does(alarms::acknowledge),
     action(ActionId::AcknowledgeAll, "acknowledge-all", "Acknowledge every alarm", &[Key::Char('*')], &[On(Screen::Alarms)]).label("ack all").reaches(Reach::Mission)
         .when(alarms::can_acknowledge_all).does(alarms::acknowledge_all),
-    action(ActionId::Open, "open", "Open a scenario", &[], &[Context::Screen]).args(&[must("scenario", Kind::Scenario), may("planner", Kind::Planner)]).reaches(Reach::Runs).when(offer::nothing_under_way),
-    action(ActionId::NextMissed, "next-missed", "Show the next missed area", &[Key::Char('n')], &[On(Screen::Result)]).label("missed").repeats().when(offer::missed).looks(|m| select(m, 1)),
-    action(ActionId::PreviousMissed, "previous-missed", "Show the previous missed area", &[Key::Char('N')], &[On(Screen::Result)]).label("missed").repeats()
-        .when(offer::missed).looks(|m| select(m, -1)),
-    action(ActionId::Again, "again", "Plan the same scenario again", &[Key::Char('p')], &[On(Screen::Result)]).label("plan again").reaches(Reach::Mission)
-        .when(|m| demand(m.live.source.is_some() && !m.live.is_under_way(), "a mission is in progress")).does(go::again),
     action(ActionId::Shelve, "shelve", "Shelve or unshelve the alarm", &[Key::Char('d')], &[On(Screen::Alarms)]).label("shelve").args(&[may("time", Kind::Duration), may("reason", Kind::Text), may("alarm", Kind::Alarm)]).reaches(Reach::Mission)
         .when(alarms::can_shelve).does(alarms::shelve),
     action(ActionId::Inject, "inject", "Inject a station fault (training)", &[], &[Context::Screen]).args(&[must("station", Kind::Station), must("fault", Kind::Fault), must("time", Kind::Duration)]).reaches(Reach::Mission)

@@ -137,6 +137,11 @@ impl Alarm {
         }
     }
 
+    /// How long the cause persisted, seconds; `None` while it persists.
+    pub fn lasted_s(&self) -> Option<f64> {
+        self.cleared_s.filter(|_| !self.is_active()).map(|cleared_s| (cleared_s - self.since_s).max(0.0))
+    }
+
     /// Whether the alarm awaits acknowledgement.
     pub fn is_unacknowledged(&self) -> bool {
         matches!(self.state, State::Unacknowledged | State::Returned)

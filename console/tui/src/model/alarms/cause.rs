@@ -17,6 +17,8 @@ pub enum Cause {
     Station(world::StationId),
     /// An obstacle was found that is not on the drawing.
     Map,
+    /// The scans do not show an obstacle of this name where it is drawn or was found.
+    NotThere(String),
     /// The tether is near or at a limit; the word names the limit.
     Tether(String),
     /// The last plan could not be certified for the tether.
@@ -65,6 +67,7 @@ impl Cause {
             EventKind::RangesInconsistent { .. } | EventKind::RangesConsistent => Self::Contradiction,
             EventKind::FixFailed { .. } => Self::NoFix,
             EventKind::ObstacleFound { .. } => Self::Map,
+            EventKind::NotThere { name, .. } => Self::NotThere(name.clone()),
             EventKind::TetherAlarmRaised { alarm, .. } | EventKind::TetherAlarmCleared { alarm } => {
                 Self::Tether(alarm.word().to_owned())
             }
@@ -90,6 +93,7 @@ impl Cause {
             Self::NoFix => "no_fix".into(),
             Self::Station(id) => format!("station {}", id.0),
             Self::Map => "map".into(),
+            Self::NotThere(name) => format!("not there {name}"),
             Self::Tether(word) => format!("tether {word}"),
             Self::Certificate => "certificate".into(),
             Self::Zone(zone) => format!("zone {zone}"),
@@ -137,6 +141,7 @@ impl Cause {
             Self::NoFix,
             Self::Station(world::StationId(1)),
             Self::Map,
+            Self::NotThere("column 5".into()),
             Self::Certificate,
             Self::Zone("no-go 1".into()),
             Self::Link,
@@ -165,6 +170,7 @@ impl Cause {
                 | Self::NoFix
                 | Self::Station(_)
                 | Self::Map
+                | Self::NotThere(_)
                 | Self::Tether(_)
                 | Self::Certificate
                 | Self::Zone(_)

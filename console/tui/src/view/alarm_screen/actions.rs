@@ -1,9 +1,10 @@
 //! The actions on an alarm, numbered, and the advice about it.
 
 use crate::guide::{effect, guide, name};
+use crate::model::step::Step;
 use crate::model::{Alarm, Cause, Overlay};
 use crate::theme::Role;
-use crate::update::remedies::{self, Step};
+use crate::update::remedies;
 use crate::view::lists::list::{List, paragraph};
 use crate::view::look::{Look, Parts};
 use crate::view::{table, text};
@@ -19,7 +20,7 @@ const FRAME: usize = 5;
 /// because there is no action to run.
 pub(super) fn lines(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'static>> {
     let selected = match &look.model.ui.overlay {
-        Overlay::Remedies { cause, selected } if *cause == alarm.cause => Some(*selected),
+        Overlay::Remedies { cause, selected, .. } if *cause == alarm.cause => Some(*selected),
         _ => None,
     };
     let steps = remedies::steps(look.model, &alarm.cause);

@@ -87,8 +87,10 @@ pub(super) fn figure(cause: &Cause) -> &'static str {
 
 fn since(look: &Look, alarm: &Alarm) -> String {
     let mut words = format!("T+{}", text::clock(alarm.since_s));
-    if let Some(cleared_s) = alarm.cleared_s.filter(|_| !alarm.is_active()) {
-        words = format!("{words}, cleared T+{}", text::clock(cleared_s));
+    if let Some((cleared_s, lasted_s)) = alarm.cleared_s.zip(alarm.lasted_s()) {
+        let ago = text::ago(look.run.clock.t_s - cleared_s);
+        let (cleared, lasted) = (text::clock(cleared_s), text::ago(lasted_s));
+        words = format!("{words}, lasted {lasted}, cleared T+{cleared} ({ago} ago)");
     }
     if alarm.count > 1 {
         words = format!("{words}; {} times, first T+{}", alarm.count, text::clock(alarm.first_s));

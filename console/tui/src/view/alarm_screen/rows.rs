@@ -114,7 +114,7 @@ fn single(look: &Look, alarm: &Alarm, at: &Columns, wide: bool) -> Parts {
     let name = text::column(&text::wording(what(look, alarm), at.name), at.name);
     vec![
         (role(alarm), text::column(&format!("{} {word}", sign(alarm)), at.front - 1)),
-        (Role::Text, text::column(&state(alarm, wide), at.state)),
+        (Role::Text, text::column(&state(look, alarm, wide), at.state)),
         (Role::Dim, text::column(&since, at.since)),
         (Role::Dim, format!("{count:>width$} ", width = at.count - 1)),
         (Role::Text, name),
@@ -126,7 +126,7 @@ fn single(look: &Look, alarm: &Alarm, at: &Columns, wide: bool) -> Parts {
 
 /// The name of an alarm with its state, and below it the figures with their names.
 fn double(look: &Look, alarm: &Alarm, room: usize) -> Vec<Parts> {
-    let state = state(alarm, false);
+    let state = state(look, alarm, false);
     // The mark of the selected row takes one column.
     let name = room.saturating_sub(5 + text::width(&state) + 1);
     let first = vec![
@@ -191,7 +191,7 @@ fn sign(alarm: &Alarm) -> String {
     format!("{}{letter}", if alarm.is_unacknowledged() { '!' } else { ' ' })
 }
 
-fn state(alarm: &Alarm, wide: bool) -> String {
+fn state(look: &Look, alarm: &Alarm, wide: bool) -> String {
     let word = match (&alarm.state, wide) {
         (State::Unacknowledged, true) => "ACTIVE, unack",
         (State::Acknowledged, true) => return acknowledged(alarm),
@@ -202,8 +202,8 @@ fn state(alarm: &Alarm, wide: bool) -> String {
         (State::Shelved(shelf), true) => return format!("until {}", text::clock(shelf.until_s)),
         (State::Shelved(_), false) => "SHELVED",
         (State::Cleared, true) => {
-            let lasted_s = alarm.cleared_s.unwrap_or(alarm.since_s) - alarm.since_s;
-            return format!("for {} s", text::number(lasted_s, 0));
+            let cleared_s = alarm.cleared_s.unwrap_or(alarm.since_s);
+            return format!("{} ago", text::ago(look.run.clock.t_s - cleared_s));
         }
         (State::Cleared, false) => "",
     };
@@ -219,11 +219,16 @@ fn acknowledged(alarm: &Alarm) -> String {
     }
 }
 
-/// The name of an alarm, once with the reason why the alarm is shelved and once without it.
+/// The name of an alarm, once with the reason why the alarm is shelved or with the time that it lasted, and once without
+/// it.
 fn what(look: &Look, alarm: &Alarm) -> [String; 2] {
     let name = guide::name(&alarm.cause, look.run);
     match &alarm.state {
         State::Shelved(shelf) => [format!("{name} ({})", shelf.reason), name],
+        State::Cleared => match alarm.lasted_s() {
+            Some(lasted_s) => [format!("{name} (lasted {})", text::ago(lasted_s)), name],
+            None => [name.clone(), name],
+        },
         _ => [name.clone(), name],
     }
 }

@@ -13,6 +13,8 @@ use crate::view::text;
 
 /// Width of a command's keys, columns.
 const KEYS: usize = 10;
+/// Width of a command's name, columns: the longest name and a blank.
+const NAME: usize = 17;
 /// The prompt of the command line.
 const PROMPT: &str = " > ";
 
@@ -108,7 +110,7 @@ fn row(look: &Look, choice: &Choice, columns: u16) -> Row {
     match choice {
         Choice::Command(action) => command_row(look, action, columns),
         Choice::Alias(name, line) => {
-            vec![(Role::Key, text::column(name, 16)), (Role::Text, format!("short for {line}"))]
+            vec![(Role::Key, text::column(name, NAME)), (Role::Text, format!("short for {line}"))]
         }
         Choice::Value(value) => vec![(Role::Key, value.clone())],
     }
@@ -117,9 +119,9 @@ fn row(look: &Look, choice: &Choice, columns: u16) -> Row {
 /// The row of a command: name and description if they fit, otherwise the description, otherwise the name.
 fn command_row(look: &Look, action: &Action, columns: u16) -> Row {
     let (name, about) = match columns {
-        74.. => (16, usize::from(columns) - 2 - 1 - 16 - KEYS - 6),
+        74.. => (NAME, usize::from(columns) - 2 - 1 - NAME - KEYS - 6),
         58.. => (0, usize::from(columns) - 2 - 1 - KEYS - 6),
-        _ => (16, 0),
+        _ => (NAME, 0),
     };
     let now = offered(look.model, action.id).is_ok();
     let role = if now { Role::Text } else { Role::Dim };

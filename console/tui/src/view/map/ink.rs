@@ -39,6 +39,8 @@ pub(super) const OTHER: Ink = ink(Role::Ghost, Pattern::Ticked, 'b');
 pub(super) const SHADOW: Ink = ink(Role::Ghost, Pattern::LongDashed, ';');
 /// The part of the plan that a zone blocks.
 pub(super) const BLOCKED: Ink = ink(Role::NoGo, Pattern::Thick, 'x');
+/// The outline of a zone that is being drawn or asked about.
+pub(super) const OUTLINE: Ink = ink(Role::NoGo, Pattern::Thick, 'x');
 /// The tether.
 pub(super) const TETHER: Ink = ink(Role::Tether, Pattern::Double, '~');
 /// A planner drawing of a force that attracts the robot.

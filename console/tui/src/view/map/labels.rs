@@ -6,7 +6,7 @@ use super::ink::{self, Ink};
 use super::shapes::Window;
 use super::thin::{Thin, Thinning};
 use crate::caps::Glyphs;
-use crate::model::{Screen, ui::MapLayer};
+use crate::model::{Overlay, Screen, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
 use crate::view::text;
@@ -29,6 +29,8 @@ const ARROW_COLUMNS: f64 = 30.0;
 /// The mark of the place at which a re-scan resumes.
 pub(super) const RESUMES: &str = "R";
 
+/// The mark of a point that is set of a zone being drawn.
+pub(super) const CORNER: &str = "■";
 /// The mark of the largest wrap of the tether.
 pub(super) const WOUND: &str = "w";
 /// The smallest wrap that is marked, degrees.
@@ -64,6 +66,9 @@ impl Board<'_, '_> {
         let look = self.look;
         if let Some(cursor) = look.model.ui.cursor {
             self.always(cursor, Role::Selected, "┼");
+        }
+        if let Overlay::ZoneDraft(draft) = &look.model.ui.overlay {
+            draft.points.iter().for_each(|point| self.always(*point, Role::NoGo, CORNER));
         }
         let Some(about) = &look.run.about else { return };
         let position = &look.run.position;

@@ -1,9 +1,7 @@
 //! The no-go zone that the operator is drawing or is asked about, and the part of the plan that it blocks.
 
 use super::ink;
-use super::pattern::Pattern;
 use super::pen::Pen;
-use crate::theme::Role;
 use crate::update::zones;
 use ratatui::widgets::canvas::Context;
 use world::{Point, Shape, polyline, shape::ring_area_m2};
@@ -12,12 +10,11 @@ use world::{Point, Shape, polyline, shape::ring_area_m2};
 const PIECE_M: f64 = 0.1;
 
 impl Pen<'_> {
-    /// Draws the outline; two points are only a line.
+    /// Draws the outline over the paths, because they may be dense; two points are only a line.
     pub(super) fn zone(&self, ctx: &mut Context<'_>) {
         let Some(corners) = zones::drawn(self.look.model) else { return };
-        self.take_up(ctx, 'x');
         let ring: Vec<Point> = corners.iter().chain(corners.first()).copied().collect();
-        self.stroke(ctx, &ring, Role::NoGo, Pattern::Solid);
+        self.draw(ctx, &ring, ink::OUTLINE);
     }
 
     /// Draws the part of the plan ahead that the zone in the question blocks.

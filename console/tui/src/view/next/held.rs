@@ -11,24 +11,34 @@ pub(super) fn clauses(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String>
     let head = head(run);
     let position = run.standing.standing().position;
     let fault = run.planning.fault.as_ref().filter(|_| resumes.is_never() && !by.blames_planner());
-    if let Some(clauses) = run.vehicle.as_ref().and_then(|vehicle| undrivable(head, by, &vehicle.link)) {
-        return clauses;
-    }
-    let mut clauses = match (trouble(position), fault) {
+    let undrivable = run.vehicle.as_ref().and_then(|vehicle| undrivable(head, by, &vehicle.link));
+    let is_drivable = undrivable.is_none();
+    let mut clauses = undrivable.unwrap_or_else(|| match (trouble(position), fault) {
         _ if !resumes.is_never() => held_for_now(head, by, *resumes),
         (Some(trouble), _) => held_without_position(head, by, trouble),
         (None, Some(fault)) => held_without_planner(head, by, &fault.message),
         (None, None) => held_for_good(head, by),
-    };
+    });
     if head == Head::NotConfirmed {
-        clauses.insert(1, "The robot may move: use its emergency stop.".into());
+        clauses.insert(1, if is_drivable { MAY_MOVE } else { MAY_MOVE_SHORT }.into());
     }
-    clauses.into_iter().chain(message(by)).collect()
+    clauses.into_iter().chain(message(by).filter(|_| is_drivable)).collect()
+}
+
+/// Advice for a robot whose stop is not confirmed.
+const MAY_MOVE: &str = "The robot may move: use its emergency stop.";
+/// The same after a state that names the vehicle, so that the condition for resuming fits beside it.
+const MAY_MOVE_SHORT: &str = "It may move: use its emergency stop.";
+
+/// The number of clauses before which nothing else is shown: the state, the advice if the robot may move, and the warning
+/// that it will move automatically.
+pub(super) fn leading(model: &Model, hold: &Hold) -> usize {
+    1 + usize::from(head(&model.live.run) == Head::NotConfirmed) + usize::from(!hold.resumes.is_never())
 }
 
 /// The first word of the state: whether the robot stands still.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Head {
+pub(super) enum Head {
     /// The robot stands still; in a live run, odometry has confirmed this.
     Held,
     /// The robot has been commanded to stop.
@@ -37,7 +47,7 @@ enum Head {
     NotConfirmed,
 }
 
-fn head(run: &Run) -> Head {
+pub(super) fn head(run: &Run) -> Head {
     match run.vehicle.as_ref().map(|vehicle| vehicle.stands) {
         _ if !run.is_live() => Head::Held,
         Some(Some(true)) => Head::Held,
@@ -64,7 +74,7 @@ fn undrivable(head: Head, by: &HoldReason, link: &LinkSeen) -> Option<Vec<String
     let (what, needs) = match link.state {
         LinkState::Up => return None,
         LinkState::Lost => ("link to vehicle lost", "Cannot resume until the link is back."),
-        LinkState::Closed => ("link to vehicle closed", "Cannot resume: only a new run connects again."),
+        LinkState::Closed => ("link to vehicle closed", "No resume: only a new run connects."),
         LinkState::Faulty => ("vehicle sends faulty messages", "Cannot resume until they are correct."),
         LinkState::Restarted => ("vehicle has restarted", "Cannot resume yet."),
         LinkState::Manual => ("vehicle is being driven by hand", "Cannot resume until it is released."),

@@ -46,7 +46,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         |figure: &Figure| estimate.is_none_or(|estimate| (figure.promised)(estimate, look.run).is_some());
     for figure in FIGURES.into_iter().filter(has) {
         let mut mine = cell(figure, estimate, (Role::Text, widths.first));
-        let lanes = look.run.planning.plan.as_ref().map_or(0, |plan| plan.lanes.len());
+        let lanes = look.model.live.plans.lanes;
         if figure.label == "path" && lanes > 0 {
             mine.1 = text::wording(
                 [format!("{}, {}", mine.1, text::counted(lanes, "lane")), mine.1],
@@ -257,8 +257,8 @@ const FIGURES: [Figure; 9] = [
     Figure {
         promised: |e, _| Some(Found::of(e.length_m)),
         now: |run| {
-            let plan = run.planning.plan.as_ref()?;
-            Some(left(format!("{} m", text::number(plan.rest_m(run.progress.as_ref()?), 1))))
+            let (plan, robot) = (run.planning.plan.as_ref()?, run.position.pose?.position);
+            Some(left(format!("{} m", text::number(plan.rest_m(robot, run.progress.as_ref()?.done), 1))))
         },
         ..figure("path", "", " m", 1)
     },

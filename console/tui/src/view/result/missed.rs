@@ -5,7 +5,7 @@ use crate::model::RunResult;
 use crate::theme::Role;
 use crate::update::Rows;
 use crate::view::look::{Look, Parts, fill};
-use crate::view::missed::{brief, briefest};
+use crate::view::missed::{brief, briefest, small};
 use crate::view::{table, text};
 use account::{Area, Cause, MissReason};
 use ratatui::Frame;
@@ -62,10 +62,7 @@ fn title(look: &Look, listed: &[&Area<MissReason>], full: bool) -> String {
         let plural = if areas.len() == 1 { "" } else { "s" };
         format!("{} area{plural}, {} m²", areas.len(), text::number(total_m2, 2))
     };
-    let slivers = look.model.live.floor().map(|floor| &floor.slivers);
-    let small = slivers.filter(|slivers| slivers.count > 0 && full).map_or_else(String::new, |slivers| {
-        format!(" (+ {} under 0.01 m², {} m²)", slivers.count, text::number(slivers.area_m2, 2))
-    });
+    let small = look.model.live.floor().filter(|_| full).map_or_else(String::new, small);
     let missed = if missed.is_empty() { "no area".to_owned() } else { sum(&missed) };
     let ahead = if ahead.is_empty() { String::new() } else { format!("; not reached: {}", sum(&ahead)) };
     let others_m2 = look.model.live.not_requested_m2();
