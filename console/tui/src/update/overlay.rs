@@ -182,7 +182,7 @@ pub(super) fn choose(model: &mut Model, purpose: Purpose, planner: PlannerInfo) 
     match purpose {
         Purpose::Drive => ask(model, Ask::Swap(choice)),
         Purpose::Compare => compare(model, choice),
-        Purpose::WhatIf => what_if::add(model, choice),
+        Purpose::WhatIf => what_if::add(model, &choice),
         Purpose::Shadow => shadow::begin(model, choice),
     }
 }

@@ -88,11 +88,11 @@ fn candidate(choice: PlannerChoice) -> Candidate {
 }
 
 /// Adds a planner to the comparison with the active one, and selects it; existing forecasts are kept.
-pub(super) fn add(model: &mut Model, choice: PlannerChoice) -> Vec<Effect> {
+pub(super) fn add(model: &mut Model, choice: &PlannerChoice) -> Vec<Effect> {
     model.ui.overlay = Overlay::WhatIf;
     drop_outdated(model);
     if let Some(what_if) = &mut model.live.what_if {
-        if what_if.position(&choice).is_some() {
+        if what_if.position(choice).is_some() {
             return refuse(model, format!("planner {} is already in the comparison", choice.id));
         }
         what_if.candidates.truncate(MOST - 1);
@@ -101,7 +101,7 @@ pub(super) fn add(model: &mut Model, choice: PlannerChoice) -> Vec<Effect> {
     let choices: Vec<PlannerChoice> = current.into_iter().chain([choice.clone()]).collect();
     let effects = begin(model, &choices, MOST);
     if let Some(what_if) = &mut model.live.what_if {
-        what_if.selected = what_if.position(&choice).unwrap_or(0);
+        what_if.selected = what_if.position(choice).unwrap_or(0);
     }
     effects
 }
@@ -138,7 +138,7 @@ pub(super) fn take_draft(model: &mut Model) -> Option<PlannerChoice> {
 
 /// Starts a forecast for the draft.
 pub(crate) fn forecast_draft(model: &mut Model) -> Vec<Effect> {
-    take_draft(model).map_or_else(Vec::new, |draft| add(model, draft))
+    take_draft(model).map_or_else(Vec::new, |draft| add(model, &draft))
 }
 
 /// Moves the selection by `by` candidates.

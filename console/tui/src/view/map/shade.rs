@@ -100,7 +100,9 @@ impl FromIterator<Option<Shade>> for Painted {
             // Neighbours mostly have the same shade.
             if shade != last {
                 let line = LEGEND.iter().position(|(known, _)| Some(*known) == shade);
-                line.into_iter().for_each(|line| occurs[line] = true);
+                if let Some(line) = line {
+                    occurs[line] = true;
+                }
                 last = shade;
             }
             shade
