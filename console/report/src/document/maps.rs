@@ -37,9 +37,9 @@ pub struct Figure {
 /// A line of a legend.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Legend {
-    /// The colour, SVG.
+    /// A sample of the colour or symbol, as an SVG element.
     pub swatch: String,
-    /// The meaning of the colour.
+    /// The meaning of the sample.
     pub text: String,
     /// The amount, such as an area or a share.
     pub value: String,
