@@ -376,7 +376,7 @@ fn the_floor_that_a_live_run_missed_is_scanned_by_the_vehicle() {
     };
     let (first, at) = scan(&scenario("cover-rooms.toml"));
     let made = bench.tankops(&["rescan", first.to_str().unwrap(), "-o", "again.toml"]);
-    let advice = format!("again.toml --vehicle \"{at}\"`");
+    let advice = format!("again.toml --vehicle {at}`");
     assert!(made.out.contains("place the vehicle at the start") && made.out.contains(&advice), "{made:?}");
     let (second, _) = scan(&bench.path().join("again.toml"));
     assert!(first != second && of_kind(&journal(&second), "sensed").len() > 1);

@@ -4,6 +4,7 @@ use crate::{
     cli::RescanArgs,
     output::{check_free, write_file},
 };
+use campaign::shell;
 use flight::{
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
     planners,
@@ -73,18 +74,18 @@ fn flyable(
 
 /// Prints how to run the re-scan; `live` is the address of the vehicle of the last live run, and the start.
 fn print_advice(args: &RescanArgs, names: &[String], live: Option<(String, Point)>) -> anyhow::Result<()> {
-    let (logs, output) = (args.logs.folder(), args.output.display());
-    let logs = logs.display();
+    let quoted = |path: &Path| shell(&path.display().to_string());
+    let (logs, output) = (quoted(&args.logs.folder()), quoted(&args.output));
     let (place, vehicle) = match live {
         Some((at, start)) => (
             format!("place the vehicle at the start, {:.2}, {:.2} m; then ", start.x, start.y),
-            format!(" --vehicle \"{at}\""),
+            format!(" --vehicle {}", shell(&at)),
         ),
         None => (String::new(), String::new()),
     };
     Ok(say_line(&format!(
         "{place}run it with `tankops run --logs {logs} {output}{vehicle}`; then combine the reports with `tankops report --logs \
          {logs} {} RUN`",
-        names.join(" "),
+        names.iter().map(|name| shell(name)).collect::<Vec<_>>().join(" "),
     ))?)
 }

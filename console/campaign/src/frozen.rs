@@ -245,8 +245,8 @@ fn quoted(value: &Value) -> String {
     }
 }
 
-/// Quotes a word for a command line.
-fn shell(word: &str) -> String {
+/// A word as a POSIX shell reads it back: quoted if it contains anything but letters, digits and `-_./=,:+`.
+pub fn shell(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {
         return word.to_owned();

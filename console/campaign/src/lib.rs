@@ -27,7 +27,7 @@ mod value;
 pub use compare::{Comparison, compare};
 pub use design::{Design, Seeds};
 pub use findings::{Findings, findings};
-pub use frozen::{Campaign, Case, Program, ScenarioText};
+pub use frozen::{Campaign, Case, Program, ScenarioText, shell};
 pub use page::page;
 pub use plan::{Plan, PlanKey};
 pub use row::{Row, Status};

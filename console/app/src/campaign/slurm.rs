@@ -2,6 +2,7 @@
 
 use super::{folder::Folder, results::list};
 use anyhow::{Context, bail};
+use campaign::shell;
 use planner_host::PluginDirs;
 use std::{fs, path::PathBuf, process::Command};
 
@@ -16,7 +17,7 @@ pub(crate) fn script(
         Folder::new(&fs::canonicalize(folder.path()).with_context(|| folder.path().display().to_string())?);
     fs::create_dir_all(folder.path().join("slurm")).context("creating a folder for Slurm's output")?;
     let program = std::env::current_exe().context("locating the program's own file")?;
-    let quoted = |path: &std::path::Path| format!("'{}'", path.display().to_string().replace('\'', r"'\''"));
+    let quoted = |path: &std::path::Path| shell(&path.display().to_string());
     let folders = plugins.folders.iter().filter_map(|folder| fs::canonicalize(folder).ok());
     let plugin_dirs =
         folders.map(|folder| format!(" --plugin-dir {}", quoted(&folder))).collect::<Vec<_>>().concat();
