@@ -149,7 +149,12 @@ impl fmt::Display for Comparison {
                 group.verdict.word().to_owned(),
             ]
         };
-        writeln!(f, "{}, second minus first, same scenario, planner, values and seed (± 95 %)", self.metric)?;
+        writeln!(
+            f,
+            "{}, second minus first, in pairs with the same scenario, planner, values and seed (± half of the \
+             95 % interval)",
+            self.metric
+        )?;
         f.write_str(&text::columns(
             &std::iter::once(head).chain(self.groups.iter().map(row)).collect::<Vec<_>>(),
         ))?;

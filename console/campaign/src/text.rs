@@ -103,7 +103,7 @@ impl fmt::Display for Findings {
         let cells =
             |arm: &Arm| vec![share(&arm.success), format!("{} of {}", arm.success.hits, arm.success.n)];
         f.write_str(&table(&[], &cells, shown))?;
-        writeln!(f, "\nMeans over complete missions (± 95 %)")?;
+        writeln!(f, "\nMeans over complete missions (± half of the 95 % interval)")?;
         let intervals =
             |means: &[Option<Mean>]| means.iter().map(|mean| interval(mean.as_ref())).collect::<Vec<_>>();
         let cells = |of: Share, means: &[Option<Mean>]| {
@@ -128,8 +128,8 @@ impl fmt::Display for Findings {
         if self.arms.len() > 1 {
             writeln!(
                 f,
-                "\nDifferences from {}, same scenario and seed; success over missions run by both, other \
-                 metrics over missions completed by both (± 95 %)",
+                "\nDifferences from {}, in pairs with the same scenario and seed; success over missions run by both, \
+                 other metrics over missions completed by both (± half of the 95 % interval)",
                 short(&self.arms[0].name)
             )?;
             let differences = |arm: &Arm| {

@@ -203,7 +203,7 @@ impl Subject<'_> {
             .filter_map(|what| player.ask(0, what).1.err())
             .find(|fault| fault.cause == Cause::Hung);
         hung.map(|_| {
-            "it ignored the request to stop for 0.1 s and was killed; call ctx.check()? in every loop"
+            "it was still running 0.1 s after the request to stop, and was killed; call ctx.check()? in every loop"
                 .to_owned()
         })
     }

@@ -384,7 +384,7 @@ struct Swept {
 }
 
 impl Swept {
-    /// Returns the floor that an estimate adds.
+    /// Adds the floor that the tool swept up to an estimated pose. Returns the part that was not swept before.
     fn visit(&mut self, Event { t_s, kind, .. }: &Event) -> Option<EventKind> {
         let EventKind::Estimated { pose } = kind else { return None };
         let (from, to) = self.track.visit(*t_s, pose)?;

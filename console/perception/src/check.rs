@@ -57,7 +57,7 @@ pub(crate) struct Agreement {
     scans: u32,
     /// Of the rays that must hit something, the share that have an echo.
     echoes: Share,
-    /// Share of the rays that fit if the scan is taken as it is, mirrored, or turned by half a turn.
+    /// Share of the rays that fit if the scan is taken as it is, mirrored, or rotated by half a turn.
     fits: [Share; 3],
 }
 
@@ -141,7 +141,7 @@ impl Agreement {
             return only_if("mirrored", "the direction of its angles");
         }
         if straight < WRONG && is_turned {
-            return only_if("turned by half a turn", "how the scanner is mounted");
+            return only_if("rotated by half a turn", "how the scanner is mounted");
         }
         (straight < NOTHING).then(|| {
             let share = percent(straight);

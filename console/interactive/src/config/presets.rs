@@ -80,7 +80,7 @@ fn read_file(file: &Path, planners: &[PlannerInfo]) -> Result<PlannerChoice, Str
     let name = name_of(file);
     let is_small = fs::metadata(file).is_ok_and(|data| data.is_file() && data.len() <= LARGEST);
     if !is_small {
-        return Err(format!("{name}: not a file of at most {LARGEST} bytes"));
+        return Err(format!("{name}: larger than {LARGEST} bytes, or not a regular file"));
     }
     let text = fs::read_to_string(file).map_err(|error| format!("{name}: {error}"))?;
     let describe = |fault: &Fault| {
@@ -206,7 +206,7 @@ mod tests {
         save_into(&folder, "soft", &choice()).expect("a new file");
         let preset = Preset { name: "soft".into(), choice: Ok(choice()) };
         assert_eq!(load_from(&folder, &[planner()]), [preset]);
-        assert!(save_into(&folder, "soft", &choice()).is_err(), "there is one already");
+        assert!(save_into(&folder, "soft", &choice()).is_err(), "it already exists");
     }
 
     #[test]

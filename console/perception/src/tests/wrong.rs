@@ -21,7 +21,7 @@ fn scans_that_cannot_be_right_are_named() {
     let half = |scan: &mut Scan| scan.ranges_mm.0.rotate_left(180);
     for (spoil, wanted) in [
         (&reverse as &dyn Fn(&mut Scan), "only if it is mirrored"),
-        (&half, "only if it is turned by half a turn"),
+        (&half, "only if it is rotated by half a turn"),
         (&|scan| scan.ranges_mm.0.fill(world::NO_ECHO), "only 0 % of the rays"),
         (&|scan| scan.ranges_mm.0.fill(0), "% of the scan fits the drawing"),
         (&|scan| scan.ranges_mm.0.clear(), "the scan has no rays"),

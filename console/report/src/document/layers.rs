@@ -142,7 +142,7 @@ impl<'a> Layers<'a> {
         self.classes[cell] == class
     }
 
-    /// Whether a cell was scanned wherever the robot was within its 95 % error.
+    /// Whether a cell was scanned for every position of the robot within the 95 % error.
     pub(crate) fn is_guaranteed(&self, cell: usize) -> bool {
         self.is_scanned(cell) && self.scanned.passes().is_guaranteed(cell)
     }

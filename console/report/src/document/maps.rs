@@ -26,10 +26,10 @@ const MOST_BADGES: usize = 60;
 pub struct Figure {
     /// The caption.
     pub caption: String,
-    /// The picture, SVG.
+    /// The picture, as an SVG element.
     #[serde(skip)]
     pub svg: String,
-    /// The meaning of its colours.
+    /// The meaning of its colours and symbols.
     #[serde(skip)]
     pub legend: Vec<Legend>,
 }
@@ -37,9 +37,9 @@ pub struct Figure {
 /// A line of a legend.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Legend {
-    /// The colour, SVG.
+    /// A sample of the colour or symbol, as an SVG element.
     pub swatch: String,
-    /// The meaning of the colour.
+    /// The meaning of the sample.
     pub text: String,
     /// The amount, such as an area or a share.
     pub value: String,

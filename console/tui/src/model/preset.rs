@@ -64,7 +64,7 @@ pub fn by_hand(choice: &PlannerChoice, info: &PlannerInfo) -> PlannerChoice {
 /// Checks that a name is permitted for a preset; the name is also the file name.
 ///
 /// # Errors
-/// Returns a message with the permitted names.
+/// Returns a message that states which names are permitted.
 pub fn check_name(name: &str) -> Result<(), String> {
     let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '-' || letter == '_';
     if name.is_empty() || name.len() > LONGEST || !name.chars().all(is_plain) {

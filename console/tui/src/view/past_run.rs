@@ -150,7 +150,7 @@ fn figures(summary: &Summary, together: Option<&Together>) -> Vec<Field> {
     let metres = |m: f64, decimals| format!("{} m", text::number(m, decimals));
     let mut fields: Vec<Field> = Vec::new();
     fields.extend(summary.path_length_m.map(|m| ("path", metres(m, 1))));
-    fields.extend(summary.clearance_min_m.map(|m| ("clearance", format!("{} at least, true", metres(m, 2)))));
+    fields.extend(summary.clearance_min_m.map(|m| ("clearance", format!("minimum {} (true)", metres(m, 2)))));
     if let Some(accuracy) = &summary.accuracy {
         let (p95, most, limit) =
             (metres(accuracy.p95_m, 2), metres(accuracy.max_m, 2), metres(accuracy.limit_m, 2));

@@ -48,7 +48,7 @@ const FIGURES: [Figure; 15] = [
 ];
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, (replay, other): (&Replay, &Other)) {
-    let note = look.keys("<compare-run>: another run (same run: end comparison)");
+    let note = look.keys("<compare-run>: another run (same run again: end)");
     let block = look.block(Role::Border, "Compare", &note);
     let columns = usize::from(block.inner(area).width);
     let rows = usize::from(block.inner(area).height).saturating_sub(2);
