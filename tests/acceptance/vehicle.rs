@@ -54,7 +54,7 @@ impl Vehicle {
 
 impl Drop for Vehicle {
     fn drop(&mut self) {
-        // The process may have ended already.
+        // The process may already have ended.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }

@@ -82,7 +82,7 @@ impl Axis {
         self.places.0 + (self.places.1 - self.places.0) * (value - low) / (high - low)
     }
 
-    /// Round values within the axis.
+    /// Round numbers for the ticks of the axis, within its range.
     fn ticks(&self) -> Vec<f64> {
         let (low, high) = self.values;
         let raw = (high - low) / 5.0;

@@ -47,7 +47,7 @@ pub struct Tether {
     config: TetherConfig,
     hull_m: f64,
     cable: Cable,
-    /// The obstacles, enlarged by the room that the hull's centre needs on a return path.
+    /// The obstacles, enlarged by the distance that the hull's centre must keep from them on a return path.
     roomy: Arc<CableObstacles>,
     /// The taut line left behind by the hull among these enlarged obstacles, moved by the robot like the cable; `None` if
     /// the hull does not fit at the anchor.
@@ -297,7 +297,7 @@ fn bends(cable: &Cable) -> Vec<Point> {
     line[1..line.len() - 1].to_vec()
 }
 
-/// The obstacles, enlarged by the room that a hull needs.
+/// The obstacles, enlarged by the distance that the hull's centre must keep from them.
 struct Ground {
     roomy: Arc<CableObstacles>,
     map: ObstacleMap,

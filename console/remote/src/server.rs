@@ -208,7 +208,7 @@ impl Drop for Open {
 /// Introduces the vehicle to a console that cannot be served, and states the reason.
 fn refuse(mut write: impl Write, hello: &Hello) {
     let mut client = Writer::<FromVehicle>::new(FromSession::default());
-    let text = Some(format!("{MOST_CLIENTS} consoles are connected already; close one of them"));
+    let text = Some(format!("{MOST_CLIENTS} consoles are already connected; close one of them"));
     let commander = Commander::OtherConsole;
     let state = State { stamp_s: 0.0, mode: Mode::Fault, text, battery: None, commander };
     let mut lines = Vec::new();
@@ -392,7 +392,7 @@ mod tests {
         let mut consoles: Vec<_> = (0..MOST_CLIENTS).map(|_| joined()).collect();
         let refused = BufReader::new(std::net::TcpStream::connect(at).unwrap());
         let lines: Vec<String> = refused.lines().map(Result::unwrap).collect();
-        assert!(lines.len() == 2 && lines[1].contains("8 consoles are connected already"), "{lines:?}");
+        assert!(lines.len() == 2 && lines[1].contains("8 consoles are already connected"), "{lines:?}");
         consoles.pop();
         assert!(matches!(server.next(Instant::now() + Duration::from_mins(2)), Some((_, Did::Left))));
     }

@@ -40,7 +40,7 @@ pub enum RunError {
     #[error(transparent)]
     Recording(#[from] RecordingError),
     /// No free name was found for the folder of the run.
-    #[error("a thousand runs named {name} exist already: {}", logs.display())]
+    #[error("a thousand runs named {name} already exist: {}", logs.display())]
     NoName {
         /// The name that was tried, with different numbers appended.
         name: String,

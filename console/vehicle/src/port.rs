@@ -284,7 +284,7 @@ impl Brake {
         (self.pull)();
     }
 
-    /// Releases one pull whose order was dropped, because the robot was held already.
+    /// Releases one pull whose order was dropped, because the robot was already held.
     pub fn release(&self) {
         (self.release)();
     }

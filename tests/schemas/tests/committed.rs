@@ -51,7 +51,7 @@ fn is_committed(file: &str, schema: &serde_json::Value) {
     assert!(
         text == committed,
         "console/docs/{file} is not that of the types (line {:?}); `SCHEMA_UPDATE=1 cargo test --release -p schemas` renews \
-         it. If what is there already is written otherwise now, raise the version.",
+         it. If something that existed before is now written differently, raise the version.",
         first.map(|line| line + 1)
     );
 }

@@ -206,7 +206,7 @@ mod tests {
         save_into(&folder, "soft", &choice()).expect("a new file");
         let preset = Preset { name: "soft".into(), choice: Ok(choice()) };
         assert_eq!(load_from(&folder, &[planner()]), [preset]);
-        assert!(save_into(&folder, "soft", &choice()).is_err(), "there is one already");
+        assert!(save_into(&folder, "soft", &choice()).is_err(), "it already exists");
     }
 
     #[test]

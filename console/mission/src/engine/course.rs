@@ -67,7 +67,7 @@ impl Course {
         self.is_whole || self.due.is_some()
     }
 
-    /// Requests a new plan, unless one is due already.
+    /// Requests a new plan, unless one is already due.
     pub(super) fn want_plan(&mut self, reason: Reason) {
         self.due.get_or_insert(Due::from_here(reason));
     }

@@ -36,7 +36,7 @@ pub(crate) fn ends_at_anchor(tether: &TetherConfig, config: &MissionConfig) -> b
 }
 
 /// Evaluates a path, starting with the current geometry of the cable or, without a cable, with a straight one; `hull_m`
-/// is the room that the hull's centre needs, metres.
+/// is the distance that the hull's centre must keep from obstacles, metres.
 pub(super) fn certified(
     config: &TetherConfig,
     hull_m: f64,

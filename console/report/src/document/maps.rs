@@ -26,10 +26,10 @@ const MOST_BADGES: usize = 60;
 pub struct Figure {
     /// The caption.
     pub caption: String,
-    /// The picture, SVG.
+    /// The picture, as an SVG element.
     #[serde(skip)]
     pub svg: String,
-    /// The meaning of its colours.
+    /// The meaning of its colours and symbols.
     #[serde(skip)]
     pub legend: Vec<Legend>,
 }

@@ -112,7 +112,7 @@ fn axes(end: f64, high: f64) -> String {
     body
 }
 
-/// Round tick values from 0 to the end of an axis, spaced by 1, 2 or 5 times a power of ten.
+/// Round numbers for the ticks of an axis, from 0 to its end, spaced by 1, 2 or 5 times a power of ten.
 fn marks(end: f64) -> impl Iterator<Item = f64> {
     let most = (end / MARKS).max(f64::MIN_POSITIVE);
     let power = most.log10().floor() as i32;

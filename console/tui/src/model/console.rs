@@ -46,7 +46,7 @@ impl Speed {
     /// Parses a speed, such as `8`, `x0.5` or `max`.
     ///
     /// # Errors
-    /// Returns a message with the permitted values.
+    /// Returns a message that states which values are permitted.
     pub fn parse(text: &str) -> Result<Self, String> {
         let wrong = || format!("must be {} to {}, or max", Self::SLOWEST, Self::FASTEST);
         match text.trim_start_matches(['x', '×']) {

@@ -17,7 +17,7 @@ pub(super) fn propose(model: &mut Model, key: String, value: ParamValue, list: O
     }
     if model.settled_value(&key).as_ref() == Some(&value) {
         let value = parameter::with_unit(model.planner(), &key, &value);
-        return refuse(model, format!("nothing was sent: {key} is {value} already"));
+        return refuse(model, format!("nothing was sent: {key} is already {value}"));
     }
     let changed = model.live.with_parameter(&key, &value);
     let estimate = match changed {

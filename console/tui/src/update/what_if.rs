@@ -156,7 +156,7 @@ pub(super) fn choose(model: &mut Model) -> Vec<Effect> {
     let Some(candidate) = what_if.candidate() else { return Vec::new() };
     let choice = candidate.choice.clone();
     match &candidate.made {
-        None => return refuse(model, format!("the forecast of {} is not finished", choice.id)),
+        None => return refuse(model, format!("the forecast for {} is not finished", choice.id)),
         Some(Err(why)) => {
             let why = format!("{} cannot be selected: {why}", choice.id);
             return refuse(model, why);

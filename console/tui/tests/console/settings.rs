@@ -62,7 +62,7 @@ fn an_unchanged_value_is_not_sent() {
         assert_eq!(screen.press([Key::Char('p'), Key::Enter, Key::Enter]), []);
         assert!(matches!(screen.model.ui.overlay, Overlay::Parameters { edit: None, .. }), "the list stays");
         let said = &screen.model.notice().expect("it says so").text;
-        assert_eq!(said, "nothing was sent: rpf_gain is 1.2 m3/s already");
+        assert_eq!(said, "nothing was sent: rpf_gain is already 1.2 m3/s");
         assert_eq!(screen.press(ENTER), [], "the line is opened again");
         screen.press([Key::Esc, Key::Esc]);
         screen.type_text(":set rpf_gain=1.2");

@@ -41,7 +41,7 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::ZoneBreached { .. } => "hull in no-go zone",
         EventKind::ZoneLeft { .. } => "hull outside no-go zone",
         EventKind::ShadowBegan { .. } | EventKind::Shadowed { .. } => "planner in shadow",
-        EventKind::ShadowMissed { .. } => "planner in shadow late",
+        EventKind::ShadowMissed { .. } => "shadow planner late",
         EventKind::PromotionRefused { .. } => "promotion refused",
         EventKind::Promoted { .. } => "planner promoted",
         EventKind::ShadowEnded { .. } => "shadow ended",
