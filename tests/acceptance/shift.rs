@@ -22,7 +22,7 @@ fn an_operators_day_ends_with_a_complete_floor_a_handover_page_and_two_verified_
         "station C rejected, since",
         "reason: pump noise",
         "exclude station C by lk",
-        "2.50, 1.50 m to 3.00, 2.00 m",
+        "no-go 1: box 2.50, 1.50 to 3.00, 2.00 m",
         "held by operator",
         "of the reachable floor",
     ] {
