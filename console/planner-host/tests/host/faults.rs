@@ -155,7 +155,7 @@ fn a_flood_of_drawings_is_truncated_and_reported() {
     assert_eq!(flood.drawings.len(), 4096);
     let (level, message) = &flood.logs[0];
     assert_eq!(*level, LogLevel::Warn);
-    assert!(message.starts_with("95904 drawings"), "{message}");
+    assert!(message.starts_with("dropped drawings, figures or messages: 95904;"), "{message}");
 }
 
 #[test]
