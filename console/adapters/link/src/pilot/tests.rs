@@ -31,8 +31,7 @@ fn hear(pilot: &mut Pilot, line: Option<&str>, now_s: f64) -> Vec<Order> {
     orders
 }
 
-const DRIVE: &str =
-    r#"{"type": "drive", "seq": 1, "stamp_s": 0, "lease_s": 0.25, "forward_m_per_s": 0.3, "turn_rad_per_s": 0}"#;
+const DRIVE: &str = r#"{"type": "drive", "seq": 1, "stamp_s": 0, "lease_s": 0.25, "forward_m_per_s": 0.3, "turn_rad_per_s": 0}"#;
 
 fn moves(orders: &[Order]) -> Vec<f64> {
     let forward = |order: &Order| match order {
