@@ -10,6 +10,7 @@ mod measured;
 mod offer;
 mod recorded;
 mod rounding;
+mod run_opened;
 mod severity;
 mod shadow;
 mod tether;
@@ -20,13 +21,13 @@ pub use measured::{Asked, Measured, ToolTrack};
 pub use offer::{OfferEnd, OfferStage, PlanScan, PlanScans};
 pub use recorded::RecordedAnswers;
 pub(crate) use rounding::rounded_command;
+pub use run_opened::RunOpened;
 pub use severity::Severity;
 pub use shadow::{READY_AFTER, ShadowTally};
 pub use tether::{TetherAlarm, TetherContact, taut_line};
 
 use crate::{
     ask::AskId,
-    config::MissionConfig,
     order::Order,
     phase::{HoldReason, Outcome, Resumes},
     planner::{Fault, PlannerChoice, PlannerInfo},
@@ -35,11 +36,9 @@ use crate::{
 use planner_api::{Command, Drawing, Drive, Leg, LegTag, LogLevel, PoseEstimate, Reason};
 use positioning::{Exclusion, Fix, FixError, Ranging};
 use serde::{Deserialize, Serialize};
-use vehicle::port::{LinkSeen, VehicleInfo};
+use vehicle::port::LinkSeen;
 use world::tether::Certificate;
-use world::{
-    CellRun, KindRun, Medium, Obstacle, ObstacleId, Point, Pose, Readings, Scan, StationId, World, Zone,
-};
+use world::{CellRun, KindRun, Medium, Obstacle, ObstacleId, Point, Pose, Readings, Scan, StationId, Zone};
 
 /// Version of the journal format; raised when older readers can no longer read new journals.
 pub const JOURNAL_VERSION: u32 = 5;
@@ -578,37 +577,4 @@ pub enum EventKind {
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
 fn is_zero(n: &usize) -> bool {
     *n == 0
-}
-
-/// Everything needed to repeat a run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct RunOpened {
-    /// [`JOURNAL_VERSION`] of the writer.
-    pub journal_version: u32,
-    /// Version of tankops.
-    pub tankops_version: String,
-    /// Name of the scenario.
-    pub scenario: String,
-    /// The scenario file as read, with the settings of the command line already applied.
-    pub scenario_toml: String,
-    /// Seed for all random choices.
-    pub seed: u64,
-    /// The true tank.
-    pub world: World,
-    /// Configuration of the mission.
-    pub mission: MissionConfig,
-    /// The coverage grid, with the cells that are floor and those that the tool can reach.
-    pub floor: world::Floor,
-    /// The layout of the floor plates, if the drawing shows them.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub plates: Option<world::PlateLayout>,
-    /// The checks that the operator ticks by hand before the start.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub checklist: Vec<String>,
-    /// Measurements by another system, located afterwards; absent for a run that was flown.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub measured: Option<Measured>,
-    /// The real vehicle that was driven; absent for a simulation.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub vehicle: Option<Box<VehicleInfo>>,
 }

@@ -169,7 +169,7 @@ impl<'a> SlitDomain<'a> {
     }
 
     /// The start of a path from a position: the position itself or, if it is outside the domain, the nearest point in
-    /// the domain; home if there is no such point nearby.
+    /// the domain; home if no such point is near.
     pub(crate) fn start(&self, at: Point) -> Point {
         self.beside(at).unwrap_or(self.workspace.home)
     }

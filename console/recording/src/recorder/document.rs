@@ -145,7 +145,7 @@ the force.
 ## How to read the plots
 
 Error: pink is the true error, blue the 95 % error. Speed: green is the true speed, blue the speed sent. Tether: pink is
-the length paid out, green the true length out, blue the return path, with gaps where there is no return path. Wraps:
+the length paid out, green the true length out, blue the return path, with gaps where the hull does not fit through it. Wraps:
 orange is the largest, blue the total. Forces have the colours of their arrows. On the timeline `utc`, a run starts at
 the time in its name and continues in mission time.
 ";

@@ -32,7 +32,7 @@ const FIGURES: [Figure; 7] = [
 const TETHER_FIGURES: [Figure; 5] = [
     (paths::TETHER_OUT, FigureId::TetherOut, style::ESTIMATE, |tick| Some(tick.tether.as_ref()?.length_m)),
     (paths::TETHER_OUT_TRUE, FigureId::TrueTetherOut, style::TRUE, |tick| tick.true_tether_m),
-    // A gap in the curve means that there is no return path.
+    // A gap in the curve means that the hull does not fit through the return path.
     (paths::TETHER_HOME, FigureId::ReturnPath, style::FIGURE, |tick| tick.tether.as_ref()?.return_length_m),
     (paths::TETHER_WRAP, FigureId::WrapLargest, style::WARNING, |tick| {
         Some(tick.tether.as_ref()?.wrap_max_deg)

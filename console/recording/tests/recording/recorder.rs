@@ -133,7 +133,7 @@ fn a_tethered_run_has_the_cable_in_every_tick_and_its_figures() {
         })
         .flat_map(|(event, at)| {
             let length_m = (at - anchor).norm();
-            // In every other tick, there is no return path and no contact.
+            // Every other tick has neither a return path nor a contact.
             let bears = event.tick % 2 == 0;
             let contact = mission::event::TetherContact { on: "C1".into(), wrap_rad: 1.0, at };
             let kind = EventKind::Tethered {

@@ -28,7 +28,7 @@ pub(crate) fn ask_way_back(model: &mut Model) -> Vec<Effect> {
     vec![Effect::Ask(Query::WayBack)]
 }
 
-/// Receives the way back; if there is no way back, the open question is closed.
+/// Receives the way back. Without one, the open question is closed.
 pub(super) fn found(model: &mut Model, way: Result<WayBack, String>) {
     let is_asked = matches!(model.ui.overlay, Overlay::Confirm(Ask::DriveBack));
     if let (Err(why), true) = (&way, is_asked) {

@@ -47,7 +47,7 @@ pub(super) fn stop_estimate(model: &mut Model) -> Vec<Effect> {
     });
     what_if.selected = what_if.selected.min(what_if.candidates.len().saturating_sub(1));
     let open: Vec<_> = what_if.open().cloned().collect();
-    // The active planner alone is no comparison yet.
+    // A comparison needs a second planner beside the active one.
     if !is_held || (what_if.candidates.len() < 2 && what_if.n_done() == 0) {
         model.live.what_if = None;
         return vec![Effect::StopForecasting];

@@ -177,7 +177,7 @@ fn a_column_found_on_the_way_is_planned_around_and_what_is_scanned_stays_scanned
     assert!(flight.planner.regions_m2[1] < 0.8 * whole_m2, "{:?}", flight.planner.regions_m2);
     assert!(covered(&flight) > 0.92, "{}", covered(&flight));
     let changed = flight.events.iter().any(|event| matches!(event.kind, EventKind::FloorChanged { .. }));
-    assert!(changed, "the cells under a column are no longer floor");
+    assert!(changed, "the cells under a column do not count as floor any more");
 }
 
 #[test]

@@ -253,8 +253,7 @@ fn a_robot_that_waits_for_a_planner_to_open_is_not_stuck() {
     assert_eq!(flight.mission.phase(), &Phase::Running(Gait::Steady));
 }
 
-/// A new plan that is due because of an obstacle is no reason to close a working planner in favour of one that may not
-/// even open.
+/// An obstacle makes a new plan necessary. This does not close a working planner in favour of one that may fail to open.
 #[test]
 fn a_planner_that_is_well_stays_when_the_chosen_one_cannot_be_opened() {
     let mut flight = started(config());

@@ -174,7 +174,7 @@ fn a_planner_that_is_called_back_to_where_it_left_goes_on_with_its_plan() {
     flight.tick(&[swap_to("other")]);
     flight.tick(&[swap_to("straight")]);
     assert_eq!(kept_m(&flight), [None, None, left_m]);
-    // Once the other planner has driven the robot, the earlier plan is no longer valid.
+    // Once the other planner has driven the robot, the earlier plan is not valid any more.
     flight.tick(&[swap_to("other")]);
     flight.tick(&[Order::Resume]);
     flight.fly(30);

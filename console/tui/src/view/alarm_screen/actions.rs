@@ -17,7 +17,7 @@ const NUMBERS: [&str; remedies::MOST] =
 const FRAME: usize = 5;
 
 /// The actions, numbered; while the list is open, the selected action is marked. The advice follows without numbers,
-/// because there is no action to run.
+/// because the operator follows it without the console.
 pub(super) fn lines(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'static>> {
     let selected = match &look.model.ui.overlay {
         Overlay::Remedies { cause, selected, .. } if *cause == alarm.cause => Some(*selected),

@@ -22,7 +22,7 @@ const MARK: usize = 3;
 const BESIDE: (f64, f64) = (1.0, 3.0);
 /// Rows of the map for each line of the legend below the floor.
 const ROWS_PER_LINE: u16 = 5;
-/// The entries on each side of the floor fill at most this part of its rows: one in so many.
+/// The entries on each side of the floor fill at most one row in this number of rows.
 const SHARE: u16 = 3;
 /// The trail of the run with which a replay is compared.
 const RUN_B: &str = "run B";

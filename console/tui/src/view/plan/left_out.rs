@@ -84,7 +84,7 @@ fn row(area: &Area<MissReason>, place: usize, columns: usize) -> Parts {
     let place = text::column(&text::place(area.at), place);
     let [whole, brief, word] = reason(area.reason, &area.causes);
     let [whole, brief, word] = [whole, brief, word].map(|reason| format!("{place} {reason}"));
-    // Where there is no room for a reason, it is below the rows.
+    // A reason that does not fit into its row is shown below the rows.
     let words = text::wording([whole, brief, word, place], room);
     vec![(Role::Text, format!("{:>AREA$} ", square_metres(area.area_m2))), (Role::Text, words)]
 }
