@@ -9,7 +9,7 @@ use world::World;
 /// Everything needed to repeat a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunOpened {
-    /// [`JOURNAL_VERSION`](super::JOURNAL_VERSION) of the writer.
+    /// Version of the journal format of the writer.
     pub journal_version: u32,
     /// Version of tankops.
     pub tankops_version: String,
