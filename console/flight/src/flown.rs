@@ -185,9 +185,12 @@ impl Flight {
         self.readings = readings;
         let mut first = self.truth();
         first.extend(self.scanned());
-        first.extend(self.watched(&live.unwrap_or_default()));
+        let live = live.unwrap_or_default();
+        first.extend(self.watched(&live));
+        let age_s =
+            self.watch.as_mut().map(|watch| watch.age_s(live.stamps, self.tick_s)).unwrap_or_default();
         let trouble = self.trouble();
-        self.mission.sense(&Input { readings: &self.readings, orders, trouble: trouble.as_deref() });
+        self.mission.sense(&Input { readings: &self.readings, age_s, orders, trouble: trouble.as_deref() });
         loop {
             while let Some(ask) = self.mission.poll_ask() {
                 answers.submit(ask);

@@ -1,7 +1,7 @@
 //! The additions of a real vehicle to each tick: the readings, the link and the stops as events.
 
 use mission::{Event, EventKind};
-use vehicle::port::{LEASE_S, LinkSeen, Live, Stood};
+use vehicle::port::{LEASE_S, LinkSeen, Live, Stamps, Stood};
 use world::Readings;
 
 /// The state of a real vehicle, computed from the events of its run alone.
@@ -14,6 +14,8 @@ pub(crate) struct LiveWatch {
     is_decided: bool,
     /// The last result of a commanded stop.
     stood: Option<Stood>,
+    /// Age of the newest readings, seconds.
+    age_s: f64,
 }
 
 impl LiveWatch {
@@ -47,6 +49,19 @@ impl LiveWatch {
             events.push(EventKind::Stood { confirmed, after_s, moved });
         }
         events
+    }
+
+    /// Age of the newest readings at the beginning of a tick of `tick_s`, seconds; until the clocks have been compared,
+    /// readings count as new when they arrive.
+    pub(crate) fn age_s(&mut self, stamps: Option<Stamps>, tick_s: f64) -> f64 {
+        self.age_s = match stamps {
+            Some(Stamps { source_t_s, arrival_t_s }) => {
+                let taken_s = self.link.offset_s.map_or(arrival_t_s, |offset_s| source_t_s - offset_s);
+                (arrival_t_s - taken_s).max(0.0)
+            }
+            None => self.age_s + tick_s,
+        };
+        self.age_s
     }
 
     /// Takes the command of a tick; returns its event, if it is reported.
@@ -84,6 +99,18 @@ mod tests {
         // The brake was pulled between two ticks, and the stop is confirmed before the tick that commands it.
         watch.sensed(&Readings::default(), &decided);
         assert!(watch.sent(None).is_some() && !watch.awaits_stop());
+    }
+
+    #[test]
+    fn readings_age_on_their_way_and_while_no_others_arrive() {
+        let mut watch = LiveWatch::default();
+        let stamps = Some(Stamps { source_t_s: 107.9, arrival_t_s: 8.15 });
+        assert!(watch.age_s(stamps, 0.1) < 1e-9);
+        let link = LinkSeen { offset_s: Some(100.0), ..LinkSeen::default() };
+        watch.sensed(&Readings::default(), &Live { link: Some(link), ..Live::default() });
+        let later = Some(Stamps { source_t_s: 108.3, arrival_t_s: 8.28 });
+        let ages_ms = [stamps, None, later].map(|stamps| (watch.age_s(stamps, 0.1) * 1e3).round() as i64);
+        assert_eq!(ages_ms, [250, 350, 0]);
     }
 
     #[test]

@@ -62,6 +62,8 @@ use world::{Floor, Readings, World};
 pub struct Input<'a> {
     /// Sensor readings since the last tick.
     pub readings: &'a Readings,
+    /// Age of the newest readings of a real vehicle, seconds; 0 in a simulation.
+    pub age_s: f64,
     /// Orders from the operator since the last tick, oldest first.
     pub orders: &'a [Order],
     /// The reason why a real vehicle must not be driven now, as a clause; `None` if it may be driven, and in a simulation.
@@ -172,7 +174,7 @@ impl Mission {
         let located = self.known.locator.take(input.readings);
         self.happened.extend(located);
         self.happened.extend(self.known.take_pressure(input.readings.pressure_pa));
-        self.known.take_scan(input.readings);
+        self.known.take_scan(input.readings, input.age_s);
         let map_changed = self.look_around(input.readings);
         self.known.scan_from(before, &mut self.happened);
         let reached = self.known.drag_tether(map_changed, input.readings.paid_out_m, &mut self.happened);

@@ -11,3 +11,4 @@ pub mod pilot;
 pub mod readings;
 pub mod settings;
 pub mod status;
+pub mod trail;

@@ -1,6 +1,7 @@
 //! The adapter without its sockets: it receives messages from the console and the rover, and returns messages to both.
 
 mod condition;
+mod joined;
 #[cfg(test)]
 mod tests;
 
@@ -9,18 +10,19 @@ use crate::{
     convert,
 };
 use condition::Condition;
+use joined::Joined;
 use mavlink::{
     MavHeader,
     dialects::common::{
-        ATTITUDE_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd, MavMessage, MavModeFlag,
-        MavState, MavType, NAMED_VALUE_FLOAT_DATA,
+        COMMAND_LONG_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd, MavMessage, MavModeFlag, MavState, MavType,
+        NAMED_VALUE_FLOAT_DATA,
     },
 };
 use tankops_adapter::{
     clock::Clock,
     message::{FromVehicle, Pose, Tether},
     pilot::{Order, Pilot},
-    readings::Assembly,
+    readings::{Assembly, Measured},
 };
 
 /// An input to the adapter.
@@ -52,8 +54,6 @@ const HEARTBEAT_S: f64 = 1.0;
 /// Number of heartbeats between two requests for the rates of messages; requests are repeated because they may get
 /// lost.
 const REQUEST_EVERY: u32 = 5;
-/// Largest difference in time between a position and the attitude that is combined with it, seconds.
-const ATTITUDE_MAX_AGE_S: f64 = 0.5;
 /// Step back of the stamps, seconds, above which the rover counts as having started again.
 const RESTART_S: f64 = 1.0;
 
@@ -65,10 +65,11 @@ pub(crate) struct Bridge {
     readings: Assembly,
     condition: Condition,
     /// The newest pose and its time, until the pose is sent; before the introduction, no readings are sent.
-    pose: Option<(Pose, f64)>,
-    attitude: Option<ATTITUDE_DATA>,
-    /// Stamp of the newest pose, seconds of the rover's clock.
+    pose: Option<(Pose, Measured)>,
+    joined: Joined,
+    /// Stamps of the newest pose and of the newest ranges, seconds of the rover's clock.
     newest_s: Option<f64>,
+    ranges_s: Option<f64>,
     beats_s: f64,
     beats: u32,
 }
@@ -82,8 +83,9 @@ impl Bridge {
             readings: Assembly::new(config.vehicle.period_s),
             condition: Condition::new(config.scan),
             pose: None,
-            attitude: None,
+            joined: Joined::default(),
             newest_s: None,
+            ranges_s: None,
             beats_s: now_s,
             beats: 0,
             config,
@@ -104,8 +106,8 @@ impl Bridge {
             Input::Tick => {}
         }
         self.pilot.act(self.condition.state(now_s), now_s, &mut orders);
-        if let Some((pose, at_s)) = self.pose.take_if(|_| self.pilot.has_greeted()) {
-            orders.extend(self.readings.pose(pose, at_s).map(FromVehicle::Readings).map(Order::Say));
+        if let Some((pose, time)) = self.pose.take_if(|_| self.pilot.has_greeted()) {
+            orders.extend(self.readings.pose(pose, time).map(FromVehicle::Readings).map(Order::Say));
         }
         let mut out: Vec<Output> = orders.into_iter().filter_map(|order| self.output(order, now_s)).collect();
         self.beat(now_s, &mut out);
@@ -181,25 +183,39 @@ impl Bridge {
                 let charge = battery.battery_remaining;
                 self.condition.battery = (0..=100).contains(&charge).then(|| f64::from(charge) / 100.0);
             }
-            MavMessage::ATTITUDE(attitude) if from.component_id == rover.component => {
-                self.attitude = Some(attitude);
+            MavMessage::ATTITUDE(at) if from.component_id == rover.component => {
+                let stamp_s = f64::from(at.time_boot_ms) / 1e3;
+                let heading = convert::heading(at.yaw);
+                let Some(heading_rad) = self.right("ATTITUDE", heading, now_s) else { return };
+                self.joined.heading(heading_rad, stamp_s);
+                self.join(now_s);
             }
             MavMessage::LOCAL_POSITION_NED(at) if self.config.pose == PoseFrom::LocalPosition => {
                 let stamp_s = f64::from(at.time_boot_ms) / 1e3;
-                let Some(yaw) = self.yaw(stamp_s) else { return };
-                self.pose(convert::pose(at.x, at.y, yaw), "LOCAL_POSITION_NED", stamp_s, now_s);
+                let position = convert::pose(at.x, at.y, 0.0);
+                let Some(position) = self.right("LOCAL_POSITION_NED", position, now_s) else { return };
+                self.joined.position(position, stamp_s);
+                self.join(now_s);
             }
             MavMessage::ODOMETRY(at) if self.config.pose == PoseFrom::Odometry => {
                 let pose = convert::yaw(at.q).and_then(|yaw| convert::pose(at.x, at.y, yaw));
-                self.pose(pose, "ODOMETRY", at.time_usec as f64 / 1e6, now_s);
+                let Some(pose) = self.right("ODOMETRY", pose, now_s) else { return };
+                self.pose(pose, seconds(at.time_usec).unwrap_or(now_s), now_s);
             }
             MavMessage::OBSTACLE_DISTANCE(sectors) if self.config.scan => {
-                self.readings.parts.scan = self.right("OBSTACLE_DISTANCE", convert::scan(&sectors), now_s);
-                self.condition.scan_s = Some(now_s);
+                let scan = convert::scan(&sectors);
+                let Some(scan) = self.right("OBSTACLE_DISTANCE", scan, now_s) else { return };
+                self.condition.scan(self.readings.scan(scan, seconds(sectors.time_usec)), now_s);
             }
             MavMessage::DEBUG_FLOAT_ARRAY(array) => {
                 let Some(ranging) = &self.config.ae else { return };
                 if array.name.to_str() == Ok(&ranging.name) {
+                    let stamp_s = seconds(array.time_usec);
+                    // A duplicate must not count twice.
+                    if stamp_s.is_some_and(|stamp_s| !is_newer(stamp_s, self.ranges_s)) {
+                        return;
+                    }
+                    self.ranges_s = stamp_s;
                     let part = convert::ranges(&array, ranging);
                     self.readings.parts.ae = self.right("DEBUG_FLOAT_ARRAY", part, now_s);
                 }
@@ -225,26 +241,22 @@ impl Bridge {
         }
     }
 
-    /// The yaw at a time, from the newest attitude and its rate.
-    fn yaw(&self, at_s: f64) -> Option<f64> {
-        let attitude = self.attitude.as_ref()?;
-        let since_s = at_s - f64::from(attitude.time_boot_ms) / 1e3;
-        let yaw = f64::from(attitude.yaw) + f64::from(attitude.yawspeed) * since_s;
-        (since_s.abs() <= ATTITUDE_MAX_AGE_S).then_some(yaw)
+    /// Takes the pose that the newest position and the newest attitude make.
+    fn join(&mut self, now_s: f64) {
+        if let Some((pose, stamp_s)) = self.joined.take() {
+            self.pose(pose, stamp_s, now_s);
+        }
     }
 
-    fn pose(&mut self, pose: Result<Pose, String>, kind: &str, stamp_s: f64, now_s: f64) {
-        let Some(pose) = self.right(kind, pose, now_s) else { return };
-        // The pose is a duplicate, or a later pose has overtaken it: a pose that was already used contains its motion.
-        let is_old =
-            self.newest_s.is_some_and(|newest_s| stamp_s <= newest_s && newest_s - stamp_s <= RESTART_S);
-        if is_old {
+    fn pose(&mut self, pose: Pose, stamp_s: f64, now_s: f64) {
+        // A pose that a later one has overtaken is contained in the later one.
+        if !is_newer(stamp_s, self.newest_s) {
             return;
         }
         self.newest_s = Some(stamp_s);
         self.condition.pose_s = Some(now_s);
-        let measured_s = self.clock.measured_s(Some(stamp_s), now_s);
-        self.pose = Some((pose, measured_s));
+        let at_s = self.clock.measured_s(Some(stamp_s), now_s);
+        self.pose = Some((pose, Measured { stamp_s, at_s }));
     }
 
     fn named(&mut self, named: &NAMED_VALUE_FLOAT_DATA, now_s: f64) {
@@ -268,4 +280,14 @@ impl Bridge {
     fn right<T>(&mut self, kind: &str, part: Result<T, String>, now_s: f64) -> Option<T> {
         part.map_err(|why| self.condition.trouble(format!("{kind}: {why}"), now_s)).ok()
     }
+}
+
+/// A stamp in microseconds as seconds; `None` for 0, which stands for a message without a stamp.
+fn seconds(time_usec: u64) -> Option<f64> {
+    (time_usec > 0).then(|| time_usec as f64 / 1e6)
+}
+
+/// Whether a message is neither a duplicate of the newest one nor overtaken by it.
+fn is_newer(stamp_s: f64, newest_s: Option<f64>) -> bool {
+    newest_s.is_none_or(|newest_s| stamp_s > newest_s || newest_s - stamp_s > RESTART_S)
 }

@@ -24,6 +24,15 @@ const STATION_MAX_M: f64 = 1000.0;
 #[allow(deprecated)]
 const AHEAD: MavFrame = MavFrame::MAV_FRAME_BODY_NED;
 
+/// Converts a yaw, clockwise from north, to a heading, counter-clockwise from east.
+pub(crate) fn heading(yaw: f32) -> Result<f64, String> {
+    let yaw = f64::from(yaw);
+    if !(yaw.abs() <= POSE_MAX_M) {
+        return Err(format!("yaw: {yaw} is not an angle"));
+    }
+    Ok(FRAC_PI_2 - yaw)
+}
+
 /// Converts a pose from x north and y east to x east and y north.
 pub(crate) fn pose(north: f32, east: f32, yaw: f64) -> Result<Pose, String> {
     for (field, value) in [("x", f64::from(north)), ("y", f64::from(east)), ("yaw", yaw)] {

@@ -10,7 +10,7 @@ use tankops_adapter::{
     clock::Clock,
     message::{self, FromVehicle, Tether},
     pilot::{Order, Pilot},
-    readings::Assembly,
+    readings::{Assembly, Measured},
 };
 
 mod condition;
@@ -71,7 +71,7 @@ pub(crate) struct Bridge {
     readings: Assembly,
     condition: Condition,
     /// The newest pose and its time, until the pose is sent; before the introduction, no readings are sent.
-    pose: Option<(message::Pose, f64)>,
+    pose: Option<(message::Pose, Measured)>,
 }
 
 impl Bridge {
@@ -127,8 +127,8 @@ impl Bridge {
         }
         let state = self.condition.state(&self.config, now_s);
         self.pilot.act(state, now_s, &mut out);
-        if let Some((pose, at_s)) = self.pose.take_if(|_| self.pilot.has_greeted()) {
-            out.extend(self.readings.pose(pose, at_s).map(FromVehicle::Readings).map(Order::Say));
+        if let Some((pose, time)) = self.pose.take_if(|_| self.pilot.has_greeted()) {
+            out.extend(self.readings.pose(pose, time).map(FromVehicle::Readings).map(Order::Say));
         }
         out
     }
@@ -167,8 +167,9 @@ impl Bridge {
         let topic = Some(self.config.pose_topic().to_owned());
         let Some(pose) = self.right(topic, convert::pose(pose), now_s) else { return };
         self.condition.pose_s = Some(now_s);
-        let measured_s = self.clock.measured_s(stamp.seconds(), now_s);
-        self.pose = Some((pose, measured_s));
+        let stamp_s = stamp.seconds();
+        let at_s = self.clock.measured_s(stamp_s, now_s);
+        self.pose = Some((pose, Measured { stamp_s: stamp_s.unwrap_or(at_s), at_s }));
     }
 
     fn scan(&mut self, scan: &LaserScan, now_s: f64) {
@@ -176,8 +177,8 @@ impl Bridge {
         let part = fits("header.frame_id", &scan.header.frame_id, source.frame.as_ref())
             .and_then(|()| convert::scan(scan, source));
         let topic = Some(source.topic.clone());
-        self.readings.parts.scan = self.right(topic, part, now_s);
-        self.condition.scan_s = Some(now_s);
+        let Some(part) = self.right(topic, part, now_s) else { return };
+        self.condition.scan(self.readings.scan(part, scan.header.stamp.seconds()), now_s);
     }
 
     fn tether(&mut self, paid_out_m: f64, now_s: f64) {

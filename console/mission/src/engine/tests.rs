@@ -316,6 +316,8 @@ struct Flight {
     closed: Vec<WorkerId>,
     /// Why the vehicle must not be driven.
     trouble: Option<&'static str>,
+    /// Age of the readings, seconds.
+    age_s: f64,
     /// Discs that only a scanner sees, and whether the scanner works; `None` without a scanner.
     scanner: Option<(Vec<(Point, f64)>, bool)>,
     /// The inputs of each tick.
@@ -346,6 +348,7 @@ impl Flight {
             open: vec![],
             closed: vec![],
             trouble: None,
+            age_s: 0.0,
             scanner: None,
             inputs: vec![],
         }
@@ -372,7 +375,7 @@ impl Flight {
             pressure_pa: self.pressure_pa,
             scan: self.scan(),
         };
-        self.mission.sense(&Input { readings: &readings, orders, trouble: self.trouble });
+        self.mission.sense(&Input { readings: &readings, age_s: self.age_s, orders, trouble: self.trouble });
         self.inputs.push((readings, orders.to_vec()));
         self.serve();
         let step = self.mission.act();

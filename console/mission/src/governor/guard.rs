@@ -253,10 +253,12 @@ mod tests {
 
         fn guard(&self, points: &[Point], wanted: Drive) -> Guarded {
             let sent: Vec<Sent> = self.waiting.iter().map(|(_, sent)| *sent).collect();
+            Guard::new(&self.seen(points), &self.here, &sent).guarded(&self.known, wanted)
+        }
+
+        fn seen(&self, points: &[Point]) -> Vec<Point> {
             let heading = nalgebra::Rotation2::new(-self.here.pose.heading_rad);
-            let seen: Vec<Point> =
-                points.iter().map(|point| Point::from(heading * (point - self.here.pose.position))).collect();
-            Guard::new(&seen, &self.here, &sent).guarded(&self.known, wanted)
+            points.iter().map(|point| Point::from(heading * (point - self.here.pose.position))).collect()
         }
 
         fn follow(&mut self, drive: Drive) {
@@ -308,6 +310,36 @@ mod tests {
                 }
             }
             prop_assert!(robot.real.speed_m_per_s().abs() < 1e-9, "STILL is never refused");
+        }
+    }
+
+    proptest! {
+        /// The vehicle follows commands sooner than assumed, and readings arrive late, one tick more and one tick less.
+        #[test]
+        fn late_readings_of_a_quick_robot_never_seem_to_come_too_late(
+            drives in prop::collection::vec((any_drive(Motion::Unicycle), 1..15_usize), 5..30),
+            reaction in 1..8_usize, quicker in 0..8_usize, acceleration in 0.1..2.0_f64,
+            ages in prop::collection::vec(0..3_usize, 20),
+            points in prop::collection::vec((0.21..2.0_f64, -PI..PI), 1..60),
+        ) {
+            let points: Vec<Point> = points.into_iter().map(|(r, a)| Point::new(r * a.cos(), r * a.sin())).collect();
+            let mut robot = Robot::new(limits(Motion::Unicycle, acceleration), reaction.saturating_sub(quicker));
+            let still = Sent { momentum: Momentum::NONE, turn_rad: 0.0 };
+            let (mut sent, mut poses) = (vec![still; reaction + 3], vec![robot.here.pose; 3]);
+            for (tick, drive) in drives.iter().flat_map(|(drive, ticks)| vec![*drive; *ticks]).enumerate() {
+                let (age, now) = (ages[tick % ages.len()], robot.here.pose);
+                robot.here.pose = poses[poses.len() - 1 - age];
+                let seen = robot.seen(&points);
+                let within = |ticks: usize| Guard::new(&seen, &robot.here, &sent[sent.len() - ticks..]);
+                let guarded = within(reaction + age).guarded(&robot.known, drive);
+                prop_assert!(!within(age).touches(&robot.known), "tick {tick}");
+                robot.here.pose = now;
+                sent.push(Sent::of(&robot.known, guarded.drive, &robot.here));
+                robot.follow(guarded.drive);
+                poses.push(robot.here.pose);
+                let gap = points.iter().map(|point| (point - robot.here.pose.position).norm()).fold(9.0, f64::min);
+                prop_assert!(gap > 0.2, "{gap} at {}", robot.here.pose.position);
+            }
         }
     }
 

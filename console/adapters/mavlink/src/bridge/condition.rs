@@ -42,8 +42,9 @@ pub(super) struct Condition {
     pub(super) pose_s: Option<f64>,
     /// Whether the rover is expected to scan.
     has_scan: bool,
-    /// Arrival of the newest scan.
-    pub(super) scan_s: Option<f64>,
+    /// Arrival of the newest scan, and why a later one could not be used.
+    scan_s: Option<f64>,
+    scan_trouble: Option<String>,
     /// Charge, 0 to 1.
     pub(super) battery: Option<f64>,
     /// System number and time of the newest command of another ground station.
@@ -80,6 +81,12 @@ impl Condition {
     /// Takes the fault of an invalid message.
     pub(super) fn trouble(&mut self, why: String, now_s: f64) {
         self.trouble = Some((why, now_s + FAULT_FOR_S));
+    }
+
+    /// Takes the arrival of a scan, or the reason why it could not be used.
+    pub(super) fn scan(&mut self, taken: Result<(), String>, now_s: f64) {
+        self.scan_s = if taken.is_ok() { Some(now_s) } else { self.scan_s };
+        self.scan_trouble = taken.err();
     }
 
     /// The state to send.
@@ -123,7 +130,8 @@ impl Condition {
             return fault("no pose is arriving: check the rates of its messages".to_owned());
         }
         if self.has_scan && self.scan_s.is_none_or(|scan_s| now_s - scan_s > SCAN_MAX_AGE_S) {
-            return fault("no scan is arriving: check OBSTACLE_DISTANCE".to_owned());
+            let unused = self.scan_trouble.as_ref().map(|why| format!("OBSTACLE_DISTANCE: {why}"));
+            return fault(unused.unwrap_or("no scan is arriving: check OBSTACLE_DISTANCE".to_owned()));
         }
         Ok(())
     }

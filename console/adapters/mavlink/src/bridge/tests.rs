@@ -1,7 +1,7 @@
 use super::*;
 use mavlink::dialects::common::{
-    BATTERY_STATUS_DATA, DEBUG_FLOAT_ARRAY_DATA, LOCAL_POSITION_NED_DATA, MANUAL_CONTROL_DATA, MavFrame,
-    OBSTACLE_DISTANCE_DATA, ODOMETRY_DATA,
+    ATTITUDE_DATA, BATTERY_STATUS_DATA, DEBUG_FLOAT_ARRAY_DATA, LOCAL_POSITION_NED_DATA, MANUAL_CONTROL_DATA,
+    MavFrame, OBSTACLE_DISTANCE_DATA, ODOMETRY_DATA,
 };
 use tankops_adapter::message::{Commander, Mode, Readings, State};
 
@@ -49,9 +49,14 @@ fn drive(seq: u64) -> Input {
 }
 
 fn sectors() -> Input {
+    sectors_at(0)
+}
+
+fn sectors_at(time_usec: u64) -> Input {
     from(
         1,
         MavMessage::OBSTACLE_DISTANCE(OBSTACLE_DISTANCE_DATA {
+            time_usec,
             distances: [150; 72],
             max_distance: 800,
             increment: 5,
@@ -99,6 +104,7 @@ fn readings(out: &[Output]) -> Option<&Readings> {
 fn drives_and_lapsed_leases_reach_the_rover() {
     let mut bridge = ready();
     assert_eq!(speeds(&bridge.take(drive(1), 0.01)), [(0.25, -0.5)]);
+    bridge.take(attitude(5200, 0.0, 0.0), 0.2);
     bridge.take(position(5200, 0.0), 0.2);
     assert_eq!(speeds(&bridge.take(Input::Tick, 0.27)), [(0.0, 0.0)]);
     assert_eq!(speeds(&bridge.take(Input::Tick, 0.33)), [(0.0, 0.0)]);
@@ -139,23 +145,89 @@ fn a_silent_rover_is_named() {
 #[test]
 fn poses_are_those_of_east_and_north_with_the_yaw_of_their_time() {
     let mut bridge = ready();
-    bridge.take(attitude(5060, 0.1, 1.0), 0.07);
+    bridge.take(attitude(5100, 0.1, 0.0), 0.12);
     let out = bridge.take(position(5100, 2.0), 0.12);
     let readings = readings(&out).unwrap();
     let pose = readings.pose.unwrap();
     assert_eq!((pose.x_m, pose.y_m), (0.0, 2.0));
-    assert!((pose.heading_rad - (std::f64::consts::FRAC_PI_2 - 0.14)).abs() < 1e-6);
+    assert!((pose.heading_rad - (std::f64::consts::FRAC_PI_2 - 0.1)).abs() < 1e-6);
     assert!((readings.stamp_s - 0.1).abs() < 1e-9, "when it was measured");
+}
+
+/// A robot that begins to turn between two attitudes must not seem to have turned since the older one.
+#[test]
+fn a_position_waits_for_the_attitude_of_its_time() {
+    let mut bridge = ready();
+    assert!(readings(&bridge.take(position(5200, 2.0), 0.2)).is_none());
+    let out = bridge.take(attitude(5100, 0.2, 9.0), 0.21);
+    let pose = readings(&out).unwrap().pose.unwrap();
+    assert!((pose.y_m - 1.0).abs() < 1e-6, "between two positions: {pose:?}");
+    let out = bridge.take(attitude(5300, 0.4, 9.0), 0.31);
+    let pose = readings(&out).unwrap().pose.unwrap();
+    assert!((pose.heading_rad - (std::f64::consts::FRAC_PI_2 - 0.3)).abs() < 1e-6 && pose.y_m == 2.0);
+    assert!(readings(&bridge.take(attitude(5250, 3.0, 0.0), 0.4)).is_none(), "overtaken");
 }
 
 #[test]
 fn doubled_and_overtaken_poses_are_dropped_and_a_restart_is_not() {
     let mut bridge = ready();
+    bridge.take(attitude(5100, 0.0, 0.0), 0.1);
     assert!(readings(&bridge.take(position(5100, 0.1), 0.1)).is_some());
     assert!(readings(&bridge.take(position(5100, 0.1), 0.2)).is_none());
     assert!(readings(&bridge.take(position(4950, 0.0), 0.2)).is_none());
     bridge.take(attitude(100, 0.0, 0.0), 0.3);
     assert!(readings(&bridge.take(position(100, 0.0), 0.3)).is_some());
+}
+
+#[test]
+fn a_late_scan_is_sent_as_seen_from_the_pose_of_the_readings() {
+    let mut bridge = ready();
+    bridge.take(attitude(5100, 0.0, 0.0), 0.1);
+    bridge.take(position(5100, 1.0), 0.1);
+    bridge.take(sectors_at(5_050_000), 0.15);
+    bridge.take(attitude(5200, 0.5, 0.0), 0.2);
+    let scan = readings(&bridge.take(position(5200, 2.0), 0.2)).unwrap().scan.clone().unwrap();
+    assert!((scan.first_rad - 0.5).abs() < 1e-6, "the robot has turned clockwise since: {scan:?}");
+    assert!((scan.sensor_m[0] + 1.5 * 0.5_f64.cos()).abs() < 1e-6, "1.5 m behind: {scan:?}");
+    bridge.take(sectors_at(5_040_000), 0.25);
+    bridge.take(attitude(5300, 0.5, 0.0), 0.3);
+    assert_eq!(readings(&bridge.take(position(5300, 2.0), 0.3)).unwrap().scan, None, "overtaken");
+}
+
+#[test]
+fn scans_that_are_too_old_are_named() {
+    let mut bridge = ready();
+    for tick in 1..30_u32 {
+        let (ms, now_s) = (5000 + 100 * tick, 0.1 * f64::from(tick));
+        bridge.take(attitude(ms, 0.0, 0.0), now_s);
+        bridge.take(position(ms, 0.0), now_s);
+        bridge.take(sectors_at(u64::from(ms) * 1000 - 800_000), now_s);
+    }
+    let out = bridge.take(Input::Tick, 3.5);
+    let text = state(&out).text.unwrap();
+    assert_eq!(text, "OBSTACLE_DISTANCE: the scan is 0.8 s older than the newest pose; compare their clocks");
+}
+
+#[test]
+fn doubled_ranges_count_once() {
+    let mut bridge = ready();
+    let ranges = |time_usec| {
+        let mut array =
+            DEBUG_FLOAT_ARRAY_DATA { name: "ae".into(), time_usec, ..DEBUG_FLOAT_ARRAY_DATA::default() };
+        array.data[0] = 4.5;
+        from(1, MavMessage::DEBUG_FLOAT_ARRAY(array))
+    };
+    let mut heard = |time_usec, ms: u32| {
+        bridge.take(ranges(time_usec), f64::from(ms - 5000) / 1e3);
+        bridge.take(attitude(ms, 0.0, 0.0), f64::from(ms - 5000) / 1e3);
+        let out = bridge.take(position(ms, 0.0), f64::from(ms - 5000) / 1e3);
+        readings(&out).unwrap().ae.is_some()
+    };
+    assert_eq!(
+        [heard(5_050_000, 5100), heard(5_050_000, 5200), heard(4_900_000, 5300)],
+        [true, false, false]
+    );
+    assert!(heard(5_400_000, 5450));
 }
 
 #[test]
@@ -181,6 +253,7 @@ fn readings_carry_ranges_and_named_values() {
         let named = NAMED_VALUE_FLOAT_DATA { name: name.into(), value, ..NAMED_VALUE_FLOAT_DATA::default() };
         bridge.take(from(1, MavMessage::NAMED_VALUE_FLOAT(named)), 0.06);
     }
+    bridge.take(attitude(5100, 0.0, 0.0), 0.1);
     let out = bridge.take(position(5100, 0.0), 0.1);
     let readings = readings(&out).unwrap();
     assert_eq!(readings.ae.as_ref().unwrap().ranges[0].ranges_m, [4.5]);
@@ -209,6 +282,8 @@ fn messages_of_other_systems_and_bad_values_do_not_pass() {
     let out = bridge.take(position(5100, f32::NAN), 0.1);
     assert!(readings(&out).is_none());
     assert!(state(&out).text.unwrap().starts_with("LOCAL_POSITION_NED: x: NaN"));
+    let out = ready().take(attitude(5100, f32::NAN, 0.0), 0.1);
+    assert!(state(&out).text.unwrap().starts_with("ATTITUDE: yaw: NaN"));
 }
 
 #[test]

@@ -14,8 +14,9 @@ const SCAN_MAX_AGE_S: f64 = 1.0;
 pub(crate) struct Condition {
     /// Arrival of the newest pose.
     pub(crate) pose_s: Option<f64>,
-    /// Arrival of the newest scan.
-    pub(crate) scan_s: Option<f64>,
+    /// Arrival of the newest scan, and why a later one could not be used.
+    scan_s: Option<f64>,
+    scan_trouble: Option<String>,
     /// Number of subscriptions of the robot that receive the commands.
     pub(crate) subscriptions: usize,
     /// The type of a subscription that cannot read the commands.
@@ -40,6 +41,12 @@ impl Condition {
     /// Takes the fault of an invalid message.
     pub(crate) fn trouble(&mut self, why: String, now_s: f64) {
         self.trouble = Some((why, now_s + FAULT_FOR_S));
+    }
+
+    /// Takes the arrival of a scan, or the reason why it could not be used.
+    pub(crate) fn scan(&mut self, taken: Result<(), String>, now_s: f64) {
+        self.scan_s = if taken.is_ok() { Some(now_s) } else { self.scan_s };
+        self.scan_trouble = taken.err();
     }
 
     /// The state to send.
@@ -75,7 +82,10 @@ impl Condition {
         }
         let is_old = self.scan_s.is_none_or(|scan_s| now_s - scan_s > SCAN_MAX_AGE_S);
         if let Some(scan) = config.scan.as_ref().filter(|_| is_old) {
-            return Some(format!("no scan is arriving on {}: check topic, type and QoS", scan.topic));
+            let topic = &scan.topic;
+            let unused = self.scan_trouble.as_ref().map(|why| format!("{topic}: {why}"));
+            let missing = || format!("no scan is arriving on {topic}: check topic, type and QoS");
+            return Some(unused.unwrap_or_else(missing));
         }
         (self.subscriptions == 0).then(|| match &self.wrong_type {
             Some(kind) => format!("the robot expects {kind} on {topic}: change command.type"),

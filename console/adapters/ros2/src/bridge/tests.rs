@@ -38,8 +38,12 @@ fn matched(subscriptions: usize, publishers: usize) -> Input {
 }
 
 fn scan() -> Input {
+    scan_at(1000.0)
+}
+
+fn scan_at(stamp_s: f64) -> Input {
     Input::Scan(Box::new(LaserScan {
-        header: header("base_link", 1000.1),
+        header: header("base_link", stamp_s),
         angle_increment: 0.1,
         range_max: 5.0,
         ranges: vec![1.0],
@@ -101,7 +105,7 @@ fn readings_carry_what_was_measured_since_the_last_ones() {
     bridge.take(Input::Tether(3.5), 0.11);
     bridge.take(Input::Contact(true), 0.12);
     bridge.take(Input::Contact(false), 0.13);
-    bridge.take(scan(), 0.14);
+    bridge.take(scan_at(1000.1), 0.14);
     let out = bridge.take(odometry(0.02, 1000.2), 0.25);
     let readings = readings(&out).unwrap();
     assert!((readings.stamp_s - 0.2).abs() < 1e-6, "measured before it arrived: {}", readings.stamp_s);
@@ -109,6 +113,16 @@ fn readings_carry_what_was_measured_since_the_last_ones() {
     assert_eq!(readings.tether.unwrap().paid_out_m, 3.5);
     assert_eq!(readings.contact, Some(true), "a short contact is not lost");
     assert_eq!(readings.scan.as_ref().unwrap().ranges_m, [Some(1.0)]);
+}
+
+#[test]
+fn a_scan_is_sent_as_seen_from_the_pose_of_the_readings() {
+    let mut bridge = ready();
+    bridge.take(odometry(0.0, 1000.1), 0.1);
+    bridge.take(scan_at(1000.15), 0.18);
+    let out = bridge.take(odometry(0.02, 1000.2), 0.2);
+    let scan = readings(&out).unwrap().scan.clone().unwrap();
+    assert!((scan.sensor_m[0] + 0.01).abs() < 1e-9, "the robot has driven 0.01 m since: {scan:?}");
 }
 
 #[test]

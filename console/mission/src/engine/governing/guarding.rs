@@ -14,15 +14,17 @@ use world::{Odometry, Point, Readings, Scan, scan::carried};
 
 /// Maximum age, seconds, of a scan that the guard can use.
 const SCAN_MAX_AGE_S: f64 = 0.5;
-/// Maximum number of ticks for which the robot has moved since its readings were taken.
+/// Maximum number of ticks for which the robot has moved since its readings arrived.
 const READING_TICKS: usize = 1;
+/// Age of readings, seconds, above which nothing depends on how old they are: the link is lost before.
+const READING_MAX_AGE_S: f64 = 1.0;
 /// Longest time until the first scan, seconds; until then the robot stands still.
 const FIRST_WITHIN_S: f64 = 2.0;
 /// Distance, metres, that is added to the stopping distance at full speed; points farther from the hull than the sum
 /// are dropped. This distance is longer than the one that the robot travels before its scan is too old.
 const KEPT_M: f64 = 2.0;
-/// The robot is held after this many scans in a row by which the hull could touch a point although the robot brakes. A
-/// single such scan may be noise; the robot brakes at once in any case.
+/// The robot is held after this many scans in a row by which the hull could touch a point although the robot brakes
+/// without delay. A single such scan may be noise; the robot brakes at once in any case.
 const LATE_SCANS: u32 = 2;
 /// The robot is held if the guard has kept it from moving for this long, seconds.
 const BLOCKED_S: f64 = 2.0;
@@ -45,13 +47,31 @@ pub(in crate::engine) struct ScanGuard {
     age_s: f64,
     /// The motion that the vehicle may still have to carry out, oldest first.
     sent: Vec<Sent>,
+    /// Age of the newest readings on arrival, seconds.
+    reading_age_s: f64,
     /// The point that limits the robot: distance from the hull, metres, and direction, radians.
     before: Option<(f64, f64)>,
-    /// The number of scans in a row by which the hull could touch a point, and whether the first is of this tick.
+    /// The number of scans in a row by which the hull touches a point even if the vehicle follows at once.
     late_scans: u32,
+    /// Whether the hull could touch a point, and whether this began in this tick.
+    is_late: bool,
     is_late_now: bool,
     blocked_s: f64,
     limited: Limited,
+}
+
+impl ScanGuard {
+    /// The motion sent that a vehicle may not have carried out yet when its readings were taken, if it follows a command
+    /// after `reaction_s`.
+    fn sent_for(&self, reaction_s: f64, tick_s: f64) -> &[Sent] {
+        let ticks = ticks(reaction_s + self.reading_age_s, tick_s);
+        &self.sent[self.sent.len().saturating_sub(ticks)..]
+    }
+}
+
+/// The number of ticks whose motion can follow on readings that were taken `age_s` ago.
+fn ticks(age_s: f64, tick_s: f64) -> usize {
+    (age_s / tick_s).ceil() as usize + READING_TICKS
 }
 
 /// A scan from which noise can be removed.
@@ -78,14 +98,15 @@ fn near(scan: &Scan, far_m: f64) -> Vec<Point> {
 }
 
 impl Known {
-    /// Takes the scan of a tick.
-    pub(in crate::engine) fn take_scan(&mut self, readings: &Readings) {
+    /// Takes the scan of a tick; `age_s` is the age of the readings.
+    pub(in crate::engine) fn take_scan(&mut self, readings: &Readings, age_s: f64) {
         if self.config.guard_reaction_s.is_none() {
             return;
         }
         let far_m = reach_m(&self.config);
         let sigma_m = self.config.sensor.filter(Sensor::is_known).map(|sensor| sensor.sigma_m);
         let guard = &mut self.scan_guard;
+        guard.reading_age_s = age_s.min(READING_MAX_AGE_S);
         if let Some(scan) = &readings.scan {
             guard.points = near(scan, far_m);
             guard.noisy = sigma_m.map(|sigma_m| Noisy { scan: scan.clone(), sigma_m, moved: Vec::new() });
@@ -104,26 +125,28 @@ impl Known {
 
     /// Limits a command by the scan; the robot must be able to stop before it touches any scanned point.
     pub(in crate::engine) fn guarded(&mut self, command: Command) -> Command {
-        if self.config.guard_reaction_s.is_none() {
-            return command;
-        }
+        let Some(reaction_s) = self.config.guard_reaction_s else { return command };
         if !self.scan_guard.has_scan {
             return Command { drive: Drive::STILL, ..command };
         }
-        let here = self.as_governed();
-        let guard = Guard::new(&self.scan_guard.points, &here, &self.scan_guard.sent);
+        let (here, tick_s) = (self.as_governed(), self.config.tick_s);
+        let state = &self.scan_guard;
+        let guard = Guard::new(&state.points, &here, state.sent_for(reaction_s, tick_s));
         let Guarded { drive, before, is_late } = guard.guarded(&self.governor.momentum, command.drive);
-        let noisy = self.scan_guard.noisy.as_ref().filter(|_| is_late);
-        let is_late = noisy.map_or(is_late, |noisy| {
-            let evened = noisy.evened(reach_m(&self.config));
-            Guard::new(&evened, &here, &self.scan_guard.sent).touches(&self.governor.momentum)
-        });
+        let evened =
+            state.noisy.as_ref().filter(|_| is_late).map(|noisy| noisy.evened(reach_m(&self.config)));
+        let touches = |reaction_s: f64| {
+            let points = evened.as_ref().unwrap_or(&state.points);
+            Guard::new(points, &here, state.sent_for(reaction_s, tick_s)).touches(&self.governor.momentum)
+        };
+        let is_late = is_late && touches(reaction_s);
+        let is_certain = is_late && touches(0.0);
         let state = &mut self.scan_guard;
         state.before = before;
+        state.is_late_now = is_late && !std::mem::replace(&mut state.is_late, is_late);
         // Between two scans, the points are the same with the same noise.
         let is_new = state.age_s == 0.0 || state.late_scans == 0;
-        state.is_late_now = is_late && state.late_scans == 0;
-        state.late_scans = if is_late { state.late_scans + u32::from(is_new) } else { 0 };
+        state.late_scans = if is_certain { state.late_scans + u32::from(is_new) } else { 0 };
         let is_blocked = before.is_some() && speed(drive) < BLOCKED_SHARE * speed(command.drive);
         state.blocked_s = if is_blocked { state.blocked_s + self.config.tick_s } else { 0.0 };
         if before.is_some() { rounded_command(Command { drive, ..command }) } else { command }
@@ -133,7 +156,7 @@ impl Known {
     pub(in crate::engine) fn remember_sent(&mut self, drive: Drive) {
         let Some(reaction_s) = self.config.guard_reaction_s else { return };
         let sent = Sent::of(&self.governor.momentum, drive, &self.as_governed());
-        let kept = (reaction_s / self.config.tick_s).ceil() as usize + READING_TICKS;
+        let kept = ticks(reaction_s + READING_MAX_AGE_S, self.config.tick_s);
         let state = &mut self.scan_guard;
         state.sent.push(sent);
         let over = state.sent.len().saturating_sub(kept);

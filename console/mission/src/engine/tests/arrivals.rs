@@ -184,7 +184,7 @@ pub(super) fn replay_asking(
         let tick = again.mission.known.tick;
         answers
             .begin_tick(recorded.events.iter().filter(|event| event.tick == tick).map(|event| &event.kind));
-        again.mission.sense(&Input { readings, orders, trouble: None });
+        again.mission.sense(&Input { readings, age_s: 0.0, orders, trouble: None });
         loop {
             while let Some(ask) = again.mission.poll_ask() {
                 hear(&ask);

@@ -7,6 +7,7 @@ use crate::{
     order::Order,
     phase::{HoldReason, Outcome, Phase},
 };
+use geometry::Vector;
 use world::Point;
 
 fn guarded(config: MissionConfig) -> Flight {
@@ -59,6 +60,46 @@ fn an_unattended_run_ends_before_the_object() {
     flight.fly(200);
     assert_eq!(flight.ended(), Some(Outcome::Stuck));
     assert!(gap_m(&flight) > 0.0);
+}
+
+/// A robot that drives from a standstill towards an object in plain view until it is held: for each tick, the gap and
+/// the way, metres.
+fn driven_until_held(reaction_s: f64, age_s: f64, from_m: f64) -> Vec<(f64, f64)> {
+    let mut flight = guarded(config());
+    flight.mission.known.config.guard_reaction_s = Some(reaction_s);
+    flight.age_s = age_s;
+    flight.scanner = Some((vec![(flight.pose.position + Vector::x() * from_m, 0.1)], true));
+    flight.tick(&[Order::Start]);
+    let mut ticks = Vec::new();
+    while flight.held_by().is_none() {
+        let before = flight.pose.position;
+        flight.tick(&[]);
+        ticks.push((gap_m(&flight), (flight.pose.position - before).norm()));
+        assert!(ticks.len() < 400, "the robot is never held");
+    }
+    ticks
+}
+
+#[test]
+fn a_vehicle_that_reacts_sooner_than_it_states_is_slowed_but_not_held_while_it_drives() {
+    for from_m in [0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.5] {
+        let ticks = driven_until_held(0.7, 0.0, from_m);
+        let fastest_m = ticks.iter().map(|(_, way_m)| *way_m).fold(0.0, f64::max);
+        assert!(ticks.iter().all(|(gap_m, _)| *gap_m > 0.0));
+        let last = &ticks[ticks.len() - 20..];
+        assert!(last.iter().all(|(_, way_m)| *way_m < 0.5 * fastest_m), "from {from_m} m: {last:?}");
+    }
+}
+
+#[test]
+fn old_readings_make_the_robot_brake_earlier() {
+    let brakes_m = |age_s| {
+        let ticks = driven_until_held(0.1, age_s, 2.0);
+        let fastest_m = ticks[0].1;
+        ticks.iter().find(|(_, way_m)| *way_m < 0.9 * fastest_m).map(|(gap_m, _)| *gap_m).expect("it brakes")
+    };
+    let (new_m, old_m) = (brakes_m(0.0), brakes_m(0.5));
+    assert!(old_m > new_m + 0.1, "gap with new readings {new_m}, with old ones {old_m}");
 }
 
 #[test]
