@@ -119,9 +119,9 @@ mod tests {
         };
         let then = Pose { x_m: 1.0, y_m: -2.0, heading_rad: 0.4 };
         let now = Pose { x_m: 1.3, y_m: -1.9, heading_rad: 0.4 + FRAC_PI_2 };
-        let point = |scan: &Scan, at: &Pose, ray: usize| {
-            let rad = scan.first_rad + ray as f64 * scan.step_rad;
-            let range_m = scan.ranges_m[ray].unwrap();
+        let point = |scan: &Scan, at: &Pose, ray: u8| {
+            let rad = scan.first_rad + f64::from(ray) * scan.step_rad;
+            let range_m = scan.ranges_m[usize::from(ray)].unwrap();
             let (x_m, y_m) = (scan.sensor_m[0] + range_m * rad.cos(), scan.sensor_m[1] + range_m * rad.sin());
             let (sin, cos) = at.heading_rad.sin_cos();
             [at.x_m + cos * x_m - sin * y_m, at.y_m + sin * x_m + cos * y_m]
