@@ -94,6 +94,9 @@ fn a_drive_back_to_the_start_of_a_new_plan_is_explained() {
     hear(&mut screen, [travels]);
     let line = state(&screen);
     assert!(line.starts_with("Driving to the first lane of the plan: 4.0 m left."), "{line}");
+    screen.model.live.run.planning.plan.as_mut().unwrap().driven_m = 1.0;
+    let line = state(&screen);
+    assert!(line.starts_with("Driving to the next lane: "), "{line}");
 }
 
 #[test]

@@ -141,11 +141,11 @@ fn held_for_good(head: Head, by: &HoldReason) -> Vec<String> {
     const RESUME: &str = "<resume>: resume.";
     const RETRY: &str = "<resume>: retry.";
     const PLANNER: &str = "<planner>: change planner.";
-    let (reason, remedies): (&str, &[&str]) = match by {
+    let (reason, remedies): (String, &[&str]) = match by {
         // The reason for the hold is gone.
-        HoldReason::PositionLost => (": position recovered", &[RESUME]),
-        HoldReason::RangesInconsistent => (": ranges agree again", &[RESUME]),
-        HoldReason::Vehicle { .. } => (": vehicle is ready again", &[RESUME, "<end>: end mission."]),
+        HoldReason::PositionLost => (": position recovered".into(), &[RESUME]),
+        HoldReason::RangesInconsistent => (": ranges agree again".into(), &[RESUME]),
+        HoldReason::Vehicle { .. } => (": vehicle is ready again".into(), &[RESUME, "<end>: end mission."]),
         HoldReason::Stepped => (reason(by), &[RESUME]),
         HoldReason::Operator | HoldReason::PlannerReplaced | HoldReason::PlannerSilent { .. } => {
             (reason(by), &[RESUME, PLANNER])
@@ -161,23 +161,33 @@ fn held_for_good(head: Head, by: &HoldReason) -> Vec<String> {
         .collect()
 }
 
+/// Maximum width of the reason for a tether alarm, columns: with the word HELD and one key, it fits into 60 columns.
+const TETHER: usize = 38;
+
+/// The alarm of a tether: what happened and where, then the figures.
+fn tether(message: &str) -> (&str, Option<&str>) {
+    let divided = message.split_once([',', ':', ';']);
+    divided.map_or((message, None), |(what, figures)| (what, Some(figures.trim_start())))
+}
+
 /// The reason for the hold, as it follows the word HELD, without a full stop.
-fn reason(by: &HoldReason) -> &'static str {
-    match by {
+fn reason(by: &HoldReason) -> String {
+    let words = match by {
+        HoldReason::Tether { message } => return format!(": {}", text::fit(tether(message).0, TETHER)),
         HoldReason::Operator => " by operator",
         HoldReason::Stepped => " after single step",
         HoldReason::PlannerReplaced => ": planner replaced",
         HoldReason::RangesInconsistent => ": ranges contradict each other",
         HoldReason::PositionLost => ": position lost",
         HoldReason::Stuck { .. } => ": robot stuck",
-        HoldReason::Tether { .. } => ": tether alarm",
         HoldReason::PlanRefused { .. } => ": plan refused",
         HoldReason::ZoneBreached { .. } => ": hull in a no-go zone",
         HoldReason::Vehicle { .. } => ": vehicle cannot be driven",
         HoldReason::Guard { .. } => " by the guard",
         HoldReason::PlannerSilent { .. } => ": planner silent",
         HoldReason::PlannerFault { .. } => ": planner failed",
-    }
+    };
+    words.to_owned()
 }
 
 /// More about the hold, shown if there is space.
@@ -186,9 +196,11 @@ fn message(by: &HoldReason) -> Option<String> {
         HoldReason::PlannerFault { message }
         | HoldReason::PlannerSilent { message }
         | HoldReason::Stuck { message }
-        | HoldReason::Tether { message }
         | HoldReason::PlanRefused { message }
         | HoldReason::Guard { message } => Some(format!("{}.", text::capitalized(message))),
+        HoldReason::Tether { message } => {
+            tether(message).1.map(|figures| format!("{}.", text::capitalized(figures)))
+        }
         // What follows the semicolon was true only while the link was lost.
         HoldReason::Vehicle { message } => {
             Some(format!("It was held because {}.", message.split(';').next().unwrap_or(message)))
