@@ -180,13 +180,15 @@ impl Live {
     /// plan; `None` if neither is known, or the run has ended.
     pub fn left_s(&self) -> Option<f64> {
         let done = self.run.progress.as_ref().map_or(0.0, |progress| progress.done);
-        let promised = || {
-            let estimate = self.promised()?;
-            let plan = self.run.planning.plan.as_ref()?;
-            let rest_m = (1.0 - done.clamp(0.0, 1.0)) * (plan.driven_m + plan.length_m);
-            // A plan made on the way has no estimate; the promised pace is that of the plan with which the mission began.
-            (estimate.length_m > 0.0).then(|| estimate.time_s * rest_m / estimate.length_m)
+        let to_do = 1.0 - done.clamp(0.0, 1.0);
+        // A plan made on the way has no estimate; it is driven at the pace promised for the plan with which the mission
+        // began.
+        let at_pace = || {
+            let (estimate, plan) = (self.promised()?, self.run.planning.plan.as_ref()?);
+            let pace_s_per_m = estimate.time_s / estimate.length_m;
+            (estimate.length_m > 0.0).then(|| pace_s_per_m * to_do * (plan.driven_m + plan.length_m))
         };
+        let promised = || self.estimate().map(|estimate| estimate.time_s * to_do).or_else(at_pace);
         self.run.left_s().or_else(|| promised().filter(|_| !self.run.has_ended()))
     }
 

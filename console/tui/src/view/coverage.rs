@@ -53,16 +53,20 @@ fn wide_lines(look: &Look, bases: &Bases, columns: usize) -> Vec<(u8, Line<'stat
     let out_of_reach = ["shell margin", "margin"].map(|name| format!("{unreachable} %, {name} {margin} %"));
     let out_of_reach = text::wording(out_of_reach, room);
     let overlap = run.coverage.as_ref().and_then(Raster::overlap).map_or_else(|| "-".into(), text::percent);
-    vec![
+    let mut lines = vec![
         row(0, &format!("{mark}scanned"), shares(&first_scanned, &second_scanned)),
         (1, look.line([(Role::Good, format!(" {}", bases.bar(columns.saturating_sub(2))))])),
-        row(3, to_do_label(run), shares(&first_to_do, &second_to_do)),
         row(7, "unreachable", out_of_reach),
         row(5, "speed", pace(run, room)),
         row(6, "overlap", format!("{overlap} % of scanned floor")),
         row(4, way_label(run), way(run)),
         row(2, "time left", left(look, true)),
-    ]
+    ];
+    // A drive to a goal or along a path has no floor to scan.
+    if run.covers() {
+        lines.insert(2, row(3, to_do_label(run), shares(&first_to_do, &second_to_do)));
+    }
+    lines
 }
 
 fn narrow_lines(look: &Look, bases: &Bases) -> Vec<(u8, Line<'static>)> {
@@ -151,13 +155,9 @@ fn percent(run: &Run, of: fn(&Raster) -> Shares, part: fn(&Percent) -> f64) -> S
     raster.map_or_else(|| "-".into(), |raster| text::number(part(&of(raster).percent), 1))
 }
 
-/// The label for unscanned floor: still to do, or missed once a mission whose task was to scan has ended.
+/// The label for unscanned floor: still to do, or missed once the mission has ended.
 fn to_do_label(run: &Run) -> &'static str {
-    match (run.has_missed(), run.has_ended()) {
-        (true, _) => "missed",
-        (false, true) => "not scanned",
-        (false, false) => "to do",
-    }
+    if run.has_ended() { "missed" } else { "to do" }
 }
 
 /// The speed over ground while the robot may move, the scanned floor per minute, and the scanned floor.

@@ -48,7 +48,7 @@ impl Shade {
             Self::Floor(FloorClass::Unreachable) => ('/', Role::Unreachable),
             Self::Floor(FloorClass::Margin) => ('-', Role::Margin),
             Self::NotReached => ('∙', Role::Dim),
-            Self::Before => (':', Role::Dim),
+            Self::Before => ('+', Role::Dim),
             Self::PoorFix => ('$', Role::Crit),
             Self::WeakFix => ('_', Role::Warn),
             Self::OnlyA => ('A', Role::Good),

@@ -123,7 +123,14 @@ fn held_for_now(head: Head, by: &HoldReason, resumes: Resumes) -> Vec<String> {
         (_, HoldReason::PlannerSilent { .. }) => "Resumes automatically on answer.",
         _ => "Resumes automatically.",
     };
-    vec![head.with(&format!("{}.", reason(by))), when.into(), "<hold>: HOLD (stay held).".into()]
+    let reason = match by {
+        HoldReason::Tether { message } => {
+            let what = tether(message).0;
+            format!(": {}", if text::width(what) <= TETHER_FOR_NOW { what } else { "tether alarm" })
+        }
+        by => reason(by),
+    };
+    vec![head.with(&format!("{reason}.")), when.into(), "<hold>: HOLD (stay held).".into()]
 }
 
 /// A hold that only an order can end, while the mission accepts no order that moves the robot.
@@ -163,6 +170,8 @@ fn held_for_good(head: Head, by: &HoldReason) -> Vec<String> {
 
 /// Maximum width of the reason for a tether alarm, columns: with the word HELD and one key, it fits into 60 columns.
 const TETHER: usize = 38;
+/// The same for a hold that ends automatically, beside the sentence that says so.
+const TETHER_FOR_NOW: usize = 16;
 
 /// The alarm of a tether: what happened and where, then the figures.
 fn tether(message: &str) -> (&str, Option<&str>) {
