@@ -176,7 +176,9 @@ const TETHER_FOR_NOW: usize = 16;
 /// The alarm of a tether: what happened and where, then the figures.
 fn tether(message: &str) -> (&str, Option<&str>) {
     let divided = message.split_once([',', ':', ';']);
-    divided.map_or((message, None), |(what, figures)| (what, Some(figures.trim_start())))
+    let (what, figures) = divided.map_or((message, None), |(what, rest)| (what, Some(rest.trim_start())));
+    // An object that is not on the map has no name; the place of the robot says more.
+    (what.strip_suffix(" on an unmapped object").unwrap_or(what), figures)
 }
 
 /// The reason for the hold, as it follows the word HELD, without a full stop.
@@ -221,7 +223,8 @@ fn message(by: &HoldReason) -> Option<String> {
 /// Where a held robot is and how far its mission has come, from the longest wording to the shortest.
 pub(super) fn whereabouts(model: &Model) -> Vec<String> {
     let run = &model.live.run;
-    if !matches!(run.phase(), Phase::Held(_)) || model.live.asked.is_some() || model.live.is_cut_off {
+    let Phase::Held(hold) = run.phase() else { return Vec::new() };
+    if model.live.asked.is_some() || model.live.is_cut_off {
         return Vec::new();
     }
     let Some(pose) = run.position.pose else { return Vec::new() };
@@ -229,6 +232,8 @@ pub(super) fn whereabouts(model: &Model) -> Vec<String> {
     let done =
         run.progress.as_ref().map(|progress| format!(", {} % done", text::number(100.0 * progress.done, 0)));
     match done {
+        // The place of a tether alarm matters more than the progress.
+        Some(done) if matches!(hold.by, HoldReason::Tether { .. }) => vec![format!("{at}{done}"), at],
         Some(done) => vec![format!("{at}{done}"), done],
         None => vec![at],
     }
