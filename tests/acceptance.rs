@@ -13,6 +13,8 @@ mod author;
 #[path = "acceptance/bench.rs"]
 mod bench;
 #[cfg(unix)]
+#[path = "acceptance/breach.rs"]
+mod breach;
 #[path = "acceptance/campaign.rs"]
 mod campaign;
 #[path = "acceptance/carts.rs"]

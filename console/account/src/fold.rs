@@ -14,7 +14,7 @@ use crate::{
     vehicle::VehicleRecord,
 };
 use mission::{
-    Cause, Event, EventKind, FoldedStanding, Order, ParamKind, ParamValue, Parameters, Passage,
+    Cause, Event, EventKind, FoldedStanding, Order, Outcome, ParamKind, ParamValue, Parameters, Passage,
     PlannerChoice, PlannerInfo, TaskConfig,
     event::{RunOpened, TetherAlarm, ToolTrack},
 };
@@ -135,6 +135,9 @@ impl Fold {
             EventKind::Held { .. } => self.known.holds += 1,
             EventKind::Ended { outcome, reason } => {
                 self.known.outcome = Some(*outcome);
+                if *outcome == Outcome::Complete {
+                    self.evidence.iter_mut().for_each(Evidence::complete);
+                }
                 self.known.reason = Some(reason.clone());
             }
             _ => {}

@@ -1,9 +1,12 @@
 //! Combines a re-scan with the runs that it continues.
 
-use mission::EventKind;
+use mission::{Event, EventKind};
 use recording::{JournalReader, journal_of};
 use std::path::Path;
-use tui::model::{Combination, Continued};
+use tui::{
+    RunMsg,
+    model::{Combination, Continued},
+};
 use world::Point;
 
 /// The runs that a scenario continues, and where the last of them left the robot; `None` if it continues none.
@@ -17,6 +20,29 @@ pub(super) fn before(scenario_toml: &str, logs: &Path) -> Result<Option<Continue
     Ok(left_at.map(|left_at| Continued { runs, left_at }))
 }
 
+/// Tells the screen which runs a scenario continues, then the floor that they have scanned; `send` returns whether the
+/// screen still listens.
+pub(super) fn look_back(scenario_toml: &str, logs: &Path, send: impl Fn(RunMsg) -> bool) {
+    let Some(found) = before(scenario_toml, logs).transpose() else { return };
+    let runs = found.as_ref().map_or_else(|_| Vec::new(), |continued| continued.runs.clone());
+    if !send(RunMsg::Continues(found)) || runs.is_empty() {
+        return;
+    }
+    if let Some(found) = scanned_before(&runs, logs, || true).transpose() {
+        send(RunMsg::ScannedBefore(found.map(Box::new)));
+    }
+}
+
+/// The same for a past run.
+pub(super) fn look_back_from(run: &str, logs: &Path, send: impl Fn(RunMsg) -> bool) {
+    // The replay itself reports a run that cannot be read.
+    let Ok(folder) = runs::find(run.as_ref(), logs) else { return };
+    let Ok(mut events) = JournalReader::open(&journal_of(&folder)) else { return };
+    if let Some(Ok(Event { kind: EventKind::RunOpened(opened), .. })) = events.next() {
+        look_back(&opened.scenario_toml, logs, send);
+    }
+}
+
 /// The last estimated position of a past run; the part of a journal before the damage counts.
 fn left_at(run: &str, logs: &Path) -> Option<Point> {
     let folder = runs::find(run.as_ref(), logs).ok()?;
@@ -26,6 +52,19 @@ fn left_at(run: &str, logs: &Path) -> Option<Point> {
         _ => None,
     });
     places.last()
+}
+
+/// The combined scan of the runs that a re-scan continues, without the re-scan; `None` if `goes_on` refuses.
+///
+/// # Errors
+/// Why the runs cannot be combined, as a sentence.
+pub(super) fn scanned_before(
+    runs: &[String],
+    logs: &Path,
+    goes_on: impl Fn() -> bool,
+) -> Result<Option<Combination>, String> {
+    let found = combined(runs, logs, goes_on)?;
+    Ok(found.map(|found| Combination { earlier: runs.to_owned(), ..found }))
 }
 
 /// The combined scan of runs, the last of which is the re-scan; `None` if `goes_on` refuses.

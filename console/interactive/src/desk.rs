@@ -32,7 +32,7 @@ use review::rescan_of;
 use runs::Closed;
 use scenario::{Scenario, Settings};
 use std::{
-    path::PathBuf,
+    path::{Path, PathBuf},
     sync::{
         Arc, Mutex, PoisonError,
         mpsc::{self, Receiver, Sender},
@@ -197,13 +197,15 @@ impl Desk {
     /// Finds the runs that a re-scan continues. This runs on a separate thread, because reading the journals of runs
     /// without a report takes time.
     fn look_back(&self, id: RunId, scenario_toml: String) {
+        self.begin_look_back(id, move |logs, screen| {
+            combining::look_back(&scenario_toml, logs, |msg| screen.send(msg));
+        });
+    }
+
+    fn begin_look_back(&self, id: RunId, look: impl FnOnce(&Path, &RunOutbox) + Send + 'static) {
         let screen = RunOutbox { run: id, outbox: self.tools.outbox.clone() };
         let logs = self.tools.logs.clone();
-        let began = thread::Builder::new().name("look-back".into()).spawn(move || {
-            if let Some(found) = combining::before(&scenario_toml, &logs).transpose() {
-                let _ = screen.send(RunMsg::Continues(found));
-            }
-        });
+        let began = thread::Builder::new().name("look-back".into()).spawn(move || look(&logs, &screen));
         if let Err(error) = began {
             jobs::report(&self.tools.outbox, &format!("the runs before this one cannot be found: {error}"));
         }
@@ -284,8 +286,14 @@ impl Desk {
         self.close(false)?;
         let Tools { logs, outbox, .. } = &self.tools;
         let screen = RunOutbox { run: id, outbox: outbox.clone() };
+        let past = run.clone();
         match Player::begin(run, logs, screen.clone()) {
-            Ok(player) => self.player = Some(player),
+            Ok(player) => {
+                self.player = Some(player);
+                self.begin_look_back(id, move |logs, screen| {
+                    combining::look_back_from(&past, logs, |msg| screen.send(msg));
+                });
+            }
             Err(error) => drop(screen.send(RunMsg::OpenFailed(format!("{error:#}")))),
         }
         Ok(())

@@ -13,4 +13,6 @@ pub struct ZoneCost {
     pub lost_m2: f64,
     /// Whether a better plan that is offered or accepted would be dropped.
     pub drops_offer: bool,
+    /// Whether the hull is in the zone, so that the robot is held as soon as the zone is drawn.
+    pub holds: bool,
 }

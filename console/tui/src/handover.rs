@@ -6,7 +6,7 @@ use crate::model::{
     alarms::State,
     log::{Entry, What, clock, severity_word},
 };
-use crate::view::{by_command, shares};
+use crate::view::{Bases, by_command};
 use account::{Area, MissReason};
 use mission::{EventKind, Order, TaskConfig};
 use world::ZoneKind;
@@ -142,13 +142,16 @@ fn done(model: &Model) -> Vec<String> {
         TaskConfig::Follow { .. } => "Task: follow the preset path",
         TaskConfig::Cover { .. } => "Task: scan the floor",
     });
-    let (reachable, whole) = shares(run);
-    let scanned = run
-        .coverage
-        .is_some()
-        .then(|| format!("Scanned: {reachable} % of the reachable floor, {whole} % of the whole floor"));
+    let bases = Bases::of(&model.live);
+    let ([first, second], [of_first, of_second]) = (bases.scanned(), bases.of);
+    let of_first = of_first.replacen("of ", "of the ", 1);
+    let of_second = of_second.replacen("of ", "of the ", 1);
+    let scanned =
+        run.coverage.is_some().then(|| format!("Scanned: {first} % {of_first}, {second} % {of_second}"));
+    let earlier = &model.live.earlier;
+    let before = (!earlier.is_empty()).then(|| format!("Re-scan of what {} left", earlier.join(" and ")));
     let moving = format!("Mission time {}, under way {}", clock(run.clock.t_s), clock(run.clock.moving_s));
-    task.map(str::to_owned).into_iter().chain(scanned).chain([moving]).collect()
+    task.map(str::to_owned).into_iter().chain(before).chain(scanned).chain([moving]).collect()
 }
 
 /// What the operator decided: the decisions in the journal, then the acknowledgements after the end of the mission, which

@@ -61,7 +61,7 @@ pub use run::{About, Clock, Progress, Run, VehicleSeen};
 pub use shadow::Shadow;
 
 pub use tether::Tether;
-pub use together::{Combination, Continued, Together};
+pub use together::{Combination, Continued, Earlier, Together};
 pub use trail::Trail;
 pub use ui::{Overlay, Pane, Ui};
 pub use what_if::{Candidate, Forecast, WhatIf};

@@ -8,7 +8,7 @@ use crate::model::{
 };
 use crate::update::offered;
 use crate::view::text;
-use crate::view::{by_command, question, shares, standing};
+use crate::view::{Bases, by_command, question, standing};
 use mission::{EventKind, Outcome, Severity};
 use world::coverage::percent;
 
@@ -103,9 +103,10 @@ pub fn status(model: &Model) -> Vec<String> {
     ];
     lines.extend(position(model));
     lines.extend(tether(model));
-    let (reachable, whole) = shares(run);
+    let bases = Bases::of(&model.live);
+    let ([first, second], [of_first, of_second]) = (bases.scanned(), bases.of);
     if run.coverage.is_some() && run.progress.is_some() {
-        lines.push(format!("Scanned: {reachable} % of reachable floor, {whole} % of whole floor."));
+        lines.push(format!("Scanned: {first} % {of_first}, {second} % {of_second}."));
     }
     lines.push(match (&model.live.result, &model.live.health.recording) {
         (Some(result), _) => format!("{}.", text::capitalized(&result.kept)),

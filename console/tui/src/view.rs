@@ -44,7 +44,7 @@ mod what_if;
 pub use cache::{Cache, Places};
 
 pub(crate) use confirm::question;
-pub(crate) use coverage::shares;
+pub(crate) use coverage::Bases;
 pub(crate) use next::{by_command, standing};
 
 use crate::caps::{Caps, Glyphs};

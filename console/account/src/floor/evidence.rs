@@ -117,6 +117,11 @@ impl Evidence {
         self.fly(done * (flown_m + length_m) - flown_m);
     }
 
+    /// Records that the mission is complete: the robot has driven to the end of the plan, to within the mission's tolerance.
+    pub fn complete(&mut self) {
+        self.fly(self.plan.length_m);
+    }
+
     /// Cells that the robot passed while following a plan stay marked when a new plan is made.
     fn leave_behind(&mut self) {
         for (passed, due_m) in self.passed.iter_mut().zip(&self.plan.due_m) {

@@ -116,6 +116,18 @@ fn a_lane_that_was_flown_beside_its_place_is_reported_as_passed_and_those_ahead_
 }
 
 #[test]
+fn floor_at_the_end_of_the_plan_of_a_complete_run_was_passed_and_not_cut_off() {
+    let run = round_tank(0.05);
+    let mut evidence = Evidence::new(&run);
+    evidence.plan(&lanes(), &[], true);
+    evidence.fly_share(0.95);
+    let [x, y] = [lanes()[lanes().len() - 1].x, lanes()[lanes().len() - 1].y];
+    assert_eq!(why_missed(&evidence, &run, x, y), MissReason::NotReached);
+    evidence.complete();
+    assert_eq!(why_missed(&evidence, &run, x, y), MissReason::PassedBeside);
+}
+
+#[test]
 fn a_new_plan_takes_the_place_of_the_one_before_unless_it_is_refused() {
     let run = round_tank(0.05);
     let path = lanes();

@@ -97,7 +97,10 @@ impl Rules {
 
     /// The rules that let the robot resume from holds that last until a condition has cleared.
     fn update_held(&mut self, seen: &Seen<'_>, hold: &Hold) -> Option<Verdict> {
-        if let Some(breach) = ZoneRule::update(seen).filter(|_| !hold.resumes.is_never()) {
+        // A hold by the operator gets the reason that needs a remedy.
+        let yields =
+            !hold.resumes.is_never() || matches!(hold.by, HoldReason::Operator | HoldReason::Stepped);
+        if let Some(breach) = ZoneRule::update(seen).filter(|_| yields) {
             return Some(breach);
         }
         if hold.resumes != Resumes::WhenCleared {

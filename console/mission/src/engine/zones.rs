@@ -46,7 +46,8 @@ impl Known {
         }
     }
 
-    /// Refuses an impossible zone: one that contains the robot, or that covers a place where the robot must go.
+    /// Refuses an impossible zone: one that covers a place where the robot must go, or that the robot cannot leave. Before
+    /// the start, a zone that contains the robot is impossible, too; during the mission, it holds the robot.
     ///
     /// # Errors
     /// The reason, as a sentence.
@@ -78,7 +79,7 @@ impl Known {
         let is_within = |place: Point| shape.distance_m(place) < room_m;
         let must_keep = format!("{room_m:.2} m (hull radius and clearance) must stay clear");
         let here = self.locator.position();
-        if is_within(here) {
+        if is_within(here) && self.is_waiting() {
             return Err(format!("the robot is in the zone or too close to it: {must_keep}"));
         }
         let end = match &self.config.task {
@@ -94,12 +95,30 @@ impl Known {
             return Err(format!("the {what} is in the zone or too close to it: {must_keep}"));
         }
         let (before, behind) = (self.floor_for(room_m, None), self.floor_for(room_m, Some(&shape)));
-        let is_way = |floor: &GrownFloor, to| floor.shortest(here, to, &mut || true).is_ok();
-        let is_closed = |place: Point| !is_way(&behind, place) && is_way(&before, place);
+        let is_way = |floor: &GrownFloor, from, to| floor.shortest(from, to, &mut || true).is_ok();
+        let out = if is_within(here) { self.out_of(&shape)? } else { here };
+        let is_closed = |place: Point| !is_way(&behind, out, place) && is_way(&before, here, place);
         match places.iter().find(|(_, place)| is_closed(*place)) {
             Some((what, _)) => Err(format!("the zone would block every path from the robot to the {what}")),
             None => Ok(()),
         }
+    }
+
+    /// The nearest place outside a zone that contains the robot, if the zone were drawn.
+    ///
+    /// # Errors
+    /// The robot could not leave the zone; a sentence.
+    fn out_of(&self, shape: &Shape) -> Result<Point, String> {
+        let mut after = self.chart.clone();
+        after.draw(Zone { name: self.free_name(), kind: ZoneKind::NoGo, shape: shape.clone() });
+        let blocked =
+            || "the robot could not leave the zone; draw a smaller one, or drive it out first".to_owned();
+        self.outside(&after, self.config.room_m()).ok_or_else(blocked)
+    }
+
+    /// How deep the hull is in a zone according to the estimated position, metres; negative outside.
+    fn depth_m(&self, zone: &Shape) -> f64 {
+        self.config.limits.radius_m - zone.distance_m(self.position())
     }
 
     /// The floor that is available to the hull's centre if it needs `room_m` metres of room, outside the no-go zones:
@@ -119,10 +138,9 @@ impl Known {
         {
             return None;
         }
-        let (here, radius_m) = (self.position(), self.config.limits.radius_m);
         let mut entered = None;
         for zone in self.chart.world().zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo) {
-            let depth_m = radius_m - zone.shape.distance_m(here);
+            let depth_m = self.depth_m(&zone.shape);
             let known = self.breached.iter().position(|name| *name == zone.name);
             match known {
                 None if depth_m > BREACH_M => {
@@ -160,7 +178,8 @@ impl Known {
         let closed = self.floor.coverage.counts().reachable.saturating_sub(after.coverage.counts().reachable);
         let lost = left(&self.floor.coverage).saturating_sub(left(&after.coverage));
         let area_m2 = |cells: usize| cells as f64 * cell_m2;
-        Ok(ZoneCost { path_m, closed_m2: area_m2(closed), lost_m2: area_m2(lost), drops_offer })
+        let holds = self.depth_m(&shape) > BREACH_M;
+        Ok(ZoneCost { path_m, closed_m2: area_m2(closed), lost_m2: area_m2(lost), drops_offer, holds })
     }
 
     /// A name that no other zone has yet.

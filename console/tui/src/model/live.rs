@@ -1,6 +1,6 @@
 //! The open run, and the communication between the operator and its mission.
 
-use super::{Health, Plans, Preflight, Raster, Replay, Run, Speed, Together, WhatIf};
+use super::{Combination, Earlier, Health, Plans, Preflight, Raster, Replay, Run, Speed, Together, WhatIf};
 use account::{Account, Area, Estimate, LeftOut, MissReason, Summary};
 use mission::{Order, Phase, WayBack, ZoneCost};
 use serde::{Deserialize, Serialize};
@@ -126,6 +126,12 @@ pub struct Live {
     /// For a re-scan: the names of the runs before it, oldest first; empty until they are known, and for any other run.
     #[serde(default)]
     pub earlier: Vec<String>,
+    /// For a re-scan: what the runs before it have scanned, until the floor of this run is known.
+    #[serde(default)]
+    pub read_before: Option<Box<Combination>>,
+    /// For a re-scan: the floor that the runs before it have scanned, once it is known.
+    #[serde(default)]
+    pub scanned_before: Option<Box<Earlier>>,
     /// For a re-scan: where the last run before it left the robot, metres, tank frame; `None` if this place is not
     /// known.
     #[serde(default)]
@@ -174,7 +180,15 @@ impl Live {
     /// plan; `None` if neither is known, or the run has ended.
     pub fn left_s(&self) -> Option<f64> {
         let done = self.run.progress.as_ref().map_or(0.0, |progress| progress.done);
-        let promised = || self.estimate().map(|estimate| estimate.time_s * (1.0 - done.clamp(0.0, 1.0)));
+        let to_do = 1.0 - done.clamp(0.0, 1.0);
+        // A plan made on the way has no estimate; it is driven at the pace promised for the plan with which the mission
+        // began.
+        let at_pace = || {
+            let (estimate, plan) = (self.promised()?, self.run.planning.plan.as_ref()?);
+            let pace_s_per_m = estimate.time_s / estimate.length_m;
+            (estimate.length_m > 0.0).then(|| pace_s_per_m * to_do * (plan.driven_m + plan.length_m))
+        };
+        let promised = || self.estimate().map(|estimate| estimate.time_s * to_do).or_else(at_pace);
         self.run.left_s().or_else(|| promised().filter(|_| !self.run.has_ended()))
     }
 
@@ -220,6 +234,14 @@ impl Live {
     /// The combined scan of this re-scan and the runs before it, as soon as it is known.
     pub fn together(&self) -> Option<&Together> {
         self.combined.iter().flatten().map(|together| &**together).next()
+    }
+
+    /// Prepares the floor that earlier runs have scanned, as soon as both it and the floor of this run are known.
+    pub(crate) fn lay_before(&mut self) {
+        let (Some(own), Some(about)) = (&self.run.coverage, &self.run.about) else { return };
+        if let Some(read) = self.read_before.take() {
+            self.scanned_before = Some(Box::new(Earlier::new(&read, own, &about.mission)));
+        }
     }
 
     /// The scanned floor; for a re-scan that has ended, the floor scanned by all runs as soon as it is known.

@@ -1,9 +1,10 @@
 //! The floor that a re-scan and the runs before it have scanned together.
 
 use super::Raster;
-use account::Account;
+use account::{Account, Shares};
+use mission::{MissionConfig, TaskConfig};
 use serde::{Deserialize, Serialize};
-use world::{CellRun, KindRun, Point};
+use world::{Cell, CellRun, Counts, KindRun, Point, coverage::regions::cells_within};
 
 /// The runs that a re-scan continues.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -55,6 +56,56 @@ impl Together {
     }
 }
 
+/// The floor that the runs before a re-scan have scanned, beside the floor that the re-scan scans now.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Earlier {
+    /// The names of the runs, oldest first.
+    pub runs: Vec<String>,
+    /// The floor that they have scanned.
+    pub raster: Raster,
+    /// The cells that the re-scan is to scan; `None` if it is to scan all of the floor.
+    asked: Option<Vec<bool>>,
+}
+
+impl Earlier {
+    /// The floor that the runs before a re-scan have scanned; `own` is the floor of the re-scan.
+    pub fn new(combination: &Combination, own: &Raster, mission: &MissionConfig) -> Self {
+        let raster = joined(&Raster::new(own.floor().clone()), &combination.kinds, &combination.scanned);
+        let asked = match &mission.task {
+            TaskConfig::Cover { regions, .. } => cells_within(own.floor(), regions),
+            TaskConfig::Goto { .. } | TaskConfig::Follow { .. } => None,
+        };
+        Self { runs: combination.earlier.clone(), raster, asked }
+    }
+
+    /// The shares of the floor that the re-scan was to scan, as far as the re-scan alone has scanned it. Floor that it has
+    /// scanned without being asked to counts as requested, as in the result.
+    pub fn requested(&self, own: &Raster) -> Shares {
+        let is_asked = |cell: usize| self.asked.as_ref().is_none_or(|asked| asked.get(cell) == Some(&true));
+        let mut counts = Counts::default();
+        for cell in 0..own.floor().len() {
+            let (kind, is_scanned) = (own.floor().kind(cell), own.is_scanned(cell));
+            if kind == Cell::Reachable && (is_asked(cell) || is_scanned) {
+                counts.add(kind, is_scanned);
+            }
+        }
+        Shares::of(counts, own.floor().cell_m2())
+    }
+
+    /// The shares of the reachable floor that all runs together have scanned.
+    pub fn with(&self, own: &Raster) -> Shares {
+        let mut counts = Counts::default();
+        for cell in 0..own.floor().len() {
+            let kind = match self.raster.floor().kind(cell) {
+                Cell::Reachable => own.floor().kind(cell),
+                closed => closed,
+            };
+            counts.add(kind, own.is_scanned(cell) || self.raster.is_scanned(cell));
+        }
+        Shares::of(counts.of_reachable(), own.floor().cell_m2())
+    }
+}
+
 /// The floor of a re-scan with the kinds of the joined floor and all scanned cells.
 fn joined(own: &Raster, kinds: &[KindRun], scanned: &[CellRun]) -> Raster {
     let mut raster = own.clone();
@@ -81,5 +132,28 @@ mod tests {
         let mut expected = Raster::new(closed);
         expected.apply(&scanned);
         assert_eq!(raster.reachable(), expected.reachable());
+    }
+
+    #[test]
+    fn a_re_scan_counts_its_own_floor_and_that_of_all_runs() {
+        let boundary = Boundary::Circle { radius_m: 3.0 };
+        let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+        let floor = Floor::new(&tank, 0.1, 0.3, 0.6, Point::origin());
+        let half = (floor.len() / 2) as u32;
+        let mut own = Raster::new(floor.clone());
+        let earlier = Earlier {
+            runs: vec!["first".into()],
+            raster: joined(&own, &[], &[CellRun(0, half)]),
+            asked: Some((0..floor.len()).map(|cell| cell >= half as usize).collect()),
+        };
+        assert!((earlier.with(&own).percent.scanned - 50.0).abs() < 2.0);
+        assert!(earlier.requested(&own).percent.scanned.abs() < 1e-9);
+        own.apply(&[CellRun(half, floor.len() as u32)]);
+        assert!((earlier.with(&own).percent.scanned - 100.0).abs() < 1e-9);
+        assert!((earlier.requested(&own).percent.scanned - 100.0).abs() < 1e-9);
+        assert!(
+            (own.reachable().percent.scanned - 50.0).abs() < 2.0,
+            "of the whole floor, the re-scan alone"
+        );
     }
 }

@@ -94,13 +94,22 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
             (model.live.earlier, model.live.left_at) = (runs, left_at);
             return combine(model).into_iter().collect();
         }
-        RunMsg::Continues(Err(why)) => model.live.combined = Some(Err(why)),
+        RunMsg::Continues(Err(why)) | RunMsg::ScannedBefore(Err(why)) => {
+            model.live.combined = Some(Err(why));
+        }
+        RunMsg::ScannedBefore(Ok(read)) => {
+            model.live.read_before = Some(read);
+            model.live.lay_before();
+        }
         RunMsg::Combined(combined) => {
             let own = model.live.run.coverage.as_ref();
             let combined = combined.map(|found| Box::new(Together::new(*found, own)));
             model.live.combined = Some(combined);
         }
-        RunMsg::Replay(msg) => replay::hear(model, msg),
+        RunMsg::Replay(msg) => {
+            replay::hear(model, msg);
+            model.live.lay_before();
+        }
     }
     Vec::new()
 }
@@ -108,7 +117,10 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
 fn take(model: &mut Model, event: &Event) {
     let Change { withdrawn, notice, answered } = model.live.run.fold(event);
     match &event.kind {
-        EventKind::RunOpened(_) => (model.live.is_opening, model.live.before) = (false, None),
+        EventKind::RunOpened(_) => {
+            (model.live.is_opening, model.live.before) = (false, None);
+            model.live.lay_before();
+        }
         EventKind::Ended { .. } => {
             (model.live.asked, model.live.hold_asked) = (None, false);
             // A zone that is being drawn ends with its mission.

@@ -184,6 +184,8 @@ pub enum RunMsg {
     Forecast(PlannerChoice, Result<Box<Forecast>, String>),
     /// The run has ended and its files are closed.
     Closed(Box<RunResult>),
+    /// The floor scanned by the runs before a re-scan, or why that is unknown, as a sentence.
+    ScannedBefore(Result<Box<Combination>, String>),
     /// The floor scanned by a re-scan and by the runs before it together, or why that is unknown, as a sentence.
     Combined(Result<Box<Combination>, String>),
     /// The run is a re-scan of these runs, oldest first, or why they cannot be found, as a sentence.

@@ -13,7 +13,7 @@ use crate::model::{LineEdit, Model, Offer, Overlay, Shadow, log::clock};
 use crate::theme::Role;
 use crate::update::zones;
 use account::Resumption;
-use mission::WayBack;
+use mission::{HoldReason, Phase, WayBack};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
@@ -41,6 +41,7 @@ fn question_lines(model: &Model, columns: u16) -> Vec<String> {
         model.ui.overlay,
         Overlay::Confirm(
             Ask::Start(_)
+                | Ask::Resume
                 | Ask::DriveBack
                 | Ask::DrawZone(_)
                 | Ask::TakePlan
@@ -126,7 +127,6 @@ fn asked(model: &Model) -> Option<Vec<String>> {
 
 /// The clauses of the open question, with or without the progress of its estimate.
 fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
-    let drives = format!("Planner {}.", model.live.run.planner_id().unwrap_or("unknown"));
     let clauses = match &model.ui.overlay {
         Overlay::Confirm(Ask::Start(_)) => {
             let speed = text::speed(model.live.speed);
@@ -141,7 +141,7 @@ fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
         }
         Overlay::Confirm(Ask::Resume) => {
             let question = "Resume? The robot will move. <accept>: resume, <cancel>: cancel.".into();
-            [question, drives].into_iter().chain(continues(model)).collect()
+            [question, moves(model)].into_iter().chain(continues(model)).collect()
         }
         Overlay::Confirm(Ask::FlyUncertified) => vec![
             "Run uncertified plan? <accept>: run, <cancel>: stay held.".into(),
@@ -160,7 +160,7 @@ fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
             vec![question, "No motion yet.".into()]
         }
         Overlay::Finish { selected: 0 } => {
-            let scanned = format!("{} % of reachable floor scanned.", coverage::shares(&model.live.run).0);
+            let scanned = coverage::Bases::of(&model.live).sentence();
             vec!["End the mission here? <accept>: end, <cancel>: stay held.".into(), scanned]
         }
         Overlay::Finish { .. } | Overlay::Confirm(Ask::DriveBack) => {
@@ -260,15 +260,35 @@ pub(super) fn resumes(resumption: &Resumption) -> String {
     )
 }
 
-/// Where a held robot continues, and how much of the plan is left, as a sentence.
-fn continues(model: &Model) -> Option<String> {
+/// Who drives a robot that resumes, and along which plan, as a sentence.
+fn moves(model: &Model) -> String {
     let run = &model.live.run;
-    let progress = run.progress.as_ref()?;
-    let plan = run.planning.plan.as_ref().filter(|plan| !plan.path.is_empty());
-    let rest = plan.zip(run.position.pose).map_or_else(String::new, |(plan, pose)| {
-        format!(", {} m of the plan left", text::number(plan.rest_m(pose.position, progress.done), 1))
-    });
-    Some(format!("The robot continues at {} (×){rest}.", text::place(progress.target)))
+    let planning = &run.planning;
+    let planner = text::fit(run.planner_id().unwrap_or("unknown"), 18);
+    let plan = planning.plan.as_ref();
+    let replans = matches!(run.phase(), Phase::Held(hold) if matches!(hold.by, HoldReason::Tether { .. }));
+    if planning.candidate.is_some() {
+        return format!("{planner} drives on along its plan until the new planner has a plan.");
+    }
+    match plan {
+        _ if replans || planning.fault.is_some() || model.live.busy.is_some() => {
+            format!("{planner} plans first; then the robot moves.")
+        }
+        None => format!("{planner} plans first; then the robot moves."),
+        Some(plan) if plan.path.is_empty() => format!("{planner} drives step by step, without a path."),
+        Some(plan) => {
+            let done = run.progress.as_ref().map_or(0.0, |progress| progress.done);
+            let at = run.position.pose.map(|pose| pose.position);
+            let rest_m = at.map_or(plan.length_m, |at| plan.rest_m(at, done));
+            format!("{planner} drives the plan on the map, {} m left.", text::number(rest_m, 1))
+        }
+    }
+}
+
+/// The next target of a held robot, as a sentence.
+fn continues(model: &Model) -> Option<String> {
+    let progress = model.live.run.progress.as_ref()?;
+    Some(format!("Next target {} (×).", text::place(progress.target)))
 }
 
 /// What the zone in the question costs, as sentences.
@@ -279,8 +299,11 @@ fn zone_cost(model: &Model) -> String {
         path_m => format!("It blocks {path_m} m of the plan; the robot replans."),
     };
     let [closed, lost] = [cost.closed_m2, cost.lost_m2].map(|area_m2| text::number(area_m2, 2));
+    let held = if cost.holds { "The hull is in it: HOLD at once. " } else { "" };
     let offer = if cost.drops_offer { " The better plan is dropped." } else { "" };
-    format!("{path} It closes {closed} m² of reachable floor, {lost} m² of which is not scanned yet.{offer}")
+    format!(
+        "{held}{path} It closes {closed} m² of reachable floor, {lost} m² of which is not scanned yet.{offer}"
+    )
 }
 
 /// The next point of a zone that is being drawn, with the keys.

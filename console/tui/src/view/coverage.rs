@@ -3,15 +3,13 @@
 use super::look::{Look, fill, ranked};
 use super::text;
 use crate::model::coverage::Raster;
-use crate::model::{Pane, Run};
+use crate::model::{Live, Pane, Run};
 use crate::theme::Role;
 use account::{Percent, Shares};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-/// The headings of the two columns of shares, on a wide screen.
-const BASES: &str = "reachable  whole floor";
 /// Width of a label, of a share of the whole floor, and of the bar on a narrow screen, columns.
 const LABEL: usize = 13;
 const WHOLE: usize = 13;
@@ -22,10 +20,12 @@ const WIDE: usize = 40;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let wide = usize::from(area.width) >= WIDE + 2;
-    let block = look.pane(Pane::Coverage, "Coverage", if wide { BASES } else { "" });
+    let bases = Bases::of(&look.model.live);
+    let heading = format!("{}{:>WHOLE$}", bases.names[0], bases.names[1]);
+    let block = look.pane(Pane::Coverage, "Coverage", if wide { &heading } else { "" });
     let inner = block.inner(area);
     let columns = usize::from(inner.width);
-    let lines = if wide { wide_lines(look, columns) } else { narrow_lines(look) };
+    let lines = if wide { wide_lines(look, &bases, columns) } else { narrow_lines(look, &bases) };
     fill(frame, area, block, ranked(lines, usize::from(inner.height)));
 }
 
@@ -35,44 +35,47 @@ fn is_stale(look: &Look) -> bool {
     look.is_stale(at_s)
 }
 
-fn wide_lines(look: &Look, columns: usize) -> Vec<(u8, Line<'static>)> {
+fn wide_lines(look: &Look, bases: &Bases, columns: usize) -> Vec<(u8, Line<'static>)> {
     let run = look.run;
-    let (reachable, whole) = shares(run);
+    let [first_scanned, second_scanned] = bases.each(|percent| percent.scanned);
+    let [first_to_do, second_to_do] = bases.each(|percent| percent.missed);
     let of_whole = |part: fn(&Percent) -> f64| percent(run, Raster::whole, part);
-    let (to_do, margin) = (of_whole(|percent| percent.missed), of_whole(|percent| percent.margin));
-    let unreachable = of_whole(|percent| percent.unreachable);
-    let to_do_reachable = percent(run, Raster::reachable, |percent| percent.missed);
+    let (margin, unreachable) = (of_whole(|percent| percent.margin), of_whole(|percent| percent.unreachable));
     let row = |rank: u8, label: &str, value: String| {
         (rank, look.line([(Role::Dim, format!(" {label:<LABEL$}")), (Role::Text, value)]))
     };
     // Each share is right-aligned with the name of the floor that it refers to.
     let first = columns.saturating_sub(LABEL + WHOLE + 3);
-    let shares = |of_reachable: String, of_whole: &str| {
-        format!("{of_reachable:>first$}{:>WHOLE$}", format!("{of_whole} %"))
-    };
+    let shares =
+        |one: &str, other: &str| format!("{:>first$}{:>WHOLE$}", format!("{one} %"), format!("{other} %"));
     let mark = if is_stale(look) { "◌" } else { "" };
     let room = columns.saturating_sub(LABEL + 1);
     let out_of_reach = ["shell margin", "margin"].map(|name| format!("{unreachable} %, {name} {margin} %"));
     let out_of_reach = text::wording(out_of_reach, room);
     let overlap = run.coverage.as_ref().and_then(Raster::overlap).map_or_else(|| "-".into(), text::percent);
-    vec![
-        row(0, &format!("{mark}scanned"), shares(format!("{reachable} %"), &whole)),
-        (1, look.line([(Role::Good, format!(" {}", bar(run, columns.saturating_sub(2))))])),
-        row(3, to_do_label(run), shares(format!("{to_do_reachable} %"), &to_do)),
+    let mut lines = vec![
+        row(0, &format!("{mark}scanned"), shares(&first_scanned, &second_scanned)),
+        (1, look.line([(Role::Good, format!(" {}", bases.bar(columns.saturating_sub(2))))])),
         row(7, "unreachable", out_of_reach),
         row(5, "speed", pace(run, room)),
         row(6, "overlap", format!("{overlap} % of scanned floor")),
         row(4, way_label(run), way(run)),
         row(2, "time left", left(look, true)),
-    ]
+    ];
+    // A drive to a goal or along a path has no floor to scan.
+    if run.covers() {
+        lines.insert(2, row(3, to_do_label(run), shares(&first_to_do, &second_to_do)));
+    }
+    lines
 }
 
-fn narrow_lines(look: &Look) -> Vec<(u8, Line<'static>)> {
+fn narrow_lines(look: &Look, bases: &Bases) -> Vec<(u8, Line<'static>)> {
     let run = look.run;
-    let (reachable, whole) = shares(run);
+    let [first, second] = bases.each(|percent| percent.scanned);
+    let [of_first, of_second] = bases.short;
     let text = |value: String| look.line([(Role::Text, format!(" {value}"))]);
     let left_or_missed = if run.has_missed() {
-        format!("missed {} % of reachable", percent(run, Raster::reachable, |percent| percent.missed))
+        format!("missed {} % of {of_first}", bases.each(|percent| percent.missed)[0])
     } else {
         format!("left {}", left(look, false))
     };
@@ -81,20 +84,69 @@ fn narrow_lines(look: &Look) -> Vec<(u8, Line<'static>)> {
         (
             0,
             look.line([
-                (Role::Good, format!(" {}", bar(run, BAR))),
-                (Role::Text, format!("{mark}{reachable:>5} % reachable")),
+                (Role::Good, format!(" {}", bases.bar(BAR))),
+                (Role::Text, format!("{mark}{first:>5} % {of_first}")),
             ]),
         ),
-        (3, text(format!("{:BAR$} {whole:>5} % whole", ""))),
+        (3, text(format!("{:BAR$} {second:>5} % {of_second}", ""))),
         (2, text(format!("{} {}", way_label(run), way(run)))),
         (1, text(left_or_missed)),
     ]
 }
 
-/// The scanned shares of the reachable floor and of the whole floor; dashes before the first step.
-pub(crate) fn shares(run: &Run) -> (String, String) {
-    let scanned = |of: fn(&Raster) -> Shares| percent(run, of, |percent| percent.scanned);
-    (scanned(Raster::reachable), scanned(Raster::whole))
+/// The two floors to which the scanned shares of a mission refer: the reachable and the whole floor; for a re-scan, the
+/// floor requested of it, and the reachable floor scanned by all runs.
+pub(crate) struct Bases {
+    /// The shares; `None` before the first step.
+    shares: Option<[Shares; 2]>,
+    /// The names of the floors: as headings, in a narrow pane, and in sentences.
+    names: [&'static str; 2],
+    short: [&'static str; 2],
+    /// What the shares are of: `of reachable floor`.
+    pub of: [&'static str; 2],
+}
+
+impl Bases {
+    pub(crate) fn of(live: &Live) -> Self {
+        let raster = live.run.coverage.as_ref().filter(|_| live.run.progress.is_some());
+        match &live.scanned_before {
+            Some(before) => Self {
+                shares: raster.map(|own| [before.requested(own), before.with(own)]),
+                names: ["requested", "all runs"],
+                short: ["requested", "all runs"],
+                of: ["of requested floor", "of reachable floor with the runs before"],
+            },
+            None => Self {
+                shares: raster.map(|own| [own.reachable(), own.whole()]),
+                names: ["reachable", "whole floor"],
+                short: ["reachable", "whole"],
+                of: ["of reachable floor", "of whole floor"],
+            },
+        }
+    }
+
+    /// A share of each floor, as the report prints it; dashes before the first step.
+    fn each(&self, part: fn(&Percent) -> f64) -> [String; 2] {
+        let number = |shares: &Shares| text::number(part(&shares.percent), 1);
+        self.shares
+            .as_ref()
+            .map_or_else(|| ["-".into(), "-".into()], |[one, other]| [number(one), number(other)])
+    }
+
+    /// The scanned shares of each floor; dashes before the first step.
+    pub(crate) fn scanned(&self) -> [String; 2] {
+        self.each(|percent| percent.scanned)
+    }
+
+    /// The scanned share of the first floor, as a sentence.
+    pub(crate) fn sentence(&self) -> String {
+        format!("{} % {} scanned.", self.scanned()[0], self.of[0])
+    }
+
+    fn bar(&self, columns: usize) -> String {
+        let scanned = self.shares.as_ref().map_or(0.0, |[first, _]| first.percent.scanned / 100.0);
+        text::bar(scanned, columns)
+    }
 }
 
 /// A share of the floor, as the report prints it; a dash before the first step.
@@ -103,17 +155,9 @@ fn percent(run: &Run, of: fn(&Raster) -> Shares, part: fn(&Percent) -> f64) -> S
     raster.map_or_else(|| "-".into(), |raster| text::number(part(&of(raster).percent), 1))
 }
 
-fn bar(run: &Run, columns: usize) -> String {
-    text::bar(run.progress.as_ref().map_or(0.0, |progress| progress.covered_reachable), columns)
-}
-
-/// The label for unscanned floor: still to do, or missed once a mission whose task was to scan has ended.
+/// The label for unscanned floor: still to do, or missed once the mission has ended.
 fn to_do_label(run: &Run) -> &'static str {
-    match (run.has_missed(), run.has_ended()) {
-        (true, _) => "missed",
-        (false, true) => "not scanned",
-        (false, false) => "to do",
-    }
+    if run.has_ended() { "missed" } else { "to do" }
 }
 
 /// The speed over ground while the robot may move, the scanned floor per minute, and the scanned floor.

@@ -267,10 +267,12 @@ fn doing(model: &Model) -> Clauses {
         return (Role::Title, vec!["Waiting for first command.".into()]);
     };
     let done = text::percent(progress.done);
-    let lead = run.planning.plan.as_ref().and_then(|plan| plan.lead_left_m(progress));
-    if let Some((lead, left_m)) = lead {
+    let plan = run.planning.plan.as_ref();
+    if let Some((lead, left_m)) = plan.and_then(|plan| plan.lead_left_m(progress)) {
         let why = match lead {
             Lead::Back => "Driving back along the tether to the start of the new plan",
+            // Lanes were driven before a plan that was made on the way.
+            Lead::ToLane if plan.is_some_and(|plan| plan.driven_m > 0.0) => "Driving to the next lane",
             Lead::ToLane => "Driving to the first lane of the plan",
         };
         let left = format!("{why}: {} m left.", text::number(left_m, 1));

@@ -151,10 +151,11 @@ fn alarm(look: &Look, columns: usize) -> Vec<Line<'static>> {
 
 fn position(look: &Look) -> String {
     let model = look.model;
-    let scanned = match coverage::shares(&model.live.run).0.as_str() {
+    let bases = coverage::Bases::of(&model.live);
+    let scanned = match bases.scanned()[0].as_str() {
         // The share is not known before the first step.
         "-" => String::new(),
-        share => format!("{share} % of reachable floor, "),
+        share => format!("{share} % {}, ", bases.of[0]),
     };
     let error =
         model.live.run.position.error_m().map_or_else(|| "-".into(), |error_m| text::number(error_m, 2));

@@ -26,7 +26,7 @@ pub(crate) fn asked() -> Screen {
     let effects = screen.press(ENTER);
     let corners = corners(&screen);
     assert_eq!(effects, [Effect::Ask(Query::ZoneCost(corners.clone()))]);
-    let cost = ZoneCost { path_m: 12.34, closed_m2: 6.1, lost_m2: 4.2, drops_offer: false };
+    let cost = ZoneCost { path_m: 12.34, closed_m2: 6.1, lost_m2: 4.2, drops_offer: false, holds: false };
     screen.hear(RunMsg::ZoneCost(corners, Ok(cost)));
     screen
 }

@@ -93,6 +93,10 @@ fn a_drive_back_to_the_start_of_a_new_plan_is_explained() {
     );
     hear(&mut screen, [travels]);
     let line = state(&screen);
+    assert!(line.starts_with("Driving to the next lane: 4.0 m left."), "{line}");
+    screen.model.live.run.planning.plan.as_mut().unwrap().driven_m = 0.0;
+    screen.model.live.run.progress.as_mut().unwrap().done = 0.0;
+    let line = state(&screen);
     assert!(line.starts_with("Driving to the first lane of the plan: 4.0 m left."), "{line}");
 }
 
@@ -187,6 +191,65 @@ fn the_time_left_is_that_of_the_plan_until_the_pace_is_known() {
     assert!(left_s < time_s && left_s > 0.9 * time_s, "{left_s} of {time_s} s");
     let shown = text(&drawn(&screen.model, RICH, (120, 36)));
     assert!(shown.contains(", ends T+") && !shown.contains("time left    -"), "{shown}");
+}
+
+#[test]
+fn a_plan_made_on_the_way_has_a_time_left_at_the_promised_pace() {
+    let mut screen = Screen::idle();
+    let ask = screen.model.live.run.planning.plan.as_ref().expect("a plan").ask;
+    let mission = &screen.model.live.run.about.as_ref().expect("a run").mission;
+    let estimate = account::Estimate::new(mission, &crate::fixture::world(), &crate::fixture::spiral(), true);
+    let time_s = estimate.time_s;
+    screen.hear(RunMsg::Estimated(ask, Box::new(estimate)));
+    let begin = screen.mission.start();
+    screen.hear(RunMsg::Events(begin));
+    let planned = screen.mission.planned(Some(AskId::from((WorkerId(7), 7))));
+    hear(&mut screen, [planned]);
+    assert!(screen.model.live.estimate().is_none(), "no estimate is made for it");
+    let left_s = screen.model.live.left_s().expect("at the promised pace");
+    assert!((left_s / time_s - 1.0).abs() < 0.1, "{left_s} of {time_s} s");
+}
+
+#[test]
+fn the_question_about_resuming_says_what_moves_along_which_plan() {
+    let mut screen = Screen::held();
+    screen.press([tui::Key::Char(' ')]);
+    for size in [(120, 36), (80, 24), (60, 16)] {
+        let shown = text(&drawn(&screen.model, RICH, size));
+        let flat = shown.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(
+            flat.contains(
+                "Resume? The robot will move. Enter: resume, Esc: cancel. rpf drives the plan on the map, "
+            ),
+            "{shown}"
+        );
+        assert!(flat.contains(" m left."), "{shown}");
+    }
+    screen.model.live.run.planning.plan = None;
+    let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+    assert!(shown.contains("rpf plans first; then the robot moves."), "{shown}");
+}
+
+#[test]
+fn parameters_are_offered_only_while_they_can_be_changed() {
+    let mut screen = Screen::running();
+    let footer = |screen: &Screen| {
+        text(&drawn(&screen.model, RICH, (120, 36))).lines().last().unwrap_or_default().to_owned()
+    };
+    assert!(footer(&screen).contains("p parameters"), "{}", footer(&screen));
+    let ended = screen.mission.ended(mission::Outcome::Complete, "path driven");
+    screen.hear(RunMsg::Events(vec![ended]));
+    assert!(!footer(&screen).contains("p parameters"), "{}", footer(&screen));
+}
+
+#[test]
+fn a_tether_alarm_says_what_happened_and_where() {
+    let mut screen = Screen::running();
+    let message = "tether wraps 130° around column 3, limit 120°".to_owned();
+    let held = screen.mission.held(HoldReason::Tether { message });
+    screen.hear(RunMsg::Events(vec![held]));
+    let line = state(&screen);
+    assert!(line.starts_with("HELD: tether wraps 130° around column 3 at "), "{line}");
 }
 
 #[test]

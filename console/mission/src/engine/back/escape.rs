@@ -1,6 +1,7 @@
 //! Leads the robot away from objects that its hull is too close to.
 
 use super::super::known::Known;
+use crate::chart::Chart;
 use crate::governor::Surroundings;
 use world::Point;
 
@@ -13,17 +14,17 @@ const SPARE_M: f64 = 0.005;
 
 impl Known {
     /// The nearest place with at least `room_m` metres of room for the hull's centre that the robot can reach in a
-    /// straight line without coming closer to the objects that it is too close to. This is the current place, if it has
-    /// enough room.
-    pub(super) fn outside(&self, room_m: f64) -> Option<Point> {
+    /// straight line without coming closer to the objects on the chart that it is too close to. This is the current place,
+    /// if it has enough room.
+    pub(in crate::engine) fn outside(&self, chart: &Chart, room_m: f64) -> Option<Point> {
         let here = self.position();
-        let is_roomy = |at: Point| self.chart.has_room(at, room_m + SPARE_M);
-        if self.chart.has_room(here, room_m) {
+        let is_roomy = |at: Point| chart.has_room(at, room_m + SPARE_M);
+        if chart.has_room(here, room_m) {
             return Some(here);
         }
-        let reach_m = (self.chart.depth_m(here) + room_m + SPARE_M).max(LEAST_REACH_M) + room_m;
+        let reach_m = (chart.depth_m(here) + room_m + SPARE_M).max(LEAST_REACH_M) + room_m;
         let governed = self.as_governed();
-        let solids = self.chart.solids(here, reach_m + governed.limits.radius_m);
+        let solids = chart.solids(here, reach_m + governed.limits.radius_m);
         let around = Surroundings::of(&solids, &governed);
         let step_m = reach_m / f64::from(CELLS);
         let cells = (-CELLS..=CELLS).flat_map(|x| (-CELLS..=CELLS).map(move |y| (x, y)));

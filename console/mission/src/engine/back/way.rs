@@ -45,7 +45,7 @@ impl Known {
     fn way_along(&self, tether: &Tether) -> Result<Vec<Point>, String> {
         let fenced = fenced(self.chart.world());
         let along = |room_m: f64| {
-            let out = self.outside(room_m)?;
+            let out = self.outside(&self.chart, room_m)?;
             let mut there = tether.clone();
             there.drag_to(out);
             let is_caught = tether.is_snagged();
@@ -73,7 +73,7 @@ impl Known {
     fn shortest_way(&self, goal: Point) -> Result<Vec<Point>, String> {
         let mut why = "the hull does not fit where the robot is".to_owned();
         let way = |room_m: f64| {
-            let start = self.outside(room_m)?;
+            let start = self.outside(&self.chart, room_m)?;
             let mut steps = 0..MOST_STEPS;
             match self.floor_for(room_m, None).shortest(start, goal, &mut || steps.next().is_some()) {
                 Ok(way) => Some(self.led_from_here(way.points())),

@@ -253,9 +253,9 @@ fn the_cost_of_a_zone_is_known_before_it_is_drawn() {
     flight.tick(&[Order::DrawZone(corners)]);
     let closed = before - flight.mission.known.floor.coverage.counts().reachable;
     assert!((cost.closed_m2 - closed as f64 * 0.01).abs() < 1e-9, "{cost:?} {closed}");
-    let here = flight.pose.position;
-    let why = flight.mission.zone_cost(&crate::outline::round(here, 0.5)).unwrap_err();
-    assert!(why.contains("the robot is in the zone"), "{why}");
+    let start = covering().start.position;
+    let why = flight.mission.zone_cost(&crate::outline::round(start, 0.5)).unwrap_err();
+    assert!(why.contains("the start is in the zone"), "{why}");
 }
 
 #[test]

@@ -67,12 +67,10 @@ fn a_zone_drawn_while_the_robot_is_held_is_planned_for_at_once_and_nothing_moves
 }
 
 #[test]
-fn a_zone_where_the_robot_or_its_anchor_is_and_one_that_is_none_are_refused() {
+fn a_zone_over_the_place_where_the_robot_starts_and_one_that_is_none_are_refused() {
     let mut flight = under_way();
     let here = flight.pose.position;
-    let around = |p: Point| zone((p.x - 0.5, p.y - 0.5), (p.x + 0.5, p.y + 0.5));
     let orders = [
-        (around(here), "the robot is in the zone"),
         (around(covering().start.position), "the start is in the zone"),
         (zone((1.0, 1.0), (1.0, 2.0)), "enclose"),
         (zone((1.0, 1.0), (1e308, 1e308)), "within 10000 m"),
@@ -89,6 +87,62 @@ fn a_zone_where_the_robot_or_its_anchor_is_and_one_that_is_none_are_refused() {
     let names: Vec<&str> =
         flight.mission.known.chart.world().zones.iter().map(|zone| zone.name.as_str()).collect();
     assert_eq!(names, ["no-go 1", "no-go 2"]);
+}
+
+fn around(p: Point) -> Order {
+    zone((p.x - 0.5, p.y - 0.5), (p.x + 0.5, p.y + 0.5))
+}
+
+#[test]
+fn a_zone_over_the_robot_holds_it_and_the_robot_drives_out_of_it_on_order() {
+    let mut flight = under_way();
+    let here = flight.pose.position;
+    let corners = crate::outline::boxed(here - Vector::new(0.5, 0.5), here + Vector::new(0.5, 0.5));
+    assert!(flight.mission.zone_cost(&corners).is_ok_and(|cost| cost.holds));
+    let events = flight.tick(&[Order::DrawZone(corners)]);
+    assert!(
+        events.iter().any(|kind| matches!(kind, EventKind::ZoneBreached { zone, .. } if zone == "no-go 1"))
+    );
+    let is_crit = |event: &&Event| {
+        event.log_line(&[]).is_some_and(|line| line.severity == crate::event::Severity::Crit)
+    };
+    let crit = flight.events.iter().filter(is_crit).count();
+    assert_eq!(crit, 2, "the breach and the hold");
+    assert_eq!(flight.held_by(), Some(&HoldReason::ZoneBreached { zone: "no-go 1".into() }));
+    flight.fly(50);
+    assert!((flight.pose.position - here).norm() < 0.1, "it stands");
+    assert_eq!(refusal(&flight.tick(&[Order::DriveBack])), None);
+    while flight.ended().is_none() {
+        flight.tick(&[]);
+    }
+    let left = flight.events.iter().filter(|event| matches!(event.kind, EventKind::ZoneLeft { .. })).count();
+    assert_eq!((left, flight.ended()), (1, Some(Outcome::Aborted)));
+}
+
+#[test]
+fn a_zone_right_in_front_of_the_robot_holds_it_if_it_does_not_stop_in_time() {
+    let mut flight = under_way();
+    let radius_m = flight.mission.known.config.limits.radius_m;
+    let ahead = flight.pose.direction();
+    let front = flight.pose.position + ahead * (radius_m + 0.02);
+    let corners = crate::outline::round(front + ahead * 0.5, 0.5);
+    assert!(flight.mission.zone_cost(&corners).is_ok_and(|cost| !cost.holds));
+    assert_eq!(refusal(&flight.tick(&[Order::DrawZone(corners)])), None);
+    assert_eq!(flight.held_by(), None, "the hull is outside");
+    for _ in 0..5 {
+        flight.pose.position += ahead * 0.05;
+        flight.tick(&[]);
+    }
+    assert_eq!(flight.held_by(), Some(&HoldReason::ZoneBreached { zone: "no-go 1".into() }));
+}
+
+#[test]
+fn a_zone_over_a_robot_that_has_not_started_is_refused() {
+    let task = TaskConfig::Goto { goal: Point::new(4.0, 0.0), tolerance_m: 0.1 };
+    let mut flight = Flight::new(MissionConfig { task, ..config() });
+    let here = flight.pose.position;
+    let events = flight.tick(&[around(here)]);
+    assert!(refusal(&events).is_some_and(|why| why.contains("the robot is in the zone")), "{events:?}");
 }
 
 #[test]

@@ -17,6 +17,8 @@ pub(crate) enum Shade {
     Floor(FloorClass),
     /// Floor to which the rest of the plan led when the mission ended.
     NotReached,
+    /// Scanned by a run before this re-scan, and not by the re-scan.
+    Before,
     /// Forecast: the error of a fix exceeds the limit here, or no fix is possible.
     PoorFix,
     /// Forecast: the error of a fix exceeds half the limit here.
@@ -46,6 +48,7 @@ impl Shade {
             Self::Floor(FloorClass::Unreachable) => ('/', Role::Unreachable),
             Self::Floor(FloorClass::Margin) => ('-', Role::Margin),
             Self::NotReached => ('∙', Role::Dim),
+            Self::Before => ('+', Role::Dim),
             Self::PoorFix => ('$', Role::Crit),
             Self::WeakFix => ('_', Role::Warn),
             Self::OnlyA => ('A', Role::Good),
@@ -70,9 +73,14 @@ impl Shade {
         if self == Self::Floor(FloorClass::Missed) && is_ahead() { Self::NotReached } else { self }
     }
 
+    /// Whether this run has left the floor unscanned although it could have been scanned.
+    fn is_unscanned(self) -> bool {
+        matches!(self, Self::NotReached | Self::Floor(FloorClass::Missed))
+    }
+
     /// Whether a character is drawn instead of a filled half of a cell.
     fn is_drawn(self) -> bool {
-        self == Self::NotReached
+        matches!(self, Self::NotReached | Self::Before)
     }
 
     /// The role for the background on which lines are drawn.
@@ -118,6 +126,7 @@ impl FromIterator<Option<Shade>> for Painted {
 pub(crate) struct Key {
     raster: Option<u64>,
     other: Option<u64>,
+    before: Option<u64>,
     forecast: Option<u64>,
     window: Window,
     /// Shade rows per character row.
@@ -126,12 +135,13 @@ pub(crate) struct Key {
 }
 
 /// The shades in the order of the legend, the most important first, each with its legend text.
-pub(super) const LEGEND: [(Shade, &str); 12] = [
+pub(super) const LEGEND: [(Shade, &str); 13] = [
     (Shade::Floor(FloorClass::Missed), "missed"),
     (Shade::NotReached, "not reached"),
     (Shade::PoorFix, "poor fix"),
     (Shade::WeakFix, "weak fix"),
     (Shade::Floor(FloorClass::Scanned), "scanned"),
+    (Shade::Before, "scanned before"),
     (Shade::Floor(FloorClass::Again), "overlap"),
     (Shade::Floor(FloorClass::Partial), "partial"),
     (Shade::Floor(FloorClass::Unreachable), "unreachable"),
@@ -202,10 +212,14 @@ fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
     let (run, layers) = (look.run, look.model.ui.layers);
     let raster = look.model.live.scanned().filter(|_| layers.shows(MapLayer::Scanned));
     let shows_forecast = layers.shows(MapLayer::Accuracy);
+    // The combined map shows what all runs have scanned.
+    let before = look.model.live.scanned_before.as_ref().filter(|_| look.model.live.together().is_none());
+    let before = before.map(|before| &before.raster);
     let (other, has_missed) = (compared(look).filter(|_| !shows_forecast), run.has_missed());
     let key = Key {
         raster: raster.map(Raster::stamp),
         other: other.map(Raster::stamp),
+        before: before.map(Raster::stamp),
         forecast: shows_forecast.then_some(run.accuracy_stamp),
         window,
         rows_per_row,
@@ -221,7 +235,15 @@ fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
         let not_reached = run.not_reached();
         let shade = |(at, edge_m)| match other {
             Some(other) => Scans::in_square(raster, other, at, edge_m).and_then(difference),
-            None => floor(raster, at, edge_m, has_missed).map(|shade| shade.when(&not_reached, raster, at)),
+            None => {
+                let own =
+                    floor(raster, at, edge_m, has_missed).map(|shade| shade.when(&not_reached, raster, at));
+                if own.is_none_or(Shade::is_unscanned) {
+                    before.and_then(|before| scanned_before(before, at, edge_m)).or(own)
+                } else {
+                    own
+                }
+            }
         };
         // Half a character that is partly beyond the wall stays blank; a whole character there belongs to the wall.
         let is_inside = |at, edge_m| rows_per_row == 1 || is_floor(raster, at, edge_m);
@@ -258,6 +280,12 @@ fn difference(scans: Scans) -> Option<Shade> {
 
 fn floor(raster: &Raster, at: Point, edge_m: f64, has_missed: bool) -> Option<Shade> {
     raster.class_in(at, edge_m, has_missed).and_then(Shade::of)
+}
+
+/// The shade of floor that a run before a re-scan has scanned.
+fn scanned_before(before: &Raster, at: Point, edge_m: f64) -> Option<Shade> {
+    let class = before.class_in(at, edge_m, false)?;
+    matches!(class, FloorClass::Scanned | FloorClass::Again | FloorClass::Partial).then_some(Shade::Before)
 }
 
 /// The forecast shade at a point: beyond the limit, or beyond half of the limit.

@@ -123,7 +123,14 @@ fn held_for_now(head: Head, by: &HoldReason, resumes: Resumes) -> Vec<String> {
         (_, HoldReason::PlannerSilent { .. }) => "Resumes automatically on answer.",
         _ => "Resumes automatically.",
     };
-    vec![head.with(&format!("{}.", reason(by))), when.into(), "<hold>: HOLD (stay held).".into()]
+    let reason = match by {
+        HoldReason::Tether { message } => {
+            let what = tether(message).0;
+            format!(": {}", if text::width(what) <= TETHER_FOR_NOW { what } else { "tether alarm" })
+        }
+        by => reason(by),
+    };
+    vec![head.with(&format!("{reason}.")), when.into(), "<hold>: HOLD (stay held).".into()]
 }
 
 /// A hold that only an order can end, while the mission accepts no order that moves the robot.
@@ -141,11 +148,11 @@ fn held_for_good(head: Head, by: &HoldReason) -> Vec<String> {
     const RESUME: &str = "<resume>: resume.";
     const RETRY: &str = "<resume>: retry.";
     const PLANNER: &str = "<planner>: change planner.";
-    let (reason, remedies): (&str, &[&str]) = match by {
+    let (reason, remedies): (String, &[&str]) = match by {
         // The reason for the hold is gone.
-        HoldReason::PositionLost => (": position recovered", &[RESUME]),
-        HoldReason::RangesInconsistent => (": ranges agree again", &[RESUME]),
-        HoldReason::Vehicle { .. } => (": vehicle is ready again", &[RESUME, "<end>: end mission."]),
+        HoldReason::PositionLost => (": position recovered".into(), &[RESUME]),
+        HoldReason::RangesInconsistent => (": ranges agree again".into(), &[RESUME]),
+        HoldReason::Vehicle { .. } => (": vehicle is ready again".into(), &[RESUME, "<end>: end mission."]),
         HoldReason::Stepped => (reason(by), &[RESUME]),
         HoldReason::Operator | HoldReason::PlannerReplaced | HoldReason::PlannerSilent { .. } => {
             (reason(by), &[RESUME, PLANNER])
@@ -161,23 +168,37 @@ fn held_for_good(head: Head, by: &HoldReason) -> Vec<String> {
         .collect()
 }
 
+/// Maximum width of the reason for a tether alarm, columns: with the word HELD and one key, it fits into 60 columns.
+const TETHER: usize = 38;
+/// The same for a hold that ends automatically, beside the sentence that says so.
+const TETHER_FOR_NOW: usize = 16;
+
+/// The alarm of a tether: what happened and where, then the figures.
+fn tether(message: &str) -> (&str, Option<&str>) {
+    let divided = message.split_once([',', ':', ';']);
+    let (what, figures) = divided.map_or((message, None), |(what, rest)| (what, Some(rest.trim_start())));
+    // An object that is not on the map has no name; the place of the robot says more.
+    (what.strip_suffix(" on an unmapped object").unwrap_or(what), figures)
+}
+
 /// The reason for the hold, as it follows the word HELD, without a full stop.
-fn reason(by: &HoldReason) -> &'static str {
-    match by {
+fn reason(by: &HoldReason) -> String {
+    let words = match by {
+        HoldReason::Tether { message } => return format!(": {}", text::fit(tether(message).0, TETHER)),
         HoldReason::Operator => " by operator",
         HoldReason::Stepped => " after single step",
         HoldReason::PlannerReplaced => ": planner replaced",
         HoldReason::RangesInconsistent => ": ranges contradict each other",
         HoldReason::PositionLost => ": position lost",
         HoldReason::Stuck { .. } => ": robot stuck",
-        HoldReason::Tether { .. } => ": tether alarm",
         HoldReason::PlanRefused { .. } => ": plan refused",
         HoldReason::ZoneBreached { .. } => ": hull in a no-go zone",
         HoldReason::Vehicle { .. } => ": vehicle cannot be driven",
         HoldReason::Guard { .. } => " by the guard",
         HoldReason::PlannerSilent { .. } => ": planner silent",
         HoldReason::PlannerFault { .. } => ": planner failed",
-    }
+    };
+    words.to_owned()
 }
 
 /// More about the hold, shown if there is space.
@@ -186,9 +207,11 @@ fn message(by: &HoldReason) -> Option<String> {
         HoldReason::PlannerFault { message }
         | HoldReason::PlannerSilent { message }
         | HoldReason::Stuck { message }
-        | HoldReason::Tether { message }
         | HoldReason::PlanRefused { message }
         | HoldReason::Guard { message } => Some(format!("{}.", text::capitalized(message))),
+        HoldReason::Tether { message } => {
+            tether(message).1.map(|figures| format!("{}.", text::capitalized(figures)))
+        }
         // What follows the semicolon was true only while the link was lost.
         HoldReason::Vehicle { message } => {
             Some(format!("It was held because {}.", message.split(';').next().unwrap_or(message)))
@@ -200,7 +223,8 @@ fn message(by: &HoldReason) -> Option<String> {
 /// Where a held robot is and how far its mission has come, from the longest wording to the shortest.
 pub(super) fn whereabouts(model: &Model) -> Vec<String> {
     let run = &model.live.run;
-    if !matches!(run.phase(), Phase::Held(_)) || model.live.asked.is_some() || model.live.is_cut_off {
+    let Phase::Held(hold) = run.phase() else { return Vec::new() };
+    if model.live.asked.is_some() || model.live.is_cut_off {
         return Vec::new();
     }
     let Some(pose) = run.position.pose else { return Vec::new() };
@@ -208,6 +232,8 @@ pub(super) fn whereabouts(model: &Model) -> Vec<String> {
     let done =
         run.progress.as_ref().map(|progress| format!(", {} % done", text::number(100.0 * progress.done, 0)));
     match done {
+        // The place of a tether alarm matters more than the progress.
+        Some(done) if matches!(hold.by, HoldReason::Tether { .. }) => vec![format!("{at}{done}"), at],
         Some(done) => vec![format!("{at}{done}"), done],
         None => vec![at],
     }
