@@ -145,8 +145,11 @@ impl Pen<'_> {
         }
     }
 
+    /// Draws the lines of a part of a path from their ends, because the beginning of the plan ahead moves with the
+    /// robot: counted from there, the dashes of the whole plan would move as well.
     fn pieces(&self, ctx: &mut Context<'_>, thin: &Thin, part: Lane, ink: Ink) {
-        for line in thin.lines(part) {
+        for mut line in thin.lines(part) {
+            line.reverse();
             self.draw(ctx, &line, ink);
         }
     }

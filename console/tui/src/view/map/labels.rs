@@ -206,9 +206,10 @@ impl Board<'_, '_> {
         }
     }
 
+    /// Writes arrows along a path, counted from its end, because its beginning may move with the robot.
     fn arrows(&mut self, path: &[Point], every_m: f64, arrow: Arrow) {
         let mut walked_m = 0.0;
-        for pair in path.windows(2) {
+        for pair in path.windows(2).rev() {
             walked_m += (pair[1] - pair[0]).norm();
             if walked_m >= every_m {
                 walked_m = 0.0;
