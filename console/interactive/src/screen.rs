@@ -23,9 +23,10 @@ const BURST: usize = 256;
 const BURST_TIME: Duration = Duration::from_millis(5);
 /// The shortest time between two frames that only show new values of a robot at rest.
 const CALM_FRAME: Duration = Duration::from_secs(1);
-/// The largest data rate for new values, in bytes per second: the first limit always applies, the second while the
-/// robot is at rest. Answers to keys are not delayed.
+/// The largest data rate for new values, in bytes per second: on a local line, on a line over SSH, and on any line while
+/// the robot is at rest. Answers to keys are not delayed.
 const LINE_RATE: f64 = 15_000.0;
+const SSH_RATE: f64 = 9_500.0;
 const CALM_RATE: f64 = 200.0;
 /// The longest time between two frames that show a robot at rest.
 const LONGEST_CALM: Duration = Duration::from_secs(4);
@@ -43,7 +44,7 @@ pub(super) struct Screen {
     frame_interval: Duration,
     /// The shortest time between the last frame and a frame that only shows new values of a robot at rest.
     calm_pause: Duration,
-    /// How long a line with the data rate [`LINE_RATE`] needs to transmit the last frame.
+    /// How long a line with the largest data rate needs to transmit the last frame.
     line_busy: Duration,
     /// How soon a frame must be drawn.
     due: Redraw,
@@ -238,7 +239,8 @@ impl Screen {
         let interval = self.frame_interval.max(self.line_busy);
         self.calm_pause = taken(bytes, CALM_RATE).clamp(CALM_FRAME, LONGEST_CALM);
         let left = self.line_busy.saturating_sub(self.drawn.elapsed());
-        self.line_busy = (left + taken(bytes, LINE_RATE)).min(LONGEST_DEBT);
+        self.line_busy =
+            (left + taken(bytes, if self.caps.ssh { SSH_RATE } else { LINE_RATE })).min(LONGEST_DEBT);
         if model.ui.mouse {
             self.places.set(self.cache.places());
         }

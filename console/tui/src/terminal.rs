@@ -1,5 +1,7 @@
 //! The shell around the pure part: takes over the terminal and always restores it.
 
+mod backend;
+mod cells;
 mod clipboard;
 mod decode;
 mod key;
@@ -12,11 +14,11 @@ pub use key::Keyboard;
 pub use pointer::Pointer;
 pub use restore::{RESTORE, install_panic_hook, restore, restore_from_signal};
 
+use backend::Thrifty;
 use crossterm::event::{EnableBracketedPaste, EnableFocusChange};
 use crossterm::terminal::{Clear, ClearType, EnterAlternateScreen, enable_raw_mode};
 use crossterm::{cursor, execute, queue};
 use output::FrameOutput;
-use ratatui::backend::CrosstermBackend;
 use ratatui::{Frame, Terminal};
 use std::io::{self, Write};
 use std::sync::Arc;
@@ -31,7 +33,7 @@ const MOUSE_OFF: &[u8] = b"\x1b[?1006l\x1b[?1002l\x1b[?1000l";
 ///
 /// The thread that calls [`Self::enter`] owns the terminal; a panic in any other thread does not restore it.
 pub struct TerminalGuard {
-    terminal: Terminal<CrosstermBackend<FrameOutput>>,
+    terminal: Terminal<Thrifty>,
     has_mouse: bool,
     sent: Arc<AtomicUsize>,
 }
@@ -46,7 +48,7 @@ impl TerminalGuard {
         let sent = Arc::default();
         let open = || {
             take_over()?;
-            Terminal::new(CrosstermBackend::new(FrameOutput::counted(Arc::clone(&sent))))
+            Terminal::new(Thrifty::new(FrameOutput::counted(Arc::clone(&sent))))
         };
         match open() {
             Ok(terminal) => Ok(Self { terminal, has_mouse: false, sent }),

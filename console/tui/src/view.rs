@@ -82,15 +82,14 @@ fn draw(model: &Model, caps: Caps, theme: &Theme, cache: &mut Cache, frame: &mut
     let shared = RefCell::new(std::mem::take(cache));
     let look = Look { model, run: &model.live.run, caps, theme, cache: &shared };
     let arrangement = Arrangement::of(area.width, area.height);
-    if arrangement == Arrangement::Strip {
+    let notice = if arrangement == Arrangement::Strip {
         strip::draw(&look, frame, area);
+        0
     } else {
-        framed(&look, frame, area, arrangement);
-    }
-    lists::draw(&look, frame, area);
-    if arrangement != Arrangement::Strip {
-        notice::draw(&look, frame, area);
-    }
+        framed(&look, frame, area, arrangement)
+    };
+    // A list leaves the notice visible.
+    lists::draw(&look, frame, Rect { height: area.height.saturating_sub(notice), ..area });
     readable::make(frame.buffer_mut());
     if caps.glyphs == Glyphs::Ascii {
         ascii::reduce(frame.buffer_mut());
@@ -98,14 +97,17 @@ fn draw(model: &Model, caps: Caps, theme: &Theme, cache: &mut Cache, frame: &mut
     *cache = shared.into_inner();
 }
 
-/// Draws a screen between the top lines and the two bottom lines, which every screen has.
-fn framed(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+/// Draws a screen between the top lines and the two bottom lines, which every screen has. Returns the rows of the notice.
+fn framed(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) -> u16 {
     let has_tabs = tabs::has_row(area);
-    let [top, screens, body, next, keys] = Layout::vertical([
+    let state = confirm::rows(look, area.width);
+    let free = area.height.saturating_sub(2 + u16::from(has_tabs) + state);
+    let [top, screens, body, notice, next, keys] = Layout::vertical([
         Constraint::Length(1),
         Constraint::Length(has_tabs.into()),
         Constraint::Fill(1),
-        Constraint::Length(confirm::rows(look, area.width)),
+        Constraint::Length(notice::rows(look.model, area.width, free)),
+        Constraint::Length(state),
         Constraint::Length(1),
     ])
     .areas(area);
@@ -113,14 +115,15 @@ fn framed(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) 
     if has_tabs {
         tabs::draw(look, frame, screens, tabs::Form::Names);
     }
+    notice::draw(look, frame, notice);
     if look.model.ui.overlay == Overlay::WhatIf {
         what_if::draw(look, frame, body, arrangement);
-        confirm::draw(look, frame, next);
-        return footer::draw(look, frame, keys);
+    } else {
+        (look.model.ui.screen.row().draw)(look, frame, body, arrangement);
     }
-    (look.model.ui.screen.row().draw)(look, frame, body, arrangement);
     confirm::draw(look, frame, next);
     footer::draw(look, frame, keys);
+    notice.height
 }
 
 /// Draws the mission screen: the panes that fit, and below them the timeline of a replay.

@@ -10,7 +10,7 @@ pub(super) fn name(word: &str) -> String {
         "wrap" => "tether wraps an obstacle".into(),
         "total wrap" => "tether: total wrap".into(),
         "snag" => "tether SNAGGED".into(),
-        "return path" => "no return path along tether".into(),
+        "return path" => "return path BLOCKED".into(),
         "stray" => "robot crossed a cut of its plan".into(),
         other => format!("tether: {other}"),
     }

@@ -11,6 +11,7 @@ use super::text;
 use crate::model::home::{Found, HomeList};
 use crate::model::ui::Arrangement;
 use crate::theme::Role;
+use mission::Severity;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 
@@ -46,8 +47,12 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
 fn stack(look: &Look, frame: &mut Frame, area: Rect, (found, about): (&Found, bool)) {
     let home = &look.model.home;
     let more = u16::from(about) * (pane::ABOUT + 1);
+    let room = usize::from(area.width).saturating_sub(2);
+    let invalid = home.selected_scenario().filter(|entry| about && entry.problem.is_some());
+    let text = invalid.map_or(more, |entry| scenarios::about_lines(entry, room).len() as u16 + 1);
     let wanted = [
-        (home.scenarios().len().max(1) as u16).saturating_add(3 + more),
+        // A pane with a text has a minimum height.
+        (home.scenarios().len().max(1) as u16).saturating_add(3 + text).max(u16::from(about) * pane::LEAST),
         (home.runs().len().max(1) as u16).saturating_add(3 + more),
         (found.attention.len().max(1) as u16)
             .saturating_add(2 + attention::text_rows(look, found, area.width, about)),
@@ -87,9 +92,14 @@ fn border(look: &Look, list: HomeList) -> Role {
     if look.model.home.list == list { Role::Focus } else { Role::Border }
 }
 
-/// The filter of the lists, or the keys for filtering and for switching between them.
+/// The filter of the lists, or the keys for filtering and for switching between them. Where only one list is shown, the
+/// number of points that need attention.
 fn note(look: &Look, list: HomeList) -> String {
+    let found = look.model.home.found.iter().flat_map(|found| &found.attention);
+    let open = found.filter(|point| point.severity > Severity::Info).count();
+    let is_alone = look.model.ui.arrangement() == Arrangement::Paged;
     match look.model.home.filter.as_str() {
+        "" if is_alone && open > 0 => look.keys(&format!("attention {open}, <next-pane> list")),
         _ if look.model.home.list != list => look.keys("<next-pane> list"),
         "" => look.keys("<filter> filter"),
         filter => look.keys(&format!("filter `{}`  <cancel> clear", text::fit(filter, 20))),

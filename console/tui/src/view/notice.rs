@@ -1,15 +1,15 @@
-//! The latest notice to the operator: beside the keys if it fits there, otherwise in separate lines just above the
-//! state. It covers neither the state nor a question.
+//! The latest notice to the operator: beside the keys if it fits there, otherwise in lines of its own just above the
+//! state. It covers nothing: a pane that it covered could show a certificate or an alarm.
 
 use super::look::Look;
-use super::{confirm, events, footer, text};
+use super::{events, footer, text};
 use crate::model::Model;
 use crate::theme::Role;
 use mission::Severity;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
-use ratatui::widgets::{Clear, Paragraph};
+use ratatui::widgets::Paragraph;
 
 /// The maximum rows of a notice.
 const MOST_ROWS: usize = 3;
@@ -35,19 +35,20 @@ fn said(model: &Model) -> Option<(Role, String)> {
     Some((role, text::capitalized(&notice.text)))
 }
 
-/// Draws a notice that does not fit beside the keys over the last rows above the state; `area` is the whole screen.
+/// The rows that the notice takes from a screen with `free` rows between the top lines and the state; at least one of
+/// them stays.
+pub(super) fn rows(model: &Model, columns: u16, free: u16) -> u16 {
+    let columns = usize::from(columns);
+    if beside(model, columns).is_some() {
+        return 0;
+    }
+    lines(model, columns).map_or(0, |(_, lines)| lines.len() as u16).min(free.saturating_sub(1))
+}
+
+/// Draws a notice that does not fit beside the keys in its own rows.
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let columns = usize::from(area.width);
-    if beside(look.model, columns).is_some() {
-        return;
-    }
-    let Some((role, lines)) = lines(look.model, columns) else { return };
-    let foot = confirm::rows(look, area.width) + 1;
-    // Leave the top line and one row of the screen visible.
-    let most = area.height.saturating_sub(foot + 2);
-    let rows = most.min(lines.len() as u16);
-    let place = Rect { y: area.bottom().saturating_sub(foot + rows), height: rows, ..area };
+    let Some((role, lines)) = lines(look.model, columns).filter(|_| area.height > 0) else { return };
     let lines = lines.iter().map(|line| look.line([(role, text::column(&format!(" {line}"), columns))]));
-    frame.render_widget(Clear, place);
-    frame.render_widget(Paragraph::new(lines.collect::<Vec<Line>>()), place);
+    frame.render_widget(Paragraph::new(lines.collect::<Vec<Line>>()), area);
 }

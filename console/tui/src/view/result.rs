@@ -18,10 +18,8 @@ use ratatui::layout::{Constraint, Layout, Rect};
 const SIDE: [u16; 3] = [42, 62, 88];
 /// Columns from which a screen is large.
 const LARGE: u16 = 170;
-/// Minimum rows for the floor shares, including the frame.
-const FLOOR: u16 = 6;
 /// Rows of the list of missed areas, including the frame, on a narrow, a wide and a large screen.
-const MISSED: [u16; 3] = [8, 12, 20];
+const MISSED: [u16; 3] = [8, 10, 20];
 
 pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     let Some(result) = &look.model.live.result else {
@@ -38,7 +36,10 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     let [above, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(missed_rows)]).areas(area);
     let [left, right] =
         Layout::horizontal([Constraint::Fill(1), Constraint::Length(SIDE[size])]).areas(above);
-    let rows = figures::rows(look, result, right.width.saturating_sub(2)) + 2;
+    let columns = right.width.saturating_sub(2);
+    // Beside a map, the figures leave room for the floor shares.
+    let shares = if size > 0 { floor::least(look, result, columns) } else { 0 };
+    let rows = (figures::rows(look, result, columns) + 2).min(right.height.saturating_sub(shares));
     let [achieved, rest] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(right);
     figures::draw(look, frame, achieved, result);
     if size == 0 && look.model.ui.pane != Pane::Map {
@@ -52,10 +53,10 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
 
 /// The panes that fit below the figures: the floor shares and, on a large screen, the plates.
 fn side(look: &Look, frame: &mut Frame, area: Rect, (result, size): (&RunResult, usize)) {
-    if area.height < FLOOR {
+    let columns = area.width.saturating_sub(2);
+    if area.height < floor::least(look, result, columns) {
         return;
     }
-    let columns = area.width.saturating_sub(2);
     let wanted = floor::rows(look, result, columns) + 2;
     let has_plates = size == 2 && look.model.live.floor().is_some_and(|floor| !floor.plates.is_empty());
     let shares = if has_plates { wanted.min(area.height) } else { area.height };

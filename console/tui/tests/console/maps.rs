@@ -420,3 +420,22 @@ fn a_warning_of_the_checks_carries_its_whole_reason_at_every_size_that_lists_the
         assert!(words.contains(reason), "{size:?}: {shown}");
     }
 }
+
+#[test]
+fn while_the_robot_moves_the_plan_ahead_is_not_drawn_anew_far_from_it() {
+    let mut screen = Screen::running();
+    screen.type_text("3");
+    let size = (120, 36);
+    screen.send(Msg::Resize { width: size.0, height: size.1 });
+    for _ in 0..8 {
+        let before = drawn(&screen.model, RICH, size);
+        let events = screen.mission.drive(1);
+        screen.hear(RunMsg::Events(events));
+        let after = drawn(&screen.model, RICH, size);
+        // The map is on the left, between the tabs and the events.
+        let changed = (4..26).flat_map(|y| (1..69).map(move |x| (x, y)));
+        let changed: Vec<(u16, u16)> = changed.filter(|at| before[*at] != after[*at]).collect();
+        // Those beside the robot, and a dot of a line that begins with it; the plan ahead has more than a hundred.
+        assert!(changed.len() < 40, "{changed:?}\n{}\n{}", text(&before), text(&after));
+    }
+}

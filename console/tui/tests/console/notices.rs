@@ -1,4 +1,4 @@
-//! A notice to the operator covers neither the state nor a question.
+//! A notice to the operator covers nothing: neither the state, nor a question, nor a pane.
 
 use crate::fixture::{PLAIN, Screen};
 use crate::screens::{drawn, text};
@@ -51,6 +51,25 @@ fn a_long_message_takes_more_rows_and_leaves_the_state_and_the_keys() {
         let shown = shown(&screen, size);
         assert!(shown.contains("HELD by operator") && shown.contains("Written: "), "{size:?}\n{shown}");
         assert!(shown.contains("resume"), "{size:?}\n{shown}");
+    }
+}
+
+#[test]
+fn a_long_message_covers_no_certificate() {
+    let mut screen = Screen::tethered();
+    let text = format!("written: {}/events.jsonl", "folder/".repeat(60));
+    for (key, size) in [("2", (120, 36)), ("3", (120, 36)), ("2", (200, 60)), ("3", (80, 24))] {
+        screen.type_text(key);
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        let before = shown(&screen, size);
+        screen.send(Msg::Notice { severity: mission::Severity::Info, text: text.clone() });
+        let after = shown(&screen, size);
+        assert!(after.contains("Written: "), "{after}");
+        for word in ["certified", "CLEAR"] {
+            let count = |shown: &str| shown.matches(word).count();
+            assert_eq!(count(&after), count(&before), "{word} {key} {size:?}\n{before}\n{after}");
+        }
+        screen.pass(60.0);
     }
 }
 

@@ -273,6 +273,14 @@ fn result_of_an_aborted_mission() {
     let shown = text(&drawn(&screen.model, RICH, (200, 60)));
     assert!(shown.contains("Missed: 1 area, 0.75 m²; not reached: 1 area, 40.20 m²"), "{shown}");
     assert!(shown.contains("! expected complete, actual aborted"), "{shown}");
+    for (size, line) in [
+        ((120, 36), "Worst plate R-03-05: 95 % error 0.19 m!, limit 0.15 m"),
+        ((80, 24), "Worst plate R-03-05: 0.19 m!"),
+    ] {
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        let shown = text(&drawn(&screen.model, RICH, size));
+        assert!(shown.contains(line), "{size:?}\n{shown}");
+    }
 }
 
 #[test]

@@ -3,7 +3,8 @@
 use crate::fixture::{PLAIN, RICH, Screen, TICK_S, of_run};
 use crate::screens::{drawn, text};
 use account::Summary;
-use mission::{Event, EventKind, HoldReason, Order, Outcome, Severity};
+use mission::event::TetherAlarm;
+use mission::{Event, EventKind, HoldReason, Order, Outcome, Resumes, Severity};
 use positioning::{FixError, Integrity};
 use ratatui::style::Style;
 use tui::{Msg, Redraw, RunMsg, redraw};
@@ -324,4 +325,34 @@ fn the_cursor_on_the_map_gives_the_reason_that_the_report_gives() {
     assert!(tui::handover::page(&screen.model).contains(&area.why().replace('<', "\\<")));
     let outside = world::Point::new(area.high.x + 50.0, area.at.y);
     assert_eq!(screen.model.live.missed_area(outside), None);
+}
+
+#[test]
+fn a_blocked_return_path_is_named_by_the_pane_and_the_alarm_at_every_size() {
+    let mut screen = Screen::tethered();
+    let mut cable = screen.mission.cable();
+    if let EventKind::Tethered { return_length_m, .. } = &mut cable.kind {
+        *return_length_m = None;
+    }
+    let alarm = TetherAlarm::NoReturnPath;
+    let held = HoldReason::Tether { message: alarm.to_string() };
+    let alarmed = screen.mission.now(EventKind::TetherAlarmRaised { alarm, reached: true });
+    let events = vec![cable, alarmed, screen.mission.held_until(held, Resumes::WhenCleared)];
+    screen.hear(RunMsg::Events(events));
+    for size in [(200, 60), (120, 36), (80, 24), (60, 16)] {
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        screen.type_text("3");
+        let mut shown = text(&drawn(&screen.model, RICH, size));
+        for _ in 0..6 {
+            screen.press([tui::Key::Tab]);
+            shown += &text(&drawn(&screen.model, RICH, size));
+        }
+        assert!(
+            shown.lines().any(|line| line.contains("return path") && line.contains("BLOCKED")),
+            "{shown}"
+        );
+        screen.type_text("4");
+        let shown = text(&drawn(&screen.model, RICH, size));
+        assert!(shown.contains("return path BLOCKED"), "{size:?}\n{shown}");
+    }
 }

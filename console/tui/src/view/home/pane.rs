@@ -11,7 +11,7 @@ use ratatui::text::Line;
 /// Rows of the text about the selected row, without its title.
 pub(super) const ABOUT: u16 = 2;
 /// The minimum rows of a pane at which it has a text about the selected row.
-const LEAST: u16 = 8;
+pub(super) const LEAST: u16 = 8;
 
 /// The contents of a list.
 pub(super) struct Pane<'a> {

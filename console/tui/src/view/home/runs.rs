@@ -68,10 +68,19 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, about: bool) {
         rows: listed.iter().map(|run| row(run, at)).collect(),
         selected: is_focused.then_some(home.run),
         list: Rows::Runs,
-        empty: if home.filter.is_empty() { " No runs yet.".into() } else { " No run matches.".into() },
+        empty: empty(look).into(),
         about: selected.map(|run| (run.name.clone(), about_lines(run, room))),
     };
     pane.draw(look, frame, area);
+}
+
+/// The text of an empty list. The run that has just ended is not in the list before the folder has been read again.
+fn empty(look: &Look) -> &'static str {
+    match look.model.live.result.as_ref().is_some_and(|result| result.is_kept) {
+        _ if !look.model.home.filter.is_empty() => " No run matches.",
+        true => " Reading the runs...",
+        false => " No runs yet.",
+    }
 }
 
 fn heads(at: Columns) -> String {
@@ -88,7 +97,7 @@ fn heads(at: Columns) -> String {
 
 fn row(run: &PastRun, at: Columns) -> Parts {
     let took = run.mission_time_s.map_or_else(|| "-".into(), text::clock);
-    let took = if at.time < TIME.0 { took.trim_start_matches("00:") } else { &took };
+    let took = if at.time < TIME.0 { took.strip_prefix("00:").unwrap_or(&took) } else { &took };
     let reach = run.reachable.map_or_else(|| "-".into(), |share| format!("{} %", text::percent(share)));
     vec![
         (Role::Dim, text::column(if run.began.is_empty() { "-" } else { &run.began }, BEGAN)),

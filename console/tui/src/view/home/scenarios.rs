@@ -139,11 +139,21 @@ fn age(look: &Look, run: Option<&PastRun>) -> String {
     began_s.map_or_else(|| "-".into(), |began_s| text::ago(now_s - began_s))
 }
 
-fn about_lines(entry: &ScenarioEntry, columns: usize) -> Vec<Parts> {
+/// The description of a scenario, or all that is wrong with it.
+pub(super) fn about_lines(entry: &ScenarioEntry, columns: usize) -> Vec<Parts> {
     match &entry.problem {
-        Some(problem) => sentence(Role::Warn, problem, columns),
+        Some(problem) => {
+            let lines = problem.lines().filter(|line| !is_extract(line));
+            let lines = lines.flat_map(|line| text::wrap(line, columns.saturating_sub(2)));
+            lines.map(|line| vec![(Role::Warn, format!(" {line}"))]).collect()
+        }
         None => sentence(Role::Dim, &description(entry), columns),
     }
+}
+
+/// Whether a line of an error is an extract of the file, which a narrow pane has no room for.
+fn is_extract(line: &str) -> bool {
+    line.trim_start_matches([' ', '0', '1', '2', '3', '4', '5', '6', '7', '8', '9']).starts_with('|')
 }
 
 /// The description of a scenario, and its expected outcome.

@@ -66,8 +66,7 @@ pub(super) fn parts(look: &Look, course: &Course) -> Vec<(Lane, bool)> {
 /// The lanes that are drawn: those of the plan, and those of a second plan beside it.
 pub(super) fn thinnings(look: &Look, window: Window) -> [Thinning; 2] {
     let lane_m = look.run.about.as_ref().map_or(0.0, |about| about.mission.lane_m());
-    let shadow = look.run.shown_shadow().filter(|_| !look.run.is_running());
-    let paths = 1 + usize::from(offer(look).is_some() || compared(look).is_some() || shadow.is_some());
+    let paths = 1 + usize::from(offer(look).is_some() || compared(look).is_some() || shadow(look).is_some());
     [0, 1].map(|which| Thinning::new(lane_m, window, (which.min(paths - 1), paths)))
 }
 
@@ -81,6 +80,13 @@ pub(super) fn shows_trail(look: &Look) -> bool {
 pub(super) fn offer<'a>(look: &Look<'a>) -> Option<Track<'a>> {
     let offer = look.run.planning.offer.as_ref().filter(|_| look.model.ui.layers.shows(MapLayer::Plan))?;
     Some(Track { path: &offer.path, lanes: &offer.lanes })
+}
+
+/// The whole plan of the planner in shadow, which is shown while the robot does not run.
+pub(super) fn shadow<'a>(look: &Look<'a>) -> Option<Track<'a>> {
+    let shadow = look.run.shown_shadow().filter(|_| !look.run.is_running())?;
+    let is_shown = look.model.ui.layers.shows(MapLayer::Plan) && shadow.path.len() > 1;
+    is_shown.then_some(Track { path: &shadow.path, lanes: &shadow.lanes })
 }
 
 /// The place at which the better plan begins, metres, tank frame.
@@ -145,8 +151,11 @@ impl Pen<'_> {
         }
     }
 
+    /// Draws the lines of a part of a path from their ends, because the beginning of the plan ahead moves with the
+    /// robot: counted from there, the dashes of the whole plan would move as well.
     fn pieces(&self, ctx: &mut Context<'_>, thin: &Thin, part: Lane, ink: Ink) {
-        for line in thin.lines(part) {
+        for mut line in thin.lines(part) {
+            line.reverse();
             self.draw(ctx, &line, ink);
         }
     }

@@ -38,9 +38,9 @@ pub(super) const OTHER: Ink = ink(Role::Ghost, Pattern::Ticked, 'b');
 /// The plan of the planner in shadow.
 pub(super) const SHADOW: Ink = ink(Role::Ghost, Pattern::LongDashed, ';');
 /// The part of the plan that a zone blocks.
-pub(super) const BLOCKED: Ink = ink(Role::NoGo, Pattern::Thick, 'x');
+pub(super) const BLOCKED: Ink = ink(Role::Crit, Pattern::Zigzag, 'W');
 /// The outline of a zone that is being drawn or asked about.
-pub(super) const OUTLINE: Ink = ink(Role::NoGo, Pattern::Thick, 'x');
+pub(super) const OUTLINE: Ink = ink(Role::Title, Pattern::Rope, 'Z');
 /// The tether.
 pub(super) const TETHER: Ink = ink(Role::Tether, Pattern::Double, '~');
 /// A planner drawing of a force that attracts the robot.
@@ -57,10 +57,11 @@ mod tests {
     #[test]
     fn lines_that_are_on_the_map_together_differ_without_colours() {
         let together: [&[Ink]; 3] = [
-            &[TRAIL, LEG, AHEAD, OFFER, SHADOW, TETHER, OTHER, PULL, PUSH, DRAWN],
+            &[TRAIL, LEG, AHEAD, OFFER, SHADOW, TETHER, OTHER, PULL, PUSH, DRAWN, OUTLINE, BLOCKED],
             &[PLAN, WAY, OTHER, OFFER],
-            &[DRIVEN, LEG, AHEAD, OFFER, SHADOW, OTHER],
+            &[DRIVEN, LEG, AHEAD, OFFER, SHADOW, OTHER, OUTLINE, BLOCKED],
         ];
+        assert_ne!(OUTLINE.role, BLOCKED.role, "both are on the map with the question about a zone");
         for inks in together {
             for (index, one) in inks.iter().enumerate() {
                 let differs = |other: &Ink| other.pattern != one.pattern && other.letter != one.letter;

@@ -172,7 +172,11 @@ impl Board<'_, '_> {
         if let Some(course) = course::course(&look).filter(|_| !look.run.has_ended()) {
             self.lanes_of(course.track, course.ahead.0, thinning, Arrow::PLAN);
         }
-        let others = [(course::offer(&look), Arrow::OFFER), (course::compared(&look), Arrow::OTHER)];
+        let others = [
+            (course::offer(&look), Arrow::OFFER),
+            (course::compared(&look), Arrow::OTHER),
+            (course::shadow(&look), Arrow::SHADOW),
+        ];
         for (track, arrow) in others {
             if let Some(track) = track {
                 self.lanes_of(track, 0, second, arrow);
@@ -206,9 +210,10 @@ impl Board<'_, '_> {
         }
     }
 
+    /// Writes arrows along a path, counted from its end, because its beginning may move with the robot.
     fn arrows(&mut self, path: &[Point], every_m: f64, arrow: Arrow) {
         let mut walked_m = 0.0;
-        for pair in path.windows(2) {
+        for pair in path.windows(2).rev() {
             walked_m += (pair[1] - pair[0]).norm();
             if walked_m >= every_m {
                 walked_m = 0.0;
@@ -345,6 +350,13 @@ impl Arrow {
         is_numbered: false,
     };
 
+    const SHADOW: Self = Self {
+        role: Role::Ghost,
+        signs: ["↠", "↟", "↟", "↟", "↞", "↡", "↡", "↡"],
+        at: 0.4,
+        is_numbered: false,
+    };
+
     fn along(self, glyphs: Glyphs, heading_rad: f64) -> &'static str {
         const LETTERS: [&str; 8] = [">", "^", "^", "^", "<", "v", "v", "v"];
         let signs = if glyphs == Glyphs::Ascii { LETTERS } else { self.signs };
@@ -357,6 +369,7 @@ impl Arrow {
             ink::PLAN | ink::AHEAD => Self::PLAN,
             ink::OFFER => Self::OFFER,
             ink::OTHER => Self::OTHER,
+            ink::SHADOW => Self::SHADOW,
             _ => return None,
         };
         Some(arrow.signs[0])
@@ -385,8 +398,9 @@ mod tests {
         let at = |degrees: f64| Arrow::PLAN.along(Glyphs::Braille, degrees.to_radians());
         assert_eq!([at(0.0), at(40.0), at(-91.0), at(359.0)], ["→", "↗", "↓", "→"]);
         assert_eq!(Arrow::OFFER.along(Glyphs::Ascii, -2.0), "v");
-        let all = [Arrow::PLAN, Arrow::OFFER, Arrow::OTHER].map(|arrow| arrow.along(Glyphs::Braille, 0.0));
-        assert_eq!(all, ["→", "⇒", "⇢"], "told apart without colours");
+        let all = [Arrow::PLAN, Arrow::OFFER, Arrow::OTHER, Arrow::SHADOW]
+            .map(|arrow| arrow.along(Glyphs::Braille, 0.0));
+        assert_eq!(all, ["→", "⇒", "⇢", "↠"], "told apart without colours");
         assert_eq!(robot(Glyphs::Braille, std::f64::consts::FRAC_PI_2), "▲");
     }
 }

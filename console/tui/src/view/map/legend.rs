@@ -1,20 +1,17 @@
 //! The legend of the map: every mark that is on the map now, beside the floor or in lines below it.
 
-use super::course::{self, Course};
-use super::ink::{self, Ink};
-use super::pattern::braille;
+mod lines;
+mod marks;
+
 use super::shade::{self, Shade};
 use super::shapes::Window;
-use super::{drawn, labels, plates};
-use crate::model::{Screen, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::{Look, Parts};
 use crate::view::text;
-use planner_api::Drawing;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use std::borrow::Cow;
-use world::{Boundary, Point, ZoneKind};
+use world::Boundary;
 
 /// Width of a mark, columns.
 const MARK: usize = 3;
@@ -24,8 +21,6 @@ const BESIDE: (f64, f64) = (1.0, 3.0);
 const ROWS_PER_LINE: u16 = 5;
 /// The entries on each side of the floor fill at most one row in this number of rows.
 const SHARE: u16 = 3;
-/// The trail of the run with which a replay is compared.
-const RUN_B: &str = "run B";
 /// Blanks between entries in a line.
 const GAP: &str = "  ";
 
@@ -180,8 +175,11 @@ pub(super) fn entries(look: &Look, window: Window) -> (Vec<Entry>, Vec<Entry>) {
         word: word.into(),
     };
     let floor = shade::shown(look, window).map(entry).collect();
-    let lines = lines_shown(look, window).into_iter();
-    let marks = places(look, window).into_iter().chain(marks(look, window)).chain(drawings(look, window));
+    let lines = lines::shown(look, window).into_iter();
+    let marks = marks::places(look, window)
+        .into_iter()
+        .chain(marks::shown(look, window))
+        .chain(lines::drawings(look, window));
     (floor, lines.chain(marks).collect())
 }
 
@@ -189,155 +187,13 @@ fn shade_mark(shade: Shade) -> String {
     shade.glyph().to_string().repeat(2)
 }
 
-/// Whether a kind of line is drawn.
-type IsDrawn = fn(&Look, Option<&Course>) -> bool;
-
-/// The kinds of lines, the most important first, each with its legend text.
-const LINES: [(Ink, &str, IsDrawn); 11] = [
-    (ink::LEG, "this leg", |_, course| course.is_some_and(|course| course.leg.0 < course.leg.1)),
-    (ink::PLAN, "plan", |look, course| is_ahead(look, course, ink::PLAN)),
-    (ink::AHEAD, "plan", |look, course| is_ahead(look, course, ink::AHEAD)),
-    (ink::WAY, "way between", |look, course| {
-        course.is_some_and(|course| course::parts(look, course).iter().any(|part| part.1))
-    }),
-    (ink::OFFER, "better plan", |look, _| course::offer(look).is_some()),
-    (ink::OTHER, "compared", |look, _| course::compared(look).is_some()),
-    (ink::TETHER, "tether", |look, _| {
-        let line = look.run.tether.as_ref().map(|tether| &tether.line);
-        line.is_some_and(|line| line.windows(2).any(|pair| pair[0] != pair[1]))
-    }),
-    (ink::TRAIL, "trail", |look, _| course::shows_trail(look)),
-    (ink::OTHER, RUN_B, |look, _| {
-        let has_other = look.model.live.replay.as_ref().is_some_and(|replay| replay.other.is_some());
-        has_other && look.model.ui.screen == Screen::Mission
-    }),
-    (ink::SHADOW, "shadow", |look, _| look.run.shown_shadow().is_some()),
-    (ink::DRIVEN, "driven", |look, course| {
-        look.model.ui.screen == Screen::Plan && course.is_some_and(|course| course.driven.0 < course.driven.1)
-    }),
-];
-
-/// Whether the plan ahead is drawn, with the given ink.
-fn is_ahead(look: &Look, course: Option<&Course>, ink: Ink) -> bool {
-    course::plan_ink(look) == ink && course.is_some_and(|course| course.ahead.0 < course.ahead.1)
-}
-
-/// The sample of a kind of line.
-fn line_mark(ink: Ink, word: &str, has_dots: bool) -> String {
-    match labels::Arrow::of(ink) {
-        _ if !has_dots => ink.letter.to_string().repeat(2),
-        // The trail of a run has no arrows.
-        Some(arrow) if word != RUN_B => format!("{}{arrow}", ink.pattern.sample(MARK as u16 - 1)),
-        _ => ink.pattern.sample(MARK as u16),
-    }
-}
-
-fn line_entry(look: &Look, ink: Ink, word: &'static str) -> Entry {
-    Entry { role: ink.role, mark: line_mark(ink, word, look.caps.glyphs.has_dots()), word: word.into() }
-}
-
-/// The lines that are drawn.
-fn lines_shown(look: &Look, window: Window) -> Vec<Entry> {
-    let course = course::course(look);
-    let every = course::thinnings(look, window)[0].every;
-    let lines = LINES.into_iter().filter(|(.., is_drawn)| is_drawn(look, course.as_ref()));
-    let entry = |(ink, word, _): (Ink, &'static str, IsDrawn)| {
-        let entry = line_entry(look, ink, word);
-        let is_thinned = every > 1 && matches!(ink, ink::PLAN | ink::AHEAD);
-        if is_thinned { Entry { word: format!("{word}, 1 lane in {every}").into(), ..entry } } else { entry }
-    };
-    lines.map(entry).collect()
-}
-
-/// The planner's drawings that are large enough to be seen in the window.
-fn drawings(look: &Look, window: Window) -> Vec<Entry> {
-    let is_seen = |drawing: &&Drawing| {
-        let points = drawn::points(drawing);
-        let is_long = points.iter().any(|point| (point - points[0]).norm() >= window.column_m);
-        is_long && points.iter().any(|point| window.cell_of(*point).is_some())
-    };
-    let seen: Vec<Ink> = drawn::shown(look).iter().filter(is_seen).map(drawn::ink).collect();
-    let kinds = drawn::KINDS.into_iter().filter(|(ink, _)| seen.contains(ink));
-    kinds.map(|(ink, word)| line_entry(look, ink, word)).collect()
-}
-
-/// The samples of areas: a no-go zone and the outline of a plate.
-fn fixed_marks(has_dots: bool) -> [(String, &'static str); 2] {
-    let hatched = if has_dots { braille(2, |x, y| (x + y).is_multiple_of(4)) } else { "xx".into() };
-    let outline = if has_dots { braille(3, |x, y| y == 2 && x.is_multiple_of(2)) } else { "``".into() };
-    [(hatched, "no-go zone"), (outline, "plate")]
-}
-
-/// The marks that are drawn.
-fn marks(look: &Look, window: Window) -> Vec<Entry> {
-    let (run, ui) = (look.run, &look.model.ui);
-    let Some(about) = &run.about else { return Vec::new() };
-    let seen = |at: Point| window.cell_of(at).is_some();
-    let [hatched, outline] = fixed_marks(look.caps.glyphs.has_dots()).map(|(mark, _)| mark);
-    let obstacle = |known: bool| {
-        about.world.obstacles.iter().any(|obstacle| obstacle.known == known && seen(obstacle.shape.center()))
-    };
-    let no_go = about.world.zones.iter().any(|zone| zone.kind == ZoneKind::NoGo && seen(zone.shape.center()));
-    let station = ui.layers.shows(MapLayer::Stations)
-        && about.world.stations.iter().any(|station| seen(station.position));
-    let target = run.progress.as_ref().is_some_and(|progress| !run.has_ended() && seen(progress.target));
-    let wound = labels::wound(look).is_some_and(seen);
-    let change_over = course::change_over(look).is_some_and(seen);
-    let marks = [
-        (no_go, Role::NoGo, hatched, "no-go zone"),
-        (obstacle(false), Role::Found, "?".to_owned(), "found"),
-        (obstacle(true), Role::Obstacle, "#".into(), "obstacle"),
-        (target, Role::Target, "×".into(), "target"),
-        (wound, Role::Tether, labels::WOUND.into(), "largest wrap"),
-        (change_over, Role::Watch, "◇".into(), "change-over"),
-        (station, Role::Station, stations(look), "station"),
-        (plates::plates(look, window).is_some(), Role::Plate, outline, "plate"),
-    ];
-    let marks = marks.into_iter().filter(|(shown, ..)| *shown);
-    marks.map(|(_, role, mark, word)| Entry { role, mark, word: word.into() }).collect()
-}
-
-/// The first and the last name of the stations.
-fn stations(look: &Look) -> String {
-    let names: Vec<&str> = look.run.stations().iter().map(|station| station.name.as_str()).collect();
-    match names.as_slice() {
-        [first, .., last] if text::width(first) == 1 && text::width(last) == 1 => format!("{first}-{last}"),
-        [first, ..] if text::width(first) <= MARK => (*first).to_owned(),
-        _ => "S".into(),
-    }
-}
-
-/// The places of the estimate, on the plan screen.
-fn places(look: &Look, window: Window) -> Vec<Entry> {
-    let on_plan = look.model.ui.screen == Screen::Plan;
-    let places = look.model.live.promised().into_iter().filter(|_| on_plan).flat_map(labels::worst_places);
-    let seen = places.filter(|(_, at)| window.cell_of(*at).is_some());
-    let word = |letter: &str| match letter {
-        "t" => "longest tether",
-        "c" => "smallest gap",
-        "e" => "AE error",
-        _ => "wrap",
-    };
-    let entries =
-        seen.map(|(letter, _)| Entry { role: Role::Watch, mark: letter.into(), word: word(letter).into() });
-    let left_out = look.model.left_out_at().filter(|_| on_plan).map(|_| Entry {
-        role: Role::Selected,
-        mark: "◎".into(),
-        word: "left out".into(),
-    });
-    let resumption = look.model.live.left_out().filter(|_| on_plan).and_then(|left_out| left_out.resumption);
-    let resumes = resumption.map(|_| Entry {
-        role: Role::Title,
-        mark: labels::RESUMES.into(),
-        word: "scan resumes".into(),
-    });
-    left_out.into_iter().chain(resumes).chain(entries).collect()
-}
-
 #[cfg(test)]
 mod tests {
+    use super::lines::{LINES, RUN_B, mark};
     use super::*;
     use crate::view::ascii;
+    use crate::view::map::{drawn, ink, labels};
+    use world::Point;
 
     #[test]
     fn a_round_tank_leaves_room_in_the_corners() {
@@ -362,11 +218,11 @@ mod tests {
         let lines = LINES.into_iter().map(|(ink, word, _)| (ink, word));
         let lines = lines.filter(|(ink, word)| of_mission(*ink, *word));
         let drawn = drawn::KINDS.into_iter().filter(|_| mission);
-        let lines = lines.chain(drawn).map(|(ink, word)| (line_mark(ink, word, has_dots), word));
-        let marks = fixed_marks(has_dots).map(|(mark, word)| (mark, word));
+        let lines = lines.chain(drawn).map(|(ink, word)| (mark(ink, word, has_dots), word));
+        let fixed = marks::fixed(has_dots).map(|(mark, word)| (mark, word));
         let own =
             ["×", labels::WOUND, "◇", "t", "c", "e", labels::RESUMES].map(|mark| (mark.to_owned(), "place"));
-        floor.map(|(shade, word)| (shade_mark(shade), word)).chain(lines).chain(marks).chain(own).collect()
+        floor.map(|(shade, word)| (shade_mark(shade), word)).chain(lines).chain(fixed).chain(own).collect()
     }
 
     fn as_ascii(letter: char) -> char {

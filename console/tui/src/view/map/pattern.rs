@@ -5,6 +5,15 @@ use super::pen::DOTS;
 /// Dots of a line from one stroke across it to the next.
 const TICK_DOTS: usize = 5;
 
+/// How far a zigzag line swings, dots.
+const SWING: usize = 3;
+
+/// How far a zigzag line is from its side at a distance along the line, dots.
+fn swing(step: usize) -> usize {
+    let at = step % (2 * SWING);
+    at.min(2 * SWING - at)
+}
+
 /// How the dots of a line are set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::view) enum Pattern {
@@ -28,13 +37,23 @@ pub(in crate::view) enum Pattern {
     Beaded,
     /// Long dashes with a dot between them.
     DashDotted,
+    /// A line that swings widely from side to side.
+    Zigzag,
+    /// A line with many strokes across it.
+    Rope,
 }
 
 impl Pattern {
     /// The pattern of a line of letters, which is one letter wide.
     pub(super) fn in_letters(self) -> Self {
         match self {
-            Self::Double | Self::Thick | Self::Ticked | Self::Jagged | Self::Beaded => Self::Solid,
+            Self::Double
+            | Self::Thick
+            | Self::Ticked
+            | Self::Jagged
+            | Self::Beaded
+            | Self::Zigzag
+            | Self::Rope => Self::Solid,
             narrow => narrow,
         }
     }
@@ -42,7 +61,13 @@ impl Pattern {
     /// Whether the dot at a distance along the line is set.
     pub(super) fn is_on(self, step: usize) -> bool {
         match self {
-            Self::Solid | Self::Double | Self::Thick | Self::Ticked | Self::Jagged => true,
+            Self::Solid
+            | Self::Double
+            | Self::Thick
+            | Self::Ticked
+            | Self::Jagged
+            | Self::Zigzag
+            | Self::Rope => true,
             Self::Beaded => step % 4 < 2,
             Self::DashDotted => step % 6 != 3 && step % 6 != 5,
             Self::Dashed => step % 5 < 3,
@@ -73,6 +98,10 @@ impl Pattern {
             (Self::Ticked, false) if step % TICK_DOTS == TICK_DOTS / 2 => {
                 (x.saturating_sub(1)..=x + 1).for_each(|x| set(x, y));
             }
+            (Self::Rope, true) if step % 2 == 0 => (y.saturating_sub(1)..=y + 1).for_each(|y| set(x, y)),
+            (Self::Rope, false) if step % 2 == 0 => (x.saturating_sub(1)..=x + 1).for_each(|x| set(x, y)),
+            (Self::Zigzag, true) => set(x, (y + swing(step)).saturating_sub(SWING / 2)),
+            (Self::Zigzag, false) => set((x + swing(step)).saturating_sub(SWING / 2), y),
             (Self::Jagged, true) => set(x, y + step % 2),
             (Self::Jagged, false) => set(x + step % 2, y),
             (Self::Double, true) => {
@@ -134,11 +163,13 @@ mod tests {
             Pattern::Jagged,
             Pattern::Beaded,
             Pattern::DashDotted,
+            Pattern::Zigzag,
+            Pattern::Rope,
         ];
         let samples = all.map(|pattern| pattern.sample(4));
         assert_eq!(
             samples,
-            ["⠤⠤⠤⠤", "⠤⠄⠠⠤", "⠄⠠ ⠄", "⠤⡦⠤⢴", "⣤⣤⣤⣤", "⠤⠤⠄ ", "⣒⣒⣒⣒", "⢄⢄⢄⢄", "⣤ ⣤ ", "⠤⠄⠄⠤"]
+            ["⠤⠤⠤⠤", "⠤⠄⠠⠤", "⠄⠠ ⠄", "⠤⡦⠤⢴", "⣤⣤⣤⣤", "⠤⠤⠄ ", "⣒⣒⣒⣒", "⢄⢄⢄⢄", "⣤ ⣤ ", "⠤⠄⠄⠤", "⠢⡀⡠⠢", "⡦⡦⡦⡦"]
                 .map(str::to_owned)
         );
     }

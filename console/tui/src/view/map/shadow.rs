@@ -18,18 +18,17 @@ impl Pen<'_> {
     pub(super) fn shadow(&self, ctx: &mut Context<'_>) {
         let run = self.look.run;
         let Some(shadow) = run.shown_shadow() else { return };
-        if self.look.model.ui.layers.shows(MapLayer::Plan) && shadow.path.len() > 1 {
-            if run.is_running() {
-                let robot = run.position.pose.as_ref().map(|pose| pose.position);
-                let from = robot.map_or(0, |robot| super::pen::nearest(&shadow.path, robot));
-                self.draw(ctx, within(&shadow.path[from..], AHEAD_M), ink::SHADOW);
-            } else {
-                let [_, thinning] = course::thinnings(&self.look, self.window);
-                let thin = Thin::new(&shadow.path, &shadow.lanes, thinning);
-                for line in thin.lines((0, shadow.path.len() - 1)) {
-                    self.draw(ctx, &line, ink::SHADOW);
-                }
+        if let Some(track) = course::shadow(&self.look) {
+            let [_, thinning] = course::thinnings(&self.look, self.window);
+            let thin = Thin::new(track.path, track.lanes, thinning);
+            for line in thin.lines((0, track.path.len() - 1)) {
+                self.draw(ctx, &line, ink::SHADOW);
             }
+        } else if run.is_running() && self.look.model.ui.layers.shows(MapLayer::Plan) && shadow.path.len() > 1
+        {
+            let robot = run.position.pose.as_ref().map(|pose| pose.position);
+            let from = robot.map_or(0, |robot| super::pen::nearest(&shadow.path, robot));
+            self.draw(ctx, within(&shadow.path[from..], AHEAD_M), ink::SHADOW);
         }
         let Some(ghost) = run.ghost() else { return };
         self.draw(ctx, &ghost, Ink { pattern: Pattern::Solid, ..ink::SHADOW });

@@ -1,8 +1,9 @@
 //! The no-go zone that the operator is drawing or is asked about, and the part of the plan that it blocks.
 
-use super::ink;
 use super::pen::Pen;
+use super::{course, ink};
 use crate::update::zones;
+use crate::view::look::Look;
 use ratatui::widgets::canvas::Context;
 use world::{Point, Shape, polyline, shape::ring_area_m2};
 
@@ -17,19 +18,24 @@ impl Pen<'_> {
         self.draw(ctx, &ring, ink::OUTLINE);
     }
 
-    /// Draws the part of the plan ahead that the zone in the question blocks.
+    /// Draws the parts of the plan ahead that the zone in the question blocks.
     pub(super) fn blocked(&self, ctx: &mut Context<'_>) {
-        let Some(mut vertices) = zones::asked(self.look.model) else { return };
-        let Some(course) = super::course::course(&self.look) else { return };
-        let Some(about) = &self.look.run.about else { return };
-        if ring_area_m2(&vertices) < 0.0 {
-            vertices.reverse();
-        }
-        let (shape, room_m) = (Shape::Polygon { vertices }, about.mission.room_m());
-        let ahead = polyline::resampled(&course.track.path[course.leg.0..=course.ahead.1], PIECE_M);
-        let is_blocked = |at: &Point| shape.distance_m(*at) < room_m;
-        for part in ahead.split(|at| !is_blocked(at)).filter(|part| part.len() > 1) {
-            self.draw(ctx, part, ink::BLOCKED);
+        for part in blocked(&self.look) {
+            self.draw(ctx, &part, ink::BLOCKED);
         }
     }
+}
+
+/// The parts of the plan ahead that the zone in the question blocks.
+pub(super) fn blocked(look: &Look) -> Vec<Vec<Point>> {
+    let asked = zones::asked(look.model).zip(course::course(look)).zip(look.run.about.as_ref());
+    let Some(((mut vertices, course), about)) = asked else { return Vec::new() };
+    if ring_area_m2(&vertices) < 0.0 {
+        vertices.reverse();
+    }
+    let (shape, room_m) = (Shape::Polygon { vertices }, about.mission.room_m());
+    let ahead = polyline::resampled(&course.track.path[course.leg.0..=course.ahead.1], PIECE_M);
+    let is_blocked = |at: &Point| shape.distance_m(*at) < room_m;
+    let parts = ahead.split(|at| !is_blocked(at)).filter(|part| part.len() > 1);
+    parts.map(<[Point]>::to_vec).collect()
 }

@@ -1,6 +1,6 @@
 //! The achieved figures alongside the plan's estimate.
 
-use super::{next_page, role, title};
+use super::{next_page, plates, role, title};
 use crate::model::RunResult;
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
@@ -12,8 +12,12 @@ use ratatui::text::Line;
 
 /// Width of the names in the table, columns.
 const LABEL: usize = 17;
-/// Width from which the worst values are shown with time and place, columns.
-const WORST: usize = 52;
+/// Minimum width of the names, columns.
+const NARROWEST: usize = 8;
+/// Width of a clock and the blank before it, columns.
+const CLOCK: usize = 9;
+/// Width from which the worst plate, and the worst values with time and place, are shown, columns.
+pub(super) const WORST: usize = 52;
 /// The figures whose worst values are shown, and the width of their names, columns.
 const SHOWN: [FigureId; 4] =
     [FigureId::PositionError, FigureId::Clearance, FigureId::TetherOut, FigureId::WrapLargest];
@@ -77,15 +81,18 @@ fn lines(look: &Look, result: &RunResult, columns: usize) -> Vec<Line<'static>> 
         ])
     }));
     lines.extend(trouble(look, result, columns).into_iter().map(|parts| look.line(parts)));
-    let notes = scan_limit(look, result).into_iter().chain(true_error(result));
-    lines.extend(notes.flat_map(|words| wrapped(Role::Text, &words)));
+    // On a narrower screen, the shares of the floor have the line about the plate.
+    let plate = plates::worst(look, columns).filter(|_| columns >= WORST);
+    lines.extend(plate.map(|parts| look.line(parts)));
     lines.extend(worst(result, columns).into_iter().map(|parts| look.line(parts)));
+    let notes = true_error(result).into_iter().chain(scan_limit(look, result));
+    lines.extend(notes.flat_map(|words| wrapped(Role::Text, &words)));
     lines
 }
 
-/// The widths of a label and of a value.
+/// The widths of a label and of a value, which has room for a clock.
 fn widths(columns: usize) -> (usize, usize) {
-    let label = LABEL.min(columns.saturating_sub(2) / 3);
+    let label = LABEL.min(columns.saturating_sub(2 + 3 * CLOCK)).max(NARROWEST);
     (label, columns.saturating_sub(label + 2) / 3)
 }
 
@@ -281,4 +288,18 @@ fn trouble(look: &Look, result: &RunResult, columns: usize) -> Vec<Parts> {
     );
     let lines = text::wrap(&words, columns.saturating_sub(1)).into_iter();
     lines.map(|line| vec![(Role::Text, format!(" {line}"))]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clocks_beside_each_other_never_touch() {
+        for columns in 40..120 {
+            let (label, width) = widths(columns);
+            assert!(width > text::clock(3599.0).len(), "{columns}");
+            assert!(label >= NARROWEST && 1 + label + 3 * width < columns, "{columns}");
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! The floor shares, relative to the whole and to the reachable floor, and the critical zone along the shell.
 
-use super::next_page;
+use super::{figures, next_page, plates};
 use crate::model::RunResult;
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
@@ -12,6 +12,11 @@ use ratatui::text::Line;
 
 /// The maximum missed share at which a plate counts as scanned except for slivers, per cent.
 const MISSED_PERCENT: f64 = 1.0;
+
+/// The minimum rows of the pane, including its frame: those without the notes.
+pub(super) fn least(look: &Look, result: &RunResult, columns: u16) -> u16 {
+    bases(look, result, usize::from(columns).saturating_sub(1)).len() as u16 + 2
+}
 
 /// The rows that the pane needs.
 pub(super) fn rows(look: &Look, result: &RunResult, columns: u16) -> u16 {
@@ -54,6 +59,7 @@ fn bases(look: &Look, result: &RunResult, columns: usize) -> Vec<Parts> {
         rows.push(at.row("all, reach.", &all.floor.reachable));
         rows.push(at.row("all, whole", &all.floor.whole));
     }
+    rows.extend(plates::worst(look, columns).filter(|_| columns < figures::WORST));
     rows
 }
 
@@ -160,12 +166,7 @@ fn notes(look: &Look, result: &RunResult, columns: usize) -> Vec<Vec<String>> {
     });
     let plates = look.model.live.floor().filter(|floor| !floor.plates.is_empty()).map(|floor| {
         let all = floor.plates.iter().filter(|plate| plate.shares.percent.missed <= MISSED_PERCENT).count();
-        let worst = floor.plates.iter().filter_map(|plate| Some((plate.error_max_m?, &plate.name)));
-        let worst =
-            worst.max_by(|one, other| one.0.total_cmp(&other.0)).map_or_else(String::new, |(m, name)| {
-                format!(" Worst 95 % error {} m, on plate {name}.", text::number(m, 2))
-            });
-        format!("Plates: {all} of {} with at most {MISSED_PERCENT} % missed.{worst}", floor.plates.len())
+        format!("Plates: {all} of {} with at most {MISSED_PERCENT} % missed.", floor.plates.len())
     });
     let notes = of_all_runs(look).into_iter().chain(zone).chain(plates).chain(again).chain(truth);
     notes.map(|note| text::wrap(&note, columns)).collect()

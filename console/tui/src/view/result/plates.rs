@@ -30,6 +30,24 @@ pub(in crate::view) fn draw(look: &Look, frame: &mut Frame, area: Rect, floor: &
     fill(frame, area, block, lines);
 }
 
+/// The plate on which the position was least accurate, in one line; `None` if no plate has a figure.
+pub(super) fn worst(look: &Look, columns: usize) -> Option<Parts> {
+    let floor = look.model.live.floor()?;
+    let figures = floor.plates.iter().filter_map(|plate| Some((plate.error_max_m?, plate)));
+    let (error_m, plate) = figures.max_by(|one, other| one.0.total_cmp(&other.0))?;
+    let limit_m = floor.position_limit_m;
+    let (role, mark) = if error_m > limit_m { (Role::Warn, "!") } else { (Role::Text, "") };
+    let (error, limit) = (text::number(error_m, 2), text::number(limit_m, 2));
+    let front = format!("Worst plate {}: ", plate.name);
+    let words = [
+        format!("95 % error {error} m{mark}, limit {limit} m"),
+        format!("95 % error {error} m{mark}"),
+        format!("{error} m{mark}"),
+    ];
+    let room = columns.saturating_sub(text::width(&front) + 2);
+    Some(vec![(Role::Dim, format!(" {front}")), (role, text::wording(words, room))])
+}
+
 fn row(plate: &PlateAccount, limit_m: f64) -> Parts {
     let metres = |m: Option<f64>| m.map_or_else(|| "-".into(), |m| format!("{} m", text::number(m, 3)));
     let percent = plate.shares.percent;
