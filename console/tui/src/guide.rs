@@ -107,9 +107,12 @@ pub fn guide(cause: &Cause) -> Guide {
             remedies: const {
                 &[
                     SHOW,
-                    run("Resume: replans from here, out of the zone. Asks first.", ActionId::Resume),
                     run("Drive back to the anchor or the start. Asks first.", ActionId::DriveBack),
-                    END,
+                    check("To go on: drive back, HOLD outside the zone, then resume."),
+                    run(
+                        "Resume: replans from here; may get stuck in the zone. Asks first.",
+                        ActionId::Resume,
+                    ),
                 ]
             },
         },

@@ -186,7 +186,7 @@ impl Live {
         let at_pace = || {
             let (estimate, plan) = (self.promised()?, self.run.planning.plan.as_ref()?);
             let pace_s_per_m = estimate.time_s / estimate.length_m;
-            (estimate.length_m > 0.0).then(|| pace_s_per_m * to_do * (plan.driven_m + plan.length_m))
+            (estimate.length_m > 0.0).then_some(pace_s_per_m * to_do * (plan.driven_m + plan.length_m))
         };
         let promised = || self.estimate().map(|estimate| estimate.time_s * to_do).or_else(at_pace);
         self.run.left_s().or_else(|| promised().filter(|_| !self.run.has_ended()))

@@ -233,17 +233,16 @@ fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
         }
         let Some(raster) = raster else { return Rc::new(Painted::from_iter([])) };
         let not_reached = run.not_reached();
-        let shade = |(at, edge_m)| match other {
-            Some(other) => Scans::in_square(raster, other, at, edge_m).and_then(difference),
-            None => {
-                let own =
-                    floor(raster, at, edge_m, has_missed).map(|shade| shade.when(&not_reached, raster, at));
-                if own.is_none_or(Shade::is_unscanned) {
-                    before.and_then(|before| scanned_before(before, at, edge_m)).or(own)
-                } else {
-                    own
-                }
+        let own = |at, edge_m| {
+            floor(raster, at, edge_m, has_missed).map(|shade| shade.when(&not_reached, raster, at))
+        };
+        let shade = |(at, edge_m)| {
+            if let Some(other) = other {
+                return Scans::in_square(raster, other, at, edge_m).and_then(difference);
             }
+            let own = own(at, edge_m);
+            let before = before.filter(|_| own.is_none_or(Shade::is_unscanned));
+            before.and_then(|before| scanned_before(before, at, edge_m)).or(own)
         };
         // Half a character that is partly beyond the wall stays blank; a whole character there belongs to the wall.
         let is_inside = |at, edge_m| rows_per_row == 1 || is_floor(raster, at, edge_m);
