@@ -143,11 +143,11 @@ fn done(model: &Model) -> Vec<String> {
         TaskConfig::Cover { .. } => "Task: scan the floor",
     });
     let bases = Bases::of(&model.live);
-    let ([first, second], [of_first, of_second]) = (bases.scanned(), bases.of);
-    let of_first = of_first.replacen("of ", "of the ", 1);
-    let of_second = of_second.replacen("of ", "of the ", 1);
-    let scanned =
-        run.coverage.is_some().then(|| format!("Scanned: {first} % {of_first}, {second} % {of_second}"));
+    let ([first, second], [floor, other]) = (bases.scanned(), bases.floors);
+    let scanned = run
+        .coverage
+        .is_some()
+        .then(|| format!("Scanned: {first} % of the {floor}, {second} % of the {other}"));
     let earlier = &model.live.earlier;
     let before = (!earlier.is_empty()).then(|| format!("Re-scan of what {} left", earlier.join(" and ")));
     let moving = format!("Mission time {}, under way {}", clock(run.clock.t_s), clock(run.clock.moving_s));

@@ -104,9 +104,9 @@ pub fn status(model: &Model) -> Vec<String> {
     lines.extend(position(model));
     lines.extend(tether(model));
     let bases = Bases::of(&model.live);
-    let ([first, second], [of_first, of_second]) = (bases.scanned(), bases.of);
+    let ([first, second], [floor, other]) = (bases.scanned(), bases.floors);
     if run.coverage.is_some() && run.progress.is_some() {
-        lines.push(format!("Scanned: {first} % {of_first}, {second} % {of_second}."));
+        lines.push(format!("Scanned: {first} % of {floor}, {second} % of {other}."));
     }
     lines.push(match (&model.live.result, &model.live.health.recording) {
         (Some(result), _) => format!("{}.", text::capitalized(&result.kept)),

@@ -8,6 +8,17 @@ const WINDOW_S: f64 = 5.0;
 /// Step back of a stamp, seconds, above which the sender's clock counts as having been set.
 const SET_BACK_S: f64 = 1.0;
 
+/// Whether a message is neither a duplicate of the newest one nor overtaken by it; stamps in seconds of the sender's
+/// clock. A stamp more than 1 s before the newest one shows that this clock was set.
+pub fn is_newer(stamp_s: f64, newest_s: Option<f64>) -> bool {
+    newest_s.is_none_or(|newest_s| stamp_s > newest_s || is_set_back(stamp_s, newest_s))
+}
+
+/// Whether a stamp shows that the sender's clock was set back.
+pub(crate) fn is_set_back(stamp_s: f64, newest_s: f64) -> bool {
+    stamp_s < newest_s - SET_BACK_S
+}
+
 /// Converts stamps of a sender to the adapter's clock.
 #[derive(Debug, Clone, Default)]
 #[allow(clippy::struct_field_names, reason = "a name ends with its unit")]
@@ -25,7 +36,7 @@ impl Clock {
     /// (`stamp_s` is `None`) counts as stamped when it arrives.
     pub fn measured_s(&mut self, stamp_s: Option<f64>, arrival_s: f64) -> f64 {
         let Some(stamp_s) = stamp_s else { return arrival_s };
-        if self.newest_s.is_some_and(|newest_s| stamp_s < newest_s - SET_BACK_S) {
+        if self.newest_s.is_some_and(|newest_s| is_set_back(stamp_s, newest_s)) {
             *self = Self::default();
         }
         self.newest_s = Some(self.newest_s.map_or(stamp_s, |newest_s| newest_s.max(stamp_s)));
@@ -52,6 +63,13 @@ mod tests {
         assert_eq!(clock.measured_s(Some(1000.0), 10.0), 10.0);
         assert_eq!(clock.measured_s(Some(1000.5), 10.7), 10.5);
         assert_eq!(clock.measured_s(Some(1001.0), 11.0), 11.0);
+    }
+
+    #[test]
+    fn duplicates_and_overtaken_messages_are_not_newer_and_those_after_a_restart_are() {
+        let newer = |stamp_s| is_newer(stamp_s, Some(10.0));
+        assert_eq!([newer(10.1), newer(10.0), newer(9.1), newer(8.9)], [true, false, false, true]);
+        assert!(is_newer(3.0, None));
     }
 
     #[test]

@@ -1,12 +1,13 @@
 //! The poses of the last seconds, by the stamps of their sender.
 
-use crate::message::{Pose, Scan};
+use crate::{
+    clock::is_set_back,
+    message::{Pose, Scan},
+};
 use std::{collections::VecDeque, f64::consts::PI};
 
 /// Time for which poses are kept, seconds.
 const KEPT_S: f64 = 2.0;
-/// Step back of a stamp, seconds, above which the sender's clock counts as having been set.
-const SET_BACK_S: f64 = 1.0;
 
 /// The poses of the last seconds, in the order of their stamps; messages may have overtaken each other.
 #[derive(Debug, Clone, Default)]
@@ -19,7 +20,7 @@ impl Trail {
     /// Adds a pose that was measured at `stamp_s`, unless a pose with this stamp is there already. A stamp more than
     /// 1 s before the newest one starts a new trail.
     pub fn add(&mut self, pose: Pose, stamp_s: f64) {
-        if self.newest_s().is_some_and(|newest_s| stamp_s < newest_s - SET_BACK_S) {
+        if self.newest_s().is_some_and(|newest_s| is_set_back(stamp_s, newest_s)) {
             self.poses.clear();
         }
         let after = self.poses.partition_point(|(at_s, _)| *at_s <= stamp_s);

@@ -19,7 +19,7 @@ use mavlink::{
     },
 };
 use tankops_adapter::{
-    clock::Clock,
+    clock::{Clock, is_newer},
     message::{FromVehicle, Pose, Tether},
     pilot::{Order, Pilot},
     readings::{Assembly, Measured},
@@ -54,8 +54,6 @@ const HEARTBEAT_S: f64 = 1.0;
 /// Number of heartbeats between two requests for the rates of messages; requests are repeated because they may get
 /// lost.
 const REQUEST_EVERY: u32 = 5;
-/// Step back of the stamps, seconds, above which the rover counts as having started again.
-const RESTART_S: f64 = 1.0;
 
 /// The adapter's state.
 pub(crate) struct Bridge {
@@ -285,9 +283,4 @@ impl Bridge {
 /// A stamp in microseconds as seconds; `None` for 0, which stands for a message without a stamp.
 fn seconds(time_usec: u64) -> Option<f64> {
     (time_usec > 0).then(|| time_usec as f64 / 1e6)
-}
-
-/// Whether a message is neither a duplicate of the newest one nor overtaken by it.
-fn is_newer(stamp_s: f64, newest_s: Option<f64>) -> bool {
-    newest_s.is_none_or(|newest_s| stamp_s > newest_s || newest_s - stamp_s > RESTART_S)
 }

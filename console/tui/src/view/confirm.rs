@@ -270,10 +270,8 @@ fn moves(model: &Model) -> String {
     if planning.candidate.is_some() {
         return format!("{planner} drives on along its plan until the new planner has a plan.");
     }
-    match plan {
-        _ if replans || planning.fault.is_some() || model.live.busy.is_some() => {
-            format!("{planner} plans first; then the robot moves.")
-        }
+    let plans_first = replans || planning.fault.is_some() || model.live.busy.is_some();
+    match plan.filter(|_| !plans_first) {
         None => format!("{planner} plans first; then the robot moves."),
         Some(plan) if plan.path.is_empty() => format!("{planner} drives step by step, without a path."),
         Some(plan) => {

@@ -99,11 +99,11 @@ fn narrow_lines(look: &Look, bases: &Bases) -> Vec<(u8, Line<'static>)> {
 pub(crate) struct Bases {
     /// The shares; `None` before the first step.
     shares: Option<[Shares; 2]>,
-    /// The names of the floors: as headings, in a narrow pane, and in sentences.
+    /// The names of the floors: as headings, and in a narrow pane.
     names: [&'static str; 2],
     short: [&'static str; 2],
-    /// What the shares are of: `of reachable floor`.
-    pub of: [&'static str; 2],
+    /// The floors in a sentence, without an article.
+    pub floors: [&'static str; 2],
 }
 
 impl Bases {
@@ -114,13 +114,13 @@ impl Bases {
                 shares: raster.map(|own| [before.requested(own), before.with(own)]),
                 names: ["requested", "all runs"],
                 short: ["requested", "all runs"],
-                of: ["of requested floor", "of reachable floor with the runs before"],
+                floors: ["requested floor", "reachable floor with the runs before"],
             },
             None => Self {
                 shares: raster.map(|own| [own.reachable(), own.whole()]),
                 names: ["reachable", "whole floor"],
                 short: ["reachable", "whole"],
-                of: ["of reachable floor", "of whole floor"],
+                floors: ["reachable floor", "whole floor"],
             },
         }
     }
@@ -140,7 +140,7 @@ impl Bases {
 
     /// The scanned share of the first floor, as a sentence.
     pub(crate) fn sentence(&self) -> String {
-        format!("{} % {} scanned.", self.scanned()[0], self.of[0])
+        format!("{} % of {} scanned.", self.scanned()[0], self.floors[0])
     }
 
     fn bar(&self, columns: usize) -> String {

@@ -155,7 +155,7 @@ fn position(look: &Look) -> String {
     let scanned = match bases.scanned()[0].as_str() {
         // The share is not known before the first step.
         "-" => String::new(),
-        share => format!("{share} % {}, ", bases.of[0]),
+        share => format!("{share} % of {}, ", bases.floors[0]),
     };
     let error =
         model.live.run.position.error_m().map_or_else(|| "-".into(), |error_m| text::number(error_m, 2));

@@ -1,7 +1,6 @@
 //! Joins the positions and the attitudes of the rover, which are messages of their own, to poses.
 
-use super::is_newer;
-use tankops_adapter::{message::Pose, trail::Trail};
+use tankops_adapter::{clock::is_newer, message::Pose, trail::Trail};
 
 /// The newest positions and attitudes. Messages arrive late, in any order, and some never arrive.
 #[derive(Debug, Clone, Default)]

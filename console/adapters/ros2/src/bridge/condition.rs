@@ -45,7 +45,9 @@ impl Condition {
 
     /// Takes the arrival of a scan, or the reason why it could not be used.
     pub(crate) fn scan(&mut self, taken: Result<(), String>, now_s: f64) {
-        self.scan_s = if taken.is_ok() { Some(now_s) } else { self.scan_s };
+        if taken.is_ok() {
+            self.scan_s = Some(now_s);
+        }
         self.scan_trouble = taken.err();
     }
 

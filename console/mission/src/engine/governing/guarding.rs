@@ -198,7 +198,8 @@ impl Known {
 /// Distance from the robot's centre within which a point can matter until the next scan, metres.
 fn reach_m(config: &MissionConfig) -> f64 {
     let fastest = config.limits.v_max_m_per_s;
-    let reaction_s = config.guard_reaction_s.unwrap_or_default();
+    let age_s = if config.live { READING_MAX_AGE_S } else { 0.0 };
+    let reaction_s = config.guard_reaction_s.unwrap_or_default() + age_s;
     config.limits.radius_m + Braking::of(&config.limits).distance_m(fastest) + fastest * reaction_s + KEPT_M
 }
 
