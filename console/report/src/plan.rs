@@ -244,12 +244,12 @@ fn certified(certificate: &Certificate) -> String {
 
 /// The pull as text.
 fn pull(certificate: &Certificate) -> String {
-    let warnings: String = certificate.warnings.iter().map(|why| format!("warning   {why}\n")).collect();
+    let warnings: Vec<String> = certificate.warnings.iter().map(|why| format!("warning   {why}\n")).collect();
     let text = certificate.pull_text();
     let figures = certificate.pull.map_or_else(String::new, |pull| {
         format!(", ratio {:.2}; the robot pulls at most {:.1} N", pull.ratio(), pull.robot_needed_n)
     });
-    format!("{}{figures}\n{warnings}", text.replacen("pull ", "pull      ", 1))
+    format!("{}{figures}\n{}", text.replacen("pull ", "pull      ", 1), warnings.concat())
 }
 
 #[cfg(test)]

@@ -27,7 +27,9 @@ fn disc(x: f64, y: f64, radius_m: f64) -> Shape {
 
 fn dragged(shapes: &[Shape], path: &[(f64, f64)]) -> Cable {
     let mut cable = Cable::new(Point::origin(), &WALL, shapes).unwrap();
-    path.iter().for_each(|(x, y)| cable.drag_to(Point::new(*x, *y)));
+    for (x, y) in path {
+        cable.drag_to(Point::new(*x, *y));
+    }
     cable
 }
 
@@ -46,13 +48,14 @@ fn summed_n(line: &[Point], drag: Drag) -> f64 {
 
 #[test]
 fn the_pull_is_that_of_many_short_links() {
+    type Way<'a> = (&'a [Shape], &'a [(f64, f64)]);
     let shapes = [disc(4.0, 0.0, 0.5), disc(6.0, 3.0, 1.0)];
     let square = Shape::Polygon {
         vertices: [(-4.0, -1.0), (-3.0, -1.0), (-3.0, 1.0), (-4.0, 1.0)]
             .map(|(x, y)| Point::new(x, y))
             .to_vec(),
     };
-    let ways: [(&[Shape], &[(f64, f64)]); 3] = [
+    let ways: [Way<'_>; 3] = [
         (&shapes, &[(4.0, 2.0), (8.0, 0.0)]),
         (&shapes, &[(4.0, 2.0), (6.0, 0.0), (4.0, -2.0), (2.0, 1.0), (4.0, 2.0), (7.5, 0.5), (8.0, 4.5)]),
         (&[square], &[(-3.5, 2.0), (-5.0, 0.0), (-3.5, -2.0)]),
