@@ -54,6 +54,41 @@ fn a_plan_that_winds_the_tether_is_refused_with_the_reason_unless_the_scenario_s
 }
 
 #[test]
+fn a_plan_that_needs_more_pull_than_the_reel_has_is_refused_with_the_remedies() {
+    let bench = Bench::new();
+    let refused = bench.fly(&scenario("tether-weak-reel.toml"), &["--no-record"]);
+    let reason = refused.json()["reason"].as_str().unwrap().to_owned();
+    assert!(reason.contains(" of 6.0 N at ") && reason.contains("stronger reel"), "{reason}");
+    assert_eq!(refused.json()["violations"], serde_json::json!([]), "{refused:?}");
+}
+
+#[test]
+fn the_guide_to_cable_and_reel_has_the_pulls_that_the_program_computes() {
+    let bench = Bench::new();
+    let guide = std::fs::read_to_string(workspace().join("console/docs/operator-guide.md")).unwrap();
+    let rows: Vec<Vec<&str>> = guide
+        .lines()
+        .filter(|line| line.starts_with("| `cover-") && line.contains("kg/m"))
+        .map(|line| line.trim_matches('|').split('|').map(str::trim).collect())
+        .collect();
+    assert!(rows.len() >= 7, "{rows:?}");
+    for row in rows {
+        let [name, cable, friction, needed, reel] = row[..] else { panic!("{row:?}") };
+        let text = std::fs::read_to_string(scenario(&format!("{}.toml", name.trim_matches('`')))).unwrap();
+        let mass = cable.strip_suffix(" kg/m").unwrap();
+        let keys = format!(
+            "[tether]\nreel_pull_n = 1000.0\nmass_kg_per_m = {mass}\nfloor_friction = {friction}\nfriction = {friction}\n"
+        );
+        let changed = bench.file("cable.toml", text.replacen("[tether]\n", &keys, 1));
+        let plan = bench.tankops(&["plan", changed.to_str().unwrap(), "--json"]).json();
+        let needed_n = plan["certificate"]["pull"]["needed_n"].as_f64().unwrap();
+        assert_eq!(format!("{needed_n:.1} N"), needed, "{row:?}");
+        let reel_n: f64 = reel.strip_suffix(" N").unwrap().parse().unwrap();
+        assert!((0.77..=0.8).contains(&(needed_n / reel_n)), "{row:?}");
+    }
+}
+
+#[test]
 fn two_runs_of_one_seed_have_equal_journals() {
     let bench = Bench::new();
     let demo = scenario("demo.toml");

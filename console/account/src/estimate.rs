@@ -40,6 +40,10 @@ pub struct TetherEstimate {
     pub wrap_total_max_rad: f64,
     /// Length paid out at the end of the path, metres.
     pub end_length_m: f64,
+    /// Largest pull at the reel that taking up the tether needs, newtons; absent if the scenario does not describe the
+    /// reel.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pull_max_n: Option<Worst>,
 }
 
 /// The estimated results of a plan on the drawing.
@@ -109,7 +113,9 @@ fn clearance(mission: &MissionConfig, map: &ObstacleMap, path: &[Point]) -> Opti
 }
 
 fn tether(mission: &MissionConfig, drawing: &World, path: &[Point]) -> Option<TetherEstimate> {
-    let anchor = mission.tether.as_ref()?.anchor;
+    let config = mission.tether.as_ref()?;
+    let anchor = config.anchor;
+    let drag = config.reel.map(|reel| reel.drag(config.friction));
     let shapes: Vec<Shape> = drawing.obstacles.iter().map(|obstacle| obstacle.shape.clone()).collect();
     let mut cable = Cable::new(anchor, &drawing.boundary, &shapes).ok()?;
     let none = Worst { value: 0.0, at: anchor };
@@ -119,6 +125,7 @@ fn tether(mission: &MissionConfig, drawing: &World, path: &[Point]) -> Option<Te
         wrapped: String::new(),
         wrap_total_max_rad: 0.0,
         end_length_m: 0.0,
+        pull_max_n: drag.map(|_| none),
     };
     for at in path {
         cable.drag_to(*at);
@@ -128,6 +135,12 @@ fn tether(mission: &MissionConfig, drawing: &World, path: &[Point]) -> Option<Te
         if cable.wrap_max_rad() > estimate.wrap_max.value {
             estimate.wrap_max = Worst { value: cable.wrap_max_rad(), at: *at };
             estimate.wrapped = most_wrapped(&cable, drawing);
+        }
+        if let (Some(drag), Some(most)) = (drag, &mut estimate.pull_max_n) {
+            let value = cable.pull_at_anchor_n(drag);
+            if value > most.value {
+                *most = Worst { value, at: *at };
+            }
         }
         estimate.wrap_total_max_rad = estimate.wrap_total_max_rad.max(cable.wrap_total_rad());
     }

@@ -29,6 +29,8 @@ pub enum FigureId {
     WrapLargest,
     /// Sum of all wraps of the tether.
     WrapTotal,
+    /// Pull at the reel that taking up the tether needs; only with a reel in the scenario.
+    Pull,
     /// Distance between the estimated and the true position.
     TrueError,
     /// True distance from the hull to the nearest solid object.
@@ -41,7 +43,7 @@ pub enum FigureId {
 
 impl FigureId {
     /// All figures, in the order of the table.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::PositionError,
         Self::Clearance,
         Self::Covered,
@@ -51,6 +53,7 @@ impl FigureId {
         Self::ReturnPath,
         Self::WrapLargest,
         Self::WrapTotal,
+        Self::Pull,
         Self::TrueError,
         Self::TrueClearance,
         Self::TrueSpeed,
@@ -69,6 +72,7 @@ impl FigureId {
             Self::ReturnPath => "return path",
             Self::WrapLargest => "largest wrap",
             Self::WrapTotal => "total wrap",
+            Self::Pull => "pull",
             Self::TrueError => "true error",
             Self::TrueClearance => "clearance (true)",
             Self::TrueSpeed => "speed (true)",
@@ -82,6 +86,7 @@ impl FigureId {
             Self::Covered => "%",
             Self::SpeedSent | Self::TrueSpeed => "m/s",
             Self::WrapLargest | Self::WrapTotal => "°",
+            Self::Pull => "N",
             _ => "m",
         }
     }
@@ -90,7 +95,7 @@ impl FigureId {
     pub fn decimals(self) -> usize {
         match self {
             Self::WrapLargest | Self::WrapTotal => 0,
-            Self::Covered | Self::TetherOut | Self::ReturnPath | Self::TrueTetherOut => 1,
+            Self::Covered | Self::TetherOut | Self::ReturnPath | Self::Pull | Self::TrueTetherOut => 1,
             _ => 2,
         }
     }
@@ -104,7 +109,12 @@ impl FigureId {
     pub fn is_of_tether(self) -> bool {
         matches!(
             self,
-            Self::TetherOut | Self::ReturnPath | Self::WrapLargest | Self::WrapTotal | Self::TrueTetherOut
+            Self::TetherOut
+                | Self::ReturnPath
+                | Self::WrapLargest
+                | Self::WrapTotal
+                | Self::Pull
+                | Self::TrueTetherOut
         )
     }
 
@@ -116,6 +126,7 @@ impl FigureId {
             | Self::TetherOut
             | Self::WrapLargest
             | Self::WrapTotal
+            | Self::Pull
             | Self::TrueError
             | Self::TrueTetherOut => Some(Worst::Most),
             Self::Covered | Self::CrossTrack | Self::SpeedSent | Self::ReturnPath | Self::TrueSpeed => None,
@@ -133,6 +144,7 @@ impl FigureId {
             Self::TetherOut | Self::TrueTetherOut => Limit::Most(tether?.reel_length_m),
             Self::WrapLargest => Limit::Most(tether?.wrap_max_rad.to_degrees()),
             Self::WrapTotal => Limit::Most(tether?.wrap_total_max_rad.to_degrees()),
+            Self::Pull => Limit::Most(config.tether.as_ref()?.reel?.pull_n),
             Self::Covered | Self::CrossTrack | Self::ReturnPath | Self::TrueError | Self::TrueSpeed => {
                 return None;
             }
@@ -268,11 +280,14 @@ impl Figures {
             EventKind::Held { .. } | EventKind::Ended { .. } => {
                 self.set(FigureId::SpeedSent, t_s, Some(0.0));
             }
-            EventKind::Tethered { length_m, wrap_max_rad, wrap_total_rad, return_length_m, .. } => {
+            EventKind::Tethered {
+                length_m, wrap_max_rad, wrap_total_rad, pull_n, return_length_m, ..
+            } => {
                 self.set(FigureId::TetherOut, t_s, Some(*length_m));
                 self.set(FigureId::ReturnPath, t_s, *return_length_m);
                 self.set(FigureId::WrapLargest, t_s, Some(wrap_max_rad.to_degrees()));
                 self.set(FigureId::WrapTotal, t_s, Some(wrap_total_rad.to_degrees()));
+                self.set(FigureId::Pull, t_s, *pull_n);
             }
             EventKind::TetherTruth { length_m, .. } => {
                 self.set(FigureId::TrueTetherOut, t_s, Some(*length_m));
@@ -286,7 +301,11 @@ impl Figures {
 
     fn open(&mut self, run: &RunOpened) {
         let config = &run.mission;
-        let has = |id: &FigureId| config.tether.is_some() || !id.is_of_tether();
+        let tether = config.tether.as_ref();
+        let has = |id: &FigureId| match id {
+            FigureId::Pull => tether.is_some_and(|tether| tether.reel.is_some()),
+            id => tether.is_some() || !id.is_of_tether(),
+        };
         let row = |id: FigureId| Figure { id, value: None, limit: id.limit(config), worst: None };
         let rows = FigureId::ALL.into_iter().filter(has).map(row).collect();
         let chart = Some(Chart { world: run.world.as_drawn(), map: Map::default() });

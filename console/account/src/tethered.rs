@@ -67,8 +67,13 @@ mod tests {
     #[test]
     fn cable_that_stays_out_at_the_anchor_is_entangled_and_elsewhere_it_is_not() {
         let limits = Limits { reel_length_m: 9.0, wrap_max_rad: 9.0, wrap_total_max_rad: 9.0 };
-        let config =
-            TetherConfig { anchor: Point::origin(), limits, friction: 0.3, allow_uncertified: false };
+        let config = TetherConfig {
+            anchor: Point::origin(),
+            limits,
+            friction: 0.3,
+            reel: None,
+            allow_uncertified: false,
+        };
         let mut tethered = Tethered::new(&config);
         assert_eq!(tethered.tether(None, None), None);
         tethered.lie(7.0, 6.5, 7.5, 6.9);

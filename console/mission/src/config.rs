@@ -123,6 +123,9 @@ pub struct TetherConfig {
     pub limits: tether::Limits,
     /// Friction of the cable on steel, used to compute the pull; the shape of the cable does not depend on it.
     pub friction: f64,
+    /// The reel and the weight of the cable; without it, the pull is not checked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reel: Option<tether::Reel>,
     /// Whether plans that cannot be certified may be run.
     #[serde(default)]
     pub allow_uncertified: bool,

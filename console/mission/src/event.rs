@@ -102,6 +102,9 @@ pub enum EventKind {
         wrap_total_rad: f64,
         /// Factor by which the wraps multiply the force needed to pull the tether (capstan equation).
         pull_factor: f64,
+        /// Pull at the reel that taking up this cable needs, newtons; absent if the scenario does not describe the reel.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pull_n: Option<f64>,
         /// Length of the return path along the cable, metres; absent if the hull does not fit.
         return_length_m: Option<f64>,
         /// The bends of the taut cable between the anchor and the robot.

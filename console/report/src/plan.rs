@@ -229,12 +229,27 @@ fn certified(certificate: &Certificate) -> String {
     let reasons: Vec<String> = certificate.reasons.iter().map(|why| format!("          {why}\n")).collect();
     format!(
         "tether    {}, at most {tether_length_max_m:.2} m out (minimum possible {eccentricity_m:.2} m), \
-         wrap {:.0}° on one obstacle, {:.0}° in total\n{}",
-        if certificate.certified { "certified" } else { "NOT certified" },
+         wrap {:.0}° on one obstacle, {:.0}° in total\n{}{}",
+        match (certificate.certified, certificate.warnings.is_empty()) {
+            (true, true) => "certified",
+            (true, false) => "certified with a warning",
+            (false, _) => "NOT certified",
+        },
         wrap_max_rad.to_degrees(),
         wrap_total_max_rad.to_degrees(),
         reasons.concat(),
+        pull(certificate),
     )
+}
+
+/// The pull as text.
+fn pull(certificate: &Certificate) -> String {
+    let warnings: Vec<String> = certificate.warnings.iter().map(|why| format!("warning   {why}\n")).collect();
+    let text = certificate.pull_text();
+    let figures = certificate.pull.map_or_else(String::new, |pull| {
+        format!(", ratio {:.2}; the robot pulls at most {:.1} N", pull.ratio(), pull.robot_needed_n)
+    });
+    format!("{}{figures}\n{}", text.replacen("pull ", "pull      ", 1), warnings.concat())
 }
 
 #[cfg(test)]

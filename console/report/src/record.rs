@@ -106,6 +106,7 @@ impl Record {
                 wrap_max_rad,
                 wrap_total_rad,
                 pull_factor,
+                pull_n,
                 bends,
                 ..
             } => {
@@ -116,6 +117,7 @@ impl Record {
                         length_m: *length_m as f32,
                         wrap_max_rad: wrap_max_rad.abs() as f32,
                         wrap_total_rad: wrap_total_rad.abs() as f32,
+                        pull_n: pull_n.map_or(f32::NAN, |pull_n| pull_n as f32),
                     };
                     let reel_off_m = paid_out_m.map(|out_m| (out_m - length_m).abs());
                     tether.lie(point, reel_off_m, *pull_factor, (bends, robot));

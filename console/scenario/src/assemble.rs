@@ -292,6 +292,9 @@ fn tether_of(
     let section = sections.root.table("tether")?;
     let start = start.map(|pose| pose.position);
     let tether = tether::tether(&section, start)?;
+    if let Some(robot) = &floor.robot {
+        tether::check_speed(&section, robot.limits.v_max_m_per_s);
+    }
     let Some(boundary) = &floor.boundary else { return Some(tether) };
     let site = Site { boundary, obstacles: &floor.obstacles, zones: &[], radius_m: 0.0 };
     if let Some(start) = start {

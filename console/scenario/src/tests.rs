@@ -665,3 +665,35 @@ fn a_scanner_is_read_with_its_defaults_and_wrong_ones_are_named() {
         assert!(text.contains(key) && text.contains(why), "{text}");
     }
 }
+
+#[test]
+fn a_reel_is_read_with_its_defaults_and_wrong_keys_are_named() {
+    let with = |keys: &str| format!("{SMALL}[tether]\nreel_length_m = 30.0\n{keys}");
+    assert_eq!(read(&with("")).mission.tether.unwrap().reel, None);
+    let wanted = world::tether::Reel {
+        mass_kg_per_m: 0.1,
+        floor_friction: 0.3,
+        pull_n: 6.0,
+        pay_out_n: 0.5,
+        robot_pull_n: None,
+        pull_ratio_max: 0.8,
+    };
+    let reel = read(&with("reel_pull_n = 6.0")).mission.tether.unwrap().reel;
+    assert_eq!(reel, Some(wanted));
+    let others = "reel_pull_n = 6.0\nmass_kg_per_m = 0.3\nrobot_pull_n = 40.0\npull_ratio_max = 0.7";
+    let reel = read(&with(others)).mission.tether.unwrap().reel.unwrap();
+    assert_eq!((reel.mass_kg_per_m, reel.robot_pull_n, reel.pull_ratio_max), (0.3, Some(40.0), 0.7));
+    for (keys, key, why) in [
+        ("mass_kg_per_m = 0.2", "tether.reel_pull_n", "tether.mass_kg_per_m has no effect"),
+        ("reel_pull_n = 0.0", "tether.reel_pull_n", "greater than 0 N"),
+        ("reel_pull_n = nan", "tether.reel_pull_n", "finite"),
+        ("reel_pull_n = 6.0\nmass_kg_per_m = 1e9", "tether.mass_kg_per_m", "at most 20 kg/m"),
+        ("reel_pull_n = 6.0\nfloor_friction = -0.1", "tether.floor_friction", "at least 0"),
+        ("reel_pull_n = 6.0\npull_ratio_max = 1.2", "tether.pull_ratio_max", "at most 1"),
+        ("reel_pull_n = 6.0\nreel_speed_m_per_s = 0.01", "tether.reel_speed_m_per_s", "speed of the robot"),
+        ("reel_pull = 6.0", "tether.reel_pull", "reel_pull_n"),
+    ] {
+        let text = errors(&with(keys)).render();
+        assert!(text.contains(key) && text.contains(why), "{text}");
+    }
+}

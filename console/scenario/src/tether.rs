@@ -6,7 +6,10 @@ use super::{
     section::Section,
 };
 use mission::TetherConfig;
-use world::{Point, tether::Limits};
+use world::{
+    Point,
+    tether::{Limits, Reel},
+};
 
 /// Reads `[tether]`; without `anchor_m`, the anchor is the robot's start.
 pub(crate) fn tether(section: &Section<'_>, start: Option<Point>) -> Option<TetherConfig> {
@@ -14,12 +17,61 @@ pub(crate) fn tether(section: &Section<'_>, start: Option<Point>) -> Option<Teth
     let (reel_length_m, friction) = (section.number("reel_length_m"), section.number("friction"));
     let (wrap_deg, sum_deg) = (section.number("wrap_max_deg"), section.number("wrap_total_max_deg"));
     let allow_uncertified = section.flag("allow_uncertified");
+    let reel = reel(section);
     let limits = Limits {
         reel_length_m: reel_length_m?,
         wrap_max_rad: wrap_deg?.to_radians(),
         wrap_total_max_rad: sum_deg?.to_radians(),
     };
-    Some(TetherConfig { anchor: anchor?, limits, friction: friction?, allow_uncertified: allow_uncertified? })
+    Some(TetherConfig {
+        anchor: anchor?,
+        limits,
+        friction: friction?,
+        reel,
+        allow_uncertified: allow_uncertified?,
+    })
+}
+
+/// The keys that describe the reel and the cable; the pull is checked if, and only if, the first is given.
+const REEL: [&str; 7] = [
+    "reel_pull_n",
+    "mass_kg_per_m",
+    "floor_friction",
+    "reel_speed_m_per_s",
+    "reel_pay_out_n",
+    "robot_pull_n",
+    "pull_ratio_max",
+];
+
+/// Reads the reel. Complains about keys that would have no effect because `reel_pull_n` is missing.
+fn reel(section: &Section<'_>) -> Option<Reel> {
+    if let Some(key) = REEL.iter().find(|key| section.has(key)) {
+        section.require(
+            REEL[0],
+            &format!("add the pull of the reel, in N; without it, tether.{key} has no effect"),
+        );
+    }
+    Some(Reel {
+        pull_n: section.number("reel_pull_n")?,
+        mass_kg_per_m: section.number("mass_kg_per_m")?,
+        floor_friction: section.number("floor_friction")?,
+        pay_out_n: section.number("reel_pay_out_n")?,
+        robot_pull_n: section.number("robot_pull_n"),
+        pull_ratio_max: section.number("pull_ratio_max")?,
+    })
+}
+
+/// Complains about a reel that is slower than the robot: the certificate assumes that the reel takes up all slack at
+/// once.
+pub(crate) fn check_speed(section: &Section<'_>, v_max_m_per_s: f64) {
+    let Some(speed_m_per_s) = section.number("reel_speed_m_per_s") else { return };
+    if speed_m_per_s < v_max_m_per_s {
+        let must_be = format!(
+            "at least {v_max_m_per_s} m/s, the largest speed of the robot; a slower reel leaves slack behind a robot \
+             that drives back"
+        );
+        section.complain("reel_speed_m_per_s", Complaint::OutOfRange(must_be));
+    }
 }
 
 /// Complains about an anchor that is not on free floor, and about a reel that is too short to reach the start.

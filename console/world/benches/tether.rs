@@ -4,7 +4,7 @@ use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 use world::{
     Boundary, Obstacle, ObstacleId, Point, Shape,
-    tether::{Cable, Case, Limits, certify},
+    tether::{Cable, Case, Limits, Reel, certify},
 };
 
 const RADIUS_M: f64 = 50.0;
@@ -57,7 +57,17 @@ fn one_tick(c: &mut Criterion) {
 
 fn certificate(c: &mut Criterion) {
     let boundary = Boundary::Circle { radius_m: RADIUS_M };
-    for count in [0, 16, 120] {
+    let reel = Reel {
+        mass_kg_per_m: 0.1,
+        floor_friction: 0.3,
+        pull_n: 60.0,
+        pay_out_n: 0.5,
+        robot_pull_n: None,
+        pull_ratio_max: 0.8,
+    };
+    for (count, pull) in
+        [0, 16, 120].into_iter().flat_map(|count| [(count, None), (count, Some(reel.limits(0.3)))])
+    {
         let (obstacles, path) = (columns(count), lanes(0.6, 0.4));
         let anchor = Point::new(0.0, 0.05);
         let cuts: Vec<Vec<Point>> = obstacles
@@ -65,7 +75,8 @@ fn certificate(c: &mut Criterion) {
             .map(|o| vec![o.shape.center(), Point::from(o.shape.center().coords.normalize() * RADIUS_M)])
             .collect();
         let limits = Limits { reel_length_m: 60.0, wrap_max_rad: 3.0, wrap_total_max_rad: 6.0 };
-        c.bench_function(&format!("certificate of {} points, {count} columns", path.len()), |b| {
+        let with = if pull.is_some() { ", with pull" } else { "" };
+        c.bench_function(&format!("certificate of {} points, {count} columns{with}", path.len()), |b| {
             b.iter_batched(
                 || Case {
                     path: &path,
@@ -75,6 +86,7 @@ fn certificate(c: &mut Criterion) {
                     obstacles: &obstacles,
                     room_m: 0.3,
                     limits,
+                    pull,
                     returns: true,
                     cuts: &cuts,
                 },

@@ -6,7 +6,7 @@
 //! no bounds.
 //!
 //! Read the files in this order: `cable` (the exact taut line), `cable_obstacles` (the obstacles that it can bear on),
-//! `certify` (the effect of a whole path on the cable), `homotopy` (the cheap cross-check), `geodesic` (the shortest
+//! `certify` (the effect of a whole path on the cable), `pull` (the force that moves the cable), `homotopy` (the cheap cross-check), `geodesic` (the shortest
 //! cable that would suffice).
 
 mod cable;
@@ -20,6 +20,7 @@ mod geodesic;
 mod ground;
 mod home;
 mod homotopy;
+mod pull;
 mod reach;
 mod reasons;
 mod replay;
@@ -42,4 +43,5 @@ pub use cuts::crossings;
 pub use geodesic::Geodesic;
 pub use ground::Ground;
 pub use homotopy::{HomotopySignature, RayCrossing, Rays};
+pub use pull::{Drag, Pull, PullLimits, Reel};
 pub use reach::Reach;

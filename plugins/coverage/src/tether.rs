@@ -96,6 +96,7 @@ impl Tethered<'_> {
             obstacles,
             room_m: workspace.keep_m,
             limits,
+            pull: None,
             returns: true,
             cuts,
         }

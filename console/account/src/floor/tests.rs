@@ -157,6 +157,7 @@ fn tether() -> mission::TetherConfig {
         anchor: Point::new(0.0, -4.5),
         limits: world::tether::Limits { reel_length_m: 6.6, wrap_max_rad: 9.0, wrap_total_max_rad: 9.0 },
         friction: 0.3,
+        reel: None,
         allow_uncertified: false,
     }
 }

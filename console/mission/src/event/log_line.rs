@@ -410,10 +410,11 @@ fn certificate_text(planner: &str, refused: bool, certificate: &Certificate) -> 
         (false, true) => {
             let left =
                 certificate.end_length_m.map_or_else(String::new, |m| format!(", {m:.1} m out after return"));
-            format!(
-                "plan of {planner} certified: at most {:.1} m of tether out{left}",
-                certificate.tether_length_max_m
-            )
+            let pull = certificate.pull.map_or_else(String::new, |pull| format!(", pull {}", pull.text()));
+            let length_m = certificate.tether_length_max_m;
+            let figures = format!("at most {length_m:.1} m of tether out{left}{pull}");
+            let whole = [figures].into_iter().chain(certificate.warnings.iter().cloned());
+            format!("plan of {planner} certified: {}", whole.collect::<Vec<_>>().join("; "))
         }
     }
 }

@@ -100,11 +100,12 @@ impl EventKind {
                 wrap_max_rad,
                 wrap_total_rad,
                 pull_factor,
+                pull_n,
                 return_length_m,
                 bends,
             } => {
                 [length_m, free_m, wrap_max_rad, wrap_total_rad, pull_factor].into_iter().for_each(round);
-                [paid_out_m, return_length_m].into_iter().flatten().for_each(round);
+                [paid_out_m, return_length_m, pull_n].into_iter().flatten().for_each(round);
                 bends.iter_mut().for_each(round_point);
                 for TetherContact { wrap_rad, at, .. } in contacts {
                     round(wrap_rad);

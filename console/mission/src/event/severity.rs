@@ -52,8 +52,8 @@ pub(super) fn of_hold(by: &HoldReason) -> Severity {
     }
 }
 
-/// The severity of a plan's certificate. A refused plan is not run; whatever follows has its own event: a plan from the
+/// The severity of a plan's certificate; a certified plan with a warning is worth a look. A refused plan is not run; whatever follows has its own event: a plan from the
 /// anchor, or a hold. If a different planner is active, nothing follows.
 pub(super) fn of_certificate(certificate: &Certificate) -> Severity {
-    if certificate.certified { Severity::Info } else { Severity::Warn }
+    if certificate.certified && certificate.warnings.is_empty() { Severity::Info } else { Severity::Warn }
 }

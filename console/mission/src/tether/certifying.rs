@@ -54,6 +54,7 @@ pub(super) fn certified(
         obstacles: &world.obstacles,
         room_m: hull_m,
         limits: config.limits,
+        pull: config.reel.map(|reel| reel.limits(config.friction)),
         returns,
         cuts,
     };

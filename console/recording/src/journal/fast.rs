@@ -62,7 +62,7 @@ pub(super) fn event(line: &[u8]) -> Option<Event> {
             Tethered {
                 length_m: f64, free_m: f64, contacts: Vec<TetherContact>, wrap_max_rad: f64, wrap_total_rad: f64,
                 pull_factor: f64, bends: Vec<Point>;
-                paid_out_m: Option<f64>, return_length_m: Option<f64>
+                paid_out_m: Option<f64>, return_length_m: Option<f64>, pull_n: Option<f64>
             }
         ),
         b"planned" => read!(

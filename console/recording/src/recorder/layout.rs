@@ -12,7 +12,7 @@ use crate::{
     error::RecordingError,
     rr::{self, bp, datatypes, view, view_data, view_part},
 };
-use mission::{TaskConfig, event::RunOpened};
+use mission::{MissionConfig, TaskConfig, event::RunOpened};
 use rr::AsComponents;
 
 /// Margin around the tank as a share of its size.
@@ -107,7 +107,7 @@ impl Sketch {
             scans.then(|| self.plot("Reachable floor scanned [%]", &[paths::COVERED], Some([0.0, 105.0])));
         let speed = self.plot("Speed (green), sent (blue) [m/s]", &[paths::SPEED, paths::SPEED_SENT], None);
         let clearance = self.plot("Clearance [m]", &[paths::CLEARANCE], None);
-        let planning = self.planning(&run.mission.task, run.mission.tether.is_some());
+        let planning = self.planning(&run.mission);
         let states = bp::StateTimelineView::new("States")
             .with_origin(format!("/{}", paths::STATE))
             .with_contents(["$origin/**"])
@@ -131,24 +131,27 @@ impl Sketch {
     }
 
     /// Plots of the planner's internal figures: one at a time, the most informative first.
-    fn planning(&mut self, task: &TaskConfig, has_tether: bool) -> bp::ContainerLike {
+    fn planning(&mut self, mission: &MissionConfig) -> bp::ContainerLike {
         let forces = self.plot("Forces [N]", &[paths::FORCE_SIZES], None);
         let figures = self.plot_with_legend("Planner", paths::PLANNER_SCALARS);
-        match task {
-            _ if has_tether => {
+        match (&mission.task, &mission.tether) {
+            (_, Some(tether)) => {
                 let out = [paths::TETHER_OUT, paths::TETHER_OUT_TRUE, paths::TETHER_HOME];
                 let out = self.plot("Tether [m]", &out, None);
                 let wraps = self.plot("Wraps [deg]", &[paths::TETHER_WRAP, paths::TETHER_SUM], None);
+                let pull =
+                    tether.reel.map(|_| self.plot("Pull at the reel [N]", &[paths::TETHER_PULL], None));
                 let cross_track = self.plot("Cross-track [m]", &[paths::CROSS_TRACK], None);
                 let residuals = self.residuals();
-                bp::Tabs::new([out, wraps, cross_track, residuals, forces, figures]).into()
+                let others = [cross_track, residuals, forces, figures];
+                bp::Tabs::new([out, wraps].into_iter().chain(pull).chain(others)).into()
             }
-            TaskConfig::Follow { .. } | TaskConfig::Cover { .. } => {
+            (TaskConfig::Follow { .. } | TaskConfig::Cover { .. }, None) => {
                 let cross_track = self.plot("Cross-track [m]", &[paths::CROSS_TRACK], None);
                 let residuals = self.residuals();
                 bp::Tabs::new([cross_track, residuals, forces, figures]).into()
             }
-            TaskConfig::Goto { .. } => {
+            (TaskConfig::Goto { .. }, None) => {
                 let residuals = self.residuals();
                 bp::Tabs::new([forces, figures, residuals]).into()
             }

@@ -71,6 +71,7 @@ pub(crate) const TETHER_OUT_TRUE: &str = "scalars/tether/out_true";
 pub(crate) const TETHER_HOME: &str = "scalars/tether/return_path";
 pub(crate) const TETHER_WRAP: &str = "scalars/tether_wrap/largest";
 pub(crate) const TETHER_SUM: &str = "scalars/tether_wrap/sum";
+pub(crate) const TETHER_PULL: &str = "scalars/tether_pull";
 
 /// Lanes of the timeline of states.
 pub(crate) const STATE: &str = "state";

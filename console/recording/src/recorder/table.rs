@@ -42,6 +42,10 @@ const TETHER_FIGURES: [Figure; 5] = [
     }),
 ];
 
+/// The figure of a run whose scenario describes the reel.
+const PULL_FIGURE: Figure =
+    (paths::TETHER_PULL, FigureId::Pull, style::WARNING, |tick| tick.tether.as_ref()?.pull_n);
+
 /// The moving entities of the map.
 fn moving(run: &RunOpened) -> Vec<Box<dyn Series>> {
     let spacing_m = run.mission.cell_m;
@@ -81,9 +85,10 @@ impl Table {
     pub(crate) fn open(stream: &Stream, run: &RunOpened) -> Result<Self, RecordingError> {
         let mut series = moving(run);
         let mut figures = FIGURES.to_vec();
-        if run.mission.tether.is_some() {
+        if let Some(config) = &run.mission.tether {
             series.extend(tether());
             figures.extend(TETHER_FIGURES);
+            figures.extend(config.reel.map(|_| PULL_FIGURE));
         }
         for (path, id, color, value) in figures {
             stream.always(path, &curve(id.name(), color))?;

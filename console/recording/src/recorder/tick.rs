@@ -68,6 +68,7 @@ pub(crate) struct Tether {
     pub return_length_m: Option<f64>,
     pub wrap_max_deg: f64,
     pub wrap_total_deg: f64,
+    pub pull_n: Option<f64>,
 }
 
 impl Tick {
@@ -119,6 +120,7 @@ impl Tick {
                 contacts,
                 wrap_max_rad,
                 wrap_total_rad,
+                pull_n,
                 return_length_m,
                 bends,
                 ..
@@ -132,6 +134,7 @@ impl Tick {
                     return_length_m: *return_length_m,
                     wrap_max_deg: wrap_max_rad.to_degrees(),
                     wrap_total_deg: wrap_total_rad.to_degrees(),
+                    pull_n: *pull_n,
                 });
             }
             _ => {}

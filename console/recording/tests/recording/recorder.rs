@@ -121,7 +121,16 @@ fn a_tethered_run_has_the_cable_in_every_tick_and_its_figures() {
     let mut events = events(20);
     let limits = world::tether::Limits { reel_length_m: 30.0, wrap_max_rad: 3.0, wrap_total_max_rad: 6.0 };
     let anchor = world::Point::origin();
-    let tether = mission::TetherConfig { anchor, limits, friction: 0.3, allow_uncertified: false };
+    let reel = world::tether::Reel {
+        mass_kg_per_m: 0.1,
+        floor_friction: 0.3,
+        pull_n: 6.0,
+        pay_out_n: 0.5,
+        robot_pull_n: None,
+        pull_ratio_max: 0.8,
+    };
+    let tether =
+        mission::TetherConfig { anchor, limits, friction: 0.3, reel: Some(reel), allow_uncertified: false };
     if let EventKind::RunOpened(run) = &mut events[0].kind {
         run.mission.tether = Some(tether);
     }
@@ -144,6 +153,7 @@ fn a_tethered_run_has_the_cable_in_every_tick_and_its_figures() {
                 wrap_max_rad: 1.0,
                 wrap_total_rad: 1.0,
                 pull_factor: 1.3,
+                pull_n: Some(1.2 + 0.01 * length_m),
                 return_length_m: bears.then_some(length_m),
                 bends: vec![],
             };
@@ -164,6 +174,10 @@ fn a_tethered_run_has_the_cable_in_every_tick_and_its_figures() {
     ] {
         assert_eq!(rows(&content, entity, component).len(), wanted, "{entity}");
     }
+    // The pull changes with the length.
+    let changes = |entity| rows(&content, entity, "Scalars:scalars").len();
+    assert_eq!(changes("scalars/tether_pull"), changes("scalars/tether/out"));
+    assert!(changes("scalars/tether_pull") > 2);
 }
 
 #[test]

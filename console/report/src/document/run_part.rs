@@ -84,6 +84,9 @@ pub struct TetherPart {
     pub end_length_m: f64,
     /// Largest factor by which the wraps multiplied the pull.
     pub pull_factor_max: f64,
+    /// Pull that reeling in needed; absent if the scenario does not describe the reel, so the pull was not checked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pull: Option<PullPart>,
     /// Assumed coefficient of friction between tether and steel.
     pub friction: f64,
     /// Largest difference between the length at the reel and the length according to the map, metres; absent without
@@ -91,6 +94,17 @@ pub struct TetherPart {
     pub reel_off_max_m: Option<f64>,
     /// The tether record according to the true position; absent outside simulation.
     pub truth: Option<Tether>,
+}
+
+/// The pull that reeling in needed, computed from the taut tether.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct PullPart {
+    /// Largest pull, newtons.
+    pub max_n: f64,
+    /// Mission time of the largest pull, seconds.
+    pub max_at_s: f64,
+    /// Pull of the reel, newtons.
+    pub reel_n: f64,
 }
 
 /// One of the runs of a report.
@@ -205,6 +219,11 @@ fn tether(past: &PastRun, summary: &Summary) -> Option<TetherPart> {
         wrap_total_limit_rad: tether.limits.wrap_total_max_rad,
         end_length_m: f64::from(last.length_m),
         pull_factor_max: tether.pull_factor_max,
+        pull: tether.most_pulled.zip(tether.reel_pull_n).map(|(most, reel_n)| PullPart {
+            max_n: f64::from(most.pull_n),
+            max_at_s: f64::from(most.t_s),
+            reel_n,
+        }),
         friction: tether.friction,
         reel_off_max_m: tether.reel_off_max_m,
         truth: summary.tether,

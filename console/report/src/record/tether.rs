@@ -17,6 +17,9 @@ pub struct TetherPoint {
     pub wrap_max_rad: f32,
     /// Total wrap, radians.
     pub wrap_total_rad: f32,
+    /// Pull at the reel that taking up the tether needs, newtons; not a number if the scenario does not describe the
+    /// reel.
+    pub pull_n: f32,
 }
 
 /// The tether at a moment.
@@ -43,6 +46,10 @@ pub struct TetherRecord {
     pub longest: Lay,
     /// The moment of the largest total wrap.
     pub most_wrapped: Lay,
+    /// The moment of the largest pull; `None` if the scenario does not describe the reel.
+    pub most_pulled: Option<TetherPoint>,
+    /// Pull of the reel, newtons.
+    pub reel_pull_n: Option<f64>,
     /// Largest wrap on one obstacle, radians.
     pub wrap_max_rad: f64,
     /// Largest factor by which the wraps multiplied the pull.
@@ -63,6 +70,8 @@ impl TetherRecord {
             lines: Vec::new(),
             longest: Lay::default(),
             most_wrapped: Lay::default(),
+            most_pulled: None,
+            reel_pull_n: config.reel.map(|reel| reel.pull_n),
             wrap_max_rad: 0.0,
             pull_factor_max: 1.0,
             reel_off_max_m: None,
@@ -97,6 +106,9 @@ impl TetherRecord {
         }
         if point.wrap_total_rad > self.most_wrapped.point.wrap_total_rad {
             self.most_wrapped = lay();
+        }
+        if self.most_pulled.map_or(0.0, |most| most.pull_n) < point.pull_n {
+            self.most_pulled = Some(point);
         }
         self.wrap_max_rad = self.wrap_max_rad.max(f64::from(point.wrap_max_rad));
         self.pull_factor_max = self.pull_factor_max.max(pull_factor);

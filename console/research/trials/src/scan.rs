@@ -83,6 +83,7 @@ impl Tank {
                 wrap_max_rad: unlimited,
                 wrap_total_max_rad: unlimited,
             },
+            pull: None,
             returns: true,
             cuts,
         })?;

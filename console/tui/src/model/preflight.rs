@@ -158,7 +158,10 @@ impl Model {
         let run = &self.live.run;
         let tether = run.about.as_ref()?.mission.tether.as_ref()?;
         Some(match run.tether.as_ref().and_then(|tether| tether.certified) {
-            Some(true) => check("tether", CheckOutcome::Passed, "certified: can always be reeled in".into()),
+            Some(true) => match run.tether.as_ref().and_then(|tether| tether.warnings.first()) {
+                Some(warning) => check("tether", CheckOutcome::Warning, format!("certified, but {warning}")),
+                None => check("tether", CheckOutcome::Passed, "certified: can always be reeled in".into()),
+            },
             Some(false) if tether.allow_uncertified => check(
                 "tether",
                 CheckOutcome::Warning,

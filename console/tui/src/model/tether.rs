@@ -22,6 +22,9 @@ pub struct Tether {
     pub wrap_total_rad: f64,
     /// The pull: the factor by which the wraps multiply the pulling force.
     pub pull_factor: f64,
+    /// Pull at the reel that taking up the cable needs, newtons; `None` if the scenario does not describe the reel.
+    #[serde(default)]
+    pub pull_n: Option<f64>,
     /// Length of the return path along the cable, metres; `None` if there is none.
     pub return_length_m: Option<f64>,
     /// Whether more is paid out than the map explains; the geometry of the cable is then unknown.
@@ -33,6 +36,12 @@ pub struct Tether {
     /// The longest tether out that the certified current plan promises, metres; `None` without such a plan.
     #[serde(default)]
     pub promised_m: Option<f64>,
+    /// The pull that this plan needs; `None` if it was not checked.
+    #[serde(default)]
+    pub promised_pull: Option<world::tether::Pull>,
+    /// The warnings of this plan's certificate.
+    #[serde(default)]
+    pub warnings: Vec<String>,
     /// Whether the mission has reported that most of the reel is out.
     #[serde(default)]
     pub is_near_end: bool,
@@ -59,6 +68,7 @@ impl Tether {
             contacts,
             wrap_total_rad,
             pull_factor,
+            pull_n,
             return_length_m,
             bends,
             ..
@@ -67,6 +77,7 @@ impl Tether {
             self.length_m = paid_out_m.unwrap_or(*length_m);
             (self.free_m, self.wrap_total_rad) = (*free_m, *wrap_total_rad);
             (self.pull_factor, self.return_length_m) = (*pull_factor, *return_length_m);
+            self.pull_n = *pull_n;
             self.contacts.clone_from(contacts);
             self.line = ends.map_or_else(Vec::new, |(anchor, robot)| taut_line(anchor, bends, robot));
             self.t_s = Some(t_s);

@@ -51,7 +51,10 @@ fn wide_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> 
         row(0, "return path", home(tether)),
     ];
     lines.push((4, trend(look, tether, columns)));
-    lines.push((7, vec![(Role::Dim, format!(" {:<12} no pull sensor", "tension"))]));
+    lines.push(match pull(look, tether, ("", room)) {
+        Some(pull) => row(3, "pull needed", pull),
+        None => (7, vec![(Role::Dim, format!(" {:<12} no pull sensor", "tension"))]),
+    });
     if look.run.has_ended() {
         lines.push(row(5, "at end", (Role::Text, still_out)));
     }
@@ -77,12 +80,16 @@ fn narrow_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)
     let room = columns.saturating_sub(2);
     let (out, reel) = (metres(tether.length_m), reel(look));
     let out = [format!("{out} of {reel} m out"), format!("{out} of {reel} m")];
-    vec![
+    let pull = pull(look, tether, ("pull ", room)).map(|pull| row(3, "", pull));
+    [
         row(1, "", (out_role(look, tether), metered(out_share(look, tether), out, room))),
         row(2, "", (wrap_role(look, tether), worst(look, tether, ("wrap ", room)))),
         row(3, "total ", (Role::Text, total(tether))),
-        row(0, "return path ", home(tether)),
     ]
+    .into_iter()
+    .chain(pull)
+    .chain([row(0, "return path ", home(tether))])
+    .collect()
 }
 
 fn limits(look: &Look) -> Option<world::tether::Limits> {
@@ -148,6 +155,20 @@ fn worst(look: &Look, tether: &Tether, (label, room): (&str, usize)) -> String {
 
 fn total(tether: &Tether) -> String {
     format!("{}°, pull ×{}", degrees(tether.wrap_total_rad), text::number(tether.pull_factor, 2))
+}
+
+/// The pull at the reel that taking up the tether needs, after a label; `None` if the scenario does not describe the reel.
+fn pull(look: &Look, tether: &Tether, (label, room): (&str, usize)) -> Option<(Role, String)> {
+    let reel = look.run.about.as_ref()?.mission.tether.as_ref()?.reel?;
+    let pull_n = tether.pull_n?;
+    let share = pull_n / reel.pull_n;
+    let role = match share {
+        share if share > 1.0 => Role::Crit,
+        share if share > reel.pull_ratio_max => Role::Warn,
+        _ => Role::Text,
+    };
+    let words = format!("{label}{} of {} N", text::number(pull_n, 1), text::number(reel.pull_n, 1));
+    Some((role, metered(share, [words.clone(), words], room)))
 }
 
 fn contacts(tether: &Tether) -> String {

@@ -114,7 +114,7 @@ pub(crate) fn config() -> MissionConfig {
 /// A tether from the eastern shell.
 pub(crate) fn tether() -> TetherConfig {
     let limits = world::tether::Limits { reel_length_m: 30.0, wrap_max_rad: PI, wrap_total_max_rad: TAU };
-    TetherConfig { anchor: Point::new(9.4, 0.0), limits, friction: 0.3, allow_uncertified: false }
+    TetherConfig { anchor: Point::new(9.4, 0.0), limits, friction: 0.3, reel: None, allow_uncertified: false }
 }
 
 /// A planner with nothing set by hand.
@@ -482,6 +482,7 @@ impl ScriptedMission {
             wrap_max_rad: cable.wrap_max_rad(),
             wrap_total_rad: cable.wrap_total_rad(),
             pull_factor: capstan_factor(config.friction, cable.wrap_total_rad()),
+            pull_n: config.reel.map(|reel| cable.pull_at_anchor_n(reel.drag(config.friction))),
             return_length_m: Some(cable.length_m() + 0.4),
             bends: cable.taut_line().split_last().map_or(vec![], |(_, line)| line[1..].to_vec()),
         })

@@ -3,6 +3,7 @@
 use super::{
     cable_obstacles::{Bearing, CableObstacles, tangent_point},
     homotopy::HomotopySignature,
+    pull::Stretch,
     sweep::{Base, Event, SLACK_M, next_event},
 };
 use geometry::{Boundary, Point, Shape};
@@ -269,8 +270,7 @@ impl Cable {
     /// assert!((cable.length_m() - 8.0626).abs() < 1e-4);
     /// ```
     pub fn length_m(&self) -> f64 {
-        let base = self.base();
-        self.up_to_base_m() + (self.tip - base.leaves_at(base.out_rad)).norm()
+        self.up_to_base_m() + self.free_span_m()
     }
 
     /// Returns the contacts of the cable, from the anchor on; consecutive posts of one obstacle form one contact.
@@ -436,8 +436,28 @@ impl Cable {
     }
 
     fn up_to_base_m(&self) -> f64 {
-        self.bends.last().map_or(0.0, |bend| {
-            bend.before_m + self.obstacles.posts[bend.post].radius_m * bend.wrap_rad().max(0.0)
+        self.bends.last().map_or(0.0, |bend| self.up_to_bend_end_m(bend))
+    }
+
+    fn up_to_bend_end_m(&self, bend: &Bend) -> f64 {
+        bend.before_m + self.obstacles.posts[bend.post].radius_m * bend.wrap_rad().max(0.0)
+    }
+
+    /// Length of the straight span that ends at the robot, metres.
+    pub(super) fn free_span_m(&self) -> f64 {
+        let base = self.base();
+        (self.tip - base.leaves_at(base.out_rad)).norm()
+    }
+
+    /// The bends, each with the straight span before it, from the anchor on.
+    pub(super) fn stretches(&self) -> impl DoubleEndedIterator<Item = Stretch> {
+        self.bends.iter().enumerate().map(|(k, bend)| {
+            let behind_m = k.checked_sub(1).map_or(0.0, |before| self.up_to_bend_end_m(&self.bends[before]));
+            Stretch {
+                span_m: (bend.before_m - behind_m).max(0.0),
+                radius_m: self.obstacles.posts[bend.post].radius_m,
+                wrap_rad: bend.wrap_rad().max(0.0),
+            }
         })
     }
 

@@ -1,6 +1,6 @@
 //! The input of a certificate: a path, its surroundings, and the limits of the tether.
 
-use super::cable::Cable;
+use super::{cable::Cable, pull::PullLimits};
 use crate::tank::Obstacle;
 use geometry::{Boundary, Point};
 use serde::{Deserialize, Serialize};
@@ -33,6 +33,8 @@ pub struct Case<'a> {
     pub room_m: f64,
     /// The limits of the tether.
     pub limits: Limits,
+    /// The limits of the pull; `None` if the pull is not checked.
+    pub pull: Option<PullLimits>,
     /// Whether the path must end at the anchor with the tether reeled in.
     pub returns: bool,
     /// Cuts: lines that the path must not cross.

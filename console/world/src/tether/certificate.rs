@@ -1,5 +1,6 @@
 //! The certificate of a path.
 
+use super::pull::Pull;
 use serde::{Deserialize, Serialize};
 
 /// The results of certifying a path.
@@ -9,6 +10,9 @@ pub struct Certificate {
     pub certified: bool,
     /// The reasons for a refusal, as sentences; empty if certified.
     pub reasons: Vec<String>,
+    /// What is close to a limit, as sentences; a path with warnings can be certified.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// Longest cable on the path, metres.
     pub tether_length_max_m: f64,
     /// Largest distance from the anchor to any point of the path, measured along the shortest path, metres: the length
@@ -30,9 +34,25 @@ pub struct Certificate {
     pub cut_crossings: usize,
     /// Area of the floor that is sealed off by cuts, square metres.
     pub sealed_m2: f64,
+    /// The pull that the path needs; `None` if it was not checked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pull: Option<Pull>,
 }
 
 impl Certificate {
+    /// Returns the pull as text, or a statement that it was not checked.
+    ///
+    /// ```
+    /// let certificate = world::tether::Certificate::default();
+    /// assert_eq!(certificate.pull_text(), "pull not checked: the scenario does not describe the reel");
+    /// ```
+    pub fn pull_text(&self) -> String {
+        self.pull.map_or_else(
+            || "pull not checked: the scenario does not describe the reel".into(),
+            |pull| format!("pull {}", pull.text()),
+        )
+    }
+
     /// Returns the certificate of a path that could not be evaluated at all.
     ///
     /// ```

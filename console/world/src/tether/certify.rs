@@ -18,11 +18,11 @@ use super::{
 ///
 /// ```
 /// use world::{Boundary, Point, tether::{Case, Limits, certify}};
-/// # let (cable, obstacles, cuts, room_m) = (None, &[], &[], 0.3);
+/// # let (cable, obstacles, cuts, room_m, pull) = (None, &[], &[], 0.3, None);
 /// # let (anchor, boundary) = (Point::origin(), &Boundary::Circle { radius_m: 10.0 });
 /// let path = &[Point::new(0.0, 0.0), Point::new(6.0, 0.0), Point::new(6.0, 4.0), Point::new(0.0, 0.0)];
 /// let limits = Limits { reel_length_m: 7.0, wrap_max_rad: 2.0, wrap_total_max_rad: 3.0 };
-/// let case = Case { path, anchor, cable, boundary, obstacles, room_m, limits, returns: true, cuts };
+/// let case = Case { path, anchor, cable, boundary, obstacles, room_m, limits, pull, returns: true, cuts };
 /// let certificate = certify(&case).unwrap();
 /// assert!(!certificate.certified, "the reel is too short");
 /// assert!((certificate.tether_length_max_m - 52.0_f64.sqrt()).abs() < 1e-9);
@@ -56,10 +56,12 @@ pub fn certify_on(ground: &Ground, case: &Case<'_>) -> Result<Certificate, Tethe
         clearance_min_m: clearance.least_m,
         cut_crossings: cuts::crossings(case.path, case.cuts),
         sealed_m2: sealed.map_or(0.0, |SealedRegions { area_m2, .. }| area_m2),
+        pull: replay.pull(),
         ..Certificate::default()
     };
     let reasons = Reasons { case, replay: &replay, left: &left, clearance: &clearance, sealed };
     certificate.reasons = reasons.of(&certificate);
+    certificate.warnings = reasons.warnings(&certificate);
     certificate.certified = certificate.reasons.is_empty();
     Ok(certificate)
 }
@@ -75,6 +77,8 @@ pub struct Strain {
     pub wrap_max_rad: f64,
     /// Largest total wrap, radians.
     pub wrap_total_max_rad: f64,
+    /// Largest pull at the reel that taking up the cable needs, newtons; 0 if the pull is not checked.
+    pub pull_max_n: f64,
 }
 
 /// Computes the effect of a path on the cable, without checking collisions, cuts and sealed floor: quicker than
@@ -89,6 +93,7 @@ pub fn strain(ground: &Ground, case: &Case<'_>) -> Result<Strain, TetherError> {
         eccentricity_m: replay.eccentricity_m(ground),
         wrap_max_rad: replay.max_wrap.0,
         wrap_total_max_rad: replay.max_sum.0,
+        pull_max_n: replay.pull().map_or(0.0, |pull| pull.needed_n),
     })
 }
 
@@ -103,7 +108,8 @@ impl From<&Certificate> for Strain {
     fn from(certificate: &Certificate) -> Self {
         let Certificate { tether_length_max_m, eccentricity_m, wrap_max_rad, wrap_total_max_rad, .. } =
             *certificate;
-        Self { tether_length_max_m, eccentricity_m, wrap_max_rad, wrap_total_max_rad }
+        let pull_max_n = certificate.pull.map_or(0.0, |pull| pull.needed_n);
+        Self { tether_length_max_m, eccentricity_m, wrap_max_rad, wrap_total_max_rad, pull_max_n }
     }
 }
 

@@ -39,6 +39,11 @@ impl Reasons<'_> {
         {
             reasons.push("the clearance of the hull or a limit of the tether is not a number".into());
         }
+        if certificate.pull.is_some_and(|pull| !pull.ratio().is_finite() || pull.robot_needed_n.is_nan()) {
+            reasons.push(
+                "the pull of the reel, or the weight or friction of the tether, is not a number".into(),
+            );
+        }
         reasons.extend(self.collision(certificate));
         if certificate.tether_length_max_m > limits.reel_length_m {
             let (most_m, at) = self.replay.max_cable;
@@ -57,6 +62,7 @@ impl Reasons<'_> {
                 (total_rad.to_degrees(), limits.wrap_total_max_rad.to_degrees(), place(at));
             reasons.push(format!("total tether wrap {total:.0}° at {place}, limit {limit:.0}°"));
         }
+        reasons.extend(self.too_much_pull(certificate));
         reasons.extend(self.left_out(certificate));
         match certificate.cut_crossings {
             0 => {}
@@ -67,6 +73,36 @@ impl Reasons<'_> {
             reasons.push(format!("cuts seal off {:.2} m² of floor at {}", sealed.area_m2, place(sealed.at)));
         }
         reasons
+    }
+
+    /// Returns what is close to a limit, one sentence each.
+    pub(super) fn warnings(&self, certificate: &Certificate) -> Vec<String> {
+        let (Some(pull), Some(limits)) = (certificate.pull, self.case.pull) else { return Vec::new() };
+        let (ratio, limit) = (pull.ratio(), limits.preferred_n / limits.reel_n);
+        let warning = || {
+            format!("reeling in needs {}, ratio {ratio:.2}: above {limit:.2}, slack may remain", pull.text())
+        };
+        (pull.needed_n > limits.preferred_n && ratio <= 1.0).then(warning).into_iter().collect()
+    }
+
+    fn too_much_pull(&self, certificate: &Certificate) -> Vec<String> {
+        let (Some(pull), Some(limits)) = (certificate.pull, self.case.pull) else { return Vec::new() };
+        let weak_reel = || {
+            format!(
+                "reeling in needs {}: use a stronger reel, a lighter tether, another anchor or another planner",
+                pull.text()
+            )
+        };
+        let weak_robot = |limit_n: f64| {
+            format!(
+                "the robot must pull {:.1} N at {} to draw out its tether, but can pull {limit_n:.1} N",
+                pull.robot_needed_n,
+                place(pull.robot_at)
+            )
+        };
+        let is_over = |limit_n: &f64| pull.robot_needed_n > *limit_n;
+        let robot = limits.robot_n.filter(is_over).map(weak_robot);
+        (pull.ratio() > 1.0).then(weak_reel).into_iter().chain(robot).collect()
     }
 
     fn collision(&self, certificate: &Certificate) -> Option<String> {

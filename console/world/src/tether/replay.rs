@@ -6,6 +6,7 @@ use super::{
     case::Case,
     geodesic::Geodesic,
     ground::Ground,
+    pull::{Pull, Pulling},
 };
 use geometry::Point;
 use std::sync::Arc;
@@ -20,6 +21,7 @@ pub(super) struct Replay {
     pub max_wrap: (f64, Option<Bearing>),
     /// Largest total wrap, radians, and where the robot was.
     pub max_sum: (f64, Point),
+    pulling: Option<Pulling>,
 }
 
 impl Replay {
@@ -34,6 +36,7 @@ impl Replay {
             max_cable: (0.0, case.anchor),
             max_wrap: (0.0, None),
             max_sum: (0.0, case.anchor),
+            pulling: case.pull.map(|limits| Pulling::new(&limits, case.anchor)),
         };
         case.path.iter().for_each(|point| replay.drag_to(*point));
         Ok(replay)
@@ -56,6 +59,9 @@ impl Replay {
         if sum_rad > self.max_sum.0 {
             self.max_sum = (sum_rad, point);
         }
+        if let Some(pulling) = &mut self.pulling {
+            pulling.look_at(&self.cable, point);
+        }
     }
 
     /// Returns the largest distance from the anchor to any point of the path, measured along the shortest path, metres.
@@ -69,6 +75,11 @@ impl Replay {
             return straight_m;
         }
         Geodesic::farthest_m(ground.anchor, Arc::clone(&ground.obstacles), &self.lengths)
+    }
+
+    /// Returns the pull that the path needs; `None` if it is not checked.
+    pub(super) fn pull(&self) -> Option<Pull> {
+        self.pulling.map(Pulling::most)
     }
 
     /// Returns the cable after a straight return to the anchor.

@@ -90,7 +90,7 @@ fn the_reel_ends_by_what_it_has_paid_out() {
 fn scan_round_unseen_column(seen_m: f64) -> Flight {
     let anchor = covering().start.position;
     let limits = tether::Limits { reel_length_m: 50.0, wrap_max_rad: 50.0, wrap_total_max_rad: 50.0 };
-    let config = TetherConfig { anchor, limits, friction: 0.3, allow_uncertified: false };
+    let config = TetherConfig { anchor, limits, friction: 0.3, reel: None, allow_uncertified: false };
     let mut flight = Flight::new(MissionConfig { tether: Some(config), attended: false, ..covering() });
     flight.reel = cable(anchor, &[UNSEEN]);
     flight.tick(&[Order::Start]);
@@ -134,7 +134,7 @@ fn what_the_cable_has_caught_on_is_planned_for_once_it_is_seen() {
 fn plans_for_column_across_cable(wrap_max_rad: f64) -> Vec<Reason> {
     let anchor = covering().start.position;
     let limits = tether::Limits { reel_length_m: 50.0, wrap_max_rad, wrap_total_max_rad: 50.0 };
-    let config = TetherConfig { anchor, limits, friction: 0.3, allow_uncertified: false };
+    let config = TetherConfig { anchor, limits, friction: 0.3, reel: None, allow_uncertified: false };
     let mut flight = Flight::new(MissionConfig { tether: Some(config), attended: false, ..covering() });
     flight.tick(&[Order::Start]);
     while flight.pose.position.y < 0.5 {

@@ -92,6 +92,7 @@ fn a_plan_that_may_not_be_run_and_a_planner_that_fails_say_why() {
         anchor: Point::new(-3.0, 0.0),
         limits,
         friction: 0.3,
+        reel: None,
         allow_uncertified: false,
     };
     let mut flight = Flight::new(MissionConfig { tether: Some(tether), ..seen() });

@@ -12,8 +12,13 @@ use world::{Obstacle, ObstacleId, Shape, tether::Limits};
 
 pub(super) fn tethered(reel_length_m: f64) -> MissionConfig {
     let limits = Limits { reel_length_m, wrap_max_rad: 1.0, wrap_total_max_rad: 2.0 };
-    let tether =
-        TetherConfig { anchor: Point::new(-3.0, 0.0), limits, friction: 0.3, allow_uncertified: true };
+    let tether = TetherConfig {
+        anchor: Point::new(-3.0, 0.0),
+        limits,
+        friction: 0.3,
+        reel: None,
+        allow_uncertified: true,
+    };
     MissionConfig { tether: Some(tether), ..config() }
 }
 
@@ -198,7 +203,7 @@ fn a_plan_that_is_refused_under_way_is_asked_for_again_after_a_way_home() {
     let config = covering::covering();
     let limits = Limits { reel_length_m: 50.0, wrap_max_rad: 50.0, wrap_total_max_rad: 50.0 };
     let anchor = config.start.position;
-    let tether = TetherConfig { anchor, limits, friction: 0.3, allow_uncertified: false };
+    let tether = TetherConfig { anchor, limits, friction: 0.3, reel: None, allow_uncertified: false };
     let mut flight = Flight::new(MissionConfig { tether: Some(tether), ..config });
     flight.tick(&[Order::Start]);
     flight.fly(900);

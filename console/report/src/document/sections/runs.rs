@@ -65,7 +65,7 @@ fn tether_table(tether: &TetherPart) -> Table {
     let truth = tether.truth;
     let mut row =
         |name: &str, value: f64, at_s: Option<f64>, limit: Option<f64>, unit: &str, truth: Option<f64>| {
-            let decimals = usize::from(unit == " m");
+            let decimals = usize::from(unit != "°");
             let text = |value: f64| format!("{}{unit}", number(value, decimals));
             let share = limit.map(|limit| {
                 if value > limit { "over".into() } else { format!("{} %", percent_text(value / limit, 0)) }
@@ -112,8 +112,15 @@ fn tether_table(tether: &TetherPart) -> Table {
         " m",
         truth.map(|truth| truth.end_length_m),
     );
+    if let Some(pull) = tether.pull {
+        row("Largest pull to reel in", pull.max_n, Some(pull.max_at_s), Some(pull.reel_n), " N", None);
+    }
     if let Some(off_m) = tether.reel_off_max_m {
         row("Largest difference between reel and map", off_m, None, None, " m", None);
+    }
+    if tether.pull.is_none() {
+        let cells = ["Largest pull to reel in", "not checked", "", "", "", ""];
+        table.row(cells.map(Into::into).to_vec());
     }
     let pull = format!("×{:.2}", tether.pull_factor_max);
     let name = format!("Largest capstan factor (friction {})", tether.friction);

@@ -7,7 +7,10 @@ use mission::{Event, EventKind, Severity, event::TetherAlarm};
 impl Run {
     /// Forgets the last certificate, because its plan no longer runs.
     pub(super) fn forget_certificate(&mut self) {
-        self.tether.iter_mut().for_each(|tether| (tether.certified, tether.promised_m) = (None, None));
+        if let Some(tether) = &mut self.tether {
+            (tether.certified, tether.promised_m, tether.promised_pull) = (None, None, None);
+            tether.warnings.clear();
+        }
     }
 
     /// Folds in a tether event.
@@ -41,6 +44,8 @@ impl Run {
                 let tether = self.tether.get_or_insert_default();
                 tether.certified = Some(certificate.certified);
                 tether.promised_m = certificate.certified.then_some(certificate.tether_length_max_m);
+                tether.promised_pull = certificate.pull;
+                tether.warnings.clone_from(&certificate.warnings);
                 if certificate.certified {
                     self.clear(&Cause::Certificate);
                 } else {

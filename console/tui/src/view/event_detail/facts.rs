@@ -347,6 +347,7 @@ fn tether(alarm: &TetherAlarm, reached: Option<bool>) -> Vec<Field> {
 
 fn certified(planner: &str, refused: bool, certificate: &Certificate) -> Vec<Field> {
     let judgement = match (refused, certificate.certified) {
+        (false, true) if !certificate.warnings.is_empty() => "certified with a warning",
         (true, _) => "refused: the plan is not run",
         (false, false) => "not certified; runs on the operator's order",
         (false, true) => "certified",
@@ -355,6 +356,8 @@ fn certified(planner: &str, refused: bool, certificate: &Certificate) -> Vec<Fie
     let end = certificate.end_length_m.map_or_else(String::new, |m| format!(", {m:.1} m out after return"));
     let mut facts = vec![("planner", planner.to_owned()), ("judgement", judgement.into())];
     facts.extend(certificate.reasons.iter().map(|reason| ("reason", reason.clone())));
+    facts.extend(certificate.warnings.iter().map(|warning| ("warning", warning.clone())));
+    facts.push(("pull", certificate.pull_text().replacen("pull ", "", 1)));
     facts.push(("tether", format!("at most {:.1} m out{end}", certificate.tether_length_max_m)));
     facts.push(("wrap", format!("at most {:.0}° on one obstacle, {:.0}° in total", wraps.0, wraps.1)));
     let (collisions, cuts) = (certificate.collisions, certificate.cut_crossings);

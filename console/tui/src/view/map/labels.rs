@@ -285,7 +285,7 @@ fn is_named(obstacle: &Obstacle) -> bool {
     obstacle.known && (1..=NAME).contains(&text::width(&obstacle.name))
 }
 
-/// The letters of the figures that have a place: c smallest gap, t longest tether, w largest wrap, e largest error.
+/// The letters of the figures that have a place: c smallest gap, t longest tether, w largest wrap, p largest pull, e largest error.
 pub(super) fn worst_places(estimate: &Estimate) -> Vec<(&'static str, Point)> {
     let tether = estimate.tether.as_ref();
     let wrapped = tether.filter(|tether| tether.wrap_max.value > 0.0);
@@ -294,6 +294,7 @@ pub(super) fn worst_places(estimate: &Estimate) -> Vec<(&'static str, Point)> {
         ("c", estimate.clearance_min),
         ("e", estimate.accuracy_worst),
         ("w", wrapped.map(|tether| tether.wrap_max)),
+        ("p", tether.and_then(|tether| tether.pull_max_n)),
     ];
     places.into_iter().filter_map(|(letter, worst)| Some((letter, worst?.at))).collect()
 }

@@ -247,7 +247,7 @@ const fn figure(label: &'static str, letter: &'static str, unit: &'static str, d
 }
 
 /// The figures in table order.
-const FIGURES: [Figure; 9] = [
+const FIGURES: [Figure; 10] = [
     Figure {
         promised: |e, _| Some(Found::of(e.time_s)),
         limit: |m| Some(m.time_limit_s),
@@ -293,6 +293,17 @@ const FIGURES: [Figure; 9] = [
             Some(alike(format!("{}°", text::number(most.to_degrees(), 0))))
         },
         ..figure("wrap", "w", "°", 0)
+    },
+    Figure {
+        promised: |e, run| {
+            let worst = e.tether.as_ref()?.pull_max_n?;
+            let reel_n = run.about.as_ref()?.mission.tether.as_ref()?.reel?.pull_n;
+            let note = format!(" of {} N", text::number(reel_n, 1));
+            Some(Found { note, ..Found::worst(worst) })
+        },
+        limit: |m| Some(m.tether.as_ref()?.reel?).map(|reel| reel.pull_ratio_max * reel.pull_n),
+        now: |run| Some(alike(format!("{} N", text::number(run.tether.as_ref()?.pull_n?, 1)))),
+        ..figure("pull", "p", " N", 1)
     },
     Figure {
         brief: "AE",

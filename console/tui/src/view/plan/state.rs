@@ -102,19 +102,34 @@ fn resumption(look: &Look) -> Option<String> {
 
 fn certificate(look: &Look, columns: usize) -> Option<(Role, String)> {
     look.run.about.as_ref()?.mission.tether.as_ref()?;
-    Some(match look.run.tether.as_ref().and_then(|tether| tether.certified) {
+    let tether = look.run.tether.as_ref();
+    Some(match tether.and_then(|tether| tether.certified) {
         Some(true) => {
-            let words = ["tether certified: can always be reeled in", "tether certified"].map(str::to_owned);
-            (Role::Good, text::wording(words, columns))
+            let pull = pull(look);
+            let words = [
+                format!("tether certified: can always be reeled in; {pull}"),
+                format!("tether certified; {pull}"),
+                "tether certified".to_owned(),
+            ];
+            let has_warning = tether.is_some_and(|tether| !tether.warnings.is_empty());
+            (if has_warning { Role::Warn } else { Role::Good }, text::wording(words, columns))
         }
         Some(false) => (Role::Crit, "tether NOT certified".into()),
         None => (Role::Dim, "tether not certified yet".into()),
     })
 }
 
-/// The objections to the plan.
+/// The pull that the plan needs.
+fn pull(look: &Look) -> String {
+    let pull = look.run.tether.as_ref().and_then(|tether| tether.promised_pull);
+    pull.map_or_else(|| "pull not checked".into(), |pull| format!("pull {}", pull.text()))
+}
+
+/// The objections to the plan, and the warnings of its certificate.
 fn objections(look: &Look) -> Vec<String> {
     let alarms = look.run.alarms.list().iter();
+    let warnings = look.run.tether.iter().flat_map(|tether| &tether.warnings);
+    let warnings = warnings.map(|warning| text::capitalized(warning));
     alarms
         .filter(|alarm| matches!(alarm.cause, Cause::Certificate | Cause::Planner))
         .map(|alarm| match alarm.text.split_once(": ") {
@@ -122,6 +137,7 @@ fn objections(look: &Look) -> Vec<String> {
             Some((_, why)) if alarm.cause == Cause::Certificate => text::capitalized(why),
             _ => alarm.text.clone(),
         })
+        .chain(warnings)
         .collect()
 }
 

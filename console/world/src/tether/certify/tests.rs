@@ -29,6 +29,7 @@ fn case<'a>(path: &'a [Point], obstacles: &'a [Obstacle], cuts: &'a [Vec<Point>]
         obstacles,
         room_m: 0.3,
         limits: Limits { reel_length_m: 12.0, wrap_max_rad: 2.0, wrap_total_max_rad: 3.0 },
+        pull: None,
         returns: true,
         cuts,
     }
