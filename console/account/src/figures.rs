@@ -13,6 +13,8 @@ use world::{Obstacle, ObstacleMap, Point, World};
 pub enum FigureId {
     /// Half width of the 95 % position error.
     PositionError,
+    /// Protection level of the position.
+    Protection,
     /// Distance from the hull to the nearest solid object on the chart, at the estimated position.
     Clearance,
     /// Scanned share of the reachable floor.
@@ -41,8 +43,9 @@ pub enum FigureId {
 
 impl FigureId {
     /// All figures, in the order of the table.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::PositionError,
+        Self::Protection,
         Self::Clearance,
         Self::Covered,
         Self::CrossTrack,
@@ -61,6 +64,7 @@ impl FigureId {
     pub fn name(self) -> &'static str {
         match self {
             Self::PositionError => "95 % error",
+            Self::Protection => "protection level",
             Self::Clearance => "clearance",
             Self::Covered => "reachable floor",
             Self::CrossTrack => "cross-track",
@@ -113,6 +117,7 @@ impl FigureId {
         match self {
             Self::Clearance | Self::TrueClearance => Some(Worst::Least),
             Self::PositionError
+            | Self::Protection
             | Self::TetherOut
             | Self::WrapLargest
             | Self::WrapTotal
@@ -133,7 +138,12 @@ impl FigureId {
             Self::TetherOut | Self::TrueTetherOut => Limit::Most(tether?.reel_length_m),
             Self::WrapLargest => Limit::Most(tether?.wrap_max_rad.to_degrees()),
             Self::WrapTotal => Limit::Most(tether?.wrap_total_max_rad.to_degrees()),
-            Self::Covered | Self::CrossTrack | Self::ReturnPath | Self::TrueError | Self::TrueSpeed => {
+            Self::Protection
+            | Self::Covered
+            | Self::CrossTrack
+            | Self::ReturnPath
+            | Self::TrueError
+            | Self::TrueSpeed => {
                 return None;
             }
         };
@@ -250,6 +260,7 @@ impl Figures {
                 self.set(FigureId::Clearance, t_s, clearance_m.map(|m| m - self.hull_m));
                 self.compare(t_s);
             }
+            EventKind::Protected { level_m } => self.set(FigureId::Protection, t_s, *level_m),
             EventKind::Truth { pose, clearance_m, .. } => {
                 let before = self.truth.replace(Seen { tick, t_s, at: pose.position });
                 let before = before.filter(|before| t_s > before.t_s);
@@ -286,7 +297,10 @@ impl Figures {
 
     fn open(&mut self, run: &RunOpened) {
         let config = &run.mission;
-        let has = |id: &FigureId| config.tether.is_some() || !id.is_of_tether();
+        let has = |id: &FigureId| match id {
+            FigureId::Protection => config.locating.risk.is_some(),
+            id => config.tether.is_some() || !id.is_of_tether(),
+        };
         let row = |id: FigureId| Figure { id, value: None, limit: id.limit(config), worst: None };
         let rows = FigureId::ALL.into_iter().filter(has).map(row).collect();
         let chart = Some(Chart { world: run.world.as_drawn(), map: Map::default() });

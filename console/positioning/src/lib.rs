@@ -23,6 +23,7 @@ pub mod ekf;
 pub mod fixed_lag;
 pub mod particle;
 pub mod positioner;
+pub mod protection;
 pub mod session;
 
 mod anchor;
@@ -51,6 +52,7 @@ pub use nonlinear::Nls;
 pub use particle::{Particles, ParticlesConfig};
 pub use positioner::{Agreement, CycleResult, Doubt, Estimate, Positioner, PositionerConfig};
 pub use possible::{Impossible, Possible};
+pub use protection::{Guard, Multipliers, Risk, Unprotected};
 pub use quality::{alarm_limit, scatter_limit};
 pub use screened::Screened;
 pub use session::{CommonError, Session, Verdict, Wrong};
