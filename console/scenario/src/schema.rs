@@ -359,8 +359,7 @@ static AE: &[Key] = &[
     word("aggregation", &["mean", "midrange", "trimmed-mean", "posterior"]).or_word("mean"),
     key("calibrate_sound_speed", "", Kind::Flag).or_flag(false),
     number("integrity_risk", "", above(0.0).up_to(0.01)).or_none("no protection levels, or `1e-5`"),
-    number("station_faults_per_hour", "", above(0.0).up_to(1.0))
-        .or_none("no protection levels, or `1e-4`"),
+    number("station_faults_per_hour", "", above(0.0).up_to(1.0)).or_none("no protection levels, or `1e-4`"),
 ];
 
 static FAULTS: &[Key] = &[

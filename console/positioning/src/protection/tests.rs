@@ -143,11 +143,14 @@ fn the_level_of_the_pose_contains_the_error_while_a_station_drifts() {
     }
 }
 
+/// Makes the ranges of a cycle.
+type Input<'a> = &'a dyn Fn(&Run) -> Vec<RangeSet>;
+
 #[test]
 fn absurd_input_takes_the_protection_away_until_sound_ranges_return() {
     let mut draws = Draws::new(0.0, 1, 3);
     let mut run = Run::new(6);
-    let absurd: [&dyn Fn(&Run) -> Vec<RangeSet>; 4] = [
+    let absurd: [Input; 4] = [
         &|_| Vec::new(),
         &|run| run.config.stations.iter().map(|s| RangeSet { station: s.id, ranges_m: vec![1e9] }).collect(),
         &|run| vec![RangeSet { station: run.config.stations[0].id, ranges_m: vec![3.0; 1_000] }],
