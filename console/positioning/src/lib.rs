@@ -37,6 +37,7 @@ mod solver_kind;
 pub use accuracy::{
     Accuracy, AccuracyMap, Forecast,
     adviser::{Advice, AdviceError, advise},
+    checks::{Checks, OneMore, SessionChecks},
 };
 pub use aggregate::Aggregation;
 pub use bounded::Bounded;
