@@ -63,6 +63,7 @@ impl Claimed {
             fixes: self.fixes,
             stations_mean: (self.fixes > 0).then(|| self.stations as f64 / self.fixes as f64),
             stations_min: self.stations_min,
+            protection: None,
         })
     }
 }

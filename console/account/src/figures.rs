@@ -13,6 +13,8 @@ use world::{Obstacle, ObstacleMap, Point, World};
 pub enum FigureId {
     /// Half width of the 95 % position error.
     PositionError,
+    /// Protection level of the position.
+    Protection,
     /// Distance from the hull to the nearest solid object on the chart, at the estimated position.
     Clearance,
     /// Scanned share of the reachable floor.
@@ -45,6 +47,7 @@ impl FigureId {
     /// All figures, in the order of the table.
     pub const ALL: [Self; 14] = [
         Self::PositionError,
+        Self::Protection,
         Self::Clearance,
         Self::Covered,
         Self::CrossTrack,
@@ -64,6 +67,7 @@ impl FigureId {
     pub fn name(self) -> &'static str {
         match self {
             Self::PositionError => "95 % error",
+            Self::Protection => "protection level",
             Self::Clearance => "clearance",
             Self::Covered => "reachable floor",
             Self::CrossTrack => "cross-track",
@@ -123,6 +127,7 @@ impl FigureId {
         match self {
             Self::Clearance | Self::TrueClearance => Some(Worst::Least),
             Self::PositionError
+            | Self::Protection
             | Self::TetherOut
             | Self::WrapLargest
             | Self::WrapTotal
@@ -145,7 +150,12 @@ impl FigureId {
             Self::WrapLargest => Limit::Most(tether?.wrap_max_rad.to_degrees()),
             Self::WrapTotal => Limit::Most(tether?.wrap_total_max_rad.to_degrees()),
             Self::Pull => Limit::Most(config.tether.as_ref()?.reel?.pull_n),
-            Self::Covered | Self::CrossTrack | Self::ReturnPath | Self::TrueError | Self::TrueSpeed => {
+            Self::Protection
+            | Self::Covered
+            | Self::CrossTrack
+            | Self::ReturnPath
+            | Self::TrueError
+            | Self::TrueSpeed => {
                 return None;
             }
         };
@@ -262,6 +272,7 @@ impl Figures {
                 self.set(FigureId::Clearance, t_s, clearance_m.map(|m| m - self.hull_m));
                 self.compare(t_s);
             }
+            EventKind::Protected { level_m } => self.set(FigureId::Protection, t_s, *level_m),
             EventKind::Truth { pose, clearance_m, .. } => {
                 let before = self.truth.replace(Seen { tick, t_s, at: pose.position });
                 let before = before.filter(|before| t_s > before.t_s);
@@ -303,6 +314,7 @@ impl Figures {
         let config = &run.mission;
         let tether = config.tether.as_ref();
         let has = |id: &FigureId| match id {
+            FigureId::Protection => config.locating.risk.is_some(),
             FigureId::Pull => tether.is_some_and(|tether| tether.reel.is_some()),
             id => tether.is_some() || !id.is_of_tether(),
         };

@@ -6,15 +6,17 @@ use crate::{
     drawn::DrawnZone,
     figures::{Figure, Figures},
     floor::account,
+    passes::Margins,
+    protection::Protection,
     scanned::Scanned,
-    summary::{REPORT_VERSION, Summary, Tether},
+    summary::{self, REPORT_VERSION, Summary, Tether},
     tethered::Tethered,
     tracking::Tracker,
     turning::Turning,
     vehicle::VehicleRecord,
 };
 use mission::{
-    Cause, Event, EventKind, FoldedStanding, Order, Outcome, ParamKind, ParamValue, Parameters, Passage,
+    Cause, Event, EventKind, FoldedStanding, Guarantee, Order, Outcome, ParamKind, ParamValue, Parameters, Passage,
     PlannerChoice, PlannerInfo, TaskConfig,
     event::{RunOpened, TetherAlarm, ToolTrack},
 };
@@ -37,6 +39,7 @@ pub struct Fold {
     tracker: Option<Tracker>,
     accuracy: Accuracy,
     claimed: Claimed,
+    protection: Protection,
     standing: FoldedStanding,
     turning: Turning,
     tethered: Option<Tethered>,
@@ -83,6 +86,7 @@ impl Fold {
                     tethered.lie(*length_m, *wrap_max_rad, *wrap_total_rad, *detour_m);
                 }
             }
+            EventKind::Protected { level_m } => self.protection.take(*level_m),
             EventKind::Estimated { pose } => self.estimate(event, pose),
             EventKind::Ranged { .. } => self.claimed.end_cycle(),
             EventKind::Fixed { fix } => self.claimed.fix(fix.used.len()),
@@ -181,9 +185,21 @@ impl Fold {
 
     /// Moves the tool to a pose, and records whether the floor that the tool passed over counts.
     fn visit(&mut self, here: Pose, covariance: &Matrix2<f64>, error_m: f64, counts: bool) {
-        let error_lately_m = counts.then(|| self.claimed.tip_m());
-        self.scanned.iter_mut().for_each(|scanned| scanned.visit(here, covariance, error_lately_m));
+        let error_m_lately = counts.then(|| self.claimed.tip_m());
+        let margin_m = match &self.scanned {
+            Some(_) if self.is_guaranteed_by_protection() => self.protection.level_m(),
+            Some(scanned) => scanned.across_m(here, covariance),
+            None => f64::INFINITY,
+        };
+        let lately = error_m_lately.map(|error_m| Margins { error_m, margin_m });
+        self.scanned.iter_mut().for_each(|scanned| scanned.visit(here, lately));
         self.evidence.iter_mut().for_each(|evidence| evidence.visit(here, error_m, counts));
+    }
+
+    /// Whether the protection level decides which floor is guaranteed.
+    fn is_guaranteed_by_protection(&self) -> bool {
+        let by_protection = |run: &RunOpened| run.mission.scan.guarantee == Guarantee::Protection;
+        self.run.as_ref().is_some_and(|run| by_protection(run))
     }
 
     /// Limit of the 95 % error above which nothing counts as scanned, metres.
@@ -209,7 +225,10 @@ impl Fold {
             rotation_turns: self.has_heading().then(|| self.turning.rotation_turns()),
             tether: self.tether(),
             tracking: self.tracker.as_ref().and_then(Tracker::tracking),
-            accuracy: self.claimed.statement(self.scan_limit_m()),
+            accuracy: self.claimed.statement(self.scan_limit_m()).map(|accuracy| summary::Accuracy {
+                protection: self.protection.statement(self.is_guaranteed_by_protection()),
+                ..accuracy
+            }),
             extremes: self.extremes(),
             positioning: self.accuracy.positioning(self.known.mission_time_s.unwrap_or(0.0)),
             ..self.known.clone()

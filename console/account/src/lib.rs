@@ -21,6 +21,7 @@ mod inspection;
 pub mod notes;
 mod overlap;
 mod passes;
+mod protection;
 mod sampled;
 #[cfg(test)]
 mod samples;
@@ -49,8 +50,8 @@ pub use overlap::Overlap;
 pub use passes::Passes;
 pub use scanned::Scanned;
 pub use summary::{
-    Accuracy, Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, REPORT_VERSION, Stops, Summary,
-    Tether, Tracking,
+    Accuracy, Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, Protection, REPORT_VERSION, Stops,
+    Summary, Tether, Tracking,
 };
 pub use vehicle::VehicleRecord;
 

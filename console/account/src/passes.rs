@@ -18,6 +18,15 @@ pub struct Passes {
     overlap: Overlap,
 }
 
+/// What is known about the position of a pass.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Margins {
+    /// The largest 95 % error since the last fix but one, metres.
+    pub error_m: f64,
+    /// The distance by which the position may be off for the floor to be guaranteed, metres.
+    pub margin_m: f64,
+}
+
 impl Passes {
     /// An empty record.
     pub(crate) fn new(floor: &Floor, tool: Tool) -> Self {
@@ -31,15 +40,13 @@ impl Passes {
 
     /// Adds a pass of the tool from one estimated pose to the next; it counts as scanned.
     ///
-    /// Floor that is under the tool for every position within the 95 % ellipse is guaranteed. To find it, the tool is
-    /// narrowed on each side by the half-width of the ellipse across the heading; the ellipse is that of the
-    /// covariance, square metres. `error_m` is the largest 95 % error since the last fix but one.
+    /// Floor that is under the tool for every position within the margin of the estimate is guaranteed. To find it, the
+    /// tool is narrowed on each side by the margin.
     pub(crate) fn pass(
         &mut self,
         believed: &CoverageGrid,
         (from, to): (Pose, Pose),
-        covariance: &Matrix2<f64>,
-        error_m: f64,
+        Margins { error_m, margin_m }: Margins,
     ) {
         let floor = believed.floor();
         let cells = floor.runs_under(self.tool, from, to);
@@ -53,14 +60,19 @@ impl Passes {
         for run in cells {
             self.error_mm[run.range()].iter_mut().for_each(|mm| *mm = (*mm).min(error_mm));
         }
-        let across_m = match self.tool {
-            Tool::Bar { .. } => across_95_m(covariance, to.heading_rad),
-            Tool::Disc { .. } => ellipse_95(covariance).0,
-        };
-        if let Some(narrowed) = self.tool.narrowed(across_m) {
+        if let Some(narrowed) = self.tool.narrowed(margin_m) {
             for run in floor.runs_under(narrowed, from, to) {
                 self.guaranteed[run.range()].fill(true);
             }
+        }
+    }
+
+    /// The half-width of the 95 % ellipse of a covariance, square metres, in the direction that matters to the tool:
+    /// across the heading for a bar, any for a disc; metres.
+    pub(crate) fn across_m(&self, covariance: &Matrix2<f64>, heading_rad: f64) -> f64 {
+        match self.tool {
+            Tool::Bar { .. } => across_95_m(covariance, heading_rad),
+            Tool::Disc { .. } => ellipse_95(covariance).0,
         }
     }
 

@@ -2,7 +2,7 @@
 //! once.
 
 use crate::{
-    passes::Passes,
+    passes::{Margins, Passes},
     summary::{Coverage, CoverageByTruth},
 };
 use nalgebra::Matrix2;
@@ -58,13 +58,17 @@ impl Scanned {
         self.has_truth &= other.has_truth;
     }
 
-    /// Adds the estimated pose with its covariance, square metres. `error_m` is the largest recent 95 % error,
-    /// metres, if the pass counts.
-    pub(crate) fn visit(&mut self, here: Pose, covariance: &Matrix2<f64>, error_m: Option<f64>) {
+    /// Adds the estimated pose, with its margins if the pass counts.
+    pub(crate) fn visit(&mut self, here: Pose, margins: Option<Margins>) {
         let before = std::mem::replace(&mut self.last, here);
-        if let Some(error_m) = error_m {
-            self.passes.pass(&self.believed, (before, here), covariance, error_m);
+        if let Some(margins) = margins {
+            self.passes.pass(&self.believed, (before, here), margins);
         }
+    }
+
+    /// The half-width of the 95 % ellipse of a covariance, square metres, that matters to the tool at a pose, metres.
+    pub(crate) fn across_m(&self, here: Pose, covariance: &Matrix2<f64>) -> f64 {
+        self.passes.across_m(covariance, here.heading_rad)
     }
 
     /// Adds the robot's true movement from `a` to `b`.

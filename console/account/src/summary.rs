@@ -186,6 +186,24 @@ pub struct Accuracy {
     pub stations_mean: Option<f64>,
     /// Minimum number of stations per position; absent without positions.
     pub stations_min: Option<u64>,
+    /// The protection levels; absent if the scenario states no risk.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub protection: Option<Protection>,
+}
+
+/// The protection levels of a run, tick by tick.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Protection {
+    /// Median level, metres; absent if the position was never protected.
+    pub p50_m: Option<f64>,
+    /// Level that is not exceeded in 95 % of the protected ticks, metres.
+    pub p95_m: Option<f64>,
+    /// Largest level, metres.
+    pub max_m: Option<f64>,
+    /// Share of the ticks in which the position was not protected, 0 to 1.
+    pub unprotected: f64,
+    /// Whether the level decides which floor is guaranteed; if not, the 95 % ellipse does.
+    pub guarantees: bool,
 }
 
 /// How closely the true path follows the preset path. "Near" means within [`Tracking::NEAR_M`].

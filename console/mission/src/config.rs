@@ -4,7 +4,7 @@ use crate::planner::PlannerChoice;
 use geometry::motion::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD};
 use perception::Sensor;
 use planner_api::{Limits, Motion, TetherLimits};
-use positioning::{Aggregation, Forecast, RangeNoise, SolverKind, Timing};
+use positioning::{Aggregation, Forecast, RangeNoise, Risk, SolverKind, Timing};
 use serde::{Deserialize, Serialize};
 use world::{Point, Pose, PressureSensor, coverage::Tool, tether};
 
@@ -67,6 +67,29 @@ pub struct ScanConfig {
     /// Limit of the 95 % position error (half width), metres; above it, no floor counts as scanned. `None` to use the
     /// limit above which the position counts as lost.
     pub position_limit_m: Option<f64>,
+    /// The rule by which scanned floor counts as guaranteed.
+    #[serde(skip_serializing_if = "Guarantee::is_by_ellipse")]
+    pub guarantee: Guarantee,
+}
+
+/// The rule by which scanned floor counts as guaranteed: the tool must have passed over it for every position within
+/// this distance of the estimate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Guarantee {
+    /// The 95 % ellipse.
+    #[default]
+    Ellipse,
+    /// The protection level: it also covers one wrong station.
+    Protection,
+}
+
+impl Guarantee {
+    /// Whether the 95 % ellipse decides. Takes a reference because serde requires that signature.
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+    fn is_by_ellipse(&self) -> bool {
+        *self == Self::Ellipse
+    }
 }
 
 /// How positions are computed from ranges.
@@ -92,6 +115,9 @@ pub struct Locating {
     pub repetitions: u32,
     /// Whether a station is unusable while an obstacle is between the robot and the station.
     pub needs_line_of_sight: bool,
+    /// The risk for which protection levels are computed; `None` if they are not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub risk: Option<Risk>,
 }
 
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "signature required by serde")]
@@ -110,6 +136,7 @@ impl Default for Locating {
             calibrate_sound_speed: false,
             repetitions: 20,
             needs_line_of_sight: false,
+            risk: None,
         }
     }
 }

@@ -34,7 +34,7 @@ use crate::{
     way_back::WayBack,
 };
 use planner_api::{Command, Drawing, Drive, Leg, LegTag, LogLevel, PoseEstimate, Reason};
-use positioning::{Exclusion, Fix, FixError, Ranging};
+use positioning::{Exclusion, Fix, FixError, Ranging, Unprotected};
 use serde::{Deserialize, Serialize};
 use vehicle::port::LinkSeen;
 use world::tether::Certificate;
@@ -179,6 +179,21 @@ pub enum EventKind {
     Estimated {
         /// Pose and covariance.
         pose: PoseEstimate,
+    },
+    /// The protection level of the estimated pose that follows. Only in missions whose scenario states a risk.
+    Protected {
+        /// The level: a radius around the estimated position, metres; `None` if the pose is not protected.
+        level_m: Option<f64>,
+    },
+    /// The pose is not protected: a wrong station could move it by any distance.
+    ProtectionLost {
+        /// The reason.
+        why: Unprotected,
+    },
+    /// The pose is protected again.
+    ProtectionRegained {
+        /// The protection level, metres.
+        level_m: f64,
     },
     /// The position error grew beyond the limit, or the fixes stopped.
     PositionLost {

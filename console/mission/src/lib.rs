@@ -31,7 +31,7 @@ mod way_back;
 mod zone_cost;
 
 pub use ask::{Answer, Ask, AskId, Awaits, Given, Said, What, WorkerId};
-pub use config::{BetterPlan, Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
+pub use config::{BetterPlan, Guarantee, Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
 pub use engine::{Fork, Input, Mission, Sending, Step};
 pub use event::{Event, EventKind, LogLine, RunOpened, Severity};
 pub use locate::Locator;

@@ -1,16 +1,19 @@
 //! The robot's estimated position, and whether it is reliable.
 
+mod protection;
+
 use crate::{config::MissionConfig, event::EventKind};
 use planner_api::PoseEstimate;
 use positioning::{
     Agreement, Doubt, Exclusion, Fix, FixError, Impossible, Integrity, MotionNoise, Positioner,
     PositionerConfig, RangeNoise, Sides,
 };
+use protection::Protection;
 use std::{
     collections::{BTreeMap, BTreeSet},
     mem::discriminant,
 };
-use world::{Point, Pose, Readings, StationId, World};
+use world::{Point, Pose, RangeSet, Readings, StationId, World};
 
 /// The positioner, together with the stations in use and the reliability of the position so far.
 ///
@@ -18,6 +21,8 @@ use world::{Point, Pose, Readings, StationId, World};
 #[derive(Clone)]
 pub struct Locator {
     positioner: Positioner,
+    /// The protection of the pose; `None` if the scenario states no risk.
+    protection: Option<Protection>,
     limit_m: f64,
     /// The largest speed and turn rate of the robot, metres and radians per second.
     fastest: [f64; 2],
@@ -36,7 +41,7 @@ impl Locator {
     pub fn new(config: &MissionConfig, drawing: &World) -> Self {
         let locating = &config.locating;
         let normal = RangeNoise::Gaussian { sigma_ratio: config.range_sigma_ratio };
-        let positioner = Positioner::new(PositionerConfig {
+        let positioner = PositionerConfig {
             start_sigma_m: config.start_sigma_m,
             heading_sigma_rad: config.start_heading_sigma_rad,
             noise: locating.noise.unwrap_or(normal),
@@ -53,10 +58,12 @@ impl Locator {
                 way_sigma_ratio: 0.0,
                 slip_chance: 0.0,
             },
+            risk: locating.risk,
             ..PositionerConfig::new(drawing.stations.clone(), config.start)
-        });
+        };
         Self {
-            positioner,
+            protection: locating.risk.map(|risk| Protection::new(&positioner, risk)),
+            positioner: Positioner::new(positioner),
             limit_m: config.position_limit_m,
             fastest: [config.limits.v_max_m_per_s, config.limits.w_max_rad_per_s],
             unused: BTreeSet::new(),
@@ -82,11 +89,13 @@ impl Locator {
     /// radians.
     pub fn wander(&mut self, most_m: f64, most_rad: f64) {
         self.positioner.wander(most_m, most_rad);
+        self.protection.iter_mut().for_each(|protection| protection.guard.wander(most_m, most_rad));
     }
 
     /// Reduces the weight of the ranges in the next cycles.
     pub fn doubt(&mut self, doubt: Doubt) {
         self.positioner.doubt(doubt);
+        self.protection.iter_mut().for_each(|protection| protection.guard.doubt(doubt));
     }
 
     /// Ranges in the last cycle that are impossible at any place in the tank.
@@ -108,11 +117,12 @@ impl Locator {
     pub fn take(&mut self, readings: &Readings) -> Vec<EventKind> {
         if readings.unmeasured_s > 0.0 {
             let [most_m_per_s, most_rad_per_s] = self.fastest;
-            self.positioner
-                .wander(most_m_per_s * readings.unmeasured_s, most_rad_per_s * readings.unmeasured_s);
+            self.wander(most_m_per_s * readings.unmeasured_s, most_rad_per_s * readings.unmeasured_s);
         }
         self.positioner.predict(&readings.odometry);
+        self.protection.iter_mut().for_each(|protection| protection.guard.predict(&readings.odometry));
         let mut events = if readings.ranging_cycle { self.cycle(readings) } else { Vec::new() };
+        events.extend(self.protection.iter_mut().flat_map(|protection| protection.events(&self.positioner)));
         events.push(EventKind::Estimated { pose: self.pose_estimate() });
         events.extend(self.check_limit());
         events
@@ -120,7 +130,9 @@ impl Locator {
 
     fn cycle(&mut self, readings: &Readings) -> Vec<EventKind> {
         let heard = readings.ranges.iter().filter(|set| !self.unused.contains(&set.station));
-        let mut result = self.positioner.cycle(&heard.cloned().collect::<Vec<_>>());
+        let heard: Vec<RangeSet> = heard.cloned().collect();
+        let mut result = self.positioner.cycle(&heard);
+        self.protection.iter_mut().for_each(|protection| protection.guard.cycle(&heard, &result.fix));
         (self.impossible, self.sides) = (std::mem::take(&mut result.impossible), result.sides);
         if let Ok(fix) = &mut result.fix {
             let by_order = fix.excluded.iter_mut().filter(|(station, _)| self.unused.contains(station));

@@ -1,6 +1,7 @@
 //! Forecasts how well a layout of stations will locate a robot, place by place, before the mission starts.
 
 pub mod adviser;
+pub mod checks;
 
 use crate::{
     fix::{Ranging, ellipse_95},

@@ -141,7 +141,8 @@ pub struct Fix {
     /// The second position that fits nearly as well, if there is one.
     pub mirror: Option<Point>,
     /// Radius around the fix that contains the true position even if any one station has an error that does not show,
-    /// metres; `None` if the other stations alone would give no position.
+    /// metres; `None` if the fix is not protected. With a stated risk it is the level of [`crate::protection`],
+    /// otherwise that of four standard deviations.
     pub protection_level_m: Option<f64>,
     /// How far the fix can be trusted.
     pub integrity: Integrity,

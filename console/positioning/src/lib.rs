@@ -23,6 +23,7 @@ pub mod ekf;
 pub mod fixed_lag;
 pub mod particle;
 pub mod positioner;
+pub mod protection;
 pub mod session;
 
 mod anchor;
@@ -36,6 +37,7 @@ mod solver_kind;
 pub use accuracy::{
     Accuracy, AccuracyMap, Forecast,
     adviser::{Advice, AdviceError, advise},
+    checks::{Checks, OneMore, SessionChecks},
 };
 pub use aggregate::Aggregation;
 pub use bounded::Bounded;
@@ -51,6 +53,7 @@ pub use nonlinear::Nls;
 pub use particle::{Particles, ParticlesConfig};
 pub use positioner::{Agreement, CycleResult, Doubt, Estimate, Positioner, PositionerConfig};
 pub use possible::{Impossible, Possible};
+pub use protection::{Guard, Multipliers, Risk, Unprotected};
 pub use quality::{alarm_limit, scatter_limit};
 pub use screened::Screened;
 pub use session::{CommonError, Session, Verdict, Wrong};

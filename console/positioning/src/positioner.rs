@@ -10,6 +10,7 @@ use crate::{
     ekf::Ekf,
     fix::{Exclusion, Fix, FixError, Integrity, Prior, Ranging, ellipse_95},
     possible::{Impossible, Possible},
+    protection,
     session::{CommonError, shift_by},
     sides::{Sides, both, is_behind},
     solver_kind::SolverKind,
@@ -199,6 +200,10 @@ impl Positioner {
         if let (true, Ok(fix)) = (self.doubt.is_any(), &mut result.fix) {
             fix.integrity = fix.integrity.min_trust(Integrity::Suspect);
         }
+        if let (Some(risk), Ok(fix)) = (&self.config.risk, &mut result.fix) {
+            fix.protection_level_m =
+                protection::level_m(fix, &self.config.stations, risk, !self.are_distances());
+        }
         CycleResult { rangings, ..result }
     }
 
@@ -276,7 +281,12 @@ impl Positioner {
 
     /// Longer semi-axis of the 95 % ellipse of the position, metres.
     pub fn error_95_m(&self) -> f64 {
-        ellipse_95(&(self.filter.position_covariance() + self.common)).0
+        ellipse_95(&self.position_covariance()).0
+    }
+
+    /// Returns the covariance of the position, including the errors that all fixes share, square metres.
+    pub(crate) fn position_covariance(&self) -> Matrix2<f64> {
+        self.filter.position_covariance() + self.common
     }
 
     fn prior(&self) -> Prior {

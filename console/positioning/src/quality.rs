@@ -22,7 +22,7 @@ const PROTECTION_SIGMAS: f64 = 4.0;
 /// A distance, in standard deviations: if a place this far away cannot be ruled out, the errors do not form an ellipse.
 const BENT_SIGMAS: f64 = 5.0;
 /// The share of a range's variance that must remain in its residual for the other ranges to check it.
-const LEAST_SPARED: f64 = 1e-6;
+pub(crate) const LEAST_SPARED: f64 = 1e-6;
 
 /// Stands for an infinite dilution, so that every number stays finite.
 pub(crate) const NO_GEOMETRY: f64 = 1e9;
@@ -76,7 +76,7 @@ fn has_rival_on_circle(anchors: &[Anchor], position: Point, covariance: &Matrix2
 
 /// Returns the radius that contains the true position even if any one range is wrong: for each station, the distance to
 /// the position computed without that station, plus the uncertainty of that position (solution separation); the largest
-/// sum counts. `None` if any station is indispensable.
+/// sum counts. `None` if any station is indispensable. With a stated risk, [`crate::protection`] replaces this level.
 fn protection_level_m(anchors: &[Anchor], position: Point, covariance: &Matrix2<f64>) -> Option<f64> {
     let reach_m = |covariance: &Matrix2<f64>| PROTECTION_SIGMAS * largest_sigma_m(covariance);
     if anchors.len() < 3 {
@@ -98,7 +98,8 @@ fn protection_level_m(anchors: &[Anchor], position: Point, covariance: &Matrix2<
     Some(level_m)
 }
 
-fn largest_sigma_m(covariance: &Matrix2<f64>) -> f64 {
+/// Returns the standard deviation along the longest axis of a covariance, metres.
+pub(crate) fn largest_sigma_m(covariance: &Matrix2<f64>) -> f64 {
     let (a, b, c) = (covariance[(0, 0)], covariance[(0, 1)], covariance[(1, 1)]);
     (f64::midpoint(a, c) + ((a - c) / 2.0).hypot(b)).max(0.0).sqrt()
 }

@@ -8,8 +8,8 @@ pub(crate) mod vehicle;
 pub use short::short;
 
 use account::{
-    Account, Accuracy, Coverage, Extreme, Figure, Limit, MissReason, PlannerCalls, Positioning, Stops,
-    Summary, Tether, Tracking,
+    Account, Accuracy, Coverage, Extreme, Figure, Limit, MissReason, PlannerCalls, Positioning, Protection,
+    Stops, Summary, Tether, Tracking,
 };
 use mission::{Check, CheckOutcome, Outcome, Sandbox};
 use text::{Text, counted, percent};
@@ -222,7 +222,17 @@ fn tracking(tracking: &Tracking) -> Vec<String> {
 }
 
 fn accuracy(accuracy: &Accuracy) -> Vec<String> {
-    let Accuracy { mean_m, p95_m, max_m, limit_m, over_limit, fixes, stations_mean, stations_min } = accuracy;
+    let Accuracy {
+        mean_m,
+        p95_m,
+        max_m,
+        limit_m,
+        over_limit,
+        fixes,
+        stations_mean,
+        stations_min,
+        protection,
+    } = accuracy;
     let over = percent(*over_limit);
     let mut lines = vec![format!(
         "95 % error from covariance {mean_m:.3} m mean, {p95_m:.3} m p95, {max_m:.3} m maximum, above the \
@@ -234,7 +244,22 @@ fn accuracy(accuracy: &Accuracy) -> Vec<String> {
             format_args!("{fixes} {}", if *fixes == 1 { "fix" } else { "fixes" })
         )
     }));
+    lines.extend(protection.iter().map(protected));
     lines
+}
+
+/// The protection levels, and whether they decide which floor is guaranteed.
+fn protected(protection: &Protection) -> String {
+    let Protection { p50_m, p95_m, max_m, unprotected, guarantees } = protection;
+    let metres = |level: &Option<f64>| level.map_or_else(|| "-".into(), |level_m| format!("{level_m:.3} m"));
+    format!(
+        "protection level {} median, {} p95, {} maximum; not protected in {} of ticks; floor is guaranteed by the {}",
+        metres(p50_m),
+        metres(p95_m),
+        metres(max_m),
+        percent(*unprotected),
+        if *guarantees { "protection level" } else { "95 % ellipse" }
+    )
 }
 
 fn positioning(positioning: &Positioning) -> Vec<String> {

@@ -12,8 +12,9 @@ use super::{
     source::Source,
     task, tether, vehicle,
 };
-use mission::{BetterPlan, Locating, MissionConfig, ScanConfig, Sensor, TaskConfig, TetherConfig};
+use mission::{BetterPlan, Guarantee, Locating, MissionConfig, ScanConfig, Sensor, TaskConfig, TetherConfig};
 use planner_api::Limits;
+use positioning::Risk;
 use sim::{AeConfig, Mover, NoiseModel, RobotConfig, SimConfig};
 use toml::de::DeTable;
 use world::{Boundary, Obstacle, Point, Pose, Station, World};
@@ -97,6 +98,9 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
 
     let (planner, fallback) = planner?;
     let (robot, rest, start, ae, locating) = (floor.robot?, rest?, start?, floor.ae?, floor.locating?);
+    // A guarantee by the protection level needs one, even if the scenario leaves the risk to its defaults.
+    let needed = (rest.scan.guarantee == Guarantee::Protection).then(Risk::default);
+    let locating = Locating { risk: locating.risk.or(needed), ..locating };
     let mission = MissionConfig {
         task: task?,
         tether,
@@ -398,7 +402,11 @@ fn scan(mission: &Section<'_>, swath_m: Option<f64>) -> Option<ScanConfig> {
     if mission.has("scan_position_limit_m") && limit_m.is_none() {
         return None;
     }
-    Some(ScanConfig { overlap_m, position_limit_m: limit_m })
+    let guarantee = match mission.word("guarantee")? {
+        "protection" => Guarantee::Protection,
+        _ => Guarantee::Ellipse,
+    };
+    Some(ScanConfig { overlap_m, position_limit_m: limit_m, guarantee })
 }
 
 fn truth(robot: &Robot, start: Pose) -> RobotConfig {

@@ -2,7 +2,7 @@
 
 use super::{floor::Names, problem::Complaint, section::Section};
 use mission::{Locating, spelling::nearest};
-use positioning::{Aggregation, RangeNoise, SolverKind, Timing};
+use positioning::{Aggregation, RangeNoise, Risk, SolverKind, Timing};
 use sim::{AeConfig, BehindColumns, Disturbances, NoiseModel, StationFault, TimingErrors};
 use world::{Boundary, Station, StationId};
 
@@ -65,8 +65,20 @@ pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig) -> Option<Locating>
             _ => SolverKind::Nls,
         },
         calibrate_sound_speed: calibrate_sound_speed?,
+        risk: risk(section),
         repetitions: ae.repetitions,
         needs_line_of_sight: !matches!(behind, BehindColumns::Heard | BehindColumns::Creeping),
+    })
+}
+
+/// The risk for protection levels; `None` if the section states none.
+fn risk(section: &Section<'_>) -> Option<Risk> {
+    let stated = |key: &str| section.has(key).then(|| section.number(key)).flatten();
+    let (risk, faults) = (stated("integrity_risk"), stated("station_faults_per_hour"));
+    let default = Risk::default();
+    (risk.is_some() || faults.is_some()).then(|| Risk {
+        integrity_risk: risk.unwrap_or(default.integrity_risk),
+        station_faults_per_hour: faults.unwrap_or(default.station_faults_per_hour),
     })
 }
 

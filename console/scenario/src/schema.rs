@@ -358,6 +358,8 @@ static AE: &[Key] = &[
     word("solver", &["linear", "weighted-linear", "nls", "bounded", "consensus"]).or_word("nls"),
     word("aggregation", &["mean", "midrange", "trimmed-mean", "posterior"]).or_word("mean"),
     key("calibrate_sound_speed", "", Kind::Flag).or_flag(false),
+    number("integrity_risk", "", above(0.0).up_to(0.01)).or_none("no protection levels, or `1e-5`"),
+    number("station_faults_per_hour", "", above(0.0).up_to(1.0)).or_none("no protection levels, or `1e-4`"),
 ];
 
 static FAULTS: &[Key] = &[
@@ -413,6 +415,7 @@ static MISSION: &[Key] = &[
     number("scan_position_limit_m", "m", above(0.0)).or_none("`position_limit_m`"),
     number("position_lost_hold_s", "s", at_least(0.0)).or(2.0),
     number("stuck_s", "s", above(0.0)).or(30.0),
+    word("guarantee", &["ellipse", "protection"]).or_word("ellipse"),
     word("better_plan", &["offer", "take", "off"]).or_word("offer"),
 ];
 

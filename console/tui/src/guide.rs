@@ -20,6 +20,7 @@ pub fn name(cause: &Cause, of: &Run) -> String {
     match cause {
         Cause::PositionLost => "position lost".into(),
         Cause::Contradiction => "AE ranges contradict each other".into(),
+        Cause::NotProtected => "position not protected".into(),
         Cause::NoFix => "no position fix".into(),
         Cause::Station(id) => {
             format!("station {} rejected", of.station_name(*id).trim_start_matches("station "))
@@ -51,6 +52,7 @@ pub fn guide(cause: &Cause) -> Guide {
     match cause {
         Cause::PositionLost => position::POSITION_LOST,
         Cause::Contradiction => position::CONTRADICTION,
+        Cause::NotProtected => position::NOT_PROTECTED,
         Cause::NoFix => position::NO_FIX,
         Cause::Station(_) => position::STATION,
         Cause::Recording => console::RECORDING,

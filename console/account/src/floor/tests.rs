@@ -2,7 +2,7 @@
 //! the shell.
 
 use super::*;
-use crate::samples::round_tank;
+use crate::{passes::Margins, samples::round_tank};
 use nalgebra::Matrix2;
 use proptest::prelude::*;
 use std::sync::LazyLock;
@@ -220,8 +220,9 @@ fn guaranteed_is_what_the_tool_passed_wherever_the_robot_stood_within_its_error(
     for (x_m, covariance_m2) in [(-2.0, [0.01, 0.0, 0.0, 0.0001]), (2.0, [0.0001, 0.0, 0.0, 0.01])] {
         let at = |y_m: f64| Pose::new(y_m, x_m, 0.0);
         let covariance = Matrix2::from_row_slice(&covariance_m2);
-        scanned.visit(at(-1.0), &covariance, None);
-        scanned.visit(at(1.0), &covariance, Some(0.25));
+        scanned.visit(at(-1.0), None);
+        let margin_m = scanned.across_m(at(1.0), &covariance);
+        scanned.visit(at(1.0), Some(Margins { error_m: 0.25, margin_m }));
         believed.mark(run.mission.tool(), at(-1.0), at(1.0));
     }
     scanned.believe(&runs_of((0..run.floor.len()).filter(|index| believed.is_covered(*index))));

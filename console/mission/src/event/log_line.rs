@@ -60,6 +60,12 @@ impl Event {
             EventKind::PositionRegained { error_m } => {
                 line(Severity::Info, "ae", format!("position recovered: 95 % error {error_m:.2} m"))
             }
+            EventKind::ProtectionLost { why } => {
+                line(Severity::Warn, "ae", format!("position not protected: {why}"))
+            }
+            EventKind::ProtectionRegained { level_m } => {
+                line(Severity::Info, "ae", format!("position protected again: level {level_m:.2} m"))
+            }
             EventKind::RangesInconsistent { chi2, degrees_of_freedom } => line(
                 Severity::Crit,
                 "ae",
@@ -172,6 +178,7 @@ impl Event {
             | EventKind::Fixed { .. }
             | EventKind::FixFailed { .. }
             | EventKind::Estimated { .. }
+            | EventKind::Protected { .. }
             | EventKind::ObstacleMoved { .. }
             | EventKind::Commanded { .. }
             | EventKind::Snapshotted { .. }

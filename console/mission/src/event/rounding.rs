@@ -135,6 +135,8 @@ impl EventKind {
             Self::MediumKnown { pressure_pa, .. } => round(pressure_pa),
             Self::Ranged { ranges } => ranges.iter_mut().for_each(round_ranging),
             Self::Fixed { fix } => round_fix(fix),
+            Self::Protected { level_m } => level_m.iter_mut().for_each(round),
+            Self::ProtectionRegained { level_m } => round(level_m),
             Self::Estimated { pose: PoseEstimate { position, heading_rad, covariance } } => {
                 round_point(position);
                 round(heading_rad);

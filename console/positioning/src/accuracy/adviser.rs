@@ -170,7 +170,7 @@ fn error_95_m(sum: &Seen) -> Option<f64> {
 }
 
 /// Returns places evenly spaced along the wall.
-fn along_wall(boundary: &Boundary) -> Vec<Point> {
+pub(super) fn along_wall(boundary: &Boundary) -> Vec<Point> {
     let share = |k: usize| k as f64 / CANDIDATES as f64;
     match boundary {
         Boundary::Circle { radius_m } => (0..CANDIDATES)

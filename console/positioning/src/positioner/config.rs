@@ -4,6 +4,7 @@ use crate::{
     aggregate::Aggregation,
     ekf::MotionNoise,
     noise::{RangeNoise, Timing},
+    protection::Risk,
     solver_kind::SolverKind,
 };
 use serde::{Deserialize, Serialize};
@@ -38,6 +39,9 @@ pub struct PositionerConfig {
     pub boundary: Option<Boundary>,
     /// Whether the speed of sound is estimated during the mission; needs four stations.
     pub calibrate_sound_speed: bool,
+    /// The risk for which fixes state a protection level; `None` for the level of four standard deviations.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub risk: Option<Risk>,
 }
 
 impl PositionerConfig {
@@ -57,6 +61,7 @@ impl PositionerConfig {
             solver: SolverKind::default(),
             boundary: None,
             calibrate_sound_speed: false,
+            risk: None,
         }
     }
 }

@@ -36,6 +36,7 @@ pub(super) fn event(line: &[u8]) -> Option<Event> {
     let line = std::str::from_utf8(line).ok()?;
     match name {
         b"estimated" => read!(line, Estimated { pose: PoseEstimate; }),
+        b"protected" => read!(line, Protected { level_m: Option<f64>; }),
         b"truth" => read!(line, Truth { pose: Pose, clearance_m: f64, collided: bool; }),
         b"covered" => read!(line, Covered { runs: Vec<CellRun>; }),
         b"uncounted" => read!(line, Uncounted { runs: Vec<CellRun>; }),

@@ -101,7 +101,12 @@ impl Sketch {
     }
 
     fn right(&mut self, run: &RunOpened) -> bp::ContainerLike {
-        let error = self.plot("Error (pink), 95 % (blue) [m]", &[paths::ERROR, paths::ERROR_95], None);
+        let error = if run.mission.locating.risk.is_some() {
+            let series = [paths::ERROR, paths::ERROR_95, paths::PROTECTION];
+            self.plot("Error (pink), 95 % (blue), protection level (yellow) [m]", &series, None)
+        } else {
+            self.plot("Error (pink), 95 % (blue) [m]", &[paths::ERROR, paths::ERROR_95], None)
+        };
         let scans = !matches!(run.mission.task, TaskConfig::Goto { .. });
         let covered =
             scans.then(|| self.plot("Reachable floor scanned [%]", &[paths::COVERED], Some([0.0, 105.0])));

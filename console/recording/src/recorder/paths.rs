@@ -55,6 +55,7 @@ pub(crate) const COVERAGE: &str = "map/world/coverage";
 pub(crate) const SCALARS: &str = "scalars";
 pub(crate) const ERROR: &str = "scalars/position_error";
 pub(crate) const ERROR_95: &str = "scalars/position_error_95";
+pub(crate) const PROTECTION: &str = "scalars/protection_level";
 pub(crate) const COVERED: &str = "scalars/coverage_reachable";
 pub(crate) const SPEED: &str = "scalars/speed";
 pub(crate) const SPEED_SENT: &str = "scalars/speed_commanded";

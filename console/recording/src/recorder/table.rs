@@ -46,6 +46,10 @@ const TETHER_FIGURES: [Figure; 5] = [
 const PULL_FIGURE: Figure =
     (paths::TETHER_PULL, FigureId::Pull, style::WARNING, |tick| tick.tether.as_ref()?.pull_n);
 
+/// A gap in the curve means that the position is not protected.
+const PROTECTION_FIGURES: [Figure; 1] =
+    [(paths::PROTECTION, FigureId::Protection, style::WARNING, |tick| tick.protection_m)];
+
 /// The moving entities of the map.
 fn moving(run: &RunOpened) -> Vec<Box<dyn Series>> {
     let spacing_m = run.mission.cell_m;
@@ -85,6 +89,9 @@ impl Table {
     pub(crate) fn open(stream: &Stream, run: &RunOpened) -> Result<Self, RecordingError> {
         let mut series = moving(run);
         let mut figures = FIGURES.to_vec();
+        if run.mission.locating.risk.is_some() {
+            figures.extend(PROTECTION_FIGURES);
+        }
         if let Some(config) = &run.mission.tether {
             series.extend(tether());
             figures.extend(TETHER_FIGURES);

@@ -29,6 +29,8 @@ pub(crate) struct Tick {
     pub true_tether_m: Option<f64>,
     pub ranges: Option<Vec<Ranging>>,
     pub fix: Option<Fix>,
+    /// Protection level, metres.
+    pub protection_m: Option<f64>,
     /// Figures of the planner: name, value, unit.
     pub scalars: Vec<(String, f64, String)>,
     /// The latest estimated position.
@@ -100,6 +102,7 @@ impl Tick {
                 self.heading_rad = pose.heading_rad;
                 self.estimate = Some(Estimate { position: pose.position, ellipse_95 });
             }
+            EventKind::Protected { level_m } => self.protection_m = *level_m,
             EventKind::Scanned { scan } => self.scan = Some((**scan).clone()),
             EventKind::Sensed { readings, .. } => self.scan.clone_from(&readings.scan),
             EventKind::Commanded { command, .. } => self.commanded_m_per_s = Some(speed(&command.drive)),

@@ -111,6 +111,8 @@ fn sort(kind: &EventKind) -> Option<(&'static str, Option<String>, Option<String
         EventKind::Resumed => ("", None, key("hold")),
         EventKind::PositionLost { .. } => ("alarm", key("position"), None),
         EventKind::PositionRegained { .. } => ("", None, key("position")),
+        EventKind::ProtectionLost { .. } => ("alarm", key("protection"), None),
+        EventKind::ProtectionRegained { .. } => ("", None, key("protection")),
         EventKind::RangesInconsistent { .. } => ("alarm", key("ranges"), None),
         EventKind::RangesConsistent => ("", None, key("ranges")),
         EventKind::TetherAlarmRaised { alarm, .. } => ("alarm", key(alarm.word()), None),

@@ -3,6 +3,7 @@
 mod bound;
 mod estimator;
 mod filter;
+mod integrity;
 mod limits;
 mod odometry;
 mod outcome;
@@ -16,4 +17,4 @@ use crate::study::Study;
 
 /// The studies.
 pub(crate) const STUDIES: &[Study] =
-    &[table3::STUDY, spiral::STUDY, limits::STUDY, robust::STUDY, filter::STUDY];
+    &[table3::STUDY, spiral::STUDY, limits::STUDY, robust::STUDY, filter::STUDY, integrity::STUDY];

@@ -29,6 +29,18 @@ pub(super) const CONTRADICTION: Guide = Guide {
     ],
 };
 
+pub(super) const NOT_PROTECTED: Guide = Guide {
+    cause: "The stations do not check each other: too few are heard, or their ranges fit no single wrong station. \
+    A wrong station could move the position without an alarm.",
+    holds: "",
+    effect: "Floor scanned meanwhile is not guaranteed if the scenario requires the protection level.",
+    remedies: &[
+        wait("Wait for the next ranging cycles."),
+        check("Check the residuals: two stations may be wrong at the same time."),
+        HOLD,
+    ],
+};
+
 pub(super) const NO_FIX: Guide = Guide {
     cause: "No position can be computed from the ranges of this cycle: too few stations were heard, or they \
     are all on one line.",

@@ -61,6 +61,9 @@ impl Run {
             | EventKind::StationRejected { .. }
             | EventKind::StationRestored { .. }
             | EventKind::Estimated { .. }
+            | EventKind::Protected { .. }
+            | EventKind::ProtectionLost { .. }
+            | EventKind::ProtectionRegained { .. }
             | EventKind::PositionLost { .. }
             | EventKind::PositionRegained { .. }
             | EventKind::RangesInconsistent { .. }

@@ -19,6 +19,10 @@ pub struct Position {
     pub pose: Option<PoseEstimate>,
     /// Mission time of the pose, seconds.
     pub pose_t_s: f64,
+    /// The protection level of the pose, metres: `None` if the mission computes none, `Some(None)` if the pose is not
+    /// protected.
+    #[serde(default)]
+    pub protection: Option<Option<f64>>,
     /// The last fix.
     pub fix: Option<Fix>,
     /// Mission time of the fix, seconds.

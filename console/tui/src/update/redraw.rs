@@ -46,6 +46,7 @@ fn is_telemetry(kind: &EventKind) -> bool {
     matches!(
         kind,
         EventKind::Estimated { .. }
+            | EventKind::Protected { .. }
             | EventKind::Ranged { .. }
             | EventKind::Fixed { .. }
             | EventKind::Tethered { .. }

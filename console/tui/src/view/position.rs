@@ -124,7 +124,12 @@ fn error(look: &Look) -> (Role, String) {
     };
     let error = error_m.map_or_else(|| "-".into(), |error_m| format!("±{}", text::number(error_m, 2)));
     let lost = if run.position.lost { "LOST " } else { "" };
-    let words = format!("{lost}{error} m (limit {})", text::number(limit_m, 2));
+    let limit = text::number(limit_m, 2);
+    let (role, words) = match run.position.protection {
+        None => (role, format!("{lost}{error} m (limit {limit})")),
+        Some(Some(level_m)) => (role, format!("{lost}{error} m, protected {} m", text::number(level_m, 2))),
+        Some(None) => (role.max(Role::Warn), format!("{lost}{error} m, NOT PROTECTED")),
+    };
     marked(look.is_pose_stale(), (role, words))
 }
 

@@ -131,6 +131,20 @@ pub(in crate::document) fn accuracy_statement(document: &Document) -> Table {
                 cm(a.max_m).into(),
                 how.into(),
             ]);
+            if let Some(p) = &a.protection {
+                let level = |level_m: Option<f64>| level_m.map_or_else(|| "\u{2013}".to_owned(), cm);
+                let how = format!(
+                    "median in the first column; covers one wrong station; not protected in {} % of the ticks",
+                    per_cent(p.unprotected)
+                );
+                table.row(vec![
+                    format!("Protection level{of}").into(),
+                    level(p.p50_m).into(),
+                    level(p.p95_m).into(),
+                    level(p.max_m).into(),
+                    how.into(),
+                ]);
+            }
         }
         if let Some(p) = &run.positioning {
             let inside = per_cent(p.in_95_ellipse);
@@ -155,6 +169,22 @@ pub(in crate::document) fn accuracy_statement(document: &Document) -> Table {
     table
 }
 
+const GUARANTEED_BY_ELLIPSE: &str = "A cell is guaranteed if a single pass would have scanned it even with a tool \
+    that is narrower on each side by 2.45 standard deviations of the position across the heading. Such a cell was \
+    under the tool for every position of the robot within the ellipse.";
+const GUARANTEED_BY_PROTECTION: &str = "A cell is guaranteed if a single pass would have scanned it even with a tool \
+    that is narrower on each side by the protection level. Such a cell was under the tool for every position of the \
+    robot within the level, which also covers one wrong station; where the position was not protected, nothing is \
+    guaranteed.";
+
+/// Whether the protection level decides in all runs which floor is guaranteed.
+fn is_by_protection(document: &Document) -> bool {
+    document.runs.iter().all(|run| {
+        let protection = run.accuracy.as_ref().and_then(|accuracy| accuracy.protection);
+        protection.is_some_and(|protection| protection.guarantees)
+    })
+}
+
 /// Accuracy and guaranteed coverage.
 pub(super) fn accuracy(document: &Document) -> Vec<Block> {
     let pictures = &document.pictures;
@@ -172,15 +202,12 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
             (2.45 standard deviations).";
         return vec![Block::Text(what.into()), Block::Table(accuracy_statement(document))];
     }
+    let rule = if is_by_protection(document) { GUARANTEED_BY_PROTECTION } else { GUARANTEED_BY_ELLIPSE };
     let mut blocks = vec![
-        Block::Text(
+        Block::Text(format!(
             "The 95 % error is the longer semi-axis of the 95 % ellipse of the estimated position (2.45 \
-             standard deviations). A cell is guaranteed if a single pass would have scanned it even with a \
-             tool that is narrower on each side by 2.45 standard deviations of the position across the \
-             heading. Such a cell was under the tool for every position of the robot within the ellipse. \
-             Adjacent passes are not combined."
-                .into(),
-        ),
+             standard deviations). {rule} Adjacent passes are not combined."
+        )),
         Block::Pair(vec![picture(&pictures.accuracy), picture(&pictures.guaranteed)]),
         Block::Table(accuracy_statement(document)),
     ];

@@ -11,6 +11,8 @@ pub enum Cause {
     PositionLost,
     /// The ranges contradict each other.
     Contradiction,
+    /// The position is not protected against a wrong station.
+    NotProtected,
     /// No position can be computed from the ranges.
     NoFix,
     /// A station is not used in the fix.
@@ -65,6 +67,7 @@ impl Cause {
             }
             EventKind::PositionLost { .. } | EventKind::PositionRegained { .. } => Self::PositionLost,
             EventKind::RangesInconsistent { .. } | EventKind::RangesConsistent => Self::Contradiction,
+            EventKind::ProtectionLost { .. } | EventKind::ProtectionRegained { .. } => Self::NotProtected,
             EventKind::FixFailed { .. } => Self::NoFix,
             EventKind::ObstacleFound { .. } => Self::Map,
             EventKind::NotThere { name, .. } => Self::NotThere(name.clone()),
@@ -90,6 +93,7 @@ impl Cause {
         match self {
             Self::PositionLost => "position_lost".into(),
             Self::Contradiction => "contradiction".into(),
+            Self::NotProtected => "not_protected".into(),
             Self::NoFix => "no_fix".into(),
             Self::Station(id) => format!("station {}", id.0),
             Self::Map => "map".into(),
@@ -138,6 +142,7 @@ impl Cause {
         let all: Vec<Self> = [
             Self::PositionLost,
             Self::Contradiction,
+            Self::NotProtected,
             Self::NoFix,
             Self::Station(world::StationId(1)),
             Self::Map,
@@ -167,6 +172,7 @@ impl Cause {
             match cause {
                 Self::PositionLost
                 | Self::Contradiction
+                | Self::NotProtected
                 | Self::NoFix
                 | Self::Station(_)
                 | Self::Map

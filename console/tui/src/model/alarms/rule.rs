@@ -76,6 +76,7 @@ pub fn rule(cause: &Cause, severity: Severity, context: Context) -> Rule {
             rule(Severity::Warn, CYCLE_S, 0.0)
         }
         (Cause::PositionLost | Cause::Contradiction, _) => rule(Severity::Crit, CYCLE_S, 0.0),
+        (Cause::NotProtected, _) => rule(Severity::Warn, CYCLE_S, 0.0),
         (Cause::NoFix | Cause::Station(_), _) => rule(Severity::Watch, CYCLE_S, 0.0),
         // A refused plan is never run. While the robot is under way, the mission has a second one made; only if that is
         // refused, too, the robot is held for it.

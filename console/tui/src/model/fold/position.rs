@@ -28,6 +28,9 @@ impl Run {
                 self.position.estimated(event.t_s, *pose);
                 self.trail.add(pose.position);
             }
+            EventKind::Protected { level_m } => self.position.protection = Some(*level_m),
+            EventKind::ProtectionLost { .. } => self.raise_as_logged(event, Cause::NotProtected),
+            EventKind::ProtectionRegained { .. } => self.clear(&Cause::NotProtected),
             EventKind::PositionLost { .. } => {
                 self.position.lost = true;
                 self.raise_as_logged(event, Cause::PositionLost);

@@ -26,6 +26,8 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::StationRestored { .. } => "station no longer rejected",
         EventKind::PositionLost { .. } => "position lost",
         EventKind::PositionRegained { .. } => "position recovered",
+        EventKind::ProtectionLost { .. } => "position not protected",
+        EventKind::ProtectionRegained { .. } => "position protected again",
         EventKind::RangesInconsistent { .. } => "ranges contradict each other",
         EventKind::RangesConsistent => "ranges agree again",
         EventKind::ObstacleFound { .. } => "new obstacle",
@@ -111,6 +113,8 @@ fn of_event(run: &Run, event: &Occurrence) -> Vec<Field> {
             ]
         }
         EventKind::PositionRegained { error_m } => vec![("error", metres(*error_m) + " (95 %)")],
+        EventKind::ProtectionLost { why } => vec![("reason", why.to_string())],
+        EventKind::ProtectionRegained { level_m } => vec![("level", metres(*level_m))],
         EventKind::RangesInconsistent { chi2, degrees_of_freedom } => {
             let limit = positioning::alarm_limit((*degrees_of_freedom).max(1));
             let text =

@@ -1,0 +1,122 @@
+//! The protection level of the filtered pose.
+
+use super::{Risk, Unprotected};
+use crate::{
+    fix::{Fix, FixError, Integrity},
+    positioner::{Doubt, Positioner, PositionerConfig},
+    quality::largest_sigma_m,
+};
+use world::{Odometry, Point, RangeSet, Station, StationId};
+
+/// The least number of stations: without one of them, the others must still exclude a mirror image.
+const NEEDED: usize = 4;
+/// The number of cycles in a row without a fix after which the pose counts as not protected: the level covers wrong
+/// stations, but not slip of the tracks.
+const MOST_SILENT: u32 = 10;
+/// The number of cycles in a row whose ranges must contradict a hypothesis to disprove it. One correct cycle in 1000
+/// does, so a correct hypothesis is lost in one of 10^15 cycles.
+const DISPROVED_AFTER: u32 = 5;
+
+/// One positioner for each station, which never hears that station.
+///
+/// Whatever error a station has, the positioner that does not hear it is free of that error, for the whole session. So
+/// the distance to its position, plus a multiple of its uncertainty, bounds the error of the pose (solution separation
+/// with a bank of filters; Brenner 1996). Cost: that of one positioner times the number of stations.
+#[derive(Debug, Clone)]
+pub struct Guard {
+    risk: Risk,
+    others: Vec<Other>,
+    /// Whether the last ranges fit the hypothesis that at most one station is wrong.
+    is_explained: bool,
+    /// Cycles in a row without a fix.
+    silent: u32,
+}
+
+/// The hypothesis that a station is wrong.
+#[derive(Debug, Clone)]
+struct Other {
+    station: StationId,
+    /// Hears all stations but this one.
+    positioner: Positioner,
+    /// Cycles in a row whose ranges contradict the hypothesis.
+    contradicted: u32,
+}
+
+impl Other {
+    /// Takes a cycle; returns whether it contains the station and fits the hypothesis that this station is wrong.
+    fn explains(&mut self, sets: &[RangeSet]) -> bool {
+        let heard: Vec<RangeSet> = sets.iter().filter(|set| set.station != self.station).cloned().collect();
+        let fix = self.positioner.cycle(&heard).fix;
+        self.contradicted = if contradicts(&fix) { self.contradicted.saturating_add(1) } else { 0 };
+        heard.len() < sets.len() && fix.is_ok() && self.contradicted == 0
+    }
+}
+
+impl Guard {
+    /// Creates a guard for the positioner with this configuration.
+    pub fn new(config: &PositionerConfig, risk: Risk) -> Self {
+        // Levels of fixes are not needed here.
+        let plain = PositionerConfig { risk: None, ..config.clone() };
+        let positioner = Positioner::new(plain);
+        let other = |s: &Station| Other { station: s.id, positioner: positioner.clone(), contradicted: 0 };
+        Self { risk, others: config.stations.iter().map(other).collect(), is_explained: true, silent: 0 }
+    }
+
+    /// Moves all hypotheses by one tick of odometry.
+    pub fn predict(&mut self, odometry: &Odometry) {
+        self.others.iter_mut().for_each(|other| other.positioner.predict(odometry));
+    }
+
+    /// Widens all hypotheses for an unmeasured motion; see [`Positioner::wander`].
+    pub fn wander(&mut self, most_m: f64, most_rad: f64) {
+        self.others.iter_mut().for_each(|other| other.positioner.wander(most_m, most_rad));
+    }
+
+    /// Reduces the trust in the following cycles; see [`Positioner::doubt`].
+    pub fn doubt(&mut self, doubt: Doubt) {
+        self.others.iter_mut().for_each(|other| other.positioner.doubt(doubt));
+    }
+
+    /// Processes a ranging cycle. `whole` is the fix from all stations.
+    pub fn cycle(&mut self, sets: &[RangeSet], whole: &Result<Fix, FixError>) {
+        let mut is_explained = !contradicts(whole);
+        for other in &mut self.others {
+            is_explained |= other.explains(sets);
+        }
+        self.is_explained = is_explained;
+        self.silent = if whole.is_ok() { 0 } else { self.silent.saturating_add(1) };
+    }
+
+    /// Returns the protection level of a position with its covariance, metres.
+    ///
+    /// # Errors
+    /// [`Unprotected`] if no level can be stated.
+    pub fn level_m(&self, whole: &Positioner) -> Result<f64, Unprotected> {
+        let n = self.others.len();
+        if n < NEEDED {
+            return Err(Unprotected::TooFewStations);
+        }
+        if self.silent >= MOST_SILENT {
+            return Err(Unprotected::Silent);
+        }
+        if !self.is_explained {
+            return Err(Unprotected::Contradiction);
+        }
+        let multipliers = self.risk.multipliers(n, false).ok_or(Unprotected::TooRisky)?;
+        let reach_m = |of: &Positioner, sigmas: f64| sigmas * largest_sigma_m(&of.position_covariance());
+        let here: Point = whole.estimate().pose.position;
+        let mut level_m = reach_m(whole, multipliers.fault_free);
+        for other in self.others.iter().filter(|other| other.contradicted < DISPROVED_AFTER) {
+            let apart_m = (other.positioner.estimate().pose.position - here).norm();
+            level_m = level_m.max(apart_m + reach_m(&other.positioner, multipliers.one_fault));
+        }
+        if level_m.is_finite() { Ok(level_m) } else { Err(Unprotected::TooFewStations) }
+    }
+}
+
+fn contradicts(fix: &Result<Fix, FixError>) -> bool {
+    match fix {
+        Ok(fix) => fix.integrity == Integrity::Alarm,
+        Err(error) => matches!(error, FixError::Inconsistent { .. }),
+    }
+}
