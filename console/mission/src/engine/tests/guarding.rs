@@ -134,7 +134,7 @@ fn a_scan_that_cannot_be_right_holds_the_robot() {
     let Some(HoldReason::Guard { message }) = flight.held_by() else {
         panic!("{:?}", flight.mission.phase())
     };
-    assert_eq!(message, "the scan has 360 rays instead of 180");
+    assert!(message.starts_with("the scan has 360 rays instead of 180; "), "{message}");
 }
 
 /// A robot under way whose scans show an object that it cannot avoid in some ticks, and no object in others; `None` is a
@@ -160,4 +160,38 @@ fn one_noisy_scan_holds_no_robot_and_two_do() {
     assert!(!is_held_after(&[noise, clear, clear, clear]));
     assert!(is_held_after(&[noise, noise, clear]));
     assert!(is_held_after(&[noise, none, noise, clear]));
+}
+
+/// The troubles of the scanner in the events so far.
+fn judged(flight: &Flight) -> Vec<Option<&str>> {
+    let trouble = |kind| match kind {
+        &EventKind::ScannerJudged { ref trouble } => Some(trouble.as_deref()),
+        _ => None,
+    };
+    flight.events.iter().filter_map(|event| trouble(&event.kind)).collect()
+}
+
+#[test]
+fn scans_are_judged_before_the_start_and_again_when_they_change() {
+    let sensor = perception::Sensor { rays: Some(360), ..perception::Sensor::UNKNOWN };
+    let mut flight = guarded(MissionConfig { sensor: Some(sensor), ..config() });
+    flight.fly(10);
+    assert!(judged(&flight).is_empty(), "{:?}", judged(&flight));
+    flight.scanner = Some((Vec::new(), false));
+    flight.fly(30);
+    let [Some(why)] = judged(&flight)[..] else { panic!("{:?}", judged(&flight)) };
+    assert!(why.contains("s old, so the guard is blind; check"), "{why}");
+    flight.scanner = Some((Vec::new(), true));
+    flight.fly(2);
+    assert_eq!(judged(&flight)[1..], [None]);
+    assert_eq!(flight.mission.phase(), &Phase::Waiting);
+}
+
+#[test]
+fn a_scanner_that_never_sends_is_named_before_the_start() {
+    let mut flight = guarded(config());
+    flight.scanner = Some((Vec::new(), false));
+    flight.fly(40);
+    let [Some(why)] = judged(&flight)[..] else { panic!("{:?}", judged(&flight)) };
+    assert!(why.starts_with("the vehicle has not sent a scan yet"), "{why}");
 }

@@ -5,7 +5,7 @@ use super::ink::{self, Ink};
 use super::pattern::braille;
 use super::shade::{self, Shade};
 use super::shapes::Window;
-use super::{drawn, labels, plates};
+use super::{drawn, labels, plates, scan};
 use crate::model::{Screen, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::{Look, Parts};
@@ -288,6 +288,7 @@ fn marks(look: &Look, window: Window) -> Vec<Entry> {
         (obstacle(false), Role::Found, "?".to_owned(), "found"),
         (obstacle(true), Role::Obstacle, "#".into(), "obstacle"),
         (target, Role::Target, "×".into(), "target"),
+        (!scan::shown(look).is_empty(), Role::Watch, scan::mark(look), "scan"),
         (wound, Role::Tether, labels::WOUND.into(), "largest wrap"),
         (change_over, Role::Watch, "◇".into(), "change-over"),
         (station, Role::Station, stations(look), "station"),
