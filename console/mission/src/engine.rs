@@ -176,6 +176,7 @@ impl Mission {
         self.happened.extend(self.known.take_pressure(input.readings.pressure_pa));
         self.known.take_scan(input.readings, input.age_s);
         let map_changed = self.look_around(input.readings);
+        self.happened.extend(self.known.note_scan_fault());
         self.known.scan_from(before, &mut self.happened);
         let reached = self.known.drag_tether(map_changed, input.readings.paid_out_m, &mut self.happened);
         self.watch_tether(map_changed);

@@ -581,6 +581,12 @@ pub enum EventKind {
         /// Direction of the point in the robot frame, radians, counter-clockwise from straight ahead.
         direction_rad: f64,
     },
+    /// The scans of the robot's scanner cannot be used, for another reason than before, or can be used again.
+    ScannerJudged {
+        /// The reason, as a clause that ends with what to check; absent if the scans can be used.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        trouble: Option<String>,
+    },
     /// The robot may move again.
     Resumed,
     /// The last event of every run that ended normally or by order.

@@ -1,11 +1,13 @@
 //! Checks whether scans can come from the scanner in the tank as drawn.
 
-use crate::{rays::Rays, uncertain::Uncertain};
+use crate::{Trouble, rays::Rays, uncertain::Uncertain};
 use geometry::{Boundary, Vector};
 use nalgebra::UnitComplex;
 use std::f64::consts::PI;
 use world::{ObstacleMap, scan::LONGEST_M};
 
+/// The ways in which a scan is taken: as it is, mirrored, and rotated by half a turn.
+const WAYS: usize = 3;
 /// Number of rays that are compared with the drawing.
 const RAYS: usize = 36;
 /// Every scan is compared until this number of comparisons has been made; after that, every `LATER`th scan is compared.
@@ -26,6 +28,8 @@ const LOST_M: f64 = 0.3;
 const WRONG: f64 = 0.5;
 const RIGHT: f64 = 0.75;
 const NOTHING: f64 = 0.2;
+/// A mirrored or rotated scan must fit this many times as many rays as the scan as it is.
+const MUCH_BETTER: f64 = 1.5;
 
 /// A running mean of the shares of rays in the comparisons so far.
 #[derive(Debug, Clone, Copy, Default)]
@@ -57,8 +61,19 @@ pub(crate) struct Agreement {
     scans: u32,
     /// Of the rays that must hit something, the share that have an echo.
     echoes: Share,
-    /// Share of the rays that fit if the scan is taken as it is, mirrored, or rotated by half a turn.
-    fits: [Share; 3],
+    /// For a scan that is taken as it is, mirrored, or rotated by half a turn: of the rays with an echo that must hit
+    /// something, the share that fit.
+    fits: [Share; WAYS],
+    /// For the same, of all rays that must hit something, the share that fit.
+    scores: [Share; WAYS],
+}
+
+/// The counts of one comparison.
+#[derive(Debug, Clone, Copy, Default)]
+struct Counts {
+    must: [usize; WAYS],
+    echo: [usize; WAYS],
+    fit: [usize; WAYS],
 }
 
 impl Agreement {
@@ -76,44 +91,17 @@ impl Agreement {
         if !is_due || pose.point_m2(0.0).sqrt() > LOST_M {
             return;
         }
-        let ahead = rays.frame().rotation;
-        let expected_m = |direction: Vector| {
-            let most_m = range_m.unwrap_or(LONGEST_M);
-            let wall_m = boundary.ray_m(rays.eye(), direction);
-            let hit_m = map.ray_m(rays.eye(), direction, most_m).unwrap_or(f64::INFINITY).min(wall_m);
-            Some(hit_m).filter(|hit_m| *hit_m < 0.9 * most_m)
-        };
-        let step = (rays.len() / RAYS).max(1);
-        let (mut must, mut echo, mut fits, mut of) = (0_usize, 0_usize, [0_usize; 3], [0_usize; 3]);
-        for ray in (0..rays.len()).step_by(step) {
-            let (measured_m, direction) = (rays.range_m[ray], rays.direction(ray));
-            let in_robot = ahead.inverse() * direction;
-            let mirrored = ahead * Vector::new(in_robot.x, -in_robot.y);
-            let wanted = [direction, mirrored, UnitComplex::new(PI) * direction];
-            // An echo from too near is an echo, too, but does not fit.
-            let has_echo = measured_m < f64::INFINITY;
-            // Only the scan as it is shows whether a ray without an echo must have one.
-            let ways = match (has_echo, range_m) {
-                (true, _) => 3,
-                (false, Some(_)) => 1,
-                (false, None) => 0,
-            };
-            for (way, direction) in wanted.into_iter().take(ways).enumerate() {
-                let Some(expected_m) = expected_m(direction) else { continue };
-                if way == 0 {
-                    must += 1;
-                    echo += usize::from(has_echo);
-                }
-                if has_echo {
-                    of[way] += 1;
-                    let room_m = ROOM_M + pose.gate_m(expected_m) + 0.05 * expected_m;
-                    fits[way] += usize::from((measured_m - expected_m).abs() <= room_m);
-                }
-            }
+        let count = |least: usize| counts(rays, (boundary, map), pose, range_m, (rays.len() / least).max(1));
+        let mut counts = count(RAYS);
+        // In an open place few rays hit something; all of them decide until the scans are known to be right.
+        let is_sure = self.echoes.known().is_some() && self.trouble().is_none();
+        if counts.must[0] < LEAST_RAYS && !is_sure {
+            counts = count(rays.len());
         }
-        self.echoes.add(echo, must);
-        for (way, share) in self.fits.iter_mut().enumerate() {
-            share.add(fits[way], of[way]);
+        self.echoes.add(counts.echo[0], counts.must[0]);
+        for way in 0..WAYS {
+            self.fits[way].add(counts.fit[way], counts.echo[way]);
+            self.scores[way].add(counts.fit[way], counts.must[way]);
         }
     }
 
@@ -122,32 +110,62 @@ impl Agreement {
         self.echoes.compared > 0 && self.echoes.known().is_none()
     }
 
-    /// The reason why the scans cannot be right, as a clause; `None` if they can.
-    pub(crate) fn trouble(&self) -> Option<String> {
-        let percent = |share: f64| (100.0 * share).round();
-        if let Some(echoes) = self.echoes.known().filter(|echoes| *echoes < NOTHING) {
-            let share = percent(echoes);
-            return Some(format!(
-                "only {share} % of the rays that must hit the wall or a column have an echo; check the scanner"
-            ));
-        }
-        let only_if = |how: &str, check: &str| {
-            Some(format!("the scan fits the drawing only if it is {how}; check {check}"))
-        };
+    /// The reason why the scans cannot be right; `None` if they can.
+    pub(crate) fn trouble(&self) -> Option<Trouble> {
         let [straight, mirrored, turned] = self.fits.map(|share| share.known());
-        let straight = straight?;
-        let (is_mirrored, is_turned) = (mirrored > Some(RIGHT), turned > Some(RIGHT));
-        if straight < WRONG && is_mirrored && mirrored >= turned {
-            return only_if("mirrored", "the direction of its angles");
+        let scores = self.scores.map(|share| share.known());
+        // A wrong scan may have few echoes where they must be, and those may fit by chance.
+        let is_better = |(other, as_it_is): (f64, f64)| as_it_is < WRONG && other > MUCH_BETTER * as_it_is;
+        let fits = |way: usize, fit| fit > Some(RIGHT) && scores[way].zip(scores[0]).is_some_and(is_better);
+        if fits(1, mirrored) && mirrored >= turned {
+            return Some(Trouble::Mirrored);
         }
-        if straight < WRONG && is_turned {
-            return only_if("rotated by half a turn", "how the scanner is mounted");
+        if fits(2, turned) {
+            return Some(Trouble::Backwards);
         }
-        (straight < NOTHING).then(|| {
-            let share = percent(straight);
-            format!(
-                "only {share} % of the scan fits the drawing; check the scanner, the position and the drawing"
-            )
-        })
+        if let Some(share) = self.echoes.known().filter(|share| *share < NOTHING) {
+            return Some(Trouble::NoEcho { share });
+        }
+        straight.filter(|share| *share < NOTHING).map(|share| Trouble::Misfit { share })
     }
+}
+
+/// Compares every `step`th ray with the drawing.
+fn counts(
+    rays: &Rays,
+    (boundary, map): (&Boundary, &ObstacleMap),
+    pose: &Uncertain,
+    range_m: Option<f64>,
+    step: usize,
+) -> Counts {
+    let ahead = rays.frame().rotation;
+    let expected_m = |direction: Vector| {
+        let most_m = range_m.unwrap_or(LONGEST_M);
+        let wall_m = boundary.ray_m(rays.eye(), direction);
+        let hit_m = map.ray_m(rays.eye(), direction, most_m).unwrap_or(f64::INFINITY).min(wall_m);
+        Some(hit_m).filter(|hit_m| *hit_m < 0.9 * most_m)
+    };
+    let mut counts = Counts::default();
+    for ray in (0..rays.len()).step_by(step) {
+        let (measured_m, direction) = (rays.range_m[ray], rays.direction(ray));
+        // An echo from too near is an echo, too, but does not fit.
+        let has_echo = measured_m < f64::INFINITY;
+        if !has_echo && range_m.is_none() {
+            continue;
+        }
+        let in_robot = ahead.inverse() * direction;
+        let mirrored = ahead * Vector::new(in_robot.x, -in_robot.y);
+        for (way, direction) in
+            [direction, mirrored, UnitComplex::new(PI) * direction].into_iter().enumerate()
+        {
+            let Some(expected_m) = expected_m(direction) else { continue };
+            counts.must[way] += 1;
+            if has_echo {
+                let room_m = ROOM_M + pose.gate_m(expected_m) + 0.05 * expected_m;
+                counts.echo[way] += 1;
+                counts.fit[way] += usize::from((measured_m - expected_m).abs() <= room_m);
+            }
+        }
+    }
+    counts
 }

@@ -15,12 +15,14 @@ mod disc;
 mod drawing;
 mod drift;
 mod groups;
+mod layout;
 mod outline;
 mod rays;
 mod sensor;
 mod through;
 mod track;
 mod tracker;
+mod trouble;
 mod uncertain;
 
 pub use drift::Drift;
@@ -28,6 +30,7 @@ pub use outline::change_m;
 pub use sensor::Sensor;
 pub use track::OUT_OF_SIGHT_S;
 pub use tracker::{FIRST_ID, Looked, Perception, Seen, View};
+pub use trouble::Trouble;
 
 #[cfg(test)]
 mod tests;

@@ -1,7 +1,9 @@
 //! Uses free space as evidence: rays that pass through the place where an obstacle should be.
 
-use crate::{rays::Rays, uncertain::Uncertain};
+use crate::{drawing::Drawing, rays::Rays, uncertain::Uncertain};
 use geometry::Shape;
+use std::collections::BTreeMap;
+use world::ObstacleId;
 
 /// Radius of the core of an obstacle, as a share of the obstacle's inner radius. Rays towards the core must end in the
 /// obstacle.
@@ -10,6 +12,9 @@ const CORE: f64 = 0.6;
 const LEAST_RAYS: usize = 2;
 /// Minimum radius of the core, metres.
 const LEAST_CORE_M: f64 = 0.03;
+/// A drawn obstacle is reported as missing after this number of scans that pass through its place, if none in between
+/// shows it.
+const MISSING_AFTER: u32 = 40;
 
 /// The result of looking at a place in a scan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,4 +56,40 @@ pub(crate) fn look(rays: &Rays, shape: &Shape, pose: &Uncertain, range_m: Option
     }
     // Single rays may be lost, but hardly ever several neighbouring ones.
     if through >= LEAST_RAYS || through + silent > LEAST_RAYS { Look::Through } else { Look::Hidden }
+}
+
+/// The drawn obstacles that are not where they are drawn: for each, the number of scans that passed through its place
+/// since a scan showed it.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Missing {
+    through: BTreeMap<ObstacleId, u32>,
+}
+
+impl Missing {
+    /// Counts a scan; returns the obstacles to be reported now.
+    pub(crate) fn look(
+        &mut self,
+        drawing: &Drawing<'_>,
+        rays: &Rays,
+        pose: &Uncertain,
+        range_m: Option<f64>,
+    ) -> Vec<(ObstacleId, u32)> {
+        let mut missing = Vec::new();
+        for (obstacle, ..) in &drawing.obstacles {
+            match look(rays, &obstacle.shape, pose, range_m) {
+                Look::Hidden => {}
+                Look::Hit => {
+                    self.through.remove(&obstacle.id);
+                }
+                Look::Through => {
+                    let times = self.through.entry(obstacle.id).or_default();
+                    *times = times.saturating_add(1);
+                    if *times == MISSING_AFTER {
+                        missing.push((obstacle.id, *times));
+                    }
+                }
+            }
+        }
+        missing
+    }
 }

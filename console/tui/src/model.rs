@@ -25,6 +25,7 @@ pub mod preset;
 pub mod replay;
 pub mod review;
 pub mod run;
+pub mod scanner;
 pub mod setting;
 pub mod shadow;
 pub mod step;

@@ -1,6 +1,7 @@
 //! Limits commands, tracks the robot's speed as the mission knows it, and reports planners that are slowed down.
 
 pub(super) mod guarding;
+mod scan_fault;
 pub(super) mod state;
 
 use super::known::Known;

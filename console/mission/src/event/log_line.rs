@@ -163,6 +163,12 @@ impl Event {
                     "{name} not found where charted: {scans} scans went through its place; check the drawing"
                 ),
             ),
+            EventKind::ScannerJudged { trouble: Some(why) } => {
+                line(Severity::Warn, "scanner", format!("scans not usable: {why}"))
+            }
+            EventKind::ScannerJudged { trouble: None } => {
+                line(Severity::Info, "scanner", "scans usable again".into())
+            }
             EventKind::Resumed => line(Severity::Info, "mission", "resumed".into()),
             EventKind::Ended { outcome, reason } => {
                 let severity = if *outcome == Outcome::Complete { Severity::Info } else { Severity::Warn };

@@ -35,6 +35,6 @@ fn a_scan_with_more_objects_than_can_be_followed_is_named() {
     assert_eq!((drive.perception.trouble(), drive.perception.tracks()), (None, 512));
     scan.ranges_mm.0[4..8].fill(5000);
     drive.take(&scan, &pose);
-    let trouble = drive.perception.trouble().unwrap_or_default();
+    let trouble = drive.perception.trouble().map(|why| why.to_string()).unwrap_or_default();
     assert!(trouble.contains("more than 512 objects"), "{trouble}");
 }

@@ -14,7 +14,7 @@ fn scans_that_cannot_be_right_are_named() {
             drive.take(&scan, &pose);
             assert!(drive.shapes().is_empty(), "{:?}", drive.shapes());
         }
-        drive.perception.trouble().map(str::to_owned).unwrap_or_default()
+        drive.perception.trouble().map(|why| why.to_string()).unwrap_or_default()
     };
     assert_eq!(named(&|_| {}), "");
     let reverse = |scan: &mut Scan| scan.ranges_mm.0.reverse();
@@ -23,7 +23,8 @@ fn scans_that_cannot_be_right_are_named() {
         (&reverse as &dyn Fn(&mut Scan), "only if it is mirrored"),
         (&half, "only if it is rotated by half a turn"),
         (&|scan| scan.ranges_mm.0.fill(world::NO_ECHO), "only 0 % of the rays"),
-        (&|scan| scan.ranges_mm.0.fill(0), "% of the scan fits the drawing"),
+        (&|scan| scan.ranges_mm.0.fill(0), "all distances of the scan are 0"),
+        (&|scan| scan.ranges_mm.0.fill(100), "only 0 % of the scan fits the drawing"),
         (&|scan| scan.ranges_mm.0.clear(), "the scan has no rays"),
         (&|scan| scan.ranges_mm.0.truncate(180), "the scan has 180 rays instead of 360"),
         (&|scan| scan.step_rad = f64::NAN, "are not numbers"),
@@ -32,6 +33,27 @@ fn scans_that_cannot_be_right_are_named() {
         let found = named(spoil);
         assert!(found.contains(wanted), "{wanted}: {found:?}");
     }
+}
+
+#[test]
+fn a_scanner_that_sees_only_a_few_columns_is_judged_too() {
+    let drawn = [(2.6, 1.5), (-2.8, 1.9), (0.4, -3.1), (-5.0, -3.1)];
+    let drawn: Vec<Obstacle> = (1..).zip(drawn).map(|(id, (x, y))| column(id, x, y, 0.25)).collect();
+    let pose = Pose::new(0.0, 0.0, 1.57);
+    let judged = |spoil: &dyn Fn(&mut Scan)| {
+        let mut drive = Drive::new(drawn.clone(), drawn.clone());
+        drive.boundary = Boundary::Circle { radius_m: 9.0 };
+        for _ in 0..10 {
+            let mut scan = scan_of(&drive.scanner, &drive.boundary, &drive.real, &pose, drive.tick);
+            spoil(&mut scan);
+            drive.take(&scan, &pose);
+        }
+        drive.perception.trouble()
+    };
+    assert_eq!(judged(&|_| {}), None);
+    assert_eq!(judged(&|scan| scan.ranges_mm.0.reverse()), Some(Trouble::Mirrored));
+    assert_eq!(judged(&|scan| scan.ranges_mm.0.rotate_left(180)), Some(Trouble::Backwards));
+    assert_eq!(judged(&|scan| scan.ranges_mm.0.fill(world::NO_ECHO)), Some(Trouble::NoEcho { share: 0.0 }));
 }
 
 /// A drive with a scanner that no scenario describes, in a tank whose wall is beyond the scanner's range.
@@ -67,7 +89,7 @@ fn a_scanner_that_states_its_range_and_has_no_echo_is_named() {
         scan.ranges_mm.0.fill(world::NO_ECHO);
         drive.take(&scan, &pose);
     }
-    assert!(drive.perception.trouble().is_some_and(|why| why.contains("only 0 % of the rays")));
+    assert!(drive.perception.trouble().is_some_and(|why| why.to_string().contains("only 0 % of the rays")));
 }
 
 #[test]
@@ -80,7 +102,10 @@ fn an_unknown_scanner_may_leave_out_half_of_its_rays() {
         drive.take(&scan, &pose);
         let trouble = drive.perception.trouble();
         assert_eq!(trouble.is_some(), wanted.is_some(), "{rays}: {trouble:?}");
-        assert!(wanted.is_none_or(|wanted| trouble.is_some_and(|why| why.contains(wanted))), "{trouble:?}");
+        assert!(
+            wanted.is_none_or(|wanted| trouble.is_some_and(|why| why.to_string().contains(wanted))),
+            "{trouble:?}"
+        );
     }
 }
 

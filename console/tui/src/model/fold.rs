@@ -137,10 +137,12 @@ impl Run {
             | EventKind::PlannerLogged { .. }
             | EventKind::Uncounted { .. }
             | EventKind::Scanned { .. }
+            | EventKind::ScannerJudged { .. }
             | EventKind::Sensed { .. } => {}
             EventKind::Link(_) | EventKind::Stood { .. } | EventKind::Sent { .. } => self.linked(event),
         }
         self.read_figures(&event.kind);
+        self.scanned(event);
         if let (Some(number), Some(cause)) = (line, Cause::of(&event.kind)) {
             let place = self.log.get(number).and_then(|entry| self.place_of(&entry.what));
             self.alarms.note(&cause, number, place);

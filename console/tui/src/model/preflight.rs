@@ -1,5 +1,6 @@
 //! The pre-flight check: automatic checks, and those that the operator ticks by hand.
 
+mod scanner;
 mod vehicle;
 
 use super::{Model, ui::Arrangement};
@@ -99,6 +100,7 @@ impl Model {
         checks.extend(self.tether_check());
         checks.extend(self.place_check());
         checks.extend(self.vehicle_checks());
+        checks.extend(self.scanner_check());
         checks.extend([self.station_check(), self.terminal_check()]);
         checks
     }

@@ -1,7 +1,9 @@
 //! A run reconstructed from its events; live runs and replays use the same fold.
 
 use super::alarms::rule::Context;
-use super::{Alarms, History, Log, Planning, Position, Raster, Shadow, Tether, Trail, log::What};
+use super::{
+    Alarms, History, Log, Planning, Position, Raster, Shadow, Tether, Trail, log::What, scanner::Scanner,
+};
 use mission::{
     EventKind, FoldedStanding, MissionConfig, Phase, PlannerInfo, TaskConfig, WayBack, event::TetherAlarm,
 };
@@ -46,6 +48,9 @@ pub struct Run {
     /// The real vehicle; `None` in a simulation.
     #[serde(default)]
     pub vehicle: Option<VehicleSeen>,
+    /// The scanner.
+    #[serde(default)]
+    pub scanner: Scanner,
     /// The planner and its latest output.
     pub planning: Planning,
     /// The planner in shadow; `None` without one.

@@ -171,12 +171,14 @@ pub enum MapLayer {
     Stations,
     /// Floor where the stations are forecast to locate the robot poorly.
     Accuracy,
+    /// The points of the last scan.
+    Scan,
 }
 
 impl MapLayer {
     /// All layers, in the order of the layer list.
-    pub const ALL: [Self; 6] =
-        [Self::Scanned, Self::Trail, Self::Plan, Self::Drawings, Self::Stations, Self::Accuracy];
+    pub const ALL: [Self; 7] =
+        [Self::Scanned, Self::Trail, Self::Plan, Self::Drawings, Self::Stations, Self::Accuracy, Self::Scan];
 
     /// The layer's name in the list.
     pub fn name(self) -> &'static str {
@@ -187,6 +189,7 @@ impl MapLayer {
             Self::Drawings => "planner drawings",
             Self::Stations => "AE stations",
             Self::Accuracy => "accuracy forecast",
+            Self::Scan => "scan points",
         }
     }
 }

@@ -10,6 +10,7 @@ mod pattern;
 mod pen;
 mod plates;
 mod readout;
+mod scan;
 mod shade;
 mod shadow;
 mod shapes;
@@ -153,6 +154,7 @@ fn draw_floor(look: &Look, frame: &mut Frame, area: Rect, window: Window) {
         pen.paths(ctx);
         pen.blocked(ctx);
         pen.drawings(ctx);
+        pen.scan(ctx);
         pen.solids(ctx, world);
         pen.tether(ctx);
         pen.shadow(ctx);

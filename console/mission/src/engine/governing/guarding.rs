@@ -1,6 +1,12 @@
 //! The guard by the raw scan: the scanned points, and when the robot is held because of them.
 
-use super::{super::Mission, super::known::Known, speed, state::Limited};
+use super::{
+    super::Mission,
+    super::known::Known,
+    scan_fault::{MAX_AGE_S, ScanFault},
+    speed,
+    state::Limited,
+};
 use crate::{
     config::MissionConfig,
     event::{EventKind, rounded_command},
@@ -8,18 +14,14 @@ use crate::{
     phase::{Hold, HoldReason, Resumes},
 };
 use geometry::{Braking, Drive};
-use perception::{Perception, Sensor};
+use perception::Sensor;
 use planner_api::Command;
 use world::{Odometry, Point, Readings, Scan, scan::carried};
 
-/// Maximum age, seconds, of a scan that the guard can use.
-const SCAN_MAX_AGE_S: f64 = 0.5;
 /// Maximum number of ticks for which the robot has moved since its readings arrived.
 const READING_TICKS: usize = 1;
 /// Age of readings, seconds, above which nothing depends on how old they are: the link is lost before.
 const READING_MAX_AGE_S: f64 = 1.0;
-/// Longest time until the first scan, seconds; until then the robot stands still.
-const FIRST_WITHIN_S: f64 = 2.0;
 /// Distance, metres, that is added to the stopping distance at full speed; points farther from the hull than the sum
 /// are dropped. This distance is longer than the one that the robot travels before its scan is too old.
 const KEPT_M: f64 = 2.0;
@@ -42,9 +44,9 @@ pub(in crate::engine) struct ScanGuard {
     /// point, but noise alone does not hold the robot.
     noisy: Option<Noisy>,
     /// Whether a scan has arrived.
-    has_scan: bool,
+    pub(super) has_scan: bool,
     /// Age of the last scan, or of the mission before the first one, seconds.
-    age_s: f64,
+    pub(super) age_s: f64,
     /// The motion that the vehicle may still have to carry out, oldest first.
     sent: Vec<Sent>,
     /// Age of the newest readings on arrival, seconds.
@@ -58,6 +60,8 @@ pub(in crate::engine) struct ScanGuard {
     is_late_now: bool,
     blocked_s: f64,
     limited: Limited,
+    /// The fault of the scans that was reported last.
+    pub(super) told_fault: Option<ScanFault>,
 }
 
 impl ScanGuard {
@@ -117,7 +121,7 @@ impl Known {
             *point = carried(*point, &readings.odometry);
         }
         // A scan that is too old holds the robot, whatever it shows.
-        if let Some(noisy) = guard.noisy.as_mut().filter(|_| guard.age_s <= SCAN_MAX_AGE_S) {
+        if let Some(noisy) = guard.noisy.as_mut().filter(|_| guard.age_s <= MAX_AGE_S) {
             noisy.moved.push(readings.odometry);
         }
         guard.age_s += self.config.tick_s;
@@ -175,17 +179,10 @@ impl Known {
     /// Why the guard stops the robot, as a clause.
     fn guard_stop(&self) -> Option<String> {
         self.config.guard_reaction_s?;
-        if let Some(trouble) = self.perception.as_ref().and_then(Perception::trouble) {
-            return Some(trouble.to_owned());
+        if let Some(fault) = self.scan_fault() {
+            return Some(fault.to_string());
         }
         let guard = &self.scan_guard;
-        let age_s = guard.age_s;
-        if guard.has_scan && age_s > SCAN_MAX_AGE_S {
-            return Some(format!("the last scan is {age_s:.1} s old, so the guard is blind"));
-        }
-        if !guard.has_scan && age_s > FIRST_WITHIN_S {
-            return Some("the vehicle has not sent a scan yet, so the guard is blind".into());
-        }
         let (gap_m, direction_rad) = guard.before?;
         if guard.late_scans < LATE_SCANS && guard.blocked_s < BLOCKED_S {
             return None;

@@ -163,7 +163,7 @@ fn an_object_that_only_the_scan_shows_is_put_on_the_map() {
         .collect();
     let [world::Shape::Disc { center, radius_m }] = found[..] else { panic!("{found:?}") };
     assert!((center - discs[0].0).norm() < 0.05 && (radius_m - 0.1).abs() < 0.02, "{found:?}");
-    assert_eq!(flight.mission.known.perception.as_ref().and_then(|found| found.trouble()), None);
+    assert_eq!(flight.mission.known.perception.as_ref().and_then(perception::Perception::trouble), None);
 }
 
 #[test]
@@ -175,7 +175,7 @@ fn a_scan_that_cannot_be_right_holds_the_robot() {
     let Some(HoldReason::Guard { message }) = flight.held_by() else {
         panic!("{:?}", flight.mission.phase())
     };
-    assert_eq!(message, "the scan has 360 rays instead of 180");
+    assert!(message.starts_with("the scan has 360 rays instead of 180; "), "{message}");
 }
 
 /// A robot under way whose scans show an object that it cannot avoid in some ticks, and no object in others; `None` is a
@@ -201,4 +201,40 @@ fn one_noisy_scan_holds_no_robot_and_two_do() {
     assert!(!is_held_after(&[noise, clear, clear, clear]));
     assert!(is_held_after(&[noise, noise, clear]));
     assert!(is_held_after(&[noise, none, noise, clear]));
+}
+
+/// The troubles of the scanner in the events so far.
+fn judged(flight: &Flight) -> Vec<Option<&str>> {
+    let mut judged = Vec::new();
+    for event in &flight.events {
+        if let EventKind::ScannerJudged { trouble } = &event.kind {
+            judged.push(trouble.as_deref());
+        }
+    }
+    judged
+}
+
+#[test]
+fn scans_are_judged_before_the_start_and_again_when_they_change() {
+    let sensor = perception::Sensor { rays: Some(360), ..perception::Sensor::UNKNOWN };
+    let mut flight = guarded(MissionConfig { sensor: Some(sensor), ..config() });
+    flight.fly(10);
+    assert!(judged(&flight).is_empty(), "{:?}", judged(&flight));
+    flight.scanner = Some((Vec::new(), false));
+    flight.fly(30);
+    let [Some(why)] = judged(&flight)[..] else { panic!("{:?}", judged(&flight)) };
+    assert!(why.contains("s old, so the guard is blind; check"), "{why}");
+    flight.scanner = Some((Vec::new(), true));
+    flight.fly(2);
+    assert_eq!(judged(&flight)[1..], [None]);
+    assert_eq!(flight.mission.phase(), &Phase::Waiting);
+}
+
+#[test]
+fn a_scanner_that_never_sends_is_named_before_the_start() {
+    let mut flight = guarded(config());
+    flight.scanner = Some((Vec::new(), false));
+    flight.fly(40);
+    let [Some(why)] = judged(&flight)[..] else { panic!("{:?}", judged(&flight)) };
+    assert!(why.starts_with("the vehicle has not sent a scan yet"), "{why}");
 }

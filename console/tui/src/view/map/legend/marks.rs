@@ -2,7 +2,7 @@
 
 use super::super::pattern::braille;
 use super::super::shapes::Window;
-use super::super::{course, labels, plates};
+use super::super::{course, labels, plates, scan};
 use super::{Entry, MARK};
 use crate::model::{Screen, ui::MapLayer};
 use crate::theme::Role;
@@ -37,6 +37,7 @@ pub(super) fn shown(look: &Look, window: Window) -> Vec<Entry> {
         (obstacle(false), Role::Found, "?".to_owned(), "found"),
         (obstacle(true), Role::Obstacle, "#".into(), "obstacle"),
         (target, Role::Target, "×".into(), "target"),
+        (!scan::shown(look).is_empty(), Role::Watch, scan::mark(look), "scan"),
         (wound, Role::Tether, labels::WOUND.into(), "largest wrap"),
         (change_over, Role::Watch, "◇".into(), "change-over"),
         (station, Role::Station, stations(look), "station"),
