@@ -565,6 +565,14 @@ pub enum EventKind {
     },
     /// The robot may move again.
     Resumed,
+    /// An unattended mission of a real vehicle is held because its position is not reliable. It resumes automatically when
+    /// the position is reliable again; otherwise, its time limit ends it.
+    PositionAwaited {
+        /// Limit on the 95 % position error, metres.
+        limit_m: f64,
+        /// Mission time at which the time limit ends the mission, seconds.
+        ends_t_s: f64,
+    },
     /// The last event of every run that ended normally or by order.
     Ended {
         /// The outcome.

@@ -127,6 +127,9 @@ impl Event {
                 "robot",
                 format!("floor {}: pressure {:.0} Pa", medium.word(), pressure_pa),
             ),
+            EventKind::PositionAwaited { limit_m, ends_t_s } => {
+                line(Severity::Warn, "mission", awaited_text(*limit_m, *ends_t_s, !stations.is_empty()))
+            }
             EventKind::Link(link) => of_link(link),
             EventKind::Stood { confirmed: true, after_s, .. } => line(
                 Severity::Info,
@@ -191,6 +194,20 @@ impl Event {
 
 fn line(severity: Severity, source: &'static str, text: String) -> LogLine {
     LogLine { severity, source, text }
+}
+
+fn awaited_text(limit_m: f64, ends_t_s: f64, has_stations: bool) -> String {
+    if has_stations {
+        format!(
+            "waiting for ranges: the robot resumes when the 95 % position error is at most {limit_m:.2} m; otherwise, the \
+             time limit ends the mission at T+{ends_t_s:.0} s"
+        )
+    } else {
+        format!(
+            "the scenario has no stations, so the position error cannot fall to {limit_m:.2} m: the time limit ends the \
+             mission at T+{ends_t_s:.0} s; Ctrl-C ends it now"
+        )
+    }
 }
 
 fn of_link(link: &LinkSeen) -> LogLine {

@@ -117,6 +117,7 @@ impl Run {
                 self.hold(event, &Hold { by: by.clone(), resumes: *resumes }, &mut change);
             }
             EventKind::Resumed => {
+                self.linked(event);
                 self.clear(&Cause::Stuck);
                 self.clear(&Cause::Guard);
                 self.planner_works();
@@ -135,7 +136,10 @@ impl Run {
             | EventKind::Uncounted { .. }
             | EventKind::Scanned { .. }
             | EventKind::Sensed { .. } => {}
-            EventKind::Link(_) | EventKind::Stood { .. } | EventKind::Sent { .. } => self.linked(event),
+            EventKind::Link(_)
+            | EventKind::Stood { .. }
+            | EventKind::Sent { .. }
+            | EventKind::PositionAwaited { .. } => self.linked(event),
         }
         self.read_figures(&event.kind);
         if let (Some(number), Some(cause)) = (line, Cause::of(&event.kind)) {

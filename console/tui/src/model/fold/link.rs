@@ -5,7 +5,7 @@ use mission::{Event, EventKind};
 use vehicle::port::LinkState;
 
 impl Run {
-    /// Folds in an event about the link, or about whether the vehicle stands still.
+    /// Folds in an event about the link, whether the vehicle stands still, or the end of its wait for a position.
     pub(super) fn linked(&mut self, event: &Event) {
         match &event.kind {
             EventKind::Link(link) => {
@@ -30,6 +30,12 @@ impl Run {
             }
             // A motion makes an earlier confirmation obsolete; a command to stand still begins the wait for a new one.
             EventKind::Sent { .. } => self.vehicle.get_or_insert_default().stands = None,
+            EventKind::PositionAwaited { ends_t_s, .. } => {
+                self.vehicle.get_or_insert_default().waits_until_s = Some(*ends_t_s);
+            }
+            EventKind::Resumed => {
+                self.vehicle.iter_mut().for_each(|vehicle| vehicle.waits_until_s = None);
+            }
             _ => {}
         }
     }
