@@ -36,7 +36,7 @@ use crate::{
 use planner_api::{Command, Drawing, Drive, Leg, LegTag, LogLevel, PoseEstimate, Reason};
 use positioning::{Exclusion, Fix, FixError, Ranging};
 use serde::{Deserialize, Serialize};
-use vehicle::port::LinkSeen;
+use vehicle::port::{LinkSeen, Notice};
 use world::tether::Certificate;
 use world::{CellRun, KindRun, Medium, Obstacle, ObstacleId, Point, Pose, Readings, Scan, StationId, Zone};
 
@@ -534,6 +534,8 @@ pub enum EventKind {
     },
     /// The state of the link to a real vehicle changed, or its periodic figures are due.
     Link(LinkSeen),
+    /// A fact about a real vehicle was found, or has changed.
+    Noticed(Notice),
     /// A command was sent to a real vehicle; of several commands to stand still in a row, only the first is reported.
     Sent {
         /// The motion; absent for a command to stand still.

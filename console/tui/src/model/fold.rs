@@ -137,6 +137,7 @@ impl Run {
             | EventKind::Scanned { .. }
             | EventKind::Sensed { .. } => {}
             EventKind::Link(_)
+            | EventKind::Noticed(_)
             | EventKind::Stood { .. }
             | EventKind::Sent { .. }
             | EventKind::PositionAwaited { .. } => self.linked(event),

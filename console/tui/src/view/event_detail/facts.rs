@@ -61,6 +61,7 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::Certified { .. } => "certificate",
         EventKind::PositionAwaited { .. } => "waiting for the position",
         EventKind::Link(_) => "link to the vehicle",
+        EventKind::Noticed(_) => "about the vehicle",
         EventKind::Stood { confirmed: true, .. } => "vehicle stopped",
         EventKind::Stood { moved: true, .. } => "unordered motion",
         EventKind::Stood { .. } => "stop not confirmed",

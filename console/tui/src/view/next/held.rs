@@ -82,6 +82,8 @@ fn undrivable(head: Head, by: &HoldReason, link: &LinkSeen) -> Option<Vec<String
         LinkState::Closed => ("link to vehicle closed", "No resume: only a new run connects."),
         LinkState::Faulty => ("vehicle sends faulty messages", "Cannot resume until they are correct."),
         LinkState::Restarted => ("vehicle has restarted", "Cannot resume yet."),
+        LinkState::OtherVehicle => ("another vehicle answers", "No resume: only a new run drives it."),
+        LinkState::ConsoleStopped => ("console was stopped", "Cannot resume yet."),
         LinkState::Manual => ("vehicle is being driven by hand", "Cannot resume until it is released."),
         LinkState::EmergencyStop => ("emergency stop is pressed", "Cannot resume until it is released."),
         LinkState::OtherCommander => {
