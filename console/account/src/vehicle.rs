@@ -117,7 +117,7 @@ impl VehicleRecord {
                 (self.fault_first, self.fault_last) = (Some(first.clone()), Some(last.clone()));
             }
             Notice::ClockRate { rate, is_off, .. } => {
-                self.clock_rate = is_off.then_some(*rate).or(self.clock_rate)
+                self.clock_rate = is_off.then_some(*rate).or(self.clock_rate);
             }
         }
     }

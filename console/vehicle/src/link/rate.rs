@@ -32,7 +32,7 @@ impl Rates {
         if over_s < BETTER_WITHIN_S && trip.took_s < first.took_s {
             self.trip = Some(trip);
         }
-        let error = (trip.took_s + first.took_s) / 2.0 / over_s;
+        let error = f64::midpoint(trip.took_s, first.took_s) / over_s;
         if over_s >= OVER_S && error <= ERROR_MAX {
             let between_s = over_s - (trip.took_s - first.took_s) / 2.0;
             self.by_pings = Some(1.0 + (trip.offset - first.offset) / between_s);
