@@ -20,7 +20,10 @@ pub(super) fn lines(vehicle: &VehicleRecord) -> Vec<(&'static str, String)> {
 pub(crate) fn sentences(vehicle: &VehicleRecord) -> String {
     let VehicleRecord { name, at, .. } = vehicle;
     let at_end = at_end(vehicle).map(|at_end| format!(" At the end: {at_end}.")).unwrap_or_default();
-    let warnings: String = warnings(vehicle).iter().map(|warning| format!(" WARNING: {warning}.")).collect();
+    let mut more: Vec<String> =
+        warnings(vehicle).into_iter().map(|warning| format!("WARNING: {warning}.")).collect();
+    more.insert(0, String::new());
+    let warnings = more.join(" ").trim_end().to_owned();
     format!(
         "Vehicle {name} at {at}. Link: {}. Stops: {}.{warnings}{at_end} No figure in this report was compared with a true \
          position.",
