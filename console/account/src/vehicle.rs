@@ -1,8 +1,11 @@
 //! The record of a real vehicle: its link and its stops.
 
-use ::vehicle::port::{LinkSeen, LinkState, VehicleInfo};
+use ::vehicle::port::{LinkSeen, LinkState, Notice, VehicleInfo};
 use mission::EventKind;
 use serde::{Deserialize, Serialize};
+
+/// Maximum number of other vehicles that are kept.
+const MOST_OTHERS: usize = 4;
 
 /// The record of a real vehicle in a run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -37,6 +40,22 @@ pub struct VehicleRecord {
     /// Whether the last commanded stop is confirmed; absent if the vehicle was driven last, or nothing is known.
     #[serde(default)]
     pub stands: Option<bool>,
+    /// The first faulty message: its field and its fault; absent without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fault_first: Option<String>,
+    /// The last faulty message.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fault_last: Option<String>,
+    /// Other vehicles that answered on the same connection, each with the differences in its description, at most 4.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub others: Vec<String>,
+    /// The rate of the vehicle's clock, if it differed from the console's by more than 1 %; of several such rates, the last
+    /// one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clock_rate: Option<f64>,
+    /// Time for which the console itself was stopped, seconds.
+    #[serde(default)]
+    pub console_stopped_s: f64,
     #[serde(skip)]
     is_heard: bool,
 }
@@ -48,8 +67,17 @@ impl VehicleRecord {
 
     pub(crate) fn apply(&mut self, event: &EventKind) {
         match event {
-            EventKind::Link(LinkSeen { state, age_p99_s, heard, missed, faulty, unmeasured_s, .. }) => {
-                self.unmeasured_s = *unmeasured_s;
+            EventKind::Link(LinkSeen {
+                state,
+                age_p99_s,
+                heard,
+                missed,
+                faulty,
+                unmeasured_s,
+                console_stopped_s,
+                ..
+            }) => {
+                (self.unmeasured_s, self.console_stopped_s) = (*unmeasured_s, *console_stopped_s);
                 (self.heard, self.missed, self.faulty) = (*heard, *missed, *faulty);
                 self.at_least = false;
                 self.age_p99_s = age_p99_s.or(self.age_p99_s);
@@ -57,6 +85,7 @@ impl VehicleRecord {
                 self.lost += u64::from(is_lost && self.is_heard);
                 self.is_heard = !is_lost;
             }
+            EventKind::Noticed(notice) => self.notice(notice),
             EventKind::Sensed { .. } => {
                 self.heard += 1;
                 self.at_least = true;
@@ -72,6 +101,24 @@ impl VehicleRecord {
                 self.stops_not_confirmed += 1;
             }
             _ => {}
+        }
+    }
+
+    fn notice(&mut self, notice: &Notice) {
+        match notice {
+            Notice::OtherVehicle { vehicle, differs } => {
+                let other = format!("{} ({})", vehicle.name, differs.join(", "));
+                if self.others.len() < MOST_OTHERS && !self.others.contains(&other) {
+                    self.others.push(other);
+                }
+            }
+            Notice::FaultyMessages { count, first, last } => {
+                self.faulty = *count;
+                (self.fault_first, self.fault_last) = (Some(first.clone()), Some(last.clone()));
+            }
+            Notice::ClockRate { rate, is_off, .. } => {
+                self.clock_rate = is_off.then_some(*rate).or(self.clock_rate);
+            }
         }
     }
 }

@@ -36,6 +36,7 @@ def robot(hello, body):  # lines with speed, turn rate and lease in, readings ou
 
 def command(line, hello, heard):  # its line for the robot; an error if it is bad. `heard`: greatest number, least delay of a stamp
     late = time.monotonic() - float(line["stamp_s"] if line["type"] in ("drive", "ping") else line.get("stamp_s", "-inf"))
+    if late < -1e300 or late > 1e300 and line["type"] in ("drive", "ping"): raise ValueError("stamp_s is not finite")  # 1e999
     heard[1] = min(heard[1] + 1e-4, late)  # + 1e-4: clocks drift
     if line["type"] == "ping": say({"type": "pong", "echo_s": line["stamp_s"], "stamp_s": time.monotonic()})
     if line["type"] not in ("drive", "stop") or line["seq"] <= heard[0]: return "0 0 0\n" * (line["type"] == "bye")

@@ -88,7 +88,7 @@ fn fly_beside(
     let mut now = (0, 0.0);
     let mut take = |events: Vec<Event>, host: Option<&mut Host>| {
         now = events.last().map_or((0, 0.0), |event| (event.tick, event.t_s));
-        show_progress(&bar, &events, &scenario.sim.world.stations);
+        show_progress(&bar, &events, scenario);
         log.keep(events);
         if let Some(host) = host {
             remains::keep(host, Some(&mut log), now);
@@ -197,11 +197,24 @@ fn progress_bar(scenario: &Scenario, options: RunOptions) -> ProgressBar {
     bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
-fn show_progress(bar: &ProgressBar, events: &[Event], stations: &[Station]) {
+/// Shows the progress of a run. Without a progress bar, only a wait that may last until the time limit is reported.
+fn show_progress(bar: &ProgressBar, events: &[Event], scenario: &Scenario) {
+    let stations: &[Station] = &scenario.sim.world.stations;
     if bar.is_hidden() {
+        let awaited = events.iter().filter(|event| matches!(event.kind, EventKind::PositionAwaited { .. }));
+        for (event, line) in awaited.filter_map(|event| Some((event, event.log_line(stations)?))) {
+            warn_line(&format!("T+{:.1} s  {}  {}", event.t_s, line.source, line.text));
+        }
         return;
     }
     for event in events {
+        match event.kind {
+            EventKind::PositionAwaited { ends_t_s, .. } => {
+                bar.set_prefix(format!("{}  HELD: position lost, ends at T+{ends_t_s:.0} s", scenario.name));
+            }
+            EventKind::Resumed => bar.set_prefix(scenario.name.clone()),
+            _ => {}
+        }
         if let EventKind::Progressed { done, covered_reachable, .. } = event.kind {
             bar.set_position((done * 1000.0) as u64);
             bar.set_message(format!(

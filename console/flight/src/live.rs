@@ -40,6 +40,7 @@ impl LiveWatch {
                 readings: Box::new(readings.clone()),
             });
         }
+        events.extend(live.notices.iter().cloned().map(EventKind::Noticed));
         if let Some(link) = &live.link {
             self.link = link.clone();
             events.push(EventKind::Link(link.clone()));

@@ -44,6 +44,9 @@ impl Feed {
                     let stood = Stood { confirmed: *confirmed, after_s: *after_s, moved: *moved };
                     live_of(is_decided, &mut first, &mut last).stood = Some(stood);
                 }
+                EventKind::Noticed(notice) => {
+                    live_of(is_decided, &mut first, &mut last).notices.push(notice.clone());
+                }
                 EventKind::RunOpened(_) => {}
                 _ => is_decided = true,
             }

@@ -36,7 +36,7 @@ use crate::{
 use planner_api::{Command, Drawing, Drive, Leg, LegTag, LogLevel, PoseEstimate, Reason};
 use positioning::{Exclusion, Fix, FixError, Ranging, Unprotected};
 use serde::{Deserialize, Serialize};
-use vehicle::port::LinkSeen;
+use vehicle::port::{LinkSeen, Notice};
 use world::tether::Certificate;
 use world::{CellRun, KindRun, Medium, Obstacle, ObstacleId, Point, Pose, Readings, Scan, StationId, Zone};
 
@@ -552,6 +552,8 @@ pub enum EventKind {
     },
     /// The state of the link to a real vehicle changed, or its periodic figures are due.
     Link(LinkSeen),
+    /// A fact about a real vehicle was found, or has changed.
+    Noticed(Notice),
     /// A command was sent to a real vehicle; of several commands to stand still in a row, only the first is reported.
     Sent {
         /// The motion; absent for a command to stand still.
@@ -589,6 +591,14 @@ pub enum EventKind {
     },
     /// The robot may move again.
     Resumed,
+    /// An unattended mission of a real vehicle is held because its position is not reliable. It resumes automatically when
+    /// the position is reliable again; otherwise, its time limit ends it.
+    PositionAwaited {
+        /// Limit on the 95 % position error, metres.
+        limit_m: f64,
+        /// Mission time at which the time limit ends the mission, seconds.
+        ends_t_s: f64,
+    },
     /// The last event of every run that ended normally or by order.
     Ended {
         /// The outcome.

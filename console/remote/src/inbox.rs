@@ -2,14 +2,17 @@
 //! messages.
 
 mod ages;
+mod notices;
 mod outlines;
 
+use crate::taking::info;
 use ages::Ages;
+use notices::Notices;
 use outlines::Outlines;
 use std::collections::BTreeMap;
 use vehicle::{
     link::{Hold, Link, Motions, Sequence, State as Reached},
-    port::{LinkSeen, LinkState, Live, Sensed, Stamps, Stood},
+    port::{LinkSeen, LinkState, Live, Notice, Sensed, Stamps, Stood},
     wire::{
         FromVehicle, Heard, ToVehicle,
         message::{Commander, Hello, Mode, Odometry, Readings, Scan, State},
@@ -36,13 +39,30 @@ const REPEATED: &str = "its readings repeat the numbers of earlier ones";
 const RANGES_MAX_AGE_S: f64 = 0.5;
 /// Interval at which the figures of the link are reported, seconds.
 const FIGURES_EVERY_S: f64 = 10.0;
+/// Time without a tick and without a message to the vehicle, seconds, after which the console itself counts as having been
+/// stopped. A running console sends a ping every 0.2 s, even if its ticks are late.
+const STOPPED_S: f64 = 0.8;
+/// Readings whose stamps are older than this although they have just arrived, seconds, count as old by their stamps.
+const JUST_NOW_S: f64 = 0.4;
 /// Stamps are rounded to this many steps per second.
 const STAMP_STEPS: f64 = 1e4;
 
 /// The messages that arrived.
 pub(crate) struct Inbox {
     stations: BTreeMap<String, StationId>,
+    /// The address of the adapter.
+    at: String,
+    /// The first introduction: that of the vehicle of this run.
+    first: Option<Box<Hello>>,
+    /// The last introduction, and its differences from the first one; empty for the same vehicle.
     hello: Option<Box<Hello>>,
+    differs: Vec<String>,
+    /// The last time at which the console itself was running, seconds.
+    awake_s: Option<f64>,
+    /// Length of the last time for which the console itself was stopped, until it is reported, and of all such times,
+    /// seconds.
+    stopped_s: Option<f64>,
+    stopped_sum_s: f64,
     /// Whether the vehicle has started again since the last tick.
     has_restarted: bool,
     state: Option<State>,
@@ -63,8 +83,9 @@ pub(crate) struct Inbox {
     /// The readings since the last tick, and their stamps.
     readings: world::Readings,
     stamps: Option<Stamps>,
-    faulty: u64,
-    fault: String,
+    notices: Notices,
+    /// The place at which the stream has stopped within a line.
+    unfinished: Option<String>,
     /// The fault of a `hello`; after it, no message can be trusted.
     bad_hello: Option<String>,
     closed: Option<String>,
@@ -81,10 +102,16 @@ pub(crate) struct Inbox {
 }
 
 impl Inbox {
-    pub(crate) fn new(stations: BTreeMap<String, StationId>) -> Self {
+    pub(crate) fn new(stations: BTreeMap<String, StationId>, at: String) -> Self {
         Self {
             stations,
+            at,
+            first: None,
             hello: None,
+            differs: Vec::new(),
+            awake_s: None,
+            stopped_s: None,
+            stopped_sum_s: 0.0,
             has_restarted: false,
             state: None,
             greeted_s: 0.0,
@@ -98,8 +125,8 @@ impl Inbox {
             standing_stamp_s: None,
             readings: world::Readings::default(),
             stamps: None,
-            faulty: 0,
-            fault: String::new(),
+            notices: Notices::default(),
+            unfinished: None,
             bad_hello: None,
             closed: None,
             unmeasured_s: 0.0,
@@ -128,7 +155,12 @@ impl Inbox {
 
     /// The last faulty line; empty without one.
     pub(crate) fn fault(&self) -> &str {
-        &self.fault
+        self.notices.last_fault()
+    }
+
+    /// Notes the place at which the stream has stopped within a line.
+    pub(crate) fn stopped_in(&mut self, unfinished: Option<String>) {
+        self.unfinished = unfinished.map(|field| foreign::plain(&field).into_owned());
     }
 
     /// Whether readings have shown that the vehicle stands still, or that it does not.
@@ -147,6 +179,9 @@ impl Inbox {
         if let Some(text) = last.and_then(|state| state.text.as_deref()) {
             why = format!("{why}; it had reported: {}", foreign::plain(text));
         }
+        if let Some(field) = &self.unfinished {
+            why = format!("{why}; its last line is incomplete: {field}");
+        }
         self.closed.get_or_insert(why);
         self.link.closed();
     }
@@ -161,8 +196,22 @@ impl Inbox {
         }
     }
 
+    /// The console is running: a tick begins, or a message leaves. After a long time without either, the silence of the
+    /// vehicle begins now.
+    pub(crate) fn awake(&mut self, now_s: f64) {
+        let slept_s = self.awake_s.replace(now_s).map_or(0.0, |awake_s| now_s - awake_s);
+        if slept_s <= STOPPED_S {
+            return;
+        }
+        self.stopped_s = Some(slept_s);
+        self.stopped_sum_s += slept_s;
+        self.link.resumed(now_s);
+        (self.greeted_s, self.state_s, self.unread) = (now_s, now_s, None);
+    }
+
     /// A command was sent.
-    pub(crate) fn sent(&mut self, message: &ToVehicle) {
+    pub(crate) fn sent(&mut self, message: &ToVehicle, now_s: f64) {
+        self.awake(now_s);
         match message {
             ToVehicle::Drive(drive) => self.link.drove(drive),
             ToVehicle::Stop(stop) => self.link.stopped(stop),
@@ -175,13 +224,15 @@ impl Inbox {
         self.link.heard(&heard, now_s);
         match heard {
             Heard::Message(FromVehicle::Hello(hello)) => self.greet(hello, now_s),
+            // The motion of another vehicle is not that of the robot.
+            Heard::Message(FromVehicle::Readings(_)) if !self.differs.is_empty() => {}
             Heard::Message(FromVehicle::Readings(readings)) => self.read(&readings, now_s),
             Heard::Message(FromVehicle::State(state)) => (self.state, self.state_s) = (Some(state), now_s),
             Heard::Malformed(misfit) => {
-                self.faulty += 1;
-                self.fault = foreign::plain(&misfit.to_string()).into_owned();
+                let fault = foreign::plain(&misfit.to_string()).into_owned();
+                self.notices.faulty(&fault);
                 if misfit.field.starts_with("hello") {
-                    self.bad_hello = Some(self.fault.clone());
+                    self.bad_hello = Some(fault);
                 }
             }
             // The link has taken the answer to a ping.
@@ -191,8 +242,15 @@ impl Inbox {
         }
     }
 
-    /// A vehicle that introduces itself again has started again: its poses are in a new frame, its numbers begin again.
+    /// A vehicle that introduces itself again has started again: its poses are in a new frame, its numbers begin again. If
+    /// its description is new, too, it is another vehicle.
     fn greet(&mut self, hello: Box<Hello>, now_s: f64) {
+        let first = self.first.get_or_insert_with(|| hello.clone());
+        let differs = first.differences(&hello);
+        self.differs = differs.iter().map(|text| foreign::plain(text).into_owned()).collect();
+        if !differs.is_empty() {
+            self.notices.other_vehicle(info(&hello, &self.at), self.differs.clone());
+        }
         self.has_restarted |= self.hello.is_some();
         (self.motions, self.state, self.unread) = (Motions::default(), None, None);
         (self.stamp_s, self.standing_stamp_s) = (None, None);
@@ -202,10 +260,10 @@ impl Inbox {
         self.hello = Some(hello);
     }
 
-    /// Whether a motion may be sent: not before the first readings, and not to a vehicle that has just started again and
-    /// has not been held yet.
+    /// Whether a motion may be sent: not before the first readings, not to another vehicle, not to one that has just
+    /// started again and has not been held yet, and not before a stop of the console itself has been reported.
     pub(crate) fn may_drive(&self) -> bool {
-        self.heard() > 0 && !self.has_restarted
+        self.heard() > 0 && !self.has_restarted && self.differs.is_empty() && self.stopped_s.is_none()
     }
 
     /// Adds readings. Readings that arrive twice, or after later ones, are left out: their motion would count twice.
@@ -252,12 +310,14 @@ impl Inbox {
 
     /// Returns the content of the messages that have arrived since the last tick.
     pub(crate) fn sense(&mut self, now_s: f64) -> Sensed {
+        self.awake(now_s);
         let stamps = self.stamps.take().map(|Stamps { source_t_s, arrival_t_s }| Stamps {
             source_t_s: rounded(source_t_s),
             arrival_t_s: rounded(arrival_t_s),
         });
         let readings = std::mem::take(&mut self.readings);
-        let live = Live { stamps, link: self.due_link(now_s), stood: self.due_stood(now_s) };
+        let notices = self.due_notices(now_s, false);
+        let live = Live { stamps, link: self.due_link(now_s), stood: self.due_stood(now_s), notices };
         Sensed { readings, live: Some(live) }
     }
 
@@ -268,7 +328,13 @@ impl Inbox {
 
     /// The link, and the result of a commanded stop if it is new.
     pub(crate) fn settled(&mut self, now_s: f64) -> Live {
-        Live { stamps: None, link: Some(self.link(now_s)), stood: self.due_stood(now_s) }
+        self.awake(now_s);
+        let notices = self.due_notices(now_s, true);
+        Live { stamps: None, link: Some(self.link(now_s)), stood: self.due_stood(now_s), notices }
+    }
+
+    fn due_notices(&mut self, now_s: f64, is_last: bool) -> Vec<Notice> {
+        self.notices.due(self.link.clock().rates().worst(), now_s, is_last)
     }
 
     fn due_stood(&mut self, now_s: f64) -> Option<Stood> {
@@ -299,7 +365,10 @@ impl Inbox {
         if is_due {
             self.told = Some((link.state, link.why.clone(), now_s));
         }
-        self.has_restarted = false;
+        // Each of the two is reported in a tick of its own.
+        if self.stopped_s.take().is_none() {
+            self.has_restarted = false;
+        }
         is_due.then_some(link)
     }
 
@@ -316,8 +385,9 @@ impl Inbox {
             age_p99_s: self.ages.p99_s().map(rounded),
             heard: counts.received,
             missed: counts.lost,
-            faulty: self.faulty,
+            faulty: self.notices.faults(),
             unmeasured_s: rounded(self.unmeasured_s),
+            console_stopped_s: rounded(self.stopped_sum_s),
         }
     }
 
@@ -332,7 +402,15 @@ impl Inbox {
     }
 
     /// Why no readings count as new, although some may still arrive.
-    fn why_lost(&self, now_s: f64) -> &'static str {
+    fn why_lost(&self, now_s: f64) -> String {
+        let what = self.what_lost(now_s);
+        match &self.unfinished {
+            Some(field) => format!("{what}, in the middle of a line: {field}"),
+            None => what.into(),
+        }
+    }
+
+    fn what_lost(&self, now_s: f64) -> &'static str {
         let recent_s =
             ARRIVED_S.max(ARRIVED_PERIODS * self.hello.as_ref().map_or(0.0, |hello| hello.period_s));
         let is_recent = |last_s: Option<f64>| last_s.is_some_and(|last_s| now_s - last_s <= recent_s);
@@ -340,6 +418,8 @@ impl Inbox {
             REPEATED
         } else if is_recent(self.standing_stamp_s) {
             "the stamps of its readings (`stamp_s`) stand still"
+        } else if self.link.silent_s(now_s).is_some_and(|silent_s| silent_s <= JUST_NOW_S) {
+            "its readings arrive, but are too old by their stamps (`stamp_s`)"
         } else {
             "its readings stopped"
         }
@@ -349,6 +429,12 @@ impl Inbox {
         if let Some(why) = &self.closed {
             return (LinkState::Closed, why.clone());
         }
+        if let Some(stopped_s) = self.stopped_s {
+            return (LinkState::ConsoleStopped, format!("it sent no commands for {stopped_s:.1} s"));
+        }
+        if !self.differs.is_empty() {
+            return (LinkState::OtherVehicle, self.differs.join(", "));
+        }
         if self.has_restarted {
             return (LinkState::Restarted, String::new());
         }
@@ -356,7 +442,7 @@ impl Inbox {
             Reached::Lost if self.link.is_deaf(now_s) => {
                 return (LinkState::Lost, "it has stopped answering, so it may not receive commands".into());
             }
-            Reached::Lost => return (LinkState::Lost, self.why_lost(now_s).into()),
+            Reached::Lost => return (LinkState::Lost, self.why_lost(now_s)),
             Reached::Late | Reached::Alive
                 if self.unread.is_some_and(|(since_s, _)| now_s - since_s > UNREAD_S) =>
             {

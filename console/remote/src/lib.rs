@@ -7,6 +7,7 @@
 //! [`server`] is the other end, for programs that offer a vehicle.
 
 pub mod address;
+mod began;
 mod inbox;
 mod loopback;
 mod outbox;

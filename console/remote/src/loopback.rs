@@ -52,7 +52,7 @@ pub(crate) fn looped_back(flight: Flight, scenario: &Scenario) -> Result<Flight,
     let mut loopback = Loopback {
         is_omni: hello.motion == vehicle::wire::message::MotionKind::Omni,
         behind,
-        inbox: Inbox::new(stations),
+        inbox: Inbox::new(stations, "loopback".into()),
         outbox: Outbox::default(),
         to_vehicle: (Writer::new(session.clone()), Reader::new(session)),
         from_vehicle: (Writer::new(FromSession::default()), Reader::new(FromSession::default())),
@@ -85,7 +85,7 @@ impl Loopback {
         let (mut line, now_s) = (Vec::new(), self.now_s());
         let message = self.outbox.next(|| now_s, &mut now_s.clone());
         self.to_vehicle.0.write(&message, &mut line)?;
-        self.inbox.sent(&message);
+        self.inbox.sent(&message, now_s);
         for heard in self.to_vehicle.1.read(&line) {
             if let vehicle::wire::Heard::Message(message) = heard {
                 self.behind.take(&message, now_s);

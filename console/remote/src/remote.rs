@@ -2,6 +2,7 @@
 
 use crate::{
     address::Address,
+    began::Began,
     inbox::Inbox,
     outbox::Outbox,
     said::Said,
@@ -44,7 +45,7 @@ pub struct Remote {
 struct Shared {
     inbox: Mutex<Inbox>,
     outbox: Outbox,
-    began: Instant,
+    began: Began,
     is_closing: AtomicBool,
     has_left: AtomicBool,
 }
@@ -69,7 +70,7 @@ impl std::error::Error for ConnectError {}
 
 impl Shared {
     fn now_s(&self) -> f64 {
-        self.began.elapsed().as_secs_f64()
+        self.began.elapsed_s()
     }
 
     fn inbox(&self) -> MutexGuard<'_, Inbox> {
@@ -92,9 +93,9 @@ impl Remote {
             Stream::open(address, network).map_err(|error| failed(&error))?;
         let stations = stations.iter().map(|station| (station.name.clone(), station.id)).collect();
         let shared = Arc::new(Shared {
-            inbox: Mutex::new(Inbox::new(stations)),
+            inbox: Mutex::new(Inbox::new(stations, address.to_string())),
             outbox: Outbox::default(),
-            began: Instant::now(),
+            began: Began::now(),
             is_closing: AtomicBool::new(false),
             has_left: AtomicBool::new(false),
         });
@@ -145,6 +146,7 @@ impl Vehicle for Remote {
     fn act(&mut self, Command { drive, heading_rad, braking_orders }: Command) {
         let now_s = self.shared.now_s();
         let mut inbox = self.shared.inbox();
+        inbox.awake(now_s);
         let drive = drive.filter(|_| inbox.may_drive());
         inbox.commanded(drive.is_some(), now_s);
         drop(inbox);
@@ -255,6 +257,7 @@ fn read_all(mut read: Box<dyn Read + Send>, session: FromSession, said: &Said, s
                 for heard in heard {
                     inbox.take(heard, now_s);
                 }
+                inbox.stopped_in(reader.unfinished());
             }
             Err(error) => match error.kind() {
                 io::ErrorKind::Interrupted | io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => {}
@@ -262,6 +265,9 @@ fn read_all(mut read: Box<dyn Read + Send>, session: FromSession, said: &Said, s
             },
         }
     };
+    if let Some(cut) = reader.finish() {
+        shared.inbox().take(cut, shared.now_s());
+    }
     let why = said.at_end().map_or(why.clone(), |text| format!("{why}; it wrote: {text}"));
     shared.inbox().close(why);
 }
@@ -282,7 +288,7 @@ fn write_all(mut write: Box<dyn Outgoing>, session: ToSession, shared: &Shared) 
             shared.outbox.command(None, 0);
             continue;
         }
-        shared.inbox().sent(&message);
+        shared.inbox().sent(&message, shared.now_s());
         let is_last = matches!(message, ToVehicle::Bye(_));
         if let Err(error) = write.write_all(&line).and_then(|()| write.flush()) {
             shared.inbox().close(format!("the link failed: {error}"));

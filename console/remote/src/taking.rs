@@ -63,7 +63,7 @@ fn taken(scenario: &Scenario, wanted: &Wanted) -> anyhow::Result<(Remote, Vehicl
             misfits.join("; ")
         )));
     }
-    let info = info(&hello, &address);
+    let info = info(&hello, &address.to_string());
     Ok((remote, info))
 }
 
@@ -141,12 +141,13 @@ fn misfits(scenario: &Scenario, hello: &Hello) -> Vec<String> {
     found
 }
 
-fn info(hello: &Hello, address: &Address) -> VehicleInfo {
+/// The description of a vehicle at an address.
+pub(crate) fn info(hello: &Hello, at: &str) -> VehicleInfo {
     // The ids of obstacles are not a sensor.
     let has = Has { drawn_ids: false, ..hello.has };
     VehicleInfo {
         name: foreign::plain(&hello.name).into_owned(),
-        at: address.to_string(),
+        at: at.to_owned(),
         protocol: hello.protocol,
         lease_s: hello.lease_max_s,
         stop_s: hello.stop_time_s,

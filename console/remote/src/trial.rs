@@ -15,8 +15,8 @@ use vehicle::{
     wire::message::Hello,
 };
 
-/// Time for which the trial listens to the vehicle before anything moves.
-const LISTEN: Duration = Duration::from_secs(3);
+/// Time for which the trial listens to the vehicle before anything moves. The rate of its clock needs 10 s.
+const LISTEN: Duration = Duration::from_secs(11);
 /// Time, seconds, that is added to the lease of the last command and the vehicle's own stop time; after the sum, the
 /// vehicle must stand still.
 const LEASE_SLACK_S: f64 = 0.05;
@@ -92,7 +92,7 @@ pub fn try_vehicle(
     let messages = rows.len();
     rows.extend([trial::messages(&listened.lines), trial::state(&listened)]);
     rows.extend(trial::readings(&hello, &listened));
-    rows.extend([trial::clock(&listened), trial::standstill(&listened)]);
+    rows.extend([trial::clock(&listened), trial::clock_rate(&listened), trial::standstill(&listened)]);
     // Uneven readings change how exactly a stop is measured, but not how safely the vehicle stops.
     let is_ready = rows.iter().all(|row| row.verdict != Verdict::Fail || row.check == "readings: jitter");
     let mut interrupted = is_stopped();

@@ -8,6 +8,7 @@
 mod clock;
 mod compare;
 mod motion;
+mod rate;
 mod sequence;
 mod stopping;
 #[cfg(test)]
@@ -16,6 +17,7 @@ mod tests;
 pub use clock::{Clock, Offset};
 pub use compare::{Axis, Comparison, Finding};
 pub use motion::Motions;
+pub use rate::{RATE_OFF, Rates, is_off};
 pub use sequence::{Counts, Sequence};
 pub use stopping::{Hold, Stopping};
 
@@ -71,6 +73,8 @@ pub struct Link {
     pings: bool,
     answered_s: Option<f64>,
     closed: bool,
+    /// End of the last time in which the console itself was stopped, seconds.
+    resumed_s: Option<f64>,
     fault: Option<String>,
     malformed_in_row: u32,
     /// Arrival of the last line, seconds.
@@ -146,6 +150,7 @@ impl Link {
             return;
         }
         self.newest = Some((now_s, readings.stamp_s));
+        self.clock.stamp(now_s, readings.stamp_s);
         let Some(motion) = self.motions.take(readings) else { return };
         // The earliest time at which the readings can have been taken.
         let taken_s = self.clock.at(now_s).map(|offset| readings.stamp_s - offset.offset_s - offset.bound_s);
@@ -185,7 +190,14 @@ impl Link {
 
     /// Whether the vehicle has stopped answering; commands may then be waiting on their way to it.
     pub fn is_deaf(&self, now_s: f64) -> bool {
-        self.pings && self.answered_s.is_some_and(|answered_s| now_s - answered_s > DEAF_S)
+        let answered_s = self.answered_s.map(|s| self.resumed_s.map_or(s, |resumed_s| s.max(resumed_s)));
+        self.pings && answered_s.is_some_and(|answered_s| now_s - answered_s > DEAF_S)
+    }
+
+    /// The console itself was stopped until now: messages of the vehicle may wait to be read, and its silence begins now.
+    pub fn resumed(&mut self, now_s: f64) {
+        self.resumed_s = Some(now_s);
+        self.clock.pause();
     }
 
     /// The connection has ended.
@@ -202,7 +214,9 @@ impl Link {
             return State::Fault;
         }
         let (Some(hello), Some(age_s)) = (&self.hello, self.age_s(now_s)) else { return State::Connecting };
-        if age_s > LOST_S.max(LOST_PERIODS * hello.period_s) || self.is_deaf(now_s) {
+        let lost_s = LOST_S.max(LOST_PERIODS * hello.period_s);
+        let is_reading = self.resumed_s.is_some_and(|resumed_s| now_s - resumed_s <= lost_s);
+        if (age_s > lost_s && !is_reading) || self.is_deaf(now_s) {
             State::Lost
         } else if age_s > LATE_S.max(LATE_PERIODS * hello.period_s) {
             State::Late
@@ -254,6 +268,11 @@ impl Link {
     /// Offset and delay of the vehicle's clock.
     pub fn clock(&self) -> &Clock {
         &self.clock
+    }
+
+    /// Time since the arrival of the newest readings, seconds.
+    pub fn silent_s(&self, now_s: f64) -> Option<f64> {
+        self.newest.map(|(arrival_s, _)| now_s - arrival_s)
     }
 
     /// The numbers of lost, duplicate and reordered readings.

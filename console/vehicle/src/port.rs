@@ -3,6 +3,10 @@
 //! A flight calls [`Vehicle::sense`] once at the start of each tick and [`Vehicle::act`] once at its end. Neither call
 //! waits: for a vehicle in another process, `sense` returns the readings that have arrived since the last tick.
 
+mod notice;
+
+pub use notice::Notice;
+
 use geometry::Drive;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -65,6 +69,8 @@ pub struct Live {
     pub link: Option<LinkSeen>,
     /// Whether a commanded stop is confirmed, if that was decided in this tick.
     pub stood: Option<Stood>,
+    /// New facts about the vehicle.
+    pub notices: Vec<Notice>,
 }
 
 /// The result of a commanded stop, from readings that were taken after it was sent.
@@ -125,6 +131,10 @@ pub enum LinkState {
     VehicleFault,
     /// The vehicle obeys another console or program.
     OtherCommander,
+    /// A vehicle with a different description answers on the same connection.
+    OtherVehicle,
+    /// The console itself was stopped, so it sent no commands.
+    ConsoleStopped,
 }
 
 impl LinkState {
@@ -145,6 +155,8 @@ impl LinkState {
             Self::EmergencyStop => "emergency stop",
             Self::VehicleFault => "fault",
             Self::OtherCommander => "other commander",
+            Self::OtherVehicle => "other vehicle",
+            Self::ConsoleStopped => "console stopped",
         }
     }
 }
@@ -178,6 +190,9 @@ pub struct LinkSeen {
     /// Time for which the motion is unknown because odometry is missing, seconds.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub unmeasured_s: f64,
+    /// Time for which the console itself was stopped, seconds.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub console_stopped_s: f64,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
@@ -198,6 +213,10 @@ impl LinkSeen {
             LinkState::EmergencyStop => "the emergency stop of the vehicle is pressed",
             LinkState::VehicleFault => "the vehicle reports a fault",
             LinkState::OtherCommander => "the vehicle obeys another commander",
+            LinkState::OtherVehicle => {
+                "another vehicle answers on the same connection, which this run does not drive"
+            }
+            LinkState::ConsoleStopped => "the console itself was stopped",
         };
         let why = if self.why.is_empty() { String::new() } else { format!(": {}", self.why) };
         let unknown = if self.state.is_heard() {

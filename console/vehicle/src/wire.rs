@@ -5,6 +5,7 @@
 //! finite.
 
 mod check;
+mod differences;
 mod fields;
 mod lines;
 pub mod message;

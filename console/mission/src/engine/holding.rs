@@ -14,7 +14,10 @@ use planner_api::{Drive, Reason};
 impl Mission {
     pub(super) fn carry_out(&mut self, verdict: Verdict) {
         match verdict {
-            Verdict::Hold(hold) => self.hold(hold),
+            Verdict::Hold(hold) => {
+                self.hold(hold);
+                self.announce_wait();
+            }
             Verdict::HoldAndReplan(hold) => {
                 self.driving.course.want_plan(Reason::Blocked);
                 self.hold(hold);
@@ -78,6 +81,21 @@ impl Mission {
         self.known.phase = Phase::Held(Hold { by, resumes });
         self.driving.outdate_step();
         self.driving.drop_command(&mut self.happened);
+    }
+
+    /// Reports the wait for a reliable position in an unattended run of a real vehicle, which may last until the time
+    /// limit.
+    fn announce_wait(&mut self) {
+        let config = &self.known.config;
+        let Phase::Held(Hold { by: HoldReason::PositionLost | HoldReason::RangesInconsistent, resumes }) =
+            &self.known.phase
+        else {
+            return;
+        };
+        if config.live && !config.attended && *resumes == Resumes::WhenCleared {
+            let ends_t_s = self.rules.time_limit.ends_s(config);
+            self.happened.push(EventKind::PositionAwaited { limit_m: config.position_limit_m, ends_t_s });
+        }
     }
 
     /// Lets the robot move again, with the given gait.

@@ -55,9 +55,7 @@ impl Rules {
 
     /// Updates the rules for one tick of a mission in progress; the first rule that returns a verdict decides.
     pub(super) fn update(&mut self, seen: &Seen<'_>, phase: &Phase) -> Option<Verdict> {
-        // Like a hold, a drive back is the operator's decision, so its time does not count.
-        let is_operators = matches!(phase, Phase::Held(_)) || phase.is_return();
-        let time_is_up = self.time_limit.update(seen, is_operators);
+        let time_is_up = self.time_limit.update(seen, phase);
         if seen.touched {
             return Some(Verdict::End(Outcome::Collision, "bumper contact".into()));
         }

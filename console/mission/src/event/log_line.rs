@@ -12,7 +12,7 @@ use crate::{
 };
 use planner_api::LogLevel;
 use positioning::Exclusion;
-use vehicle::port::LinkSeen;
+use vehicle::port::{LinkSeen, Notice};
 use world::{Station, StationId, tether::Certificate};
 
 /// A line of the event log: its severity, its source and its text.
@@ -133,7 +133,11 @@ impl Event {
                 "robot",
                 format!("floor {}: pressure {:.0} Pa", medium.word(), pressure_pa),
             ),
+            EventKind::PositionAwaited { limit_m, ends_t_s } => {
+                line(Severity::Warn, "mission", awaited_text(*limit_m, *ends_t_s, !stations.is_empty()))
+            }
             EventKind::Link(link) => of_link(link),
+            EventKind::Noticed(notice) => of_notice(notice),
             EventKind::Stood { confirmed: true, after_s, .. } => line(
                 Severity::Info,
                 "vehicle",
@@ -206,6 +210,20 @@ fn line(severity: Severity, source: &'static str, text: String) -> LogLine {
     LogLine { severity, source, text }
 }
 
+fn awaited_text(limit_m: f64, ends_t_s: f64, has_stations: bool) -> String {
+    if has_stations {
+        format!(
+            "waiting for ranges: the robot resumes when the 95 % position error is at most {limit_m:.2} m; otherwise, the \
+             time limit ends the mission at T+{ends_t_s:.0} s"
+        )
+    } else {
+        format!(
+            "the scenario has no stations, so the position error cannot fall to {limit_m:.2} m: the time limit ends the \
+             mission at T+{ends_t_s:.0} s; Ctrl-C ends it now"
+        )
+    }
+}
+
 fn of_link(link: &LinkSeen) -> LogLine {
     let LinkSeen { heard, missed, faulty, unmeasured_s, .. } = link;
     let unmeasured =
@@ -216,6 +234,41 @@ fn of_link(link: &LinkSeen) -> LogLine {
         (Some(why), true) => line(Severity::Warn, "vehicle", format!("{why} ({figures})")),
         (Some(why), false) => line(Severity::Crit, "vehicle", format!("{why} ({figures})")),
     }
+}
+
+fn of_notice(notice: &Notice) -> LogLine {
+    let (severity, text) = match notice {
+        Notice::OtherVehicle { vehicle, differs } => (
+            Severity::Warn,
+            format!(
+                "another vehicle, {}, answers on the same connection: {}",
+                vehicle.name,
+                differs.join(", ")
+            ),
+        ),
+        Notice::FaultyMessages { count: 1, first, .. } => {
+            (Severity::Warn, format!("1 faulty message from the vehicle was ignored: {first}"))
+        }
+        Notice::FaultyMessages { count, first, last } => (
+            Severity::Warn,
+            format!(
+                "{count} faulty messages from the vehicle were ignored; the first: {first}; the last: {last}"
+            ),
+        ),
+        Notice::ClockRate { field, rate, is_off: true } => (
+            Severity::Warn,
+            format!(
+                "the vehicle's clock advances {rate:.3} s in each second of the console's clock (`{field}`); correct it"
+            ),
+        ),
+        Notice::ClockRate { field, rate, is_off: false } => (
+            Severity::Info,
+            format!(
+                "the vehicle's clock advances {rate:.3} s in each second of the console's clock again (`{field}`)"
+            ),
+        ),
+    };
+    line(severity, "vehicle", text)
 }
 
 fn of_planner(kind: &EventKind) -> Option<LogLine> {

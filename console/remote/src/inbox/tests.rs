@@ -7,7 +7,7 @@ use vehicle::wire::{
 };
 
 fn inbox() -> Inbox {
-    let mut inbox = Inbox::new([("A".to_owned(), StationId(1))].into());
+    let mut inbox = Inbox::new([("A".to_owned(), StationId(1))].into(), "run:robot".into());
     inbox.take(hello(), 0.0);
     inbox.take(ready(), 0.0);
     inbox.has_answered = true;
@@ -229,7 +229,7 @@ fn a_stop_is_decided_by_readings_that_were_taken_after_it_was_sent() {
     // The stream has not taken the stop yet, so a vehicle that stands still at this time proves nothing.
     (2..=5).for_each(|seq| say(&mut inbox, moved(seq, 0.0, 0.0), 0.95 + 0.05 * seq as f64));
     assert_eq!(stood(&mut inbox, 1.2), None);
-    inbox.sent(&ToVehicle::Stop(vehicle::wire::message::Stop { seq: 1, stamp_s: 1.2 }));
+    inbox.sent(&ToVehicle::Stop(vehicle::wire::message::Stop { seq: 1, stamp_s: 1.2 }), 1.2);
     for seq in 6..=20_u64 {
         let forward_m = if seq < 9 { 0.01 } else { 0.0 };
         let now_s = 0.95 + 0.05 * seq as f64;
@@ -249,7 +249,7 @@ fn a_stop_is_decided_by_readings_that_were_taken_after_it_was_sent() {
 fn a_vehicle_that_moves_without_an_order_is_told_as_such() {
     let mut inbox = inbox();
     inbox.commanded(false, 1.0);
-    inbox.sent(&ToVehicle::Stop(vehicle::wire::message::Stop { seq: 1, stamp_s: 1.0 }));
+    inbox.sent(&ToVehicle::Stop(vehicle::wire::message::Stop { seq: 1, stamp_s: 1.0 }), 1.0);
     let stood = |inbox: &mut Inbox, seq, forward_m| {
         let now_s = 1.0 + 0.05 * seq as f64;
         say(inbox, moved(seq, forward_m, 0.0), now_s);
@@ -265,7 +265,7 @@ fn a_vehicle_that_moves_without_an_order_is_told_as_such() {
 
 #[test]
 fn what_the_console_needs_is_named_if_the_vehicle_does_not_send_it() {
-    let mut inbox = Inbox::new(BTreeMap::new());
+    let mut inbox = Inbox::new(BTreeMap::new(), String::new());
     inbox.take(hello(), 3.0);
     let seen = |inbox: &Inbox, now_s| (inbox.link(now_s).state, inbox.link(now_s).why);
     assert_eq!(seen(&inbox, 12.9).0, LinkState::Up, "it may still come");
@@ -316,4 +316,139 @@ fn the_link_is_reported_when_it_changes_and_every_ten_seconds() {
         }
     }
     assert_eq!(reports, [(0, "up"), (100, "up"), (157, "lost"), (170, "up")]);
+}
+
+fn notices(inbox: &mut Inbox, now_s: f64) -> Vec<Notice> {
+    inbox.sense(now_s).live.map(|live| live.notices).unwrap_or_default()
+}
+
+#[test]
+fn another_vehicle_on_the_same_connection_is_described_and_not_driven() {
+    let mut inbox = inbox();
+    say(&mut inbox, moved(1, 0.0, 0.0), 1.0);
+    inbox.sense(1.0);
+    let other = |name: &str, speed_m_per_s: f64| {
+        let Heard::Message(FromVehicle::Hello(mut hello)) = hello() else { unreachable!() };
+        name.clone_into(&mut hello.name);
+        hello.limits.speed_m_per_s = speed_m_per_s;
+        Heard::Message(FromVehicle::Hello(hello))
+    };
+    inbox.take(other("b", 0.2), 1.05);
+    say(&mut inbox, moved(1, 0.4, 0.0), 1.08);
+    let sensed = inbox.sense(1.1);
+    assert_eq!(sensed.readings.odometry, world::Odometry::default(), "it is not the robot of this run");
+    let live = sensed.live.expect("live");
+    let [Notice::OtherVehicle { vehicle, differs }] = &live.notices[..] else { panic!("{live:?}") };
+    assert_eq!((vehicle.name.as_str(), vehicle.at.as_str()), ("b", "run:robot"));
+    assert!((vehicle.speed_max_m_per_s - 0.2).abs() < 1e-12);
+    let expected = ["`name` is \"b\" instead of \"robot\"", "`limits.speed_m_per_s` is 0.2 instead of 0.5"];
+    assert_eq!(differs[..], expected);
+    let link = live.link.expect("it changed");
+    assert_eq!(link.state, LinkState::OtherVehicle);
+    assert!(link.trouble().is_some_and(|why| why.contains(&expected.join(", "))), "{link:?}");
+    say(&mut inbox, moved(2, 0.0, 0.0), 1.15);
+    assert!(notices(&mut inbox, 1.2).is_empty() && !inbox.may_drive());
+    assert_eq!(inbox.link(1.2).state, LinkState::OtherVehicle, "until the first vehicle is back");
+    inbox.take(hello(), 1.25);
+    say(&mut inbox, moved(1, 0.0, 0.0), 1.25);
+    assert!(!inbox.may_drive() && notices(&mut inbox, 1.3).is_empty());
+    assert!(inbox.may_drive());
+}
+
+#[test]
+fn faulty_messages_between_good_ones_are_counted_with_the_first_and_the_last_fault() {
+    let mut inbox = inbox();
+    let mut told = Vec::new();
+    for n in 0..211_u64 {
+        let now_s = 0.1 * n as f64;
+        inbox.take(ready(), now_s);
+        if n > 10 {
+            let field = if n == 11 { "readings.seq" } else { "state.mode" };
+            let misfit = Misfit { field: field.into(), what: format!("wrong in {n}") };
+            inbox.take(Heard::Malformed(misfit), now_s);
+        }
+        let stamp_s = 100.0 + now_s;
+        say(&mut inbox, Readings { stamp_s, ..moved(n, 0.0, 0.0) }, now_s);
+        told.extend(notices(&mut inbox, now_s));
+    }
+    let of = |count, last: u32| Notice::FaultyMessages {
+        count,
+        first: "readings.seq: wrong in 11".into(),
+        last: if last == 11 {
+            "readings.seq: wrong in 11".into()
+        } else {
+            format!("state.mode: wrong in {last}")
+        },
+    };
+    assert_eq!(told, [of(1, 11), of(101, 111)]);
+    assert_eq!(inbox.settled(22.0).notices, [of(200, 210)], "the rest at the end");
+}
+
+#[test]
+fn a_clock_with_a_wrong_rate_is_named_once() {
+    let mut inbox = inbox();
+    let mut told = Vec::new();
+    for n in 0..400_u64 {
+        let now_s = 0.05 * n as f64;
+        let stamp_s = 100.0 + 1.2 * now_s;
+        inbox.take(ready(), now_s);
+        let echo_s = (now_s - 0.002).max(0.0);
+        inbox.take(Heard::Message(FromVehicle::Pong(Pong { echo_s, stamp_s })), now_s);
+        say(&mut inbox, Readings { stamp_s, ..moved(n, 0.0, 0.0) }, now_s);
+        told.extend(notices(&mut inbox, now_s));
+    }
+    let [Notice::ClockRate { field, rate, is_off: true }] = &told[..] else { panic!("{told:?}") };
+    assert!(field == "pong.stamp_s" && (rate - 1.2).abs() < 1e-3, "{told:?}");
+}
+
+#[test]
+fn a_stop_of_the_console_itself_is_not_the_silence_of_the_vehicle() {
+    let mut inbox = inbox();
+    let pong = |stamp_s| Heard::Message(FromVehicle::Pong(Pong { echo_s: stamp_s - 100.0, stamp_s }));
+    inbox.sent(&ToVehicle::Ping(vehicle::wire::message::Ping { stamp_s: 1.0 }), 1.0);
+    inbox.take(pong(101.0), 1.0);
+    say(&mut inbox, moved(20, 0.0, 0.0), 1.0);
+    assert_eq!(inbox.sense(1.0).live.and_then(|live| live.link).map(|link| link.state), Some(LinkState::Up));
+    // The process is stopped for 4 s; the messages of this time wait to be read.
+    let link = inbox.sense(5.0).live.and_then(|live| live.link).expect("it changed");
+    assert_eq!((link.state, link.console_stopped_s), (LinkState::ConsoleStopped, 4.0));
+    let why = "the console itself was stopped: it sent no commands for 4.0 s";
+    assert_eq!(link.trouble().as_deref(), Some(why));
+    assert_eq!(inbox.link(5.1).state, LinkState::Up, "the messages are being read");
+    (21..=100).for_each(|seq| say(&mut inbox, moved(seq, 0.0, 0.0), 5.2));
+    inbox.take(pong(105.2), 5.2);
+    assert_eq!(inbox.sense(5.2).live.and_then(|live| live.link).map(|link| link.state), Some(LinkState::Up));
+    // The vehicle is silent while the console runs.
+    let lost = (0..20).map(|n| 5.3 + 0.1 * f64::from(n)).find_map(|now_s| {
+        inbox.sense(now_s).live.and_then(|live| live.link).filter(|link| link.state != LinkState::Up)
+    });
+    assert_eq!(
+        lost.map(|link| (link.state, link.why)),
+        Some((LinkState::Lost, "its readings stopped".into()))
+    );
+}
+
+#[test]
+fn a_vehicle_that_is_silent_after_a_stop_of_the_console_is_lost() {
+    let mut inbox = inbox();
+    say(&mut inbox, moved(1, 0.0, 0.0), 1.0);
+    inbox.sense(1.0);
+    let states: Vec<_> = (0..20)
+        .filter_map(|n| inbox.sense(5.0 + 0.1 * f64::from(n)).live.and_then(|live| live.link))
+        .map(|link| link.state)
+        .collect();
+    assert_eq!(states, [LinkState::ConsoleStopped, LinkState::Up, LinkState::Lost]);
+}
+
+#[test]
+fn the_place_of_half_a_line_before_a_silence_or_an_end_is_named() {
+    let mut inbox = inbox();
+    say(&mut inbox, moved(1, 0.0, 0.0), 1.0);
+    inbox.stopped_in(Some("readings.odometry.turn_rad".into()));
+    assert_eq!(inbox.link(1.1).why, "");
+    let why = "its readings stopped, in the middle of a line: readings.odometry.turn_rad";
+    assert_eq!(inbox.link(3.0).why, why);
+    inbox.close("the adapter ended the connection".into());
+    let why = "the adapter ended the connection; its last line is incomplete: readings.odometry.turn_rad";
+    assert_eq!(inbox.closed(), Some(why));
 }

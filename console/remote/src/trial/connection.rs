@@ -174,6 +174,7 @@ impl Connection {
             self.take_until((Instant::now() + PING_EVERY).min(until));
         }
         self.heard.offset = self.clock.at(self.now_s());
+        self.heard.rates = self.clock.rates().clone();
         self.heard.clone()
     }
 
@@ -236,6 +237,7 @@ impl Connection {
         if !self.sequence.add(readings.seq) {
             return;
         }
+        self.clock.stamp(arrival_s, readings.stamp_s);
         self.odometry.extend(readings.odometry);
         self.poses.extend(readings.pose);
         if let Some(Odometry { over_s, forward_m, sideways_m, turn_rad }) = self.motions.take(readings) {

@@ -11,6 +11,7 @@ pub(super) fn lines(vehicle: &VehicleRecord) -> Vec<(&'static str, String)> {
         ("link", link(vehicle)),
         ("stops", stops(vehicle)),
     ];
+    lines.extend(warnings(vehicle).into_iter().map(|warning| ("WARNING", warning)));
     lines.extend(at_end(vehicle).map(|at_end| ("at the end", at_end.to_owned())));
     lines
 }
@@ -19,8 +20,12 @@ pub(super) fn lines(vehicle: &VehicleRecord) -> Vec<(&'static str, String)> {
 pub(crate) fn sentences(vehicle: &VehicleRecord) -> String {
     let VehicleRecord { name, at, .. } = vehicle;
     let at_end = at_end(vehicle).map(|at_end| format!(" At the end: {at_end}.")).unwrap_or_default();
+    let mut more: Vec<String> =
+        warnings(vehicle).into_iter().map(|warning| format!("WARNING: {warning}.")).collect();
+    more.insert(0, String::new());
+    let warnings = more.join(" ").trim_end().to_owned();
     format!(
-        "Vehicle {name} at {at}. Link: {}. Stops: {}.{at_end} No figure in this report was compared with a true \
+        "Vehicle {name} at {at}. Link: {}. Stops: {}.{warnings}{at_end} No figure in this report was compared with a true \
          position.",
         link(vehicle),
         stops(vehicle),
@@ -45,6 +50,27 @@ fn link(vehicle: &VehicleRecord) -> String {
         counted(*faulty, "faulty message"),
         counted(*lost, "time"),
     )
+}
+
+/// The facts about the vehicle and its link that make the data of the run doubtful.
+fn warnings(vehicle: &VehicleRecord) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if let (Some(first), Some(last)) = (&vehicle.fault_first, &vehicle.fault_last) {
+        let last = if vehicle.faulty > 1 { format!("; the last: {last}") } else { String::new() };
+        let number = counted(vehicle.faulty, "faulty message");
+        warnings.push(format!("{number} ignored; the first: {first}{last}"));
+    }
+    let others = vehicle.others.iter();
+    warnings.extend(others.map(|other| format!("another vehicle answered and was not driven: {other}")));
+    warnings.extend(vehicle.clock_rate.map(|rate| {
+        format!("the vehicle's clock advanced {rate:.3} s in each second of the console's clock, so ages are wrong")
+    }));
+    if vehicle.console_stopped_s > 0.0 {
+        let s = vehicle.console_stopped_s;
+        warnings
+            .push(format!("the console itself was stopped for {s:.1} s, and sent no commands in this time"));
+    }
+    warnings
 }
 
 fn stops(vehicle: &VehicleRecord) -> String {
@@ -73,11 +99,24 @@ mod tests {
         let mut vehicle = VehicleRecord::default();
         (vehicle.heard, vehicle.at_least, vehicle.unmeasured_s) = (66, true, 1.5);
         (vehicle.stops_not_confirmed, vehicle.stands) = (1, Some(false));
+        vehicle.faulty = 200;
+        vehicle.fault_first = Some("readings.seq: missing field".into());
+        vehicle.fault_last = Some("state.mode: unknown".into());
+        (vehicle.clock_rate, vehicle.console_stopped_s) = (Some(0.8), 4.0);
+        vehicle.others = vec!["b (`name` is \"b\" instead of \"a\")".into()];
         let page = sentences(&vehicle);
         for (label, says) in lines(&vehicle).into_iter().skip(1) {
             assert!(page.contains(&says), "{label}: {says}: {page}");
         }
-        for says in ["at least 66 readings", "motion unknown for at least 1.50 s", "go to the vehicle"] {
+        for says in [
+            "at least 66 readings",
+            "motion unknown for at least 1.50 s",
+            "go to the vehicle",
+            "200 faulty messages ignored; the first: readings.seq: missing field; the last: state.mode: unknown",
+            "another vehicle answered and was not driven: b",
+            "advanced 0.800 s",
+            "stopped for 4.0 s",
+        ] {
             assert!(page.contains(says), "{page}");
         }
     }

@@ -20,11 +20,42 @@ pub(super) const LINK: Guide = Guide {
 };
 
 pub(super) const VEHICLE: Guide = Guide {
-    cause: "The vehicle cannot be driven: a person is driving it by hand, its emergency stop is pressed, or it \
-    reports a fault.",
+    cause: "The vehicle cannot be driven: a person is driving it by hand, its emergency stop is pressed, it reports a \
+    fault, or another vehicle answers in its place.",
     holds: "The robot is held at once.",
     effect: "Position, coverage and tether are still updated.",
     remedies: &[check("Ask the person at the robot what is wrong, and clear the cause there."), RESUME, END],
+};
+
+pub(super) const FAULTY_MESSAGES: Guide = Guide {
+    cause: "Some lines of the vehicle are not valid messages; the alarm names the field of the first and of the last one.",
+    holds: "If three lines in a row are faulty, the robot is held.",
+    effect: "Faulty messages are ignored, so their motion and their ranges are missing.",
+    remedies: &[
+        wait("Correct the adapter before the next mission; `tankops check --vehicle` tests it."),
+        HOLD,
+    ],
+};
+
+pub(super) const CLOCK: Guide = Guide {
+    cause: "The stamps of the vehicle run faster or slower than the console's clock by more than 1 %.",
+    holds: "",
+    effect: "The ages of readings are wrong: old ones may count as new, and the link may seem lost.",
+    remedies: &[
+        wait("Stamp with a clock that runs in seconds, such as the monotonic clock of the computer."),
+        HOLD,
+    ],
+};
+
+pub(super) const CONSOLE_STOPPED: Guide = Guide {
+    cause: "The computer of the console was suspended, or its process was stopped or got no time to run.",
+    holds: "The robot is held at once.",
+    effect: "The console sent no commands in this time, so the vehicle stopped when its lease lapsed.",
+    remedies: &[
+        check("Keep the computer awake during a mission: lid open, power connected, no other heavy work."),
+        RESUME,
+        END,
+    ],
 };
 
 pub(super) const GUARD: Guide = Guide {

@@ -120,6 +120,7 @@ impl Run {
                 self.hold(event, &Hold { by: by.clone(), resumes: *resumes }, &mut change);
             }
             EventKind::Resumed => {
+                self.linked(event);
                 self.clear(&Cause::Stuck);
                 self.clear(&Cause::Guard);
                 self.planner_works();
@@ -139,7 +140,11 @@ impl Run {
             | EventKind::Scanned { .. }
             | EventKind::ScannerJudged { .. }
             | EventKind::Sensed { .. } => {}
-            EventKind::Link(_) | EventKind::Stood { .. } | EventKind::Sent { .. } => self.linked(event),
+            EventKind::Link(_)
+            | EventKind::Noticed(_)
+            | EventKind::Stood { .. }
+            | EventKind::Sent { .. }
+            | EventKind::PositionAwaited { .. } => self.linked(event),
         }
         self.read_figures(&event.kind);
         self.scanned(event);

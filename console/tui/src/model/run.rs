@@ -93,6 +93,10 @@ pub struct VehicleSeen {
     pub link: LinkSeen,
     /// Whether odometry has confirmed a commanded stop; `None` while this is open.
     pub stands: Option<bool>,
+    /// Mission time at which the time limit ends an unattended mission that waits for its position, seconds; `None` while
+    /// it does not wait.
+    #[serde(default)]
+    pub waits_until_s: Option<f64>,
 }
 
 /// Mission time, taken from the events.

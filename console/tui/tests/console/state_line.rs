@@ -283,6 +283,19 @@ fn a_question_keeps_the_state_of_a_held_robot_at_every_size() {
 }
 
 #[test]
+fn a_run_that_waits_for_its_position_shows_when_the_time_limit_ends_it() {
+    let mut screen = live();
+    let held = EventKind::Held { by: HoldReason::PositionLost, resumes: Resumes::WhenCleared };
+    let stood = EventKind::Stood { confirmed: true, after_s: 0.2, moved: false };
+    hear(&mut screen, [held, EventKind::PositionAwaited { limit_m: 0.3, ends_t_s: 900.0 }, stood]);
+    let line = state(&screen);
+    assert!(line.contains("Resumes automatically when recovered."), "{line}");
+    assert!(line.contains("Otherwise, the time limit ends it at T+900 s."), "{line}");
+    hear(&mut screen, [EventKind::Resumed]);
+    assert!(!state(&screen).contains("T+900"), "{}", state(&screen));
+}
+
+#[test]
 fn the_end_of_a_live_mission_is_good_only_when_the_stop_is_confirmed() {
     let mut screen = live();
     let outcome = mission::Outcome::Complete;

@@ -1,5 +1,6 @@
 //! Offset and delay of a vehicle's clock, from the quickest round trip of the last seconds.
 
+use super::rate::Rates;
 use crate::wire::{Misfit, message::Pong};
 use std::collections::VecDeque;
 
@@ -14,10 +15,10 @@ const ROUNDING_S: f64 = 1e-3;
 
 /// A round trip: its end, its length and the offset of the vehicle's clock, seconds.
 #[derive(Debug, Clone, Copy)]
-struct Trip {
-    at_s: f64,
-    took_s: f64,
-    offset: f64,
+pub(super) struct Trip {
+    pub at_s: f64,
+    pub took_s: f64,
+    pub offset: f64,
 }
 
 /// The offset of the vehicle's clock.
@@ -34,6 +35,7 @@ pub struct Offset {
 pub struct Clock {
     /// The first trip is the quickest; each further trip is slower and later.
     trips: VecDeque<Trip>,
+    rates: Rates,
 }
 
 impl Clock {
@@ -55,11 +57,27 @@ impl Clock {
         while self.trips.back().is_some_and(|last| last.took_s >= trip_s) {
             self.trips.pop_back();
         }
+        let trip = Trip { at_s: now_s, took_s: trip_s, offset: pong.stamp_s - (now_s - trip_s / 2.0) };
+        self.rates.trip(trip);
         if self.trips.len() < KEPT_MAX {
-            let offset = pong.stamp_s - (now_s - trip_s / 2.0);
-            self.trips.push_back(Trip { at_s: now_s, took_s: trip_s, offset });
+            self.trips.push_back(trip);
         }
         Ok(())
+    }
+
+    /// Takes the arrival and the stamp of readings, for the rate of the clock.
+    pub fn stamp(&mut self, arrival_s: f64, stamp_s: f64) {
+        self.rates.stamp(arrival_s, stamp_s);
+    }
+
+    /// The rates of the vehicle's clock.
+    pub fn rates(&self) -> &Rates {
+        &self.rates
+    }
+
+    /// Begins the rates again, because messages have waited in the console.
+    pub(super) fn pause(&mut self) {
+        self.rates.begin_again();
     }
 
     /// The offset now. It stays known after the last answer, but its greatest error grows.

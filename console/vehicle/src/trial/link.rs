@@ -2,7 +2,7 @@
 
 use super::{Figure, Row, stops::Sample};
 use crate::{
-    link::{Offset, Sequence},
+    link::{Offset, RATE_OFF, Rates, Sequence},
     port::LEASE_S,
     wire::message::{Commander, Hello, Mode, Readings, State},
 };
@@ -36,6 +36,8 @@ pub struct Listened {
     pub trips_s: Vec<f64>,
     /// The offset of the vehicle's clock at the end.
     pub offset: Option<Offset>,
+    /// The rates of the vehicle's clock.
+    pub rates: Rates,
 }
 
 /// Lines that do not conform to the protocol, and parts of messages that this version does not know.
@@ -188,6 +190,23 @@ pub fn clock(listened: &Listened) -> Row {
     Row::judged(check, figures, &says, &failed)
 }
 
+/// Whether the vehicle's clock keeps the rate of the console's, by its answers to pings and by the stamps of its readings.
+pub fn clock_rate(listened: &Listened) -> Row {
+    let check = "clock rate";
+    let (Some(pings), Some(stamps)) = (listened.rates.by_pings(), listened.rates.by_stamps()) else {
+        return Row::not_measured(check, "needs readings and quick answers to pings for 10 s");
+    };
+    let off = |name, rate: f64| Figure::new(name, 100.0 * (rate - 1.0).abs(), "%").at_most(100.0 * RATE_OFF);
+    let figures = vec![off("pongs", pings), off("readings", stamps)];
+    let says = format!(
+        "for each second of the console's clock, `pong.stamp_s` advances by {pings:.3} s, `readings.stamp_s` by {stamps:.3} s"
+    );
+    let failed = format!(
+        "{says}; stamp with a clock that runs in seconds, such as the monotonic clock of the computer"
+    );
+    Row::judged(check, figures, &says, &failed)
+}
+
 /// Whether the vehicle obeys this console.
 pub fn state(listened: &Listened) -> Row {
     let check = "state";
@@ -321,6 +340,25 @@ mod tests {
         assert_eq!(of(vec![sample(0.01, 0.0); 5]), Verdict::Fail);
         assert_eq!(of(vec![sample(0.0, -0.01); 5]), Verdict::Fail);
         assert_eq!(of(Vec::new()), Verdict::NotMeasured);
+    }
+
+    #[test]
+    fn a_clock_that_runs_at_a_wrong_rate_fails() {
+        let of = |pong_rate: f64, stamp_rate: f64| {
+            let mut clock = crate::link::Clock::default();
+            for n in 0..=220_u32 {
+                let now_s = 0.05 * f64::from(n);
+                let pong = Pong { echo_s: now_s, stamp_s: 500.0 + pong_rate * now_s };
+                clock.pong(&pong, now_s).expect("in order");
+                clock.stamp(now_s, 500.0 + stamp_rate * now_s);
+            }
+            clock_rate(&Listened { rates: clock.rates().clone(), ..Listened::default() })
+        };
+        assert_eq!(of(1.0, 1.0).verdict, Verdict::Pass);
+        for row in [of(0.8, 0.8), of(1.0, 1.2), of(1.02, 1.0)] {
+            assert!(row.verdict == Verdict::Fail && row.says.contains("advances by"), "{row:?}");
+        }
+        assert_eq!(clock_rate(&Listened::default()).verdict, Verdict::NotMeasured);
     }
 
     #[test]

@@ -62,6 +62,11 @@ impl Lines {
         self.rest.clear();
     }
 
+    /// The beginning of a line that has not ended yet.
+    pub(super) fn unfinished(&self) -> Option<&[u8]> {
+        (!self.rest.trim_ascii().is_empty()).then_some(&*self.rest)
+    }
+
     /// Ends the stream: returns the line that was not ended.
     pub(super) fn finish(&mut self) -> Option<Vec<u8>> {
         let rest = std::mem::take(self).rest;

@@ -67,6 +67,16 @@ pub enum MotionKind {
     Omni,
 }
 
+impl MotionKind {
+    /// The kind as on the wire.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Unicycle => "unicycle",
+            Self::Omni => "omni",
+        }
+    }
+}
+
 /// The limits of a vehicle's motion.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Limits {

@@ -149,6 +149,14 @@ impl<M: Incoming> Reader<M> {
         heard
     }
 
+    /// The place at which the stream has stopped within a line, as a field; `None` between two lines.
+    pub fn unfinished(&self) -> Option<String> {
+        let line = String::from_utf8_lossy(self.lines.unfinished()?);
+        let parts = [kind_of(&line), field_at(&line, line.len())];
+        let field = parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(".");
+        Some(if field.is_empty() { "its kind is incomplete".into() } else { field })
+    }
+
     /// Ends the stream: a line that was not ended is malformed.
     pub fn finish(&mut self) -> Option<Heard<M>> {
         let rest = self.lines.finish()?;

@@ -1,12 +1,17 @@
 //! The mission ends unfinished when its time limit is reached.
 
 use super::seen::{Seen, Verdict};
-use crate::phase::Outcome;
+use crate::{
+    MissionConfig,
+    phase::{HoldReason, Outcome, Phase},
+};
 
 /// Measures the time that does not count: the time before the start, and attended holds.
 #[derive(Clone, Debug, Default)]
 pub(in crate::engine) struct TimeLimitRule {
     waited_s: f64,
+    /// Mission time since which the robot has been held, seconds, and the reason.
+    held: Option<(f64, HoldReason)>,
 }
 
 impl TimeLimitRule {
@@ -15,13 +20,29 @@ impl TimeLimitRule {
         self.waited_s = now_s;
     }
 
+    /// Mission time at which the mission ends if no further time is left out, seconds.
+    pub(crate) fn ends_s(&self, config: &MissionConfig) -> f64 {
+        self.waited_s + config.time_limit_s
+    }
+
     /// Processes one tick of a mission in progress.
-    pub(crate) fn update(&mut self, seen: &Seen<'_>, is_held: bool) -> Option<Verdict> {
-        if seen.config.attended && is_held {
+    pub(crate) fn update(&mut self, seen: &Seen<'_>, phase: &Phase) -> Option<Verdict> {
+        let hold = if let Phase::Held(hold) = phase { Some(hold) } else { None };
+        self.held = hold
+            .map(|hold| (self.held.as_ref().map_or(seen.now_s, |(since_s, _)| *since_s), hold.by.clone()));
+        // Like a hold, a drive back is the operator's decision, so its time does not count.
+        if seen.config.attended && (hold.is_some() || phase.is_return()) {
             self.waited_s += seen.config.tick_s;
         }
-        let limit_s = seen.config.time_limit_s;
-        (seen.now_s - self.waited_s >= limit_s)
-            .then(|| Verdict::End(Outcome::TimeLimit, format!("time limit of {limit_s:.0} s reached")))
+        (seen.now_s >= self.ends_s(seen.config))
+            .then(|| Verdict::End(Outcome::TimeLimit, self.reason(seen.config)))
+    }
+
+    fn reason(&self, config: &MissionConfig) -> String {
+        let limit = format!("time limit of {:.0} s reached", config.time_limit_s);
+        match &self.held {
+            Some((since_s, by)) if config.live => format!("{limit}; since T+{since_s:.1} s {by}"),
+            _ => limit,
+        }
     }
 }

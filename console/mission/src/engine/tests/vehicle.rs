@@ -59,6 +59,40 @@ fn an_unattended_run_ends_when_its_vehicle_cannot_be_driven() {
 }
 
 #[test]
+fn an_unattended_run_that_waits_for_its_position_says_so_and_when_it_ends() {
+    for attended in [false, true] {
+        let mut flight = Flight::new(MissionConfig {
+            attended,
+            live: true,
+            odometry_sigma_per_m: 0.5,
+            time_limit_s: 12.0,
+            ..config()
+        });
+        flight.tick(&[Order::Start]);
+        flight.fly(10);
+        flight.silent = true;
+        flight.fly(60);
+        assert_eq!(flight.held_by(), Some(&HoldReason::PositionLost));
+        let awaited = EventKind::PositionAwaited { limit_m: 0.3, ends_t_s: 12.0 };
+        let at = flight.events.iter().position(|event| event.kind == awaited);
+        assert_eq!(at.is_some(), !attended, "{:?}", flight.events);
+        flight.fly(100);
+        let reason = flight.events.iter().find_map(|event| match &event.kind {
+            EventKind::Ended { reason, .. } => Some(reason.clone()),
+            _ => None,
+        });
+        let Some(at) = at else {
+            assert_eq!(reason, None, "the time of an attended hold does not count");
+            continue;
+        };
+        let held = &flight.events[at - 1];
+        assert!(matches!(held.kind, EventKind::Held { .. }), "{held:?}");
+        let says = format!("time limit of 12 s reached; since T+{:.1} s held: position lost", held.t_s);
+        assert_eq!(reason, Some(says));
+    }
+}
+
+#[test]
 fn a_mission_does_not_start_with_a_vehicle_that_cannot_be_driven() {
     let mut flight = Flight::new(attended());
     flight.trouble = Some(WHY);

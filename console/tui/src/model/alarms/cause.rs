@@ -2,7 +2,7 @@
 
 use mission::{EventKind, HoldReason};
 use serde::{Deserialize, Serialize};
-use vehicle::port::LinkState;
+use vehicle::port::{LinkState, Notice};
 
 /// The cause of an alarm; there is at most one alarm per cause.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -31,6 +31,12 @@ pub enum Cause {
     Link,
     /// The vehicle cannot be driven: by hand, emergency stop or fault.
     Vehicle,
+    /// The vehicle sends faulty messages between good ones.
+    FaultyMessages,
+    /// The vehicle's clock does not keep the rate of the console's.
+    VehicleClock,
+    /// The console itself was stopped during a live run.
+    ConsoleStopped,
     /// The scan shows something in the robot's way, or is missing.
     Guard,
     /// The vehicle moves although it should stand.
@@ -74,6 +80,8 @@ impl Cause {
             EventKind::TetherAlarmRaised { alarm, .. } | EventKind::TetherAlarmCleared { alarm } => {
                 Self::Tether(alarm.word().to_owned())
             }
+            EventKind::Noticed(notice) => Self::of_notice(notice),
+            EventKind::Link(link) if link.state == LinkState::ConsoleStopped => Self::ConsoleStopped,
             EventKind::Link(link) if link.state.is_heard() && link.state != LinkState::Faulty => {
                 Self::Vehicle
             }
@@ -103,6 +111,9 @@ impl Cause {
             Self::Zone(zone) => format!("zone {zone}"),
             Self::Link => "link".into(),
             Self::Vehicle => "vehicle".into(),
+            Self::FaultyMessages => "faulty_messages".into(),
+            Self::VehicleClock => "vehicle_clock".into(),
+            Self::ConsoleStopped => "console_stopped".into(),
             Self::Guard => "guard".into(),
             Self::StopNotConfirmed => "stop_not_confirmed".into(),
             Self::Planner => "planner".into(),
@@ -115,6 +126,14 @@ impl Cause {
             Self::Frames => "frames".into(),
             Self::RecorderLag => "recorder_lag".into(),
             Self::Disk => "disk".into(),
+        }
+    }
+
+    fn of_notice(notice: &Notice) -> Self {
+        match notice {
+            Notice::OtherVehicle { .. } => Self::Vehicle,
+            Notice::FaultyMessages { .. } => Self::FaultyMessages,
+            Notice::ClockRate { .. } => Self::VehicleClock,
         }
     }
 
@@ -151,6 +170,9 @@ impl Cause {
             Self::Zone("no-go 1".into()),
             Self::Link,
             Self::Vehicle,
+            Self::FaultyMessages,
+            Self::VehicleClock,
+            Self::ConsoleStopped,
             Self::Guard,
             Self::StopNotConfirmed,
             Self::Planner,
@@ -182,6 +204,9 @@ impl Cause {
                 | Self::Zone(_)
                 | Self::Link
                 | Self::Vehicle
+                | Self::FaultyMessages
+                | Self::VehicleClock
+                | Self::ConsoleStopped
                 | Self::Guard
                 | Self::StopNotConfirmed
                 | Self::Planner

@@ -63,7 +63,9 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::TetherAlarmRaised { .. } => "tether alarm",
         EventKind::TetherAlarmCleared { .. } => "tether back within limit",
         EventKind::Certified { .. } => "certificate",
+        EventKind::PositionAwaited { .. } => "waiting for the position",
         EventKind::Link(_) => "link to the vehicle",
+        EventKind::Noticed(_) => "about the vehicle",
         EventKind::Stood { confirmed: true, .. } => "vehicle stopped",
         EventKind::Stood { moved: true, .. } => "unordered motion",
         EventKind::Stood { .. } => "stop not confirmed",
@@ -134,6 +136,10 @@ fn of_event(run: &Run, event: &Occurrence) -> Vec<Field> {
         EventKind::Ended { outcome, reason } => {
             vec![("outcome", outcome.word().into()), ("reason", reason.clone())]
         }
+        EventKind::PositionAwaited { limit_m, ends_t_s } => vec![
+            ("limit", metres(*limit_m) + " (95 %)"),
+            ("ends at", format!("T+{} s", text::number(*ends_t_s, 0))),
+        ],
         EventKind::Link(link) => linked(link),
         EventKind::Stood { after_s, .. } => vec![("after", format!("{} s", text::number(*after_s, 2)))],
         EventKind::TetherAlarmRaised { alarm, reached } => tether(alarm, Some(*reached)),

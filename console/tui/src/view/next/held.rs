@@ -14,7 +14,12 @@ pub(super) fn clauses(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String>
     let undrivable = run.vehicle.as_ref().and_then(|vehicle| undrivable(head, by, &vehicle.link));
     let is_drivable = undrivable.is_none();
     let mut clauses = undrivable.unwrap_or_else(|| match (trouble(position), fault) {
-        _ if !resumes.is_never() => held_for_now(head, by, *resumes),
+        _ if !resumes.is_never() => {
+            let mut clauses = held_for_now(head, by, *resumes);
+            let ends_t_s = run.vehicle.as_ref().and_then(|vehicle| vehicle.waits_until_s);
+            clauses.extend(ends_t_s.map(|t_s| format!("Otherwise, the time limit ends it at T+{t_s:.0} s.")));
+            clauses
+        }
         (Some(trouble), _) => held_without_position(head, by, trouble),
         (None, Some(fault)) => held_without_planner(head, by, &fault.message),
         (None, None) => held_for_good(head, by),
@@ -77,6 +82,8 @@ fn undrivable(head: Head, by: &HoldReason, link: &LinkSeen) -> Option<Vec<String
         LinkState::Closed => ("link to vehicle closed", "No resume: only a new run connects."),
         LinkState::Faulty => ("vehicle sends faulty messages", "Cannot resume until they are correct."),
         LinkState::Restarted => ("vehicle has restarted", "Cannot resume yet."),
+        LinkState::OtherVehicle => ("another vehicle answers", "No resume: only a new run drives it."),
+        LinkState::ConsoleStopped => ("console was stopped", "Cannot resume yet."),
         LinkState::Manual => ("vehicle is being driven by hand", "Cannot resume until it is released."),
         LinkState::EmergencyStop => ("emergency stop is pressed", "Cannot resume until it is released."),
         LinkState::OtherCommander => {
