@@ -35,6 +35,7 @@ impl ScenarioEntry {
     pub fn briefly(&self) -> Option<String> {
         let problem = self.problem.as_ref()?;
         let line = problem.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or_default();
+        let line = line.strip_prefix("error: ").unwrap_or(line);
         let (Source::File(path), Some(rest)) =
             (&self.source, line.split_once(".toml:").map(|(_, rest)| rest))
         else {

@@ -59,7 +59,9 @@ const BEGAN_UNIX_S: f64 = 1_795_264_000.0 - 2400.0;
 
 pub(crate) fn found() -> Found {
     let invalid = ScenarioEntry {
-        problem: Some("scenarios/depot.toml:14:1: unknown key `radus_m`, did you mean `radius_m`?".into()),
+        problem: Some(
+            "error: scenarios/depot.toml:14:1: unknown key `radus_m`, did you mean `radius_m`?".into(),
+        ),
         world: None,
         ..scenario("depot", "", "")
     };

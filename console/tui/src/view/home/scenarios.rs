@@ -142,13 +142,17 @@ fn age(look: &Look, run: Option<&PastRun>) -> String {
 /// The description of a scenario, or all that is wrong with it.
 pub(super) fn about_lines(entry: &ScenarioEntry, columns: usize) -> Vec<Parts> {
     match &entry.problem {
-        Some(problem) => {
-            let lines = problem.lines().filter(|line| !is_extract(line));
-            let lines = lines.flat_map(|line| text::wrap(line, columns.saturating_sub(2)));
-            lines.map(|line| vec![(Role::Warn, format!(" {line}"))]).collect()
-        }
+        Some(problem) => problem_lines(problem, columns),
         None => sentence(Role::Dim, &description(entry), columns),
     }
+}
+
+/// All errors of a scenario, then the advice, which may be long.
+fn problem_lines(problem: &str, columns: usize) -> Vec<Parts> {
+    let mut lines: Vec<&str> = problem.lines().filter(|line| !is_extract(line)).collect();
+    lines.sort_by_key(|line| !line.starts_with("error"));
+    let lines = lines.into_iter().flat_map(|line| text::wrap(line, columns.saturating_sub(2)));
+    lines.map(|line| vec![(Role::Warn, format!(" {line}"))]).collect()
 }
 
 /// Whether a line of an error is an extract of the file, which a narrow pane has no room for.
@@ -163,5 +167,25 @@ pub(super) fn description(entry: &ScenarioEntry) -> String {
         (false, true) => format!("{}.", entry.about),
         (true, false) => format!("Expected: {}.", entry.expected),
         (false, false) => format!("{}. Expected: {}.", entry.about, entry.expected),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_error_of_a_scenario_comes_before_the_advice_and_without_extracts() {
+        let problem = "error: tank.toml:8:1: robot.speeed = 3: unknown key\n   |\n 8 | speeed = 3\n   | ^^^^^^\n\
+                       help: the keys of [robot] are radius_m\nerror: tank.toml:9:1: tank.x: missing\n9 | [tank]";
+        let lines = problem_lines(problem, 80).into_iter().flatten().map(|(_, words)| words);
+        assert_eq!(
+            lines.collect::<Vec<_>>(),
+            [
+                " error: tank.toml:8:1: robot.speeed = 3: unknown key",
+                " error: tank.toml:9:1: tank.x: missing",
+                " help: the keys of [robot] are radius_m",
+            ]
+        );
     }
 }
