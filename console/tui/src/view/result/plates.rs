@@ -42,6 +42,7 @@ pub(super) fn worst(look: &Look, columns: usize) -> Option<Parts> {
     let words = [
         format!("95 % error {error} m{mark}, limit {limit} m"),
         format!("95 % error {error} m{mark}"),
+        format!("error {error} m{mark}"),
         format!("{error} m{mark}"),
     ];
     let room = columns.saturating_sub(text::width(&front) + 2);
