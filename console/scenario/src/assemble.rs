@@ -3,7 +3,7 @@
 use super::{
     Scenario,
     checks::{Site, cell_m, check_lanes, check_period, check_position_limit, check_pressure, check_ticks},
-    expect, floor, inspection, layout,
+    expect, floor, inspection, instrument, layout,
     problem::{Complaint, Problem},
     ranging,
     robot::{self, Robot},
@@ -94,6 +94,12 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let expect = expect::expect(root);
     let inspection = inspection::section(root);
     let rest = Rest::read(&sections, &floor);
+    let cell_m = rest.as_ref().map(|rest| rest.cell_m);
+    let instrument = if root.has("instrument") {
+        instrument::instrument(root, plates.as_ref(), cell_m).map(Some)
+    } else {
+        Some(None)
+    };
 
     let (planner, fallback) = planner?;
     let (robot, rest, start, ae, locating) = (floor.robot?, rest?, start?, floor.ae?, floor.locating?);
@@ -128,6 +134,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         guard_reaction_s: robot.scanner.map(|_| 0.0),
         sensor: robot.scanner.as_ref().map(Sensor::of),
         better_plan: rest.better_plan,
+        instrument: instrument?,
     };
     let tether_anchor = mission.tether.as_ref().map(|tether| tether.anchor);
     let reel_length_m = mission.tether.as_ref().map(|tether| tether.limits.reel_length_m);

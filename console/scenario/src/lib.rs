@@ -10,6 +10,7 @@ mod checks;
 mod expect;
 mod floor;
 mod inspection;
+mod instrument;
 mod layout;
 mod map;
 mod outline;

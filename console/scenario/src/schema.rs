@@ -188,6 +188,7 @@ pub(crate) static ROOT: &[Key] = &[
     key("random_obstacles", "", Kind::Table(RANDOM_OBSTACLES)).or_none("none"),
     key("zones", "", Kind::Tables(ZONES)).or_none("none"),
     key("plates", "", Kind::Table(PLATES)).or_none("unknown"),
+    key("instrument", "", Kind::Table(INSTRUMENT)).or_none("unknown"),
     key("robot", "", Kind::Table(ROBOT)).or_none("defaults"),
     key("ae", "", Kind::Table(AE)),
     key("tether", "", Kind::Table(TETHER)).or_none("none"),
@@ -258,6 +259,12 @@ static PLATES: &[Key] = &[
 ];
 
 static PLATE_OUTLINES: &[Key] = &[key("name", "", Kind::Text), key("vertices_m", "m", Kind::Points(3))];
+
+static INSTRUMENT: &[Key] = &[
+    word("kind", &["mfl", "ut"]),
+    number("dead_band_m", "m", at_least(0.0).up_to(1.0)).or(0.0),
+    number("dead_square_m", "m", at_least(0.0).up_to(2.0)).or(0.0),
+];
 
 /// The kinds of outline that an obstacle or a zone can have.
 pub(crate) static OUTLINES: &[&str] = &["circle", "box", "polygon", "polyline"];

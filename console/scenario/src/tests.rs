@@ -665,3 +665,36 @@ fn a_scanner_is_read_with_its_defaults_and_wrong_ones_are_named() {
         assert!(text.contains(key) && text.contains(why), "{text}");
     }
 }
+
+#[test]
+fn an_instrument_needs_welds_and_bands_that_cells_can_show() {
+    let with = |rest: &str| format!("{SMALL}[instrument]\n{rest}\n");
+    let welded = |rest: &str| format!("{SMALL}[plates]\n[instrument]\n{rest}\n");
+    let instrument = |text: &str| read(text).mission.instrument;
+    assert_eq!(instrument(SMALL), None);
+    let ut = instrument(&with("kind = \"ut\"")).unwrap();
+    assert_eq!((ut.kind, ut.dead_bands), (mission::InstrumentKind::Ut, None));
+    let text = welded("kind = \"mfl\"\ndead_band_m = 0.03\ndead_square_m = 0.2");
+    let bands = instrument(&text).unwrap().dead_bands.unwrap();
+    assert_eq!((bands.band_m, bands.square_m), (0.03, 0.2));
+    assert_eq!(Some(bands.plates), read(&text).plates);
+    let cases = [
+        (with(""), "instrument.kind: missing"),
+        (with("kind = \"eddy\""), "instrument.kind = \"eddy\""),
+        (with("kind = \"mfl\"\ndead_band_m = 0.05"), "add [plates], whose seams are the welds"),
+        (
+            welded("kind = \"mfl\"\ndead_band_m = 0.02"),
+            "instrument.dead_band_m = 0.02: must be 0, or at least 0.025 m",
+        ),
+        (
+            welded("kind = \"mfl\"\ndead_square_m = 0.04"),
+            "instrument.dead_square_m = 0.04: must be 0, or at least 0.05 m",
+        ),
+        (welded("kind = \"mfl\"\ndead_bands_m = 0.04"), "dead_band_m"),
+    ];
+    for (text, wanted) in cases {
+        let shown = errors(&text).render();
+        assert!(shown.contains(wanted), "{wanted}:\n{shown}");
+        assert_eq!(errors(&text).problems.len(), 1, "{shown}");
+    }
+}

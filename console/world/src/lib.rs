@@ -28,7 +28,7 @@ pub use coverage::{
 pub use geometry::{self, Amphibious, Boundary, Pace, Point, Pose, Shape, Vector, polyline, shape};
 pub use medium::{Medium, Mode, PressureSensor, SensedMedium};
 pub use obstacles::{Near, ObstacleMap};
-pub use plates::{DrawnPlate, NO_PLATE, Plate, PlateKind, PlateLayout, PlateMap, RegularPlates};
+pub use plates::{DeadBands, DrawnPlate, NO_PLATE, Plate, PlateKind, PlateLayout, PlateMap, RegularPlates};
 pub use readings::{Odometry, RangeSet, Readings, Sighting};
 pub use scan::{NO_ECHO, Scan};
 pub use scanner::Scanner;

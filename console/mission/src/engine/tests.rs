@@ -282,6 +282,7 @@ fn config() -> MissionConfig {
         guard_reaction_s: None,
         sensor: None,
         better_plan: BetterPlan::Offer,
+        instrument: None,
     }
 }
 

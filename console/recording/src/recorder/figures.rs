@@ -114,6 +114,7 @@ fn numbers(summary: &Summary) -> Vec<(&'static str, f64)> {
         ("whole_missed_percent", percent(whole).map(|p| p.missed)),
         ("whole_unreachable_percent", percent(whole).map(|p| p.unreachable)),
         ("whole_margin_percent", percent(whole).map(|p| p.margin)),
+        ("whole_untestable_percent", percent(whole).map(|p| p.untestable).filter(|percent| *percent > 0.0)),
         ("whole_scanned_true_percent", by_truth.map(|truth| 100.0 * truth.whole)),
         ("reachable_m2", reachable.map(|shares| shares.area_m2)),
         ("reachable_scanned_percent", coverage.map(|coverage| 100.0 * coverage.reachable)),

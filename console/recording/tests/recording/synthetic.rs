@@ -378,6 +378,7 @@ fn opened() -> RunOpened {
             sensor: None,
             live: false,
             better_plan: mission::BetterPlan::Off,
+            instrument: None,
         },
     }
 }

@@ -42,6 +42,7 @@ fn plates(document: &Document) -> String {
     let floor = &document.floor;
     let is_located = document.located.is_some();
     let is_known = document.located.as_ref().is_none_or(|located| located.tool_on_s.is_some());
+    let has_untestable = floor.whole.untestable > 0.0;
     let row = |name: &str, kind: &str, shares: &Shares, error_m: Option<f64>| {
         let p = &shares.percent;
         let mut row = vec![name.to_owned(), kind.to_owned(), format!("{:.4}", shares.area_m2)];
@@ -53,6 +54,7 @@ fn plates(document: &Document) -> String {
             |(value, is_stated): (f64, bool)| if is_stated { format!("{value:.1}") } else { String::new() };
         row.extend(of_tool.into_iter().chain(of_mission).map(cell));
         row.push(error_m.map(|m| format!("{m:.3}")).unwrap_or_default());
+        row.extend(has_untestable.then(|| format!("{:.1}", p.untestable)));
         row
     };
     let bases = [("whole floor", &floor.whole), ("reachable floor", &floor.reachable)];
@@ -64,7 +66,7 @@ fn plates(document: &Document) -> String {
         .plates
         .iter()
         .map(|plate| row(&plate.name, &plate.kind.to_string(), &plate.shares, plate.error_p95_m));
-    let head = [
+    let mut head = vec![
         "floor",
         "kind",
         "area_m2",
@@ -75,6 +77,7 @@ fn plates(document: &Document) -> String {
         "margin_percent",
         "error_p95_m",
     ];
+    head.extend(has_untestable.then_some("untestable_percent"));
     table(&head, bases.into_iter().chain(plates))
 }
 

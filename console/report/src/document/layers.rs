@@ -137,6 +137,11 @@ impl<'a> Layers<'a> {
         self.classes[cell].is_scanned()
     }
 
+    /// Whether the tool could not test some of the floor because of the welds.
+    pub(crate) fn has_untestable(&self) -> bool {
+        self.classes.contains(&FloorClass::Untestable)
+    }
+
     /// Whether a cell belongs to a class.
     pub(crate) fn is(&self, cell: usize, class: FloorClass) -> bool {
         self.classes[cell] == class

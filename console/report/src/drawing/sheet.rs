@@ -18,6 +18,7 @@ pub(crate) mod colour {
     pub(crate) const MISSED_LINE: &str = "#6E1C0A";
     pub(crate) const OUT: &str = "#8C9196";
     pub(crate) const OUT_GROUND: &str = "#ECEDED";
+    pub(crate) const UNTESTABLE: &str = "#B39DDB";
     pub(crate) const MARGIN: &str = "#8A6A16";
     pub(crate) const MARGIN_GROUND: &str = "#F1E2B4";
     pub(crate) const SOLID: &str = "#39444E";
@@ -73,6 +74,11 @@ impl Sheet {
     pub(crate) fn draw(&mut self, svg: impl Display) {
         // Writing to a String cannot fail.
         let _ = write!(self.body, "{svg}");
+    }
+
+    /// Adds the cells that the tool cannot test.
+    pub(crate) fn untestable(&mut self, floor: &Floor, is_in: impl Fn(usize) -> bool) {
+        self.cells(floor, is_in, 0.0, &format!(r#"fill="{}""#, colour::UNTESTABLE));
     }
 
     /// Adds cells of a floor with these attributes.

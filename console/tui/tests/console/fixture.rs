@@ -108,6 +108,7 @@ pub(crate) fn config() -> MissionConfig {
         guard_reaction_s: None,
         sensor: None,
         better_plan: mission::BetterPlan::Offer,
+        instrument: None,
     }
 }
 

@@ -45,6 +45,7 @@ impl Shade {
             Self::Floor(FloorClass::Missed) => ('▓', Role::Missed),
             Self::Floor(FloorClass::Unreachable) => ('/', Role::Unreachable),
             Self::Floor(FloorClass::Margin) => ('-', Role::Margin),
+            Self::Floor(FloorClass::Untestable) => ('[', Role::Untestable),
             Self::NotReached => ('∙', Role::Dim),
             Self::PoorFix => ('$', Role::Crit),
             Self::WeakFix => ('_', Role::Warn),
@@ -126,7 +127,7 @@ pub(crate) struct Key {
 }
 
 /// The shades in the order of the legend, the most important first, each with its legend text.
-pub(super) const LEGEND: [(Shade, &str); 12] = [
+pub(super) const LEGEND: [(Shade, &str); 13] = [
     (Shade::Floor(FloorClass::Missed), "missed"),
     (Shade::NotReached, "not reached"),
     (Shade::PoorFix, "poor fix"),
@@ -136,6 +137,7 @@ pub(super) const LEGEND: [(Shade, &str); 12] = [
     (Shade::Floor(FloorClass::Partial), "partial"),
     (Shade::Floor(FloorClass::Unreachable), "unreachable"),
     (Shade::Floor(FloorClass::Margin), "margin"),
+    (Shade::Floor(FloorClass::Untestable), "not testable"),
     (Shade::OnlyA, "only A"),
     (Shade::OnlyB, "only B"),
     (Shade::Both, "both"),
