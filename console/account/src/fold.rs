@@ -6,6 +6,7 @@ use crate::{
     drawn::DrawnZone,
     figures::{Figure, Figures},
     floor::account,
+    readings::{Survey, Way},
     scanned::Scanned,
     summary::{REPORT_VERSION, Summary, Tether},
     tethered::Tethered,
@@ -45,6 +46,7 @@ pub struct Fold {
     figures: Figures,
     run: Option<Box<RunOpened>>,
     evidence: Option<Evidence>,
+    survey: Option<Survey>,
     /// Whether the previous event drew a zone: the change to the floor that follows belongs to that zone.
     is_zone_new: bool,
     /// Whether the account of the floor is omitted.
@@ -174,6 +176,10 @@ impl Fold {
             }
         };
         self.visit(here, &covariance, error_m, counts);
+        if let (Some(survey), Some(truth), Some(scanned)) = (&mut self.survey, self.truth, &self.scanned) {
+            let way = Way { floor: scanned.believed().floor(), counts };
+            survey.visit((event.tick, event.t_s), estimate, truth, way);
+        }
     }
 
     /// Moves the tool to a pose, and records whether the floor that the tool passed over counts.
@@ -208,6 +214,11 @@ impl Fold {
             tracking: self.tracker.as_ref().and_then(Tracker::tracking),
             accuracy: self.claimed.statement(self.scan_limit_m()),
             extremes: self.extremes(),
+            readings: self
+                .survey
+                .as_ref()
+                .zip(self.scanned.as_ref())
+                .map(|(survey, scanned)| survey.summary(scanned.believed().floor())),
             positioning: self.accuracy.positioning(self.known.mission_time_s.unwrap_or(0.0)),
             ..self.known.clone()
         }
@@ -244,6 +255,11 @@ impl Fold {
     /// The scanned floor; `None` before the run is opened.
     pub fn scanned(&self) -> Option<&Scanned> {
         self.scanned.as_ref()
+    }
+
+    /// The instrument and its readings; `None` if it reads no thickness, and without the account of the floor.
+    pub fn survey(&self) -> Option<&Survey> {
+        self.survey.as_ref()
     }
 
     /// The evidence for missed floor; `None` before the run is opened, and without the account of the floor.
@@ -309,6 +325,7 @@ impl Fold {
         self.known.planner = Some(run.mission.planner.id.clone());
         self.known.parameters = Some(run.mission.planner.parameters.clone());
         self.evidence = (!self.leaves_out_floor).then(|| Evidence::new(run));
+        self.survey = (!self.leaves_out_floor).then(|| Survey::new(run)).flatten();
         self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start));
         if let Some(measured) = &run.measured {
             // Adds a located pose; the floor passed there counts only while the tool was on.

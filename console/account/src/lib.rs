@@ -21,6 +21,7 @@ mod inspection;
 pub mod notes;
 mod overlap;
 mod passes;
+mod readings;
 mod sampled;
 #[cfg(test)]
 mod samples;
@@ -47,6 +48,7 @@ pub use inspection::{Date, Inspection, is_placeholder, says_nothing};
 pub use notes::Notes;
 pub use overlap::Overlap;
 pub use passes::Passes;
+pub use readings::{Detection, Detections, Finding, Judge, PlateThickness, Reading, ReadingsSummary, Survey};
 pub use scanned::Scanned;
 pub use summary::{
     Accuracy, Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, REPORT_VERSION, Stops, Summary,

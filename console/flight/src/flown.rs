@@ -101,6 +101,7 @@ impl Flight {
             mission: config.clone(),
             floor: floor.clone(),
             plates: scenario.plates.clone(),
+            wear: scenario.wear.clone().filter(|_| info.is_none()),
             checklist: scenario.checklist.clone(),
             measured: None,
             vehicle: info.clone().map(Box::new),

@@ -35,7 +35,7 @@ pub use ask::{Answer, Ask, AskId, Awaits, Given, Said, What, WorkerId};
 pub use config::{BetterPlan, Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
 pub use engine::{Fork, Input, Mission, Sending, Step};
 pub use event::{Event, EventKind, LogLine, RunOpened, Severity};
-pub use instrument::{InstrumentConfig, InstrumentKind};
+pub use instrument::{InstrumentConfig, InstrumentKind, Sampling};
 pub use locate::Locator;
 pub use order::{Check, CheckOutcome, Injection, Note, Noted, Order, Outlook, RangeFault};
 pub use passage::Passage;

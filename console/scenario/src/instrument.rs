@@ -1,15 +1,18 @@
 //! Reads the instrument that tests the floor: `[instrument]`.
 
 use super::{problem::Complaint, section::Section};
-use mission::{InstrumentConfig, InstrumentKind};
+use mission::{InstrumentConfig, InstrumentKind, Sampling};
 use world::{DeadBands, PlateLayout};
 
-/// Reads `[instrument]`. `cell_m` is the edge of a cell of the coverage grid.
+/// Reads `[instrument]`, if there is one. `cell_m` is the edge of a cell of the coverage grid.
 pub(crate) fn instrument(
     root: &Section<'_>,
     plates: Option<&PlateLayout>,
     cell_m: Option<f64>,
 ) -> Option<InstrumentConfig> {
+    if !root.has("instrument") {
+        return None;
+    }
     let section = root.table("instrument")?;
     let kind = section.word("kind").map(|word| match word {
         "ut" => InstrumentKind::Ut,
@@ -20,9 +23,10 @@ pub(crate) fn instrument(
         check_cells(&section, ("dead_band_m", band_m), cell_m / 2.0, "half of");
         check_cells(&section, ("dead_square_m", square_m), cell_m, "equal to");
     }
+    let sampling = if section.has("channels") { Some(sampling(&section)?) } else { None };
     let (kind, band_m, square_m) = (kind?, band_m?, square_m?);
     if band_m <= 0.0 && square_m <= 0.0 {
-        return Some(InstrumentConfig { kind, dead_bands: None });
+        return Some(InstrumentConfig { kind, dead_bands: None, sampling });
     }
     if !root.has("plates") {
         root.require(
@@ -31,7 +35,26 @@ pub(crate) fn instrument(
         );
     }
     let plates = plates?.clone();
-    Some(InstrumentConfig { kind, dead_bands: Some(DeadBands { plates, band_m, square_m }) })
+    Some(InstrumentConfig { kind, dead_bands: Some(DeadBands { plates, band_m, square_m }), sampling })
+}
+
+/// Reads how the instrument reads thickness.
+fn sampling(section: &Section<'_>) -> Option<Sampling> {
+    let (channels, pitch_m) = (section.whole("channels"), section.number("pitch_m"));
+    let (sigma_mm, threshold) = (section.number("sigma_mm"), section.number("threshold"));
+    if !section.has("thickness_mm") {
+        section.require(
+            "thickness_mm",
+            "add thickness_mm = ..., in mm, the nominal thickness of the floor, from which loss is measured",
+        );
+    }
+    Some(Sampling {
+        channels: channels? as u16,
+        pitch_m: pitch_m?,
+        thickness_mm: section.number("thickness_mm")?,
+        sigma_mm: sigma_mm?,
+        threshold: threshold?,
+    })
 }
 
 /// Complains about a width that is above zero but too small to show in cells.

@@ -698,3 +698,45 @@ fn an_instrument_needs_welds_and_bands_that_cells_can_show() {
         assert_eq!(errors(&text).problems.len(), 1, "{shown}");
     }
 }
+
+#[test]
+fn readings_need_a_thickness_and_losses_fit_into_the_floor() {
+    let with = |rest: &str| format!("{SMALL}{rest}\n");
+    let instrument = "[instrument]\nkind = \"mfl\"\nchannels = 20\n";
+    let sampling = |text: &str| read(text).mission.instrument.unwrap().sampling.unwrap();
+    let read_20 = sampling(&with(&format!("{instrument}thickness_mm = 8")));
+    assert_eq!(
+        (read_20.channels, read_20.pitch_m, read_20.sigma_mm, read_20.threshold),
+        (20, 0.005, 0.3, 0.2)
+    );
+    let pits = "[wear]\nthickness_mm = 8\nrandom = { count = 50, radius_m = [0.01, 0.05], depth_mm = [1, 7] }\n\
+                losses = [{ at_m = [1, 0], radius_m = 0.1, depth_mm = 2 }]";
+    let wear = |text: &str| read(text).wear.unwrap();
+    let first = wear(&with(pits));
+    assert_eq!((first.losses.len(), first.left_mm(Point::new(1.0, 0.0)) <= 6.0), (51, true));
+    assert_eq!(first, wear(&with(pits)), "the seed determines the pits");
+    assert_ne!(
+        first.losses,
+        wear(&with(&pits.replace("depth_mm = [1, 7]", "depth_mm = [1, 7], seed = 9"))).losses
+    );
+    let cases = [
+        (with(instrument), "add thickness_mm"),
+        (with("[wear]"), "wear.thickness_mm: missing"),
+        (with(&pits.replace("[1, 7]", "[1, 9]")), "wear.random.depth_mm = [1, 9]: must be at most 8 mm"),
+        (with(&pits.replace("[1, 7]", "[7, 1]")), "[smallest, largest]"),
+        (
+            with(&pits.replace("depth_mm = 2", "depth_mm = 12")),
+            "wear.losses.0.depth_mm = 12: must be at most 8 mm",
+        ),
+        (with(&pits.replace("at_m = [1, 0]", "at_m = [9, 0]")), "wear.losses.0.at_m"),
+        (
+            with(&pits.replace("depth_mm = 2", "depth_mm = -2")),
+            "wear.losses.0.depth_mm = -2: must be greater than 0 mm",
+        ),
+    ];
+    for (text, wanted) in cases {
+        let shown = errors(&text).render();
+        assert!(shown.contains(wanted), "{wanted}:\n{shown}");
+        assert_eq!(errors(&text).problems.len(), 1, "{shown}");
+    }
+}

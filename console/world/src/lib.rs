@@ -19,6 +19,7 @@ pub mod tether;
 mod tiles;
 mod total;
 mod truth;
+mod wear;
 
 pub use coverage::{
     Cell, CellRun, Counts, CoverageGrid, Floor, FloorClass, FloorMaker, KindRun, ShellFigures, ShellStretch,
@@ -35,3 +36,4 @@ pub use scanner::Scanner;
 pub use tank::{Obstacle, ObstacleId, Station, StationId, World, Zone, ZoneKind};
 pub use tiles::Tiles;
 pub use truth::{TetherTruth, Truth};
+pub use wear::{FloorWear, LossProfile, MetalLoss, PlateSide};

@@ -236,6 +236,7 @@ fn opened(config: &MissionConfig) -> EventKind {
         mission: config.clone(),
         floor,
         plates: None,
+        wear: None,
         checklist: vec![],
         measured: None,
         vehicle: None,

@@ -132,6 +132,11 @@ impl<'a> Layers<'a> {
         Some(map.plates[map.plate_of(self.floor().cell_at(place)?)?].name.clone())
     }
 
+    /// The plate of each cell, if the layout is known.
+    pub(crate) fn plate_map(&self) -> Option<&PlateMap> {
+        self.plate_map.as_ref()
+    }
+
     /// Whether a cell of floor was scanned.
     pub(crate) fn is_scanned(&self, cell: usize) -> bool {
         self.classes[cell].is_scanned()

@@ -25,6 +25,7 @@ pub(crate) mod colour {
     pub(crate) const TRACK: &str = "#2C5F7C";
     pub(crate) const TETHER: &str = "#7A3E8C";
     pub(crate) const WARNING: &str = "#B26A00";
+    pub(crate) const LOSS: [&str; 5] = ["#E1EAEE", "#F6E3A1", "#EDB35A", "#D9703A", "#A3281E"];
     pub(crate) const ERROR: [&str; 5] = ["#EAF1F4", "#C5D9E2", "#93B7C8", "#5A8DA6", "#2B5F7B"];
 }
 

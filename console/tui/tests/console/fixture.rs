@@ -214,6 +214,7 @@ pub(crate) fn opened() -> EventKind {
         mission,
         floor,
         plates: None,
+        wear: None,
         checklist: Vec::new(),
         measured: None,
         vehicle: None,

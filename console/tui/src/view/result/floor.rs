@@ -173,6 +173,15 @@ fn notes(look: &Look, result: &RunResult, columns: usize) -> Vec<Vec<String>> {
             });
         format!("Plates: {all} of {} with at most {MISSED_PERCENT} % missed.{worst}", floor.plates.len())
     });
-    let notes = of_all_runs(look).into_iter().chain(zone).chain(plates).chain(again).chain(truth);
+    let readings = summary.readings.as_ref().map(|readings| {
+        let deepest = readings.deepest.as_ref().map_or_else(String::new, |loss| {
+            let (depth, error) = (text::number(loss.depth_mm, 1), text::number(loss.depth_error_mm, 1));
+            let [x, y] = [loss.at.x, loss.at.y].map(|m| text::number(m, 2));
+            format!("; deepest {depth} ±{error} mm at {x}, {y} m")
+        });
+        format!("Readings: {}; indications: {}{deepest}.", readings.count, readings.indications)
+    });
+    let notes =
+        of_all_runs(look).into_iter().chain(zone).chain(readings).chain(plates).chain(again).chain(truth);
     notes.map(|note| text::wrap(&note, columns)).collect()
 }
