@@ -158,7 +158,9 @@ fn console_text_json_html_csv_and_recording_have_the_same_shares_of_every_cover_
                 files.agree(name, plate, json);
             let mut cells = vec![scanned, guaranteed, missed, unreachable, margin];
             cells.extend(flown["floor"]["whole"].get("untestable").map(|_| untestable));
-            let row: String = cells.iter().map(|cell| format!("<td class=\"r\">{cell}</td>")).collect();
+            let cells: Vec<String> =
+                cells.iter().map(|cell| format!("<td class=\"r\">{cell}</td>")).collect();
+            let row = cells.concat();
             // The table of the critical zone names plates, too.
             let is_of_plates =
                 |row: &&str| ["annular", "sketch", "rectangular"].iter().any(|kind| row.contains(kind));

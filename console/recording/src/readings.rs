@@ -189,7 +189,7 @@ mod tests {
             at: Point::new(1.0, 2.0),
             covariance: Matrix2::new(4e-4, 1e-4, 1e-4, 9e-4),
             thickness_mm: f64::from(k % 80) / 10.0,
-            is_testable: k % 7 > 0,
+            is_testable: !k.is_multiple_of(7),
         };
         let readings: Vec<Reading> = (0..20_000).map(reading).collect();
         let mut writer = ReadingsWriter::create(&path).unwrap();

@@ -112,9 +112,12 @@ pub(super) fn map(layers: &Layers<'_>, judge: &Judge, thickness: &Thickness) -> 
     sheet.plates(layers.plates.as_ref());
     sheet.obstacles(&fixtures);
     sheet.frame(&fixtures, 2.4);
-    let count = |class: u8| classes.iter().filter(|other| **other == class).count();
-    let tested = (classes.len() - count(NO_CLASS)).max(1) as f64;
-    let shares = world::coverage::percents([0, 1, 2, 3, 4].map(|class| count(class) as f64 / tested));
+    let mut counts = [0_usize; LOSS_CLASSES.len() + 1];
+    for class in classes.iter().filter(|class| **class != NO_CLASS) {
+        counts[usize::from(*class)] += 1;
+    }
+    let tested = counts.iter().sum::<usize>().max(1) as f64;
+    let shares = world::coverage::percents(counts.map(|count| count as f64 / tested));
     let mm = |share: f64| format!("{:.1}", share * nominal_mm);
     let text = |class: usize| match class {
         0 => format!("up to {} mm lost", mm(LOSS_CLASSES[0])),

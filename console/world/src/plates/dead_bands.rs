@@ -180,7 +180,7 @@ mod tests {
         let mut maker = FloorMaker::of(&before, &world.as_drawn(), 0.3, 0.6, Point::origin());
         assert_eq!(maker.clone().into_floor(), before);
         let map = ObstacleMap::new(&world.boundary, &world.obstacles);
-        maker.update(&world, &map, &[shape.clone()]);
+        maker.update(&world, &map, std::slice::from_ref(&shape));
         let after = maker.into_floor();
         for cell in 0..before.len() {
             let is_solid = shape.distance_m(before.center(cell)) < 0.0;
