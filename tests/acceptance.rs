@@ -49,6 +49,8 @@ mod looking_on;
 mod planning;
 #[path = "acceptance/proof.rs"]
 mod proof;
+#[path = "acceptance/readings.rs"]
+mod readings;
 #[path = "acceptance/recovered.rs"]
 mod recovered;
 #[path = "acceptance/replay.rs"]

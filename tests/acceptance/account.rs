@@ -22,12 +22,16 @@ fn cover() -> Vec<PathBuf> {
     files
 }
 
-/// The four parts of a floor and its guaranteed part, as printed.
-type Printed = [String; 5];
+/// The five parts of a floor and its guaranteed part, as printed.
+type Printed = [String; 6];
 
 fn of_json(percent: &Value) -> Printed {
-    let part = |part: &str| format!("{:.1}", percent[part].as_f64().unwrap());
-    ["scanned", "missed", "unreachable", "margin", "guaranteed"].map(part)
+    // Untestable floor is stated only if the scenario has an instrument with dead bands.
+    let part = |part: &str| match &percent[part] {
+        Value::Null if part == "untestable" => "0.0".to_owned(),
+        value => format!("{:.1}", value.as_f64().unwrap()),
+    };
+    ["scanned", "missed", "unreachable", "margin", "untestable", "guaranteed"].map(part)
 }
 
 /// The shares in a line of the text, which omits empty parts.
@@ -38,7 +42,7 @@ fn of_text(text: &str, floor: &str) -> Printed {
         let before = line.split(&format!(" % {word}")).next().filter(|before| before.len() < line.len());
         before.map_or_else(|| "0.0".to_owned(), |before| before.rsplit([' ', '(']).next().unwrap().to_owned())
     };
-    ["scanned", "missed", "unreachable", "shell margin", "guaranteed"].map(part)
+    ["scanned", "missed", "unreachable", "shell margin", "not testable by this tool", "guaranteed"].map(part)
 }
 
 /// The cells of the row of an HTML table that begins with a name.
@@ -52,13 +56,19 @@ fn of_html(html: &str, floor: &str) -> Printed {
         .skip(1)
         .map(|cell| cell.split_once('>').unwrap().1.split('<').next().unwrap())
         .collect();
-    [2, 3, 4, 5, 7].map(|cell| cells[cell].to_owned())
+    // With untestable floor, there is a column for it before the sum.
+    match cells.len() {
+        8 => [cells[2], cells[3], cells[4], cells[5], "0.0", cells[7]],
+        _ => [cells[2], cells[3], cells[4], cells[5], cells[6], cells[8]],
+    }
+    .map(str::to_owned)
 }
 
 fn of_csv(csv: &str, floor: &str) -> Printed {
     let row: Vec<&str> =
         csv.lines().find(|line| line.starts_with(&format!("{floor},"))).unwrap().split(',').collect();
-    [3, 5, 6, 7, 4].map(|cell| row[cell].to_owned())
+    let untestable = row.get(9).copied().unwrap_or("0.0");
+    [row[3], row[5], row[6], row[7], untestable, row[4]].map(str::to_owned)
 }
 
 /// The properties of the recording.
@@ -66,7 +76,7 @@ fn of_recording(run: &Path, floor: &str) -> Printed {
     let figures = recording::inspect(&run.join(RECORDING_FILE)).unwrap().figures;
     // The reachable floor has neither unreachable floor nor shell margin.
     let part = |part: &str| format!("{:.1}", figures.get(&format!("{floor}_{part}_percent")).unwrap_or(&0.0));
-    ["scanned", "missed", "unreachable", "margin", "guaranteed"].map(part)
+    ["scanned", "missed", "unreachable", "margin", "untestable", "guaranteed"].map(part)
 }
 
 /// The contents of the console's pane after the end of the run.
@@ -107,7 +117,7 @@ impl Files {
     /// floor in text and CSV.
     fn agree(&self, name: &str, of: &Value, json: &Value) -> Printed {
         let printed = of_json(&of["percent"]);
-        let parts: f64 = printed[..4].iter().map(|part| part.parse::<f64>().unwrap()).sum();
+        let parts: f64 = printed[..5].iter().map(|part| part.parse::<f64>().unwrap()).sum();
         assert!((parts - 100.0).abs() < 1e-9, "{name}: {printed:?}");
         assert_eq!(of_json(&json["percent"]), printed, "{name}, JSON");
         assert_eq!(of_text(&self.text, name), printed, "{name}, text");
@@ -137,16 +147,20 @@ fn console_text_json_html_csv_and_recording_have_the_same_shares_of_every_cover_
             assert_eq!(of_recording(&run, key), printed, "{file} {floor}, recording");
             let capital = floor.replacen(['w', 'r'], if key == "whole" { "W" } else { "R" }, 1);
             assert_eq!(of_html(&files.html, &capital), printed, "{file} {floor}, HTML");
-            let shown =
-                [pane.scanned, pane.missed, pane.unreachable, pane.margin].map(|part| format!("{part:.1}"));
-            assert_eq!(shown[..], printed[..4], "{file} {floor}, console");
+            let shown = [pane.scanned, pane.missed, pane.unreachable, pane.margin, pane.untestable]
+                .map(|part| format!("{part:.1}"));
+            assert_eq!(shown[..], printed[..5], "{file} {floor}, console");
         }
         let plates = flown["floor"]["plates"].as_array().unwrap();
         for (plate, json) in plates.iter().zip(files.json["floor"]["plates"].as_array().unwrap()) {
             let name = plate["name"].as_str().unwrap();
-            let [scanned, missed, unreachable, margin, guaranteed] = files.agree(name, plate, json);
-            let cells = [&scanned, &guaranteed, &missed, &unreachable, &margin];
-            let row: String = cells.map(|cell| format!("<td class=\"r\">{cell}</td>")).concat();
+            let [scanned, missed, unreachable, margin, untestable, guaranteed] =
+                files.agree(name, plate, json);
+            let mut cells = vec![scanned, guaranteed, missed, unreachable, margin];
+            cells.extend(flown["floor"]["whole"].get("untestable").map(|_| untestable));
+            let cells: Vec<String> =
+                cells.iter().map(|cell| format!("<td class=\"r\">{cell}</td>")).collect();
+            let row = cells.concat();
             // The table of the critical zone names plates, too.
             let is_of_plates =
                 |row: &&str| ["annular", "sketch", "rectangular"].iter().any(|kind| row.contains(kind));

@@ -91,9 +91,7 @@ impl Estimate {
 
 fn reachable(mission: &MissionConfig, drawing: &World, path: &[Point]) -> Option<f64> {
     let TaskConfig::Cover { .. } = mission.task else { return None };
-    let start = mission.start.position;
-    let floor = Floor::new(drawing, mission.cell_m, mission.room_m(), mission.swath_m, start);
-    Some(scanned_along(floor, path, mission.swath_m).fraction_reachable())
+    Some(scanned_along(mission.floor(drawing), path, mission.swath_m).fraction_reachable())
 }
 
 /// The floor that is scanned along a path with a swath in metres, before anything moves.

@@ -103,6 +103,9 @@ pub struct Shares {
     pub unreachable: f64,
     /// Share that is unreachable because the robot keeps its distance from the shell.
     pub margin: f64,
+    /// Share that the tool cannot test because of the welds.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub untestable: f64,
     /// Share that was scanned for every position of the robot within the 95 % error; part of the scanned share. Absent
     /// during a mission.
     #[serde(default)]
@@ -123,9 +126,17 @@ pub struct Percent {
     pub unreachable: f64,
     /// Share that is unreachable along the shell.
     pub margin: f64,
+    /// Share that the tool cannot test because of the welds.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub untestable: f64,
     /// Share that was scanned for every position of the robot within the 95 % error; part of the scanned share.
     #[serde(default)]
     pub guaranteed: Option<f64>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "signature required by serde")]
+fn is_none(share: &f64) -> bool {
+    *share <= 0.0
 }
 
 /// The account of one plate.
@@ -151,16 +162,16 @@ pub struct PlateAccount {
 impl Shares {
     /// The division of a floor, from counts of its cells; each cell has the given area in square metres.
     pub fn of(counts: Counts, cell_m2: f64) -> Self {
-        let Counts { floor, reachable, covered, covered_reachable, margin } = counts;
+        let Counts { floor, reachable, covered, covered_reachable, margin, untestable } = counts;
         let missed = reachable - covered_reachable;
-        let unreachable = floor - covered - missed - margin;
+        let unreachable = floor - covered - missed - margin - untestable;
         let share = |part: usize| if floor == 0 { 0.0 } else { part as f64 / floor as f64 };
-        let shares = [covered, missed, unreachable, margin].map(share);
-        let [scanned, missed, unreachable, margin] = percents(shares);
-        let percent = Percent { scanned, missed, unreachable, margin, guaranteed: None };
-        let [scanned, missed, unreachable, margin] = shares;
+        let shares = [covered, missed, unreachable, margin, untestable].map(share);
+        let [scanned, missed, unreachable, margin, untestable] = percents(shares);
+        let percent = Percent { scanned, missed, unreachable, margin, untestable, guaranteed: None };
+        let [scanned, missed, unreachable, margin, untestable] = shares;
         let area_m2 = floor as f64 * cell_m2;
-        Shares { area_m2, scanned, missed, unreachable, margin, guaranteed: None, percent }
+        Shares { area_m2, scanned, missed, unreachable, margin, untestable, guaranteed: None, percent }
     }
 
     /// This division with the number of guaranteed cells.
@@ -182,7 +193,7 @@ struct Tally {
 impl Tally {
     fn count(&mut self, kind: Cell, is_scanned: bool, is_guaranteed: bool) {
         self.counts.add(kind, is_scanned);
-        self.guaranteed += usize::from(is_guaranteed && kind != Cell::Outside);
+        self.guaranteed += usize::from(is_guaranteed && kind.is_testable());
     }
 
     fn shares(self, cell_m2: f64) -> Shares {

@@ -8,6 +8,7 @@ use crate::{
     floor::account,
     passes::Margins,
     protection::Protection,
+    readings::{Survey, Way},
     scanned::Scanned,
     summary::{self, REPORT_VERSION, Summary, Tether},
     tethered::Tethered,
@@ -48,6 +49,7 @@ pub struct Fold {
     figures: Figures,
     run: Option<Box<RunOpened>>,
     evidence: Option<Evidence>,
+    survey: Option<Survey>,
     /// Whether the previous event drew a zone: the change to the floor that follows belongs to that zone.
     is_zone_new: bool,
     /// Whether the account of the floor is omitted.
@@ -181,6 +183,10 @@ impl Fold {
             }
         };
         self.visit(here, &covariance, error_m, counts);
+        if let (Some(survey), Some(truth), Some(scanned)) = (&mut self.survey, self.truth, &self.scanned) {
+            let way = Way { floor: scanned.believed().floor(), counts };
+            survey.visit((event.tick, event.t_s), estimate, truth, way);
+        }
     }
 
     /// Moves the tool to a pose, and records whether the floor that the tool passed over counts.
@@ -230,6 +236,11 @@ impl Fold {
                 ..accuracy
             }),
             extremes: self.extremes(),
+            readings: self
+                .survey
+                .as_ref()
+                .zip(self.scanned.as_ref())
+                .map(|(survey, scanned)| survey.summary(scanned.believed().floor())),
             positioning: self.accuracy.positioning(self.known.mission_time_s.unwrap_or(0.0)),
             ..self.known.clone()
         }
@@ -266,6 +277,11 @@ impl Fold {
     /// The scanned floor; `None` before the run is opened.
     pub fn scanned(&self) -> Option<&Scanned> {
         self.scanned.as_ref()
+    }
+
+    /// The instrument and its readings; `None` if it reads no thickness, and without the account of the floor.
+    pub fn survey(&self) -> Option<&Survey> {
+        self.survey.as_ref()
     }
 
     /// The evidence for missed floor; `None` before the run is opened, and without the account of the floor.
@@ -331,6 +347,7 @@ impl Fold {
         self.known.planner = Some(run.mission.planner.id.clone());
         self.known.parameters = Some(run.mission.planner.parameters.clone());
         self.evidence = (!self.leaves_out_floor).then(|| Evidence::new(run));
+        self.survey = (!self.leaves_out_floor).then(|| Survey::new(run)).flatten();
         self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start));
         if let Some(measured) = &run.measured {
             // Adds a located pose; the floor passed there counts only while the tool was on.

@@ -22,6 +22,7 @@ pub mod notes;
 mod overlap;
 mod passes;
 mod protection;
+mod readings;
 mod sampled;
 #[cfg(test)]
 mod samples;
@@ -48,6 +49,7 @@ pub use inspection::{Date, Inspection, is_placeholder, says_nothing};
 pub use notes::Notes;
 pub use overlap::Overlap;
 pub use passes::Passes;
+pub use readings::{Detection, Detections, Finding, Judge, PlateThickness, Reading, ReadingsSummary, Survey};
 pub use scanned::Scanned;
 pub use summary::{
     Accuracy, Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, Protection, REPORT_VERSION, Stops,

@@ -1,6 +1,6 @@
 //! The figures of one run, as `run --json` prints them.
 
-use crate::{Account, Figure, VehicleRecord, drawn::DrawnZone};
+use crate::{Account, Figure, VehicleRecord, drawn::DrawnZone, readings::ReadingsSummary};
 use mission::{Check, Outcome, Parameters, Sandbox};
 use serde::{Deserialize, Serialize};
 
@@ -104,6 +104,12 @@ pub struct Summary {
     /// SHA-256 of the recording, hexadecimal; set by the app.
     #[serde(default)]
     pub recording_sha256: Option<String>,
+    /// The readings of the instrument; absent if it reads no thickness.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub readings: Option<ReadingsSummary>,
+    /// SHA-256 of the file with the readings, hexadecimal; set by the recorder.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub readings_sha256: Option<String>,
     /// The files of the run; set by the app.
     pub logs: Option<Logs>,
 }

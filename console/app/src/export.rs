@@ -18,7 +18,7 @@ use std::{
 pub(crate) fn export(args: &ExportArgs) -> anyhow::Result<ExitCode> {
     let folder = find(&args.run, &args.logs.folder())?;
     let to = &args.to;
-    for file in [&to.rrd, &to.mcap, &to.ranges].into_iter().flatten() {
+    for file in [&to.rrd, &to.mcap, &to.ranges, &to.readings].into_iter().flatten() {
         check_free(file, None, &[])?;
     }
     let whole = |file: &PathBuf, write: fn(&Path, &Path) -> anyhow::Result<()>| {
@@ -32,6 +32,7 @@ pub(crate) fn export(args: &ExportArgs) -> anyhow::Result<ExitCode> {
     to.rrd.as_ref().map_or(Ok(()), |file| whole(file, recording))?;
     to.mcap.as_ref().map_or(Ok(()), |file| whole(file, messages))?;
     to.ranges.as_ref().map_or(Ok(()), |file| whole(file, ranges))?;
+    to.readings.as_ref().map_or(Ok(()), |file| whole(file, readings))?;
     Ok(ExitCode::from(COMPLETE))
 }
 
@@ -66,6 +67,10 @@ fn of_journal(
         ))?;
     }
     Ok(say_line(&format!("{} {done} from {}", file.display(), path.display()))?)
+}
+
+fn readings(folder: &Path, parquet: &Path) -> anyhow::Result<()> {
+    of_journal(folder, parquet, recording::export_readings, "written")
 }
 
 fn ranges(folder: &Path, csv: &Path) -> anyhow::Result<()> {

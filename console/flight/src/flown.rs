@@ -14,7 +14,7 @@ use scenario::Scenario;
 use sim::{AeConfig, Disturbances, RobotConfig, SimConfig, Simulator};
 use std::time::Duration;
 use vehicle::port::{Brake, Command, Live, Sensed, StationFault, Vehicle, VehicleInfo};
-use world::{Floor, Readings};
+use world::Readings;
 
 /// A scenario in flight.
 pub struct Flight {
@@ -89,8 +89,7 @@ impl Flight {
 
     fn of(scenario: &Scenario, config: MissionConfig, real: Option<(Box<dyn Vehicle>, VehicleInfo)>) -> Self {
         let drawing = scenario.sim.world.as_drawn();
-        let floor =
-            Floor::new(&drawing, config.cell_m, config.room_m(), config.swath_m, config.start.position);
+        let floor = config.floor(&drawing);
         let (vehicle, info) = real.unzip();
         let opened = RunOpened {
             journal_version: JOURNAL_VERSION,
@@ -102,6 +101,7 @@ impl Flight {
             mission: config.clone(),
             floor: floor.clone(),
             plates: scenario.plates.clone(),
+            wear: scenario.wear.clone().filter(|_| info.is_none()),
             checklist: scenario.checklist.clone(),
             measured: None,
             vehicle: info.clone().map(Box::new),

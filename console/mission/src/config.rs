@@ -1,12 +1,12 @@
 //! The task of a mission and its limits.
 
-use crate::planner::PlannerChoice;
+use crate::{instrument::InstrumentConfig, planner::PlannerChoice};
 use geometry::motion::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD};
 use perception::Sensor;
 use planner_api::{Limits, Motion, TetherLimits};
 use positioning::{Aggregation, Forecast, RangeNoise, Risk, SolverKind, Timing};
 use serde::{Deserialize, Serialize};
-use world::{Point, Pose, PressureSensor, coverage::Tool, tether};
+use world::{Floor, FloorMaker, Point, Pose, PressureSensor, World, coverage::Tool, tether};
 
 /// The task.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -262,9 +262,26 @@ pub struct MissionConfig {
     /// What to do about a plan that is better than a repaired one.
     #[serde(default, skip_serializing_if = "BetterPlan::is_off")]
     pub better_plan: BetterPlan,
+    /// The instrument that tests the floor; `None` if nothing is known about it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub instrument: Option<InstrumentConfig>,
 }
 
 impl MissionConfig {
+    /// The floor of a tank for this robot and its instrument, with all data needed to update it.
+    pub fn floor_maker(&self, drawing: &World) -> FloorMaker {
+        let maker = FloorMaker::new(drawing, self.cell_m, self.room_m(), self.swath_m, self.start.position);
+        match self.instrument.as_ref().and_then(|instrument| instrument.dead_bands.as_ref()) {
+            Some(bands) => maker.with_dead_bands(bands, &drawing.boundary),
+            None => maker,
+        }
+    }
+
+    /// The floor of a tank for this robot and its instrument.
+    pub fn floor(&self, drawing: &World) -> Floor {
+        self.floor_maker(drawing).into_floor()
+    }
+
     /// Minimum distance between the robot's centre and anything solid, metres.
     pub fn room_m(&self) -> f64 {
         self.limits.radius_m + self.clearance_m

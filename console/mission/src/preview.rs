@@ -4,15 +4,14 @@ use crate::{ask::PlanAsk, chart::Chart, config::MissionConfig, task::Task};
 use nalgebra::Matrix3;
 use planner_api::{PoseEstimate, Reason};
 use std::sync::Arc;
-use world::{CoverageGrid, Floor, World};
+use world::{CoverageGrid, World};
 
 /// The inputs of a plan for the whole task from the start, using only the drawing; they include the tank in the form that
 /// the planner receives.
 pub fn preview(config: &MissionConfig, drawing: &World, seed: u64) -> PlanAsk {
     let chart = Chart::new(drawing.clone(), config, seed);
     let task = Task::new(&config.task, config.start.position);
-    let (room_m, start) = (config.room_m(), config.start.position);
-    let floor = Floor::new(drawing, config.cell_m, room_m, config.swath_m, start);
+    let floor = config.floor(drawing);
     let (position_m2, heading_rad2) = (config.start_sigma_m.powi(2), config.start_heading_sigma_rad.powi(2));
     let start = PoseEstimate {
         position: config.start.position,

@@ -54,6 +54,17 @@ pub enum RecordingError {
     /// The file on disk is not the file that was written.
     #[error("the recording on disk differs from what was written: {0}")]
     Changed(#[from] FileChange),
+    /// The readings cannot be written; the journal is complete even so.
+    #[error("the readings cannot be written ({why}); `tankops export` makes them from the journal: {}", path.display())]
+    Readings {
+        /// The error of the system or the format.
+        why: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// The run has no readings.
+    #[error("this run has no readings: its scenario has no [instrument] with channels, or no [wear]")]
+    NoReadings,
     /// The recording SDK refused data.
     #[error("the recording stopped: the recording SDK refused data ({why})")]
     Sdk {

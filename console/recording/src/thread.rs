@@ -9,6 +9,7 @@ use crate::{
     identity::Identity,
     journal::{JOURNAL_FILE, JournalWriter},
     marker::FailureMarker,
+    readings::READINGS_FILE,
     recorder::{RECORDING_FILE, Recorder},
     sink::SinkHealth,
 };
@@ -121,7 +122,8 @@ impl RunRecorder {
         let marker = (options.journal || options.rrd).then(|| FailureMarker::reserve(folder)).transpose();
         let marker = marker
             .map_err(|error| RecordingError::Marker { why: error.to_string(), folder: folder.to_owned() })?;
-        let mut started = Self::spawn_with(writer, recorder, marker)?;
+        let readings = options.journal.then(|| folder.join(READINGS_FILE));
+        let mut started = Self::spawn_with(writer, recorder, readings, marker)?;
         (started.journal, started.recording, started.unsynced) = (journal, recording, unsynced);
         Ok(started)
     }
@@ -131,19 +133,20 @@ impl RunRecorder {
     /// # Errors
     /// [`RecordingError::Thread`] if the system cannot start a thread.
     pub fn spawn(journal: JournalWriter, recorder: Option<Recorder>) -> Result<Self, RecordingError> {
-        Self::spawn_with(journal, recorder, None)
+        Self::spawn_with(journal, recorder, None, None)
     }
 
     fn spawn_with(
         journal: JournalWriter,
         recorder: Option<Recorder>,
+        readings: Option<PathBuf>,
         marker: Option<FailureMarker>,
     ) -> Result<Self, RecordingError> {
         let shared = Arc::new(Shared::default());
         let sink = recorder.as_ref().map(Recorder::health);
         let (sender, batches) = sync_channel(QUEUE);
         let (end_sender, ended) = sync_channel(1);
-        let writer = Writer::new(journal, recorder, marker, Arc::clone(&shared));
+        let writer = Writer::new(journal, recorder, readings, marker, Arc::clone(&shared));
         let thread = thread::Builder::new().name("recorder".into());
         let handle = thread.spawn(move || {
             let end = writer.run(&batches);

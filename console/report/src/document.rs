@@ -7,6 +7,7 @@ pub mod csv;
 mod decision;
 mod decisions;
 pub mod dxf;
+mod follow_up;
 mod gate;
 pub mod geojson;
 mod html;
@@ -23,6 +24,7 @@ mod sections;
 mod shapes;
 mod signed;
 mod task;
+mod thickness;
 mod words;
 
 pub use build::Context;

@@ -9,7 +9,7 @@ pub use short::short;
 
 use account::{
     Account, Accuracy, Coverage, Extreme, Figure, Limit, MissReason, PlannerCalls, Positioning, Protection,
-    Stops, Summary, Tether, Tracking,
+    ReadingsSummary, Stops, Summary, Tether, Tracking,
 };
 use mission::{Check, CheckOutcome, Outcome, Sandbox};
 use text::{Text, counted, percent};
@@ -36,6 +36,7 @@ pub fn human(run: &Summary) -> String {
     text.lines(run.accuracy.iter().flat_map(accuracy).map(|line| ("position", line)));
     text.lines(run.positioning.iter().flat_map(positioning).map(|line| ("true position", line)));
     text.lines(run.extremes.iter().filter_map(extreme).map(|line| ("extremes", line)));
+    text.some("readings", run.readings.as_ref().map(readings));
     text.some("tether", run.tether.as_ref().map(tether));
     text.some("sandbox", run.sandbox.as_ref());
     text.lines(run.zones_drawn.iter().map(|zone| ("zones drawn", zone.to_string())));
@@ -45,9 +46,23 @@ pub fn human(run: &Summary) -> String {
     text.some("during the run", during(run));
     text.some("events sha256", run.events_sha256.as_ref());
     text.some("rrd sha256", run.recording_sha256.as_ref());
+    text.some("parquet sha256", run.readings_sha256.as_ref());
     text.some("journal", run.logs.as_ref().and_then(|logs| logs.journal.as_ref()));
     text.some("recording", run.logs.as_ref().and_then(|logs| logs.recording.as_ref()));
     text.0
+}
+
+/// The number of readings and indications, and the deepest indication.
+fn readings(readings: &ReadingsSummary) -> String {
+    let ReadingsSummary { count, untestable, indications, deepest } = readings;
+    let deepest = deepest.as_ref().map_or_else(String::new, |loss| {
+        format!(
+            ", the deepest {:.1} ± {:.1} mm at {:.2}, {:.2} m",
+            loss.depth_mm, loss.depth_error_mm, loss.at.x, loss.at.y
+        )
+    });
+    let found = counted(*indications, "indication");
+    format!("{}, {untestable} of them beside welds; {found}{deepest}", counted(*count, "reading"))
 }
 
 /// The checks before the start: the number passed, every warning, and every item that the operator ticked.

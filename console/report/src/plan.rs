@@ -9,7 +9,7 @@ use mission::{MissionConfig, Parameters, TaskConfig, tether::certify_from_start}
 use planner_api::Plan;
 use serde::Serialize;
 use world::{
-    Cell, CoverageGrid, FloorMaker, ObstacleMap, Point, Shape, SweptArea, Tool, World,
+    Cell, CoverageGrid, ObstacleMap, Point, Shape, SweptArea, Tool, World,
     coverage::percent_text,
     polyline,
     tether::{Cable, Certificate},
@@ -54,6 +54,9 @@ struct PlannedFloor {
     reachable_m2: f64,
     /// Floor along the shell that the tool cannot reach, square metres.
     shell_margin_m2: f64,
+    /// Floor that the tool cannot test because of the welds, square metres; absent if it can test all floor.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    untestable_m2: Option<f64>,
     /// Share of the reachable floor that the path scans, counted in cells, 0 to 1.
     scanned: f64,
     /// Share of the reachable floor that the path scans, from the exact area that the tool sweeps; absent if no floor
@@ -153,13 +156,13 @@ impl Planned {
 
 fn planned_floor(mission: &MissionConfig, drawing: &World, path: &[Point]) -> Option<PlannedFloor> {
     let TaskConfig::Cover { .. } = &mission.task else { return None };
-    let (start, swath_m) = (mission.start.position, mission.swath_m);
-    let maker = FloorMaker::new(drawing, mission.cell_m, mission.room_m(), swath_m, start);
+    let (maker, swath_m) = (mission.floor_maker(drawing), mission.swath_m);
     let floor = maker.clone().into_floor();
     let area_m2 = |kind: Cell| {
         (0..floor.len()).filter(|index| floor.kind(*index) == kind).count() as f64 * floor.cell_m2()
     };
     let (reachable_m2, shell_margin_m2) = (area_m2(Cell::Reachable), area_m2(Cell::Margin));
+    let untestable_m2 = Some(area_m2(Cell::Untestable)).filter(|area_m2| *area_m2 > 0.0);
     let (mut cells, mut area) = (CoverageGrid::new(floor), SweptArea::new(&drawing.boundary));
     Tool::along(path, |from, to| {
         cells.mark(mission.tool(), from, to);
@@ -171,6 +174,7 @@ fn planned_floor(mission: &MissionConfig, drawing: &World, path: &[Point]) -> Op
         swath_m,
         reachable_m2,
         shell_margin_m2,
+        untestable_m2,
         scanned: cells.fraction_reachable(),
         scanned_exact,
     })
@@ -211,12 +215,16 @@ fn warnings(planned: &Planned) -> String {
 
 /// The floor as text.
 fn floor(floor: &PlannedFloor) -> String {
-    let PlannedFloor { swath_m, reachable_m2, shell_margin_m2, scanned, scanned_exact } = floor;
+    let PlannedFloor { swath_m, reachable_m2, shell_margin_m2, untestable_m2, scanned, scanned_exact } =
+        floor;
+    let untestable = untestable_m2
+        .map(|area_m2| format!(", {area_m2:.2} m² not testable by this tool"))
+        .unwrap_or_default();
     let exact = scanned_exact
         .map(|share| format!(", {} % by exact area", percent_text(share, 2)))
         .unwrap_or_default();
     format!(
-        "floor     {reachable_m2:.1} m² reachable, {shell_margin_m2:.2} m² shell margin; as in reports, for \
+        "floor     {reachable_m2:.1} m² reachable, {shell_margin_m2:.2} m² shell margin{untestable}; as in reports, for \
          the full swath of {swath_m} m\nscanned   {} % of it in cells of the report{exact}\n",
         percent_text(*scanned, 2)
     )

@@ -99,7 +99,9 @@ pub fn summary(Past { opened, run, .. }: &Past) -> anyhow::Result<Summary> {
     let expect = if opened.measured.is_some() { Expect::default() } else { scenario.expect };
     let (logs, files) = (Some(run.logs.clone()), &run.files);
     let (events_sha256, recording_sha256) = (files.journal_sha256.clone(), files.recording_sha256.clone());
-    Ok(expect.evaluated(Summary { logs, events_sha256, recording_sha256, ..run.summary.clone() }))
+    let readings_sha256 = files.readings_sha256.clone();
+    let summary = run.summary.clone();
+    Ok(expect.evaluated(Summary { logs, events_sha256, recording_sha256, readings_sha256, ..summary }))
 }
 
 #[cfg(test)]

@@ -8,8 +8,8 @@ use crate::{
 use account::{Fold, Logs, Summary};
 use mission::{Event, EventKind, RunOpened};
 use recording::{
-    JournalError, JournalReader, RECORDING_FILE, ahead, events_sha256_while, journal_of, sha256_of,
-    sha256_while,
+    JournalError, JournalReader, READINGS_FILE, RECORDING_FILE, ahead, events_sha256_while, journal_of,
+    sha256_of, sha256_while,
 };
 use report::{PastRun, Record, document::Files};
 use std::{
@@ -86,19 +86,24 @@ impl Past {
 }
 
 /// Passes every event in a journal to the caller, in order. One thread reads ahead; a second one computes the digests of
-/// the journal and the recording meanwhile. Returns these digests.
+/// the journal, the recording and the readings meanwhile. Returns these digests.
 fn each_event(
     reader: &mut JournalReader,
     folder: &Path,
     mut take: impl FnMut(Event),
-) -> Result<[Option<String>; 2], JournalError> {
+) -> Result<[Option<String>; 3], JournalError> {
     let (give, taken) = ahead::queue::<Vec<Event>>(AHEAD_BYTES);
     let is_damaged = AtomicBool::new(false);
     let is_wanted = |_| !is_damaged.load(Ordering::Relaxed);
     thread::scope(|scope| {
         let hashing = scope.spawn(|| {
             let (journal, recording) = (journal_of(folder), folder.join(RECORDING_FILE));
-            [events_sha256_while(&journal, is_wanted).ok(), sha256_while(&recording, is_wanted).ok()]
+            let of_file = |file: &Path| sha256_while(file, is_wanted).ok();
+            [
+                events_sha256_while(&journal, is_wanted).ok(),
+                of_file(&recording),
+                of_file(&folder.join(READINGS_FILE)),
+            ]
         });
         let reading = scope.spawn(move || {
             loop {
@@ -124,7 +129,7 @@ fn each_event(
 fn files(
     folder: &Path,
     opened: &RunOpened,
-    [journal_sha256, recording_sha256]: [Option<String>; 2],
+    [journal_sha256, recording_sha256, readings_sha256]: [Option<String>; 3],
     summary: &Summary,
 ) -> Files {
     let (journal, recording) = (journal_of(folder), folder.join(RECORDING_FILE));
@@ -134,6 +139,7 @@ fn files(
         [
             reported.journal_doubt(journal_sha256.as_deref()),
             reported.recording_doubt(folder, &Now::Is(recording_sha256.as_deref())),
+            reported.readings_doubt(readings_sha256.as_deref()),
             reported.figures_doubt(summary),
         ]
     };
@@ -148,6 +154,7 @@ fn files(
         recovered: reported.as_ref().and_then(Reported::recovered).cloned(),
         journal_sha256,
         recording_sha256,
+        readings_sha256,
         doubts,
     }
 }

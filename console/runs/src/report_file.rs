@@ -77,6 +77,8 @@ struct Source {
     #[serde(default)]
     recording_bytes: Option<u64>,
     #[serde(default)]
+    readings_sha256: Option<String>,
+    #[serde(default)]
     recovered: Option<Recovered>,
     #[serde(default)]
     report_sha256: Option<String>,
@@ -90,6 +92,9 @@ const NOT_THE_ONE: &str = "the report was made from a different journal: the SHA
 
 /// Message about a recording that does not belong to the report.
 const NOT_THE_RECORDING: &str = "the recording is not the one written with the run: the SHA-256 digests differ; restore the file, or write a new one with `tankops export`";
+
+/// Message about readings that do not belong to the report.
+const NOT_THE_READINGS: &str = "readings.parquet is not the file written with the run: the SHA-256 digests differ; restore the file, or write a new one with `tankops export`";
 
 /// Message about a report that has no digest, although every report is written with one.
 const NO_SEAL: &str = "report.json was changed after the run ended: its line report_sha256 is missing";
@@ -202,6 +207,13 @@ impl Reported {
             }
             Ok(_) | Err(_) => Some(NOT_THE_RECORDING.to_owned()),
         }
+    }
+
+    /// The reason why the file with the readings does not match the report; `None` if it does. A missing file can be made
+    /// again, so it does not count as a mismatch.
+    pub(crate) fn readings_doubt(&self, sha256: Option<&str>) -> Option<String> {
+        let then = self.source.readings_sha256.as_deref()?;
+        (then != sha256?).then(|| NOT_THE_READINGS.to_owned())
     }
 
     /// The reason why the figures are not trusted: they differ from the figures derived from the journal (`figures`),

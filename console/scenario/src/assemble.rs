@@ -3,14 +3,14 @@
 use super::{
     Scenario,
     checks::{Site, cell_m, check_lanes, check_period, check_position_limit, check_pressure, check_ticks},
-    expect, floor, inspection, layout,
+    expect, floor, inspection, instrument, layout,
     problem::{Complaint, Problem},
     ranging,
     robot::{self, Robot},
     schema,
     section::Section,
     source::Source,
-    task, tether, vehicle,
+    task, tether, vehicle, wear,
 };
 use mission::{BetterPlan, Guarantee, Locating, MissionConfig, ScanConfig, Sensor, TaskConfig, TetherConfig};
 use planner_api::Limits;
@@ -89,12 +89,15 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let task = task.map(|task| back_to_the_anchor(task, tether.as_ref()));
     let planner = root.table("planner").map(|section| (task::planner(&section), task::fallback(&section)));
     let plates = if root.has("plates") { floor::plates(root, floor.boundary.as_ref()) } else { None };
+    let wear = wear::wear(root, floor.boundary.as_ref(), seed);
     let checklist =
         if root.has("checklist") { root.table("checklist")?.texts("items") } else { Some(Vec::new()) };
     let vehicle = vehicle::vehicle(root);
     let expect = expect::expect(root);
     let inspection = inspection::section(root);
     let rest = Rest::read(&sections, &floor);
+    let cell_m = rest.as_ref().map(|rest| rest.cell_m);
+    let instrument = instrument::instrument(root, plates.as_ref(), cell_m);
 
     let (planner, fallback) = planner?;
     let (robot, rest, start, ae, locating) = (floor.robot?, rest?, start?, floor.ae?, floor.locating?);
@@ -132,6 +135,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         guard_reaction_s: robot.scanner.map(|_| 0.0),
         sensor: robot.scanner.as_ref().map(Sensor::of),
         better_plan: rest.better_plan,
+        instrument,
     };
     let tether_anchor = mission.tether.as_ref().map(|tether| tether.anchor);
     let reel_length_m = mission.tether.as_ref().map(|tether| tether.limits.reel_length_m);
@@ -159,6 +163,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         sim,
         mission,
         plates,
+        wear,
         vehicle: vehicle?,
         checklist: checklist?,
         expect: expect?,

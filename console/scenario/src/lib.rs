@@ -10,6 +10,7 @@ mod checks;
 mod expect;
 mod floor;
 mod inspection;
+mod instrument;
 mod layout;
 mod map;
 mod outline;
@@ -28,6 +29,7 @@ mod suggest;
 mod task;
 mod tether;
 mod vehicle;
+mod wear;
 
 pub use inspection::inspection;
 pub use problem::{Complaint, Problem, ScenarioErrors};
@@ -41,7 +43,7 @@ use sim::SimConfig;
 use source::Source;
 use std::{io::Read, path::Path};
 use toml::de::DeTable;
-use world::PlateLayout;
+use world::{FloorWear, PlateLayout};
 
 /// The largest size of a scenario in kilobytes; a scenario with a large map is about two thousand kilobytes long.
 const LIMIT_KB: usize = 8000;
@@ -65,6 +67,8 @@ pub struct Scenario {
     pub mission: MissionConfig,
     /// The layout of the floor plates, if the drawing specifies it.
     pub plates: Option<PlateLayout>,
+    /// The true thickness of the floor, for simulated readings.
+    pub wear: Option<FloorWear>,
     /// The requirements for a real vehicle.
     pub vehicle: VehicleNeeds,
     /// Items that the operator ticks by hand before the start.

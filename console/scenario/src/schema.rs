@@ -188,6 +188,8 @@ pub(crate) static ROOT: &[Key] = &[
     key("random_obstacles", "", Kind::Table(RANDOM_OBSTACLES)).or_none("none"),
     key("zones", "", Kind::Tables(ZONES)).or_none("none"),
     key("plates", "", Kind::Table(PLATES)).or_none("unknown"),
+    key("instrument", "", Kind::Table(INSTRUMENT)).or_none("unknown"),
+    key("wear", "", Kind::Table(WEAR)).or_none("unknown"),
     key("robot", "", Kind::Table(ROBOT)).or_none("defaults"),
     key("ae", "", Kind::Table(AE)),
     key("tether", "", Kind::Table(TETHER)).or_none("none"),
@@ -258,6 +260,39 @@ static PLATES: &[Key] = &[
 ];
 
 static PLATE_OUTLINES: &[Key] = &[key("name", "", Kind::Text), key("vertices_m", "m", Kind::Points(3))];
+
+static INSTRUMENT: &[Key] = &[
+    word("kind", &["mfl", "ut"]),
+    number("dead_band_m", "m", at_least(0.0).up_to(1.0)).or(0.0),
+    number("dead_square_m", "m", at_least(0.0).up_to(2.0)).or(0.0),
+    key("channels", "", Kind::Whole(1, 512)).or_none("no readings"),
+    number("pitch_m", "m", at_least(0.001).up_to(1.0)).or(0.005),
+    number("thickness_mm", "mm", above(0.0).up_to(100.0)).or_none("for `channels`"),
+    number("sigma_mm", "mm", at_least(0.0).up_to(10.0)).or(0.3),
+    number("threshold", "", above(0.0).up_to(1.0)).or(0.2),
+];
+
+static WEAR: &[Key] = &[
+    number("thickness_mm", "mm", above(0.0).up_to(100.0)),
+    key("losses", "", Kind::Tables(LOSSES)).or_none("none"),
+    key("random", "", Kind::Table(RANDOM_LOSSES)).or_none("none"),
+];
+
+static LOSSES: &[Key] = &[
+    point("at_m"),
+    number("radius_m", "m", LENGTH),
+    number("depth_mm", "mm", above(0.0).up_to(100.0)),
+    word("profile", &["pit", "thinning"]).or_word("pit"),
+    word("side", &["top", "underside"]).or_word("underside"),
+];
+
+static RANDOM_LOSSES: &[Key] = &[
+    key("count", "", Kind::Whole(0, 10_000)),
+    key("radius_m", "m", Kind::Pair(LENGTH)),
+    key("depth_mm", "mm", Kind::Pair(above(0.0).up_to(100.0))),
+    word("side", &["top", "underside"]).or_word("underside"),
+    key("seed", "", Kind::Whole(0, i64::MAX)).or_none("the scenario's `seed`"),
+];
 
 /// The kinds of outline that an obstacle or a zone can have.
 pub(crate) static OUTLINES: &[&str] = &["circle", "box", "polygon", "polyline"];

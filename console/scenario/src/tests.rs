@@ -697,3 +697,78 @@ fn a_reel_is_read_with_its_defaults_and_wrong_keys_are_named() {
         assert!(text.contains(key) && text.contains(why), "{text}");
     }
 }
+
+#[test]
+fn an_instrument_needs_welds_and_bands_that_cells_can_show() {
+    let with = |rest: &str| format!("{SMALL}[instrument]\n{rest}\n");
+    let welded = |rest: &str| format!("{SMALL}[plates]\n[instrument]\n{rest}\n");
+    let instrument = |text: &str| read(text).mission.instrument;
+    assert_eq!(instrument(SMALL), None);
+    let ut = instrument(&with("kind = \"ut\"")).unwrap();
+    assert_eq!((ut.kind, ut.dead_bands), (mission::InstrumentKind::Ut, None));
+    let text = welded("kind = \"mfl\"\ndead_band_m = 0.03\ndead_square_m = 0.2");
+    let bands = instrument(&text).unwrap().dead_bands.unwrap();
+    assert_eq!((bands.band_m, bands.square_m), (0.03, 0.2));
+    assert_eq!(Some(bands.plates), read(&text).plates);
+    let cases = [
+        (with(""), "instrument.kind: missing"),
+        (with("kind = \"eddy\""), "instrument.kind = \"eddy\""),
+        (with("kind = \"mfl\"\ndead_band_m = 0.05"), "add [plates], whose seams are the welds"),
+        (
+            welded("kind = \"mfl\"\ndead_band_m = 0.02"),
+            "instrument.dead_band_m = 0.02: must be 0, or at least 0.025 m",
+        ),
+        (
+            welded("kind = \"mfl\"\ndead_square_m = 0.04"),
+            "instrument.dead_square_m = 0.04: must be 0, or at least 0.05 m",
+        ),
+        (welded("kind = \"mfl\"\ndead_bands_m = 0.04"), "dead_band_m"),
+    ];
+    for (text, wanted) in cases {
+        let shown = errors(&text).render();
+        assert!(shown.contains(wanted), "{wanted}:\n{shown}");
+        assert_eq!(errors(&text).problems.len(), 1, "{shown}");
+    }
+}
+
+#[test]
+fn readings_need_a_thickness_and_losses_fit_into_the_floor() {
+    let with = |rest: &str| format!("{SMALL}{rest}\n");
+    let instrument = "[instrument]\nkind = \"mfl\"\nchannels = 20\n";
+    let sampling = |text: &str| read(text).mission.instrument.unwrap().sampling.unwrap();
+    let read_20 = sampling(&with(&format!("{instrument}thickness_mm = 8")));
+    assert_eq!(
+        (read_20.channels, read_20.pitch_m, read_20.sigma_mm, read_20.threshold),
+        (20, 0.005, 0.3, 0.2)
+    );
+    let pits = "[wear]\nthickness_mm = 8\nrandom = { count = 50, radius_m = [0.01, 0.05], depth_mm = [1, 7] }\n\
+                losses = [{ at_m = [1, 0], radius_m = 0.1, depth_mm = 2 }]";
+    let wear = |text: &str| read(text).wear.unwrap();
+    let first = wear(&with(pits));
+    assert_eq!((first.losses.len(), first.left_mm(Point::new(1.0, 0.0)) <= 6.0), (51, true));
+    assert_eq!(first, wear(&with(pits)), "the seed determines the pits");
+    assert_ne!(
+        first.losses,
+        wear(&with(&pits.replace("depth_mm = [1, 7]", "depth_mm = [1, 7], seed = 9"))).losses
+    );
+    let cases = [
+        (with(instrument), "add thickness_mm"),
+        (with("[wear]"), "wear.thickness_mm: missing"),
+        (with(&pits.replace("[1, 7]", "[1, 9]")), "wear.random.depth_mm = [1, 9]: must be at most 8 mm"),
+        (with(&pits.replace("[1, 7]", "[7, 1]")), "[smallest, largest]"),
+        (
+            with(&pits.replace("depth_mm = 2", "depth_mm = 12")),
+            "wear.losses.0.depth_mm = 12: must be at most 8 mm",
+        ),
+        (with(&pits.replace("at_m = [1, 0]", "at_m = [9, 0]")), "wear.losses.0.at_m"),
+        (
+            with(&pits.replace("depth_mm = 2", "depth_mm = -2")),
+            "wear.losses.0.depth_mm = -2: must be greater than 0 mm",
+        ),
+    ];
+    for (text, wanted) in cases {
+        let shown = errors(&text).render();
+        assert!(shown.contains(wanted), "{wanted}:\n{shown}");
+        assert_eq!(errors(&text).problems.len(), 1, "{shown}");
+    }
+}

@@ -71,6 +71,8 @@ roles! {
     Unreachable '/',
     /// The shell margin.
     Margin 'n',
+    /// Floor that the tool cannot test.
+    Untestable 'u',
     /// Outline and name of a plate.
     Plate 'P',
     /// The tank's wall.
@@ -246,7 +248,7 @@ fn sixteen_on_dark(role: Role) -> Option<Color> {
         Role::Scanned => Some(Color::Blue),
         Role::Partly | Role::Unreachable | Role::Margin | Role::Plate => Some(Color::DarkGray),
         Role::Overlap => Some(Color::LightBlue),
-        Role::Found | Role::Drawn | Role::Ghost => Some(Color::LightMagenta),
+        Role::Found | Role::Drawn | Role::Ghost | Role::Untestable => Some(Color::LightMagenta),
         Role::Tether => Some(Color::White),
         Role::Station | Role::Trail => Some(Color::LightCyan),
         Role::Plan | Role::Target => Some(Color::LightYellow),

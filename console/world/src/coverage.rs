@@ -15,6 +15,7 @@ pub(crate) use floor::neighbours;
 pub use floor::{Cell, CellRun, Floor, KindRun};
 pub use floor_class::FloorClass;
 pub use floor_maker::FloorMaker;
+pub(crate) use floor_maker::clearances_m;
 pub use percents::{percent, percent_text, percents};
 pub use shell::{ShellFigures, ShellStretch, ShellZone};
 pub use swept_area::SweptArea;
@@ -38,6 +39,14 @@ pub struct Counts {
     /// Cells of the shell margin that have not been scanned.
     #[serde(default)]
     pub margin: usize,
+    /// Cells of floor that the tool cannot test.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub untestable: usize,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "signature required by serde")]
+fn is_none(count: &usize) -> bool {
+    *count == 0
 }
 
 impl Counts {
@@ -53,22 +62,31 @@ impl Counts {
         let (floor, reachable) = (kind != Cell::Outside, kind == Cell::Reachable);
         self.floor += usize::from(floor);
         self.reachable += usize::from(reachable);
-        self.covered += usize::from(floor && covered);
+        self.covered += usize::from(kind.is_testable() && covered);
         self.covered_reachable += usize::from(reachable && covered);
         self.margin += usize::from(kind == Cell::Margin && !covered);
+        self.untestable += usize::from(kind == Cell::Untestable);
     }
 
     /// Returns the counts for the reachable floor alone.
     ///
     /// ```
     /// use world::Counts;
-    /// let counts = Counts { floor: 9, reachable: 7, covered: 6, covered_reachable: 5, margin: 1 };
+    /// let counts = Counts { floor: 9, reachable: 7, covered: 6, covered_reachable: 5, margin: 1, untestable: 0 };
     /// assert_eq!(counts.of_reachable().floor, 7);
     /// ```
     #[must_use]
     pub fn of_reachable(self) -> Self {
         let Self { reachable, covered_reachable, .. } = self;
-        Self { floor: reachable, reachable, covered: covered_reachable, covered_reachable, margin: 0 }
+        let (margin, untestable) = (0, 0);
+        Self {
+            floor: reachable,
+            reachable,
+            covered: covered_reachable,
+            covered_reachable,
+            margin,
+            untestable,
+        }
     }
 }
 
@@ -182,7 +200,7 @@ impl CoverageGrid {
         self.apply(&runs);
     }
 
-    /// Returns the floor cells, not yet scanned, that a tool would scan between two poses that are close together.
+    /// Returns the testable floor cells, not yet scanned, that a tool would scan between two poses that are close together.
     ///
     /// ```
     /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
@@ -198,7 +216,8 @@ impl CoverageGrid {
         let mut new = Vec::new();
         for cells in self.floor.runs_under(tool, a, b).into_iter().map(CellRun::range) {
             for (first, covered) in self.covered.slices(cells) {
-                let is_new = |index: &usize| !covered[*index - first] && self.floor.is_floor(*index);
+                let is_new =
+                    |index: &usize| !covered[*index - first] && self.floor.kind(*index).is_testable();
                 let cells = (first..first + covered.len()).filter(is_new);
                 cells.for_each(|cell| CellRun::append(&mut new, cell..cell + 1));
             }
@@ -206,7 +225,7 @@ impl CoverageGrid {
         new
     }
 
-    /// Marks cells as scanned; cells beyond the grid are ignored.
+    /// Marks cells as scanned; cells beyond the grid and untestable cells are ignored.
     ///
     /// ```
     /// use world::{Boundary, CoverageGrid, Floor, Point, World};
@@ -221,7 +240,7 @@ impl CoverageGrid {
         for CellRun(first, count) in runs {
             let end = (*first as usize + *count as usize).min(self.floor.len());
             for index in (*first as usize)..end {
-                if !self.covered.at(index) {
+                if !self.covered.at(index) && self.floor.kind(index) != Cell::Untestable {
                     *self.covered.at_mut(index) = true;
                     self.counts.covered += usize::from(self.floor.is_floor(index));
                     self.counts.covered_reachable += usize::from(self.floor.is_reachable(index));

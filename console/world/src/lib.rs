@@ -19,6 +19,7 @@ pub mod tether;
 mod tiles;
 mod total;
 mod truth;
+mod wear;
 
 pub use coverage::{
     Cell, CellRun, Counts, CoverageGrid, Floor, FloorClass, FloorMaker, KindRun, ShellFigures, ShellStretch,
@@ -28,10 +29,11 @@ pub use coverage::{
 pub use geometry::{self, Amphibious, Boundary, Pace, Point, Pose, Shape, Vector, polyline, shape};
 pub use medium::{Medium, Mode, PressureSensor, SensedMedium};
 pub use obstacles::{Near, ObstacleMap};
-pub use plates::{DrawnPlate, NO_PLATE, Plate, PlateKind, PlateLayout, PlateMap, RegularPlates};
+pub use plates::{DeadBands, DrawnPlate, NO_PLATE, Plate, PlateKind, PlateLayout, PlateMap, RegularPlates};
 pub use readings::{Odometry, RangeSet, Readings, Sighting};
 pub use scan::{NO_ECHO, Scan};
 pub use scanner::Scanner;
 pub use tank::{Obstacle, ObstacleId, Station, StationId, World, Zone, ZoneKind};
 pub use tiles::Tiles;
 pub use truth::{TetherTruth, Truth};
+pub use wear::{FloorWear, LossProfile, MetalLoss, PlateSide};

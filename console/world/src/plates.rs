@@ -4,9 +4,12 @@
 //! north, with every second row shifted by half a plate. A rectangle that is cut by the ring becomes a sketch plate.
 //! For any other layout, a drawing defines the plates.
 
+mod dead_bands;
 mod drawn;
 
 use crate::coverage::Floor;
+pub use dead_bands::DeadBands;
+pub(crate) use dead_bands::untestable;
 pub use drawn::{DrawnPlate, NO_PLATE};
 use geometry::{Boundary, Point, Vector, shape::rectangle, wrap_angle_rad};
 use serde::{Deserialize, Serialize};

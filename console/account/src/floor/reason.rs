@@ -50,7 +50,7 @@ impl OutOfReach {
     /// The reason why cells of a class are unreachable; `None` for other classes.
     pub fn of(kind: Cell) -> Option<Self> {
         match kind {
-            Cell::Outside | Cell::Reachable => None,
+            Cell::Outside | Cell::Reachable | Cell::Untestable => None,
             Cell::Unreachable => Some(OutOfReach::ClosedOff),
             Cell::Margin => Some(OutOfReach::ShellMargin),
             Cell::Beside => Some(OutOfReach::BesideObstacle),

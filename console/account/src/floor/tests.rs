@@ -45,7 +45,7 @@ fn scanned(run: &RunOpened, flown: usize) -> (CoverageGrid, Evidence) {
 }
 
 fn sum(shares: &Shares) -> f64 {
-    shares.scanned + shares.missed + shares.unreachable + shares.margin
+    shares.scanned + shares.missed + shares.unreachable + shares.margin + shares.untestable
 }
 
 #[test]
@@ -66,6 +66,36 @@ fn both_bases_and_every_plate_sum_to_the_whole() {
     let listed_m2: f64 = account.missed.iter().map(|area| area.area_m2).sum();
     let missed_m2 = account.reachable.missed * account.reachable.area_m2;
     assert!((listed_m2 + account.slivers.area_m2 - missed_m2).abs() < 1e-9);
+}
+
+#[test]
+fn floor_beside_a_weld_is_untestable_wherever_the_robot_drove_and_all_sums_stay_whole() {
+    let plain = round_tank(0.05);
+    let bands = world::DeadBands { plates: plain.plates.clone().unwrap(), band_m: 0.05, square_m: 0.2 };
+    let maker = world::FloorMaker::new(&plain.world, 0.05, 0.45, 0.6, Point::origin());
+    let floor = maker.with_dead_bands(&bands, &plain.world.boundary).into_floor();
+    let run = RunOpened { floor, ..plain.clone() };
+    let account = |run: &RunOpened| {
+        let (grid, evidence) = scanned(run, 14);
+        account(run, &grid, &evidence)
+    };
+    let (with, without) = (account(&run), account(&plain));
+    assert!((sum(&with.whole) - 1.0).abs() < 1e-12 && (sum(&with.reachable) - 1.0).abs() < 1e-12);
+    assert!(with.plates.iter().all(|plate| (sum(&plate.shares) - 1.0).abs() < 1e-12));
+    let percent = with.whole.percent;
+    let parts = [percent.scanned, percent.missed, percent.unreachable, percent.margin, percent.untestable];
+    assert!((parts.iter().sum::<f64>() - 100.0).abs() < 1e-9, "{parts:?}");
+    let untestable = (0..run.floor.len()).filter(|cell| run.floor.kind(*cell) == Cell::Untestable);
+    let share = untestable.count() as f64 * run.floor.cell_m2() / with.whole.area_m2;
+    assert!(share > 0.05 && (with.whole.untestable - share).abs() < 1e-12, "{share}");
+    assert!(
+        with.reachable.untestable <= 0.0 && with.plates.iter().all(|plate| plate.shares.untestable > 0.0)
+    );
+    // What is taken out was scanned, missed or out of reach before.
+    assert!((with.whole.area_m2 - without.whole.area_m2).abs() < 1e-9);
+    assert!(with.whole.scanned < without.whole.scanned && with.whole.margin < without.whole.margin);
+    let written = serde_json::to_string(&without).unwrap();
+    assert!(!written.contains("untestable"), "{written}");
 }
 
 #[test]

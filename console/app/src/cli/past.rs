@@ -45,6 +45,9 @@ pub(crate) struct ExportTo {
     /// recomputes the run.
     #[arg(long, value_name = "FILE")]
     pub ranges: Option<PathBuf>,
+    /// Write the readings of the instrument as Parquet, computed from the journal.
+    #[arg(long, value_name = "FILE")]
+    pub readings: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -236,6 +236,7 @@ fn opened(config: &MissionConfig) -> EventKind {
         mission: config.clone(),
         floor,
         plates: None,
+        wear: None,
         checklist: vec![],
         measured: None,
         vehicle: None,
@@ -282,6 +283,7 @@ fn config() -> MissionConfig {
         guard_reaction_s: None,
         sensor: None,
         better_plan: BetterPlan::Offer,
+        instrument: None,
     }
 }
 

@@ -28,6 +28,9 @@ pub struct RunOpened {
     /// The layout of the floor plates, if the drawing shows them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plates: Option<world::PlateLayout>,
+    /// The true thickness of the floor, for simulated readings; the mission does not know it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wear: Option<world::FloorWear>,
     /// The checks that the operator ticks by hand before the start.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub checklist: Vec<String>,

@@ -103,6 +103,7 @@ fn numbers(summary: &Summary) -> Vec<(&'static str, f64)> {
     let floor = summary.floor.as_ref();
     let whole = floor.map(|floor| floor.whole);
     let reachable = floor.map(|floor| floor.reachable);
+    let deepest = summary.readings.as_ref().and_then(|readings| readings.deepest.as_ref());
     let percent = |of: Option<Shares>| of.map(|shares| shares.percent);
     let numbers = [
         ("duration_s", summary.mission_time_s),
@@ -114,6 +115,7 @@ fn numbers(summary: &Summary) -> Vec<(&'static str, f64)> {
         ("whole_missed_percent", percent(whole).map(|p| p.missed)),
         ("whole_unreachable_percent", percent(whole).map(|p| p.unreachable)),
         ("whole_margin_percent", percent(whole).map(|p| p.margin)),
+        ("whole_untestable_percent", percent(whole).map(|p| p.untestable).filter(|percent| *percent > 0.0)),
         ("whole_scanned_true_percent", by_truth.map(|truth| 100.0 * truth.whole)),
         ("reachable_m2", reachable.map(|shares| shares.area_m2)),
         ("reachable_scanned_percent", coverage.map(|coverage| 100.0 * coverage.reachable)),
@@ -124,6 +126,9 @@ fn numbers(summary: &Summary) -> Vec<(&'static str, f64)> {
         ("error_95_p95_m", summary.accuracy.map(|accuracy| accuracy.p95_m)),
         ("error_p95_m", summary.positioning.map(|positioning| positioning.p95_m)),
         ("position_lost_s", summary.positioning.map(|positioning| positioning.position_lost_s)),
+        ("readings", summary.readings.as_ref().map(|readings| readings.count as f64)),
+        ("indications", summary.readings.as_ref().map(|readings| readings.indications as f64)),
+        ("indication_depth_max_mm", deepest.map(|loss| loss.depth_mm)),
         ("tether_length_max_m", summary.tether.map(|tether| tether.tether_length_max_m)),
     ];
     numbers.into_iter().filter_map(|(name, number)| Some((name, number?))).collect()

@@ -22,6 +22,7 @@ fn id(class: FloorClass) -> u8 {
         FloorClass::Scanned | FloorClass::Again | FloorClass::Partial => 2,
         FloorClass::ToDo => 3,
         FloorClass::Missed => 4,
+        FloorClass::Untestable => 5,
     }
 }
 
@@ -54,15 +55,18 @@ impl Raster {
             label: Some(label.into()),
             color: Some(rr::Rgba32::from_unmultiplied_rgba(red, green, blue, alpha)),
         };
-        let classes = [
+        let mut classes = vec![
             class(FloorClass::Outside, "no floor", [0, 0, 0, 0]),
             class(FloorClass::Unreachable, "unreachable", style::OUT_OF_REACH),
             class(FloorClass::Scanned, "scanned", style::SCANNED),
             class(FloorClass::ToDo, "to do", style::TO_DO),
             class(FloorClass::Missed, "missed", style::MISSED),
         ];
-        stream.always(paths::COVERAGE, &rr::AnnotationContext::new(classes))?;
         let mut cells: Vec<u8> = (0..floor.len()).map(|index| unscanned(floor.kind(index))).collect();
+        if cells.contains(&id(FloorClass::Untestable)) {
+            classes.push(class(FloorClass::Untestable, "not testable by this tool", style::UNTESTABLE));
+        }
+        stream.always(paths::COVERAGE, &rr::AnnotationContext::new(classes))?;
         // A journal that was edited by hand may claim more cells than it lists.
         cells.resize(floor.width * floor.height, id(FloorClass::Outside));
         let small_floor = (PERIOD_S / run.mission.tick_s).round().max(1.0) as i64;

@@ -41,6 +41,7 @@ pub(crate) const SCANNED: [u8; 4] = rgb(38, 60, 76);
 pub(crate) const TO_DO: [u8; 4] = rgb(26, 30, 36);
 pub(crate) const MISSED: [u8; 4] = rgb(176, 118, 48);
 pub(crate) const OUT_OF_REACH: [u8; 4] = rgb(58, 52, 50);
+pub(crate) const UNTESTABLE: [u8; 4] = rgb(104, 84, 140);
 /// The box around a missed area.
 pub(crate) const MISSED_EDGE: [u8; 4] = rgb(240, 180, 90);
 /// The scanning tool.

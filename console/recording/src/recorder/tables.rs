@@ -11,14 +11,24 @@ const MOST_AREAS: usize = 60;
 pub(crate) fn floor(account: &Account, is_over: bool) -> String {
     // Writing to a String cannot fail.
     let mut text = String::from("\n## Floor\n\n");
-    text.push_str(
-        "| part | area m² | scanned % | guaranteed % | missed % | unreachable % | margin % | 95 % error m |\n",
+    let has_untestable = account.whole.untestable > 0.0;
+    let (head, rule) = if has_untestable { (" not testable % |", "---|") } else { ("", "") };
+    let _ = writeln!(
+        text,
+        "| part | area m² | scanned % | guaranteed % | missed % | unreachable % | margin % | 95 % error m |{head}"
     );
-    text.push_str("|---|---|---|---|---|---|---|---|\n");
-    row(&mut text, "whole floor", &account.whole, None);
-    row(&mut text, "reachable floor", &account.reachable, None);
+    let _ = writeln!(text, "|---|---|---|---|---|---|---|---|{rule}");
+    let mut add = |name: &str, shares: &Shares, error_m: Option<f64>| {
+        row(&mut text, name, shares, error_m);
+        if has_untestable {
+            let _ = write!(text, " {:.1} |", shares.percent.untestable);
+        }
+        text.push('\n');
+    };
+    add("whole floor", &account.whole, None);
+    add("reachable floor", &account.reachable, None);
     for plate in &account.plates {
-        row(&mut text, &plate.name, &plate.shares, plate.error_p95_m);
+        add(&plate.name, &plate.shares, plate.error_p95_m);
     }
     let areas = missed(&account.missed, is_over);
     if areas.is_empty() {
@@ -41,7 +51,7 @@ fn row(text: &mut String, name: &str, shares: &Shares, error_m: Option<f64>) {
     let optional = |number: Option<f64>, decimals: usize| {
         number.map_or_else(|| "–".to_owned(), |number| format!("{number:.decimals$}"))
     };
-    let _ = writeln!(
+    let _ = write!(
         text,
         "| {name} | {:.1} | {:.1} | {} | {:.1} | {:.1} | {:.1} | {} |",
         shares.area_m2,

@@ -6,11 +6,13 @@ use crate::{
     file::FileChange,
     journal::{JournalEnd, JournalError, JournalWriter},
     marker::FailureMarker,
+    readings::ReadingsWriter,
     recorder::Recorder,
 };
 use account::{Fold, Summary};
-use mission::Event;
+use mission::{Event, EventKind};
 use std::{
+    path::PathBuf,
     sync::{
         Arc,
         atomic::Ordering,
@@ -43,6 +45,9 @@ pub(super) struct Writer {
     account: Fold,
     journal: Option<JournalWriter>,
     recorder: Option<Recorder>,
+    /// The path of the readings until they are begun.
+    readings_path: Option<PathBuf>,
+    readings: Option<ReadingsWriter>,
     marker: Option<FailureMarker>,
     shared: Arc<Shared>,
     watched: Instant,
@@ -54,11 +59,13 @@ impl Writer {
     pub(super) fn new(
         journal: JournalWriter,
         recorder: Option<Recorder>,
+        readings_path: Option<PathBuf>,
         marker: Option<FailureMarker>,
         shared: Arc<Shared>,
     ) -> Self {
         let (account, journal) = (Fold::new(), Some(journal));
-        Self { account, journal, recorder, marker, shared, watched: Instant::now(), changed: None }
+        let (watched, changed, readings) = (Instant::now(), None, None);
+        Self { account, journal, recorder, readings_path, readings, marker, shared, watched, changed }
     }
 
     /// Writes until all senders are dropped.
@@ -88,9 +95,27 @@ impl Writer {
                 self.shared.lose(&error);
             }
             self.account.apply(event);
+            if let Err(error) = self.read(event) {
+                self.readings = None;
+                self.shared.lose(&error);
+            }
         }
         self.shared.done.fetch_add(1, Ordering::Relaxed);
         self.look(now);
+    }
+
+    /// Writes the readings that belong to an event; the file is begun with the run if the instrument reads thickness.
+    fn read(&mut self, event: &Event) -> Result<(), RecordingError> {
+        let Some(survey) = self.account.survey() else { return Ok(()) };
+        match (&event.kind, &mut self.readings) {
+            (EventKind::RunOpened(_), _) => {
+                let path = self.readings_path.take();
+                self.readings = path.map(|path| ReadingsWriter::create(&path)).transpose()?;
+                Ok(())
+            }
+            (EventKind::Estimated { .. }, Some(readings)) => readings.write(survey.latest()),
+            _ => Ok(()),
+        }
     }
 
     fn idle(&mut self) {
@@ -137,7 +162,11 @@ impl Writer {
 
     fn close(&mut self) -> Ended {
         let journal = self.journal.take().map(JournalWriter::finish).transpose();
-        let summary = self.account.summary();
+        let mut summary = self.account.summary();
+        match self.readings.take().map(ReadingsWriter::finish).transpose() {
+            Ok(sha256) => summary.readings_sha256 = sha256,
+            Err(error) => self.shared.lose(&error),
+        }
         let until = self.shared.merge_until();
         let recording = self.recorder.take().map_or(Ok(None), |recorder| recorder.finish(&summary, until));
         let journal = journal.unwrap_or_else(|error| {

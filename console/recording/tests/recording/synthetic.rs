@@ -341,6 +341,7 @@ fn opened() -> RunOpened {
         tankops_version: "0.1.0".into(),
         scenario: "synthetic".into(),
         plates: None,
+        wear: None,
         checklist: Vec::new(),
         measured: None,
         vehicle: None,
@@ -378,6 +379,7 @@ fn opened() -> RunOpened {
             sensor: None,
             live: false,
             better_plan: mission::BetterPlan::Off,
+            instrument: None,
         },
     }
 }

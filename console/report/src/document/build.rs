@@ -1,7 +1,7 @@
 //! Builds a report from past runs.
 
 use super::{
-    charts, gate,
+    charts, follow_up, gate,
     indications::{self, Flown, Ground, Indication},
     layers::Layers,
     located, maps,
@@ -11,6 +11,7 @@ use super::{
     shapes::Shapes,
     signed::{Revision, Signature},
     task::TaskPart,
+    thickness,
 };
 use crate::{
     identity::{Stated, contradiction},
@@ -89,13 +90,21 @@ impl Document {
             plate_at: &|at| layers.plate_at(at),
         };
         let place = |file| indications::indications(file, &flown, &ground);
-        let indications = context.indications_csv.map(place).transpose()?.unwrap_or_default();
+        let mut indications = context.indications_csv.map(place).transpose()?.unwrap_or_default();
+        let (read, judge) = thickness::thickness(past, &layers).unzip();
+        if let Some(read) = &read {
+            let first = indications.len() + 1;
+            indications.extend(thickness::indications(read, past, &layers, first));
+        }
         let contradiction = contradiction(&context.inspection, &Stated::by(run)?.inspection);
         let runs: Vec<RunPart> = past.iter().filter_map(RunPart::of).collect();
         let shapes = Shapes::of(&layers, &floor.missed);
         let mut pictures = Pictures::draw(&layers, &floor, &indications, past);
         if located.is_some() {
             pictures.coverage = located::map(&layers, past, &indications, tool_is_known);
+        }
+        if let Some((judge, read)) = judge.as_ref().zip(read.as_ref()) {
+            pictures.corrosion = thickness::map(&layers, judge, read);
         }
         let mut document = Self {
             report_version: REPORT_VERSION,
@@ -112,7 +121,9 @@ impl Document {
             coverage: scanned.coverage(is_to_scan),
             floor,
             runs,
+            follow_ups: follow_up::follow_ups(&layers, &indications),
             indications,
+            thickness: read,
             gate: Vec::new(),
             pictures,
             scenario: past[0].fold.run().unwrap_or(run).scenario.clone(),

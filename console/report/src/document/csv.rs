@@ -1,18 +1,27 @@
 //! The report as tables for spreadsheets.
 
-use super::model::Document;
+use super::{model::Document, thickness::Thickness};
 use crate::{geojson::rounded, past_run::PastRun};
 use account::{Shares, ZoneArc};
 use csv::Writer;
 
 /// Suffixes of the file names: each table has the name of the first table with its own suffix.
-pub const SUFFIXES: [&str; 6] = ["", "-missed", "-zone", "-obstacles", "-indications", "-track"];
+pub const SUFFIXES: [&str; 7] =
+    ["", "-missed", "-zone", "-obstacles", "-indications", "-track", "-follow-up"];
 
 /// Writes the tables in the order of [`SUFFIXES`]: plates with the whole and the reachable floor, missed areas, arcs
 /// of the critical zone that are not done, obstacles found, indications, and the track of every run with its 95 %
 /// error.
 pub fn tables(document: &Document, past: &[PastRun]) -> [String; SUFFIXES.len()] {
-    [plates(document), missed(document), zone(document), obstacles(past), indications(document), track(past)]
+    [
+        plates(document),
+        missed(document),
+        zone(document),
+        obstacles(past),
+        indications(document),
+        track(past),
+        follow_ups(document),
+    ]
 }
 
 /// Writes rows under a header; writing to memory cannot fail.
@@ -42,6 +51,7 @@ fn plates(document: &Document) -> String {
     let floor = &document.floor;
     let is_located = document.located.is_some();
     let is_known = document.located.as_ref().is_none_or(|located| located.tool_on_s.is_some());
+    let has_untestable = floor.whole.untestable > 0.0;
     let row = |name: &str, kind: &str, shares: &Shares, error_m: Option<f64>| {
         let p = &shares.percent;
         let mut row = vec![name.to_owned(), kind.to_owned(), format!("{:.4}", shares.area_m2)];
@@ -53,6 +63,8 @@ fn plates(document: &Document) -> String {
             |(value, is_stated): (f64, bool)| if is_stated { format!("{value:.1}") } else { String::new() };
         row.extend(of_tool.into_iter().chain(of_mission).map(cell));
         row.push(error_m.map(|m| format!("{m:.3}")).unwrap_or_default());
+        row.extend(has_untestable.then(|| format!("{:.1}", p.untestable)));
+        row.extend(document.thickness.iter().flat_map(|thickness| of_thickness(thickness, name)));
         row
     };
     let bases = [("whole floor", &floor.whole), ("reachable floor", &floor.reachable)];
@@ -64,7 +76,7 @@ fn plates(document: &Document) -> String {
         .plates
         .iter()
         .map(|plate| row(&plate.name, &plate.kind.to_string(), &plate.shares, plate.error_p95_m));
-    let head = [
+    let mut head = vec![
         "floor",
         "kind",
         "area_m2",
@@ -75,7 +87,20 @@ fn plates(document: &Document) -> String {
         "margin_percent",
         "error_p95_m",
     ];
+    head.extend(has_untestable.then_some("untestable_percent"));
+    if document.thickness.is_some() {
+        head.extend(["readings", "thickness_least_mm", "thickness_p5_mm", "thickness_mean_mm"]);
+    }
     table(&head, bases.into_iter().chain(plates))
+}
+
+/// The thickness of a plate; empty cells for a floor that is not a plate, and for a plate without readings.
+fn of_thickness(thickness: &Thickness, name: &str) -> [String; 4] {
+    let plate = thickness.plates.iter().find(|plate| plate.plate == name);
+    plate.map_or_else(Default::default, |plate| {
+        let [least, p5, mean] = [plate.least_mm, plate.p5_mm, plate.mean_mm].map(|mm| format!("{mm:.2}"));
+        [plate.readings.to_string(), least, p5, mean]
+    })
 }
 
 fn missed(document: &Document) -> String {
@@ -155,6 +180,24 @@ fn indications(document: &Document) -> String {
     let head =
         ["number", "run", "t_s", "x_m", "y_m", "error_95_m", "plate", "kind", "size_mm", "depth_mm", "note"];
     table(&head, rows)
+}
+
+fn follow_ups(document: &Document) -> String {
+    let fixed = |value: Option<f64>, decimals: usize| {
+        value.map(|value| format!("{value:.decimals$}")).unwrap_or_default()
+    };
+    let rows = document.follow_ups.iter().map(|place| {
+        vec![
+            place.number.to_string(),
+            place.what.clone(),
+            place.plate.clone().unwrap_or_default(),
+            format!("{:.3}", place.at.x),
+            format!("{:.3}", place.at.y),
+            fixed(place.area_m2, 4),
+            fixed(place.depth_mm, 2),
+        ]
+    });
+    table(&["number", "what", "plate", "x_m", "y_m", "area_m2", "depth_mm"], rows)
 }
 
 fn track(past: &[PastRun]) -> String {

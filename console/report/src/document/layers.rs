@@ -132,9 +132,19 @@ impl<'a> Layers<'a> {
         Some(map.plates[map.plate_of(self.floor().cell_at(place)?)?].name.clone())
     }
 
+    /// The plate of each cell, if the layout is known.
+    pub(crate) fn plate_map(&self) -> Option<&PlateMap> {
+        self.plate_map.as_ref()
+    }
+
     /// Whether a cell of floor was scanned.
     pub(crate) fn is_scanned(&self, cell: usize) -> bool {
         self.classes[cell].is_scanned()
+    }
+
+    /// Whether the tool could not test some of the floor because of the welds.
+    pub(crate) fn has_untestable(&self) -> bool {
+        self.classes.contains(&FloorClass::Untestable)
     }
 
     /// Whether a cell belongs to a class.

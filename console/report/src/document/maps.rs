@@ -18,6 +18,8 @@ use world::{FloorClass, Point, coverage::percent_text};
 /// Widths of maps, millimetres on paper.
 pub(super) const FULL_MM: f64 = 180.0;
 const HALF_MM: f64 = 88.0;
+/// The name of floor that the tool cannot test because of the welds.
+const NOT_TESTABLE: &str = "not testable by this tool";
 /// Maximum number of badges on a map.
 const MOST_BADGES: usize = 60;
 
@@ -76,6 +78,7 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
     let line = |fill: &str, stroke: &str| format!(r#"fill="{fill}" stroke="{stroke}" stroke-width=".2""#);
     sheet.cells(floor, |cell| layers.is(cell, FloorClass::Margin), 0.0, &line(&margin, colour::MARGIN));
     sheet.cells(floor, |cell| layers.is(cell, FloorClass::Unreachable), 0.0, &line(&out, colour::OUT));
+    sheet.untestable(floor, |cell| layers.is(cell, FloorClass::Untestable));
     let style = format!(
         r#"fill="{missed}" stroke="{}" stroke-width=".25" stroke-linejoin="round""#,
         colour::MISSED_LINE
@@ -115,6 +118,10 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
         legend(swatch(station), "station of the position system", String::new()),
         legend(swatch(anchor), anchor_words(&layers.run.mission), String::new()),
     ];
+    if layers.has_untestable() {
+        let area = m2_of(FloorClass::Untestable);
+        entries.insert(5, legend(filled(colour::UNTESTABLE), NOT_TESTABLE, area));
+    }
     if !layers.is_to_scan {
         entries.retain(|entry| !["missed", "shell margin", "unreachable"].contains(&entry.text.as_str()));
     }
@@ -213,6 +220,7 @@ pub(super) fn guaranteed(layers: &Layers<'_>, whole: &account::Shares) -> Figure
     sheet.cells(floor, |cell| layers.is_scanned(cell) && !sure(cell), 0.6, &thin);
     let out = |cell: usize| layers.is(cell, FloorClass::Unreachable) || layers.is(cell, FloorClass::Margin);
     sheet.cells(floor, out, 0.0, &format!(r#"fill="{}""#, colour::OUT));
+    sheet.untestable(floor, |cell| layers.is(cell, FloorClass::Untestable));
     let style = format!(r#"fill="{missed}" stroke="{}" stroke-width=".15""#, colour::MISSED_LINE);
     sheet.cells(floor, |cell| layers.is(cell, FloorClass::Missed), 0.0, &style);
     sheet.obstacles(&fixtures);
@@ -220,19 +228,23 @@ pub(super) fn guaranteed(layers: &Layers<'_>, whole: &account::Shares) -> Figure
     let percent = whole.percent;
     let sure = percent.guaranteed.unwrap_or(0.0);
     let per_cent = |value: f64| format!("{value:.1} %");
+    let mut entries = vec![
+        legend(filled(colour::ONCE), "guaranteed", per_cent(sure)),
+        legend(filled(colour::THIN), "scanned, not guaranteed", per_cent(percent.scanned - sure)),
+        legend(filled("url(#gmissedL)"), "missed", per_cent(percent.missed)),
+        legend(
+            filled(colour::OUT),
+            "unreachable or shell margin",
+            per_cent(percent.unreachable + percent.margin),
+        ),
+    ];
+    if layers.has_untestable() {
+        entries.push(legend(filled(colour::UNTESTABLE), NOT_TESTABLE, per_cent(percent.untestable)));
+    }
     Figure {
         caption: "Guaranteed floor; percentages are of the whole floor".into(),
         svg: sheet.svg("Guaranteed coverage map", "half"),
-        legend: vec![
-            legend(filled(colour::ONCE), "guaranteed", per_cent(sure)),
-            legend(filled(colour::THIN), "scanned, not guaranteed", per_cent(percent.scanned - sure)),
-            legend(filled("url(#gmissedL)"), "missed", per_cent(percent.missed)),
-            legend(
-                filled(colour::OUT),
-                "unreachable or shell margin",
-                per_cent(percent.unreachable + percent.margin),
-            ),
-        ],
+        legend: entries,
     }
 }
 
@@ -341,11 +353,13 @@ fn mark_lay(sheet: &mut Sheet, letter: &str, lay: &Lay, dash: &str) {
 /// A small bar that shows the share of a plate that is not guaranteed; `top` is the share at full width.
 pub(super) fn plate_bar(shares: &account::Shares, top: f64) -> String {
     let not_guaranteed = (1.0 - shares.guaranteed.unwrap_or(0.0)).max(0.0);
-    let thin = (not_guaranteed - shares.missed - shares.unreachable - shares.margin).max(0.0);
+    let others = shares.missed + shares.unreachable + shares.margin + shares.untestable;
+    let thin = (not_guaranteed - others).max(0.0);
     let parts = [
         (shares.missed, colour::MISSED),
         (shares.unreachable, colour::OUT),
         (shares.margin, colour::MARGIN),
+        (shares.untestable, colour::UNTESTABLE),
         (thin, colour::THIN),
     ];
     let (mut x, mut body) =
@@ -361,7 +375,7 @@ pub(super) fn plate_bar(shares: &account::Shares, top: f64) -> String {
 }
 
 /// The legend of the bars of plates.
-pub(super) fn plate_legend() -> Vec<Legend> {
+pub(super) fn plate_legend(has_untestable: bool) -> Vec<Legend> {
     let entry = |(fill, text): (&str, &str)| legend(filled(fill), text, String::new());
     let classes = [
         (colour::MISSED, "missed"),
@@ -369,7 +383,8 @@ pub(super) fn plate_legend() -> Vec<Legend> {
         (colour::MARGIN, "shell margin"),
         (colour::THIN, "scanned, not guaranteed"),
     ];
-    classes.into_iter().map(entry).collect()
+    let untestable = has_untestable.then_some((colour::UNTESTABLE, NOT_TESTABLE));
+    classes.into_iter().chain(untestable).map(entry).collect()
 }
 
 /// A picture made of text and lines only, without a tank.

@@ -1,6 +1,7 @@
 //! The model of a report, from which every output format is made.
 
 use super::{
+    follow_up::FollowUp,
     indications::Indication,
     maps::Figure,
     readings::Located,
@@ -8,6 +9,7 @@ use super::{
     shapes::Shapes,
     signed::{Revision, Signature},
     task::TaskPart,
+    thickness::Thickness,
 };
 use account::{Account, Coverage, Inspection};
 use serde::Serialize;
@@ -50,6 +52,12 @@ pub struct Document {
     pub runs: Vec<RunPart>,
     /// Indications of the scanning instrument.
     pub indications: Vec<Indication>,
+    /// What the readings of the instrument show; absent if it reads no thickness.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub thickness: Option<Thickness>,
+    /// The places that need a test with another method, in order of travel; absent without an instrument.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub follow_ups: Vec<FollowUp>,
     /// The items that must be answered before the report can be signed.
     pub gate: Vec<GateItem>,
     #[serde(skip)]
@@ -101,6 +109,7 @@ pub(crate) struct Pictures {
     pub(crate) accuracy: Figure,
     pub(crate) guaranteed: Figure,
     pub(crate) zone: Figure,
+    pub(crate) corrosion: Figure,
     /// Track, tether and incidents of each run.
     pub(crate) runs: Vec<[Option<Figure>; 3]>,
 }

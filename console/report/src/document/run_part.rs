@@ -36,6 +36,9 @@ pub struct Files {
     pub journal_bytes: Option<u64>,
     /// SHA-256 of the recording, hexadecimal.
     pub recording_sha256: Option<String>,
+    /// SHA-256 of the file with the readings, hexadecimal; absent without such a file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub readings_sha256: Option<String>,
     /// Length of the recording, bytes.
     pub recording_bytes: Option<u64>,
     /// SHA-256 of the scenario in the journal, hexadecimal.

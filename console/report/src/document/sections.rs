@@ -6,6 +6,7 @@ mod front;
 mod missed;
 pub(super) mod runs;
 mod task;
+mod thickness;
 
 use super::{
     located,
@@ -28,7 +29,10 @@ pub(super) fn sections(document: &Document) -> Page {
         section("Missed and unreachable floor", missed::missed(document)),
         section("Critical zone along the shell", floor::zone(document)),
         section("Position accuracy and guaranteed coverage", floor::accuracy(document)),
-        section("Plates", floor::plates(document)),
+        section(
+            "Plates",
+            [floor::plates(document), thickness::thickness(document)].into_iter().flatten().collect(),
+        ),
         section("Track, tether and record", runs::runs(document)),
         section("Equipment and calibration", closing::equipment(document)),
         section("Limitations", closing::limitations(document)),

@@ -18,12 +18,14 @@ pub(crate) mod colour {
     pub(crate) const MISSED_LINE: &str = "#6E1C0A";
     pub(crate) const OUT: &str = "#8C9196";
     pub(crate) const OUT_GROUND: &str = "#ECEDED";
+    pub(crate) const UNTESTABLE: &str = "#B39DDB";
     pub(crate) const MARGIN: &str = "#8A6A16";
     pub(crate) const MARGIN_GROUND: &str = "#F1E2B4";
     pub(crate) const SOLID: &str = "#39444E";
     pub(crate) const TRACK: &str = "#2C5F7C";
     pub(crate) const TETHER: &str = "#7A3E8C";
     pub(crate) const WARNING: &str = "#B26A00";
+    pub(crate) const LOSS: [&str; 5] = ["#E1EAEE", "#F6E3A1", "#EDB35A", "#D9703A", "#A3281E"];
     pub(crate) const ERROR: [&str; 5] = ["#EAF1F4", "#C5D9E2", "#93B7C8", "#5A8DA6", "#2B5F7B"];
 }
 
@@ -73,6 +75,11 @@ impl Sheet {
     pub(crate) fn draw(&mut self, svg: impl Display) {
         // Writing to a String cannot fail.
         let _ = write!(self.body, "{svg}");
+    }
+
+    /// Adds the cells that the tool cannot test.
+    pub(crate) fn untestable(&mut self, floor: &Floor, is_in: impl Fn(usize) -> bool) {
+        self.cells(floor, is_in, 0.0, &format!(r#"fill="{}""#, colour::UNTESTABLE));
     }
 
     /// Adds cells of a floor with these attributes.

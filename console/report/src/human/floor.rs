@@ -58,9 +58,14 @@ fn plates(plates: &[PlateAccount]) -> Vec<String> {
 }
 
 fn shares(shares: &Shares) -> String {
-    let Percent { scanned, missed, unreachable, margin, guaranteed } = shares.percent;
+    let Percent { scanned, missed, unreachable, margin, untestable, guaranteed } = shares.percent;
     let guaranteed = guaranteed.map(|percent| format!(" ({percent:.1} % guaranteed)")).unwrap_or_default();
-    let classes = [("missed", missed), ("unreachable", unreachable), ("shell margin", margin)];
+    let classes = [
+        ("missed", missed),
+        ("unreachable", unreachable),
+        ("shell margin", margin),
+        ("not testable by this tool", untestable),
+    ];
     let listed = classes
         .iter()
         .filter(|(name, percent)| *percent > 0.0 || *name == "missed")

@@ -13,6 +13,7 @@ pub(super) fn difference(reported: Summary, computed: &Summary) -> Option<String
         stops: reported.stops,
         events_sha256: reported.events_sha256.clone(),
         recording_sha256: reported.recording_sha256.clone(),
+        readings_sha256: reported.readings_sha256.clone(),
         logs: reported.logs.clone(),
         ..computed.clone()
     };

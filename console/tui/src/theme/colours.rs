@@ -25,6 +25,7 @@ pub(super) fn rgb(role: Role, name: ThemeName) -> Rgb {
         Role::Scanned => [0x1a_4a68, 0xb6_dcf2, 0x00_3a94],
         Role::Overlap => [0x2e_749c, 0x7f_bde6, 0x2a_6ad0],
         Role::Unreachable | Role::Margin => [0x6c_6c6c, 0x9a_9a9a, 0x80_8080],
+        Role::Untestable => [0x7a_64a0, 0xb3_9ddb, 0x9a_7ad0],
         Role::Ghost => [0xc7_9bff, 0x6a_3fb5, 0xd9_b3ff],
         Role::Partly => [0x26_323a, 0xdf_ebf2, 0x00_1d4a],
         Role::Trail | Role::Station => [0x82_cdeb, 0x0a_5a8a, 0x7f_e8ff],
@@ -168,7 +169,15 @@ mod tests {
     }
 
     fn is_fill(role: Role) -> bool {
-        matches!(role, Role::Scanned | Role::Partly | Role::Overlap | Role::Unreachable | Role::Margin)
+        matches!(
+            role,
+            Role::Scanned
+                | Role::Partly
+                | Role::Overlap
+                | Role::Unreachable
+                | Role::Margin
+                | Role::Untestable
+        )
     }
 
     #[test]

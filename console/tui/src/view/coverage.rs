@@ -50,7 +50,12 @@ fn wide_lines(look: &Look, bases: &Bases, columns: usize) -> Vec<(u8, Line<'stat
         |one: &str, other: &str| format!("{:>first$}{:>WHOLE$}", format!("{one} %"), format!("{other} %"));
     let mark = if is_stale(look) { "◌" } else { "" };
     let room = columns.saturating_sub(LABEL + 1);
-    let out_of_reach = ["shell margin", "margin"].map(|name| format!("{unreachable} %, {name} {margin} %"));
+    let untestable = untestable(run);
+    let out_of_reach = [("shell margin", "not testable"), ("margin", "untestable"), ("margin", "untest.")]
+        .map(|(name, not)| {
+            let untestable = untestable.as_ref().map(|share| format!(", {not} {share} %"));
+            format!("{unreachable} %, {name} {margin} %{}", untestable.unwrap_or_default())
+        });
     let out_of_reach = text::wording(out_of_reach, room);
     let overlap = run.coverage.as_ref().and_then(Raster::overlap).map_or_else(|| "-".into(), text::percent);
     let mut lines = vec![
@@ -153,6 +158,12 @@ impl Bases {
 fn percent(run: &Run, of: fn(&Raster) -> Shares, part: fn(&Percent) -> f64) -> String {
     let raster = run.coverage.as_ref().filter(|_| run.progress.is_some());
     raster.map_or_else(|| "-".into(), |raster| text::number(part(&of(raster).percent), 1))
+}
+
+/// The share of the whole floor that the tool cannot test; `None` if the tool can test all floor.
+fn untestable(run: &Run) -> Option<String> {
+    let percent = run.coverage.as_ref()?.whole().percent.untestable;
+    (percent > 0.0).then(|| text::number(percent, 1))
 }
 
 /// The label for unscanned floor: still to do, or missed once the mission has ended.

@@ -108,6 +108,7 @@ pub(crate) fn config() -> MissionConfig {
         guard_reaction_s: None,
         sensor: None,
         better_plan: mission::BetterPlan::Offer,
+        instrument: None,
     }
 }
 
@@ -213,6 +214,7 @@ pub(crate) fn opened() -> EventKind {
         mission,
         floor,
         plates: None,
+        wear: None,
         checklist: Vec::new(),
         measured: None,
         vehicle: None,

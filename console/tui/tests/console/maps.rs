@@ -440,3 +440,22 @@ fn while_the_robot_moves_the_plan_ahead_is_not_drawn_anew_far_from_it() {
         assert!(changed.len() < 40, "{changed:?}\n{}\n{}", text(&before), text(&after));
     }
 }
+
+/// A mission under way on a floor of plates, with a tool that cannot test beside the welds.
+fn welded() -> Screen {
+    let mut screen = Screen::plated();
+    let about = screen.model.live.run.about.as_ref().unwrap();
+    let (plates, drawing) = (about.plates.clone().unwrap(), about.world.as_drawn());
+    let bands = world::DeadBands { plates, band_m: 0.15, square_m: 0.5 };
+    let floor = screen.model.live.run.coverage.as_ref().unwrap().floor();
+    let maker = world::FloorMaker::of(floor, &drawing, 0.4, 0.6, Point::new(9.4, 0.0));
+    let changes = maker.with_dead_bands(&bands, &drawing.boundary).into_floor().kinds();
+    let events = vec![screen.mission.now(EventKind::FloorChanged { changes })];
+    screen.hear(RunMsg::Events(events));
+    screen
+}
+
+#[test]
+fn floor_that_the_tool_cannot_test_is_on_the_map_in_the_legend_and_in_the_shares() {
+    store("welds", &mut welded());
+}

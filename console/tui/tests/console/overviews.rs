@@ -286,6 +286,24 @@ fn result_of_an_aborted_mission() {
 }
 
 #[test]
+fn a_result_with_an_instrument_states_its_readings_and_the_untestable_floor() {
+    let (mut screen, closed) = ended();
+    let mut summary = missed_summary();
+    let whole = &mut summary.floor.as_mut().unwrap().whole;
+    (whole.untestable, whole.percent.untestable) = (0.173, 17.3);
+    summary.readings = serde_json::from_value(serde_json::json!({
+        "count": 916_948, "untestable": 159_550, "indications": 53,
+        "deepest": { "t_s": 81.2, "at": [1.88, -1.02], "low": [1.85, -1.05], "high": [1.92, -1.0],
+                     "error_m": 0.04, "depth_mm": 7.2, "depth_error_mm": 0.59, "readings": 44 },
+    }))
+    .unwrap();
+    screen.hear(RunMsg::Closed(Box::new(RunResult { summary: Box::new(summary), ..closed })));
+    let shown = text(&drawn(&screen.model, RICH, (200, 60)));
+    assert!(shown.contains("untst.") && shown.contains(" 17.3 "), "{shown}");
+    assert!(shown.contains("Readings: 916948; indications: 53; deepest 7.2 ±0.6 mm"), "{shown}");
+}
+
+#[test]
 fn result_of_a_rescan() {
     let (mut screen, closed) = ended();
     let closed = RunResult { summary: Box::new(missed_summary()), ..closed };

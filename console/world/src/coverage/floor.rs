@@ -25,6 +25,22 @@ pub enum Cell {
     NoGo,
     /// Floor that the tool can reach.
     Reachable,
+    /// Floor that the tool cannot test, in the dead band of a weld or the dead square of a plate's corner, whether the
+    /// tool can reach it or not.
+    Untestable,
+}
+
+impl Cell {
+    /// Whether a cell of this kind counts as scanned after the tool has passed over it.
+    ///
+    /// ```
+    /// use world::Cell;
+    /// assert!(Cell::Margin.is_testable() && !Cell::Untestable.is_testable() && !Cell::Outside.is_testable());
+    /// ```
+    #[inline]
+    pub fn is_testable(self) -> bool {
+        !matches!(self, Self::Outside | Self::Untestable)
+    }
 }
 
 /// The floor as a grid of square cells in the tank frame, row by row from the south-west corner.
@@ -287,7 +303,7 @@ impl Floor {
         let columns = column.saturating_sub(1)..=(column + 1).min(self.width - 1);
         let about = rows.flat_map(|row| columns.clone().map(move |column| row * self.width + column));
         let (mut all, mut any) = (true, false);
-        for cell in about.filter(|cell| self.is_floor(*cell)) {
+        for cell in about.filter(|cell| self.cells[*cell].is_testable()) {
             all &= self.is_reachable(cell);
             any |= self.is_reachable(cell);
         }

@@ -21,6 +21,8 @@ pub enum FloorClass {
     Margin,
     /// Unreachable for any other reason.
     Unreachable,
+    /// Not testable by the tool, because of a weld.
+    Untestable,
 }
 
 impl FloorClass {
@@ -34,6 +36,7 @@ impl FloorClass {
     pub fn of(kind: Cell, times: u32) -> Self {
         match (kind, times) {
             (Cell::Outside, _) => Self::Outside,
+            (Cell::Untestable, _) => Self::Untestable,
             (_, 1) => Self::Scanned,
             (_, 2..) => Self::Again,
             (Cell::Reachable, 0) => Self::ToDo,

@@ -6,6 +6,7 @@ use super::{
 };
 use crate::{
     obstacles::ObstacleMap,
+    plates::{DeadBands, untestable},
     tank::{World, ZoneKind},
 };
 use geometry::{Boundary, Point, Shape, Vector};
@@ -22,6 +23,8 @@ pub struct FloorMaker {
     clearance_m: Vec<f32>,
     /// For each cell, whether a zone keeps the robot's centre out.
     forbidden: Vec<bool>,
+    /// For each cell, whether the tool cannot test it; empty if it can test all cells.
+    untestable: Vec<bool>,
     /// The outlines of the no-go zones.
     zones: Vec<Shape>,
     /// The free floor in an empty tank.
@@ -73,7 +76,7 @@ impl FloorMaker {
         Self::of(&Floor { origin: low, cell_m, width, height, cells }, world, room_m, swath_m, start)
     }
 
-    /// Creates the floor of a tank on the same grid as another floor.
+    /// Creates the floor of a tank on the same grid as another floor; cells that are untestable there stay untestable.
     ///
     /// ```
     /// use world::{Boundary, Floor, FloorMaker, Point, World};
@@ -94,15 +97,55 @@ impl FloorMaker {
         }
         let empty = room_beside(&world.boundary, std::iter::empty(), room_m, swath_m);
         let (room, connected) = (empty.clone(), Connected::nowhere(grid));
-        let floor = grid.clone();
-        let mut maker =
-            Self { floor, clearance_m, forbidden, zones, empty, room, connected, room_m, swath_m, start };
+        let (floor, untestable) = (grid.clone(), untestable(grid));
+        let mut maker = Self {
+            floor,
+            clearance_m,
+            forbidden,
+            untestable,
+            zones,
+            empty,
+            room,
+            connected,
+            room_m,
+            swath_m,
+            start,
+        };
         maker.classify(world);
         maker
     }
 
-    /// Whether the tool can reach a place on the floor from some position that the robot can drive to. The result is
-    /// exact and does not depend on the grid.
+    /// Adds the floor that a tool cannot test because of the welds, in a tank with this wall.
+    ///
+    /// Costs one distance query per block of 64 cells, and one per cell in the blocks close to a weld or the shell.
+    ///
+    /// ```
+    /// use world::{Boundary, Cell, DeadBands, FloorMaker, PlateLayout, Point, RegularPlates, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// let plates = PlateLayout::Regular(RegularPlates { annular_m: 0.0, n_annular: 0, length_m: 6.0, width_m: 2.0 });
+    /// let bands = DeadBands { plates, band_m: 0.1, square_m: 0.0 };
+    /// let maker = FloorMaker::new(&tank, 0.1, 0.5, 0.6, Point::origin()).with_dead_bands(&bands, &tank.boundary);
+    /// assert!(!maker.reaches(Point::new(2.0, 1.05)) && maker.reaches(Point::new(2.0, 1.25)));
+    /// ```
+    #[must_use]
+    pub fn with_dead_bands(mut self, bands: &DeadBands, boundary: &Boundary) -> Self {
+        self.untestable = bands.cells(boundary, &self.floor);
+        self.exclude_untestable();
+        self
+    }
+
+    fn exclude_untestable(&mut self) {
+        let marks = self.untestable.iter().enumerate().filter(|(_, is_untestable)| **is_untestable);
+        for (index, _) in marks {
+            if self.floor.is_floor(index) {
+                self.floor.set(index, Cell::Untestable);
+            }
+        }
+    }
+
+    /// Whether the tool can reach and test a place on the floor from some position that the robot can drive to. The
+    /// result is exact and does not depend on the grid, except that a place is untestable if its cell is.
     ///
     /// ```
     /// use world::{Boundary, FloorMaker, Point, World};
@@ -112,6 +155,10 @@ impl FloorMaker {
     /// assert!(maker.reaches(Point::new(4.799, 0.0)) && !maker.reaches(Point::new(4.801, 0.0)));
     /// ```
     pub fn reaches(&self, place: Point) -> bool {
+        let is_untestable = |cell: usize| self.floor.kind(cell) == Cell::Untestable;
+        if self.floor.cell_at(place).is_some_and(is_untestable) {
+            return false;
+        }
         let reach_m = self.reach_m();
         let is_home = |cell: usize| {
             self.connected.is_home(cell) && (self.floor.center(cell) - place).norm() <= reach_m + TIE_M
@@ -207,6 +254,7 @@ impl FloorMaker {
                 self.floor.set(index, kind);
             }
         }
+        self.exclude_untestable();
     }
 
     /// Marks as reachable the cells that the tool reaches from the centre of a connected cell.
@@ -290,7 +338,7 @@ fn room_beside<'a>(
 /// Returns the distance from the centre of every cell to the nearest solid, metres. If the distance at the centre of a
 /// block shows that all its cells have at least `room_m` of clearance, or that all are solid, a bound is stored for
 /// them instead of the exact distances.
-fn clearances_m(grid: &Floor, map: &ObstacleMap, room_m: f64) -> Vec<f32> {
+pub(crate) fn clearances_m(grid: &Floor, map: &ObstacleMap, room_m: f64) -> Vec<f32> {
     let mut clearances_m = vec![0.0; grid.len()];
     for (row, column) in (0..grid.height)
         .step_by(BLOCK)

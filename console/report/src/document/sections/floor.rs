@@ -11,6 +11,8 @@ use world::coverage::percent_text;
 
 /// Maximum number of listed arcs of the critical zone.
 const MOST_ARCS: usize = 8;
+/// The column of the table of plates before which the untestable floor is inserted.
+const UNTESTABLE_COLUMN: usize = 8;
 /// Maximum number of missed areas listed for a plate.
 const MOST_NUMBERS: usize = 3;
 
@@ -232,27 +234,34 @@ pub(in crate::document) fn plates(document: &Document) -> Vec<Block> {
     let worst =
         floor.plates.iter().map(|plate| 1.0 - plate.shares.guaranteed.unwrap_or(0.0)).fold(0.0, f64::max);
     let top = [0.02, 0.05, 0.1, 0.2, 0.5].into_iter().find(|top| worst <= *top).unwrap_or(1.0);
+    let has_untestable = floor.whole.untestable > 0.0;
+    let mut columns = vec![
+        ("Plate", "", "nw"),
+        ("Kind", "", ""),
+        ("Area", "m²", "r"),
+        ("Scanned", "%", "r"),
+        ("Guaranteed", "%", "r"),
+        ("Missed", "%", "r"),
+        ("Unreach.", "%", "r"),
+        ("Margin", "%", "r"),
+        ("Not guaranteed", "", "nw"),
+        ("95 % error", "p95, cm", "r"),
+        ("Missed", "no.", "no"),
+        ("Indic.", "", "r"),
+    ];
+    if has_untestable {
+        columns.insert(UNTESTABLE_COLUMN, ("Not testable", "%", "r"));
+    }
+    let bar_column = UNTESTABLE_COLUMN + usize::from(has_untestable);
     let mut table = Table::new(
         format!(
-            "Every plate ({}). Scanned, missed, unreachable and margin add up to 100.0 % of the plate. The \
+            "Every plate ({}). Scanned, missed, unreachable{} add up to 100.0 % of the plate. The \
              bar shows the share that is not guaranteed, from 0 to {} %",
             floor.plates.len(),
+            if has_untestable { ", margin and not testable by this tool" } else { " and margin" },
             number(100.0 * top, 0)
         ),
-        &[
-            ("Plate", "", "nw"),
-            ("Kind", "", ""),
-            ("Area", "m²", "r"),
-            ("Scanned", "%", "r"),
-            ("Guaranteed", "%", "r"),
-            ("Missed", "%", "r"),
-            ("Unreach.", "%", "r"),
-            ("Margin", "%", "r"),
-            ("Not guaranteed", "", "nw"),
-            ("95 % error", "p95, cm", "r"),
-            ("Missed", "no.", "no"),
-            ("Indic.", "", "r"),
-        ],
+        &columns,
     );
     let tenth = |value: f64| Value::from(format!("{value:.1}"));
     let mut add = |name: &str, kind: &str, shares: &account::Shares, error: Option<f64>, bar: bool| {
@@ -268,7 +277,7 @@ pub(in crate::document) fn plates(document: &Document) -> Vec<Block> {
             String::new()
         };
         let found = document.indications.iter().filter(|found| found.plate.as_deref() == Some(name)).count();
-        let row: &mut Row = table.row(vec![
+        let mut cells = vec![
             name.into(),
             kind.into(),
             format!("{:.2}", shares.area_m2).into(),
@@ -282,9 +291,13 @@ pub(in crate::document) fn plates(document: &Document) -> Vec<Block> {
             format!("{}{more}", numbers.iter().take(MOST_NUMBERS).cloned().collect::<Vec<_>>().join(", "))
                 .into(),
             if bar { found.to_string() } else { document.indications.len().to_string() }.into(),
-        ]);
+        ];
+        if has_untestable {
+            cells.insert(UNTESTABLE_COLUMN, tenth(p.untestable));
+        }
+        let row: &mut Row = table.row(cells);
         if bar {
-            row.cells[8].svg = plate_bar(shares, top);
+            row.cells[bar_column].svg = plate_bar(shares, top);
         } else {
             row.class = "sum";
         }
@@ -293,5 +306,5 @@ pub(in crate::document) fn plates(document: &Document) -> Vec<Block> {
         add(&plate.name, &plate.kind.to_string(), &plate.shares, plate.error_p95_m, true);
     }
     add("Whole floor", "", &floor.whole, None, false);
-    vec![Block::Legend(plate_legend()), Block::Table(table)]
+    vec![Block::Legend(plate_legend(has_untestable)), Block::Table(table)]
 }

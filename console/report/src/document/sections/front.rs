@@ -198,34 +198,40 @@ fn shares(document: &Document) -> Vec<Share> {
 }
 
 fn bases(document: &Document) -> Table {
-    let mut table = Table::new(
-        "",
-        &[
-            ("Base", "", ""),
-            ("Area", "m²", "r"),
-            ("Scanned", "%", "r"),
-            ("Missed", "%", "r"),
-            ("Unreachable", "%", "r"),
-            ("Shell margin", "%", "r"),
-            ("Sum", "%", "r"),
-            ("Guaranteed part", "%", "r"),
-        ],
-    );
+    let has_untestable = document.floor.whole.untestable > 0.0;
+    let mut columns = vec![
+        ("Base", "", ""),
+        ("Area", "m²", "r"),
+        ("Scanned", "%", "r"),
+        ("Missed", "%", "r"),
+        ("Unreachable", "%", "r"),
+        ("Shell margin", "%", "r"),
+        ("Sum", "%", "r"),
+        ("Guaranteed part", "%", "r"),
+    ];
+    if has_untestable {
+        columns.insert(6, ("Not testable", "%", "r"));
+    }
+    let mut table = Table::new("", &columns);
     for (name, shares) in
         [("Whole floor", &document.floor.whole), ("Reachable floor", &document.floor.reachable)]
     {
         let p = &shares.percent;
         let tenth = |value: f64| Value::from(format!("{value:.1}"));
-        table.row(vec![
+        let mut row = vec![
             name.into(),
             tenth(shares.area_m2),
             tenth(p.scanned),
             tenth(p.missed),
             tenth(p.unreachable),
             tenth(p.margin),
-            tenth(p.scanned + p.missed + p.unreachable + p.margin),
+            tenth(p.scanned + p.missed + p.unreachable + p.margin + p.untestable),
             tenth(p.guaranteed.unwrap_or(0.0)),
-        ]);
+        ];
+        if has_untestable {
+            row.insert(6, tenth(p.untestable));
+        }
+        table.row(row);
     }
     table
 }

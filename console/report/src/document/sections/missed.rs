@@ -117,18 +117,21 @@ fn balance(document: &Document) -> String {
     let (whole, reachable) = (&document.floor.whole, &document.floor.reachable);
     let thousandths = |m2: f64| (1000.0 * m2).round();
     let all = thousandths(whole.area_m2 - reachable.area_m2);
-    let [unreachable, margin] =
-        [whole.unreachable, whole.margin].map(|share| thousandths(share * whole.area_m2));
+    let [unreachable, margin, untestable] =
+        [whole.unreachable, whole.margin, whole.untestable].map(|share| thousandths(share * whole.area_m2));
     // The remainder of the printed figures, so that the sum is exact to the last digit.
-    let [all, unreachable, margin, scanned] =
-        [all, unreachable, margin, all - unreachable - margin].map(|m2| m2 / 1000.0);
+    let scanned = all - unreachable - margin - untestable;
+    let [all, unreachable, margin, untestable, scanned] =
+        [all, unreachable, margin, untestable, scanned].map(|m2| m2 / 1000.0);
+    let welds = format!(" + {untestable:.3} m² not testable by this tool");
     let beyond = format!(
         " + {scanned:.3} m² scanned although not counted as reachable: there the robot came closer to the \
          shell or to an obstacle than hull and clearance allow, or the floor was reachable until an \
          obstacle was found"
     );
     format!(
-        "Whole floor minus reachable floor: {all:.3} m² = {unreachable:.3} m² unreachable + {margin:.3} m² shell margin{}.",
+        "Whole floor minus reachable floor: {all:.3} m² = {unreachable:.3} m² unreachable + {margin:.3} m² shell margin{}{}.",
+        if untestable > 0.0 { welds } else { String::new() },
         if scanned > 0.0 { beyond } else { String::new() }
     )
 }

@@ -3,7 +3,7 @@
 use super::Raster;
 use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
-use world::{FloorClass, Point};
+use world::{Cell, FloorClass, Point};
 
 /// The minimum scanned share at which a piece of floor counts as scanned, and as partially scanned.
 const WHOLLY_SCANNED: f64 = 0.95;
@@ -11,12 +11,14 @@ const PARTLY_SCANNED: f64 = 0.05;
 /// A piece of floor counts as scanned again if at least this share of its scanned part was scanned again.
 const MOSTLY_AGAIN: f64 = 0.5;
 
-/// The numbers of cells in a block: floor, scanned, and scanned again.
+/// The numbers of cells in a block: floor, scanned, scanned again, and floor that the tool cannot test.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct Tally {
     pub floor: u32,
     pub scanned: u32,
     pub again: u32,
+    #[serde(default)]
+    pub untestable: u32,
 }
 
 impl AddAssign for Tally {
@@ -24,6 +26,7 @@ impl AddAssign for Tally {
         self.floor += other.floor;
         self.scanned += other.scanned;
         self.again += other.again;
+        self.untestable += other.untestable;
     }
 }
 
@@ -33,11 +36,17 @@ impl Tally {
         self.floor = self.floor - before.floor + now.floor;
         self.scanned = self.scanned - before.scanned + now.scanned;
         self.again = self.again - before.again + now.again;
+        self.untestable = self.untestable - before.untestable + now.untestable;
     }
 
-    /// The class of the scanned part; `None` if next to nothing is scanned.
+    /// The class of the scanned part; `None` if next to nothing is scanned. A block most of which cannot be tested is
+    /// untestable; in other blocks, only the testable part counts.
     fn class(self) -> Option<FloorClass> {
-        let share = f64::from(self.scanned) / f64::from(self.floor.max(1));
+        if self.untestable > 0 && 2 * self.untestable >= self.floor {
+            return Some(FloorClass::Untestable);
+        }
+        let testable = self.floor - self.untestable;
+        let share = f64::from(self.scanned) / f64::from(testable.max(1));
         match share {
             share if share < PARTLY_SCANNED => None,
             share if share < WHOLLY_SCANNED => Some(FloorClass::Partial),
@@ -80,7 +89,8 @@ impl Raster {
     pub(super) fn cell_tally(&self, index: usize) -> Tally {
         let floor = u32::from(self.floor().is_floor(index));
         let scanned = floor * u32::from(self.grid.is_covered(index));
-        Tally { floor, scanned, again: scanned * u32::from(self.overlap.again(index) > 0) }
+        let untestable = u32::from(self.floor().kind(index) == Cell::Untestable);
+        Tally { floor, scanned, again: scanned * u32::from(self.overlap.again(index) > 0), untestable }
     }
 
     /// The tally of the cells in a square around a point.

@@ -68,6 +68,7 @@ fn word(look: &Look, at: Point, (class, times): (FloorClass, u32)) -> String {
         FloorClass::Again => format!("scanned ×{times}"),
         FloorClass::Partial => "partially scanned".into(),
         FloorClass::Margin => "shell margin".into(),
+        FloorClass::Untestable => "not testable by this tool: weld".into(),
         FloorClass::Unreachable => match out_of_reach() {
             Some(why) => format!("unreachable: {why}"),
             None => "unreachable".into(),

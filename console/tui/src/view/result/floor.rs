@@ -46,7 +46,7 @@ fn bases(look: &Look, result: &RunResult, columns: usize) -> Vec<Parts> {
     let Some(account) = &result.summary.floor else {
         return vec![vec![(Role::Dim, " Not a scanning mission.".into())]];
     };
-    let at = Columns::of(columns);
+    let at = Columns::of(columns, account.whole.untestable > 0.0);
     let mut rows = vec![vec![(Role::Dim, at.head())]];
     rows.push(at.row("reachable", &account.reachable));
     rows.push(at.row("whole floor", &account.whole));
@@ -68,6 +68,8 @@ struct Columns {
     bar: usize,
     area: usize,
     others: usize,
+    /// 0 also if the tool can test all floor.
+    untestable: usize,
 }
 
 /// Width of the name of a floor, of a share, and of a share that is shown only if there is room.
@@ -80,11 +82,13 @@ const AREA: usize = 11;
 const BAR: (usize, usize) = (6, 24);
 
 impl Columns {
-    fn of(room: usize) -> Self {
+    fn of(room: usize, has_untestable: bool) -> Self {
         let left = room.saturating_sub(1 + NAME + 2 * SHARE);
-        let others = if left >= 2 * OTHER + AREA + BAR.0 { OTHER } else { 0 };
-        let area = if left >= 2 * others + AREA + BAR.0 { AREA } else { 0 };
-        Self { bar: left.saturating_sub(2 * others + area).min(BAR.1), area, others }
+        let count = if has_untestable { 3 } else { 2 };
+        let others = if left >= count * OTHER + AREA + BAR.0 { OTHER } else { 0 };
+        let area = if left >= count * others + AREA + BAR.0 { AREA } else { 0 };
+        let bar = left.saturating_sub(count * others + area).min(BAR.1);
+        Self { bar, area, others, untestable: if has_untestable { others } else { 0 } }
     }
 
     fn head(&self) -> String {
@@ -96,6 +100,7 @@ impl Columns {
             right("missed", SHARE),
             right("unrch.", self.others),
             right("margin", self.others),
+            right("untst.", self.untestable),
             right("area", self.area),
         ]
         .concat()
@@ -114,6 +119,7 @@ impl Columns {
             number(percent.missed, SHARE),
             number(percent.unreachable, self.others),
             number(percent.margin, self.others),
+            number(percent.untestable, self.untestable),
             area,
         ];
         vec![
@@ -168,6 +174,15 @@ fn notes(look: &Look, result: &RunResult, columns: usize) -> Vec<Vec<String>> {
         let all = floor.plates.iter().filter(|plate| plate.shares.percent.missed <= MISSED_PERCENT).count();
         format!("Plates: {all} of {} with at most {MISSED_PERCENT} % missed.", floor.plates.len())
     });
-    let notes = of_all_runs(look).into_iter().chain(zone).chain(plates).chain(again).chain(truth);
+    let readings = summary.readings.as_ref().map(|readings| {
+        let deepest = readings.deepest.as_ref().map_or_else(String::new, |loss| {
+            let (depth, error) = (text::number(loss.depth_mm, 1), text::number(loss.depth_error_mm, 1));
+            let [x, y] = [loss.at.x, loss.at.y].map(|m| text::number(m, 2));
+            format!("; deepest {depth} ±{error} mm at {x}, {y} m")
+        });
+        format!("Readings: {}; indications: {}{deepest}.", readings.count, readings.indications)
+    });
+    let notes =
+        of_all_runs(look).into_iter().chain(zone).chain(readings).chain(plates).chain(again).chain(truth);
     notes.map(|note| text::wrap(&note, columns)).collect()
 }

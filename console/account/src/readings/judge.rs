@@ -1,0 +1,197 @@
+//! Finds indications in readings.
+
+use super::Reading;
+use mission::Sampling;
+use nalgebra::Matrix2;
+use positioning::fix::ellipse_95;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use world::{Floor, Point};
+
+/// Distance, in cells, within which readings above the threshold belong to the same indication. Two lanes place the
+/// same pit in cells that differ by the position error.
+const SAME_CELLS: isize = 2;
+/// The least number of readings above the threshold in an indication; a single one may be noise.
+const LEAST_READINGS: u32 = 2;
+/// Half width of a 95 % interval, in standard deviations.
+const SIGMAS_95: f64 = 1.96;
+
+/// A loss of metal that readings show.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Finding {
+    /// Mission time of the deepest reading, seconds.
+    pub t_s: f64,
+    /// The run of the deepest reading, counted from 0 in the order in which runs were combined.
+    #[serde(default)]
+    pub run: usize,
+    /// The middle, weighted by depth, tank frame, metres.
+    pub at: Point,
+    /// South-west and north-east corner of the readings above the threshold, metres.
+    pub low: Point,
+    /// North-east corner, metres.
+    pub high: Point,
+    /// 95 % error of the position, metres.
+    pub error_m: f64,
+    /// The largest loss that a reading shows, millimetres.
+    pub depth_mm: f64,
+    /// Half width of the 95 % interval of a reading, millimetres.
+    pub depth_error_mm: f64,
+    /// Number of readings above the threshold.
+    pub readings: u32,
+}
+
+/// The readings of a floor, by cell.
+#[derive(Debug, Clone)]
+pub struct Judge {
+    sampling: Sampling,
+    cells: Vec<CellReadings>,
+    /// The cells with readings above the threshold.
+    hits: BTreeMap<usize, Hit>,
+}
+
+/// The readings in a cell.
+#[derive(Debug, Clone, Copy, Default)]
+struct CellReadings {
+    sum_mm: f32,
+    least_mm: f32,
+    count: u32,
+}
+
+/// The readings above the threshold in a cell.
+#[derive(Debug, Clone, Copy)]
+struct Hit {
+    run: usize,
+    t_s: f64,
+    depth_mm: f64,
+    covariance: Matrix2<f64>,
+    low: Point,
+    high: Point,
+    /// Sums of depth, and of depth times position.
+    depths_mm: f64,
+    moments: [f64; 2],
+    count: u32,
+}
+
+impl Hit {
+    fn of(reading: &Reading, depth_mm: f64) -> Self {
+        let Point { coords, .. } = reading.at;
+        Self {
+            run: 0,
+            t_s: reading.t_s,
+            depth_mm,
+            covariance: reading.covariance,
+            low: reading.at,
+            high: reading.at,
+            depths_mm: depth_mm,
+            moments: [depth_mm * coords.x, depth_mm * coords.y],
+            count: 1,
+        }
+    }
+
+    fn join(&mut self, other: &Self) {
+        if other.depth_mm > self.depth_mm {
+            (self.run, self.t_s, self.depth_mm) = (other.run, other.t_s, other.depth_mm);
+            self.covariance = other.covariance;
+        }
+        (self.low, self.high) = (self.low.inf(&other.low), self.high.sup(&other.high));
+        self.depths_mm += other.depths_mm;
+        self.moments = [self.moments[0] + other.moments[0], self.moments[1] + other.moments[1]];
+        self.count += other.count;
+    }
+
+    fn finding(&self, sigma_mm: f64) -> Finding {
+        Finding {
+            t_s: self.t_s,
+            run: self.run,
+            at: Point::new(self.moments[0] / self.depths_mm, self.moments[1] / self.depths_mm),
+            low: self.low,
+            high: self.high,
+            error_m: ellipse_95(&self.covariance).0,
+            depth_mm: self.depth_mm,
+            depth_error_mm: SIGMAS_95 * sigma_mm,
+            readings: self.count,
+        }
+    }
+}
+
+impl Judge {
+    /// No readings yet, on a floor with a number of cells.
+    pub(super) fn new(sampling: Sampling, cells: usize) -> Self {
+        Self { sampling, cells: vec![CellReadings::default(); cells], hits: BTreeMap::new() }
+    }
+
+    /// Adds a reading in a cell.
+    pub(super) fn add(&mut self, cell: usize, reading: &Reading) {
+        let thickness_mm = reading.thickness_mm as f32;
+        let seen = &mut self.cells[cell];
+        seen.least_mm = if seen.count == 0 { thickness_mm } else { seen.least_mm.min(thickness_mm) };
+        seen.sum_mm += thickness_mm;
+        seen.count += 1;
+        let depth_mm = self.sampling.thickness_mm - reading.thickness_mm;
+        if depth_mm >= self.sampling.threshold_mm() {
+            let hit = Hit::of(reading, depth_mm);
+            self.hits.entry(cell).and_modify(|known| known.join(&hit)).or_insert(hit);
+        }
+    }
+
+    /// Adds the readings of another run on the same floor; `run` is its place in the order of runs.
+    pub fn join(&mut self, other: &Self, run: usize) {
+        for (own, other) in self.cells.iter_mut().zip(&other.cells).filter(|(_, other)| other.count > 0) {
+            own.least_mm = if own.count == 0 { other.least_mm } else { own.least_mm.min(other.least_mm) };
+            own.sum_mm += other.sum_mm;
+            own.count += other.count;
+        }
+        for (cell, hit) in &other.hits {
+            let hit = Hit { run, ..*hit };
+            self.hits.entry(*cell).and_modify(|known| known.join(&hit)).or_insert(hit);
+        }
+    }
+
+    /// The mean thickness in a cell, millimetres; `None` without readings.
+    pub fn mean_mm(&self, cell: usize) -> Option<f64> {
+        let seen = self.cells.get(cell).filter(|seen| seen.count > 0)?;
+        Some(f64::from(seen.sum_mm) / f64::from(seen.count))
+    }
+
+    /// The smallest thickness that a reading shows in a cell, millimetres; `None` without readings.
+    pub fn least_mm(&self, cell: usize) -> Option<f64> {
+        self.cells.get(cell).filter(|seen| seen.count > 0).map(|seen| f64::from(seen.least_mm))
+    }
+
+    /// Number of readings in a cell.
+    pub fn count(&self, cell: usize) -> u32 {
+        self.cells.get(cell).map_or(0, |seen| seen.count)
+    }
+
+    /// The indications, in order of run and time: readings above the threshold that are close together form one,
+    /// whatever lane or run they are from.
+    pub fn findings(&self, floor: &Floor) -> Vec<Finding> {
+        let mut left = self.hits.clone();
+        let mut found = Vec::new();
+        while let Some((first, hit)) = left.pop_first() {
+            let (mut all, mut open) = (hit, vec![first]);
+            while let Some(cell) = open.pop() {
+                for near in around(floor, cell) {
+                    if let Some(hit) = left.remove(&near) {
+                        all.join(&hit);
+                        open.push(near);
+                    }
+                }
+            }
+            if all.count >= LEAST_READINGS {
+                found.push(all.finding(self.sampling.sigma_mm));
+            }
+        }
+        found.sort_by(|a, b| a.run.cmp(&b.run).then(a.t_s.total_cmp(&b.t_s)));
+        found
+    }
+}
+
+/// The cells around a cell.
+fn around(floor: &Floor, cell: usize) -> impl Iterator<Item = usize> + use<> {
+    let (width, height) = (floor.width as isize, floor.height as isize);
+    let (column, row) = ((cell % floor.width) as isize, (cell / floor.width) as isize);
+    let rows = (row - SAME_CELLS).max(0)..=(row + SAME_CELLS).min(height - 1);
+    let columns = (column - SAME_CELLS).max(0)..=(column + SAME_CELLS).min(width - 1);
+    rows.flat_map(move |row| columns.clone().map(move |column| (row * width + column) as usize))
+}

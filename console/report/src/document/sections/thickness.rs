@@ -1,0 +1,139 @@
+//! The thickness of the floor: how it was read, the corrosion map, and each plate.
+
+use super::super::{
+    model::Document,
+    page::{Block, Table, Value, picture},
+    thickness::Thickness,
+    words::number,
+};
+use account::Detection;
+
+/// How the thickness was read, the corrosion map, the plates, and the places that need a test with another method;
+/// nothing for a report without an instrument.
+pub(super) fn thickness(document: &Document) -> Vec<Block> {
+    let follow_ups = (!document.follow_ups.is_empty()).then(|| Block::Table(follow_ups(document)));
+    let Some(thickness) = &document.thickness else { return follow_ups.into_iter().collect() };
+    let mut blocks = vec![
+        Block::Heading("Thickness".into()),
+        Block::Facts(facts(document, thickness)),
+        Block::Wide(picture(&document.pictures.corrosion)),
+    ];
+    blocks.extend((!thickness.plates.is_empty()).then(|| Block::Table(plates(thickness))));
+    blocks.push(Block::Table(detections(thickness)));
+    blocks.extend(follow_ups);
+    blocks
+}
+
+fn facts(document: &Document, thickness: &Thickness) -> Vec<(&'static str, Value)> {
+    let sampling = &thickness.sampling;
+    let how = format!(
+        "{}; {} channels, a reading every {} mm, standard deviation of a reading {} mm",
+        thickness.kind,
+        sampling.channels,
+        number(1000.0 * sampling.pitch_m, 0),
+        sampling.sigma_mm
+    );
+    let count = format!(
+        "{}, of which {} beside welds are not judged; {} m² tested",
+        thickness.readings,
+        thickness.untestable,
+        number(thickness.tested_m2, 2)
+    );
+    let losses = format!(
+        "{} with a loss of at least {} mm ({} % of {} mm)",
+        thickness.losses.len(),
+        number(sampling.threshold_mm(), 1),
+        number(100.0 * sampling.threshold, 0),
+        sampling.thickness_mm
+    );
+    let digest = |run: &super::super::run_part::RunPart| {
+        let sha256 = run.files.readings_sha256.as_deref().unwrap_or("no file");
+        if document.runs.len() > 1 { format!("{}: {sha256}", run.run) } else { sha256.to_owned() }
+    };
+    let digests: Vec<String> = document.runs.iter().map(digest).collect();
+    vec![
+        ("Instrument", how.into()),
+        ("Readings", count.into()),
+        ("Indications", losses.into()),
+        ("SHA-256 of readings.parquet", digests.join("; ").into()),
+    ]
+}
+
+fn plates(thickness: &Thickness) -> Table {
+    let mut table = Table::new(
+        "Thickness of each plate where it was tested: the smallest reading, the thickness that 95 % of the cells \
+         exceed (mean of the readings in a cell), and the mean of all readings",
+        &[
+            ("Plate", "", "nw"),
+            ("Readings", "", "r"),
+            ("Least", "mm", "r"),
+            ("p5", "mm", "r"),
+            ("Mean", "mm", "r"),
+        ],
+    );
+    for plate in &thickness.plates {
+        table.row(vec![
+            plate.plate.clone().into(),
+            plate.readings.to_string().into(),
+            number(plate.least_mm, 1).into(),
+            number(plate.p5_mm, 1).into(),
+            number(plate.mean_mm, 1).into(),
+        ]);
+    }
+    table
+}
+
+fn follow_ups(document: &Document) -> Table {
+    let mut table = Table::new(
+        "Places that need a test with another method, in order of travel: untestable floor by plate, and indications",
+        &[
+            ("No.", "", "r"),
+            ("What", "", ""),
+            ("Plate", "", "nw"),
+            ("x", "m", "r nw"),
+            ("y", "m", "r nw"),
+            ("Area", "m²", "r"),
+            ("Depth", "mm", "r"),
+        ],
+    );
+    let optional = |value: Option<f64>, decimals| {
+        value.map_or_else(|| "\u{2013}".to_owned(), |value| number(value, decimals))
+    };
+    for place in &document.follow_ups {
+        table.row(vec![
+            place.number.to_string().into(),
+            place.what.clone().into(),
+            place.plate.clone().unwrap_or_default().into(),
+            number(place.at.x, 2).into(),
+            number(place.at.y, 2).into(),
+            optional(place.area_m2, 2).into(),
+            optional(place.depth_mm, 1).into(),
+        ]);
+    }
+    table
+}
+
+/// In a simulation, the true losses are known.
+fn detections(thickness: &Thickness) -> Table {
+    let found = &thickness.detections;
+    let mut table = Table::new(
+        format!(
+            "Simulated floor: true losses whose deepest place was tested, and how many of them are in an \
+             indication. Indications where no metal is lost: {} ({} per m²)",
+            found.false_calls,
+            number(found.false_calls as f64 / thickness.tested_m2.max(f64::MIN_POSITIVE), 3)
+        ),
+        &[("Depth", "% of thickness", "r nw"), ("Losses", "", "r"), ("Found", "", "r"), ("Share", "%", "r")],
+    );
+    for (index, Detection { from, losses, found: hits }) in found.classes.iter().enumerate() {
+        let to = found.classes.get(index + 1).map_or(1.0, |next| next.from);
+        let share = (*losses > 0).then(|| number(100.0 * *hits as f64 / *losses as f64, 1));
+        table.row(vec![
+            format!("{:.0} to {:.0}", 100.0 * from, 100.0 * to).into(),
+            losses.to_string().into(),
+            hits.to_string().into(),
+            share.unwrap_or_else(|| "\u{2013}".to_owned()).into(),
+        ]);
+    }
+    table
+}
