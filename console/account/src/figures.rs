@@ -45,7 +45,7 @@ pub enum FigureId {
 
 impl FigureId {
     /// All figures, in the order of the table.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::PositionError,
         Self::Protection,
         Self::Clearance,

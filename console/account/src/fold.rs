@@ -17,8 +17,8 @@ use crate::{
     vehicle::VehicleRecord,
 };
 use mission::{
-    Cause, Event, EventKind, FoldedStanding, Guarantee, Order, Outcome, ParamKind, ParamValue, Parameters, Passage,
-    PlannerChoice, PlannerInfo, TaskConfig,
+    Cause, Event, EventKind, FoldedStanding, Guarantee, Order, Outcome, ParamKind, ParamValue, Parameters,
+    Passage, PlannerChoice, PlannerInfo, TaskConfig,
     event::{RunOpened, TetherAlarm, ToolTrack},
 };
 use nalgebra::Matrix2;

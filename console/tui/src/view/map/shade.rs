@@ -136,7 +136,7 @@ pub(crate) struct Key {
 }
 
 /// The shades in the order of the legend, the most important first, each with its legend text.
-pub(super) const LEGEND: [(Shade, &str); 13] = [
+pub(super) const LEGEND: [(Shade, &str); 14] = [
     (Shade::Floor(FloorClass::Missed), "missed"),
     (Shade::NotReached, "not reached"),
     (Shade::PoorFix, "poor fix"),
