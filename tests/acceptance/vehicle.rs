@@ -62,7 +62,7 @@ impl Drop for Vehicle {
 
 /// The lines of a journal that do not depend on whether the robot is simulated inside the console.
 fn decisions(run: &Path) -> Vec<Value> {
-    let of_the_robot = ["truth", "tether_truth", "sensed", "link", "sent", "stood"];
+    let of_the_robot = ["truth", "tether_truth", "sensed", "link", "sent", "stood", "position_awaited"];
     let mut events = journal(run);
     events.retain(|event| !of_the_robot.iter().any(|kind| event["event"] == *kind));
     events[0].as_object_mut().unwrap().remove("vehicle");
