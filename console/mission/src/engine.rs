@@ -236,6 +236,7 @@ impl Mission {
                 .map_or_else(|| plan.map(|plan| plan.left_m(here)), |back| Some(back.left_m(here))),
             is_back: back.is_some_and(|back| back.is_done(here)),
             breached,
+            in_zone: self.known.breached.first().map(String::as_str),
             scanned: self.known.floor.coverage.fraction_reachable(),
             touched: readings.contact,
             reached,

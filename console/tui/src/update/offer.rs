@@ -171,6 +171,13 @@ pub(crate) fn parameters(model: &Model) -> Result<(), String> {
     }
 }
 
+/// Checks that the planner has parameters that can still be changed.
+pub(crate) fn changeable_parameters(model: &Model) -> Result<(), String> {
+    let why = "the mission has ended: its parameters cannot be changed; <home> opens another scenario";
+    demand(!model.live.run.has_ended(), why)?;
+    parameters(model)
+}
+
 /// Checks that time is passing, at a speed that can be set.
 pub(crate) fn simulating(model: &Model) -> Result<(), String> {
     if model.live.is_replay() {

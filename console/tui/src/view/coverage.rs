@@ -116,7 +116,7 @@ impl Bases {
         let raster = live.run.coverage.as_ref().filter(|_| live.run.progress.is_some());
         match &live.scanned_before {
             Some(before) => Self {
-                shares: raster.map(|own| [before.requested(own), before.with(own)]),
+                shares: raster.map(|own| before.shares(own)),
                 names: ["requested", "all runs"],
                 short: ["requested", "all runs"],
                 floors: ["requested floor", "reachable floor with the runs before"],
