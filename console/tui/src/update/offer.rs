@@ -4,7 +4,7 @@
 use super::go::named_run;
 use super::look_only::{allowed, no_orders};
 use super::message::Effect;
-use super::replay;
+use super::{place, replay};
 use crate::actions::{ActionId, find};
 use crate::model::{Model, Overlay, Screen, ui::Ask};
 use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
@@ -24,7 +24,15 @@ pub(crate) fn accept(model: &Model) -> Result<(), String> {
         return demand(model.n_by_hand() > 0, "this scenario has no manual checks");
     }
     let opens = (model.ui.screen.row().opens)(model).is_some();
-    demand(model.ui.overlay != Overlay::None || opens, "nothing to open here")
+    demand(model.ui.overlay != Overlay::None || opens, why_nothing_opens(model))
+}
+
+fn why_nothing_opens(model: &Model) -> &'static str {
+    match model.ui.screen {
+        Screen::Plan => place::why_no_area(model),
+        Screen::Mission => "nothing to open in this pane; <next-pane>: next pane, to the events",
+        _ => "nothing to open here",
+    }
 }
 
 /// Checks that there is another pane to switch to.
