@@ -40,7 +40,6 @@ use crate::{
     order::Order,
     phase::{Gait, HoldReason, Phase},
     standing::Standing,
-    tether::Tether,
 };
 pub use driving::Sending;
 use driving::{Driving, LeftPlan, Prepare};
@@ -241,7 +240,7 @@ impl Mission {
             touched: readings.contact,
             reached,
             can_replan: self.known.plans_ways_home(),
-            can_go_home: self.known.tether.as_ref().is_none_or(Tether::can_go_home),
+            can_go_home: self.can_go_home(),
             planner: self.driving.seen(&self.known, self.robot_waits()),
         };
         match self.rules.update(&seen, &self.known.phase) {

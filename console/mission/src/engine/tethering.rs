@@ -80,6 +80,17 @@ impl Mission {
         waits
     }
 
+    /// Whether the hull fits through the return path along the tether. Before a robot that waits for this resumes with a new
+    /// plan, the return path must have the room that the certificate of the plan demands.
+    pub(super) fn can_go_home(&self) -> bool {
+        let Some(tether) = &self.known.tether else { return true };
+        let by = HoldReason::Tether { message: TetherAlarm::NoReturnPath.to_string() };
+        let waits = matches!(&self.known.phase, Phase::Held(hold) if hold.by == by);
+        let room_m = self.known.config.limits.radius_m;
+        let has_room = || tether.return_path(self.known.chart.world(), room_m).is_some();
+        tether.can_go_home() && (!waits || self.driving.course.due.is_none() || has_room())
+    }
+
     /// Ends a task that is done. If the robot is back at the anchor but cable is still out, the outcome is entangled.
     pub(super) fn end_done(&mut self) {
         let back = self.known.task_ends_at_anchor();

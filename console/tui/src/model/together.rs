@@ -65,20 +65,6 @@ pub struct Earlier {
     pub raster: Raster,
     /// The cells that the re-scan is to scan; `None` if it is to scan all of the floor.
     asked: Option<Vec<bool>>,
-    #[serde(skip)]
-    counted: Counted,
-}
-
-/// The shares that were last counted, with the stamp of the re-scan's floor at that time: counting looks at every cell,
-/// and most frames show the same floor as the frame before.
-#[derive(Debug, Clone, Default)]
-struct Counted(std::cell::Cell<Option<(u64, [Shares; 2])>>);
-
-/// Shares that were kept say nothing about the floor that the floor itself does not say.
-impl PartialEq for Counted {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
 }
 
 impl Earlier {
@@ -89,26 +75,15 @@ impl Earlier {
             TaskConfig::Cover { regions, .. } => cells_within(own.floor(), regions),
             TaskConfig::Goto { .. } | TaskConfig::Follow { .. } => None,
         };
-        Self { runs: combination.earlier.clone(), raster, asked, counted: Counted::default() }
+        Self { runs: combination.earlier.clone(), raster, asked }
     }
 
     /// Two shares: of the floor that the re-scan was to scan, as far as the re-scan alone has scanned it, and of the
     /// reachable floor, as far as all runs together have scanned it. Floor that the re-scan has scanned without being asked
     /// to counts as requested, as in the result.
     ///
-    /// Cost: a look at every cell if `own` has changed since the last call, otherwise none.
+    /// Cost: a look at every cell.
     pub fn shares(&self, own: &Raster) -> [Shares; 2] {
-        match self.counted.0.get() {
-            Some((stamp, shares)) if stamp == own.stamp() => shares,
-            _ => {
-                let shares = self.count(own);
-                self.counted.0.set(Some((own.stamp(), shares)));
-                shares
-            }
-        }
-    }
-
-    fn count(&self, own: &Raster) -> [Shares; 2] {
         let is_asked = |cell: usize| self.asked.as_ref().is_none_or(|asked| asked.get(cell) == Some(&true));
         let (mut requested, mut all) = (Counts::default(), Counts::default());
         for cell in 0..own.floor().len() {
@@ -165,7 +140,6 @@ mod tests {
             runs: vec!["first".into()],
             raster: joined(&own, &[], &[CellRun(0, half)]),
             asked: Some((0..floor.len()).map(|cell| cell >= half as usize).collect()),
-            counted: Counted::default(),
         };
         let percent = |own: &Raster| earlier.shares(own).map(|shares| shares.percent.scanned);
         let [requested, all] = percent(&own);
@@ -175,8 +149,7 @@ mod tests {
         let [requested, all] = percent(&own);
         assert!((requested - 50.0).abs() < 5.0 && (all - 75.0).abs() < 5.0, "{requested} {all}");
         own.apply(&[CellRun(quarter, floor.len() as u32)]);
-        assert_eq!(percent(&own), [100.0, 100.0], "the kept shares are counted again");
-        assert_eq!(percent(&own), [100.0, 100.0]);
+        assert_eq!(percent(&own), [100.0, 100.0], "everything has been scanned");
         assert!(
             (own.reachable().percent.scanned - 50.0).abs() < 2.0,
             "of the whole floor, the re-scan alone"

@@ -24,14 +24,15 @@ pub(crate) fn accept(model: &Model) -> Result<(), String> {
         return demand(model.n_by_hand() > 0, "this scenario has no manual checks");
     }
     let opens = (model.ui.screen.row().opens)(model).is_some();
-    demand(model.ui.overlay != Overlay::None || opens, why_nothing_opens(model))
+    demand(model.ui.overlay != Overlay::None || opens, "nothing to open here")
 }
 
-fn why_nothing_opens(model: &Model) -> &'static str {
+/// Why Enter opens nothing on a screen where it sometimes does, as a clause.
+pub(super) fn why_nothing_opens(model: &Model) -> Option<&'static str> {
     match model.ui.screen {
-        Screen::Plan => place::why_no_area(model),
-        Screen::Mission => "nothing to open in this pane; <next-pane>: next pane, to the events",
-        _ => "nothing to open here",
+        Screen::Plan => Some(place::why_no_area(model)),
+        Screen::Mission => Some("nothing to open in this pane; <next-pane>: next pane, to the events"),
+        _ => None,
     }
 }
 
