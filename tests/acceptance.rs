@@ -63,6 +63,8 @@ mod reproduce;
 mod rerun;
 #[path = "acceptance/rescan.rs"]
 mod rescan;
+#[path = "acceptance/return_path.rs"]
+mod return_path;
 #[path = "acceptance/reviewing.rs"]
 mod reviewing;
 #[path = "acceptance/scenarios.rs"]

@@ -24,6 +24,7 @@ mod presets;
 mod printed_keys;
 mod reference;
 mod replay;
+mod rescans;
 mod scanned;
 mod screens;
 mod scripts;
