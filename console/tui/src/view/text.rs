@@ -93,16 +93,18 @@ pub(crate) fn wording<const N: usize>(wordings: [String; N], columns: usize) -> 
 }
 
 /// As many leading clauses of a sentence as fit, for a row whose full sentence is shown elsewhere. The text ends in an
-/// ellipsis only if not even the first clause fits. A clause has at least two words and does not end within
-/// parentheses.
+/// ellipsis only if not even the first clause fits. A clause has at least two words after its last colon and does not end
+/// within parentheses.
 pub(crate) fn clauses(sentence: &str, columns: usize) -> String {
     if width(sentence) <= columns {
         return sentence.to_owned();
     }
     let ends = sentence.match_indices([';', ':', ',']).map(|(at, _)| at);
     let ends = ends.filter(|at| sentence[at + 1..].starts_with(' '));
-    let is_clause =
-        |head: &&str| head.contains(' ') && head.matches('(').count() == head.matches(')').count();
+    let is_clause = |head: &&str| {
+        let last = head.rsplit(": ").next().unwrap_or(head);
+        last.contains(' ') && head.matches('(').count() == head.matches(')').count()
+    };
     let fitting = ends.map(|at| &sentence[..at]).filter(is_clause).rfind(|head| width(head) <= columns);
     fitting.map_or_else(|| fit(sentence, columns), str::to_owned)
 }

@@ -34,3 +34,4 @@ mod start;
 mod state_line;
 mod stopping;
 mod unseen;
+mod vehicle;

@@ -24,6 +24,7 @@ fn store(name: &str, screen: &mut Screen) {
 }
 
 fn scenario(name: &str, task: &str, planner: &str) -> ScenarioEntry {
+    let about = Screen::idle().model.live.run.about;
     ScenarioEntry {
         source: Source::File(format!("scenarios/{name}.toml")),
         name: name.into(),
@@ -33,7 +34,8 @@ fn scenario(name: &str, task: &str, planner: &str) -> ScenarioEntry {
         planner: planner.into(),
         expected: "complete, no collision".into(),
         problem: None,
-        world: Screen::idle().model.live.run.about.map(|about| Box::new(about.world)),
+        world: about.as_ref().map(|about| Box::new(about.world.clone())),
+        mission: about.map(|about| Box::new(about.mission)),
     }
 }
 
@@ -63,6 +65,7 @@ pub(crate) fn found() -> Found {
             "error: scenarios/depot.toml:14:1: unknown key `radus_m`, did you mean `radius_m`?".into(),
         ),
         world: None,
+        mission: None,
         ..scenario("depot", "", "")
     };
     let demo =
