@@ -133,6 +133,12 @@ fn home() {
     let mut screen = Screen::idle();
     screen.send(Msg::Found(Box::new(found())));
     screen.type_text("1jj");
+    // A large screen shows the last run of the selected scenario.
+    let asked = screen.send(Msg::Resize { width: 200, height: 60 });
+    let key = ("20261122T040049Z-cover-unknown-columns".to_owned(), "aborted".to_owned());
+    assert_eq!(asked, [Effect::Glimpse(key.clone())]);
+    let known = glimpse(&screen);
+    screen.send(Msg::Glimpsed(key, Ok(Box::new(known))));
     sizes::store("home", &mut screen, |_| false);
     screen.type_text("jj");
     let refused = screen.press([tui::Key::Enter]);

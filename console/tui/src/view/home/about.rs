@@ -49,7 +49,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, found: &Found) {
 /// A scenario; on a large screen, with its settings and its last run.
 fn scenario(look: &Look, frame: &mut Frame, area: Rect, entry: &ScenarioEntry) {
     let is_large = look.model.ui.is_large();
-    let last = look.model.home.last_end(&entry.name).filter(|_| is_large);
+    let is_read = |run: &&PastRun| look.model.home.glimpses.of(&run.name).is_some_and(Result::is_ok);
+    let last = look.model.home.last_end(&entry.name).filter(|_| is_large).filter(is_read);
     let lines_in = |columns: u16| lines(look, entry, usize::from(columns));
     let Some(last) = last else {
         let block = look.block(Role::Border, &entry.name, "");

@@ -32,7 +32,7 @@ pub(super) fn fields(mission: &MissionConfig) -> Vec<Field> {
     fields.extend([
         ("clearance", format!("at least {}", metres(mission.clearance_m))),
         ("position", format!("lost above ±{}", metres(mission.position_limit_m))),
-        ("time limit", text::clock(mission.time_limit_s)),
+        ("time", format!("limit {}", text::clock(mission.time_limit_s))),
     ]);
     fields
 }
