@@ -93,3 +93,6 @@ mod terminal;
 #[cfg(target_os = "linux")]
 #[path = "acceptance/vehicle.rs"]
 mod vehicle;
+#[cfg(target_os = "linux")]
+#[path = "acceptance/vehicle_misses.rs"]
+mod vehicle_misses;

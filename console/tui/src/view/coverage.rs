@@ -50,12 +50,7 @@ fn wide_lines(look: &Look, bases: &Bases, columns: usize) -> Vec<(u8, Line<'stat
         |one: &str, other: &str| format!("{:>first$}{:>WHOLE$}", format!("{one} %"), format!("{other} %"));
     let mark = if is_stale(look) { "◌" } else { "" };
     let room = columns.saturating_sub(LABEL + 1);
-    let untestable = untestable(run);
-    let out_of_reach = [("shell margin", "not testable"), ("margin", "untestable"), ("margin", "untest.")]
-        .map(|(name, not)| {
-            let untestable = untestable.as_ref().map(|share| format!(", {not} {share} %"));
-            format!("{unreachable} %, {name} {margin} %{}", untestable.unwrap_or_default())
-        });
+    let out_of_reach = ["shell margin", "margin"].map(|name| format!("{unreachable} %, {name} {margin} %"));
     let out_of_reach = text::wording(out_of_reach, room);
     let overlap = run.coverage.as_ref().and_then(Raster::overlap).map_or_else(|| "-".into(), text::percent);
     let mut lines = vec![
@@ -71,6 +66,7 @@ fn wide_lines(look: &Look, bases: &Bases, columns: usize) -> Vec<(u8, Line<'stat
     if run.covers() {
         lines.insert(2, row(3, to_do_label(run), shares(&first_to_do, &second_to_do)));
     }
+    lines.extend(untestable(run).map(|share| row(4, "not testable", format!("{share} % of whole floor"))));
     lines
 }
 

@@ -127,6 +127,7 @@ fn list(look: &Look, frame: &mut Frame, area: Rect) {
         table::row(look, parts, shown.start + index == newer, columns)
     }));
     fill(frame, area, block, lines);
+    table::bar(look, frame, below, &shown, events.matches.len());
 }
 
 /// The filter with its invalid parts underlined, and why they are invalid; while the filter is being typed, examples

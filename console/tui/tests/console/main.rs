@@ -35,3 +35,4 @@ mod start;
 mod state_line;
 mod stopping;
 mod unseen;
+mod vehicle;
