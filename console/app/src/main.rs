@@ -3,6 +3,7 @@
 mod accuracy;
 mod campaign;
 mod cli;
+mod compare_surveys;
 mod events;
 mod export;
 mod headless;
@@ -110,6 +111,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Export(args)) => export::export(&args),
         Some(Command::Locate(args)) => locate::locate(&args),
         Some(Command::Report(args)) => past_runs::report(&args, &plugins),
+        Some(Command::CompareSurveys(args)) => compare_surveys::compare(&args),
         Some(Command::Rescan(args)) => rescan::rescan(&args, &plugins),
         Some(Command::ReplayWorker(args)) => replay_worker::replay(&args),
         Some(Command::Completions { shell }) => manual::completions(shell),

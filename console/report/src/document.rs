@@ -25,6 +25,7 @@ mod shapes;
 mod signed;
 mod task;
 mod thickness;
+mod two_surveys;
 mod words;
 
 pub use build::Context;
@@ -37,6 +38,10 @@ pub use readings::{Located, Readings};
 pub use run_part::{Driver, Files, Recovered, RunPart, TetherPart};
 pub use signed::{Revision, Signature, SignedRun};
 pub use task::TaskPart;
+pub use two_surveys::{
+    Due, Grown, Single, SurveyPart, Surveyed, TWO_SURVEYS_SUFFIXES, TwoSurveys, two_surveys_html,
+    two_surveys_tables,
+};
 
 #[cfg(test)]
 mod tests;

@@ -32,6 +32,9 @@ pub struct Finding {
     pub high: Point,
     /// 95 % error of the position, metres.
     pub error_m: f64,
+    /// Covariance of the position, square metres; not written, because `error_m` is.
+    #[serde(skip)]
+    pub covariance: Matrix2<f64>,
     /// The largest loss that a reading shows, millimetres.
     pub depth_mm: f64,
     /// Half width of the 95 % interval of a reading, millimetres.
@@ -107,6 +110,7 @@ impl Hit {
             low: self.low,
             high: self.high,
             error_m: ellipse_95(&self.covariance).0,
+            covariance: self.covariance,
             depth_mm: self.depth_mm,
             depth_error_mm: SIGMAS_95 * sigma_mm,
             readings: self.count,
