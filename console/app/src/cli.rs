@@ -105,7 +105,7 @@ pub(crate) enum Command {
     },
     /// Recompute a past run and prove that the result matches its journal, byte for byte.
     Verify {
-        /// Run folder, or its name in the logs folder.
+        /// Run folder, or its name in the logs folder; or a package (.zip) of `tankops report --package`.
         run: PathBuf,
         /// Take the planners' answers from the journal instead of asking the planners again, for example if a plugin is
         /// no longer available. The output states what this proves and what it does not.

@@ -15,6 +15,7 @@ mod map;
 mod new_planner;
 mod new_vehicle;
 mod output;
+mod package;
 mod past_runs;
 mod plan;
 mod planners;

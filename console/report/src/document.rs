@@ -10,6 +10,7 @@ pub mod dxf;
 mod follow_up;
 mod gate;
 pub mod geojson;
+pub mod grid;
 mod html;
 mod indications;
 pub(crate) mod layers;
