@@ -25,6 +25,8 @@ pub struct Match {
     pub apart_m: f64,
     /// Number of other indications, of either survey, that could be the same loss by place alone.
     pub rivals: usize,
+    /// Whether one of the two is cut by untested floor, so that the growth is not known.
+    pub is_cut: bool,
 }
 
 /// A pair that may be one loss.
@@ -45,11 +47,14 @@ pub(crate) fn matches(
     registration: &Registration,
 ) -> Result<Vec<Match>, Refusal> {
     let candidates = candidates(first, second, registration);
-    let mut found = Vec::new();
+    let mut found: Vec<Match> = Vec::new();
     for group in groups(&candidates, first, second) {
         found.extend(decide(&group)?);
     }
-    found.sort_by_key(|pair: &Match| pair.first);
+    for pair in &mut found {
+        pair.is_cut = first.indications[pair.first].is_cut || second.indications[pair.second].is_cut;
+    }
+    found.sort_by_key(|pair| pair.first);
     Ok(found)
 }
 
@@ -156,7 +161,7 @@ fn decide(group: &[Candidate]) -> Result<Vec<Match>, Refusal> {
         let pair = pairs[row * columns.len() + column?]?;
         let shares = |other: &&Candidate| (other.first == pair.first) != (other.second == pair.second);
         let rivals = group.iter().filter(shares).count();
-        Some(Match { first: pair.first, second: pair.second, apart_m: pair.apart_m, rivals })
+        Some(Match { first: pair.first, second: pair.second, apart_m: pair.apart_m, rivals, is_cut: false })
     };
     Ok(assign(rows.len(), columns.len(), gain).into_iter().enumerate().filter_map(matched).collect())
 }

@@ -20,9 +20,10 @@ pub struct Premises {
 pub enum Basis {
     /// Both surveys show it: the upper end of the 95 % interval of its rate.
     Matched,
-    /// Only the second survey shows it, on floor that the first one tested: its depth and the 95 % error of its depth,
-    /// divided by the years between the surveys, as if the whole depth had grown since the first survey.
-    New,
+    /// Only the second survey shows it, on floor that the first one tested, or it is cut by untested floor: its depth and
+    /// the 95 % error of its depth, divided by the years between the surveys, as if the whole depth had grown since the
+    /// first survey.
+    WholeDepth,
 }
 
 /// The indication that reaches the least thickness first, and when:
@@ -48,12 +49,18 @@ pub struct Outlook {
 impl Outlook {
     /// The outlook of the indication that reaches the least thickness first; `None` if no indication grows.
     ///
-    /// Indications on floor that the first survey did not test have no rate, and do not count.
+    /// Indications on floor that the first survey did not test have no rate; they count only if they are already at the
+    /// least thickness.
     pub fn of(comparison: &Comparison, second: &Survey, minimum_mm: f64) -> Option<Self> {
         let premises = Premises { thickness_mm: second.thickness_mm, minimum_mm, years: comparison.years };
-        let matched = comparison.matched.iter().map(|(pair, growth)| (pair.second, Some(growth)));
-        let new = comparison.new.iter().filter(|one| one.is_tested).map(|one| (one.index, None));
-        let outlook = |(index, growth)| Self::one(premises, second, index, growth);
+        let matched = comparison
+            .matched
+            .iter()
+            .map(|(pair, growth)| (pair.second, Some(growth).filter(|_| !pair.is_cut), true));
+        let new = comparison.new.iter().map(|one| (one.index, None, one.is_tested));
+        let outlook = |(index, growth, has_rate)| {
+            Self::one(premises, second, index, growth).filter(|outlook| has_rate || outlook.years <= 0.0)
+        };
         matched.chain(new).filter_map(outlook).min_by(|a, b| a.years.total_cmp(&b.years))
     }
 
@@ -62,7 +69,7 @@ impl Outlook {
         let depth_error_mm = SIGMAS_95 * survey.indications[second].depth_sigma_mm;
         let (basis, rate_mm_per_a) = match growth {
             Some(growth) => (Basis::Matched, growth.rate_interval_mm_per_a[1]),
-            None => (Basis::New, (depth_mm + depth_error_mm) / premises.years),
+            None => (Basis::WholeDepth, (depth_mm + depth_error_mm) / premises.years),
         };
         let spare_mm = premises.thickness_mm - depth_mm - depth_error_mm - premises.minimum_mm;
         // A loss that does not grow reaches nothing, unless it is already there.

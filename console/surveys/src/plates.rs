@@ -18,16 +18,18 @@ pub struct PlateRate {
     pub new: usize,
     /// Number of indications that only the first survey shows, on floor that the second survey tested.
     pub gone: usize,
-    /// Mean growth of the indications that both surveys show, weighted by the inverse variances; absent if both show
-    /// none.
+    /// Mean growth of the indications that both surveys show, weighted by the inverse variances, without those that are
+    /// cut by untested floor; absent if none is left.
     pub mean: Option<Growth>,
-    /// The growth of the indication with the greatest rate.
+    /// The growth of the one of them with the greatest rate.
     pub greatest: Option<Growth>,
 }
 
 /// What was found on a plate.
 #[derive(Default)]
 struct Found {
+    matched: usize,
+    /// The growths of the matches that are not cut.
     growths: Vec<Growth>,
     new: usize,
     gone: usize,
@@ -44,7 +46,9 @@ pub(crate) fn plates(
     let name = |all: &[Indication], index: usize| all[index].plate.clone().unwrap_or_default();
     let mut on: BTreeMap<String, Found> = BTreeMap::new();
     for (pair, growth) in matched {
-        on.entry(name(second, pair.second)).or_default().growths.push(*growth);
+        let found = on.entry(name(second, pair.second)).or_default();
+        found.matched += 1;
+        found.growths.extend((!pair.is_cut).then_some(*growth));
     }
     for one in new.iter().filter(|one| one.is_tested) {
         on.entry(name(second, one.index)).or_default().new += 1;
@@ -57,10 +61,10 @@ pub(crate) fn plates(
 
 impl Found {
     fn rate(self, plate: String, years: f64) -> PlateRate {
-        let Self { growths, new, gone } = self;
+        let Self { matched, growths, new, gone } = self;
         PlateRate {
             plate,
-            matched: growths.len(),
+            matched,
             new,
             gone,
             mean: mean(&growths, years),

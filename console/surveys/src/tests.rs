@@ -22,6 +22,7 @@ fn pit(number: usize, x: f64, y: f64, depth_mm: f64) -> Indication {
         covariance,
         depth_mm,
         depth_sigma_mm: 0.2,
+        is_cut: false,
     }
 }
 
@@ -152,6 +153,18 @@ fn columns_that_fit_in_two_ways_are_refused_unless_the_frames_are_the_same() {
 }
 
 #[test]
+fn a_loss_that_is_cut_by_untested_floor_has_no_rate_and_counts_with_its_whole_depth() {
+    let cut = |depth_mm| Indication { is_cut: true, ..pit(1, 0.0, 0.0, depth_mm) };
+    let second = survey(vec![pit(1, 0.0, 0.0, 6.0)]);
+    let found = compared(&survey(vec![cut(2.0)]), &second);
+    let [plate] = &found.plates[..] else { panic!("{found:?}") };
+    assert_eq!((plate.matched, plate.mean, plate.greatest), (1, None, None));
+    let outlook = Outlook::of(&found, &second, 1.0).unwrap();
+    assert_eq!(outlook.basis, Basis::WholeDepth);
+    assert!((outlook.rate_mm_per_a - (6.0 + 1.96 * 0.2) / 4.0).abs() < 1e-9);
+}
+
+#[test]
 fn dates_and_thicknesses_that_do_not_fit_are_refused() {
     let one = survey(vec![]);
     for years in [0.0, -1.0, f64::NAN] {
@@ -175,7 +188,7 @@ fn the_outlook_follows_its_formula_and_is_zero_where_the_least_thickness_is_reac
     // Without an earlier indication, the whole depth may have grown since the first survey.
     let fresh = compared(&survey(vec![]), &second);
     let outlook = Outlook::of(&fresh, &second, 2.5).unwrap();
-    assert_eq!(outlook.basis, Basis::New);
+    assert_eq!(outlook.basis, Basis::WholeDepth);
     assert!((outlook.rate_mm_per_a - (3.0 + 1.96 * 0.2) / 4.0).abs() < 1e-9);
     // A loss that shrank beyond its error reaches nothing.
     let slow = compared(&survey(vec![pit(1, 0.0, 0.0, 3.9)]), &second);

@@ -72,8 +72,17 @@ pub struct Grown {
     pub apart_m: f64,
     /// Number of other indications that could be the same loss by place alone.
     pub rivals: usize,
+    /// Whether one of the two is cut by untested floor, so that the growth is not known.
+    pub is_cut: bool,
     /// The growth.
     pub growth: Growth,
+}
+
+impl Grown {
+    /// Whether it grew by more than the 95 % error.
+    fn is_grown(&self) -> bool {
+        !self.is_cut && self.growth.interval_mm[0] > 0.0
+    }
 }
 
 /// An indication that only one survey shows.
@@ -169,6 +178,7 @@ impl TwoSurveys {
             second: of_second[pair.second].clone(),
             apart_m: pair.apart_m,
             rivals: pair.rivals,
+            is_cut: pair.is_cut,
             growth: *growth,
         };
         let mut comparison = Self {
@@ -225,9 +235,9 @@ fn landmark(of: Landmark) -> &'static str {
 fn basis(of: Basis) -> &'static str {
     match of {
         Basis::Matched => "upper end of the 95 % interval of its rate",
-        Basis::New => {
-            "new: its depth and 95 % error, divided by the years between the surveys, as if all of it had grown since \
-             the first survey"
+        Basis::WholeDepth => {
+            "new, or cut by untested floor: its depth and 95 % error, divided by the years between the surveys, as if \
+             all of it had grown since the first survey"
         }
     }
 }

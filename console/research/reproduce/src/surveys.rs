@@ -188,6 +188,7 @@ fn survey(
             covariance,
             depth_mm: measured_mm,
             depth_sigma_mm,
+            is_cut: false,
         });
         of.push(index);
     }

@@ -23,17 +23,19 @@ const HALF_MM: (f64, f64) = (1.2, 0.75);
 enum State {
     Grown,
     Same,
+    Cut,
     New,
     Gone,
 }
 
 impl State {
-    const ALL: [Self; 4] = [Self::Grown, Self::Same, Self::New, Self::Gone];
+    const ALL: [Self; 5] = [Self::Grown, Self::Same, Self::Cut, Self::New, Self::Gone];
 
     fn words(self) -> &'static str {
         match self {
             Self::Grown => "in both, grown by more than the 95 % error",
             Self::Same => "in both, growth within the 95 % error",
+            Self::Cut => "in both, cut by untested floor: growth not known",
             Self::New => "only in the second survey (N and its number there)",
             Self::Gone => "only in the first survey (G and its number there)",
         }
@@ -43,6 +45,7 @@ impl State {
         let (fill, stroke) = match self {
             Self::Grown => (colour::MISSED, colour::MISSED_LINE),
             Self::Same => (colour::TWICE, colour::TRACK),
+            Self::Cut => ("#fff", colour::TRACK),
             Self::New => ("#fff", colour::TETHER),
             Self::Gone => ("none", colour::OUT),
         };
@@ -53,7 +56,7 @@ impl State {
     fn ink(self) -> &'static str {
         match self {
             Self::Grown => colour::MISSED_LINE,
-            Self::Same => colour::TRACK,
+            Self::Same | Self::Cut => colour::TRACK,
             Self::New => colour::TETHER,
             Self::Gone => colour::SOFT,
         }
@@ -90,7 +93,11 @@ pub(super) fn map(comparison: &TwoSurveys, layers: &Layers<'_>) -> Figure {
 fn marks(comparison: &TwoSurveys) -> Vec<(State, Point, String)> {
     let registration = &comparison.registration;
     let matched = comparison.matched.iter().map(|pair| {
-        let state = if pair.growth.interval_mm[0] > 0.0 { State::Grown } else { State::Same };
+        let state = match pair.is_cut {
+            true => State::Cut,
+            false if pair.is_grown() => State::Grown,
+            false => State::Same,
+        };
         (state, registration.apply(pair.second.at), pair.second.number.to_string())
     });
     let new = comparison.new.iter().map(|one| {

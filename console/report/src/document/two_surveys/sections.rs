@@ -19,9 +19,9 @@ pub(super) fn sections(comparison: &TwoSurveys) -> SurveysPage {
     let css = |text: String| foreign::markup(&text).replace(is_end, " ");
     let sections = [
         section("Registration", registration(comparison)),
-        section("Map", vec![Block::Wide(picture(&comparison.map))]),
         section("Rates of the plates", plates(comparison)),
         section("Next inspection", next_inspection(comparison)),
+        section("Map", vec![Block::Wide(picture(&comparison.map))]),
         section("Indications in both surveys", matched(comparison)),
         section("New and gone indications", singles(comparison)),
         section("How the figures are computed", method()),
@@ -58,12 +58,13 @@ fn fields(comparison: &TwoSurveys, tank: &str) -> Vec<Field> {
 }
 
 fn grown(comparison: &TwoSurveys) -> usize {
-    comparison.matched.iter().filter(|pair| pair.growth.interval_mm[0] > 0.0).count()
+    comparison.matched.iter().filter(|pair| pair.is_grown()).count()
 }
 
 fn verdict(comparison: &TwoSurveys) -> Verdict {
     let (grown, all) = (grown(comparison), comparison.matched.len());
-    let fastest = comparison.matched.iter().max_by(|a, b| a.growth.mm.total_cmp(&b.growth.mm));
+    let whole = comparison.matched.iter().filter(|pair| !pair.is_cut);
+    let fastest = whole.max_by(|a, b| a.growth.mm.total_cmp(&b.growth.mm));
     let fastest = fastest.map_or_else(String::new, |pair| {
         let [low, high] = pair.growth.rate_interval_mm_per_a;
         format!(
@@ -174,7 +175,7 @@ fn plates(comparison: &TwoSurveys) -> Vec<Block> {
         let cells = std::iter::once(name.to_owned()).chain(counts).chain(rates);
         table.row(cells.map(Value::from).collect());
     }
-    let note = "New and gone count only on floor that both surveys tested. The interval of the mean holds the errors of \
+    let note = "Indications that are cut by untested floor count for no rate. New and gone count only on floor that both surveys tested. The interval of the mean holds the errors of \
                 the two surveys, not the differences between the indications of the plate.";
     vec![Block::Table(table), Block::Note(note.into())]
 }
@@ -236,7 +237,9 @@ fn matched(comparison: &TwoSurveys) -> Vec<Block> {
     );
     for pair in &comparison.matched {
         let depth = |one: &Indication| format!("{} ±{}", number(one.depth_mm, 1), error_mm(one));
-        let [rate, interval] = rate(Some(&pair.growth));
+        let known = Some(&pair.growth).filter(|_| !pair.is_cut);
+        let [rate, interval] = rate(known);
+        let growth = known.map_or_else(|| "not known".to_owned(), |growth| number(growth.mm, 2));
         table.row(vec![
             pair.first.number.to_string().into(),
             pair.second.number.to_string().into(),
@@ -247,7 +250,7 @@ fn matched(comparison: &TwoSurveys) -> Vec<Block> {
             pair.rivals.to_string().into(),
             depth(&pair.first).into(),
             depth(&pair.second).into(),
-            number(pair.growth.mm, 2).into(),
+            growth.into(),
             rate.into(),
             interval.into(),
         ]);
@@ -255,7 +258,9 @@ fn matched(comparison: &TwoSurveys) -> Vec<Block> {
     if comparison.matched.is_empty() {
         return vec![Block::Text("None.".into())];
     }
-    vec![Block::Table(table)]
+    let note = "The growth is not known if untested floor lies beside one of the two: the deepest place of the loss may be \
+                there. Such an indication counts for no rate, and with its whole depth for the next inspection.";
+    vec![Block::Table(table), Block::Note(note.into())]
 }
 
 fn singles(comparison: &TwoSurveys) -> Vec<Block> {

@@ -44,6 +44,7 @@ impl<'a> Side<'a> {
                 covariance: place_covariance(finding, &sampling, swath_m),
                 depth_mm: finding.depth_mm,
                 depth_sigma_mm: depth_sigma_mm(finding, &sampling, swath_m),
+                is_cut: !is_read(&judge, layers.floor(), [finding.low, finding.high]),
             }
         };
         let survey = Survey {
@@ -78,11 +79,21 @@ impl<'a> Side<'a> {
 
     /// Whether the survey has readings at a place and in all cells around it.
     pub(super) fn is_tested(&self, place: Point) -> bool {
-        let steps = [-1.0, 0.0, 1.0].map(|step| step * self.floor.cell_m);
-        let places = steps.iter().flat_map(|x| steps.iter().map(move |y| place + Vector::new(*x, *y)));
-        let is_read = |place| self.floor.cell_at(place).is_some_and(|cell| self.judge.count(cell) > 0);
-        places.into_iter().all(is_read)
+        is_read(&self.judge, self.floor, [place, place])
     }
+}
+
+/// Whether all cells in a box, and those around it, have readings that were judged.
+fn is_read(judge: &Judge, floor: &Floor, [low, high]: [Point; 2]) -> bool {
+    let rim = Vector::repeat(floor.cell_m);
+    let (low, size) = (low - rim, high - low + 2.0 * rim);
+    let count = |m: f64| (m / floor.cell_m).ceil() as usize;
+    let at = |k: usize, n: usize, m: f64| m * k as f64 / n as f64;
+    let (columns, rows) = (count(size.x), count(size.y));
+    let mut places = (0..=rows).flat_map(|row| {
+        (0..=columns).map(move |column| low + Vector::new(at(column, columns, size.x), at(row, rows, size.y)))
+    });
+    places.all(|place| floor.cell_at(place).is_some_and(|cell| judge.count(cell) > 0))
 }
 
 /// The day of a survey.

@@ -26,6 +26,10 @@ fn grown(growth: Option<&Growth>) -> Vec<String> {
     [growth.mm, low, high, growth.rate_mm_per_a, slow, fast].map(|value| format!("{value:.3}")).to_vec()
 }
 
+fn yes(is: bool) -> String {
+    if is { "yes" } else { "no" }.into()
+}
+
 fn indications(comparison: &TwoSurveys) -> String {
     let plate = |one: &Indication| one.plate.clone().unwrap_or_default();
     let matched = comparison.matched.iter().map(|pair| {
@@ -33,7 +37,7 @@ fn indications(comparison: &TwoSurveys) -> String {
         row.extend([Some(&pair.first), Some(&pair.second)].into_iter().flat_map(cells));
         row.extend([format!("{:.3}", pair.apart_m), pair.rivals.to_string()]);
         row.extend(grown(Some(&pair.growth)));
-        row.push("yes".into());
+        row.extend(["yes".into(), yes(pair.is_cut)]);
         row
     });
     let single = |state: &str, one: &super::Single, is_first: bool| {
@@ -43,7 +47,7 @@ fn indications(comparison: &TwoSurveys) -> String {
         row.extend(sides.into_iter().flat_map(cells));
         row.extend([String::new(), String::new()]);
         row.extend(grown(None));
-        row.push(if one.is_tested { "yes" } else { "no" }.into());
+        row.extend([yes(one.is_tested), yes(indication.is_cut)]);
         row
     };
     let new = comparison.new.iter().map(|one| single("new", one, false));
@@ -70,6 +74,7 @@ fn indications(comparison: &TwoSurveys) -> String {
         "rate_low_mm_per_a",
         "rate_high_mm_per_a",
         "tested_by_both",
+        "cut_by_untested",
     ];
     table(&head, matched.chain(new).chain(gone))
 }
