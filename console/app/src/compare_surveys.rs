@@ -47,6 +47,11 @@ pub(crate) fn compare(args: &CompareSurveysArgs) -> anyhow::Result<ExitCode> {
     ];
     let comparison =
         TwoSurveys::new(surveyed, args.minimum_mm, env!("CARGO_PKG_VERSION")).map_err(bad_input)?;
+    for part in [&comparison.first, &comparison.second] {
+        for doubt in &part.doubts {
+            say_line(&format!("WARNING: run {}: {doubt}", part.run))?;
+        }
+    }
     let texts: Vec<String> = match format.as_str() {
         "html" => vec![two_surveys_html(&comparison)],
         "json" => vec![pretty_json("the comparison", &comparison)?],

@@ -59,6 +59,8 @@ pub struct SurveyPart {
     pub journal_sha256: Option<String>,
     /// SHA-256 of the readings, hexadecimal.
     pub readings_sha256: Option<String>,
+    /// The problems found with the files of the run.
+    pub doubts: Vec<String>,
 }
 
 /// A loss of metal that both surveys show.

@@ -339,5 +339,8 @@ fn provenance(comparison: &TwoSurveys) -> Vec<Block> {
     let mut facts = of("First", &comparison.first);
     facts.extend(of("Second", &comparison.second));
     facts.push(("Made by".into(), comparison.made_by.clone()));
-    vec![Block::Hashes(facts)]
+    let doubts = [&comparison.first, &comparison.second].into_iter();
+    let doubts = doubts.flat_map(|part| part.doubts.iter().map(|doubt| format!("{}: {doubt}", part.run)));
+    let barred = doubts.map(|doubt| Block::Barred(format!("trust this comparison: run {doubt}")));
+    barred.chain([Block::Hashes(facts)]).collect()
 }
