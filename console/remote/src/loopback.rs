@@ -98,7 +98,8 @@ impl Loopback {
     fn answered(&mut self, command: Command) -> Result<Vec<Vec<u8>>, Misfit> {
         let Command { drive, heading_rad, braking_orders } = command;
         self.inbox.commanded(drive.is_some(), self.now_s());
-        self.outbox.command(drive.map(|drive| motion(drive, heading_rad, self.is_omni)), braking_orders);
+        let motion = drive.map(|drive| motion(drive, heading_rad, self.is_omni));
+        self.outbox.command(motion, braking_orders, self.now_s());
         let (mut line, now_s) = (Vec::new(), self.now_s());
         let message = self.outbox.next(|| now_s, &mut now_s.clone());
         self.to_vehicle.0.write(&message, &mut line)?;
