@@ -10,8 +10,9 @@ const UNUSED: u32 = 10;
 /// The use of scans so far.
 #[derive(Debug, Clone, Default)]
 pub(super) struct ScanAid {
-    /// What the last scan showed, until it is used; the outer `None` if no new scan has arrived.
-    next: Option<Option<Matched>>,
+    /// Whether a scan has arrived since the last correction, and the pose that it showed.
+    is_new: bool,
+    next: Option<Matched>,
     unused: u32,
     /// Whether scans were used according to the last event.
     told: Option<bool>,
@@ -20,12 +21,15 @@ pub(super) struct ScanAid {
 impl ScanAid {
     /// Keeps what a scan shows for the next tick.
     pub(super) fn keep(&mut self, matched: Option<Matched>) {
-        self.next = Some(matched);
+        (self.is_new, self.next) = (true, matched);
     }
 
     /// Corrects the estimate by the last scan; returns whether scans have begun to help, or have ceased to.
     pub(super) fn correct(&mut self, positioner: &mut Positioner) -> Option<EventKind> {
-        let trouble = match self.next.take()? {
+        if !std::mem::take(&mut self.is_new) {
+            return None;
+        }
+        let trouble = match self.next {
             None => Some("too few of their points are on the wall or on drawn obstacles"),
             Some(Matched { pose, covariance }) => (!positioner.take_pose(&pose, &covariance))
                 .then_some("they contradict the estimated position"),
