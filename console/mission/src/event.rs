@@ -589,6 +589,12 @@ pub enum EventKind {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         trouble: Option<String>,
     },
+    /// Scans have begun to correct the estimated position, or have ceased to.
+    ScanAided {
+        /// The reason why they do not correct it, as a clause about the scans; absent if they do.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        trouble: Option<String>,
+    },
     /// The robot may move again.
     Resumed,
     /// An unattended mission of a real vehicle is held because its position is not reliable. It resumes automatically when

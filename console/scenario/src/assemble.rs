@@ -133,7 +133,10 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         start_names_plan: false,
         live: false,
         guard_reaction_s: robot.scanner.map(|_| 0.0),
-        sensor: robot.scanner.as_ref().map(Sensor::of),
+        sensor: robot
+            .scanner
+            .as_ref()
+            .map(|scanner| Sensor { locates: robot.scanner_locates, ..Sensor::of(scanner) }),
         better_plan: rest.better_plan,
         instrument,
     };

@@ -371,6 +371,7 @@ static SCANNER: &[Key] = &[
     number("lost_share", "", at_least(0.0).up_to(0.7)).or(0.02),
     key("offset_m", "m", Kind::Pair(at_least(-10.0).up_to(10.0))).or_none("`[0, 0]`"),
     number("heading_deg", "deg", ANGLE).or(0.0),
+    key("locates", "", Kind::Flag).or_flag(false),
 ];
 
 static AE: &[Key] = &[

@@ -72,18 +72,13 @@ fn judged(listened: &Listened) -> Row {
     } else {
         None
     };
-    match wrong {
-        Some(wrong) => Row::fail(check, figures, wrong),
-        None => {
-            let says = format!(
-                "{} scans; the pre-flight check compares their direction with the drawing",
-                scans.len()
-            );
-            let failed =
-                format!("more than {GAP_MAX_S} s without a scan; the guard of a mission would be blind");
-            Row::judged(check, figures, &says, &failed)
-        }
+    if let Some(wrong) = wrong {
+        return Row::fail(check, figures, wrong);
     }
+    let says =
+        format!("{} scans; the pre-flight check compares their direction with the drawing", scans.len());
+    let failed = format!("more than {GAP_MAX_S} s without a scan; the guard of a mission would be blind");
+    Row::judged(check, figures, &says, &failed)
 }
 
 #[cfg(test)]
