@@ -8,6 +8,7 @@ mod files;
 mod flight;
 mod logs;
 mod past;
+mod readings;
 mod vehicle;
 
 pub(crate) use author::{Lang, NewPlannerArgs, NewVehicleArgs, ReplayWorkerArgs, VehicleLang};
@@ -18,6 +19,7 @@ pub(crate) use files::{FindArg, ImportArgs, LocateArgs, MapArgs};
 pub(crate) use flight::{AccuracyArgs, PlanArgs, RunArgs, ShadowArgs};
 pub(crate) use logs::LogsArg;
 pub(crate) use past::{EventsArgs, ExportArgs, ReportArgs, RescanArgs};
+pub(crate) use readings::ReadingsArgs;
 pub(crate) use vehicle::{SimulateArgs, TrialArgs, VehicleArgs, VehicleCommand};
 
 use clap::{Parser, Subcommand};
@@ -128,6 +130,8 @@ pub(crate) enum Command {
     Export(ExportArgs),
     /// Locate a robot from the readings of a real system; write fixes, a track, a recording and a report.
     Locate(LocateArgs),
+    /// Place the readings of an instrument on the track of a past run, by their time; the report judges them.
+    Readings(ReadingsArgs),
     /// Show the result of a past run, or the combined result of a scan and its re-scans.
     Report(ReportArgs),
     /// Create a scenario that scans the areas missed by one or more past runs.

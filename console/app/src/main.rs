@@ -18,6 +18,7 @@ mod past_runs;
 mod plan;
 mod planners;
 mod progress;
+mod readings;
 mod replay_worker;
 mod report_file;
 mod rescan;
@@ -109,6 +110,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Events(args)) => events::events(&args),
         Some(Command::Export(args)) => export::export(&args),
         Some(Command::Locate(args)) => locate::locate(&args),
+        Some(Command::Readings(args)) => readings::readings(&args),
         Some(Command::Report(args)) => past_runs::report(&args, &plugins),
         Some(Command::Rescan(args)) => rescan::rescan(&args, &plugins),
         Some(Command::ReplayWorker(args)) => replay_worker::replay(&args),
