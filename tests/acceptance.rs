@@ -44,6 +44,8 @@ mod killed;
 mod located;
 #[path = "acceptance/looking_on.rs"]
 mod looking_on;
+#[path = "acceptance/packed.rs"]
+mod packed;
 #[cfg(target_os = "linux")]
 #[path = "acceptance/planning.rs"]
 mod planning;
@@ -63,6 +65,8 @@ mod reproduce;
 mod rerun;
 #[path = "acceptance/rescan.rs"]
 mod rescan;
+#[path = "acceptance/return_path.rs"]
+mod return_path;
 #[path = "acceptance/reviewing.rs"]
 mod reviewing;
 #[path = "acceptance/scenarios.rs"]
@@ -85,9 +89,14 @@ mod signing;
 mod slurm;
 #[path = "acceptance/stopping.rs"]
 mod stopping;
+#[path = "acceptance/surveys.rs"]
+mod surveys;
 #[cfg(unix)]
 #[path = "acceptance/terminal.rs"]
 mod terminal;
 #[cfg(target_os = "linux")]
 #[path = "acceptance/vehicle.rs"]
 mod vehicle;
+#[cfg(target_os = "linux")]
+#[path = "acceptance/vehicle_misses.rs"]
+mod vehicle_misses;

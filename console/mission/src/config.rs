@@ -3,7 +3,7 @@
 use crate::{instrument::InstrumentConfig, planner::PlannerChoice};
 use geometry::motion::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD};
 use perception::Sensor;
-use planner_api::{Limits, Motion, TetherLimits};
+use planner_api::{Limits, Motion, TetherLimits, TetherPull};
 use positioning::{Aggregation, Forecast, RangeNoise, Risk, SolverKind, Timing};
 use serde::{Deserialize, Serialize};
 use world::{Floor, FloorMaker, Point, Pose, PressureSensor, World, coverage::Tool, tether};
@@ -162,7 +162,11 @@ impl TetherConfig {
     /// The limits in the form that planners receive.
     pub fn as_request(&self) -> TetherLimits {
         let tether::Limits { reel_length_m, wrap_max_rad, wrap_total_max_rad } = self.limits;
-        TetherLimits { reel_length_m, wrap_max_rad, wrap_total_max_rad }
+        let pull = self.reel.map(|reel| {
+            let tether::PullLimits { drag, reel_n, preferred_n, .. } = reel.limits(self.friction);
+            TetherPull { floor_n_per_m: drag.floor_n_per_m, friction: drag.friction, reel_n, preferred_n }
+        });
+        TetherLimits { reel_length_m, wrap_max_rad, wrap_total_max_rad, pull }
     }
 }
 

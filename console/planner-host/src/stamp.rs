@@ -181,9 +181,9 @@ mod tests {
     #[test]
     fn another_major_version_is_refused_with_what_to_do() {
         let newer = accept(Abi { major: 9, minor: 0 }).map_err(|error| error.to_string());
-        assert_eq!(newer, Err("built for planner ABI 9.0; this console uses 1.4: update the console".into()));
+        assert_eq!(newer, Err("built for planner ABI 9.0; this console uses 1.5: update the console".into()));
         let older = accept(Abi { major: 0, minor: 3 }).map_err(|error| error.to_string());
-        assert_eq!(older, Err("built for planner ABI 0.3; this console uses 1.4: rebuild the plugin".into()));
+        assert_eq!(older, Err("built for planner ABI 0.3; this console uses 1.5: rebuild the plugin".into()));
         assert!(accept(Abi { major: 1, minor: 99 }).is_ok(), "a newer minor version is accepted");
     }
 

@@ -18,7 +18,7 @@ use rustix::process::Signal;
 use std::time::Duration;
 
 /// The version of the protocol, raised whenever the form of a frame changes. Console and worker must be the same build.
-pub(crate) const VERSION: u32 = 6;
+pub(crate) const VERSION: u32 = 7;
 /// The maximum length of a frame, bytes.
 pub(crate) const LONGEST: usize = 16 << 20;
 /// The signal with which a worker ends itself when it can no longer communicate with its console. An exit code would

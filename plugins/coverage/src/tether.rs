@@ -4,7 +4,7 @@ use crate::slit_domain::SlitDomain;
 use crate::workspace::Workspace;
 use planner_api::{PlanRequest, Site};
 use std::sync::Arc;
-use world::tether::{Cable, Case, Certificate, Ground, Limits, Strain, certify_on, strain};
+use world::tether::{Cable, Case, Certificate, Ground, Limits, PullLimits, Strain, certify_on, strain};
 use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, tether};
 
 /// Length outside the anchor up to which a cable counts as reeled in, metres.
@@ -53,6 +53,9 @@ pub(crate) fn comes_in(domain: &SlitDomain<'_>, cable: &Cable) -> bool {
     left.length_m() < IN_M
 }
 
+/// What the mission requires of the tether; the second part is `None` if the pull is not limited.
+pub(crate) type Demands = (Limits, Option<PullLimits>);
+
 /// A path that returns to the anchor, and the position of the cable at its start.
 #[derive(Clone, Copy)]
 pub(crate) struct Tethered<'a> {
@@ -63,7 +66,7 @@ pub(crate) struct Tethered<'a> {
 
 impl Tethered<'_> {
     /// The certificate of the path.
-    pub(crate) fn certificate(&self, site: &Site<'_>, limits: Limits) -> Certificate {
+    pub(crate) fn certificate(&self, site: &Site<'_>, limits: Demands) -> Certificate {
         let obstacles = obstacles(site);
         let certificate = certify_on(self.ground(&obstacles), &self.case(&obstacles, limits));
         certificate.unwrap_or_else(|error| Certificate {
@@ -76,7 +79,7 @@ impl Tethered<'_> {
     }
 
     /// The strain that the path puts on the cable; `None` where no cable can lie.
-    pub(crate) fn strain(&self, site: &Site<'_>, limits: Limits) -> Option<Strain> {
+    pub(crate) fn strain(&self, site: &Site<'_>, limits: Demands) -> Option<Strain> {
         let obstacles = obstacles(site);
         strain(self.ground(&obstacles), &self.case(&obstacles, limits)).ok()
     }
@@ -86,7 +89,7 @@ impl Tethered<'_> {
         ground.get_or_init(|| Ground::new(*anchor, wall, obstacles))
     }
 
-    fn case<'b>(&'b self, obstacles: &'b [Obstacle], limits: Limits) -> Case<'b> {
+    fn case<'b>(&'b self, obstacles: &'b [Obstacle], (limits, pull): Demands) -> Case<'b> {
         let SlitDomain { workspace, cuts, .. } = self.domain;
         Case {
             path: self.path,
@@ -96,7 +99,7 @@ impl Tethered<'_> {
             obstacles,
             room_m: workspace.keep_m,
             limits,
-            pull: None,
+            pull,
             returns: true,
             cuts,
         }

@@ -25,7 +25,7 @@ use planner_api::{
     Caps, Code, Command, Config, Ctx, Layer, LogLevel, ParamSpec, Plan, PlanRequest, Planner, PlannerError,
     Result, Sensed, Site,
 };
-use world::{Point, coverage::percent_text};
+use world::{Point, coverage::percent_text, tether::Strain};
 
 /// The tether-safe planner; it plans in the slit domain.
 pub struct TetherSafe {
@@ -191,6 +191,8 @@ fn warn(worth: &Worth, preferences: &Preferences, scope: &Scope<'_>, scans_enoug
     }
     if !worth.certificate.certified {
         warn(&format!("not certified: {}", worth.certificate.reasons.join("; ")));
+    } else if preferences.pull_share(&Strain::from(&worth.certificate)) > 1.0 {
+        warn(&format!("no candidate needs less pull: {}", worth.certificate.warnings.join("; ")));
     } else if !worth.meets(preferences) {
         warn("no candidate keeps the cable within the preferred length and wrap");
     }

@@ -244,6 +244,9 @@ pub(crate) mod choice {
     /// Largest shortfall from the requested coverage with which a plan is still complete if the reel has a limit, as a
     /// share.
     pub(crate) const BY_REEL: f64 = 0.001;
+    /// Length of path that is worth as much as the whole preferred pull on the tether, metres: two candidates that differ
+    /// by less are chosen by the pull. It is small, because the pull is free as long as it is within its limit.
+    pub(crate) const PULL_M: f64 = 5.0;
     /// Maximum number of cells of a floor. More cells cost memory and time. In a large tank, the edges, where cell size
     /// matters, are a smaller share of the floor (tuning.md).
     pub(crate) const MOST_CELLS: f64 = 4e6;

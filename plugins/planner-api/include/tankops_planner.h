@@ -37,7 +37,7 @@ extern "C" {
 #endif
 
 #define TP_ABI_MAJOR 1u /* the console refuses libraries with a different major version */
-#define TP_ABI_MINOR 4u /* raised when something is added at the end of a struct */
+#define TP_ABI_MINOR 5u /* raised when something is added at the end of a struct */
 
 /* ---- numbers that cross the boundary ------------------------------------------------------------------------- */
 
@@ -166,6 +166,11 @@ typedef struct tp_plan_in {
   uint32_t n_way, n_way_legs;
   const tp_outline *way_cuts; /* polylines */
   uint32_t n_way_cuts, way_complete;
+  /* since 1.5, with TP_COVER: the pull at the reel that takes up the taut tether; newtons */
+  double pull_per_m;        /* friction of the floor, newtons per metre of tether */
+  double pull_friction;     /* round an obstacle, the pull grows by e^(pull_friction * wrap) */
+  double reel_pull;         /* the console refuses a plan that needs more; 0 if the pull is not limited */
+  double preferred_pull;    /* pull that a plan should not exceed */
 } tp_plan_in;
 
 typedef struct tp_step_in {
@@ -298,10 +303,11 @@ TP_ASSERT(sizeof(tp_outline) == 24 && sizeof(tp_obstacle) == 48 && sizeof(tp_zon
 TP_ASSERT(sizeof(tp_site) == 184 && offsetof(tp_site, boundary) == 16, "layout");
 TP_ASSERT(offsetof(tp_site, obstacles) == 40 && offsetof(tp_site, zones) == 56, "layout");
 TP_ASSERT(offsetof(tp_site, motion) == 72, "layout");
-TP_ASSERT(sizeof(tp_plan_in) == 224 && offsetof(tp_plan_in, covariance) == 48, "layout");
+TP_ASSERT(sizeof(tp_plan_in) == 256 && offsetof(tp_plan_in, covariance) == 48, "layout");
 TP_ASSERT(offsetof(tp_plan_in, targets) == 104 && offsetof(tp_plan_in, site) == 136, "layout");
 TP_ASSERT(offsetof(tp_plan_in, regions) == 144 && offsetof(tp_plan_in, reel) == 160, "layout");
 TP_ASSERT(offsetof(tp_plan_in, way) == 184 && offsetof(tp_plan_in, way_cuts) == 208, "layout");
+TP_ASSERT(offsetof(tp_plan_in, pull_per_m) == 224 && offsetof(tp_plan_in, preferred_pull) == 248, "layout");
 TP_ASSERT(sizeof(tp_step_in) == 176 && offsetof(tp_step_in, target) == 120, "layout");
 TP_ASSERT(offsetof(tp_step_in, targets_ahead) == 136 && offsetof(tp_step_in, obstacles) == 160, "layout");
 TP_ASSERT(sizeof(tp_plan_out) == 16 && sizeof(tp_step_out) == 32 && sizeof(tp_draw) == 48, "layout");

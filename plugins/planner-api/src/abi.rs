@@ -19,7 +19,7 @@ pub const MAGIC: [u8; 8] = *b"TANKPLAN";
 /// The major version; the console refuses libraries with a different one.
 pub const MAJOR: u32 = 1;
 /// The minor version; raised when something is added at the end of a struct.
-pub const MINOR: u32 = 4;
+pub const MINOR: u32 = 5;
 /// The one symbol that a library exports.
 pub const SYMBOL: &str = "tank_planner_entry";
 /// The name of the section that contains the stamp, as file readers report it on Linux, macOS and Windows.
@@ -146,10 +146,11 @@ const _: () = {
         offset_of!(Site, obstacles) == 40 && offset_of!(Site, zones) == 56 && offset_of!(Site, motion) == 72
     );
     assert!(offset_of!(Site, acceleration) == 128 && offset_of!(Site, land_v_max) == 152);
-    assert!(size_of::<PlanIn>() == 224 && offset_of!(PlanIn, covariance) == 48);
+    assert!(size_of::<PlanIn>() == 256 && offset_of!(PlanIn, covariance) == 48);
     assert!(offset_of!(PlanIn, targets) == 104 && offset_of!(PlanIn, site) == 136);
     assert!(offset_of!(PlanIn, regions) == 144 && offset_of!(PlanIn, reel) == 160);
     assert!(offset_of!(PlanIn, way) == 184 && offset_of!(PlanIn, way_cuts) == 208);
+    assert!(offset_of!(PlanIn, pull_per_m) == 224 && offset_of!(PlanIn, preferred_pull) == 248);
     assert!(size_of::<StepIn>() == 176 && offset_of!(StepIn, target) == 120);
     assert!(offset_of!(StepIn, targets_ahead) == 136 && offset_of!(StepIn, obstacles) == 160);
     assert!(size_of::<PlanOut>() == 16 && size_of::<StepOut>() == 32 && size_of::<Draw>() == 48);

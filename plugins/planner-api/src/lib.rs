@@ -34,7 +34,9 @@ pub use glue::on_own_thread;
 pub use nalgebra::{Point2, Vector2};
 pub use params::{Config, Kind, ParamSpec, Value, choice, flag, float, int};
 pub use planner::{Caps, Planner};
-pub use request::{Leg, LegTag, Plan, PlanRequest, PoseEstimate, Reason, Sensed, Task, TetherLimits};
+pub use request::{
+    Leg, LegTag, Plan, PlanRequest, PoseEstimate, Reason, Sensed, Task, TetherLimits, TetherPull,
+};
 pub use site::{Boundary, Obstacle, Outline, Site, Zone, ZoneKind};
 
 /// The result of a call to a planner.

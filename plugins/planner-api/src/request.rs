@@ -51,6 +51,23 @@ pub struct TetherLimits {
     pub wrap_max_rad: f64,
     /// Largest sum of the wrap angles around all obstacles, radians; infinite without a limit.
     pub wrap_total_max_rad: f64,
+    /// The pull that moves the tether; `None` if the pull is not limited.
+    pub pull: Option<TetherPull>,
+}
+
+/// The pull at the reel that takes up a taut tether. From the robot to the reel, it grows by the friction of the floor
+/// on every metre, and by the factor e^(friction · wrap) round each obstacle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct TetherPull {
+    /// Friction of the floor on the tether, newtons per metre.
+    pub floor_n_per_m: f64,
+    /// Coefficient of friction of the tether on obstacles.
+    pub friction: f64,
+    /// Pull of the reel, newtons: the console refuses a plan that needs more.
+    pub reel_n: f64,
+    /// Pull that a plan should not exceed, newtons.
+    pub preferred_n: f64,
 }
 
 /// A request for a plan, lent by the console.

@@ -31,9 +31,9 @@ pub struct Finding {
     pub run: usize,
     /// The middle, weighted by depth, tank frame, metres.
     pub at: Point,
-    /// South-west and north-east corner of the readings above the threshold, metres.
+    /// South-west corner of the readings above the threshold, metres.
     pub low: Point,
-    /// North-east corner, metres.
+    /// North-east corner of these readings, metres.
     pub high: Point,
     /// 95 % error of the position, metres.
     pub error_m: f64,
@@ -63,6 +63,9 @@ struct CellReadings {
     sum_mm: f32,
     least_mm: f32,
     count: u32,
+    /// Mission time of the latest reading, seconds, and its run.
+    t_s: f32,
+    run: u32,
 }
 
 /// The readings above the threshold in a cell.
@@ -192,6 +195,7 @@ impl Judge {
         seen.least_mm = if seen.count == 0 { thickness_mm } else { seen.least_mm.min(thickness_mm) };
         seen.sum_mm += thickness_mm;
         seen.count += 1;
+        seen.t_s = reading.t_s as f32;
         let depth_mm = self.sampling.thickness_mm - reading.thickness_mm;
         if depth_mm >= self.sampling.threshold_mm() {
             let hit = Hit::of(reading, depth_mm);
@@ -205,6 +209,7 @@ impl Judge {
             own.least_mm = if own.count == 0 { other.least_mm } else { own.least_mm.min(other.least_mm) };
             own.sum_mm += other.sum_mm;
             own.count += other.count;
+            (own.t_s, own.run) = (other.t_s, run as u32);
         }
         for (cell, hit) in &other.hits {
             let hit = hit.of_run(run);
@@ -227,6 +232,12 @@ impl Judge {
     pub fn loss_class(&self, cell: usize) -> Option<u8> {
         let loss = 1.0 - self.mean_mm(cell)? / self.sampling.thickness_mm;
         Some(LOSS_CLASSES.iter().take_while(|limit| loss > **limit).count() as u8)
+    }
+
+    /// The run of the latest reading in a cell, and its mission time, seconds; `None` without readings.
+    pub fn last_read(&self, cell: usize) -> Option<(usize, f64)> {
+        let seen = self.cells.get(cell).filter(|seen| seen.count > 0)?;
+        Some((seen.run as usize, f64::from(seen.t_s)))
     }
 
     /// Number of readings in a cell.

@@ -61,9 +61,9 @@ fn another_abi_is_refused_before_anything_of_it_runs() {
     let source = "#include \"tankops_planner.h\"\nTP_STAMP(9, 0);\n\
                   __attribute__((constructor)) static void boom(void) { *(volatile int *)8 = 1; }\n";
     let (_folder, dirs) = folder_with("newer", source);
-    assert_eq!(refusal(&dirs), "built for planner ABI 9.0; this console uses 1.4: update the console");
+    assert_eq!(refusal(&dirs), "built for planner ABI 9.0; this console uses 1.5: update the console");
     let (_folder, dirs) = folder_with("older", &source.replace("9, 0", "0, 4"));
-    assert_eq!(refusal(&dirs), "built for planner ABI 0.4; this console uses 1.4: rebuild the plugin");
+    assert_eq!(refusal(&dirs), "built for planner ABI 0.4; this console uses 1.5: rebuild the plugin");
 }
 
 const HEAD: &str = "#include \"tankops_planner.h\"\nTP_STAMP(TP_ABI_MAJOR, TP_ABI_MINOR);\n";
@@ -98,7 +98,7 @@ fn an_entry_of_a_broken_header_is_refused() {
          TP_EXPORT const tp_entry tank_planner_entry = {{ TP_MAGIC, 1, 0, 12, 1, list, TP_STR(\"C\") }};\n"
     );
     let (_folder, dirs) = folder_with("small", &source);
-    assert!(refusal(&dirs).starts_with("its entry has 12 bytes, but ABI 1.4 needs 48"));
+    assert!(refusal(&dirs).starts_with("its entry has 12 bytes, but ABI 1.5 needs 48"));
     let (_folder, dirs) = folder_with("null", &source.replace(" 12,", " sizeof(tp_entry),"));
     assert_eq!(refusal(&dirs), "planner number 0 is null");
 }
@@ -177,7 +177,7 @@ fn a_planner_that_is_not_there_names_the_nearest_one() {
 fn a_survey_can_be_written_down() {
     let found: Survey = survey(&built(), &worker());
     let faulty = found.planners().find(|info| info.id == "faulty").unwrap();
-    assert_eq!((faulty.plugin.starts_with("libplanner_faulty."), faulty.abi.as_str()), (true, "1.4"));
+    assert_eq!((faulty.plugin.starts_with("libplanner_faulty."), faulty.abi.as_str()), (true, "1.5"));
     let json = serde_json::to_string(&found).unwrap();
     assert!(json.contains("\"faulty\"") && json.contains(&faulty.sha256));
 }

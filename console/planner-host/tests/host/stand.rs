@@ -100,7 +100,7 @@ pub(crate) fn plan(host: &mut BlockingHost) -> Result<Reply<Plan>, Fault> {
 /// Requests a plan that covers two triangles with a tethered robot.
 pub(crate) fn plan_to_cover(host: &mut BlockingHost) -> Result<Reply<Plan>, Fault> {
     let triangle = [Point2::new(1.0, 0.0), Point2::new(2.0, 0.0), Point2::new(1.0, 1.0)];
-    let tether = TetherLimits { reel_length_m: 40.0, wrap_max_rad: 1.5, wrap_total_max_rad: 2.5 };
+    let tether = TetherLimits { reel_length_m: 40.0, wrap_max_rad: 1.5, wrap_total_max_rad: 2.5, pull: None };
     let regions: [&[_]; 2] = [&triangle, &triangle];
     let (anchor, tether) = (Point2::new(0.5, 0.0), Some(tether));
     plan_for(host, Task::Cover { anchor, regions: &regions, tether, tolerance_m: 0.1 })

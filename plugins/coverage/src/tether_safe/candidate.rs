@@ -9,7 +9,7 @@ use crate::tether::{Tethered, least_cable_m};
 use crate::tether_safe::parameters::{Choice, Preferences};
 use crate::tuning::choice::{
     ANGLES_BETWEEN_WALLS, BETWEEN_WALLS, BY_OBSTACLE, LEAST_TOURED, LOOKED_AT, MOST_ANGLE_RAD, PLACES,
-    SLIVER_PER_M, TOURED_M,
+    PULL_M, SLIVER_PER_M, TOURED_M,
 };
 use crate::tuning::cuts::{AROUND_M, SLACKS_ACROSS, SLACKS_ALONG};
 use crate::workspace::Workspace;
@@ -61,10 +61,10 @@ impl Candidate {
             return domain_between_walls(workspace);
         }
         let (least_m, reel_length_m) = (least_cable_m(workspace), preferences.limits.reel_length_m);
-        let most_m = (least_m * preferences.cable_share).min(reel_length_m);
+        let preferred_m = preferences.preferred_cable_m(least_m);
+        let most_m = preferred_m.min(reel_length_m);
         let made = |slack: f64| {
-            let cable_m =
-                (least_m + (least_m * preferences.cable_share - least_m) * slack).min(reel_length_m);
+            let cable_m = (least_m + (preferred_m - least_m) * slack).min(reel_length_m);
             domain(workspace, &self.pattern, &CutRule { alpha_rad: self.alpha_rad, cable_m })
         };
         let is_short = |domain: &SlitDomain<'_>| domain.is_all_within(most_m + AROUND_M);
@@ -170,7 +170,7 @@ impl Worth {
             length_m: polyline::length_m(&path),
             turns: rotation_turns(&path),
             coverage: scan.swept.coverage(),
-            certificate: tethered.certificate(site, preferences.demanded),
+            certificate: tethered.certificate(site, preferences.demands()),
         }
     }
 
@@ -188,7 +188,7 @@ impl Worth {
         let c = &self.certificate;
         format!(
             "{name}: {:.1} m, {:.0} turns, {} % of reachable floor, tether {:.2} m ({:.0} % above the minimum), \
-             wrap {:.0} deg on one obstacle, {:.0} deg in all{}",
+             wrap {:.0} deg on one obstacle, {:.0} deg in all{}{}",
             self.length_m,
             self.turns,
             percent_text(self.coverage, 2),
@@ -196,6 +196,7 @@ impl Worth {
             100.0 * (Strain::from(c).cable_share() - 1.0),
             c.wrap_max_rad.to_degrees(),
             c.wrap_total_max_rad.to_degrees(),
+            c.pull.map_or_else(String::new, |pull| format!(", pull {}", pull.text())),
             if c.certified { String::new() } else { format!("; not certified: {}", c.reasons.join("; ")) },
         )
     }
@@ -214,7 +215,11 @@ impl Worth {
     /// figure.
     pub(super) fn is_before(&self, other: &Self, preferences: &Preferences) -> bool {
         let figure = |worth: &Self| match preferences.choice {
-            Choice::Shortest => worth.length_m + preferences.choice_turn_m * worth.turns,
+            Choice::Shortest => {
+                worth.length_m
+                    + preferences.choice_turn_m * worth.turns
+                    + PULL_M * preferences.pull_share(&Strain::from(&worth.certificate))
+            }
             Choice::FewestTurns => worth.turns,
             Choice::ShortestCable => worth.certificate.tether_length_max_m,
         };

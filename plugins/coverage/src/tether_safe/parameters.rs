@@ -1,10 +1,10 @@
 //! The parameters that the operator sets for a tether-safe plan.
 
-use crate::tour::Effort;
-use planner_api::{Config, ParamSpec, Site, TetherLimits, choice, float, int};
+use crate::{tether::Demands, tour::Effort};
+use planner_api::{Config, ParamSpec, Site, TetherLimits, TetherPull, choice, float, int};
 use std::f64::consts::TAU;
 use steering::params as p;
-use world::tether::{Limits, Strain};
+use world::tether::{Drag, Limits, PullLimits, Strain};
 
 /// Maximum price of a whole turn, metres.
 const MOST_TURN_M: f64 = 20.0;
@@ -131,6 +131,8 @@ pub(super) struct Preferences {
     pub limits: Limits,
     /// Reel length and wraps that the mission requires.
     pub demanded: Limits,
+    /// The pull that the mission allows; `None` if the pull is not limited.
+    pub pull: Option<PullLimits>,
     pub choice: Choice,
     /// Price of a whole turn when choosing among candidates, metres.
     pub choice_turn_m: f64,
@@ -155,6 +157,7 @@ impl Preferences {
                 ..UNLIMITED
             },
             demanded: UNLIMITED,
+            pull: None,
             choice: match config.choice("choose") {
                 "fewest-turns" => Choice::FewestTurns,
                 "shortest-cable" => Choice::ShortestCable,
@@ -177,7 +180,7 @@ impl Preferences {
 
     /// The same preferences under the mission's limits; unchanged for a robot without a tether.
     pub(super) fn under(self, tether: Option<TetherLimits>) -> Self {
-        let Some(TetherLimits { reel_length_m, wrap_max_rad, wrap_total_max_rad }) = tether else {
+        let Some(TetherLimits { reel_length_m, wrap_max_rad, wrap_total_max_rad, pull }) = tether else {
             return self;
         };
         let limits = Limits {
@@ -185,7 +188,14 @@ impl Preferences {
             wrap_max_rad: self.limits.wrap_max_rad.min(wrap_max_rad),
             wrap_total_max_rad: self.limits.wrap_total_max_rad.min(wrap_total_max_rad),
         };
-        Self { limits, demanded: Limits { reel_length_m, wrap_max_rad, wrap_total_max_rad }, ..self }
+        let pull = pull.map(|TetherPull { floor_n_per_m, friction, reel_n, preferred_n }| PullLimits {
+            drag: Drag { floor_n_per_m, friction },
+            reel_n,
+            preferred_n,
+            pay_out_n: 0.0,
+            robot_n: None,
+        });
+        Self { limits, demanded: Limits { reel_length_m, wrap_max_rad, wrap_total_max_rad }, pull, ..self }
     }
 
     /// The same preferences for a floor between inner walls, which bend the cable wherever the cuts are. Only the
@@ -196,11 +206,29 @@ impl Preferences {
         Self { alpha_rad: 0.0, cable_share: f64::INFINITY, limits, ..self }
     }
 
-    /// Whether the tether meets the preferences for length and wrap.
+    /// What the mission requires of the tether.
+    pub(super) fn demands(&self) -> Demands {
+        (self.demanded, self.pull)
+    }
+
+    /// The preferred length of the cable, metres: a multiple of the minimum that reaches all floor, and no more than the
+    /// preferred pull can drag over the floor, but at least that minimum.
+    pub(super) fn preferred_cable_m(&self, least_m: f64) -> f64 {
+        let dragged_m = self.pull.map_or(f64::INFINITY, |pull| pull.preferred_n / pull.drag.floor_n_per_m);
+        (least_m * self.cable_share).min(dragged_m.max(least_m))
+    }
+
+    /// The pull that taking up the cable needs, as a share of the preferred one; 0 if the pull is not limited.
+    pub(super) fn pull_share(&self, strain: &Strain) -> f64 {
+        self.pull.map_or(0.0, |pull| strain.pull_max_n / pull.preferred_n)
+    }
+
+    /// Whether the tether meets the preferences for length, wrap and pull.
     pub(super) fn allow(&self, strain: &Strain) -> bool {
         strain.cable_share() <= self.cable_share + 1e-6
             && strain.wrap_max_rad <= self.limits.wrap_max_rad
             && strain.wrap_total_max_rad <= self.limits.wrap_total_max_rad
+            && self.pull_share(strain) <= 1.0
     }
 
     /// The same preferences, with the length multiplied by one factor and the wraps by another.
@@ -210,7 +238,8 @@ impl Preferences {
             wrap_total_max_rad: self.limits.wrap_total_max_rad * wrap,
             ..self.limits
         };
-        Self { cable_share: self.cable_share * length, limits, ..*self }
+        let pull = self.pull.map(|pull| PullLimits { preferred_n: pull.preferred_n * length * wrap, ..pull });
+        Self { cable_share: self.cable_share * length, limits, pull, ..*self }
     }
 }
 

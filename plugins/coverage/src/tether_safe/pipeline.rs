@@ -101,7 +101,7 @@ impl<'a> Pipeline<'a> {
         let Self { site, preferences, cable, .. } = *self;
         let estimate_m = draft.estimate_m(preferences.choice_turn_m);
         let tethered = Tethered { domain: draft.domain(), path: &draft.path(), cable };
-        let strain = tethered.strain(site, preferences.demanded);
+        let strain = tethered.strain(site, preferences.demands());
         let lenient = preferences.with_leeway(DRAFT_CABLE, DRAFT_WRAP);
         let may_meet = strain.is_some_and(|strain| lenient.allow(&strain));
         Drafted { name, estimate_m, may_meet, draft }

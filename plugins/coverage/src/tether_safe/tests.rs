@@ -3,10 +3,13 @@ use crate::bench;
 use crate::polish::shell::open_lanes;
 use crate::slit_domain::SlitDomain;
 use planner_api::testing::Bench;
-use planner_api::{PoseEstimate, TetherLimits};
+use planner_api::{PoseEstimate, TetherLimits, TetherPull};
 use proptest::prelude::*;
 use trials::tanks::{CELL_M, Known, Tank};
-use world::{Vector, polyline};
+use world::{
+    Shape, Vector, polyline,
+    tether::{Cable, Drag},
+};
 
 fn plan(tank: &Tank, values: &[(&str, f64)], tether: Option<TetherLimits>) -> (Result<Plan>, Bench) {
     bench::plan::<TetherSafe>(tank, values, tether)
@@ -66,8 +69,12 @@ fn the_same_question_gets_the_same_answer() {
 #[test]
 fn a_short_reel_gives_a_partial_plan_that_says_what_is_left() {
     let tank = Known::E1.tank(4);
-    let tether =
-        TetherLimits { reel_length_m: 6.0, wrap_max_rad: f64::INFINITY, wrap_total_max_rad: f64::INFINITY };
+    let tether = TetherLimits {
+        reel_length_m: 6.0,
+        wrap_max_rad: f64::INFINITY,
+        wrap_total_max_rad: f64::INFINITY,
+        pull: None,
+    };
     let (plan, bench) = plan(&tank, &[], Some(tether));
     let plan = plan.unwrap();
     let scan = tank.score(&plan.path, &plan.cuts, CELL_M).unwrap();
@@ -91,10 +98,53 @@ fn a_reel_that_just_does_is_not_called_too_short() {
         reel_length_m: needed_m + 0.01,
         wrap_max_rad: f64::INFINITY,
         wrap_total_max_rad: f64::INFINITY,
+        pull: None,
     };
     let (plan, bench) = plan(&tank, &[], Some(tether));
     assert!(plan.unwrap().complete, "{:?}", bench.logs());
     assert!(bench.logs().iter().all(|(_, said)| !said.contains("too short")), "{:?}", bench.logs());
+}
+
+/// A reel of a given pull, newtons, of which 80 % are preferred.
+fn pulled(reel_n: f64) -> TetherLimits {
+    let unlimited = f64::INFINITY;
+    let pull = TetherPull { floor_n_per_m: 0.3, friction: 0.3, reel_n, preferred_n: 0.8 * reel_n };
+    TetherLimits {
+        reel_length_m: unlimited,
+        wrap_max_rad: unlimited,
+        wrap_total_max_rad: unlimited,
+        pull: Some(pull),
+    }
+}
+
+/// The pull that a plan needs, newtons.
+fn needed_n(tank: &Tank, plan: &Plan) -> f64 {
+    let shapes: Vec<_> =
+        tank.columns.iter().map(|(at, radius_m)| Shape::Disc { center: *at, radius_m: *radius_m }).collect();
+    let mut cable = Cable::new(tank.anchor, &tank.boundary, &shapes).unwrap();
+    let drag = Drag { floor_n_per_m: 0.3, friction: 0.3 };
+    let pulls = plan.path.iter().map(|point| {
+        cable.drag_to(*point);
+        cable.pull_at_anchor_n(drag)
+    });
+    pulls.fold(0.0, f64::max)
+}
+
+#[test]
+fn the_pull_of_the_reel_limits_the_plan() {
+    let tank = Known::E1.tank(4);
+    let (free, _) =
+        plan(&tank, &[("cable_share", 3.0), ("wrap_deg", 720.0), ("wrap_total_deg", 720.0)], None);
+    let free_n = needed_n(&tank, &free.unwrap());
+    let values = [("cable_share", 3.0), ("wrap_deg", 720.0), ("wrap_total_deg", 720.0)];
+    let (limited, bench) = plan(&tank, &values, Some(pulled(0.97 * free_n / 0.8)));
+    let limited = limited.unwrap();
+    assert!(limited.complete, "{:?}", bench.logs());
+    let limited_n = needed_n(&tank, &limited);
+    assert!(limited_n <= 0.97 * free_n, "{limited_n} N, without a limit {free_n} N");
+    let (weak, bench) = plan(&tank, &values, Some(pulled(0.5 * free_n)));
+    assert!(!weak.unwrap().complete);
+    assert!(bench.logs().iter().any(|(_, said)| said.contains("reeling in needs")), "{:?}", bench.logs());
 }
 
 #[test]
@@ -226,7 +276,7 @@ fn a_swath_wider_than_the_gaps_still_gives_a_certified_plan() {
 
 #[test]
 fn a_reel_with_next_to_nothing_on_it_is_refused_with_what_is_needed() {
-    let tether = TetherLimits { reel_length_m: 0.2, wrap_max_rad: 9.0, wrap_total_max_rad: 9.0 };
+    let tether = TetherLimits { reel_length_m: 0.2, wrap_max_rad: 9.0, wrap_total_max_rad: 9.0, pull: None };
     let error = plan(&Known::E1.tank(4), &[], Some(tether)).0.unwrap_err();
     assert_eq!(error.code, Code::Config);
     assert!(error.message.contains("9.7 m from the anchor"), "{error}");

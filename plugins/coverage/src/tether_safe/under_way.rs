@@ -92,7 +92,7 @@ fn likeliest_first<'a>(
     let rank = |laid: &Laid<'_>| {
         let path = laid.path();
         let tethered = Tethered { domain: &laid.domain, path: &path, cable };
-        let strain = tethered.strain(site, preferences.demanded);
+        let strain = tethered.strain(site, preferences.demands());
         let [is_preferred, is_allowed] = [preferences, &limits.tether]
             .map(|tether| strain.as_ref().is_some_and(|strain| tether.allow(strain)));
         ((!is_allowed, !is_preferred), laid.estimate_m())

@@ -119,6 +119,11 @@ pub struct PlanIn {
     pub way_cuts: *const Outline,
     pub n_way_cuts: u32,
     pub way_complete: u32,
+    // Since 1.5.
+    pub pull_per_m: f64,
+    pub pull_friction: f64,
+    pub reel_pull: f64,
+    pub preferred_pull: f64,
 }
 
 /// A planner's view of one tick.

@@ -153,8 +153,9 @@ pub fn plan(from: &crate::PlanRequest<'_>, site: &Site, parts: &PlanParts) -> Pl
         reel_length_m: f64::INFINITY,
         wrap_max_rad: f64::INFINITY,
         wrap_total_max_rad: f64::INFINITY,
+        pull: None,
     };
-    let TetherLimits { reel_length_m, wrap_max_rad, wrap_total_max_rad } = tether.unwrap_or(free);
+    let TetherLimits { reel_length_m, wrap_max_rad, wrap_total_max_rad, pull } = tether.unwrap_or(free);
     let (previous, n_previous) = points(from.previous);
     let (way, n_way) = points(from.under_way.map_or(&[], |way| &way.path));
     let PlanParts { regions, way_legs, way_cuts } = parts;
@@ -185,6 +186,10 @@ pub fn plan(from: &crate::PlanRequest<'_>, site: &Site, parts: &PlanParts) -> Pl
         way_cuts: way_cuts.as_ptr(),
         n_way_cuts: way_cuts.len() as u32,
         way_complete: u32::from(from.under_way.is_some_and(|way| way.complete)),
+        pull_per_m: pull.map_or(0.0, |pull| pull.floor_n_per_m),
+        pull_friction: pull.map_or(0.0, |pull| pull.friction),
+        reel_pull: pull.map_or(0.0, |pull| pull.reel_n),
+        preferred_pull: pull.map_or(0.0, |pull| pull.preferred_n),
     }
 }
 

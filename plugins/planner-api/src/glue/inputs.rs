@@ -4,7 +4,7 @@ use super::invalid;
 use crate::abi::{self, input};
 use crate::{
     Boundary, Limits, Motion, Obstacle, Outline, Plan, PlanRequest, PoseEstimate, Reason, Result, Sensed,
-    Site, Task, TetherLimits, Value, Zone, ZoneKind,
+    Site, Task, TetherLimits, TetherPull, Value, Zone, ZoneKind,
 };
 use geometry::{Amphibious, Pace};
 use nalgebra::{Matrix3, Point2};
@@ -259,6 +259,12 @@ pub(super) unsafe fn task_of<'a>(raw: &abi::PlanIn, regions: &'a [&'a [Point2<f6
                 reel_length_m: raw.reel,
                 wrap_max_rad: raw.max_wrap,
                 wrap_total_max_rad: raw.max_sum_wrap,
+                pull: (raw.reel_pull > 0.0).then_some(TetherPull {
+                    floor_n_per_m: raw.pull_per_m,
+                    friction: raw.pull_friction,
+                    reel_n: raw.reel_pull,
+                    preferred_n: raw.preferred_pull,
+                }),
             });
             Ok(Task::Cover { anchor, regions, tether, tolerance_m: raw.tolerance })
         }

@@ -6,7 +6,7 @@ use crate::abi::{Draw, Entry, Host, Param, PlanOut, StepOut, Vec2};
 use crate::{Boundary, Limits, Obstacle, Zone, ZoneKind, choice, float};
 use crate::{
     Caps, Command, Layer, Leg, LegTag, Motion, Outline, Plan, PlanRequest, PoseEstimate, Reason, Sensed,
-    Site, Task, TetherLimits,
+    Site, Task, TetherLimits, TetherPull,
 };
 use nalgebra::{Matrix3, Point2, Vector2};
 
@@ -325,7 +325,12 @@ fn a_request_to_cover_arrives_with_its_regions_and_the_limits_of_the_tether() {
     let raw = lend::site(&site, &[], &[]);
     let tethers = [
         None,
-        Some(TetherLimits { reel_length_m: 40.0, wrap_max_rad: 1.5, wrap_total_max_rad: f64::INFINITY }),
+        Some(TetherLimits {
+            reel_length_m: 40.0,
+            wrap_max_rad: 1.5,
+            wrap_total_max_rad: f64::INFINITY,
+            pull: Some(TetherPull { floor_n_per_m: 0.3, friction: 0.2, reel_n: 6.0, preferred_n: 4.8 }),
+        }),
     ];
     for (tether, regions) in tethers.into_iter().zip([&[] as &[&[_]], &[&CORNERS, &CORNERS[1..]]]) {
         let task = Task::Cover { anchor: CORNERS[1], regions, tether, tolerance_m: 0.2 };

@@ -107,6 +107,7 @@ fn every_request_arrives_as_it_was_sent() {
                 reel_length_m: 30.0,
                 wrap_max_rad: 1.0,
                 wrap_total_max_rad: f64::INFINITY,
+                pull: None,
             }),
             tolerance_m: 0.3,
         },

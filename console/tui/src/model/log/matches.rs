@@ -1,6 +1,8 @@
 //! The lines that pass a filter, kept up to date as lines arrive and the filter changes. Consecutive messages of a
-//! planner about its own work form one group.
+//! planner about its own work form one group. A planner's warning that it gave before, with other figures, is listed once,
+//! at its last occurrence.
 
+use super::alike::{are_alike, is_warning};
 use super::entry::Entry;
 use super::filter::Filter;
 use super::lines::Log;
@@ -31,7 +33,13 @@ struct Group {
     first: u64,
     last: u64,
     lines: u32,
+    /// How often a planner gave the warning of the line before.
+    #[serde(default)]
+    again: u32,
 }
+
+/// The number of listed lines among which the earlier occurrence of a warning is looked for: the lines of a few plans.
+const NEAR: usize = 64;
 
 /// A listed line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,6 +50,8 @@ pub struct Listed<'a> {
     pub entry: &'a Entry,
     /// The number of earlier lines that are listed with this one.
     pub more: u32,
+    /// How often the line occurred.
+    pub times: u32,
 }
 
 impl Matches {
@@ -61,8 +71,10 @@ impl Matches {
         }
         let retested = repeated.filter(|number| !self.stays(log, *number));
         let mut from = retested.unwrap_or(self.seen).max(log.oldest());
+        let mut popped = Vec::new();
         while let Some(group) = self.found.pop_back_if(|group| group.last >= from) {
             from = from.min(group.first.max(log.oldest()));
+            popped.push(group);
         }
         while self.found.pop_front_if(|group| group.last < log.oldest()).is_some() {}
         if let Some(cut) = self.found.pop_front_if(|group| group.first < log.oldest()) {
@@ -70,6 +82,11 @@ impl Matches {
         }
         for number in log.passing(&self.filter, from) {
             Self::add(&mut self.found, log, number);
+            // The earlier occurrences of a warning have left the list.
+            let before = popped.iter().find(|group| group.first == number).map_or(0, |group| group.again);
+            if let Some(group) = self.found.back_mut().filter(|group| group.first == number) {
+                group.again = group.again.max(before);
+            }
         }
         self.seen = log.end();
         self.newest = log.newest().and_then(|number| stamp(log, number));
@@ -91,8 +108,20 @@ impl Matches {
             Some(group) if belongs(log, group.last, number) => {
                 (group.last, group.lines) = (number, group.lines + 1);
             }
-            _ => found.push_back(Group { first: number, last: number, lines: 1 }),
+            _ => {
+                let again = Self::take_alike(found, log, number).unwrap_or_default();
+                found.push_back(Group { first: number, last: number, lines: 1, again });
+            }
         }
+    }
+
+    /// Removes the earlier occurrence of a planner's warning from a list; returns how often the warning has been given.
+    fn take_alike(found: &mut VecDeque<Group>, log: &Log, number: u64) -> Option<u32> {
+        let warning = log.get(number).filter(|entry| is_warning(entry))?;
+        let is_alike = |group: &Group| log.get(group.last).is_some_and(|before| are_alike(before, warning));
+        let back = found.iter().rev().take(NEAR).position(is_alike)?;
+        let group = found.remove(found.len() - 1 - back)?;
+        Some(group.again.saturating_add(log.get(group.last)?.count))
     }
 
     /// Replaces the group up to `last`, of which the first lines have been dropped from the log.
@@ -133,15 +162,24 @@ impl Matches {
     /// The listed lines, newest first, skipping the first `skip`.
     pub fn newest<'a>(&'a self, log: &'a Log, skip: usize) -> impl Iterator<Item = Listed<'a>> {
         self.found.iter().rev().skip(skip).filter_map(|group| {
-            Some(Listed { number: group.last, entry: log.get(group.last)?, more: group.lines - 1 })
+            let entry = log.get(group.last)?;
+            let times = entry.count.saturating_add(group.again);
+            Some(Listed { number: group.last, entry, more: group.lines - 1, times })
         })
     }
 
     /// The earlier lines that are listed with a line, newest first.
     pub fn grouped<'a>(&self, log: &'a Log, number: u64) -> impl Iterator<Item = &'a Entry> {
         let group = self.found.iter().rev().find(|group| (group.first..=group.last).contains(&number));
-        let before = group.map_or(number..number, |group| group.first..group.last);
-        before.rev().filter_map(|number| log.get(number)).filter(|entry| entry.severity == Severity::Debug)
+        let again = group.is_some_and(|group| group.again > 0);
+        let before =
+            group.map_or(number..number, |group| if again { 0..group.last } else { group.first..group.last });
+        let of = log.get(number).filter(|_| again);
+        let is_with = move |entry: &&Entry| match of {
+            Some(warning) => are_alike(entry, warning),
+            None => entry.severity == Severity::Debug,
+        };
+        before.rev().map_while(|number| log.get(number)).filter(is_with)
     }
 
     /// The next line of the same kind within the next `among` lines, or within the preceding ones if `back` is set.
@@ -176,130 +214,4 @@ fn belongs(log: &Log, one: u64, next: u64) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::{MAX_LINES, What};
-    use super::*;
-    use mission::Severity;
-
-    fn texts<'a>(matches: &'a Matches, log: &'a Log) -> Vec<&'a str> {
-        matches.newest(log, 0).map(|listed| listed.entry.text.as_str()).collect()
-    }
-
-    /// The matches found all at once, to which a step-by-step refresh must lead, too.
-    fn fresh(text: &str, log: &Log) -> Matches {
-        let mut matches = Matches::default();
-        matches.refresh(text, log);
-        matches
-    }
-
-    #[test]
-    fn what_is_critical_cannot_be_filtered_away() {
-        let mut log = Log::default();
-        log.add(1.0, Severity::Crit, "ae", "position lost".into());
-        log.add(2.0, Severity::Info, "plan", "planned".into());
-        assert_eq!(texts(&fresh("sev>=warn column", &log), &log), ["position lost"]);
-    }
-
-    fn said(planner: &str, n: usize) -> Entry {
-        let (planner, message) = (planner.to_owned(), n.to_string());
-        let kind = EventKind::PlannerLogged { planner, level: planner_api::LogLevel::Debug, message };
-        let what = What::Event(Box::new(super::super::Occurrence { kind, robot: None, range: None }));
-        let (severity, source) = (Severity::Debug, "plan".into());
-        Entry { tick: 0, t_s: 1.0, severity, source, text: n.to_string(), count: 1, what }
-    }
-
-    #[test]
-    fn messages_of_one_planner_that_follow_each_other_are_listed_as_one() {
-        let (mut log, mut matches) = (Log::default(), Matches::default());
-        for n in 0..4 {
-            log.push(said("rpf", n));
-            matches.refresh("sev>=debug", &log);
-        }
-        log.push(said("apf", 4));
-        log.add(2.0, Severity::Info, "plan", "planned".into());
-        matches.refresh("sev>=debug", &log);
-        assert_eq!(matches, fresh("sev>=debug", &log));
-        let listed: Vec<_> = matches.newest(&log, 0).map(|listed| (listed.number, listed.more)).collect();
-        assert_eq!(listed, [(5, 0), (4, 0), (3, 3)]);
-        assert_eq!((matches.newer_than(1), matches.newer_than(3)), (2, 2), "a grown group stays selected");
-        let also: Vec<&str> = matches.grouped(&log, 3).map(|entry| entry.text.as_str()).collect();
-        assert_eq!(also, ["2", "1", "0"]);
-        matches.refresh("", &log);
-        assert_eq!(matches.len(), 1, "hidden unless asked for");
-    }
-
-    #[test]
-    fn a_group_of_which_lines_were_dropped_is_counted_again() {
-        let (mut log, mut matches) = (Log::default(), Matches::default());
-        for n in 0..MAX_LINES + 5000 {
-            log.push(said("rpf", n));
-            if n % 700 == 0 {
-                matches.refresh("sev>=debug", &log);
-            }
-        }
-        matches.refresh("sev>=debug", &log);
-        assert_eq!(matches, fresh("sev>=debug", &log));
-    }
-
-    #[test]
-    fn messages_that_are_repeated_join_and_leave_groups_as_in_a_fresh_list() {
-        let (mut log, mut matches) = (Log::default(), Matches::default());
-        // The same words are repeated later, by the same planner or by another one.
-        let steps =
-            [("rpf", 0), ("rpf", 1), ("rpf", 1), ("rpf", 1), ("apf", 1), ("rpf", 1), ("apf", 2), ("apf", 2)];
-        for text in ["sev>=debug", "sev>=debug t>4", "sev>=debug -1"] {
-            for (step, (planner, n)) in steps.iter().cycle().take(40).enumerate() {
-                log.push(Entry { t_s: step as f64, ..said(planner, *n) });
-                for _ in 0..2 {
-                    matches.refresh(text, &log);
-                    assert_eq!(matches, fresh(text, &log), "{text} in step {step}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn step_by_step_is_the_same_as_fresh() {
-        let (mut log, mut matches) = (Log::default(), Matches::default());
-        for (step, text) in ["", "a", "ab", "a", "-a", "t>5"].into_iter().cycle().take(60).enumerate() {
-            for i in 0..step % 4 {
-                log.add(step as f64, Severity::Info, "plan", format!("{}{}", ["a", "ab", "c"][i], step / 7));
-            }
-            matches.refresh(text, &log);
-            assert_eq!(matches, fresh(text, &log), "{text} in step {step}");
-        }
-        matches.refresh("t>5", &Log::default());
-        assert!(matches.is_empty(), "another run has begun");
-    }
-
-    #[test]
-    fn a_line_that_is_counted_again_is_looked_at_again_and_dropped_lines_are_forgotten() {
-        let (mut log, mut matches) = (Log::default(), Matches::default());
-        for t_s in [1.0, 9.0] {
-            log.add(t_s, Severity::Watch, "ae", "no fix".into());
-            matches.refresh("t>5", &log);
-        }
-        assert_eq!(matches.len(), 1);
-        for i in 0..MAX_LINES + 5000 {
-            log.add(9.0, Severity::Info, "plan", i.to_string());
-        }
-        matches.refresh("t>5", &log);
-        assert_eq!((matches.len(), matches.number(usize::MAX)), (log.len(), Some(log.oldest())));
-    }
-
-    #[test]
-    fn places_are_found_by_number_even_of_lines_that_do_not_pass() {
-        let mut log = Log::default();
-        for i in 0..10 {
-            let text = if i % 2 == 0 { "even" } else { "odd" };
-            log.add(f64::from(i), Severity::Info, "plan", text.into());
-        }
-        let even = fresh("even", &log);
-        assert_eq!([even.newer_than(8), even.newer_than(7), even.newer_than(0)], [0, 1, 4]);
-        assert_eq!([even.number(0), even.number(1), even.number(99)], [Some(8), Some(6), Some(0)]);
-        assert!(matches!(log.get(0).map(|entry| &entry.what), Some(What::Console)));
-        assert_eq!([false, true].map(|back| even.next_like(&log, 4, back, 9)), [Some(6), Some(2)]);
-        assert_eq!([false, true].map(|back| even.next_like(&log, 5, back, 9)), [Some(6), Some(4)]);
-        assert_eq!([even.next_like(&log, 8, false, 9), even.next_like(&log, 0, true, 9)], [None, None]);
-    }
-}
+mod tests;
