@@ -54,7 +54,7 @@ pub fn human(run: &Summary) -> String {
 
 /// The number of readings and indications, and the deepest indication.
 fn readings(readings: &ReadingsSummary) -> String {
-    let ReadingsSummary { count, untestable, indications, deepest } = readings;
+    let ReadingsSummary { count, untestable, indications, deepest, .. } = readings;
     let deepest = deepest.as_ref().map_or_else(String::new, |loss| {
         format!(
             ", the deepest {:.1} ± {:.1} mm at {:.2}, {:.2} m",
