@@ -83,7 +83,7 @@ impl Fold {
             }
             EventKind::TetherAlarmRaised { alarm: TetherAlarm::Snag { .. }, .. } => self.snag(true),
             EventKind::TetherAlarmCleared { alarm: TetherAlarm::Snag { .. } } => self.snag(false),
-            EventKind::TetherTruth { length_m, wrap_max_rad, wrap_total_rad, detour_m } => {
+            EventKind::TetherTruth { length_m, wrap_max_rad, wrap_total_rad, detour_m, .. } => {
                 if let Some(tethered) = &mut self.tethered {
                     tethered.lie(*length_m, *wrap_max_rad, *wrap_total_rad, *detour_m);
                 }

@@ -272,6 +272,7 @@ impl Flight {
             wrap_max_rad: tether.wrap_max_rad,
             wrap_total_rad: tether.wrap_total_rad,
             detour_m: tether.detour_m,
+            lies: tether.lies.map(Box::new),
         });
         let kinds = std::iter::once(EventKind::Truth { pose, clearance_m, collided }).chain(of_tether);
         kinds.map(|kind| self.event(kind)).collect()

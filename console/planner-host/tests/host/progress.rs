@@ -93,7 +93,8 @@ fn progress_outside_of_a_plan_is_ignored() {
 #[test]
 fn a_plugin_built_for_an_older_minor_version_is_loaded_and_plans() {
     for minor in [1, 4] {
-        let older = format!("#include \"tankops_planner.h\"\n#undef TP_ABI_MINOR\n#define TP_ABI_MINOR {minor}u\n");
+        let older =
+            format!("#include \"tankops_planner.h\"\n#undef TP_ABI_MINOR\n#define TP_ABI_MINOR {minor}u\n");
         let (_folder, mut host) = counter(&[("#include \"tankops_planner.h\"\n", &older)]);
         let info = choose(&mut host, "counter", &Parameters::new()).unwrap();
         assert_eq!(info.abi, format!("1.{minor}"));

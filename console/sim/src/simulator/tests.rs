@@ -76,6 +76,7 @@ fn config() -> SimConfig {
         movers: vec![],
         tether_anchor: None,
         reel_length_m: None,
+        physical: None,
     }
 }
 
