@@ -79,6 +79,7 @@ impl Mission {
         let resumes = if only_by_order { Resumes::Never } else { resumes };
         self.happened.push(EventKind::Held { by: by.clone(), resumes });
         self.known.phase = Phase::Held(Hold { by, resumes });
+        self.rules.time_limit.hold(self.known.now_s());
         self.driving.outdate_step();
         self.driving.drop_command(&mut self.happened);
     }

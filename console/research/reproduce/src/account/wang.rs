@@ -217,4 +217,11 @@ const ITEMS: &[Item] = &[
         "tankops reproduce positioning-filter",
         "not in the paper",
     ),
+    item(
+        "Beyond",
+        "protection levels: a radius that covers one wrong station",
+        Ours,
+        "tankops reproduce integrity",
+        "not in the paper",
+    ),
 ];
