@@ -91,7 +91,7 @@ impl EventKind {
         match self {
             Self::TetherTruth { length_m, wrap_max_rad, wrap_total_rad, detour_m, lies } => {
                 [length_m, wrap_max_rad, wrap_total_rad, detour_m].into_iter().for_each(round);
-                for lies in lies {
+                if let Some(lies) = lies {
                     lies.line.iter_mut().for_each(round_point);
                     round(&mut lies.reel_pull_n);
                 }
