@@ -63,6 +63,8 @@ mod reproduce;
 mod rerun;
 #[path = "acceptance/rescan.rs"]
 mod rescan;
+#[path = "acceptance/return_path.rs"]
+mod return_path;
 #[path = "acceptance/reviewing.rs"]
 mod reviewing;
 #[path = "acceptance/scenarios.rs"]
@@ -91,3 +93,6 @@ mod terminal;
 #[cfg(target_os = "linux")]
 #[path = "acceptance/vehicle.rs"]
 mod vehicle;
+#[cfg(target_os = "linux")]
+#[path = "acceptance/vehicle_misses.rs"]
+mod vehicle_misses;

@@ -27,7 +27,7 @@ use vehicle::port::{CannotInject, Command, Sensed, StationFault, Vehicle as Port
 /// Longest wait for something that must happen, on a machine of any speed.
 const PATIENCE: Duration = Duration::from_mins(2);
 
-const HELLO: &str = r#"{"type": "hello", "protocol": 1, "name": "liar", "motion": "unicycle", "limits": {"speed_m_per_s": 0.5, "turn_rad_per_s": 2.0, "acceleration_m_per_s2": 1.0, "radius_m": 0.25}, "has": {"odometry": true, "contact": true, "ae": true}, "period_s": 0.1, "stop_time_s": 0.5, "lease_max_s": 1.0}"#;
+pub(crate) const HELLO: &str = r#"{"type": "hello", "protocol": 1, "name": "liar", "motion": "unicycle", "limits": {"speed_m_per_s": 0.5, "turn_rad_per_s": 2.0, "acceleration_m_per_s2": 1.0, "radius_m": 0.25}, "has": {"odometry": true, "contact": true, "ae": true}, "period_s": 0.1, "stop_time_s": 0.5, "lease_max_s": 1.0}"#;
 
 /// A simulator in a separate process.
 pub(crate) struct Vehicle {
@@ -62,7 +62,7 @@ impl Drop for Vehicle {
 
 /// The lines of a journal that do not depend on whether the robot is simulated inside the console.
 fn decisions(run: &Path) -> Vec<Value> {
-    let of_the_robot = ["truth", "tether_truth", "sensed", "link", "sent", "stood"];
+    let of_the_robot = ["truth", "tether_truth", "sensed", "link", "sent", "stood", "position_awaited"];
     let mut events = journal(run);
     events.retain(|event| !of_the_robot.iter().any(|kind| event["event"] == *kind));
     events[0].as_object_mut().unwrap().remove("vehicle");
@@ -71,7 +71,7 @@ fn decisions(run: &Path) -> Vec<Value> {
 }
 
 /// A mission of a few seconds.
-fn short(bench: &Bench) -> PathBuf {
+pub(crate) fn short(bench: &Bench) -> PathBuf {
     let text = std::fs::read_to_string(scenario("goto-single-obstacle.toml")).unwrap();
     bench.file("short.toml", text.replace("goal_m = [3.5, 0.0]", "goal_m = [-2.5, 0.3]"))
 }
@@ -331,7 +331,10 @@ fn answer(command: &Value, number: u64) -> String {
 /// An adapter that answers pings and, after its introduction, sends prepared texts until the console leaves. A text may
 /// depend on its number, and on the number of texts since the first `drive`, which is 0 before that `drive`. Ten
 /// numbers pass in a second.
-fn liar(path: &Path, lie: impl Fn(u64, u64) -> Vec<u8> + Send + 'static) -> thread::JoinHandle<()> {
+pub(crate) fn liar(
+    path: &Path,
+    lie: impl Fn(u64, u64) -> Vec<u8> + Send + 'static,
+) -> thread::JoinHandle<()> {
     let listener = UnixListener::bind(path).unwrap();
     thread::spawn(move || {
         let (mut stream, _) = listener.accept().unwrap();
@@ -360,7 +363,7 @@ fn liar(path: &Path, lie: impl Fn(u64, u64) -> Vec<u8> + Send + 'static) -> thre
 }
 
 /// Readings of a vehicle that moves by this distance between two of them.
-fn driven(number: u64, forward_m: &str) -> Vec<u8> {
+pub(crate) fn driven(number: u64, forward_m: &str) -> Vec<u8> {
     readings(number, &format!(r#""odometry": {{"over_s": 0.1, "forward_m": {forward_m}, "turn_rad": 0}}"#))
 }
 
@@ -395,7 +398,7 @@ fn lied_to(lie: impl Fn(u64, u64) -> Vec<u8> + Send + 'static) -> Ended {
     ended
 }
 
-fn readings(number: u64, more: &str) -> Vec<u8> {
+pub(crate) fn readings(number: u64, more: &str) -> Vec<u8> {
     let stamp_s = 0.1 * number as f64;
     format!("{{\"type\": \"readings\", \"seq\": {number}, \"stamp_s\": {stamp_s:.1}, {more}}}\n").into_bytes()
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A one-page adapter with a small simulated robot: `--vehicle "run:python3 adapter.py"`. Replace `Disc` with your robot.
 The robot runs in a separate process and keeps the lease, so it stops even if this adapter hangs or dies (vehicle-protocol.md)."""
-import json, os, random, select, subprocess, sys, time
+import contextlib, json, os, random, select, subprocess, sys, time
 
 LIMITS = {"speed_m_per_s": 0.4, "turn_rad_per_s": 1.0, "acceleration_m_per_s2": 0.5, "radius_m": 0.2}
 HELLO = {"type": "hello", "protocol": 1, "name": "disc", "motion": "unicycle", "limits": LIMITS, "has": {"odometry": True},
@@ -13,16 +13,14 @@ class Disc:
         return {"odometry": {"over_s": dt, "forward_m": forward, "turn_rad": turn}}
 
 def say(message):
-    try: os.write(1, json.dumps(message, allow_nan=False).encode() + b"\n")
-    except (BlockingIOError, BrokenPipeError): pass  # the adapter is busy or has ended
+    with contextlib.suppress(BlockingIOError, BrokenPipeError): os.write(1, json.dumps(message, allow_nan=False).encode() + b"\n")
 
 def robot(hello, body):  # lines with speed, turn rate and lease in, readings out
     os.set_blocking(1, False)
     v = w = to_v = to_w = until = 0.0
     seq, has_adapter, before, log = 0, True, time.monotonic(), open(os.environ.get("ROBOT_LOG", os.devnull), "w", 1)
     while has_adapter or v or w:
-        wait = max(0.0, before + hello["period_s"] - time.monotonic())
-        if select.select([0] if has_adapter else [], [], [], wait)[0]:
+        if select.select([0] if has_adapter else [], [], [], max(0.0, before + hello["period_s"] - time.monotonic()))[0]:
             lines = os.read(0, 65536).splitlines()
             to_v, to_w, lease = map(float, lines[-1].split()) if lines else (0.0, 0.0, 0.0)
             has_adapter, until = bool(lines), time.monotonic() + lease

@@ -131,6 +131,7 @@ fn entry_of(source: Source, name: &str, scenario: Result<Scenario, String>, disk
             expected: scenario.expect.words(),
             problem: None,
             world: Some(Box::new(scenario.sim.world.as_drawn())),
+            mission: Some(Box::new(scenario.mission)),
         },
         Err(problem) => ScenarioEntry {
             source,
@@ -142,6 +143,7 @@ fn entry_of(source: Source, name: &str, scenario: Result<Scenario, String>, disk
             expected: String::new(),
             problem: Some(problem),
             world: None,
+            mission: None,
         },
     }
 }

@@ -40,7 +40,6 @@ use crate::{
     order::Order,
     phase::{Gait, HoldReason, Phase},
     standing::Standing,
-    tether::Tether,
 };
 pub use driving::Sending;
 use driving::{Driving, LeftPlan, Prepare};
@@ -236,11 +235,12 @@ impl Mission {
                 .map_or_else(|| plan.map(|plan| plan.left_m(here)), |back| Some(back.left_m(here))),
             is_back: back.is_some_and(|back| back.is_done(here)),
             breached,
+            in_zone: self.known.breached.first().map(String::as_str),
             scanned: self.known.floor.coverage.fraction_reachable(),
             touched: readings.contact,
             reached,
             can_replan: self.known.plans_ways_home(),
-            can_go_home: self.known.tether.as_ref().is_none_or(Tether::can_go_home),
+            can_go_home: self.can_go_home(),
             planner: self.driving.seen(&self.known, self.robot_waits()),
         };
         match self.rules.update(&seen, &self.known.phase) {

@@ -15,4 +15,7 @@ pub struct ZoneCost {
     pub drops_offer: bool,
     /// Whether the hull is in the zone, so that the robot is held as soon as the zone is drawn.
     pub holds: bool,
+    /// Whether the robot would find no way back along its tether.
+    #[serde(default)]
+    pub blocks_way_back: bool,
 }

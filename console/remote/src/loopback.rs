@@ -110,7 +110,8 @@ impl Vehicle for Loopback {
 
     fn act(&mut self, Command { drive, heading_rad, braking_orders }: Command) {
         self.inbox.commanded(drive.is_some(), self.now_s());
-        self.outbox.command(drive.map(|drive| motion(drive, heading_rad, self.is_omni)), braking_orders);
+        let motion = drive.map(|drive| motion(drive, heading_rad, self.is_omni));
+        self.outbox.command(motion, braking_orders, self.now_s());
         if let Err(misfit) = self.say() {
             self.inbox.close(misfit.to_string());
         }

@@ -21,7 +21,8 @@ pub(crate) struct Outbox {
 
 #[derive(Debug, Default)]
 struct Waiting {
-    motion: Option<Motion>,
+    /// The newest command, and when it was given, seconds.
+    motion: Option<(Motion, f64)>,
     /// Number of orders that have stopped the vehicle between two ticks and that no tick has carried out yet; until then,
     /// no motion is sent.
     brakes: u32,
@@ -34,12 +35,13 @@ struct Waiting {
 type Motion = Option<[f64; 3]>;
 
 impl Outbox {
-    /// Replaces the command that waits. `carried_out`: number of braking orders that the mission has carried out.
-    pub(crate) fn command(&self, motion: Motion, carried_out: u32) {
+    /// Replaces the command that waits. `carried_out`: number of braking orders that the mission has carried out. `now_s`:
+    /// seconds on the clock of [`Self::next`].
+    pub(crate) fn command(&self, motion: Motion, carried_out: u32, now_s: f64) {
         let mut waiting = self.lock();
         waiting.brakes = waiting.brakes.saturating_sub(carried_out);
         let motion = motion.filter(|_| waiting.brakes == 0);
-        waiting.motion = Some(motion);
+        waiting.motion = Some((motion, now_s));
         self.changed.notify_all();
     }
 
@@ -47,7 +49,8 @@ impl Outbox {
     pub(crate) fn brake(&self) {
         let mut waiting = self.lock();
         waiting.brakes += 1;
-        waiting.motion = Some(None);
+        // A stop does not become too old.
+        waiting.motion = Some((None, f64::INFINITY));
         self.changed.notify_all();
     }
 
@@ -63,12 +66,14 @@ impl Outbox {
     }
 
     /// Waits for the next message: the newest command, a ping after some time without commands, or `Bye` after the outbox
-    /// was closed.
+    /// was closed. A motion that has waited for longer than its lease, because the process was stopped, is dropped.
     pub(crate) fn next(&self, now_s: impl Fn() -> f64, last_ping_s: &mut f64) -> ToVehicle {
         let mut waiting = self.lock();
         loop {
             let now_s = now_s();
-            if let Some(motion) = waiting.motion.take() {
+            let motion = waiting.motion.take();
+            let fresh = motion.filter(|(motion, given_s)| motion.is_none() || now_s - given_s <= LEASE_S);
+            if let Some((motion, _)) = fresh {
                 waiting.seq += 1;
                 return message(motion, waiting.seq, now_s);
             }
@@ -116,7 +121,7 @@ mod tests {
     fn only_the_newest_command_waits() {
         let outbox = Outbox::default();
         for speed in [0.1, 0.2, 0.3] {
-            outbox.command(Some([speed, 0.0, 0.0]), 0);
+            outbox.command(Some([speed, 0.0, 0.0]), 0, 0.0);
         }
         assert!(
             matches!(next(&outbox), ToVehicle::Drive(Drive { seq: 1, forward_m_per_s, .. }) if forward_m_per_s.to_bits() == 0.3_f64.to_bits())
@@ -126,17 +131,35 @@ mod tests {
     }
 
     #[test]
+    fn a_motion_older_than_its_lease_is_not_sent_but_a_stop_is() {
+        let outbox = Outbox::default();
+        let drive = Some([0.3, 0.0, 0.0]);
+        let at = |now_s: f64| outbox.next(|| now_s, &mut f64::NEG_INFINITY);
+        outbox.command(drive, 0, 1.0);
+        assert!(matches!(at(1.0 + LEASE_S), ToVehicle::Drive(Drive { seq: 1, .. })));
+        // The process is stopped before the motion is written, and continues later.
+        outbox.command(drive, 0, 2.0);
+        assert!(matches!(at(2.01 + LEASE_S), ToVehicle::Ping(_)), "dropped");
+        assert!(matches!(at(2.02 + LEASE_S), ToVehicle::Ping(_)), "not kept for later");
+        outbox.command(None, 0, 3.0);
+        assert!(matches!(at(9.0), ToVehicle::Stop(Stop { seq: 2, .. })));
+        outbox.command(drive, 0, 9.0);
+        outbox.brake();
+        assert!(matches!(at(20.0), ToVehicle::Stop(Stop { seq: 3, .. })));
+    }
+
+    #[test]
     fn after_the_brake_no_motion_is_sent_until_the_mission_has_held() {
         let outbox = Outbox::default();
         let drive = Some([0.3, 0.0, 0.0]);
-        outbox.command(drive, 0);
+        outbox.command(drive, 0, 0.0);
         outbox.brake();
         assert!(matches!(next(&outbox), ToVehicle::Stop(Stop { seq: 1, .. })));
-        outbox.command(drive, 0);
+        outbox.command(drive, 0, 0.0);
         assert!(matches!(next(&outbox), ToVehicle::Stop(_)), "a tick that had begun before the brake");
-        outbox.command(None, 1);
+        outbox.command(None, 1, 0.0);
         assert!(matches!(next(&outbox), ToVehicle::Stop(_)));
-        outbox.command(drive, 0);
+        outbox.command(drive, 0, 0.0);
         assert!(matches!(next(&outbox), ToVehicle::Drive(Drive { seq: 4, .. })));
     }
 
@@ -147,14 +170,14 @@ mod tests {
         // HOLD, resume, HOLD within a tick: the tick carries out the first two.
         outbox.brake();
         outbox.brake();
-        outbox.command(drive, 1);
+        outbox.command(drive, 1, 0.0);
         assert!(matches!(next(&outbox), ToVehicle::Stop(_)));
         // A tick of a held mission does not carry out the third order, either.
-        outbox.command(None, 0);
-        outbox.command(drive, 0);
+        outbox.command(None, 0, 0.0);
+        outbox.command(drive, 0, 0.0);
         assert!(matches!(next(&outbox), ToVehicle::Stop(_)));
         outbox.release();
-        outbox.command(drive, 0);
+        outbox.command(drive, 0, 0.0);
         assert!(matches!(next(&outbox), ToVehicle::Drive(_)));
     }
 }

@@ -151,7 +151,7 @@ impl Vehicle for Remote {
         inbox.commanded(drive.is_some(), now_s);
         drop(inbox);
         let motion = drive.map(|drive| motion(drive, heading_rad, self.is_omni));
-        self.shared.outbox.command(motion, braking_orders);
+        self.shared.outbox.command(motion, braking_orders, now_s);
     }
 
     fn truth(&self) -> Option<Truth> {
@@ -170,7 +170,7 @@ impl Vehicle for Remote {
         let is_open = || self.shared.inbox().closed().is_none();
         while waits && is_open() && self.shared.inbox().is_stopping(self.shared.now_s()) {
             // A datagram may get lost.
-            self.shared.outbox.command(None, 0);
+            self.shared.outbox.command(None, 0, self.shared.now_s());
             thread::sleep(LOOK_AGAIN);
         }
         let now_s = self.shared.now_s();
@@ -193,7 +193,7 @@ impl Drop for Remote {
     /// Stops the vehicle and tells the adapter that the console leaves. If the adapter reads nothing, the vehicle stops
     /// when its lease lapses.
     fn drop(&mut self) {
-        self.shared.outbox.command(None, 0);
+        self.shared.outbox.command(None, 0, self.shared.now_s());
         self.shared.outbox.close();
         let began = Instant::now();
         while !self.shared.has_left.load(Ordering::Acquire) && began.elapsed() < LEAVE_WITHIN {
@@ -285,7 +285,7 @@ fn write_all(mut write: Box<dyn Outgoing>, session: ToSession, shared: &Shared) 
         if let Err(misfit) = writer.write(&message, &mut line) {
             // A command that does not fit the vehicle must not leave the one before it in effect.
             shared.inbox().close(format!("a command does not fit the vehicle: {misfit}"));
-            shared.outbox.command(None, 0);
+            shared.outbox.command(None, 0, shared.now_s());
             continue;
         }
         shared.inbox().sent(&message, shared.now_s());

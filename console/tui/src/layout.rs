@@ -120,7 +120,7 @@ pub(crate) fn plan(area: Rect, (width, height): (u16, u16), pane: Pane) -> Vec<(
     let [map, side] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(side)]).areas(area);
     let mut placed = vec![(Pane::Map, map)];
     // On a tall screen, a curve is shown below the figures.
-    let promise = wish(Pane::Promise, 10, if area.height >= TALL { 24 } else { 12 });
+    let promise = wish(Pane::Promise, 10, if area.height >= TALL { area.height } else { 12 });
     if arrangement == Arrangement::Narrow {
         placed.extend(match pane {
             Pane::LeftOut | Pane::Checks | Pane::Parameters => {
@@ -130,13 +130,24 @@ pub(crate) fn plan(area: Rect, (width, height): (u16, u16), pane: Pane) -> Vec<(
         });
         return placed;
     }
-    let panes = [
-        promise,
-        wish(Pane::Plan, 5, 8),
-        wish(Pane::LeftOut, 4, 12),
-        wish(Pane::Checks, 4, 8),
-        wish(Pane::Parameters, 3, 14),
-    ];
+    let panes = if area.height >= TALL {
+        // The curve gets what the lists do not need.
+        [
+            promise,
+            wish(Pane::Plan, 5, 6),
+            wish(Pane::LeftOut, 4, 10),
+            wish(Pane::Checks, 4, 5),
+            wish(Pane::Parameters, 3, 10),
+        ]
+    } else {
+        [
+            promise,
+            wish(Pane::Plan, 5, 8),
+            wish(Pane::LeftOut, 4, 12),
+            wish(Pane::Checks, 4, 8),
+            wish(Pane::Parameters, 3, 14),
+        ]
+    };
     placed.extend(stack(side, &panes));
     placed
 }

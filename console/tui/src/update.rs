@@ -180,8 +180,12 @@ fn stop(model: &mut Model) -> Vec<Effect> {
 fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
     match model.ui.overlay {
         Overlay::None => {
-            let help = model.console.keys.spelled("<help>: keys");
-            model.hint(format!("key {key} does nothing here; {help}"));
+            let accept = find::row(ActionId::Accept);
+            let is_accept = accept.is_some_and(|row| model.console.keys.of(row).contains(&key));
+            let why = offer::why_nothing_opens(model).filter(|_| is_accept);
+            let why = why.map_or_else(|| format!("key {key} does nothing here; <help>: keys"), str::to_owned);
+            let why = model.console.keys.spelled(&why);
+            model.hint(why);
         }
         ref overlay if overlay.is_question() => {
             let was_stepping = model.ui.overlay == Overlay::Stepping;

@@ -26,9 +26,9 @@ pub struct Finding {
     pub run: usize,
     /// The middle, weighted by depth, tank frame, metres.
     pub at: Point,
-    /// South-west and north-east corner of the readings above the threshold, metres.
+    /// South-west corner of the readings above the threshold, metres.
     pub low: Point,
-    /// North-east corner, metres.
+    /// North-east corner of these readings, metres.
     pub high: Point,
     /// 95 % error of the position, metres.
     pub error_m: f64,

@@ -2,7 +2,7 @@
 
 use mission::Phase;
 use std::fmt;
-use tui::Model;
+use tui::{Model, guide, model::Alarm};
 use world::coverage::percent_text;
 
 /// A condition that a script can wait for or require.
@@ -20,7 +20,8 @@ enum What {
     Screen(String),
     /// At least this percentage of the reachable floor is scanned.
     Coverage(f64),
-    /// The text of an alarm contains this text; if this text is empty, any alarm meets the condition.
+    /// The name or the text of an open alarm contains this text; if this text is empty, any open alarm meets the
+    /// condition.
     Alarm(String),
     /// The screen contains this text.
     Text(String),
@@ -84,7 +85,7 @@ impl Condition {
             }
             What::Alarm(_) => match model.live.run.alarms.worst() {
                 Some(alarm) => format!("the most severe alarm is: {}", alarm.text),
-                None => "there are no alarms".into(),
+                None => "no alarm is open".into(),
             },
             What::Text(_) => "the screen does not contain it".into(),
         }
@@ -100,10 +101,17 @@ impl What {
             },
             Self::Screen(name) => *name == model.ui.screen.name().to_lowercase(),
             Self::Coverage(percent) => coverage_percent(model) >= *percent,
-            Self::Alarm(text) => model.live.run.alarms.list().iter().any(|alarm| alarm.text.contains(text)),
+            Self::Alarm(text) => is_alarm_open(model, text),
             Self::Text(text) => screen(model).is_ok_and(|shown| shown.contains(text)),
         }
     }
+}
+
+/// Whether the name or the text of an open alarm, one that the top line counts, contains a text.
+fn is_alarm_open(model: &Model, text: &str) -> bool {
+    let run = &model.live.run;
+    let names = |alarm: &Alarm| alarm.text.contains(text) || guide::name(&alarm.cause, run).contains(text);
+    run.alarms.open().any(names)
 }
 
 fn screen(name: &str) -> Result<What, String> {
@@ -145,5 +153,35 @@ impl fmt::Display for Condition {
             What::Alarm(text) => write!(f, "alarm {text:?}"),
             What::Text(text) => write!(f, "text {text:?}"),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mission::{Note, Noted, Severity};
+    use tui::model::Cause;
+
+    /// Whether an alarm condition holds, and whether its negation does.
+    fn holds(model: &Model, alarm: &str) -> [bool; 2] {
+        [format!("alarm {alarm}"), format!("not alarm {alarm}")]
+            .map(|text| Condition::read(&text).unwrap().holds(model, |_| Ok(String::new())))
+    }
+
+    #[test]
+    fn an_alarm_counts_until_it_is_cleared_and_acknowledged() {
+        let mut model = Model::default();
+        let cause = Cause::Zone("no-go 1".into());
+        let text = "hull is 0.10 m inside zone no-go 1".to_owned();
+        assert_eq!(holds(&model, ""), [false, true]);
+        model.live.run.alarms.raise(cause.clone(), Severity::Crit, text.clone(), 1.0);
+        assert_eq!([holds(&model, ""), holds(&model, "inside zone")], [[true, false]; 2]);
+        assert_eq!([holds(&model, "hull in zone"), holds(&model, "tether")], [[true, false], [false, true]]);
+        model.live.run.alarms.clear(&cause, 2.0);
+        assert_eq!(holds(&model, "hull in zone"), [true, false], "it is not acknowledged yet");
+        let what = Noted::Acknowledged { alarm: cause.key(), text };
+        model.live.run.alarms.take(&Note { what, by: None }, 3.0);
+        assert_eq!(model.live.run.alarms.list().len(), 1, "it stays in the list");
+        assert_eq!(holds(&model, "hull in zone"), [false, true]);
     }
 }

@@ -96,6 +96,9 @@ impl Mission {
             return;
         };
         self.driving.course.due = Some(Due::from_here(asked.reason));
+        if by_tether && self.waits_for_return_path() {
+            return;
+        }
         self.driving_is_no_use(if by_tether {
             HoldReason::PlanRefused { message }
         } else {

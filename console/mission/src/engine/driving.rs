@@ -109,6 +109,7 @@ impl Driving {
             is_waited_for,
             owes: pending.is_some(),
             owed_s: owed.map(|ticks| ticks as f64 * known.config.tick_s),
+            is_shut_in: self.blocked.is_shut_in(),
         }
     }
 

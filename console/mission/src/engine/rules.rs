@@ -76,6 +76,7 @@ impl Rules {
             .or_else(|| seen.task.is_done(seen.here).then_some(Verdict::Done))
             .or_else(|| seen.reached.map(|alarm| tether.update(seen, alarm)))
             .or_else(|| LatePlannerRule::update(&seen.planner))
+            .or_else(|| ZoneRule::update_planner(seen))
             .or_else(|| if seen.planner.is_waited_for { None } else { stuck.update(seen) })
     }
 

@@ -3,7 +3,7 @@
 use super::{Mission, happened::Happened, known::Known, rules::HOME_M};
 use crate::{
     event::{EventKind, TetherAlarm},
-    phase::Outcome,
+    phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes},
 };
 use world::{Point, Readings};
 
@@ -68,6 +68,29 @@ impl Known {
 }
 
 impl Mission {
+    /// Holds a running robot whose return path is blocked until the path is free again. Meanwhile, no plan can be certified,
+    /// whichever planner makes it. Returns whether the robot is held for this reason.
+    pub(super) fn waits_for_return_path(&mut self) -> bool {
+        let is_blocked = self.known.tether.as_ref().is_some_and(|tether| !tether.can_go_home());
+        let waits = is_blocked && matches!(self.known.phase, Phase::Running(gait) if gait != Gait::Back);
+        if waits {
+            let by = HoldReason::Tether { message: TetherAlarm::NoReturnPath.to_string() };
+            self.hold(Hold { by, resumes: Resumes::WhenCleared });
+        }
+        waits
+    }
+
+    /// Whether the hull fits through the return path along the tether. Before a robot that waits for this resumes with a new
+    /// plan, the return path must have the room that the certificate of the plan demands.
+    pub(super) fn can_go_home(&self) -> bool {
+        let Some(tether) = &self.known.tether else { return true };
+        let by = HoldReason::Tether { message: TetherAlarm::NoReturnPath.to_string() };
+        let waits = matches!(&self.known.phase, Phase::Held(hold) if hold.by == by);
+        let room_m = self.known.config.limits.radius_m;
+        let has_room = || tether.return_path(self.known.chart.world(), room_m).is_some();
+        tether.can_go_home() && (!waits || self.driving.course.due.is_none() || has_room())
+    }
+
     /// Ends a task that is done. If the robot is back at the anchor but cable is still out, the outcome is entangled.
     pub(super) fn end_done(&mut self) {
         let back = self.known.task_ends_at_anchor();

@@ -104,6 +104,13 @@ impl Known {
         }
     }
 
+    /// Whether the robot would find no way back along its tether if the zone were drawn, although it finds one now.
+    fn blocks_way_back(&self, zone: &Shape) -> bool {
+        let mut after = self.clone();
+        after.chart.draw(Zone { name: self.free_name(), kind: ZoneKind::NoGo, shape: zone.clone() });
+        self.tether.is_some() && after.way_back().is_err() && self.way_back().is_ok()
+    }
+
     /// The nearest place outside a zone that contains the robot, if the zone were drawn.
     ///
     /// # Errors
@@ -179,7 +186,9 @@ impl Known {
         let lost = left(&self.floor.coverage).saturating_sub(left(&after.coverage));
         let area_m2 = |cells: usize| cells as f64 * cell_m2;
         let holds = self.depth_m(&shape) > BREACH_M;
-        Ok(ZoneCost { path_m, closed_m2: area_m2(closed), lost_m2: area_m2(lost), drops_offer, holds })
+        let blocks_way_back = self.blocks_way_back(&shape);
+        let (closed_m2, lost_m2) = (area_m2(closed), area_m2(lost));
+        Ok(ZoneCost { path_m, closed_m2, lost_m2, drops_offer, holds, blocks_way_back })
     }
 
     /// A name that no other zone has yet.

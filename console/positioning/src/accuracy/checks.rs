@@ -178,7 +178,7 @@ impl Patterns {
         for (station, pattern) in &other.stations {
             match self.stations.iter_mut().find(|(own, _)| own == station) {
                 Some((_, own)) => {
-                    (own.alone, own.both) = (own.alone + pattern.alone, own.both + pattern.both)
+                    (own.alone, own.both) = (own.alone + pattern.alone, own.both + pattern.both);
                 }
                 None => self.stations.push((*station, *pattern)),
             }

@@ -2,7 +2,7 @@
 
 use super::glimpse::Glimpses;
 use super::live::Source;
-use mission::Severity;
+use mission::{MissionConfig, Severity};
 use serde::{Deserialize, Serialize};
 use world::World;
 
@@ -28,6 +28,9 @@ pub struct ScenarioEntry {
     /// The tank as drawn; `None` if the scenario cannot be opened.
     #[serde(default)]
     pub world: Option<Box<World>>,
+    /// The settings of the mission; `None` if the scenario cannot be opened.
+    #[serde(default)]
+    pub mission: Option<Box<MissionConfig>>,
 }
 
 impl ScenarioEntry {

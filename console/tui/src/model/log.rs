@@ -1,5 +1,6 @@
 //! The log: what happened, newest last, limited both in lines and in bytes.
 
+mod alike;
 mod chunk;
 mod entry;
 pub mod filter;

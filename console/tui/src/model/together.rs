@@ -78,31 +78,26 @@ impl Earlier {
         Self { runs: combination.earlier.clone(), raster, asked }
     }
 
-    /// The shares of the floor that the re-scan was to scan, as far as the re-scan alone has scanned it. Floor that it has
-    /// scanned without being asked to counts as requested, as in the result.
-    pub fn requested(&self, own: &Raster) -> Shares {
+    /// Two shares: of the floor that the re-scan was to scan, as far as the re-scan alone has scanned it, and of the
+    /// reachable floor, as far as all runs together have scanned it. Floor that the re-scan has scanned without being asked
+    /// to counts as requested, as in the result.
+    ///
+    /// Cost: a look at every cell.
+    pub fn shares(&self, own: &Raster) -> [Shares; 2] {
         let is_asked = |cell: usize| self.asked.as_ref().is_none_or(|asked| asked.get(cell) == Some(&true));
-        let mut counts = Counts::default();
+        let (mut requested, mut all) = (Counts::default(), Counts::default());
         for cell in 0..own.floor().len() {
             let (kind, is_scanned) = (own.floor().kind(cell), own.is_scanned(cell));
-            if kind == Cell::Reachable && (is_asked(cell) || is_scanned) {
-                counts.add(kind, is_scanned);
+            if kind == Cell::Reachable && (is_scanned || is_asked(cell)) {
+                requested.add(kind, is_scanned);
             }
-        }
-        Shares::of(counts, own.floor().cell_m2())
-    }
-
-    /// The shares of the reachable floor that all runs together have scanned.
-    pub fn with(&self, own: &Raster) -> Shares {
-        let mut counts = Counts::default();
-        for cell in 0..own.floor().len() {
             let kind = match self.raster.floor().kind(cell) {
-                Cell::Reachable => own.floor().kind(cell),
+                Cell::Reachable => kind,
                 closed => closed,
             };
-            counts.add(kind, own.is_scanned(cell) || self.raster.is_scanned(cell));
+            all.add(kind, is_scanned || self.raster.is_scanned(cell));
         }
-        Shares::of(counts.of_reachable(), own.floor().cell_m2())
+        [requested, all.of_reachable()].map(|counts| Shares::of(counts, own.floor().cell_m2()))
     }
 }
 
@@ -146,11 +141,15 @@ mod tests {
             raster: joined(&own, &[], &[CellRun(0, half)]),
             asked: Some((0..floor.len()).map(|cell| cell >= half as usize).collect()),
         };
-        assert!((earlier.with(&own).percent.scanned - 50.0).abs() < 2.0);
-        assert!(earlier.requested(&own).percent.scanned.abs() < 1e-9);
-        own.apply(&[CellRun(half, floor.len() as u32)]);
-        assert!((earlier.with(&own).percent.scanned - 100.0).abs() < 1e-9);
-        assert!((earlier.requested(&own).percent.scanned - 100.0).abs() < 1e-9);
+        let percent = |own: &Raster| earlier.shares(own).map(|shares| shares.percent.scanned);
+        let [requested, all] = percent(&own);
+        assert!(requested.abs() < 1e-9 && (all - 50.0).abs() < 2.0, "{requested} {all}");
+        let quarter = half + half / 2;
+        own.apply(&[CellRun(half, quarter - half)]);
+        let [requested, all] = percent(&own);
+        assert!((requested - 50.0).abs() < 5.0 && (all - 75.0).abs() < 5.0, "{requested} {all}");
+        own.apply(&[CellRun(quarter, floor.len() as u32)]);
+        assert_eq!(percent(&own), [100.0, 100.0], "everything has been scanned");
         assert!(
             (own.reachable().percent.scanned - 50.0).abs() < 2.0,
             "of the whole floor, the re-scan alone"

@@ -420,6 +420,11 @@ impl Ui {
         Arrangement::of(self.width, self.height)
     }
 
+    /// Whether the home screen has room for the last run of the selected scenario.
+    pub(crate) fn is_large(&self) -> bool {
+        self.width >= 170 && self.height >= 50
+    }
+
     /// Goes to a screen; `q` returns to the previous one.
     pub fn go(&mut self, screen: Screen) {
         if screen == self.screen {

@@ -1,7 +1,8 @@
 //! Writes the changed cells of a frame with few bytes, because the line to the terminal may be slow.
 //!
-//! The cursor moves relative to its column, several attributes share one sequence, and a blank gets only those
-//! attributes that are visible on it.
+//! The cells with the same attributes are written together, because a sequence for two colours is about five times as long
+//! as one that moves the cursor. The cursor moves relative to its column, several attributes share one sequence, and a blank
+//! gets only those attributes that are visible on it.
 
 use crate::view::text;
 use ratatui::buffer::Cell;
@@ -32,25 +33,43 @@ struct Pen {
     modifier: Modifier,
 }
 
+/// A cell with its column and row.
+type Placed<'a> = (u16, u16, &'a Cell);
+
 const PLAIN: Pen = Pen { fg: Color::Reset, bg: Color::Reset, modifier: Modifier::empty() };
 
 /// Writes cells at their columns and rows, given the terminal's default attributes, and leaves these in place.
-pub(super) fn write<'a>(
-    to: &mut impl Write,
-    cells: impl Iterator<Item = (u16, u16, &'a Cell)>,
-) -> io::Result<()> {
+pub(super) fn write<'a>(to: &mut impl Write, cells: impl Iterator<Item = Placed<'a>>) -> io::Result<()> {
     let (mut at, mut pen, mut out) = (None, PLAIN, String::new());
-    for (x, y, cell) in cells {
-        move_to(&mut out, at, (x, y));
-        let wanted = pen.for_cell(cell);
+    for (wanted, cells) in by_pen(cells) {
         pen.change(&mut out, wanted);
         pen = wanted;
-        out.push_str(cell.symbol());
-        // Terminals differ in the width of unusual characters.
-        at = (text::width(cell.symbol()) == 1).then_some((x + 1, y));
+        for (x, y, cell) in cells {
+            move_to(&mut out, at, (x, y));
+            out.push_str(cell.symbol());
+            // Terminals differ in the width of unusual characters.
+            at = (text::width(cell.symbol()) == 1).then_some((x + 1, y));
+        }
     }
     pen.change(&mut out, PLAIN);
     to.write_all(out.as_bytes())
+}
+
+/// The cells by the attributes with which they are written; those of the first cells come first.
+fn by_pen<'a>(cells: impl Iterator<Item = Placed<'a>>) -> Vec<(Pen, Vec<Placed<'a>>)> {
+    let mut groups: Vec<(Pen, Vec<Placed<'a>>)> = Vec::new();
+    let mut last = 0;
+    for (x, y, cell) in cells {
+        let fits = |(pen, _): &(Pen, _)| pen.for_cell(cell) == *pen;
+        // The attributes of the cell before need no move of the cursor.
+        let before = groups.get(last).is_some_and(fits).then_some(last);
+        last = before.or_else(|| groups.iter().position(fits)).unwrap_or_else(|| {
+            groups.push((PLAIN.for_cell(cell), Vec::new()));
+            groups.len() - 1
+        });
+        groups[last].1.push((x, y, cell));
+    }
+    groups
 }
 
 /// Moves the cursor; `at` is its place if it is known.

@@ -167,6 +167,9 @@ pub(super) fn glimpse(model: &mut Model) -> Option<Effect> {
     }
     let run = match model.ui.screen {
         Screen::Home if model.home.list == HomeList::Runs => model.home.selected_run(),
+        Screen::Home if model.home.list == HomeList::Scenarios && model.ui.is_large() => {
+            model.home.selected_scenario().and_then(|entry| model.home.last_end(&entry.name))
+        }
         Screen::Review => model.review.run(&model.home),
         _ => None,
     }?;

@@ -4,7 +4,7 @@
 use super::go::named_run;
 use super::look_only::{allowed, no_orders};
 use super::message::Effect;
-use super::replay;
+use super::{place, replay};
 use crate::actions::{ActionId, find};
 use crate::model::{Model, Overlay, Screen, ui::Ask};
 use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
@@ -25,6 +25,15 @@ pub(crate) fn accept(model: &Model) -> Result<(), String> {
     }
     let opens = (model.ui.screen.row().opens)(model).is_some();
     demand(model.ui.overlay != Overlay::None || opens, "nothing to open here")
+}
+
+/// Why Enter opens nothing on a screen where it sometimes does, as a clause.
+pub(super) fn why_nothing_opens(model: &Model) -> Option<&'static str> {
+    match model.ui.screen {
+        Screen::Plan => Some(place::why_no_area(model)),
+        Screen::Mission => Some("nothing to open in this pane; <next-pane>: next pane, to the events"),
+        _ => None,
+    }
 }
 
 /// Checks that there is another pane to switch to.
@@ -169,6 +178,13 @@ pub(crate) fn parameters(model: &Model) -> Result<(), String> {
         None => Err("no planner loaded yet".into()),
         Some(info) => demand(!info.parameters.is_empty(), &format!("planner {} has no parameters", info.id)),
     }
+}
+
+/// Checks that the planner has parameters that can still be changed.
+pub(crate) fn changeable_parameters(model: &Model) -> Result<(), String> {
+    let why = "the mission has ended: its parameters cannot be changed; <home> opens another scenario";
+    demand(!model.live.run.has_ended(), why)?;
+    parameters(model)
 }
 
 /// Checks that time is passing, at a speed that can be set.

@@ -28,6 +28,19 @@ pub(crate) fn left_out(model: &mut Model) -> Vec<Effect> {
     }
 }
 
+/// Why Enter opens nothing on the Plan screen, as a clause.
+pub(super) fn why_no_area(model: &Model) -> &'static str {
+    match model.live.left_out() {
+        _ if model.live.busy.is_some() => "nothing to open before the plan is ready",
+        None => "nothing to open: the plan has no list of floor that it leaves out",
+        Some(left_out) if left_out.areas.is_empty() => "nothing to open: the plan leaves out no area",
+        Some(_) if !model.ui.panes().contains(&Pane::LeftOut) => {
+            "nothing to open: the areas that the plan leaves out are not shown at this size"
+        }
+        Some(_) => "nothing to open in this pane; <next-pane>: next pane, to Left out",
+    }
+}
+
 /// Selects an area that the plan leaves out.
 pub(crate) fn select_left_out(model: &mut Model, by: isize) {
     let n = model.live.left_out().map_or(0, |left_out| left_out.areas.len());

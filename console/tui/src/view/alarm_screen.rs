@@ -1,6 +1,7 @@
 //! The alarm screen: alarms, their causes, and possible actions.
 
 mod actions;
+mod before;
 mod detail;
 mod rows;
 mod table;
@@ -43,7 +44,18 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
         (Some(alarm), Arrangement::Wide) => wide(look, frame, area, alarm),
         (Some(alarm), Arrangement::Narrow) => narrow(look, frame, area, alarm),
         (Some(alarm), Arrangement::Paged) => paged(look, frame, area, alarm),
-        _ => table::draw(look, frame, area, arrangement),
+        (None, _) => quiet(look, frame, area, arrangement),
+        (Some(_), Arrangement::Strip) => table::draw(look, frame, area, arrangement),
+    }
+}
+
+/// Without an alarm in the table, the rest of the screen shows the last warnings.
+fn quiet(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+    let rows = if area.height > TABLE { TABLE - 2 } else { area.height };
+    let [list, below] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(area);
+    table::draw(look, frame, list, arrangement);
+    if below.height > 0 {
+        before::warnings(look, frame, below);
     }
 }
 
@@ -72,7 +84,10 @@ fn beside(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
     let wanted = table::rows(look, Arrangement::Wide).max(TABLE).min(left.height - EVENTS);
     let [list, below] = Layout::vertical([Constraint::Length(wanted), Constraint::Fill(1)]).areas(left);
     table::draw(look, frame, list, Arrangement::Wide);
-    draw_events(look, frame, below, alarm);
+    let own = (alarm.events.len() as u16 + 2).clamp(EVENTS, below.height.div_ceil(2));
+    let [own, around] = Layout::vertical([Constraint::Length(own), Constraint::Fill(1)]).areas(below);
+    draw_events(look, frame, own, alarm);
+    before::draw(look, frame, around, alarm);
     let columns = usize::from(right.width) - 2;
     let (detail, actions) = (detail::lines(look, alarm, columns), actions::lines(look, alarm, columns));
     let chart = if is_charted(alarm) { CHART.1 } else { 0 };

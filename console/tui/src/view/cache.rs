@@ -3,7 +3,7 @@
 
 use super::map::{PlateDrawing, PlateKey, ShadeKey, Shades, Window};
 use crate::actions::ActionId;
-use crate::model::{Raster, replay::Shares};
+use crate::model::{Earlier, Raster, replay::Shares};
 use crate::update::{Rows, Target};
 use ratatui::layout::{Position, Rect};
 use std::rc::Rc;
@@ -18,6 +18,7 @@ pub struct Cache {
     plate_map: Option<(PlateMapKey, Rc<PlateMap>)>,
     plates: Option<(PlateKey, Rc<PlateDrawing>)>,
     shares: Option<((u64, u64), Shares)>,
+    rescan: Option<((u64, u64), [account::Shares; 2])>,
     places: Places,
 }
 
@@ -88,6 +89,11 @@ impl Cache {
         kept(&mut self.shares, (a.stamp(), b.stamp()), || Shares::of(a, b))
     }
 
+    /// The shares of a re-scan, whose own floor is given.
+    pub(super) fn rescan(&mut self, before: &Earlier, own: &Raster) -> [account::Shares; 2] {
+        kept(&mut self.rescan, (before.raster.stamp(), own.stamp()), || before.shares(own))
+    }
+
     /// The plate of each cell of a floor.
     pub(super) fn plate_map(
         &mut self,
@@ -130,5 +136,22 @@ fn kept<K: PartialEq, V: Clone>(slot: &mut Option<(K, V)>, key: K, make: impl Fn
             *slot = Some((key, value.clone()));
             value
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_kept_value_is_made_again_only_for_another_key() {
+        let (mut slot, mut made) = (None, 0);
+        let values = [1, 1, 2, 2, 1].map(|key| {
+            kept(&mut slot, key, || {
+                made += 1;
+                10 * key
+            })
+        });
+        assert_eq!((values, made), ([10, 10, 20, 20, 10], 3));
     }
 }

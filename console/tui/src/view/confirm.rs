@@ -299,8 +299,9 @@ fn zone_cost(model: &Model) -> String {
     let [closed, lost] = [cost.closed_m2, cost.lost_m2].map(|area_m2| text::number(area_m2, 2));
     let held = if cost.holds { "The hull is in it: HOLD at once. " } else { "" };
     let offer = if cost.drops_offer { " The better plan is dropped." } else { "" };
+    let back = if cost.blocks_way_back { "It blocks the way back along the tether. " } else { "" };
     format!(
-        "{held}{path} It closes {closed} m² of reachable floor, {lost} m² of which is not scanned yet.{offer}"
+        "{held}{back}{path} It closes {closed} m² of reachable floor, {lost} m² of which is not scanned yet.{offer}"
     )
 }
 

@@ -3,7 +3,7 @@
 use super::look::{Look, fill, ranked};
 use super::text;
 use crate::model::coverage::Raster;
-use crate::model::{Live, Pane, Run};
+use crate::model::{Earlier, Live, Pane, Run};
 use crate::theme::Role;
 use account::{Percent, Shares};
 use ratatui::Frame;
@@ -20,7 +20,7 @@ const WIDE: usize = 40;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let wide = usize::from(area.width) >= WIDE + 2;
-    let bases = Bases::of(&look.model.live);
+    let bases = Bases::shown(look);
     let heading = format!("{}{:>WHOLE$}", bases.names[0], bases.names[1]);
     let block = look.pane(Pane::Coverage, "Coverage", if wide { &heading } else { "" });
     let inner = block.inner(area);
@@ -50,12 +50,7 @@ fn wide_lines(look: &Look, bases: &Bases, columns: usize) -> Vec<(u8, Line<'stat
         |one: &str, other: &str| format!("{:>first$}{:>WHOLE$}", format!("{one} %"), format!("{other} %"));
     let mark = if is_stale(look) { "◌" } else { "" };
     let room = columns.saturating_sub(LABEL + 1);
-    let untestable = untestable(run);
-    let out_of_reach = [("shell margin", "not testable"), ("margin", "untestable"), ("margin", "untest.")]
-        .map(|(name, not)| {
-            let untestable = untestable.as_ref().map(|share| format!(", {not} {share} %"));
-            format!("{unreachable} %, {name} {margin} %{}", untestable.unwrap_or_default())
-        });
+    let out_of_reach = ["shell margin", "margin"].map(|name| format!("{unreachable} %, {name} {margin} %"));
     let out_of_reach = text::wording(out_of_reach, room);
     let overlap = run.coverage.as_ref().and_then(Raster::overlap).map_or_else(|| "-".into(), text::percent);
     let mut lines = vec![
@@ -71,6 +66,7 @@ fn wide_lines(look: &Look, bases: &Bases, columns: usize) -> Vec<(u8, Line<'stat
     if run.covers() {
         lines.insert(2, row(3, to_do_label(run), shares(&first_to_do, &second_to_do)));
     }
+    lines.extend(untestable(run).map(|share| row(4, "not testable", format!("{share} % of whole floor"))));
     lines
 }
 
@@ -113,10 +109,19 @@ pub(crate) struct Bases {
 
 impl Bases {
     pub(crate) fn of(live: &Live) -> Self {
+        Self::counted(live, Earlier::shares)
+    }
+
+    /// The same for a frame; the shares of a re-scan are counted again only if its floor has changed.
+    pub(crate) fn shown(look: &Look) -> Self {
+        Self::counted(&look.model.live, |before, own| look.cache.borrow_mut().rescan(before, own))
+    }
+
+    fn counted(live: &Live, of_rescan: impl Fn(&Earlier, &Raster) -> [Shares; 2]) -> Self {
         let raster = live.run.coverage.as_ref().filter(|_| live.run.progress.is_some());
         match &live.scanned_before {
             Some(before) => Self {
-                shares: raster.map(|own| [before.requested(own), before.with(own)]),
+                shares: raster.map(|own| of_rescan(before, own)),
                 names: ["requested", "all runs"],
                 short: ["requested", "all runs"],
                 floors: ["requested floor", "reachable floor with the runs before"],

@@ -127,6 +127,7 @@ fn list(look: &Look, frame: &mut Frame, area: Rect) {
         table::row(look, parts, shown.start + index == newer, columns)
     }));
     fill(frame, area, block, lines);
+    table::bar(look, frame, below, &shown, events.matches.len());
 }
 
 /// The filter with its invalid parts underlined, and why they are invalid; while the filter is being typed, examples
@@ -178,14 +179,18 @@ pub(super) fn role(severity: Severity) -> Role {
 /// A listed line, cut to a given width, with the number of lines that are listed with it.
 fn listed_row(listed: &Listed, columns: usize) -> Parts {
     let more = if listed.more > 0 { format!(" (+{} more)", listed.more) } else { String::new() };
-    let mut parts = row(listed.entry, columns.saturating_sub(text::width(&more)));
+    let mut parts = counted_row(listed.entry, listed.times, columns.saturating_sub(text::width(&more)));
     parts.push((Role::Dim, more));
     parts
 }
 
 /// A log line: as many clauses as fit in a given width.
 pub(super) fn row(entry: &Entry, columns: usize) -> Parts {
-    let again = if entry.count > 1 { format!(" (×{})", entry.count) } else { String::new() };
+    counted_row(entry, entry.count, columns)
+}
+
+fn counted_row(entry: &Entry, times: u32, columns: usize) -> Parts {
+    let again = if times > 1 { format!(" (×{times})") } else { String::new() };
     let front = format!(" T+{} ", text::clock(entry.t_s));
     let source = text::column(&entry.source, 8);
     let severity = format!("{:<5}", severity_word(entry.severity));

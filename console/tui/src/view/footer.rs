@@ -203,8 +203,8 @@ fn is_pointless(id: ActionId, model: &Model) -> bool {
             let is_known = model.ui.screen == Screen::Result && model.live.floor().is_some();
             is_known && model.live.missed().is_empty()
         }
-        // They cannot be changed after the end, or on a console that gives no orders.
-        ActionId::Parameters => model.live.run.has_ended() || model.live.is_look_only(),
+        // They cannot be changed on a console that gives no orders.
+        ActionId::Parameters => model.live.is_look_only(),
         // Nothing on the home screen moves.
         ActionId::Slower | ActionId::Faster => model.ui.screen == Screen::Home,
         _ => false,

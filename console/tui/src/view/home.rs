@@ -5,9 +5,11 @@ mod attention;
 mod pane;
 mod runs;
 mod scenarios;
+mod setup;
 
 use super::look::{Look, fill};
 use super::text;
+use crate::model::Model;
 use crate::model::home::{Found, HomeList};
 use crate::model::ui::Arrangement;
 use crate::theme::Role;
@@ -16,7 +18,7 @@ use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 
 /// Minimum and maximum width of the lists on a wide screen, columns.
-const LISTS: (u16, u16) = (80, 116);
+const LISTS: (u16, u16) = (80, 96);
 /// Rows of the plugins pane.
 const PLUGINS: u16 = 5;
 
@@ -28,39 +30,49 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     };
     let list = look.model.home.list;
     match arrangement {
-        Arrangement::Paged | Arrangement::Strip => one(look, frame, area, (found, list, true)),
-        Arrangement::Narrow => stack(look, frame, area, (found, true)),
+        Arrangement::Paged | Arrangement::Strip => {
+            let rows = fitting(area.height, list, wanted(look, area.width, (found, true)));
+            stack(look, frame, area, (found, true, rows));
+        }
+        Arrangement::Narrow => {
+            let rows = shares(area.height, list, wanted(look, area.width, (found, true)));
+            stack(look, frame, area, (found, true, rows));
+        }
         Arrangement::Wide => {
             let width = (area.width * 58 / 100).clamp(LISTS.0, LISTS.1);
             let [lists, beside] =
                 Layout::horizontal([Constraint::Length(width), Constraint::Fill(1)]).areas(area);
             let [about, plugins] =
                 Layout::vertical([Constraint::Fill(1), Constraint::Length(PLUGINS)]).areas(beside);
-            stack(look, frame, lists, (found, false));
+            let rows = shares(lists.height, list, wanted(look, lists.width, (found, false)));
+            stack(look, frame, lists, (found, false, rows));
             about::draw(look, frame, about, found);
             about::plugins(look, frame, plugins);
         }
     }
 }
 
-/// The three lists below each other; the one that responds to the arrow keys gets the most rows.
-fn stack(look: &Look, frame: &mut Frame, area: Rect, (found, about): (&Found, bool)) {
+/// The rows that each list needs, given whether the selected row is described below its list.
+fn wanted(look: &Look, width: u16, (found, about): (&Found, bool)) -> [u16; 3] {
     let home = &look.model.home;
     let more = u16::from(about) * (pane::ABOUT + 1);
-    let room = usize::from(area.width).saturating_sub(2);
+    let room = usize::from(width).saturating_sub(2);
     let invalid = home.selected_scenario().filter(|entry| about && entry.problem.is_some());
     let text = invalid.map_or(more, |entry| scenarios::about_lines(entry, room).len() as u16 + 1);
-    let wanted = [
+    [
         // A pane with a text has a minimum height.
         (home.scenarios().len().max(1) as u16).saturating_add(3 + text).max(u16::from(about) * pane::LEAST),
         (home.runs().len().max(1) as u16).saturating_add(3 + more),
         (found.attention.len().max(1) as u16)
-            .saturating_add(2 + attention::text_rows(look, found, area.width, about)),
-    ];
-    let rows = shares(area.height, home.list, wanted);
+            .saturating_add(2 + attention::text_rows(look, found, width, about)),
+    ]
+}
+
+/// The lists below each other, with the given rows.
+fn stack(look: &Look, frame: &mut Frame, area: Rect, (found, about, rows): (&Found, bool, [u16; 3])) {
     let areas: [Rect; 3] = Layout::vertical(rows.map(Constraint::Length)).areas(area);
-    for (list, area) in HomeList::ALL.into_iter().zip(areas) {
-        one(look, frame, area, (found, list, about && list == home.list));
+    for (list, area) in HomeList::ALL.into_iter().zip(areas).filter(|(_, area)| area.height > 0) {
+        one(look, frame, area, (found, list, about && list == look.model.home.list));
     }
 }
 
@@ -88,6 +100,23 @@ fn shares(rows: u16, focus: HomeList, wanted: [u16; 3]) -> [u16; 3] {
     given
 }
 
+/// The rows of each list where one list fills the screen: what this list does not need goes to the others, if it is
+/// enough for them to be of use.
+fn fitting(rows: u16, focus: HomeList, wanted: [u16; 3]) -> [u16; 3] {
+    let mut given = [0; 3];
+    let mut left = rows;
+    let others = [HomeList::Attention, HomeList::Runs, HomeList::Scenarios];
+    for list in std::iter::once(focus).chain(others.into_iter().filter(|list| *list != focus)) {
+        let least = if list == HomeList::Attention { 3 } else { 4 };
+        if left >= least || list == focus {
+            given[list as usize] = wanted[list as usize].min(left);
+            left -= given[list as usize];
+        }
+    }
+    given[focus as usize] += left;
+    given
+}
+
 fn border(look: &Look, list: HomeList) -> Role {
     if look.model.home.list == list { Role::Focus } else { Role::Border }
 }
@@ -98,17 +127,36 @@ fn note(look: &Look, list: HomeList) -> String {
     let found = look.model.home.found.iter().flat_map(|found| &found.attention);
     let open = found.filter(|point| point.severity > Severity::Info).count();
     let is_alone = look.model.ui.arrangement() == Arrangement::Paged;
+    let is_focused = look.model.home.list == list;
     match look.model.home.filter.as_str() {
-        "" if is_alone && open > 0 => look.keys(&format!("attention {open}, <next-pane> list")),
-        _ if look.model.home.list != list => look.keys("<next-pane> list"),
+        "" if is_focused && is_alone && open > 0 => look.keys(&format!("attention {open}, <next-pane> list")),
+        _ if !is_focused => look.keys("<next-pane> list"),
         "" => look.keys("<filter> filter"),
         filter => look.keys(&format!("filter `{}`  <cancel> clear", text::fit(filter, 20))),
+    }
+}
+
+/// What Enter does, for the state line.
+pub(super) fn enter(model: &Model) -> &'static str {
+    match model.home.list {
+        HomeList::Scenarios => "<open> opens a scenario and makes its plan.",
+        HomeList::Runs => "<open> replays the selected run.",
+        HomeList::Attention => "<open> shows the whole text.",
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn on_a_small_screen_the_focused_list_leaves_to_the_others_only_what_it_does_not_need() {
+        assert_eq!(fitting(12, HomeList::Scenarios, [23, 5, 3]), [12, 0, 0]);
+        assert_eq!(fitting(12, HomeList::Attention, [23, 25, 3]), [0, 9, 3], "the runs come next");
+        assert_eq!(fitting(12, HomeList::Runs, [23, 7, 5]), [0, 7, 5]);
+        assert_eq!(fitting(12, HomeList::Runs, [23, 10, 5]), [0, 12, 0], "two rows are of no use");
+        assert_eq!(fitting(12, HomeList::Scenarios, [8, 4, 3]), [9, 0, 3]);
+    }
 
     #[test]
     fn every_list_is_visible_and_the_focused_one_comes_first() {

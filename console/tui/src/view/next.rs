@@ -2,7 +2,7 @@
 
 mod held;
 
-use super::{confirm, events, text};
+use super::{confirm, events, home, text};
 use crate::guide;
 use crate::model::planning::Lead;
 use crate::model::{Alarm, Busy, Model, Offer, Overlay, Replay, Screen, ui::Ask};
@@ -71,10 +71,12 @@ fn by_phase(model: &Model) -> Clauses {
             clauses.splice(at..at, work.into_iter().flatten());
             (Role::Hold, clauses)
         }
-        (None, Phase::Waiting) if model.ui.screen == Screen::Home => (
-            Role::Title,
-            vec!["<open> opens a scenario and makes its plan.".into(), "The robot does not move.".into()],
-        ),
+        (None, Phase::Waiting) if model.ui.screen == Screen::Home => {
+            (Role::Title, vec![home::enter(model).into(), "The robot does not move.".into()])
+        }
+        (None, Phase::Waiting) if model.live.replay.is_some() => {
+            (Role::Title, vec!["Before the start of the mission.".into()])
+        }
         (None, Phase::Waiting) => {
             let (role, start) = idle(model);
             (role, work.into_iter().flatten().chain(start).collect())
@@ -155,14 +157,15 @@ fn work(model: &Model, busy: &Busy) -> Vec<String> {
     std::iter::once(first).chain(what).collect()
 }
 
-/// As many clauses as fit into a given width; the first one is cut if necessary.
+/// As many clauses as fit into a given width; the first one is shortened if necessary.
 pub(super) fn joined(clauses: &[String], columns: usize) -> String {
     fitting(clauses, columns).join(" ")
 }
 
-/// The clauses that fit; the first one is cut if necessary.
+/// The clauses that fit; the first one is shortened if necessary.
 fn fitting(clauses: &[String], columns: usize) -> Vec<String> {
-    let mut kept: Vec<String> = clauses.first().map(|first| text::fit(first, columns)).into_iter().collect();
+    let mut kept: Vec<String> =
+        clauses.first().map(|first| text::clauses(first, columns)).into_iter().collect();
     let mut used = kept.first().map_or(0, |first| text::width(first));
     for clause in clauses.iter().skip(1) {
         let more = 1 + text::width(clause);

@@ -16,7 +16,7 @@ use std::cmp::Reverse;
 
 /// Width of the figure names, columns.
 const NAMES: usize = 11;
-/// The minimum width at which the map is beside the figures, columns.
+/// The minimum width at which the map can be beside the figures, columns.
 const BESIDE: u16 = 76;
 /// Width of the figures beside a map, columns.
 const FIGURES: u16 = 46;
@@ -33,7 +33,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, run: &PastRun) {
     frame.render_widget(block, area);
     let glimpse = look.model.home.glimpses.of(&run.name).and_then(|found| found.as_ref().ok());
     let map = glimpse.and_then(|glimpse| map(glimpse));
-    let beside = map.is_some() && inner.width >= BESIDE;
+    let beside = map.is_some() && is_beside(inner, |columns| lines(look, run, columns).len());
     let figures = if beside { FIGURES } else { inner.width };
     let lines = lines(look, run, usize::from(figures));
     let [left, right] = Layout::horizontal([Constraint::Length(figures), Constraint::Fill(1)]).areas(inner);
@@ -47,6 +47,14 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, run: &PastRun) {
             small_map::draw(look, frame, below, &map);
         }
     }
+}
+
+/// Whether the map is larger beside the figures than below them, given the lines of the figures for a width.
+fn is_beside(area: Rect, lines: impl Fn(usize) -> usize) -> bool {
+    // A cell is about twice as high as it is wide.
+    let rows = |columns: u16, rows: u16| rows.min(columns / 2);
+    let below = area.height.saturating_sub(lines(usize::from(area.width)) as u16);
+    area.width >= BESIDE && rows(area.width - FIGURES, area.height) >= rows(area.width, below)
 }
 
 /// The name of the run's scenario, or of its folder if the scenario is unknown.

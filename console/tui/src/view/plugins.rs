@@ -15,6 +15,8 @@ use ratatui::layout::{Constraint, Layout, Rect};
 /// Width of the key of a parameter, and of its allowed values, columns.
 const KEY: usize = 20;
 const ALLOWED: usize = 26;
+/// Minimum width of a table of parameters, columns.
+const LEAST: usize = 60;
 /// The number of digits shown of a hash.
 const HASH: usize = 12;
 
@@ -64,7 +66,7 @@ fn role(state: PluginState) -> Role {
 
 fn row(plugin: &Plugin<'_>, name: usize, columns: usize) -> Parts {
     let mut parts = vec![
-        (Role::Text, text::column(plugin.file, name)),
+        (Role::Text, text::column(&text::fit(plugin.file, name - 1), name)),
         (role(plugin.state), text::column(plugin.state.word(), 9)),
     ];
     let rest = columns.saturating_sub(name + 9 + 1);
@@ -88,7 +90,7 @@ fn detail(look: &Look, frame: &mut Frame, area: Rect, plugin: &Plugin<'_>) {
     let wrapped = |role: Role, words: &str| -> Vec<Parts> {
         text::wrap(words, columns).into_iter().map(|line| vec![(role, format!(" {line}"))]).collect()
     };
-    let about = |as_table: bool| {
+    let about = |tables: usize| {
         let mut rows = wrapped(role(plugin.state), &look.keys(state_words(plugin.state)));
         if !plugin.reason.is_empty() {
             rows.extend(wrapped(Role::Warn, plugin.reason));
@@ -103,18 +105,19 @@ fn detail(look: &Look, frame: &mut Frame, area: Rect, plugin: &Plugin<'_>) {
                 rows.extend(wrapped(role, &format!("sandbox: {sandbox}")));
             }
             rows.extend(wrapped(Role::Text, &info.about));
-            if as_table {
-                rows.extend(info.parameters.iter().map(|info| parameter_row(info, columns)));
-            } else {
+            if tables == 0 {
                 rows.extend(wrapped(Role::Dim, &parameters(&info.parameters)));
+            } else {
+                rows.extend(parameter_rows(&info.parameters, tables, columns));
             }
         }
         rows
     };
-    // A large screen has room for a line about each parameter.
-    let table = about(true);
-    let fits = table.len() <= usize::from(block.inner(area).height);
-    let rows = if fits { table } else { about(false) };
+    // A large screen has room for a line about each parameter, or for two parameters in a line.
+    let height = usize::from(block.inner(area).height);
+    let most = if columns >= 2 * LEAST { 2 } else { 1 };
+    let mut tables = (1..=most).map(&about);
+    let rows = tables.find(|rows| rows.len() <= height).unwrap_or_else(|| about(0));
     fill(frame, area, block, rows.into_iter().map(|parts| look.line(parts)).collect());
 }
 
@@ -137,13 +140,25 @@ fn parameters(infos: &[ParamInfo]) -> String {
     if keys.is_empty() { "no parameters".into() } else { format!("parameters: {}", keys.join(", ")) }
 }
 
+/// The parameters in `tables` columns, to be read downwards.
+fn parameter_rows(infos: &[ParamInfo], tables: usize, columns: usize) -> Vec<Parts> {
+    let height = infos.len().div_ceil(tables);
+    let width = columns / tables;
+    let row = |line: usize| -> Parts {
+        let listed = infos.iter().skip(line).step_by(height.max(1));
+        listed.flat_map(|info| parameter_row(info, width)).collect()
+    };
+    (0..height).map(row).collect()
+}
+
 /// A parameter: its key, its allowed values, and its meaning if there is room.
 fn parameter_row(info: &ParamInfo, columns: usize) -> Parts {
     let key = text::column(&info.key, KEY);
     let allowed = text::column(&parameter::range(info), ALLOWED);
     let room = columns.saturating_sub(KEY + ALLOWED + 5);
     let label = text::wording([info.label.clone(), String::new()], room);
-    let allowed = text::fit(&format!(" {allowed}  {label}"), columns.saturating_sub(KEY + 2));
+    let room = columns.saturating_sub(KEY + 3);
+    let allowed = text::column(&text::fit(&format!(" {allowed}  {label}"), room), room);
     vec![(Role::Text, format!("   {key}")), (Role::Dim, allowed)]
 }
 

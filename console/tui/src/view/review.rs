@@ -94,12 +94,8 @@ fn runs(look: &Look, frame: &mut Frame, area: Rect) {
     let selected = review.selected.min(rows.len().saturating_sub(1));
     let shown = table::window(selected, rows.len(), height);
     let block = look.block(Role::Focus, &format!("Runs  {}", table::counted(&shown, rows.len())), &note);
-    table::place(
-        look,
-        Rect { y: inner.y + 1, height: inner.height.saturating_sub(1), ..inner },
-        Rows::Past,
-        shown,
-    );
+    let place = Rect { y: inner.y + 1, height: inner.height.saturating_sub(1), ..inner };
+    table::place(look, place, Rows::Past, shown.clone());
     let mut lines: Vec<ratatui::text::Line> = vec![look.line(head(widths))];
     lines.extend(table::rows(look, rows, Some(selected), (columns, height)));
     if listed.is_empty() {
@@ -111,6 +107,7 @@ fn runs(look: &Look, frame: &mut Frame, area: Rect) {
         lines.push(look.line([(Role::Dim, words)]));
     }
     fill(frame, area, block, lines);
+    table::bar(look, frame, place, &shown, listed.len());
 }
 
 /// The mark of the replayed run, or of the run with which it is compared.

@@ -151,7 +151,7 @@ fn alarm(look: &Look, columns: usize) -> Vec<Line<'static>> {
 
 fn position(look: &Look) -> String {
     let model = look.model;
-    let bases = coverage::Bases::of(&model.live);
+    let bases = coverage::Bases::shown(look);
     let scanned = match bases.scanned()[0].as_str() {
         // The share is not known before the first step.
         "-" => String::new(),

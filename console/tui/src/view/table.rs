@@ -4,6 +4,7 @@ use super::look::{Look, Parts};
 use super::text;
 use crate::theme::Role;
 use crate::update::Rows;
+use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 use std::ops::Range;
@@ -54,9 +55,54 @@ pub(crate) fn place(look: &Look, area: Rect, list: Rows, shown: Range<usize>) {
     }
 }
 
+/// Marks on the right border which part of a list is visible, if not all of it is. `area`: the rows within the frame.
+pub(crate) fn bar(look: &Look, frame: &mut Frame, area: Rect, shown: &Range<usize>, len: usize) {
+    let column = Rect { x: area.right(), width: 1, ..area }.intersection(frame.area());
+    let Some(thumb) = thumb(usize::from(column.height), shown, len) else { return };
+    for y in thumb.map(|row| column.y + row as u16) {
+        frame.buffer_mut()[(column.x, y)].set_char('█').set_style(look.theme.style(Role::Dim));
+    }
+}
+
+/// The rows of the mark; `None` if the whole list is visible.
+fn thumb(rows: usize, shown: &Range<usize>, len: usize) -> Option<Range<usize>> {
+    if rows == 0 || shown.len() >= len {
+        return None;
+    }
+    let height = (rows * shown.len() / len).clamp(1, rows);
+    let (last, room) = (len - shown.len(), rows - height);
+    // Rounded, and at an end only if the list is.
+    let from = (shown.start * room + last / 2) / last;
+    let from = if shown.start > 0 && room > 1 { from.max(1) } else { from };
+    let from = if shown.end < len && room > 1 { from.min(room - 1) } else { from };
+    Some(from..from + height)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_bar_is_at_an_end_only_if_the_list_is() {
+        assert_eq!(thumb(10, &(0..10), 10), None, "all is visible");
+        assert_eq!(thumb(0, &(0..0), 10), None, "no room");
+        for rows in 4..20 {
+            for len in rows + 1..60 {
+                for start in 0..=len - rows {
+                    let bar = thumb(rows, &(start..start + rows), len).unwrap();
+                    assert!(!bar.is_empty() && bar.end <= rows, "{bar:?} of {rows}");
+                    if rows - bar.len() > 1 {
+                        assert_eq!(bar.start == 0, start == 0, "{bar:?} for {start} of {len} in {rows}");
+                        assert_eq!(
+                            bar.end == rows,
+                            start + rows == len,
+                            "{bar:?} for {start} of {len} in {rows}"
+                        );
+                    }
+                }
+            }
+        }
+    }
 
     #[test]
     fn the_selected_line_is_always_shown() {

@@ -93,16 +93,18 @@ pub(crate) fn wording<const N: usize>(wordings: [String; N], columns: usize) -> 
 }
 
 /// As many leading clauses of a sentence as fit, for a row whose full sentence is shown elsewhere. The text ends in an
-/// ellipsis only if not even the first clause fits. A clause has at least two words and does not end within
-/// parentheses.
+/// ellipsis only if not even the first clause fits. A clause has at least two words after its last colon, comma or question
+/// mark and does not end within parentheses.
 pub(crate) fn clauses(sentence: &str, columns: usize) -> String {
     if width(sentence) <= columns {
         return sentence.to_owned();
     }
     let ends = sentence.match_indices([';', ':', ',']).map(|(at, _)| at);
     let ends = ends.filter(|at| sentence[at + 1..].starts_with(' '));
-    let is_clause =
-        |head: &&str| head.contains(' ') && head.matches('(').count() == head.matches(')').count();
+    let is_clause = |head: &&str| {
+        let last = [": ", ", ", "? "].iter().fold(*head, |rest, end| rest.rsplit(end).next().unwrap_or(rest));
+        last.contains(' ') && head.matches('(').count() == head.matches(')').count()
+    };
     let fitting = ends.map(|at| &sentence[..at]).filter(is_clause).rfind(|head| width(head) <= columns);
     fitting.map_or_else(|| fit(sentence, columns), str::to_owned)
 }
@@ -259,6 +261,13 @@ mod tests {
             clauses("spiral: floor left out around (-5.7, 4.2): too narrow", 36).chars().last(),
             Some('…')
         );
+        // A single word after a colon, a comma or a question mark would say nothing.
+        assert_eq!(
+            clauses("plan: shell: along 0.4 m of it, the scan is wider", 32),
+            "plan: shell: along 0.4 m of it"
+        );
+        assert_eq!(clauses("plan: shell: along 0.4 m of it", 20), "plan: shell: along …");
+        assert_eq!(clauses("Go on? Enter: change, Esc: cancel", 30), "Go on? Enter: change, Esc: ca…");
         let at = |columns| names(&["apf", "rpf", "navfn"], columns);
         assert_eq!([at(13), at(12), at(6), at(1)], ["apf rpf navfn", "apf rpf +1", "apf +2", "3"]);
     }

@@ -261,7 +261,7 @@ fn a_no_go_zone_is_a_box_between_two_corners() {
     assert_eq!(asked, [Effect::Ask(Query::ZoneCost(corners.to_vec()))], "its cost comes first");
     assert_eq!(screen.press([Key::Enter]), [], "the cost is not known yet");
     run(&mut screen, "no-go 2,0.5 -1.5,3");
-    let cost = ZoneCost { path_m: 12.34, closed_m2: 6.1, lost_m2: 4.2, drops_offer: false, holds: false };
+    let cost = ZoneCost { path_m: 12.34, closed_m2: 6.1, lost_m2: 4.2, ..ZoneCost::default() };
     screen.hear(RunMsg::ZoneCost(corners.to_vec(), Ok(cost)));
     let shown = text(&drawn(&screen.model, RICH, (120, 36)));
     assert!(shown.contains("Close this floor?") && shown.contains("12.3 m of the plan"), "{shown}");

@@ -26,7 +26,7 @@ pub(crate) fn asked() -> Screen {
     let effects = screen.press(ENTER);
     let corners = corners(&screen);
     assert_eq!(effects, [Effect::Ask(Query::ZoneCost(corners.clone()))]);
-    let cost = ZoneCost { path_m: 12.34, closed_m2: 6.1, lost_m2: 4.2, drops_offer: false, holds: false };
+    let cost = ZoneCost { path_m: 12.34, closed_m2: 6.1, lost_m2: 4.2, ..ZoneCost::default() };
     screen.hear(RunMsg::ZoneCost(corners, Ok(cost)));
     screen
 }
@@ -36,6 +36,19 @@ fn corners(screen: &Screen) -> Vec<Point> {
         Overlay::Confirm(Ask::DrawZone(corners)) => corners.clone(),
         other => panic!("{other:?}"),
     }
+}
+
+#[test]
+fn a_zone_across_the_way_back_along_the_tether_says_so_before_it_is_drawn() {
+    let mut screen = asked();
+    let corners = corners(&screen);
+    let words = "It blocks the way back along the tether.";
+    let shown = |screen: &Screen| text(&drawn(&screen.model, RICH, (120, 36)));
+    assert!(!shown(&screen).contains(words));
+    let cost = ZoneCost { blocks_way_back: true, ..ZoneCost::default() };
+    screen.hear(RunMsg::ZoneCost(corners, Ok(cost)));
+    let text = shown(&screen);
+    assert!(text.contains(words), "{text}");
 }
 
 #[test]

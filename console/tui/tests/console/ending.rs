@@ -2,7 +2,7 @@
 
 use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};
-use mission::{EventKind, HoldReason, Home, Order, WayBack};
+use mission::{EventKind, HoldReason, Home, Order, Outcome, WayBack};
 use tui::model::{Overlay, ui::Ask};
 use tui::{Effect, Key, Mouse, Msg, Query, RunMsg, Target};
 use world::Point;
@@ -146,7 +146,39 @@ fn a_breach_of_a_zone_is_a_critical_alarm_and_says_why_the_robot_is_held() {
     screen.hear(RunMsg::Events(vec![breached, held]));
     let text = shown(&screen, (120, 36));
     assert!(text.contains("HELD: hull in a no-go zone") && text.contains("! 1C*"), "{text}");
+    assert!(text.contains(":return: drive back. X: end mission.") && !text.contains("resume"), "{text}");
     screen.type_text("4");
     let alarms = shown(&screen, (120, 36));
     assert!(alarms.contains("hull in zone no-go 1"), "{alarms}");
+    // Whatever holds the robot in the zone, the remedy is the same.
+    screen.type_text("3");
+    let message = "planner apf finds no way out of zone no-go 1".to_owned();
+    let held = screen.mission.held(HoldReason::Stuck { message });
+    screen.hear(RunMsg::Events(vec![held]));
+    let text = shown(&screen, (120, 36));
+    assert!(text.contains("HELD: robot stuck; hull in a no-go zone"), "{text}");
+    assert!(text.contains(":return: drive back."), "{text}");
+    // Outside, the planner can go on.
+    let left = screen.mission.now(EventKind::ZoneLeft { zone: "no-go 1".into() });
+    let held = screen.mission.held(HoldReason::ZoneBreached { zone: "no-go 1".into() });
+    screen.hear(RunMsg::Events(vec![left, held]));
+    let text = shown(&screen, (120, 36));
+    assert!(text.contains("HELD: hull has left the zone") && text.contains("space: resume."), "{text}");
+}
+
+#[test]
+fn parameters_of_an_ended_mission_are_refused_with_the_reason() {
+    let mut screen = Screen::held();
+    screen.type_text("3p");
+    assert!(matches!(screen.model.ui.overlay, Overlay::Parameters { .. }), "{:?}", screen.model.ui.overlay);
+    screen.press([Key::Esc]);
+    let ended = screen.mission.ended(Outcome::Aborted, "ended by operator");
+    screen.hear(RunMsg::Events(vec![ended]));
+    for number in ["3", "2"] {
+        screen.type_text(number);
+        screen.type_text("p");
+        assert_eq!(screen.model.ui.overlay, Overlay::None);
+        let text = shown(&screen, (120, 36));
+        assert!(text.contains("the mission has ended") && !text.contains("p parameters"), "{text}");
+    }
 }

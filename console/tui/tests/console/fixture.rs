@@ -694,5 +694,6 @@ pub(crate) fn listed(name: &str, problem: Option<&str>) -> tui::model::ScenarioE
         expected: String::new(),
         problem: problem.map(str::to_owned),
         world: None,
+        mission: None,
     }
 }

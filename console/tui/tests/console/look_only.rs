@@ -70,3 +70,27 @@ fn who_looks_on_sees_it_and_leaves_without_a_question() {
         assert_eq!(screen.type_text("q"), [Effect::Quit { signal: None }]);
     }
 }
+
+#[test]
+fn the_line_of_keys_of_an_onlooker_offers_no_order() {
+    for (onlooker, state) in onlookers().into_iter().zip(["running", "held", "ended"]) {
+        for name in Name::ALL {
+            for size in [(60, 16), (80, 24), (120, 36), (200, 60)] {
+                let mut screen = onlooker.clone();
+                screen.model.ui.go(name);
+                screen.send(tui::Msg::Resize { width: size.0, height: size.1 });
+                let shown = text(&drawn(&screen.model, RICH, size));
+                let line = shown.lines().last().unwrap_or_default();
+                let place = format!("{state}, {} at {size:?}: {line}", name.name());
+                assert!(line.contains("? keys") || line.contains("? help"), "{place}");
+                let words =
+                    ["HOLD", "resume", "start", "end", "step", "parameters", "acknowledge", "shelve", "take"];
+                let labels: Vec<&str> = line.split("  ").map(str::trim).collect();
+                let orders = labels.iter().filter(|label| {
+                    words.iter().any(|word| label.split(' ').any(|w| w.trim_end_matches('…') == *word))
+                });
+                assert_eq!(orders.collect::<Vec<_>>(), Vec::<&&str>::new(), "{place}");
+            }
+        }
+    }
+}

@@ -165,6 +165,29 @@ fn what_the_plan_leaves_out() {
 }
 
 #[test]
+fn enter_on_the_plan_opens_an_area_or_says_why_not() {
+    let said = |screen: &mut Screen| {
+        screen.press([Key::Enter]);
+        screen.model.notice().map(|notice| notice.text.clone()).unwrap_or_default()
+    };
+    let mut screen = planned();
+    screen.send(Msg::Resize { width: 120, height: 36 });
+    screen.model.ui.pane = Pane::Map;
+    assert_eq!(said(&mut screen), "nothing to open in this pane; Tab: next pane, to Left out");
+    screen.press([Key::Tab]);
+    assert!(said(&mut screen).starts_with("map centred at"), "an area is listed");
+    let mut whole = planned();
+    whole.model.ui.pane = Pane::LeftOut;
+    let ask = whole.model.live.run.planning.plan.as_ref().and_then(|plan| plan.ask);
+    let none = LeftOut { areas: Vec::new(), ..left_out() };
+    whole.hear(RunMsg::LeftOut(ask, Box::new(none)));
+    assert_eq!(said(&mut whole), "nothing to open: the plan leaves out no area");
+    let mut drive = Screen::idle();
+    drive.type_text("2");
+    assert!(said(&mut drive).contains("no list of floor"), "a drive leaves nothing out");
+}
+
+#[test]
 fn the_plan_beside_what_is_now() {
     let mut screen = under_way();
     screen.type_text("2");

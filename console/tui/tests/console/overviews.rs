@@ -24,6 +24,7 @@ fn store(name: &str, screen: &mut Screen) {
 }
 
 fn scenario(name: &str, task: &str, planner: &str) -> ScenarioEntry {
+    let about = Screen::idle().model.live.run.about;
     ScenarioEntry {
         source: Source::File(format!("scenarios/{name}.toml")),
         name: name.into(),
@@ -33,7 +34,8 @@ fn scenario(name: &str, task: &str, planner: &str) -> ScenarioEntry {
         planner: planner.into(),
         expected: "complete, no collision".into(),
         problem: None,
-        world: Screen::idle().model.live.run.about.map(|about| Box::new(about.world)),
+        world: about.as_ref().map(|about| Box::new(about.world.clone())),
+        mission: about.map(|about| Box::new(about.mission)),
     }
 }
 
@@ -63,6 +65,7 @@ pub(crate) fn found() -> Found {
             "error: scenarios/depot.toml:14:1: unknown key `radus_m`, did you mean `radius_m`?".into(),
         ),
         world: None,
+        mission: None,
         ..scenario("depot", "", "")
     };
     let demo =
@@ -130,6 +133,12 @@ fn home() {
     let mut screen = Screen::idle();
     screen.send(Msg::Found(Box::new(found())));
     screen.type_text("1jj");
+    // A large screen shows the last run of the selected scenario.
+    let asked = screen.send(Msg::Resize { width: 200, height: 60 });
+    let key = ("20261122T040049Z-cover-unknown-columns".to_owned(), "aborted".to_owned());
+    assert_eq!(asked, [Effect::Glimpse(key.clone())]);
+    let known = glimpse(&screen);
+    screen.send(Msg::Glimpsed(key, Ok(Box::new(known))));
     sizes::store("home", &mut screen, |_| false);
     screen.type_text("jj");
     let refused = screen.press([tui::Key::Enter]);

@@ -9,13 +9,13 @@ use tui::RunMsg;
 use vehicle::port::{LinkSeen, LinkState};
 use world::Point;
 
-fn hear(screen: &mut Screen, kinds: impl IntoIterator<Item = EventKind>) {
+pub(crate) fn hear(screen: &mut Screen, kinds: impl IntoIterator<Item = EventKind>) {
     let events = kinds.into_iter().map(|kind| screen.mission.now(kind)).collect();
     screen.hear(RunMsg::Events(events));
 }
 
 /// The state line at 120x36.
-fn state(screen: &Screen) -> String {
+pub(crate) fn state(screen: &Screen) -> String {
     let shown = text(&drawn(&screen.model, RICH, (120, 36)));
     let lines: Vec<&str> = shown.lines().map(str::trim).collect();
     lines[lines.len() - 2].to_owned()
@@ -111,14 +111,14 @@ fn a_planner_that_ends_during_a_hold_is_named_with_what_to_do() {
 }
 
 /// A live run that has been driving.
-fn live() -> Screen {
+pub(crate) fn live() -> Screen {
     let mut screen = Screen::running();
     screen.model.live.run.about.as_mut().expect("a run").mission.live = true;
     hear(&mut screen, [link(LinkState::Up, "")]);
     screen
 }
 
-fn link(state: LinkState, why: &str) -> EventKind {
+pub(crate) fn link(state: LinkState, why: &str) -> EventKind {
     EventKind::Link(LinkSeen { state, why: why.into(), heard: 900, ..LinkSeen::default() })
 }
 

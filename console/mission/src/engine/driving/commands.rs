@@ -57,8 +57,8 @@ impl Driving {
         let arrived = self.command.take()?;
         let (ask, command) = (arrived.ask, arrived.command);
         self.pass_on(arrived, happened);
-        let (is_coverage, tick_s) = (known.is_coverage(), known.config.tick_s);
-        let verdict = self.blocked.update(command.status, known.position(), is_coverage, tick_s);
+        let (where_to, tick_s) = ((known.is_coverage(), !known.breached.is_empty()), known.config.tick_s);
+        let verdict = self.blocked.update(command.status, known.position(), where_to, tick_s);
         if let Some(Verdict::Replan(reason)) = verdict {
             self.course.want_plan(reason);
         }
@@ -70,8 +70,9 @@ impl Driving {
         Some(sent.drive)
     }
 
-    /// Discards a command that has arrived but was not sent.
+    /// Discards a command that has arrived but was not sent, because the robot is held.
     pub(in crate::engine) fn drop_command(&mut self, happened: &mut Happened) {
+        self.blocked.stand();
         if let Some(unsent) = self.command.take() {
             self.discard(unsent, happened);
         }

@@ -57,8 +57,8 @@ mod tests {
         assert!(LatePlannerRule::is_fresh(1, 0.5) && !LatePlannerRule::is_fresh(2, 0.5));
         let silent = |owed_s| {
             let owed_s = Some(owed_s);
-            LatePlannerRule::update(&PlannerSeen { id: "apf", is_waited_for: false, owes: true, owed_s })
-                .is_some()
+            let seen = PlannerSeen { id: "apf", is_waited_for: false, owes: true, owed_s, is_shut_in: false };
+            LatePlannerRule::update(&seen).is_some()
         };
         assert!(!silent(19.0 * 0.1) && silent(20.0 * 0.1));
     }

@@ -29,6 +29,8 @@ pub(in crate::engine) struct Seen<'a> {
     pub is_back: bool,
     /// The no-go zone that the hull entered in this tick, if any.
     pub breached: Option<&'a str>,
+    /// A no-go zone that the hull is in, if any.
+    pub in_zone: Option<&'a str>,
     /// Scanned share of the reachable floor, 0 to 1.
     pub scanned: f64,
     /// Whether the bumper was touched.
@@ -51,6 +53,8 @@ pub(in crate::engine) struct PlannerSeen<'a> {
     pub owes: bool,
     /// How long the planner has owed an answer that a moving robot needs, seconds.
     pub owed_s: Option<f64>,
+    /// Whether the planner finds no way out of a no-go zone.
+    pub is_shut_in: bool,
 }
 
 impl Seen<'_> {

@@ -1,4 +1,5 @@
-//! A robot whose hull is in a no-go zone is held until an operator decides.
+//! A robot whose hull is in a no-go zone is held until an operator decides, when it enters the zone and again if the
+//! planner finds no way out.
 
 use super::seen::{Seen, Verdict};
 use crate::phase::{Hold, HoldReason, Outcome, Resumes};
@@ -15,5 +16,13 @@ impl ZoneRule {
         } else {
             Verdict::End(Outcome::Aborted, format!("unattended hold: hull in zone {zone}"))
         })
+    }
+
+    /// Processes one tick of a running robot: holds it if its hull is in a zone and its planner finds no way out. Driving
+    /// back needs no planner.
+    pub(crate) fn update_planner(seen: &Seen<'_>) -> Option<Verdict> {
+        let zone = seen.in_zone.filter(|_| seen.planner.is_shut_in)?;
+        let message = format!("planner {} finds no way out of zone {zone}", seen.planner.id);
+        Some(Verdict::Hold(Hold { by: HoldReason::Stuck { message }, resumes: Resumes::Never }))
     }
 }

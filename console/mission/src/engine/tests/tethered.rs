@@ -153,6 +153,67 @@ fn fly_before_barrier(flight: &mut Flight, ticks: usize, shift_m: impl Fn(usize)
     }
 }
 
+/// A robot that has driven past a column on its right, which it has found; its tether lies between the column and the wall.
+fn past_a_column() -> Flight {
+    let mut flight = Flight::new(MissionConfig { attended: true, ..loosely_tethered() });
+    flight.tick(&[Order::Start]);
+    while flight.pose.position.x < 1.0 {
+        let center = Point::from(Point::new(-1.0, -1.0) - flight.pose.position);
+        let shape_in_robot = Shape::Disc { center, radius_m: 0.4 };
+        flight.sightings = vec![Sighting { id: ObstacleId(9), shape_in_robot }];
+        flight.tick(&[]);
+    }
+    flight
+}
+
+#[test]
+fn a_zone_leaves_the_return_path_free_and_its_cost_says_if_the_way_back_is_blocked() {
+    let between = |low: f64, high: f64| crate::outline::boxed(Point::new(-1.3, low), Point::new(-0.7, high));
+    let mut flight = past_a_column();
+    let blocks =
+        |flight: &Flight, corners: &[Point]| flight.mission.zone_cost(corners).unwrap().blocks_way_back;
+    // Between the column and the wall, the zone leaves the hull room only beyond the column, where the tether is not.
+    let closed = between(-0.55, 4.8);
+    assert!(!blocks(&flight, &between(1.0, 3.0)) && blocks(&flight, &closed));
+    assert_eq!(refusal(&flight.tick(&[Order::DrawZone(closed)])), None);
+    flight.tick(&[Order::Hold]);
+    let why = flight.mission.way_back().unwrap_err();
+    assert!(why.contains("does not fit"), "{why}");
+    // The tether can still be reeled in along it: a zone is not an obstacle for the tether.
+    let last = flight.events.iter().rev().find_map(|event| match &event.kind {
+        EventKind::Tethered { return_length_m, .. } => Some(return_length_m.is_some()),
+        _ => None,
+    });
+    assert_eq!((last, holds(&flight)), (Some(true), 0));
+}
+
+#[test]
+fn a_plan_refused_while_the_return_path_is_blocked_waits_for_it() {
+    let mut config = loosely_tethered();
+    (config.attended, config.tether.as_mut().unwrap().allow_uncertified) = (true, false);
+    let mut flight = Flight::new(config);
+    flight.planner.plans_to_goal = true;
+    flight.tick(&[Order::Start]);
+    flight.fly(60);
+    // The barrier blocks the return path and makes the mission ask for a plan, which cannot be certified. The hold comes
+    // before the alarm.
+    while flight.held_by().is_none() {
+        fly_before_barrier(&mut flight, 1, |_| 0.0);
+    }
+    let message = TetherAlarm::NoReturnPath.to_string();
+    assert_eq!(flight.held_by(), Some(&HoldReason::Tether { message }));
+    let here = flight.pose;
+    fly_before_barrier(&mut flight, 60, |_| 0.0);
+    assert_eq!(flight.pose, here);
+    // The barrier leaves slowly. The robot resumes when a plan can be certified, not a moment earlier.
+    fly_before_barrier(&mut flight, 800, |tick| 0.01 * tick as f64);
+    assert_eq!(flight.held_by(), None, "the robot resumes automatically");
+    assert_eq!(holds(&flight), 1);
+    let refused =
+        |event: &&Event| matches!(event.kind, EventKind::Held { by: HoldReason::PlanRefused { .. }, .. });
+    assert_eq!(flight.events.iter().filter(refused).count(), 0);
+}
+
 pub(super) fn holds(flight: &Flight) -> usize {
     let is_hold =
         |event: &&Event| matches!(event.kind, EventKind::Held { by: HoldReason::Tether { .. }, .. });

@@ -120,6 +120,26 @@ fn a_zone_over_the_robot_holds_it_and_the_robot_drives_out_of_it_on_order() {
 }
 
 #[test]
+fn a_planner_that_finds_no_way_out_of_a_zone_holds_the_robot_soon() {
+    let mut flight = under_way();
+    flight.tick(&[around(flight.pose.position)]);
+    flight.planner.stuck_from_tick = Some(0);
+    for attempt in 0..2 {
+        let plans = flight.planner.plans;
+        flight.tick(&[Order::Resume]);
+        let ticks = (0..).take_while(|_| {
+            flight.tick(&[]);
+            flight.held_by().is_none()
+        });
+        assert!((5..20).contains(&ticks.count()), "attempt {attempt}");
+        let why = "planner straight finds no way out of zone no-go 1";
+        assert_eq!(flight.held_by(), Some(&HoldReason::Stuck { message: why.into() }));
+        assert!(flight.planner.plans <= plans + 1, "the planner does not plan in circles");
+    }
+    assert_eq!(refusal(&flight.tick(&[Order::DriveBack])), None);
+}
+
+#[test]
 fn a_zone_right_in_front_of_the_robot_holds_it_if_it_does_not_stop_in_time() {
     let mut flight = under_way();
     let radius_m = flight.mission.known.config.limits.radius_m;

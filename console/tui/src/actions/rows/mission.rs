@@ -43,8 +43,8 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::TakePlan, "take-plan", "Take the better plan on offer", &[Key::Char('T')], &[On(Screen::Mission)]).label("take plan").risk(Risk::Moves)
         .when(|m| accepted(m, &Order::TakePlan)).does(|m| ask(m, Ask::TakePlan)),
     action(ActionId::Parameters, "parameters", "View and change planner parameters", &[Key::Char('p')], &[On(Screen::Plan), On(Screen::Mission)]).label("parameters")
-        .when(offer::parameters).does(overlay::open_parameters),
-    action(ActionId::SetParameter, "set", "Change a planner parameter", &[], &[Context::Screen]).args(&[must("parameter", Kind::Parameter)]).reaches(Reach::Mission).when(offer::parameters),
+        .when(offer::changeable_parameters).does(overlay::open_parameters),
+    action(ActionId::SetParameter, "set", "Change a planner parameter", &[], &[Context::Screen]).args(&[must("parameter", Kind::Parameter)]).reaches(Reach::Mission).when(offer::changeable_parameters),
     action(ActionId::WhatIf, "what-if", "Forecast with other planners (held)", &[Key::Char('w')], &[On(Screen::Mission)]).label("what-if").reaches(Reach::Mission)
         .when(|m| accepted(m, &Order::NoteOutlooks(Vec::new()))).does(what_if::open),
     action(ActionId::NextCandidate, "next-candidate", "Next forecast", &[Key::Right, Key::Char('l')], &[Context::WhatIf]).label("select").repeats().looks(|m| what_if::select(m, 1)),

@@ -1,6 +1,8 @@
 //! The lines that pass a filter, kept up to date as lines arrive and the filter changes. Consecutive messages of a
-//! planner about its own work form one group.
+//! planner about its own work form one group. A planner's warning that it gave before, with other figures, is listed once,
+//! at its last occurrence.
 
+use super::alike::{are_alike, is_warning};
 use super::entry::Entry;
 use super::filter::Filter;
 use super::lines::Log;
@@ -31,7 +33,13 @@ struct Group {
     first: u64,
     last: u64,
     lines: u32,
+    /// How often a planner gave the warning of the line before.
+    #[serde(default)]
+    again: u32,
 }
+
+/// The number of listed lines among which the earlier occurrence of a warning is looked for: the lines of a few plans.
+const NEAR: usize = 64;
 
 /// A listed line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,6 +50,8 @@ pub struct Listed<'a> {
     pub entry: &'a Entry,
     /// The number of earlier lines that are listed with this one.
     pub more: u32,
+    /// How often the line occurred.
+    pub times: u32,
 }
 
 impl Matches {
@@ -61,8 +71,10 @@ impl Matches {
         }
         let retested = repeated.filter(|number| !self.stays(log, *number));
         let mut from = retested.unwrap_or(self.seen).max(log.oldest());
+        let mut popped = Vec::new();
         while let Some(group) = self.found.pop_back_if(|group| group.last >= from) {
             from = from.min(group.first.max(log.oldest()));
+            popped.push(group);
         }
         while self.found.pop_front_if(|group| group.last < log.oldest()).is_some() {}
         if let Some(cut) = self.found.pop_front_if(|group| group.first < log.oldest()) {
@@ -70,6 +82,11 @@ impl Matches {
         }
         for number in log.passing(&self.filter, from) {
             Self::add(&mut self.found, log, number);
+            // The earlier occurrences of a warning have left the list.
+            let before = popped.iter().find(|group| group.first == number).map_or(0, |group| group.again);
+            if let Some(group) = self.found.back_mut().filter(|group| group.first == number) {
+                group.again = group.again.max(before);
+            }
         }
         self.seen = log.end();
         self.newest = log.newest().and_then(|number| stamp(log, number));
@@ -91,8 +108,20 @@ impl Matches {
             Some(group) if belongs(log, group.last, number) => {
                 (group.last, group.lines) = (number, group.lines + 1);
             }
-            _ => found.push_back(Group { first: number, last: number, lines: 1 }),
+            _ => {
+                let again = Self::take_alike(found, log, number).unwrap_or_default();
+                found.push_back(Group { first: number, last: number, lines: 1, again });
+            }
         }
+    }
+
+    /// Removes the earlier occurrence of a planner's warning from a list; returns how often the warning has been given.
+    fn take_alike(found: &mut VecDeque<Group>, log: &Log, number: u64) -> Option<u32> {
+        let warning = log.get(number).filter(|entry| is_warning(entry))?;
+        let is_alike = |group: &Group| log.get(group.last).is_some_and(|before| are_alike(before, warning));
+        let back = found.iter().rev().take(NEAR).position(is_alike)?;
+        let group = found.remove(found.len() - 1 - back)?;
+        Some(group.again.saturating_add(log.get(group.last)?.count))
     }
 
     /// Replaces the group up to `last`, of which the first lines have been dropped from the log.
@@ -133,15 +162,24 @@ impl Matches {
     /// The listed lines, newest first, skipping the first `skip`.
     pub fn newest<'a>(&'a self, log: &'a Log, skip: usize) -> impl Iterator<Item = Listed<'a>> {
         self.found.iter().rev().skip(skip).filter_map(|group| {
-            Some(Listed { number: group.last, entry: log.get(group.last)?, more: group.lines - 1 })
+            let entry = log.get(group.last)?;
+            let times = entry.count.saturating_add(group.again);
+            Some(Listed { number: group.last, entry, more: group.lines - 1, times })
         })
     }
 
     /// The earlier lines that are listed with a line, newest first.
     pub fn grouped<'a>(&self, log: &'a Log, number: u64) -> impl Iterator<Item = &'a Entry> {
         let group = self.found.iter().rev().find(|group| (group.first..=group.last).contains(&number));
-        let before = group.map_or(number..number, |group| group.first..group.last);
-        before.rev().filter_map(|number| log.get(number)).filter(|entry| entry.severity == Severity::Debug)
+        let again = group.is_some_and(|group| group.again > 0);
+        let before =
+            group.map_or(number..number, |group| if again { 0..group.last } else { group.first..group.last });
+        let of = log.get(number).filter(|_| again);
+        let is_with = move |entry: &&Entry| match of {
+            Some(warning) => are_alike(entry, warning),
+            None => entry.severity == Severity::Debug,
+        };
+        before.rev().map_while(|number| log.get(number)).filter(is_with)
     }
 
     /// The next line of the same kind within the next `among` lines, or within the preceding ones if `back` is set.
@@ -208,6 +246,12 @@ mod tests {
         Entry { tick: 0, t_s: 1.0, severity, source, text: n.to_string(), count: 1, what }
     }
 
+    fn warned(planner: &str, message: &str) -> What {
+        let (planner, message) = (planner.to_owned(), message.to_owned());
+        let kind = EventKind::PlannerLogged { planner, level: planner_api::LogLevel::Warn, message };
+        What::Event(Box::new(super::super::Occurrence { kind, robot: None, range: None }))
+    }
+
     #[test]
     fn messages_of_one_planner_that_follow_each_other_are_listed_as_one() {
         let (mut log, mut matches) = (Log::default(), Matches::default());
@@ -256,6 +300,41 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_warning_of_a_planner_with_other_figures_is_listed_once_where_it_last_occurred() {
+        let (mut log, mut matches) = (Log::default(), Matches::default());
+        let texts = ["0.12 m² out of reach", "gap of 0.3 m", "0.25 m² out of reach", "0.25 m² out of reach"];
+        for (plan, text) in texts.iter().cycle().take(12).enumerate() {
+            let planned = format!("planned {plan} m");
+            log.add(plan as f64, Severity::Info, "plan", planned);
+            let what = warned("rpf", text);
+            log.push(Entry {
+                t_s: plan as f64,
+                severity: Severity::Watch,
+                text: (*text).into(),
+                what,
+                ..said("", 0)
+            });
+            for _ in 0..2 {
+                matches.refresh("", &log);
+                assert_eq!(matches, fresh("", &log), "plan {plan}");
+            }
+        }
+        let mut listed = matches.newest(&log, 0);
+        let newest = listed.next().unwrap();
+        assert_eq!((newest.entry.text.as_str(), newest.times, newest.entry.t_s), (texts[2], 9, 11.0));
+        let others: Vec<(&str, u32)> = listed.map(|l| (l.entry.text.as_str(), l.times)).collect();
+        assert_eq!(others.len(), 13, "twelve plans and one other warning: {others:?}");
+        assert!(others.contains(&(texts[1], 3)));
+        let before: Vec<&str> = matches.grouped(&log, newest.number).map(|e| e.text.as_str()).collect();
+        assert_eq!((before.len(), before[0], before[1]), (8, texts[2], texts[0]));
+        // The same words from another planner are not a repeat.
+        let what = warned("apf", texts[1]);
+        log.push(Entry { severity: Severity::Watch, text: texts[1].into(), what, ..said("", 0) });
+        matches.refresh("", &log);
+        assert_eq!(matches.newest(&log, 0).next().map(|listed| listed.times), Some(1));
     }
 
     #[test]

@@ -122,6 +122,24 @@ fn a_line_with_gaps_and_blanks_costs_few_bytes() {
 }
 
 #[test]
+fn each_pair_of_colours_is_named_once_a_frame() {
+    let mut buffer = Buffer::empty(Rect::new(0, 0, SIZE.0, SIZE.1));
+    let colours = [Color::Rgb(214, 175, 95), Color::Rgb(95, 175, 214)];
+    let places: Vec<(u16, u16)> = (0..SIZE.1).flat_map(|y| (0..SIZE.0).map(move |x| (x, y))).collect();
+    for (x, y) in &places {
+        buffer.set_string(*x, *y, "▀", Style::new().fg(colours[usize::from((x + y) % 2)]));
+    }
+    let bytes = written(places.iter().map(|(x, y)| (*x, *y, &buffer[(*x, *y)])));
+    for colour in ["38;2;214;175;95", "38;2;95;175;214"] {
+        assert_eq!(bytes.matches(colour).count(), 1, "{bytes:?}");
+    }
+    let after = shown(&bytes);
+    for ((x, y), after) in places.iter().zip(after) {
+        assert_eq!(visible(after), visible(expected(&buffer[(*x, *y)])));
+    }
+}
+
+#[test]
 fn a_wide_character_is_followed_by_an_absolute_move() {
     let mut cells = [Cell::default(), Cell::default()];
     cells[0].set_symbol("漢");

@@ -43,7 +43,7 @@ impl Pane<'_> {
         let title = format!("{}  {}", self.title, table::counted(&shown, self.rows.len()));
         let block = look.block(self.border, &title, &self.note);
         let place = Rect { y: inner.y + heads, height: height as u16, ..inner };
-        table::place(look, place, self.list, shown);
+        table::place(look, place, self.list, shown.clone());
         let mut lines: Vec<Line> = self
             .heads
             .into_iter()
@@ -52,8 +52,10 @@ impl Pane<'_> {
         if self.rows.is_empty() {
             lines.push(look.line([(Role::Dim, text::fit(&self.empty, columns))]));
         }
+        let len = self.rows.len();
         lines.extend(table::rows(look, self.rows, self.selected, (columns, height)));
         fill(frame, area, block, lines);
+        table::bar(look, frame, place, &shown, len);
         if let Some((title, lines)) = about {
             let y = inner.bottom().saturating_sub(below);
             divide(look, frame, Rect { y, height: 1, ..area }, (self.border, &title));

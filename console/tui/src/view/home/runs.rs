@@ -19,6 +19,8 @@ const REACH: usize = 8;
 const VERIFIED: usize = 4;
 /// Width of a duration with and without hours, columns.
 const TIME: (usize, usize) = (9, 6);
+/// Minimum width of a remark, columns.
+const REMARK: usize = 12;
 /// Maximum width of a planner, columns.
 const PLANNER: usize = 17;
 
@@ -28,6 +30,7 @@ struct Columns {
     name: usize,
     planner: usize,
     time: usize,
+    remark: usize,
 }
 
 /// The columns that fit; if the names would be cut, the planner is left out.
@@ -40,7 +43,10 @@ fn columns(listed: &[&PastRun], room: usize) -> Columns {
     let left = room.saturating_sub(1 + BEGAN + END + time + REACH + VERIFIED);
     let planner = widest(|run| &run.planner).min(PLANNER);
     let planner = if left.saturating_sub(planner) >= widest(name) { planner } else { 0 };
-    Columns { name: left - planner, planner, time }
+    // What the names do not need is for remarks, if it is enough for a few words.
+    let remark = left.saturating_sub(planner + widest(name));
+    let remark = if remark >= REMARK { remark } else { 0 };
+    Columns { name: left - planner - remark, planner, time, remark }
 }
 
 /// The mark of a verified run.
@@ -86,12 +92,13 @@ fn empty(look: &Look) -> &'static str {
 fn heads(at: Columns) -> String {
     let planner = if at.planner > 0 { text::column("planner", at.planner) } else { String::new() };
     format!(
-        " {}{}{planner}{}{}{:>REACH$}",
+        " {}{}{planner}{}{}{:>REACH$}{}",
         text::column("began", BEGAN),
         text::column("scenario", at.name),
         text::column("end", END),
         text::column("T+", at.time),
-        "reach"
+        "reach",
+        if at.remark > 0 { format!("{:VERIFIED$}  remark", "") } else { String::new() }
     )
 }
 
@@ -107,7 +114,20 @@ fn row(run: &PastRun, at: Columns) -> Parts {
         (Role::Dim, text::column(took, at.time)),
         (Role::Text, format!("{reach:>REACH$}")),
         (Role::Good, text::column(verified(run), VERIFIED)),
+        remark(run, at.remark),
     ]
+}
+
+/// The problem of a run, or the remark about it, in the rest of its row.
+fn remark(run: &PastRun, columns: usize) -> (Role, String) {
+    let (role, words) = match (&run.note, &run.remark) {
+        (Some(note), _) => (Role::Warn, note),
+        (None, Some(remark)) => (Role::Text, remark),
+        (None, None) => return (Role::Text, String::new()),
+    };
+    let first = words.split(';').next().unwrap_or_default();
+    let words = text::wording([words.clone(), first.to_owned()], columns.saturating_sub(2));
+    (role, if columns > 0 { format!("  {}", text::fit(&words, columns - 2)) } else { String::new() })
 }
 
 /// The problem of a run, or the remark about it.

@@ -14,7 +14,7 @@ use crate::view::text;
 /// Width of a command's keys, columns.
 const KEYS: usize = 10;
 /// Width of a command's name, columns: the longest name and a blank.
-const NAME: usize = 17;
+const NAME: usize = 18;
 /// The prompt of the command line.
 const PROMPT: &str = " > ";
 

@@ -11,7 +11,7 @@ const NAME: usize = 18;
 
 pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
     let room = usize::from(columns).saturating_sub(3);
-    let scanned = coverage::Bases::of(&look.model.live).sentence();
+    let scanned = coverage::Bases::shown(look).sentence();
     let can = can_drive_back(look.model);
     let (role, way) = match (&look.model.live.way_back, &can) {
         (Some(Ok(way)), Ok(())) => (Role::Text, confirm::finish_way(way)),

@@ -31,7 +31,11 @@ pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
     let verdict = match (model.live.preflight.is_checking, blocks.sentence()) {
         (true, _) => (Role::Watch, " Checking...".to_owned()),
         (false, None) => {
-            (Role::Good, " Nothing blocks the start. The checks are repeated at the start.".to_owned())
+            let words = [
+                "Nothing blocks the start. The checks are repeated at the start.",
+                "Nothing blocks the start.",
+            ];
+            (Role::Good, format!(" {}", text::wording(words.map(str::to_owned), room)))
         }
         (false, Some(why)) => (Role::Crit, format!(" Start is blocked: {why}.")),
     };

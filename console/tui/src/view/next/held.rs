@@ -1,6 +1,6 @@
 //! The reason, the place and the end of a hold.
 
-use crate::model::{Model, Run};
+use crate::model::{Cause, Model, Run};
 use crate::view::text;
 use mission::{Hold, HoldReason, Phase, PositionTrust, Resumes};
 use vehicle::port::{LinkSeen, LinkState};
@@ -23,6 +23,7 @@ pub(super) fn clauses(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String>
         }
         (Some(trouble), _) => held_without_position(head, by, trouble),
         (None, Some(fault)) => held_without_planner(head, by, &fault.message),
+        (None, None) if is_in_zone(run) => held_in_zone(head, by),
         (None, None) => held_for_good(head, by),
     });
     if head == Head::NotConfirmed {
@@ -151,6 +152,20 @@ fn held_without_position(head: Head, by: &HoldReason, (trouble, needs): (&str, &
     [state, needs.into()].into_iter().chain(planner).collect()
 }
 
+/// Whether the hull is in a no-go zone.
+fn is_in_zone(run: &Run) -> bool {
+    run.alarms.list().iter().any(|alarm| matches!(alarm.cause, Cause::Zone(_)) && alarm.is_active())
+}
+
+/// A hold while the hull is in a no-go zone. A planner may find no way out, so the remedy is the drive back.
+fn held_in_zone(head: Head, by: &HoldReason) -> Vec<String> {
+    let state = match by {
+        HoldReason::ZoneBreached { .. } => head.with(": hull in a no-go zone."),
+        by => head.with(&format!("{}; hull in a no-go zone.", reason(by))),
+    };
+    vec![state, "<return>: drive back.".into(), "<end>: end mission.".into()]
+}
+
 /// A hold that only an order can end.
 fn held_for_good(head: Head, by: &HoldReason) -> Vec<String> {
     const RESUME: &str = "<resume>: resume.";
@@ -165,7 +180,10 @@ fn held_for_good(head: Head, by: &HoldReason) -> Vec<String> {
         HoldReason::Operator | HoldReason::PlannerReplaced | HoldReason::PlannerSilent { .. } => {
             (reason(by), &[RESUME, PLANNER])
         }
-        HoldReason::Tether { .. } | HoldReason::ZoneBreached { .. } | HoldReason::Guard { .. } => {
+        HoldReason::ZoneBreached { .. } => {
+            (": hull has left the zone".into(), &[RESUME, "<end>: end mission."])
+        }
+        HoldReason::Tether { .. } | HoldReason::Guard { .. } => {
             (reason(by), &[RESUME, "<end>: end mission."])
         }
         HoldReason::PlanRefused { .. } => (reason(by), &[PLANNER, "<run-uncertified>: run it."]),

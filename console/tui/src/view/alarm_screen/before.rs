@@ -1,0 +1,49 @@
+//! Log lines that are not about an alarm: those before the selected alarm, or the last warnings.
+
+use crate::model::Alarm;
+use crate::model::log::Entry;
+use crate::theme::Role;
+use crate::view::events;
+use crate::view::look::{Look, fill};
+use mission::Severity;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+
+/// The number of log lines among which the last warnings are looked for in each frame.
+const LOOKED_AT: usize = 5000;
+
+/// The log lines up to the last event of an alarm, newest first: what led to the alarm.
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
+    let (log, last) = (&look.run.log, alarm.events.back().copied());
+    let numbers = last.map_or(0..0, |last| log.oldest()..last);
+    let shown = numbers.rev().filter_map(|number| log.get(number));
+    let shown = shown.filter(|entry| entry.severity >= Severity::Info);
+    list(look, frame, area, "Events before it", shown);
+}
+
+/// The last log lines of WATCH and above, newest first.
+pub(super) fn warnings(look: &Look, frame: &mut Frame, area: Rect) {
+    let log = &look.run.log;
+    let numbers = (log.oldest()..log.end()).rev().take(LOOKED_AT);
+    let shown = numbers.filter_map(|number| log.get(number));
+    let shown = shown.filter(|entry| entry.severity >= Severity::Watch);
+    list(look, frame, area, "Last warnings", shown);
+}
+
+fn list<'a>(
+    look: &Look,
+    frame: &mut Frame,
+    area: Rect,
+    title: &str,
+    entries: impl Iterator<Item = &'a Entry>,
+) {
+    let block = look.block(Role::Border, title, &look.keys("<events> all events"));
+    let inner = block.inner(area);
+    let columns = usize::from(inner.width);
+    let mut lines: Vec<_> =
+        entries.take(usize::from(inner.height)).map(|entry| look.line(events::row(entry, columns))).collect();
+    if lines.is_empty() {
+        lines.push(look.line([(Role::Dim, " None.".to_owned())]));
+    }
+    fill(frame, area, block, lines);
+}
