@@ -73,6 +73,10 @@ fn a_heavy_cable_is_taken_up_and_a_reel_that_stops_holds_the_robot_before_it_dri
     let reason = stopped["reason"].as_str().unwrap();
     assert!(reason.contains("reel does not take the tether up"), "{reason}");
     assert_eq!(stopped["tether"]["over_own"], 0, "{stopped}");
+    let weak = ["--no-record", "--set", "tether.allow_uncertified=true"];
+    let weak = bench.fly(&scenario("tether-weak-reel.toml"), &weak).json();
+    assert!(weak["reason"].as_str().unwrap().contains("reel does not take the tether up"), "{weak}");
+    assert_eq!(weak["tether"]["over_own"], 0, "{weak}");
 }
 
 #[test]
