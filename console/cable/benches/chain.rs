@@ -26,7 +26,7 @@ fn bench(criterion: &mut Criterion) {
     };
     let surfaces = Surfaces::new(&Boundary::Circle { radius_m: 30.0 }, &columns, Chain::link_m(60.0));
     let line = [Point::new(-20.0, -9.0), Point::new(16.0, -9.0), Point::new(16.0, -4.0)];
-    let chain = Chain::along(&line, law).unwrap();
+    let chain = Chain::along(&line, law).expect("a line of several points");
     let way = polyline::resampled(&[line[2], Point::new(16.0, 6.0), Point::new(6.0, 6.0)], 0.4 * TICK_S);
     criterion.bench_function(
         &format!("{} ticks, {:.0} m of cable", way.len(), chain.paid_out_m()),

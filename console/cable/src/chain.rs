@@ -158,9 +158,8 @@ impl Chain {
         let mut along_m = 0.0;
         nodes.windows(2).zip(rest_m).any(|(pair, link_m)| {
             along_m += link_m;
-            along_m > 3.0 * hull_m
-                && polyline::nearest_on_segment(pair[0], pair[1], nodes[0]) != nodes[0]
-                && (polyline::nearest_on_segment(pair[0], pair[1], nodes[0]) - nodes[0]).norm() < hull_m
+            let aside = polyline::nearest_on_segment(pair[0], pair[1], nodes[0]) - nodes[0];
+            along_m > 3.0 * hull_m && aside.norm() < hull_m
         })
     }
 }

@@ -2,8 +2,9 @@
 
 use super::*;
 use geometry::{Boundary, Point, Shape, polyline, unit_vector};
+use proptest::prelude::*;
 use std::f64::consts::PI;
-use world::{Obstacle, ObstacleId};
+use world::{Obstacle, ObstacleId, ObstacleMap, tether};
 
 const TICK_S: f64 = 0.1;
 const WALL: Boundary = Boundary::Circle { radius_m: 60.0 };
@@ -127,6 +128,48 @@ fn absurd_properties_give_finite_figures() {
                 assert!(figures.iter().all(|figure| figure.is_finite()), "{law:?} {figures:?}");
                 assert!(chain.line(0.0).iter().all(|at| at.x.is_finite() && at.y.is_finite()), "{law:?}");
             }
+        }
+    }
+}
+
+/// The taut cables at the points of a path of straight moves to those goals that can be reached without touching anything.
+fn taut_cables(columns: &[Obstacle], goals: &[(f64, f64)]) -> Vec<tether::Cable> {
+    let map = ObstacleMap::new(&WALL, columns);
+    let shapes: Vec<Shape> = columns.iter().map(|column| column.shape.clone()).collect();
+    let mut cable = tether::Cable::new(Point::origin(), &WALL, &shapes).unwrap();
+    let mut cables = vec![cable.clone()];
+    for goal in goals.iter().map(|(x, y)| Point::new(*x, *y)) {
+        if map.segment_clearance_m(cable.tip(), goal) < 0.25 {
+            continue;
+        }
+        for at in polyline::resampled(&[cable.tip(), goal], 0.4 * TICK_S) {
+            cable.drag_to(at);
+            cables.push(cable.clone());
+        }
+    }
+    cables
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(6))]
+
+    #[test]
+    fn a_reel_that_is_strong_enough_keeps_the_cable_within_the_margin_of_the_certificate(
+        at in prop::collection::vec((-5.0..5.0_f64, -5.0..5.0_f64), 5),
+        goals in prop::collection::vec((-6.0..6.0_f64, -6.0..6.0_f64), 12),
+    ) {
+        let columns: Vec<Obstacle> =
+            at.iter().filter(|(x, y)| x.hypot(*y) > 1.0).map(|(x, y)| column(*x, *y, 0.3)).collect();
+        let cables = taut_cables(&columns, &goals);
+        let drag = tether::Drag { floor_n_per_m: 0.3, friction: 0.3 };
+        let needed_n = cables.iter().map(|cable| cable.pull_at_anchor_n(drag)).fold(0.0, f64::max);
+        let law = law(needed_n / 0.8);
+        let mut chain = Chain::along(&[Point::origin(), Point::origin()], law).unwrap();
+        let surfaces = surfaces(&columns);
+        for cable in cables {
+            chain.step(cable.tip(), &surfaces, TICK_S);
+            let excess_m = chain.paid_out_m() - cable.length_m();
+            prop_assert!(excess_m < 0.3, "{excess_m} m, pull {} N", law.pull_n);
         }
     }
 }
