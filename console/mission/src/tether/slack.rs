@@ -8,8 +8,8 @@ use world::tether::Reel;
 const SLACK_M: f64 = 0.2;
 /// Share of the reel's pull up to which a cable counts as slack.
 const LITTLE: f64 = 0.05;
-/// Length of cable whose friction on the floor the robot may feel although the cable is slack, metres: the loop that it
-/// drags behind itself.
+/// Length of cable, besides the slack, whose friction on the floor the robot may feel although the cable is slack, metres:
+/// the loop that it drags behind itself.
 const LOOP_M: f64 = 0.5;
 /// Pull up to which a cable counts as slack if its weight and the pull of the reel are not known, newtons.
 const LITTLE_N: f64 = 0.2;
@@ -27,8 +27,9 @@ impl Slack {
     /// Processes the cable out beyond the expected length, metres, and the pull, newtons. Returns whether the cable pulls,
     /// or its pull is not measured: only then can it be caught.
     pub(super) fn take(&mut self, excess_m: Option<f64>, pull_n: Option<f64>, reel: Option<&Reel>) -> bool {
-        let little_n =
-            reel.map_or(LITTLE_N, |reel| (LITTLE * reel.pull_n).max(LOOP_M * reel.drag(0.0).floor_n_per_m));
+        let little_n = reel.map_or(LITTLE_N, |reel| {
+            (LITTLE * reel.pull_n).max((LOOP_M + self.slack_m) * reel.drag(0.0).floor_n_per_m)
+        });
         let Some(pull_n) = pull_n.filter(|pull_n| pull_n.is_finite()) else {
             *self = Self::default();
             return true;
@@ -78,6 +79,9 @@ mod tests {
         let mut dragged = Slack::default();
         assert!(dragged.take(Some(0.0), Some(0.5), Some(&weak)));
         assert!(!dragged.take(Some(0.3), Some(0.1), Some(&weak)) && share(&dragged) > 1.0, "only its loop");
+        assert!(!dragged.take(Some(1.0), Some(0.6), Some(&weak)), "its loop has become longer");
+        assert!(!dragged.take(Some(0.0), Some(0.0), Some(&weak)) && share(&dragged) == 0.0);
+        assert!(dragged.take(Some(0.0), Some(0.5), Some(&weak)), "taut again");
         assert!(slack.take(Some(9.0), None, Some(&REEL)) && share(&slack) == 0.0, "not measured");
     }
 }
