@@ -44,6 +44,8 @@ mod killed;
 mod located;
 #[path = "acceptance/looking_on.rs"]
 mod looking_on;
+#[path = "acceptance/packed.rs"]
+mod packed;
 #[cfg(target_os = "linux")]
 #[path = "acceptance/planning.rs"]
 mod planning;
@@ -87,6 +89,8 @@ mod signing;
 mod slurm;
 #[path = "acceptance/stopping.rs"]
 mod stopping;
+#[path = "acceptance/surveys.rs"]
+mod surveys;
 #[cfg(unix)]
 #[path = "acceptance/terminal.rs"]
 mod terminal;

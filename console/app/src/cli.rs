@@ -8,6 +8,7 @@ mod files;
 mod flight;
 mod logs;
 mod past;
+mod surveys;
 mod vehicle;
 
 pub(crate) use author::{Lang, NewPlannerArgs, NewVehicleArgs, ReplayWorkerArgs, VehicleLang};
@@ -18,6 +19,7 @@ pub(crate) use files::{FindArg, ImportArgs, LocateArgs, MapArgs};
 pub(crate) use flight::{AccuracyArgs, PlanArgs, RunArgs, ShadowArgs};
 pub(crate) use logs::LogsArg;
 pub(crate) use past::{EventsArgs, ExportArgs, ReportArgs, RescanArgs};
+pub(crate) use surveys::CompareSurveysArgs;
 pub(crate) use vehicle::{SimulateArgs, TrialArgs, VehicleArgs, VehicleCommand};
 
 use clap::{Parser, Subcommand};
@@ -103,7 +105,7 @@ pub(crate) enum Command {
     },
     /// Recompute a past run and prove that the result matches its journal, byte for byte.
     Verify {
-        /// Run folder, or its name in the logs folder.
+        /// Run folder, or its name in the logs folder; or a package (.zip) of `tankops report --package`.
         run: PathBuf,
         /// Take the planners' answers from the journal instead of asking the planners again, for example if a plugin is
         /// no longer available. The output states what this proves and what it does not.
@@ -130,6 +132,8 @@ pub(crate) enum Command {
     Locate(LocateArgs),
     /// Show the result of a past run, or the combined result of a scan and its re-scans.
     Report(ReportArgs),
+    /// Compare two surveys of one floor, years apart: growth, rates, new and gone indications.
+    CompareSurveys(CompareSurveysArgs),
     /// Create a scenario that scans the areas missed by one or more past runs.
     Rescan(RescanArgs),
     /// Print shell completions for tankops.

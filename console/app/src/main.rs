@@ -3,6 +3,7 @@
 mod accuracy;
 mod campaign;
 mod cli;
+mod compare_surveys;
 mod events;
 mod export;
 mod headless;
@@ -14,6 +15,7 @@ mod map;
 mod new_planner;
 mod new_vehicle;
 mod output;
+mod package;
 mod past_runs;
 mod plan;
 mod planners;
@@ -110,6 +112,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Export(args)) => export::export(&args),
         Some(Command::Locate(args)) => locate::locate(&args),
         Some(Command::Report(args)) => past_runs::report(&args, &plugins),
+        Some(Command::CompareSurveys(args)) => compare_surveys::compare(&args),
         Some(Command::Rescan(args)) => rescan::rescan(&args, &plugins),
         Some(Command::ReplayWorker(args)) => replay_worker::replay(&args),
         Some(Command::Completions { shell }) => manual::completions(shell),

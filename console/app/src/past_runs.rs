@@ -30,8 +30,8 @@ pub(crate) fn list(logs: &LogsArg, json: bool) -> anyhow::Result<ExitCode> {
 
 /// Runs `tankops report RUN...`.
 pub(crate) fn report(args: &ReportArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
-    if let Some(output) = &args.output {
-        return report_file::write(args, output, plugins);
+    if args.output.is_some() || args.package.is_some() {
+        return report_file::write(args, plugins);
     }
     let past = review::read_all(&args.runs, &args.logs.folder())?;
     let text = if let [only] = &past[..] {
@@ -76,6 +76,9 @@ pub(crate) fn verify(
     plugins: &PluginDirs,
     from_journal: bool,
 ) -> anyhow::Result<ExitCode> {
+    if run.is_file() && run.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("zip")) {
+        return verify_package(run);
+    }
     let folder = find(run, &logs.folder())?;
     let verified = review::verify(&folder, plugins, from_journal)?;
     for line in &verified.lines {
@@ -83,6 +86,15 @@ pub(crate) fn verify(
     }
     let is_again = !verified.is_located || is_located_again(&folder)?;
     Ok(ExitCode::from(if verified.is_equal && is_again { COMPLETE } else { ENDED_OTHERWISE }))
+}
+
+/// Verifies a package and reports the result.
+fn verify_package(file: &Path) -> anyhow::Result<ExitCode> {
+    let verified = review::package::verify_package(file)?;
+    for line in &verified.lines {
+        say_line(line)?;
+    }
+    Ok(ExitCode::from(if verified.is_equal { COMPLETE } else { ENDED_OTHERWISE }))
 }
 
 /// Locates the robot again from the readings of a run and reports the result; returns whether it is unchanged.

@@ -3,6 +3,7 @@
 use crate::{
     cli::ReportArgs,
     output::{check_free, write_file},
+    package::{self, Content},
     signing::{
         Chain, refuse_doubts, refuse_not_located_again, refuse_not_recomputed, refuse_open_items,
         refuse_other_signer, seal, signature,
@@ -31,16 +32,20 @@ use std::{
 /// The file extensions of the supported formats.
 const FORMATS: [&str; 5] = ["html", "json", "csv", "geojson", "dxf"];
 
-/// Writes the report.
-pub(crate) fn write(args: &ReportArgs, output: &Path, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
-    let format = format_of(output)?;
-    if args.sign.is_some() && format != "html" {
-        return Err(bad_input(format!("--sign needs an .html file as output, not {}", output.display())));
+/// Writes the report to a file, into a package, or both.
+pub(crate) fn write(args: &ReportArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
+    let output = args.output.as_deref().map(|output| Ok::<_, anyhow::Error>((output, format_of(output)?)));
+    let output = output.transpose()?;
+    if let Some((file, _)) = output.filter(|(_, format)| args.sign.is_some() && *format != "html") {
+        return Err(bad_input(format!("--sign needs an .html file as output, not {}", file.display())));
+    }
+    if let Some(package) = &args.package {
+        package::check(package, args.force)?;
     }
     let folders: Vec<PathBuf> =
         args.runs.iter().map(|run| find(run, &args.logs.folder())).collect::<Result<_, _>>()?;
     let mut chain = Chain::of(&folders, &register());
-    for file in names(output, format) {
+    for file in output.into_iter().flat_map(|(output, format)| names(output, format)) {
         may_write(&file, args, &chain.revisions)?;
     }
     let read = review::read_all(&args.runs, &args.logs.folder())?;
@@ -76,12 +81,17 @@ pub(crate) fn write(args: &ReportArgs, output: &Path, plugins: &PluginDirs) -> a
     for doubt in &chain.doubts {
         say_line(&format!("WARNING: {doubt}"))?;
     }
-    for (file, text) in files(output, format, &document, &past)? {
+    let written = output.map(|(output, format)| files(output, format, &document, &past)).transpose()?;
+    for (file, text) in written.into_iter().flatten() {
         write_file("the report", &file, &text)?;
         say_line(&file.display().to_string())?;
         if let Some(signature) = &signature {
-            seal((&file, &text), &document, signature, (&folders, &past))?;
+            chain.revisions.push(seal((&file, &text), &document, signature, (&folders, &past))?);
         }
+    }
+    if let Some(file) = &args.package {
+        let (document, past, folders, revisions) = (&document, &past[..], &folders[..], &chain.revisions[..]);
+        package::write(file, &Content { document, past, folders, revisions })?;
     }
     Ok(ExitCode::from(COMPLETE))
 }

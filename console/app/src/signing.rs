@@ -142,13 +142,13 @@ pub(crate) fn refuse_not_located_again(folders: &[PathBuf]) -> anyhow::Result<()
 }
 
 /// Lists a signed report in the folders of its runs and in the register, and makes it read-only. If the report cannot
-/// be listed, it is removed, because later changes to it could not be detected.
+/// be listed, it is removed, because later changes to it could not be detected. Returns its entry in the lists.
 pub(crate) fn seal(
     (file, text): (&Path, &str),
     document: &Document,
     signature: &Signature,
     (folders, past): (&[PathBuf], &[PastRun]),
-) -> anyhow::Result<()> {
+) -> anyhow::Result<Revision> {
     let (revision, sha256) = (document.revision.clone(), sha256_of(text.as_bytes()));
     let said = format!("signed as revision {revision} by {}, sha256 {sha256}", signature.by);
     let signed = Revision {
@@ -161,7 +161,8 @@ pub(crate) fn seal(
     };
     add_signed(folders, &register(), &signed).inspect_err(|_| drop(fs::remove_file(file)))?;
     make_read_only(file)?;
-    Ok(say_line(&said)?)
+    say_line(&said)?;
+    Ok(signed)
 }
 
 fn make_read_only(file: &Path) -> anyhow::Result<()> {

@@ -46,7 +46,13 @@ pub(crate) fn needed(command: Option<&Command>) -> usize {
         Some(Command::Check { .. }) => missions(0),
         Some(Command::Verify { .. }) => each::VERIFY,
         Some(Command::Report(args)) if args.sign.is_some() => each::VERIFY,
-        Some(Command::Report(_) | Command::Rescan(_) | Command::Recover { .. } | Command::Runs { .. }) => {
+        Some(
+            Command::Report(_)
+            | Command::CompareSurveys(_)
+            | Command::Rescan(_)
+            | Command::Recover { .. }
+            | Command::Runs { .. },
+        ) => {
             each::PAST_RUN
         }
         Some(Command::Export(args)) if args.to.rrd.is_none() && args.to.ranges.is_none() => each::PAST_RUN,

@@ -38,7 +38,8 @@ pub struct View<'a> {
     pub boundary: &'a Boundary,
     /// All obstacles on the chart.
     pub charted: &'a [Obstacle],
-    /// An index of these obstacles for queries.
+    /// An index of the drawn obstacles. What scans have shown must not explain later scans: wrong scans could then never
+    /// be noticed.
     pub map: &'a ObstacleMap,
     /// Radius of the hull, metres; echoes from inside it are ignored.
     pub hull_m: f64,
@@ -159,7 +160,7 @@ impl Perception {
             self.trouble = Some(Trouble::Crowded { most: tracks::MOST });
         }
         // The chart must not contain what a wrong scan shows.
-        if !self.agreement.is_open() {
+        if !self.agreement.is_open() && !self.agreement.is_doubtful() {
             self.give_ids(view.charted, view.reach_m);
         }
         let mut not_there = self.missing.look(&drawing, &self.rays, &pose, self.range_m);

@@ -10,6 +10,7 @@ pub mod dxf;
 mod follow_up;
 mod gate;
 pub mod geojson;
+pub mod grid;
 mod html;
 mod indications;
 pub(crate) mod layers;
@@ -25,6 +26,7 @@ mod shapes;
 mod signed;
 mod task;
 mod thickness;
+mod two_surveys;
 mod words;
 
 pub use build::Context;
@@ -37,6 +39,10 @@ pub use readings::{Located, Readings};
 pub use run_part::{Driver, Files, Recovered, RunPart, TetherPart};
 pub use signed::{Revision, Signature, SignedRun};
 pub use task::TaskPart;
+pub use two_surveys::{
+    Due, Grown, Single, SurveyPart, Surveyed, TWO_SURVEYS_SUFFIXES, TwoSurveys, two_surveys_html,
+    two_surveys_tables,
+};
 
 #[cfg(test)]
 mod tests;

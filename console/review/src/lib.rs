@@ -1,6 +1,7 @@
 //! Operations on past runs: read, report, verify, and re-scan missed floor.
 
 mod flown;
+pub mod package;
 mod past;
 mod readings;
 mod register;

@@ -42,4 +42,4 @@ pub use report_file::{end_is_missing, journal_doubt};
 pub use signed::{SIGNED_FILE, Signatures, add_signed, signatures, signed_list, signed_under_another_name};
 pub use standing::{Standing, standing};
 pub use verified::{Proof, VERIFIED_FILE};
-pub use whole::{write_by_draft, write_whole};
+pub use whole::{write_by_draft, write_whole, write_whole_with};

@@ -76,6 +76,13 @@ impl Register {
         all.into_iter().find(|revision| Path::new(&revision.file) == file)
     }
 
+    /// The signed report with this document number and letter; `None` if there is none, or if the register cannot be
+    /// read.
+    pub fn numbered(&self, number: &str, letter: &str) -> Option<Revision> {
+        let all = self.about(|_| true).unwrap_or_default();
+        all.into_iter().find(|revision| revision.number == number && revision.revision == letter)
+    }
+
     /// Path of the register's file, for display.
     pub(crate) fn shown(&self) -> String {
         self.0.as_ref().map(|file| file.display().to_string()).unwrap_or_default()

@@ -33,6 +33,33 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     write_by_draft(&path, &draft_of(&path), bytes)
 }
 
+/// Like [`write_whole`], for a file that is too long for the memory, or that is not written from its begin to its end:
+/// `write` fills an empty draft.
+///
+/// # Errors
+/// Those of `write`; the system refuses to write the file; or there is a file of another kind, or a read-only one.
+pub fn write_whole_with<E: From<io::Error>>(
+    path: &Path,
+    write: impl FnOnce(&mut File) -> Result<(), E>,
+) -> Result<(), E> {
+    let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if path.metadata().is_ok_and(|file| !file.is_file() || file.permissions().readonly()) {
+        let why = "there is a read-only file, a pipe or a device with this name";
+        return Err(io::Error::new(io::ErrorKind::PermissionDenied, why).into());
+    }
+    let draft = draft_of(&path);
+    let fill = || {
+        let mut file = open_draft(&draft)?;
+        file.set_len(0)?;
+        write(&mut file)?;
+        file.sync_all()?;
+        Ok(fs::rename(&draft, &path)?)
+    };
+    fill().inspect_err(|_: &E| drop(fs::remove_file(&draft)))?;
+    let _ = path.parent().map(|folder| File::open(folder).and_then(|folder| folder.sync_all()));
+    Ok(())
+}
+
 /// Like [`write_whole`], with a different name for the draft, for files that several processes may write at the same
 /// time.
 ///

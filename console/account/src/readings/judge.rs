@@ -32,6 +32,9 @@ pub struct Finding {
     pub high: Point,
     /// 95 % error of the position, metres.
     pub error_m: f64,
+    /// Covariance of the position, square metres; not written, because `error_m` is.
+    #[serde(skip)]
+    pub covariance: Matrix2<f64>,
     /// The largest loss that a reading shows, millimetres.
     pub depth_mm: f64,
     /// Half width of the 95 % interval of a reading, millimetres.
@@ -55,6 +58,9 @@ struct CellReadings {
     sum_mm: f32,
     least_mm: f32,
     count: u32,
+    /// Mission time of the latest reading, seconds, and its run.
+    t_s: f32,
+    run: u32,
 }
 
 /// The readings above the threshold in a cell.
@@ -107,6 +113,7 @@ impl Hit {
             low: self.low,
             high: self.high,
             error_m: ellipse_95(&self.covariance).0,
+            covariance: self.covariance,
             depth_mm: self.depth_mm,
             depth_error_mm: SIGMAS_95 * sigma_mm,
             readings: self.count,
@@ -127,6 +134,7 @@ impl Judge {
         seen.least_mm = if seen.count == 0 { thickness_mm } else { seen.least_mm.min(thickness_mm) };
         seen.sum_mm += thickness_mm;
         seen.count += 1;
+        seen.t_s = reading.t_s as f32;
         let depth_mm = self.sampling.thickness_mm - reading.thickness_mm;
         if depth_mm >= self.sampling.threshold_mm() {
             let hit = Hit::of(reading, depth_mm);
@@ -140,6 +148,7 @@ impl Judge {
             own.least_mm = if own.count == 0 { other.least_mm } else { own.least_mm.min(other.least_mm) };
             own.sum_mm += other.sum_mm;
             own.count += other.count;
+            (own.t_s, own.run) = (other.t_s, run as u32);
         }
         for (cell, hit) in &other.hits {
             let hit = Hit { run, ..*hit };
@@ -156,6 +165,12 @@ impl Judge {
     /// The smallest thickness that a reading shows in a cell, millimetres; `None` without readings.
     pub fn least_mm(&self, cell: usize) -> Option<f64> {
         self.cells.get(cell).filter(|seen| seen.count > 0).map(|seen| f64::from(seen.least_mm))
+    }
+
+    /// The run of the latest reading in a cell, and its mission time, seconds; `None` without readings.
+    pub fn last_read(&self, cell: usize) -> Option<(usize, f64)> {
+        let seen = self.cells.get(cell).filter(|seen| seen.count > 0)?;
+        Some((seen.run as usize, f64::from(seen.t_s)))
     }
 
     /// Number of readings in a cell.

@@ -69,29 +69,34 @@ pub(crate) struct RescanArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(group(clap::ArgGroup::new("written").multiple(true).args(["output", "package"])))]
 pub(crate) struct ReportArgs {
     /// Run folders, or their names in the logs folder; all runs must be on the same floor.
     #[arg(required = true, value_name = "RUN")]
     pub runs: Vec<PathBuf>,
     /// Print JSON.
-    #[arg(long, conflicts_with = "output")]
+    #[arg(long, conflicts_with = "written")]
     pub json: bool,
     /// Write the inspection report to this file: .html, .json, .csv (several files), .geojson or .dxf.
     #[arg(short = 'o', long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Write the report with everything that belongs to it (page, tables, drawings, readings, notes, signatures, list of
+    /// digests) to this file (.zip); `tankops verify FILE.zip` checks it without the runs.
+    #[arg(long, value_name = "FILE")]
+    pub package: Option<PathBuf>,
     /// TOML file with facts for `[inspection]` that were not known before the run; they override those in the scenario.
-    #[arg(long, value_name = "FILE", requires = "output")]
+    #[arg(long, value_name = "FILE", requires = "written")]
     pub inspection: Option<PathBuf>,
     /// CSV file with the instrument's indications: `t_s`, and optionally `left_m`, `ahead_m`, `kind`, `size_mm`,
     /// `depth_mm`, `note`.
-    #[arg(long, value_name = "FILE", requires = "output")]
+    #[arg(long, value_name = "FILE", requires = "written")]
     pub indications: Option<PathBuf>,
     /// Sign the report (.html): every item of the gate must be answered. A signed report never changes; the next report
     /// is a new revision.
     #[arg(long, value_name = "NAME", requires = "output", value_parser = super::person)]
     pub sign: Option<String>,
     /// Overwrite existing files, but never a signed report.
-    #[arg(long, requires = "output", conflicts_with = "sign")]
+    #[arg(long, requires = "written", conflicts_with = "sign")]
     pub force: bool,
     #[command(flatten)]
     pub logs: LogsArg,

@@ -74,7 +74,7 @@ impl Known {
             return Vec::new();
         };
         let World { boundary, obstacles, .. } = self.chart.world();
-        let (charted, map, covariance) = (&obstacles[..], self.chart.map(), estimate.covariance);
+        let (charted, map, covariance) = (&obstacles[..], self.chart.drawn_map(), estimate.covariance);
         let hull_m = self.config.limits.radius_m;
         let reach_m = hull_m + self.config.limits.sensing_range_m;
         let looked =

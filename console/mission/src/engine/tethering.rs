@@ -68,8 +68,8 @@ impl Known {
 }
 
 impl Mission {
-    /// Holds a running robot whose return path is blocked until the path is free again. Meanwhile, no plan can be certified,
-    /// whichever planner makes it. Returns whether the robot is held for this reason.
+    /// Holds a running robot whose return path is blocked until the path is free again. Meanwhile, no plan that leads back along
+    /// the tether can be certified, whichever planner makes it. Returns whether the robot is held for this reason.
     pub(super) fn waits_for_return_path(&mut self) -> bool {
         let is_blocked = self.known.tether.as_ref().is_some_and(|tether| !tether.can_go_home());
         let waits = is_blocked && matches!(self.known.phase, Phase::Running(gait) if gait != Gait::Back);

@@ -25,7 +25,7 @@ pub fn tables(document: &Document, past: &[PastRun]) -> [String; SUFFIXES.len()]
 }
 
 /// Writes rows under a header; writing to memory cannot fail.
-fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+pub(super) fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let mut writer = Writer::from_writer(Vec::new());
     let _ = writer.write_record(head);
     for row in rows {

@@ -2,13 +2,13 @@
 
 use super::{
     model::Document,
-    page::{Block, Page},
+    page::{Block, Page, Section},
     sections::sections,
 };
 use askama::Template;
 
 /// Style sheet of the page.
-const CSS: &str = include_str!("../../templates/report.css");
+pub(super) const CSS: &str = include_str!("../../templates/report.css");
 
 /// The page.
 #[derive(Template)]
@@ -21,20 +21,20 @@ struct Html<'a> {
 pub fn html(document: &Document) -> String {
     let mut page = sections(document);
     page.css = CSS;
-    number(&mut page);
+    number(&mut page.sections);
     // Rendering this template cannot fail.
     let html = Html { page: &page }.render().unwrap_or_default();
     foreign::plain_lines(&html).into_owned()
 }
 
 /// Numbers figures and tables in order.
-fn number(page: &mut Page) {
+pub(super) fn number(sections: &mut [Section]) {
     let (mut figures, mut tables) = (0, 0);
     let next = |count: &mut usize| {
         *count += 1;
         *count
     };
-    for block in page.sections.iter_mut().flat_map(|section| &mut section.blocks) {
+    for block in sections.iter_mut().flat_map(|section| &mut section.blocks) {
         match block {
             Block::Table(table) if !table.caption.is_empty() => table.number = next(&mut tables),
             Block::Wide(picture) => picture.number = next(&mut figures),

@@ -54,7 +54,7 @@ pub(super) fn draw(sheet: &mut Sheet, indications: &[Indication], names: &[[Poin
 }
 
 /// The first free position beside a mark for a number of the given half size: right, left, above, below.
-fn beside(at: Point, radius_mm: f64, half: Vector, boxes: &[[Point; 2]]) -> Option<Point> {
+pub(super) fn beside(at: Point, radius_mm: f64, half: Vector, boxes: &[[Point; 2]]) -> Option<Point> {
     let off = half + Vector::repeat(radius_mm + 0.4);
     let places = [(1.0, 0.0), (-1.0, 0.0), (0.0, -1.0), (0.0, 1.0)]
         .map(|(x, y)| at + Vector::new(x * off.x, y * off.y));

@@ -13,6 +13,7 @@ mod positioning;
 mod registry;
 mod spiral;
 mod study;
+mod surveys;
 mod table;
 mod traps;
 pub mod tune;

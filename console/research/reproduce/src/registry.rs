@@ -3,14 +3,20 @@
 use crate::{
     account, coverage, fields, positioning, spiral,
     study::{Gallery, Result, Study, StudyError},
-    traps,
+    surveys, traps,
 };
 use mission::spelling::nearest;
 use std::path::Path;
 
 /// Every study, by subject.
-const STUDIES: [&[Study]; 5] =
-    [spiral::STUDIES, traps::STUDIES, fields::STUDIES, positioning::STUDIES, coverage::STUDIES];
+const STUDIES: [&[Study]; 6] = [
+    spiral::STUDIES,
+    traps::STUDIES,
+    fields::STUDIES,
+    positioning::STUDIES,
+    coverage::STUDIES,
+    surveys::STUDIES,
+];
 
 /// Every study.
 pub fn studies() -> impl Iterator<Item = &'static Study> {
@@ -47,7 +53,8 @@ pub fn list() -> String {
 /// # Errors
 /// The study has nothing to draw, or the folder cannot be created.
 pub fn gallery(study: &Study, folder: &Path) -> Result<Gallery> {
-    let draws = |study: &Study| positioning::STUDIES.iter().all(|other| other.name != study.name);
+    let without = || positioning::STUDIES.iter().chain(surveys::STUDIES);
+    let draws = |study: &Study| without().all(|other| other.name != study.name);
     if !draws(study) {
         let drawn: Vec<String> =
             studies().filter(|study| draws(study)).map(|drawn| format!("`{}`", drawn.name)).collect();

@@ -1,0 +1,132 @@
+//! Two surveys of one floor, three years apart.
+
+use crate::bench::{Bench, scenario};
+use serde_json::Value;
+use std::{fs, path::Path};
+
+/// Flies both surveys; the names of the runs, the earlier one first.
+fn surveyed(bench: &Bench) -> [String; 2] {
+    ["inspect-circle.toml", "inspect-circle-later.toml"].map(|file| flown(bench, &scenario(file)))
+}
+
+/// Flies a mission and returns the name of its run.
+fn flown(bench: &Bench, file: &Path) -> String {
+    let before = bench.runs();
+    let flown = bench.fly(file, &[]);
+    assert_eq!(flown.code, Some(0), "{flown:?}");
+    let run = bench.runs().into_iter().find(|run| !before.contains(run)).unwrap();
+    run.file_name().unwrap().to_string_lossy().into_owned()
+}
+
+/// The growth of a random pit of the scenarios from its depth in the second survey, millimetres.
+fn true_growth_mm(depth_mm: f64) -> f64 {
+    0.3 + 0.6 * (depth_mm - 1.3) / 6.6
+}
+
+#[test]
+fn growth_new_and_gone_indications_agree_with_the_true_floor_in_every_format() {
+    let bench = Bench::new();
+    let [first, second] = surveyed(&bench);
+    for file in ["c.json", "c.html", "c.csv"] {
+        let compared =
+            bench.tankops(&["compare-surveys", &first, &second, "--minimum-mm", "1.0", "-o", file]);
+        assert_eq!(compared.code, Some(0), "{compared:?}");
+    }
+    let read = |file: &str| fs::read_to_string(bench.path().join(file)).unwrap();
+    let found: Value = serde_json::from_str(&read("c.json")).unwrap();
+    let list = |key: &str| found[key].as_array().unwrap().clone();
+    let (matched, new, gone) = (list("matched"), list("new"), list("gone"));
+    assert!((found["years"].as_f64().unwrap() - 3.0).abs() < 0.01);
+    assert!(matched.len() >= 15, "{} matched", matched.len());
+    for residual in found["registration"]["residuals"].as_array().unwrap() {
+        assert!(residual["max_m"].as_f64().unwrap() < 1e-9, "{residual}");
+    }
+    let at = |one: &Value| [0, 1].map(|axis| one["at"][axis].as_f64().unwrap());
+    let is_at = |one: &Value, place: [f64; 2]| {
+        let [x, y] = at(one);
+        (x - place[0]).hypot(y - place[1]) < 0.1
+    };
+    // The listed pit has lost another 1.2 mm, and the listed new pits are new where they were tested.
+    let pit = matched.iter().find(|pair| is_at(&pair["second"], [-1.1, 0.9])).unwrap();
+    let interval = |pair: &Value| [0, 1].map(|end| pair["growth"]["interval_mm"][end].as_f64().unwrap());
+    let [low, high] = interval(pit);
+    assert!((low..=high).contains(&1.2), "{pit}");
+    let listed = [[-0.6, -1.1], [-2.6, 0.4], [0.9, -1.9], [0.5, 0.9], [-1.0, 2.4]];
+    let is_new = |place: &&[f64; 2]| new.iter().any(|one| is_at(&one["indication"], **place));
+    let is_old = |place: &&[f64; 2]| matched.iter().any(|pair| is_at(&pair["second"], **place));
+    assert!(listed.iter().filter(is_new).count() >= 3, "{new:?}");
+    assert_eq!(listed.iter().filter(is_old).count(), 0);
+    // Nine of ten intervals of the random pits contain their true growth.
+    let is_random = |pair: &&Value| pair["is_cut"] == false && !is_at(&pair["second"], [-1.1, 0.9]);
+    let random: Vec<&Value> = matched.iter().filter(is_random).collect();
+    assert!(random.len() >= 15, "{} matches", random.len());
+    let is_covered = |pair: &&&Value| {
+        let [low, high] = interval(pair);
+        (low..=high).contains(&true_growth_mm(pair["second"]["depth_mm"].as_f64().unwrap()))
+    };
+    let covered = random.iter().filter(is_covered).count();
+    assert!(10 * covered >= 9 * random.len(), "{covered} of {}", random.len());
+    // All formats have the same indications and rates, and the page says what the date is.
+    let (html, csv, plates) = (read("c.html"), read("c.csv"), read("c-plates.csv"));
+    assert_eq!(csv.lines().count(), 1 + matched.len() + new.len() + gone.len());
+    assert_eq!(plates.lines().count(), 1 + list("plates").len());
+    for pair in &matched {
+        let numbers = [&pair["first"]["number"], &pair["second"]["number"]];
+        let rate = pair["growth"]["rate_mm_per_a"].as_f64().unwrap();
+        let row = csv.lines().find(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            cells[0] == "both" && cells[2] == numbers[0].to_string() && cells[7] == numbers[1].to_string()
+        });
+        assert!(row.unwrap().contains(&format!(",{rate:.3},")), "{row:?}");
+    }
+    let date = found["due"]["date"].as_str().unwrap();
+    assert!(date > "2029-11-24" && html.contains(date), "{date}");
+    assert!(
+        html.contains("for the inspector&#x27;s judgement") || html.contains("for the inspector's judgement")
+    );
+    assert!(
+        html.contains(&format!("{} are new.", new.iter().filter(|one| one["is_tested"] == true).count()))
+    );
+}
+
+#[test]
+fn surveys_that_cannot_be_compared_are_refused_with_the_reason() {
+    let bench = Bench::new();
+    let [first, second] = surveyed(&bench);
+    let refused = |more: &[&str]| {
+        let ended = bench.tankops(&[&["compare-surveys"], more, &["-o", "c.html"]].concat());
+        assert_eq!(ended.code, Some(2), "{ended:?}");
+        assert!(!bench.path().join("c.html").exists());
+        ended.err
+    };
+    assert!(refused(&[&second, &first]).contains("the second survey must be later; swap the runs"));
+    assert!(refused(&[&first, &first]).contains("the second survey must be later"));
+    let facts =
+        |text: &str| bench.file("facts.toml", format!("[inspection]\n{text}\n")).display().to_string();
+    let other = facts("inspected_on = \"2020-01-01\"");
+    let why = refused(&[&first, &second, "--inspection-second", &other]);
+    assert!(why.contains("on 2026-11-24") && why.contains("on 2020-01-01"), "{why}");
+    let [tank, other_tank] = ["one.toml", "other.toml"].map(|name| {
+        let text = format!("[inspection]\ntank_id = \"{name}\"\n");
+        bench.file(name, text).display().to_string()
+    });
+    let why = refused(&[&first, &second, "--inspection-first", &tank, "--inspection-second", &other_tank]);
+    assert!(
+        why.contains("tank_id is one.toml in the first survey and other.toml in the second one"),
+        "{why}"
+    );
+    // A scenario without a day, and a run without readings.
+    let without = fs::read_to_string(scenario("inspect-circle.toml")).unwrap();
+    let without =
+        without.replace("inspected_on = \"2026-11-24\"\n", "").replace("\"inspect-circle\"", "\"dateless\"");
+    let dateless = flown(&bench, &bench.file("dateless.toml", without));
+    let why = refused(&[&dateless, &second]);
+    assert!(why.contains("does not state the day of its inspection; write inspected_on ="), "{why}");
+    let blind = fs::read_to_string(scenario("cover-circle.toml")).unwrap();
+    let blind = flown(
+        &bench,
+        &bench.file("blind.toml", format!("{blind}\n[inspection]\ninspected_on = \"2020-01-01\"\n")),
+    );
+    let why = refused(&[&blind, &second]);
+    assert!(why.contains("has no readings of thickness: its scenario needs [instrument]"), "{why}");
+}
