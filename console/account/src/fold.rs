@@ -85,9 +85,10 @@ impl Fold {
             }
             EventKind::TetherAlarmRaised { alarm: TetherAlarm::Snag { .. }, .. } => self.snag(true),
             EventKind::TetherAlarmCleared { alarm: TetherAlarm::Snag { .. } } => self.snag(false),
-            EventKind::TetherTruth { length_m, wrap_max_rad, wrap_total_rad, detour_m } => {
+            EventKind::TetherTruth { length_m, wrap_max_rad, wrap_total_rad, detour_m, lies } => {
                 if let Some(tethered) = &mut self.tethered {
                     tethered.lie(*length_m, *wrap_max_rad, *wrap_total_rad, *detour_m);
+                    lies.iter().for_each(|lies| tethered.cross(lies.under_hull));
                 }
             }
             EventKind::Protected { level_m } => self.protection.take(*level_m),

@@ -301,12 +301,16 @@ fn tether(tether: &Tether) -> String {
         0 => String::new(),
         n => format!(", {}", counted(n, "snag")),
     };
+    let over_own = match tether.over_own {
+        None | Some(0) => String::new(),
+        Some(n) => format!(", drove over its own tether {}", counted(n, "time")),
+    };
     format!(
-        "{state}, {:.1} m out at the end, {:.1} m maximum, largest wrap {:.0}°, {}{snags}",
+        "{state}, {:.1} m out at the end, {:.1} m maximum, largest wrap {:.0}°, {}{snags}{over_own}",
         tether.end_length_m,
         tether.tether_length_max_m,
         tether.wrap_max_rad.to_degrees(),
-        counted(tether.loops, "loop")
+        counted(tether.loops, "loop"),
     )
 }
 

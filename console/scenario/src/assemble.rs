@@ -15,7 +15,7 @@ use super::{
 use mission::{BetterPlan, Guarantee, Locating, MissionConfig, ScanConfig, Sensor, TaskConfig, TetherConfig};
 use planner_api::Limits;
 use positioning::Risk;
-use sim::{AeConfig, Mover, NoiseModel, RobotConfig, SimConfig};
+use sim::{AeConfig, Mover, NoiseModel, PhysicalCable, RobotConfig, SimConfig};
 use toml::de::DeTable;
 use world::{Boundary, Obstacle, Point, Pose, Station, World};
 
@@ -85,7 +85,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let start = start(floor.robot.as_ref(), task.as_ref());
     scatter(root, &mut floor, seed, start, task.as_ref());
     check_places(&sections, &floor, start, task.as_ref());
-    let tether = tether_of(&sections, &floor, start, task.as_ref());
+    let (tether, physical) = tether_of(&sections, &floor, start, task.as_ref()).unzip();
     let task = task.map(|task| back_to_the_anchor(task, tether.as_ref()));
     let planner = root.table("planner").map(|section| (task::planner(&section), task::fallback(&section)));
     let plates = if root.has("plates") { floor::plates(root, floor.boundary.as_ref()) } else { None };
@@ -156,6 +156,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         movers: floor.movers,
         tether_anchor,
         reel_length_m,
+        physical: physical.flatten(),
     };
     Some(Scenario {
         name: name?,
@@ -297,7 +298,7 @@ fn tether_of(
     floor: &Floor,
     start: Option<Pose>,
     task: Option<&TaskConfig>,
-) -> Option<TetherConfig> {
+) -> Option<(TetherConfig, Option<PhysicalCable>)> {
     if !sections.root.has("tether") {
         return None;
     }
@@ -307,7 +308,9 @@ fn tether_of(
     if let Some(robot) = &floor.robot {
         tether::check_speed(&section, robot.limits.v_max_m_per_s);
     }
-    let Some(boundary) = &floor.boundary else { return Some(tether) };
+    let v_max_m_per_s = floor.robot.as_ref().map_or(0.0, |robot| robot.limits.v_max_m_per_s);
+    let physical = tether::physical(&section, &tether, v_max_m_per_s);
+    let Some(boundary) = &floor.boundary else { return Some((tether, physical)) };
     let site = Site { boundary, obstacles: &floor.obstacles, zones: &[], radius_m: 0.0 };
     if let Some(start) = start {
         tether::check(&section, &tether, &site, start);
@@ -322,7 +325,7 @@ fn tether_of(
         let place = place.map_or((&section, "anchor_m"), |robot| (robot, "start_m"));
         tether::check_room(place, &tether, &site, (clearance_m, *tolerance_m));
     }
-    Some(tether)
+    Some((tether, physical))
 }
 
 /// A robot that scans the floor on a tether returns to the anchor.

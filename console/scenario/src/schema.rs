@@ -419,6 +419,8 @@ static TETHER: &[Key] = &[
     number("reel_pay_out_n", "N", at_least(0.0).up_to(100_000.0)).or(0.5),
     number("robot_pull_n", "N", above(0.0).up_to(100_000.0)).or_none("not compared"),
     number("pull_ratio_max", "", above(0.0).up_to(1.0)).or(0.8),
+    word("model", &["taut", "physical"]).or_word("taut"),
+    number("reel_fails_at_s", "s", at_least(0.0)).or_none("never"),
 ];
 
 static STATIONS: &[Key] = &[key("name", "", Kind::Text), point("at_m")];

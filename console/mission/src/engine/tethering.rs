@@ -5,14 +5,14 @@ use crate::{
     event::{EventKind, TetherAlarm},
     phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes},
 };
-use world::Point;
+use world::{Point, Readings};
 
 impl Known {
     /// Moves the cable along with the robot; returns the limit reached in this tick, if any.
     pub(super) fn drag_tether(
         &mut self,
         map_changed: bool,
-        paid_out_m: Option<f64>,
+        readings: &Readings,
         happened: &mut Happened,
     ) -> Option<TetherAlarm> {
         let tether = self.tether.as_mut()?;
@@ -25,7 +25,7 @@ impl Known {
         if error_m.is_some() {
             tether.drag_to(self.locator.position());
         }
-        tether.measure(paid_out_m, error_m, self.config.tick_s);
+        tether.measure(readings, error_m, self.config.tick_s);
         let events = tether.update(world, self.chart.map(), self.config.tick_s);
         let reached = events.iter().find_map(|event| match event {
             EventKind::TetherAlarmRaised { alarm, reached: true } => Some(alarm.clone()),
