@@ -88,7 +88,9 @@ impl Fold {
             EventKind::TetherTruth { length_m, wrap_max_rad, wrap_total_rad, detour_m, lies } => {
                 if let Some(tethered) = &mut self.tethered {
                     tethered.lie(*length_m, *wrap_max_rad, *wrap_total_rad, *detour_m);
-                    lies.iter().for_each(|lies| tethered.cross(lies.under_hull));
+                    if let Some(lies) = lies {
+                        tethered.cross(lies.under_hull);
+                    }
                 }
             }
             EventKind::Protected { level_m } => self.protection.take(*level_m),

@@ -140,8 +140,6 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         better_plan: rest.better_plan,
         instrument,
     };
-    let tether_anchor = mission.tether.as_ref().map(|tether| tether.anchor);
-    let reel_length_m = mission.tether.as_ref().map(|tether| tether.limits.reel_length_m);
     let world = World {
         boundary: floor.boundary?,
         obstacles: floor.obstacles,
@@ -154,8 +152,8 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         ae: Some(ae),
         tick_s: rest.tick_s,
         movers: floor.movers,
-        tether_anchor,
-        reel_length_m,
+        tether_anchor: mission.tether.as_ref().map(|tether| tether.anchor),
+        reel_length_m: mission.tether.as_ref().map(|tether| tether.limits.reel_length_m),
         physical: physical.flatten(),
     };
     Some(Scenario {

@@ -19,7 +19,8 @@ const LITTLE_N: f64 = 0.2;
 pub(super) struct Slack {
     /// Cable out beyond the expected length when the cable last pulled, metres; `None` while it has not pulled yet.
     taut_excess_m: Option<f64>,
-    slack_m: f64,
+    /// Cable that has become slack since then, metres.
+    loose_m: f64,
     pull_n: f64,
 }
 
@@ -28,7 +29,7 @@ impl Slack {
     /// or its pull is not measured: only then can it be caught.
     pub(super) fn take(&mut self, excess_m: Option<f64>, pull_n: Option<f64>, reel: Option<&Reel>) -> bool {
         let little_n = reel.map_or(LITTLE_N, |reel| {
-            (LITTLE * reel.pull_n).max((LOOP_M + self.slack_m) * reel.drag(0.0).floor_n_per_m)
+            (LITTLE * reel.pull_n).max((LOOP_M + self.loose_m) * reel.drag(0.0).floor_n_per_m)
         });
         let Some(pull_n) = pull_n.filter(|pull_n| pull_n.is_finite()) else {
             *self = Self::default();
@@ -36,19 +37,19 @@ impl Slack {
         };
         self.pull_n = pull_n;
         if pull_n > little_n {
-            (self.taut_excess_m, self.slack_m) = (excess_m.or(self.taut_excess_m), 0.0);
+            (self.taut_excess_m, self.loose_m) = (excess_m.or(self.taut_excess_m), 0.0);
             return true;
         }
         if let Some(excess_m) = excess_m {
             let taut_m = *self.taut_excess_m.get_or_insert(excess_m);
-            self.slack_m = (excess_m - taut_m).max(0.0);
+            self.loose_m = (excess_m - taut_m).max(0.0);
         }
         false
     }
 
     /// The alarm, with the slack as a share of its limit.
     pub(super) fn alarm(&self) -> (TetherAlarm, f64) {
-        (TetherAlarm::Slack { slack_m: self.slack_m, pull_n: self.pull_n }, self.slack_m / SLACK_M)
+        (TetherAlarm::Slack { slack_m: self.loose_m, pull_n: self.pull_n }, self.loose_m / SLACK_M)
     }
 }
 
