@@ -59,18 +59,22 @@ fn a_package_holds_readings_grid_notes_and_drawings_and_is_checked_without_the_r
     {
         assert!(!content[file].is_empty(), "{file}");
     }
-    // Each cell of the grid has a plate, a thickness, and the journal of its run; the readings add up.
+    // Each cell of the grid has a plate, a thickness, and the journal of its run; the readings add up. The error is
+    // missing only in the few cells whose centre the tool did not pass.
     let grid = String::from_utf8(content["plate-grid.csv"].clone()).unwrap();
     let report: serde_json::Value = serde_json::from_slice(&content["report.json"]).unwrap();
     let journal = report["runs"][0]["files"]["journal_sha256"].as_str().unwrap();
-    let mut readings = 0;
+    let (mut readings, mut without_error) = (0, 0);
     for line in grid.lines().skip(1) {
         let cells: Vec<&str> = line.split(',').collect();
         assert!(!cells[0].is_empty() && cells[10] == journal && cells[8] == name, "{line}");
-        let [error_m, mean_mm, least_mm] = [3, 4, 5].map(|k| cells[k].parse::<f64>().unwrap());
-        assert!(error_m > 0.0 && least_mm <= mean_mm && mean_mm < 10.0, "{line}");
+        let [mean_mm, least_mm] = [4, 5].map(|k| cells[k].parse::<f64>().unwrap());
+        assert!(least_mm <= mean_mm && mean_mm < 10.0, "{line}");
+        assert!(cells[3].is_empty() || cells[3].parse::<f64>().unwrap() > 0.0, "{line}");
+        without_error += usize::from(cells[3].is_empty());
         readings += cells[6].parse::<u64>().unwrap();
     }
+    assert!(1000 * without_error < grid.lines().count(), "{without_error} cells");
     let thickness = &report["thickness"];
     let judged = thickness["readings"].as_u64().unwrap() - thickness["untestable"].as_u64().unwrap();
     assert_eq!(readings, judged);
