@@ -106,7 +106,7 @@ fn another_planner_chosen_before_the_start_is_written_down_and_proven() {
     let mut session = Session::open(&format!("console {} --planner apf", goto.display()), 120, 36);
     session.see("Press S to start");
     session.change_planner("rpf");
-    session.until("the planner", |session| !session.text().contains("Change planner to"));
+    session.until("the planner", |session| !session.text().contains("Change to"));
     session.see("rpf ");
     session.start();
     session.see("▶ RUN");

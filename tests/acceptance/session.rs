@@ -197,7 +197,7 @@ impl Session {
     pub(crate) fn change_planner(&mut self, id: &str) {
         self.press_until("P", "coverage is kept");
         self.choose(id);
-        self.see(&format!("Change planner to {id}?"));
+        self.see(&format!("Change to {id}?"));
         self.agree();
     }
 

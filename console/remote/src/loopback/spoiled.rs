@@ -106,7 +106,9 @@ impl Answers for Ahead {
         self.0.push_back(ask);
     }
 
-    fn next(&mut self, mission: &Mission) -> Option<Answer> {
+    fn next(&mut self, _: &Mission) -> Option<Answer> {
+        // Closing a planner has no answer.
+        self.0.retain(|ask| !matches!(ask.what, What::Close));
         let Ask { id, what } = self.0.pop_front()?;
         let given = match what {
             What::Open { choice, .. } => {
@@ -125,7 +127,7 @@ impl Answers for Ahead {
             }
             What::Step(_) => Given::Command(Wanted::twist(0.3, 0.0)),
             What::Snapshot => Given::State { bytes: 0 },
-            What::Close => return self.next(mission),
+            What::Close => return None,
         };
         Some(Answer { ask: id, result: Ok(given), said: Said::default() })
     }

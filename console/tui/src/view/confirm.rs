@@ -13,7 +13,7 @@ use crate::model::{LineEdit, Model, Offer, Overlay, Shadow, log::clock};
 use crate::theme::Role;
 use crate::update::zones;
 use account::Resumption;
-use mission::{HoldReason, Phase, WayBack};
+use mission::{Hold, HoldReason, Phase, WayBack};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
@@ -143,11 +143,20 @@ fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
             let question = "Resume? The robot will move. <accept>: resume, <cancel>: cancel.".into();
             [question, moves(model)].into_iter().chain(continues(model)).collect()
         }
-        Overlay::Confirm(Ask::FlyUncertified) => vec![
-            "Run uncertified plan? <accept>: run, <cancel>: stay held.".into(),
-            "Tether may stay out after return.".into(),
-            "Applies to later plans too, until planning fails.".into(),
-        ],
+        Overlay::Confirm(Ask::FlyUncertified) => {
+            let question = "Run uncertified plan? <accept>: run, <cancel>: stay held.".into();
+            let refused = match model.live.run.phase() {
+                Phase::Held(Hold { by: HoldReason::PlanRefused { message }, .. }) => {
+                    Some(format!("{}.", text::capitalized(message)))
+                }
+                _ => None,
+            };
+            [question, "The robot will move.".into()]
+                .into_iter()
+                .chain(refused)
+                .chain(["Applies to later plans too, until planning fails.".into()])
+                .collect()
+        }
         Overlay::Confirm(Ask::Swap(choice)) => {
             let next = text::fit(&choice.id, 18);
             let question = match (choice.parameters.len(), model.live.run.planner_id()) {
@@ -155,7 +164,7 @@ fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
                     let set = text::counted(n, "set parameter");
                     format!("Restart {next} with {set}? <accept>: restart, <cancel>: cancel.")
                 }
-                _ => format!("Change planner to {next}? <accept>: change, <cancel>: cancel."),
+                _ => format!("Change to {next}? <accept>: change, <cancel>: cancel."),
             };
             vec![question, "No motion yet.".into()]
         }

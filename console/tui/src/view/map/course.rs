@@ -56,7 +56,9 @@ pub(super) fn plan_ink(look: &Look) -> Ink {
 /// The parts of the plan ahead, each with whether it is a way to a different part of the floor. Under way, the whole plan
 /// ahead is drawn alike.
 pub(super) fn parts(look: &Look, course: &Course) -> Vec<(Lane, bool)> {
-    let lane_m = look.run.about.as_ref().map_or(0.0, |about| about.mission.lane_m());
+    // A path to a goal has no lanes.
+    let about = look.run.about.as_ref().filter(|_| look.run.covers());
+    let lane_m = about.map_or(0.0, |about| about.mission.lane_m());
     if look.run.progress.is_some() {
         return vec![(course.ahead, false)];
     }

@@ -66,6 +66,7 @@ pub(super) fn places(look: &Look, window: Window) -> Vec<Entry> {
         "t" => "longest tether",
         "c" => "smallest gap",
         "e" => "AE error",
+        "p" => "largest pull",
         _ => "wrap",
     };
     let entries =
