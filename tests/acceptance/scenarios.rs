@@ -63,6 +63,23 @@ fn a_plan_that_needs_more_pull_than_the_reel_has_is_refused_with_the_remedies() 
 }
 
 #[test]
+fn a_heavy_cable_is_taken_up_and_a_reel_that_stops_holds_the_robot_before_it_drives_over_its_cable() {
+    let bench = Bench::new();
+    let heavy = scenario("cover-heavy-cable.toml");
+    let flown = bench.fly(&heavy, &["--no-record"]).json();
+    let tether = &flown["tether"];
+    assert_eq!((&tether["over_own"], &tether["snags"]), (&0.into(), &0.into()), "{tether}");
+    let stopped = bench.fly(&heavy, &["--no-record", "--set", "tether.reel_fails_at_s=60"]).json();
+    let reason = stopped["reason"].as_str().unwrap();
+    assert!(reason.contains("reel does not take the tether up"), "{reason}");
+    assert_eq!(stopped["tether"]["over_own"], 0, "{stopped}");
+    let weak = ["--no-record", "--set", "tether.allow_uncertified=true"];
+    let weak = bench.fly(&scenario("tether-weak-reel.toml"), &weak).json();
+    assert!(weak["reason"].as_str().unwrap().contains("reel does not take the tether up"), "{weak}");
+    assert_eq!(weak["tether"]["over_own"], 0, "{weak}");
+}
+
+#[test]
 fn the_guide_to_cable_and_reel_has_the_pulls_that_the_program_computes() {
     let bench = Bench::new();
     let guide = std::fs::read_to_string(workspace().join("console/docs/operator-guide.md")).unwrap();

@@ -398,7 +398,7 @@ fn lied_to(lie: impl Fn(u64, u64) -> Vec<u8> + Send + 'static) -> Ended {
     ended
 }
 
-pub(crate) fn readings(number: u64, more: &str) -> Vec<u8> {
+fn readings(number: u64, more: &str) -> Vec<u8> {
     let stamp_s = 0.1 * number as f64;
     format!("{{\"type\": \"readings\", \"seq\": {number}, \"stamp_s\": {stamp_s:.1}, {more}}}\n").into_bytes()
 }

@@ -1,8 +1,8 @@
 //! Trouble with a real vehicle that is named: another vehicle, faulty messages, a lost position, a console that was stopped.
 
 use crate::{
-    bench::{Bench, Ended, journal, of_kind, scenario},
-    vehicle::{HELLO, Vehicle, begun, driven, liar, readings, short},
+    bench::{Bench, Ended, first_of, journal, of_kind, scenario},
+    vehicle::{HELLO, Vehicle, begun, driven, liar, short},
 };
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
@@ -14,12 +14,12 @@ use std::{
 };
 
 /// Connects an unattended run to an adapter that sends prepared texts; the end of the run and its journal.
-fn flown(lie: impl Fn(u64, u64) -> Vec<u8> + Send + 'static, options: &[&str]) -> (Ended, Vec<Value>) {
+fn flown(lie: impl Fn(u64, u64) -> Vec<u8> + Send + 'static) -> (Ended, Vec<Value>) {
     let bench = Bench::new();
     let path = bench.path().join("liar");
     let liar = liar(&path, lie);
     let at = format!("unix:{}", path.display());
-    let ended = bench.fly(&short(&bench), &[&["--vehicle", &at], options].concat());
+    let ended = bench.fly(&short(&bench), &["--vehicle", &at]);
     liar.join().unwrap();
     let run = bench.runs().pop().unwrap_or_else(|| panic!("{ended:?}"));
     bench.prove(&run);
@@ -39,7 +39,7 @@ fn another_vehicle_on_the_same_connection_is_named_with_its_differences_and_not_
         5 => format!("{other}\n").into_bytes(),
         _ => driven(number, "0"),
     };
-    let (ended, events) = flown(lie, &[]);
+    let (ended, events) = flown(lie);
     let said = ended.json()["reason"].as_str().unwrap().to_owned();
     assert!(
         ended.code == Some(1) && said.contains("another vehicle answers on the same connection"),
@@ -53,14 +53,16 @@ fn another_vehicle_on_the_same_connection_is_named_with_its_differences_and_not_
 }
 
 #[test]
-fn faulty_messages_between_good_ones_are_counted_and_named_and_do_not_end_the_run() {
+fn faulty_messages_between_good_ones_are_counted_and_named_and_do_not_hold_the_robot() {
     let lie = |number: u64, _| {
         let bad: &[u8] =
             if number.is_multiple_of(2) { b"{\"type\": \"readings\", \"seq\": \"x\"}\n" } else { b"" };
         [bad, &driven(number, "0")].concat()
     };
-    let (ended, events) = flown(lie, &["--set", "mission.time_limit_s=3"]);
-    assert_eq!(ended.json()["outcome"], "time_limit", "{ended:?}");
+    // The run ends because this vehicle never moves.
+    let (ended, events) = flown(lie);
+    let reason = ended.json()["reason"].as_str().unwrap().to_owned();
+    assert!(reason.contains("standstill while the vehicle is driven"), "{reason}");
     let told = notices(&events, "faulty_messages");
     let last = told.last().unwrap_or_else(|| panic!("{ended:?}"));
     assert!(last["count"].as_u64().unwrap() > 1 && last["first"].to_string().contains("seq"), "{last}");
@@ -68,16 +70,17 @@ fn faulty_messages_between_good_ones_are_counted_and_named_and_do_not_end_the_ru
 
 #[test]
 fn an_unattended_run_without_a_position_says_until_when_it_waits() {
-    let lie = |number, since| match since {
-        0..5 => driven(number, "0"),
-        _ => readings(number, r#""contact": false"#),
-    };
-    let (ended, events) = flown(lie, &["--set", "mission.time_limit_s=8"]);
-    let awaited = of_kind(&events, "position_awaited");
-    assert!(!awaited.is_empty(), "{ended:?}");
-    let ends_t_s = awaited[0]["ends_t_s"].as_f64().unwrap();
-    assert!(ended.err.contains(&format!("T+{ends_t_s:.0} s")), "{}", ended.err);
-    assert_eq!(ended.json()["outcome"], "time_limit", "{ended:?}");
+    let bench = Bench::new();
+    let ended = bench.fly(&scenario("lost-and-found.toml"), &["--vehicle", "loopback"]);
+    let events = journal(&bench.runs().pop().unwrap_or_else(|| panic!("{ended:?}")));
+    let awaited = first_of(&events, "position_awaited").unwrap_or_else(|| panic!("{ended:?}"));
+    let ends_t_s = events[awaited]["ends_t_s"].as_f64().unwrap();
+    assert!(
+        ended.err.contains(&format!("the time limit ends the mission at T+{ends_t_s:.0} s")),
+        "{}",
+        ended.err
+    );
+    assert!(first_of(&events[awaited..], "resumed").is_some(), "the position comes back");
 }
 
 #[test]

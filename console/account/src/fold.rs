@@ -50,6 +50,8 @@ pub struct Fold {
     run: Option<Box<RunOpened>>,
     evidence: Option<Evidence>,
     survey: Option<Survey>,
+    /// Whether floor on the way to the latest estimated position counts as scanned.
+    counts: bool,
     /// Whether the previous event drew a zone: the change to the floor that follows belongs to that zone.
     is_zone_new: bool,
     /// Whether the account of the floor is omitted.
@@ -83,9 +85,12 @@ impl Fold {
             }
             EventKind::TetherAlarmRaised { alarm: TetherAlarm::Snag { .. }, .. } => self.snag(true),
             EventKind::TetherAlarmCleared { alarm: TetherAlarm::Snag { .. } } => self.snag(false),
-            EventKind::TetherTruth { length_m, wrap_max_rad, wrap_total_rad, detour_m } => {
+            EventKind::TetherTruth { length_m, wrap_max_rad, wrap_total_rad, detour_m, lies } => {
                 if let Some(tethered) = &mut self.tethered {
                     tethered.lie(*length_m, *wrap_max_rad, *wrap_total_rad, *detour_m);
+                    if let Some(lies) = lies {
+                        tethered.cross(lies.under_hull);
+                    }
                 }
             }
             EventKind::Protected { level_m } => self.protection.take(*level_m),
@@ -183,6 +188,7 @@ impl Fold {
             }
         };
         self.visit(here, &covariance, error_m, counts);
+        self.counts = counts;
         if let (Some(survey), Some(truth), Some(scanned)) = (&mut self.survey, self.truth, &self.scanned) {
             let way = Way { floor: scanned.believed().floor(), counts };
             survey.visit((event.tick, event.t_s), estimate, truth, way);
@@ -282,6 +288,11 @@ impl Fold {
     /// The instrument and its readings; `None` if it reads no thickness, and without the account of the floor.
     pub fn survey(&self) -> Option<&Survey> {
         self.survey.as_ref()
+    }
+
+    /// Whether floor on the way to the latest estimated position counts as scanned.
+    pub fn counts(&self) -> bool {
+        self.counts
     }
 
     /// The evidence for missed floor; `None` before the run is opened, and without the account of the floor.

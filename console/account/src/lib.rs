@@ -49,7 +49,10 @@ pub use inspection::{Date, Inspection, is_placeholder, says_nothing};
 pub use notes::Notes;
 pub use overlap::Overlap;
 pub use passes::Passes;
-pub use readings::{Detection, Detections, Finding, Judge, PlateThickness, Reading, ReadingsSummary, Survey};
+pub use readings::{
+    Detection, Detections, Finding, Imported, Judge, LOSS_CLASSES, PlateThickness, Reading, ReadingsSummary,
+    Survey, Track, Whereabouts,
+};
 pub use scanned::Scanned;
 pub use summary::{
     Accuracy, Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, Protection, REPORT_VERSION, Stops,

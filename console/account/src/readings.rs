@@ -4,16 +4,20 @@
 //! seed. They are therefore computed from the events of the run, like its figures, and are not events themselves.
 
 mod detection;
+mod imported;
 mod judge;
 mod noise;
 mod plates;
 #[cfg(test)]
 mod tests;
+mod track;
 mod worn;
 
 pub use detection::{Detection, Detections};
-pub use judge::{Finding, Judge};
+pub use imported::Imported;
+pub use judge::{Finding, Judge, LOSS_CLASSES};
 pub use plates::PlateThickness;
+pub use track::{Track, Whereabouts};
 
 use mission::{InstrumentConfig, Sampling, event::RunOpened};
 use nalgebra::{Matrix2, Matrix2x3};
@@ -44,13 +48,22 @@ pub struct Reading {
 pub struct ReadingsSummary {
     /// Number of readings.
     pub count: u64,
-    /// Number of readings beside welds, which are not judged.
+    /// Number of readings that are not judged: beside welds or, for imported readings, where floor does not count as
+    /// scanned.
     pub untestable: u64,
     /// Number of indications.
     pub indications: u64,
     /// The deepest indication; absent without indications.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deepest: Option<Finding>,
+    /// The probability of detection: the share of the true losses of at least a fifth of the thickness, among those whose
+    /// deepest place was tested, that are in an indication; absent if the true losses are not known, or no such place
+    /// was tested.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub detected: Option<f64>,
+    /// Number of indications where no metal is lost; absent if the true losses are not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub false_calls: Option<u64>,
 }
 
 /// The instrument on its way over a simulated floor.
@@ -165,12 +178,11 @@ impl Survey {
     /// The number of readings, and what they show on a floor.
     pub(crate) fn summary(&self, floor: &Floor) -> ReadingsSummary {
         let found = self.judge.findings(floor);
-        ReadingsSummary {
-            count: self.count,
-            untestable: self.untestable,
-            indications: found.len() as u64,
-            deepest: found.into_iter().max_by(|a, b| a.depth_mm.total_cmp(&b.depth_mm)),
-        }
+        let is_tested = |at| floor.cell_at(at).is_some_and(|cell| self.judge.count(cell) > 0);
+        let detections = self.detections(&found, is_tested);
+        let summary = judge::summary(found, self.count, self.untestable);
+        let false_calls = Some(detections.false_calls as u64);
+        ReadingsSummary { detected: detections.share(), false_calls, ..summary }
     }
 }
 

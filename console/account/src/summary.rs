@@ -275,6 +275,9 @@ pub struct Tether {
     /// Whether the tether was snagged when the run ended.
     #[serde(default)]
     pub snagged: bool,
+    /// Number of times that the robot truly drove over its own tether; absent for a tether that is always taut.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub over_own: Option<u64>,
 }
 
 /// Response times of the planners.

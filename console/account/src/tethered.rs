@@ -18,12 +18,22 @@ pub(crate) struct Tethered {
     detour_m: f64,
     snags: u64,
     snagged: bool,
+    over_own: Option<u64>,
+    is_over_own: bool,
 }
 
 impl Tethered {
     /// Creates the record of a run with this tether.
     pub(crate) fn new(config: &TetherConfig) -> Self {
-        Self { anchor: config.anchor, known: None, detour_m: 0.0, snags: 0, snagged: false }
+        Self {
+            anchor: config.anchor,
+            known: None,
+            detour_m: 0.0,
+            snags: 0,
+            snagged: false,
+            over_own: None,
+            is_over_own: false,
+        }
     }
 
     /// Adds the state of the cable in one tick.
@@ -41,7 +51,15 @@ impl Tethered {
             entangled: false,
             snags: 0,
             snagged: false,
+            over_own: None,
         });
+    }
+
+    /// Records whether the hull is over its own cable, of a cable that can be slack.
+    pub(crate) fn cross(&mut self, is_over_own: bool) {
+        let times = self.over_own.get_or_insert(0);
+        *times += u64::from(is_over_own && !self.is_over_own);
+        self.is_over_own = is_over_own;
     }
 
     /// Records that the mission found the cable snagged on an unmapped object, or free again.
@@ -54,8 +72,8 @@ impl Tethered {
     pub(crate) fn tether(&self, robot: Option<Point>, outcome: Option<Outcome>) -> Option<Tether> {
         let is_back = robot.is_some_and(|robot| (robot - self.anchor).norm() <= BACK_M);
         let entangled = outcome == Some(Outcome::Entangled) || (is_back && self.detour_m > LEFT_M);
-        let (snags, snagged) = (self.snags, self.snagged);
-        self.known.map(|known| Tether { entangled, snags, snagged, ..known })
+        let (snags, snagged, over_own) = (self.snags, self.snagged, self.over_own);
+        self.known.map(|known| Tether { entangled, snags, snagged, over_own, ..known })
     }
 }
 
@@ -87,5 +105,10 @@ mod tests {
             tethered.snag(snagged);
         }
         assert_eq!(snags(&tethered), Some((2, true)));
+        assert_eq!(tethered.tether(None, None).unwrap().over_own, None);
+        for is_over_own in [false, true, true, false, true] {
+            tethered.cross(is_over_own);
+        }
+        assert_eq!(tethered.tether(None, None).unwrap().over_own, Some(2));
     }
 }

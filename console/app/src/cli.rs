@@ -8,6 +8,7 @@ mod files;
 mod flight;
 mod logs;
 mod past;
+mod readings;
 mod surveys;
 mod vehicle;
 
@@ -19,6 +20,7 @@ pub(crate) use files::{FindArg, ImportArgs, LocateArgs, MapArgs};
 pub(crate) use flight::{AccuracyArgs, PlanArgs, RunArgs, ShadowArgs};
 pub(crate) use logs::LogsArg;
 pub(crate) use past::{EventsArgs, ExportArgs, ReportArgs, RescanArgs};
+pub(crate) use readings::ReadingsArgs;
 pub(crate) use surveys::CompareSurveysArgs;
 pub(crate) use vehicle::{SimulateArgs, TrialArgs, VehicleArgs, VehicleCommand};
 
@@ -130,6 +132,8 @@ pub(crate) enum Command {
     Export(ExportArgs),
     /// Locate a robot from the readings of a real system; write fixes, a track, a recording and a report.
     Locate(LocateArgs),
+    /// Place the readings of an instrument on the track of a past run, by their time; the report judges them.
+    Readings(ReadingsArgs),
     /// Show the result of a past run, or the combined result of a scan and its re-scans.
     Report(ReportArgs),
     /// Compare two surveys of one floor, years apart: growth, rates, new and gone indications.

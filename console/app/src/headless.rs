@@ -33,6 +33,9 @@ use std::{
 };
 use world::{Station, coverage::percent_text};
 
+/// Time between two looks at the recorder after the end of a mission.
+const RECORDER_POLL: Duration = Duration::from_millis(20);
+
 /// The options of a headless run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct RunOptions {
@@ -106,6 +109,7 @@ fn fly_beside(
             warn_line(&format!("warning: {message}"));
         }
     }
+    wait_for_recorder(&log, &stop);
     let Closed { summary, kept } = log.close(CLOSE_TIMEOUT, hosts::calls(&host), None, &scenario.expect);
     say(&if options.json { pretty_json("the report", &summary)? } else { report::human(&summary) })?;
     match &kept {
@@ -114,6 +118,19 @@ fn fly_beside(
         _ => {}
     }
     Ok(ExitCode::from(exit_code(mission_code(&summary), kept.as_ref())))
+}
+
+/// Waits for the recorder as long as it makes progress: at full speed, a mission can be far ahead of it, above all if
+/// its instrument takes many readings. Closing the log has a time limit that does not depend on this distance.
+fn wait_for_recorder(log: &RunLog, stop: &StopSignal) {
+    let (mut lag, mut since) = (log.health().lag, Instant::now());
+    while lag > 0 && since.elapsed() < CLOSE_TIMEOUT && !stop.requested() {
+        thread::sleep(RECORDER_POLL);
+        let now = log.health().lag;
+        if now < lag {
+            (lag, since) = (now, Instant::now());
+        }
+    }
 }
 
 /// Reports on stderr, once each, that recording has failed and that it has resumed.

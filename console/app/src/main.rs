@@ -20,6 +20,7 @@ mod past_runs;
 mod plan;
 mod planners;
 mod progress;
+mod readings;
 mod replay_worker;
 mod report_file;
 mod rescan;
@@ -111,6 +112,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Events(args)) => events::events(&args),
         Some(Command::Export(args)) => export::export(&args),
         Some(Command::Locate(args)) => locate::locate(&args),
+        Some(Command::Readings(args)) => readings::readings(&args),
         Some(Command::Report(args)) => past_runs::report(&args, &plugins),
         Some(Command::CompareSurveys(args)) => compare_surveys::compare(&args),
         Some(Command::Rescan(args)) => rescan::rescan(&args, &plugins),

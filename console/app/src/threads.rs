@@ -69,6 +69,7 @@ pub(crate) fn needed(command: Option<&Command>) -> usize {
             | Command::Reproduce(_)
             | Command::Tune(_)
             | Command::Events(_)
+            | Command::Readings(_)
             | Command::Completions { .. }
             | Command::Man { .. }
             | Command::Worker

@@ -4,7 +4,7 @@ use arrow::datatypes::Field;
 use std::collections::HashMap;
 
 /// Meaning of each column, by name; the unit is determined by the name.
-const MEANINGS: [(&str, &str); 56] = [
+const MEANINGS: [(&str, &str); 58] = [
     ("case", "number of the mission; seeds are outermost"),
     ("scenario", "name of the scenario"),
     ("planner", "id of the planner that was active first"),
@@ -70,6 +70,12 @@ const MEANINGS: [(&str, &str); 56] = [
     ("tether.snags", "number of times the mission detected a snagged tether"),
     ("tether.snagged", "whether the tether was snagged when the run ended"),
     ("scenario_sha256", "SHA-256 of the scenario's text"),
+    (
+        "readings.detected",
+        "probability of detection: share of the tested true losses of at least a fifth of the thickness that are in an \
+         indication",
+    ),
+    ("readings.false_calls", "number of indications where no metal is lost"),
 ];
 
 /// Units by the ending of a column's name.

@@ -45,7 +45,7 @@ enum Kind {
 use Kind::{Count, Flag, Number, Text};
 
 /// Columns that contain figures from the report, with the paths of these figures in the report.
-const FIGURES: [(&str, Kind); 48] = [
+const FIGURES: [(&str, Kind); 50] = [
     ("outcome", Text),
     ("reason", Text),
     ("violations", Text),
@@ -94,10 +94,12 @@ const FIGURES: [(&str, Kind); 48] = [
     ("tether.entangled", Flag),
     ("tether.snags", Count),
     ("tether.snagged", Flag),
+    ("readings.detected", Number),
+    ("readings.false_calls", Count),
 ];
 
 /// Figures for which a larger value is better; for all other figures, a smaller value is better.
-const MORE_IS_BETTER: [&str; 12] = [
+const MORE_IS_BETTER: [&str; 13] = [
     "clearance_min_m",
     "coverage.reachable",
     "coverage.whole",
@@ -110,6 +112,7 @@ const MORE_IS_BETTER: [&str; 12] = [
     "accuracy.stations_mean",
     "accuracy.stations_min",
     "positioning.in_95_ellipse",
+    "readings.detected",
 ];
 
 /// Names of the columns that contain figures from the report.

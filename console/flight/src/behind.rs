@@ -208,7 +208,7 @@ fn told(readings: &Readings, stations: &[Station], tick_s: f64) -> message::Read
         odometry: Some(Odometry { over_s: tick_s, forward_m, sideways_m, turn_rad }),
         ae: readings.ranging_cycle.then(|| Ae { ranges: ranges.collect(), ..Ae::default() }),
         contact: Some(readings.contact),
-        tether: readings.paid_out_m.map(|paid_out_m| Tether { paid_out_m, pull_n: None }),
+        tether: readings.paid_out_m.map(|paid_out_m| Tether { paid_out_m, pull_n: readings.reel_pull_n }),
         pressure_pa: readings.pressure_pa,
         outlines: readings.sightings.iter().map(outline).collect(),
         ..message::Readings::default()

@@ -11,7 +11,7 @@ use mission::{
     Sensor, event::JOURNAL_VERSION,
 };
 use scenario::Scenario;
-use sim::{AeConfig, Disturbances, RobotConfig, SimConfig, Simulator};
+use sim::{AeConfig, Disturbances, PhysicalCable, RobotConfig, SimConfig, Simulator};
 use std::time::Duration;
 use vehicle::port::{Brake, Command, Live, Sensed, StationFault, Vehicle, VehicleInfo};
 use world::Readings;
@@ -46,7 +46,8 @@ impl Forked {
             AeConfig { outages_s: Vec::new(), disturbances, ..ae }
         });
         let robot = RobotConfig { scanner: None, ..scenario.sim.robot.clone() };
-        let config = SimConfig { world, robot, ae, movers: Vec::new(), ..scenario.sim.clone() };
+        let physical = scenario.sim.physical.map(|cable| PhysicalCable { fails_at_s: None, ..cable });
+        let config = SimConfig { world, robot, ae, movers: Vec::new(), physical, ..scenario.sim.clone() };
         Flight {
             vehicle: Box::new(Simulated::new(Simulator::resumed(config, scenario.seed, pose, cable))),
             watch: None,
@@ -272,6 +273,7 @@ impl Flight {
             wrap_max_rad: tether.wrap_max_rad,
             wrap_total_rad: tether.wrap_total_rad,
             detour_m: tether.detour_m,
+            lies: tether.lies.map(Box::new),
         });
         let kinds = std::iter::once(EventKind::Truth { pose, clearance_m, collided }).chain(of_tether);
         kinds.map(|kind| self.event(kind)).collect()

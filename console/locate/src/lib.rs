@@ -18,6 +18,7 @@ mod problem;
 mod repeats;
 mod rows;
 mod tally;
+pub mod thickness;
 mod tool;
 
 pub use again::{Again, again};

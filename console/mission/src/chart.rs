@@ -32,6 +32,8 @@ pub(crate) struct Chart {
     /// The obstacles in sight now, placed using the current estimated pose.
     in_sight: Vec<(ObstacleId, Shape)>,
     map: ObstacleMap,
+    /// An index of the drawing alone.
+    drawn_map: Arc<ObstacleMap>,
     revision: u32,
     limits: api::Limits,
     swath_m: f64,
@@ -72,6 +74,7 @@ impl Chart {
             drawn: drawn.into(),
             found: Vec::new(),
             in_sight: Vec::new(),
+            drawn_map: Arc::new(map.clone()),
             map,
             revision: 0,
             limits: config.limits,
@@ -136,6 +139,11 @@ impl Chart {
     /// Distances and neighbours on the chart.
     pub(crate) fn map(&self) -> &ObstacleMap {
         &self.map
+    }
+
+    /// Distances on the drawing, without the obstacles found.
+    pub(crate) fn drawn_map(&self) -> &ObstacleMap {
+        &self.drawn_map
     }
 
     /// Records the obstacles seen from an estimated pose.

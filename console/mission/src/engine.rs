@@ -177,7 +177,7 @@ impl Mission {
         let map_changed = self.look_around(input.readings);
         self.happened.extend(self.known.note_scan_fault());
         self.known.scan_from(before, &mut self.happened);
-        let reached = self.known.drag_tether(map_changed, input.readings.paid_out_m, &mut self.happened);
+        let reached = self.known.drag_tether(map_changed, input.readings, &mut self.happened);
         self.watch_tether(map_changed);
         if map_changed {
             self.doubt_way_back();

@@ -38,7 +38,9 @@ use positioning::{Exclusion, Fix, FixError, Ranging, Unprotected};
 use serde::{Deserialize, Serialize};
 use vehicle::port::{LinkSeen, Notice};
 use world::tether::Certificate;
-use world::{CellRun, KindRun, Medium, Obstacle, ObstacleId, Point, Pose, Readings, Scan, StationId, Zone};
+use world::{
+    CableLies, CellRun, KindRun, Medium, Obstacle, ObstacleId, Point, Pose, Readings, Scan, StationId, Zone,
+};
 
 /// Version of the journal format; raised when older readers can no longer read new journals.
 pub const JOURNAL_VERSION: u32 = 5;
@@ -84,6 +86,9 @@ pub enum EventKind {
         wrap_total_rad: f64,
         /// Length of cable beyond the straight line from the anchor to the robot, metres.
         detour_m: f64,
+        /// How the cable lies; absent for one that is always taut.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        lies: Option<Box<CableLies>>,
     },
     /// The geometry of the cable, computed from the estimated pose.
     Tethered {
@@ -586,6 +591,12 @@ pub enum EventKind {
     /// The scans of the robot's scanner cannot be used, for another reason than before, or can be used again.
     ScannerJudged {
         /// The reason, as a clause that ends with what to check; absent if the scans can be used.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        trouble: Option<String>,
+    },
+    /// Scans have begun to correct the estimated position, or have ceased to.
+    ScanAided {
+        /// The reason why they do not correct it, as a clause about the scans; absent if they do.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         trouble: Option<String>,
     },

@@ -1,14 +1,17 @@
 //! The robot's estimated position, and whether it is reliable.
 
 mod protection;
+mod scan_aid;
 
 use crate::{config::MissionConfig, event::EventKind};
+use perception::Matched;
 use planner_api::PoseEstimate;
 use positioning::{
     Agreement, Doubt, Exclusion, Fix, FixError, Impossible, Integrity, MotionNoise, Positioner,
     PositionerConfig, RangeNoise, Sides,
 };
 use protection::Protection;
+use scan_aid::ScanAid;
 use std::{
     collections::{BTreeMap, BTreeSet},
     mem::discriminant,
@@ -23,6 +26,7 @@ pub struct Locator {
     positioner: Positioner,
     /// The protection of the pose; `None` if the scenario states no risk.
     protection: Option<Protection>,
+    scan_aid: ScanAid,
     limit_m: f64,
     /// The largest speed and turn rate of the robot, metres and radians per second.
     fastest: [f64; 2],
@@ -64,6 +68,7 @@ impl Locator {
         Self {
             protection: locating.risk.map(|risk| Protection::new(&positioner, risk)),
             positioner: Positioner::new(positioner),
+            scan_aid: ScanAid::default(),
             limit_m: config.position_limit_m,
             fastest: [config.limits.v_max_m_per_s, config.limits.w_max_rad_per_s],
             unused: BTreeSet::new(),
@@ -113,15 +118,24 @@ impl Locator {
         self.sides
     }
 
+    /// Keeps the pose that the scan of this tick shows, `None` if it shows none. The next [`Locator::take`] uses it.
+    pub fn keep_match(&mut self, matched: Option<Matched>) {
+        self.scan_aid.keep(matched);
+    }
+
     /// Processes the readings since the last tick; returns the resulting events.
     pub fn take(&mut self, readings: &Readings) -> Vec<EventKind> {
+        let aided = self.scan_aid.correct(&mut self.positioner);
         if readings.unmeasured_s > 0.0 {
             let [most_m_per_s, most_rad_per_s] = self.fastest;
             self.wander(most_m_per_s * readings.unmeasured_s, most_rad_per_s * readings.unmeasured_s);
         }
         self.positioner.predict(&readings.odometry);
         self.protection.iter_mut().for_each(|protection| protection.guard.predict(&readings.odometry));
-        let mut events = if readings.ranging_cycle { self.cycle(readings) } else { Vec::new() };
+        let mut events: Vec<EventKind> = aided.into_iter().collect();
+        if readings.ranging_cycle {
+            events.extend(self.cycle(readings));
+        }
         events.extend(self.protection.iter_mut().flat_map(|protection| protection.events(&self.positioner)));
         events.push(EventKind::Estimated { pose: self.pose_estimate() });
         events.extend(self.check_limit());

@@ -14,6 +14,7 @@ mod alarms;
 mod certifying;
 mod driven;
 mod payout;
+mod slack;
 
 pub use certifying::certify_from_start;
 pub(crate) use certifying::{ends_at_anchor, return_path_ends};
@@ -27,9 +28,10 @@ use certifying::certified;
 use driven::Driven;
 use payout::{Explained, Payout};
 use planner_api::Plan;
+use slack::Slack;
 use std::sync::Arc;
 use world::{
-    ObstacleMap, Point, Shape, World,
+    ObstacleMap, Point, Readings, Shape, World,
     tether::{Bearing, Cable, CableObstacles, Certificate, TetherError, capstan_factor},
 };
 
@@ -55,6 +57,7 @@ pub struct Tether {
     /// How long there has been no return path, seconds.
     without_home_s: f64,
     payout: Payout,
+    slack: Slack,
     driven: Driven,
     alarms: Alarms,
 }
@@ -77,6 +80,7 @@ impl Tether {
             roomy,
             without_home_s: 0.0,
             payout: Payout::default(),
+            slack: Slack::default(),
             driven: Driven::new(start),
             alarms: Alarms::default(),
         })
@@ -138,12 +142,16 @@ impl Tether {
         })
     }
 
-    /// Records the measured length paid out, metres, and the time that has passed since the last call, seconds. `error_m`
-    /// is the position error with which the cable was laid, metres; `None` while the position is lost.
-    pub fn measure(&mut self, paid_out_m: Option<f64>, error_m: Option<f64>, passed_s: f64) {
+    /// Records the measured length paid out and the pull, and the time that has passed since the last call, seconds.
+    /// `error_m` is the position error with which the cable was laid, metres; `None` while the position is lost.
+    pub fn measure(&mut self, readings: &Readings, error_m: Option<f64>, passed_s: f64) {
         let (length_m, points) = (self.cable.length_m(), self.driven.points().len());
         let explained = error_m.map(|error_m| Explained { length_m, error_m, points });
-        self.payout.take(paid_out_m, explained, self.config.limits.reel_length_m, passed_s);
+        let excess_m = explained.and(readings.paid_out_m).map(|out_m| out_m - length_m);
+        let pull_n = readings.robot_pull_n.or(readings.reel_pull_n);
+        let can_be_caught = self.slack.take(excess_m, pull_n, self.config.reel.as_ref());
+        let explained = explained.filter(|_| can_be_caught);
+        self.payout.take(readings.paid_out_m, explained, self.config.limits.reel_length_m, passed_s);
     }
 
     /// Whether more cable is out than expected from the map: the cable has caught on something unknown.
@@ -196,7 +204,7 @@ impl Tether {
     }
 
     /// The alarms of the cable, each with its current value as a share of the limit.
-    fn alarms_with_shares(&self, world: &World) -> [(TetherAlarm, f64); 5] {
+    fn alarms_with_shares(&self, world: &World) -> [(TetherAlarm, f64); 6] {
         let limits = self.config.limits;
         let contacts = self.cable.contacts();
         let most = contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()));
@@ -212,6 +220,7 @@ impl Tether {
             (TetherAlarm::NoReturnPath, self.without_home_s / NO_HOME_S),
             // A snag has no intermediate levels.
             (TetherAlarm::Snag { paid_out_m: out_m, explained_m }, if self.is_snagged() { 2.0 } else { 0.0 }),
+            self.slack.alarm(),
         ]
     }
 

@@ -30,6 +30,8 @@ const RIGHT: f64 = 0.75;
 const NOTHING: f64 = 0.2;
 /// A mirrored or rotated scan must fit this many times as many rays as the scan as it is.
 const MUCH_BETTER: f64 = 1.5;
+/// A scan of which less than this share of the usual number of rays fits the drawing puts the next ones in doubt.
+const SUDDEN: f64 = 0.5;
 
 /// A running mean of the shares of rays in the comparisons so far.
 #[derive(Debug, Clone, Copy, Default)]
@@ -59,6 +61,8 @@ impl Share {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Agreement {
     scans: u32,
+    /// Whether the last comparison was much worse than those before it.
+    is_doubtful: bool,
     /// Of the rays that must hit something, the share that have an echo.
     echoes: Share,
     /// For a scan that is taken as it is, mirrored, or rotated by half a turn: of the rays with an echo that must hit
@@ -87,7 +91,7 @@ impl Agreement {
         range_m: Option<f64>,
     ) {
         self.scans = self.scans.wrapping_add(1);
-        let is_due = self.echoes.compared < AT_ONCE || self.scans.is_multiple_of(LATER);
+        let is_due = self.echoes.compared < AT_ONCE || self.is_doubtful || self.scans.is_multiple_of(LATER);
         if !is_due || pose.point_m2(0.0).sqrt() > LOST_M {
             return;
         }
@@ -98,6 +102,9 @@ impl Agreement {
         if counts.must[0] < LEAST_RAYS && !is_sure {
             counts = count(rays.len());
         }
+        let now = counts.fit[0] as f64 / counts.must[0].max(1) as f64;
+        let usual = self.scores[0].known().filter(|_| counts.must[0] >= LEAST_RAYS);
+        self.is_doubtful = usual.is_some_and(|usual| now < SUDDEN * usual);
         self.echoes.add(counts.echo[0], counts.must[0]);
         for way in 0..WAYS {
             self.fits[way].add(counts.fit[way], counts.echo[way]);
@@ -108,6 +115,11 @@ impl Agreement {
     /// Whether scans have been compared, but not often enough for a verdict.
     pub(crate) fn is_open(&self) -> bool {
         self.echoes.compared > 0 && self.echoes.known().is_none()
+    }
+
+    /// Whether the scans have just become much worse, so that the next comparisons decide whether they can be right.
+    pub(crate) fn is_doubtful(&self) -> bool {
+        self.is_doubtful
     }
 
     /// The reason why the scans cannot be right; `None` if they can.

@@ -82,17 +82,19 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Corrects the pose so that the scan fits the drawing; returns the uncertainty that remains.
-    pub(crate) fn correct(&self, rays: &mut Rays, pose: &Uncertain, buffers: &mut Buffers) -> Uncertain {
-        let Some(prior) = pose.information() else { return *pose };
+    /// Corrects the pose so that the scan fits the drawing.
+    pub(crate) fn correct(&self, rays: &mut Rays, pose: &Uncertain, buffers: &mut Buffers) -> Corrected {
+        let Some(prior) = pose.information() else { return Corrected::not(pose) };
         gates(rays, pose, &mut buffers.gates_m);
         let mut corrected = Vector3::zeros();
         let mut information = prior;
+        let mut points = 0;
         for _ in 0..ROUNDS {
             self.beside(rays, pose, buffers);
             let robot = rays.frame().translation.vector;
             let (mut normal, mut right) = (prior, -(prior * corrected));
             let weight = 1.0 / (pose.sigma_m * pose.sigma_m);
+            points = buffers.beside.iter().flatten().count();
             for (ray, beside) in buffers.beside.iter().enumerate() {
                 let Some(Beside { distance_m, away }) = beside else { continue };
                 let arm = rays.point(ray).coords - robot;
@@ -108,7 +110,13 @@ impl<'a> Drawing<'a> {
             corrected += step;
             information = normal;
         }
-        pose.corrected(&information.try_inverse().unwrap_or_else(Matrix3::zeros))
+        Corrected {
+            pose: pose.corrected(&information.try_inverse().unwrap_or_else(Matrix3::zeros)),
+            by: corrected,
+            prior,
+            information,
+            points,
+        }
     }
 
     /// Determines, for each ray, whether the drawing explains it: the ray has no echo, or its point is on or behind the
@@ -134,6 +142,27 @@ impl<'a> Drawing<'a> {
                     || !is_away && beside_shape(&obstacle.shape, rays.point(ray)).distance_m <= gates_m[ray];
             }
         }
+    }
+}
+
+/// A pose that was corrected by the drawing.
+pub(crate) struct Corrected {
+    /// The uncertainty that remains.
+    pub pose: Uncertain,
+    /// The correction of the pose: along x and y in metres, and a turn about the robot in radians.
+    pub by: Vector3<f64>,
+    /// The information about the pose before the correction, and after it.
+    pub prior: Matrix3<f64>,
+    pub information: Matrix3<f64>,
+    /// Number of points that belong to something on the drawing.
+    pub points: usize,
+}
+
+impl Corrected {
+    /// A pose that nothing corrects.
+    fn not(pose: &Uncertain) -> Self {
+        let nothing = Matrix3::zeros();
+        Self { pose: *pose, by: Vector3::zeros(), prior: nothing, information: nothing, points: 0 }
     }
 }
 
@@ -211,7 +240,7 @@ mod tests {
         let pose = Uncertain::estimated(0.02, &covariance);
         let drawing = Drawing::near(&boundary, [&drawn].into_iter(), estimate.position, 9.0);
         let mut buffers = Buffers::default();
-        let left = drawing.correct(&mut rays, &pose, &mut buffers);
+        let left = drawing.correct(&mut rays, &pose, &mut buffers).pose;
         let off = rays.frame().translation.vector - truth.position.coords;
         assert!(off.norm() < 0.02, "{off}");
         assert!((rays.frame().rotation.angle() - 0.3).abs() < 0.01);
@@ -222,5 +251,35 @@ mod tests {
         }
         assert!(explained.iter().filter(|is| !**is).count() >= 5);
         assert_eq!(drawn.id, ObstacleId(1));
+    }
+
+    /// The pose that a scan from (0.5, -0.8) shows to a robot whose estimate is somewhat off.
+    fn matched_in(drawn: &[Obstacle]) -> crate::Matched {
+        let boundary = Boundary::Circle { radius_m: 6.0 };
+        let scan = scan_of(&Scanner::default(), &boundary, drawn, &Pose::new(0.5, -0.8, 0.3), 4);
+        let estimate = Pose::new(0.56, -0.87, 0.32);
+        let mut rays = Rays::default();
+        rays.take(&scan, &estimate.tank_from_robot());
+        let from = *rays.frame();
+        let covariance = Matrix3::from_diagonal(&Vector3::new(0.0036, 0.0036, 4e-4));
+        let pose = Uncertain::estimated(0.02, &covariance);
+        let drawing = Drawing::near(&boundary, drawn.iter(), estimate.position, 9.0);
+        let corrected = drawing.correct(&mut rays, &pose, &mut Buffers::default());
+        crate::matching::matched(&from, &corrected, &world::Odometry::default()).unwrap()
+    }
+
+    #[test]
+    fn a_scan_shows_the_pose_and_which_part_of_it_is_not_known() {
+        let columns = [column(1, 2.0, 1.0, 0.2), column(2, -1.5, 2.0, 0.3), column(3, -2.0, -2.5, 0.3)];
+        let crate::Matched { pose, covariance } = matched_in(&columns);
+        let off = pose.position - Point::new(0.5, -0.8);
+        assert!(off.norm() < 0.015 && (pose.heading_rad - 0.3).abs() < 0.01, "{pose:?}");
+        assert!(covariance.diagonal().iter().all(|variance| *variance < 0.01), "{covariance}");
+        // All headings look alike in an empty round tank; the distance from its middle does not.
+        let crate::Matched { pose, covariance } = matched_in(&[]);
+        let at = pose.position;
+        let along = |way: Vector3<f64>| (way.transpose() * covariance * way)[(0, 0)] / way.norm_squared();
+        assert!(along(Vector3::new(-at.y, at.x, 1.0)) > 1.0, "a turn about the middle: {covariance}");
+        assert!(along(Vector3::new(at.x, at.y, 0.0)) < 0.02, "towards the middle: {covariance}");
     }
 }

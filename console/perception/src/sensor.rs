@@ -15,11 +15,14 @@ pub struct Sensor {
     /// Number of rays of a scan; `None` to expect at least half as many as in the first scan.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rays: Option<u32>,
+    /// Whether scans correct the estimated position, by the wall and the drawn obstacles.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub locates: bool,
 }
 
 impl Sensor {
     /// A scanner whose properties are not known.
-    pub const UNKNOWN: Self = Self { sigma_m: 0.03, range_m: None, rays: None };
+    pub const UNKNOWN: Self = Self { sigma_m: 0.03, range_m: None, rays: None, locates: false };
 
     /// Whether the noise is known because a scenario describes the scanner.
     pub fn is_known(&self) -> bool {
@@ -28,6 +31,11 @@ impl Sensor {
 
     /// The scanner that a scenario describes.
     pub fn of(scanner: &Scanner) -> Self {
-        Self { sigma_m: scanner.sigma_m, range_m: Some(scanner.range_m), rays: Some(scanner.rays) }
+        Self {
+            sigma_m: scanner.sigma_m,
+            range_m: Some(scanner.range_m),
+            rays: Some(scanner.rays),
+            locates: false,
+        }
     }
 }

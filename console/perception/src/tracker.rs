@@ -9,6 +9,7 @@ use crate::{
     drawing::{Buffers, Drawing},
     groups::Group,
     layout::Layout,
+    matching::{Matched, matched},
     rays::Rays,
     through::Missing,
     track::Track,
@@ -38,7 +39,8 @@ pub struct View<'a> {
     pub boundary: &'a Boundary,
     /// All obstacles on the chart.
     pub charted: &'a [Obstacle],
-    /// An index of these obstacles for queries.
+    /// An index of the drawn obstacles. What scans have shown must not explain later scans: wrong scans could then never
+    /// be noticed.
     pub map: &'a ObstacleMap,
     /// Radius of the hull, metres; echoes from inside it are ignored.
     pub hull_m: f64,
@@ -89,6 +91,8 @@ pub struct Perception {
     looked_s: Option<f64>,
     /// The correction of the estimated pose, in the robot frame.
     correction: Isometry2<f64>,
+    /// The pose according to the last scan, if scans locate the robot.
+    matched: Option<Matched>,
     rays: Rays,
     buffers: Buffers,
     explained: Vec<bool>,
@@ -117,6 +121,7 @@ impl Perception {
             trouble: None,
             looked_s: None,
             correction: Isometry2::identity(),
+            matched: None,
             rays: Rays::default(),
             buffers: Buffers::default(),
             explained: Vec::new(),
@@ -135,9 +140,16 @@ impl Perception {
         self.trouble
     }
 
+    /// The pose according to the last scan; `None` if scans do not locate the robot, if the last one cannot be right, or
+    /// if it shows too little of the drawing.
+    pub fn matched(&self) -> Option<Matched> {
+        self.matched
+    }
+
     /// Processes a scan.
     pub fn look(&mut self, view: &View<'_>) -> Looked {
         let given = Uncertain::estimated(self.sensor.sigma_m, &view.covariance);
+        self.matched = None;
         self.trouble = self.scan_trouble(view, &given);
         if self.trouble.is_some() {
             self.tracks.iter_mut().for_each(|track| track.is_seen = false);
@@ -147,7 +159,11 @@ impl Perception {
         let reach_m = self.rays.range_m.iter().copied().filter(|m| m.is_finite()).fold(1.0, f64::max) + 1.0;
         let drawn = view.charted.iter().filter(|obstacle| obstacle.id.0 < FIRST_ID);
         let drawing = Drawing::near(view.boundary, drawn, self.rays.eye(), reach_m);
-        let pose = drawing.correct(&mut self.rays, &given, &mut self.buffers);
+        let corrected = drawing.correct(&mut self.rays, &given, &mut self.buffers);
+        if self.sensor.locates && !self.agreement.is_open() && !self.agreement.is_doubtful() {
+            self.matched = matched(&scanned_from, &corrected, &view.scan.since);
+        }
+        let pose = corrected.pose;
         self.correction = scanned_from.inverse() * self.rays.frame();
         drawing.explain(&self.rays, &pose, &mut self.buffers, &mut self.explained);
         let later_s = self.looked_s.replace(view.now_s).map_or(0.0, |looked_s| view.now_s - looked_s);
@@ -159,7 +175,7 @@ impl Perception {
             self.trouble = Some(Trouble::Crowded { most: tracks::MOST });
         }
         // The chart must not contain what a wrong scan shows.
-        if !self.agreement.is_open() {
+        if !self.agreement.is_open() && !self.agreement.is_doubtful() {
             self.give_ids(view.charted, view.reach_m);
         }
         let mut not_there = self.missing.look(&drawing, &self.rays, &pose, self.range_m);

@@ -4,9 +4,9 @@ use crate::drawing::GATE;
 use nalgebra::{Matrix2, Matrix3};
 
 /// Standard deviation of positions on a drawing, metres; a scan cannot locate the robot more accurately.
-const DRAWING_SIGMA_M: f64 = 0.01;
+pub(crate) const DRAWING_SIGMA_M: f64 = 0.01;
 /// Standard deviation of directions on a drawing, radians.
-const DRAWING_SIGMA_RAD: f64 = 0.002;
+pub(crate) const DRAWING_SIGMA_RAD: f64 = 0.002;
 
 /// Standard deviations that are added to those of an estimated pose, metres and radians. The errors that filters state
 /// are too small, above all for the heading, and a drawn column must not be taken for another column beside it.

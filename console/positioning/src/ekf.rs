@@ -13,9 +13,9 @@ use world::{Point, Pose, geometry::wrap_angle_rad};
 const SIGMA_LIMIT_M: f64 = 1e4;
 /// Lower limit for every variance.
 const VARIANCE_FLOOR: f64 = 1e-14;
-/// Normalised squared error beyond which a measurement of one or two values is refused. This refuses one correct
+/// Normalised squared error beyond which a measurement of one, two or three values is refused. This refuses one correct
 /// measurement in 10,000.
-const GATE: [f64; 2] = [15.14, 18.42];
+const GATE: [f64; 3] = [15.14, 18.42, 21.11];
 
 /// Position, heading, share of the distance that is lost to slip, and error of the measured turn per tick.
 pub(crate) type State = SVector<f64, 5>;
@@ -141,6 +141,16 @@ impl Ekf {
     pub fn update_position(&mut self, position: Point, covariance: &Matrix2<f64>) -> Update {
         let by_state = SMatrix::<f64, 2, 5>::identity();
         self.update(position - self.pose().position, by_state, *covariance)
+    }
+
+    /// Corrects the estimate with a pose and its covariance (square metres and square radians), unless the pose is
+    /// implausibly far off.
+    pub fn update_pose(&mut self, pose: &Pose, covariance: &Matrix3<f64>) -> Update {
+        let here = self.pose();
+        let off = pose.position - here.position;
+        let turn_rad = wrap_angle_rad(pose.heading_rad - here.heading_rad);
+        let by_state = SMatrix::<f64, 3, 5>::identity();
+        self.update(SVector::<f64, 3>::new(off.x, off.y, turn_rad), by_state, *covariance)
     }
 
     /// Corrects the estimate with the range from one station, unless the range is implausibly far off.

@@ -150,6 +150,12 @@ impl Positioner {
         self.has_wandered = true;
     }
 
+    /// Corrects the estimate with a pose that another sensor has measured, and its covariance (square metres and square
+    /// radians); returns whether the pose agrees with the estimate. A pose that does not is not used.
+    pub fn take_pose(&mut self, pose: &Pose, covariance: &Matrix3<f64>) -> bool {
+        self.filter.update_pose(pose, covariance).accepted
+    }
+
     /// Processes a ranging cycle: computes a fix from the ranges, and updates the estimate with it unless its
     /// residuals raise an alarm.
     ///

@@ -37,7 +37,7 @@ pub use journal::{
     read_ending,
 };
 pub use marker::{FAILURE_FILE, recorded_failure, remove_reserve};
-pub use readings::{READINGS_FILE, ReadingsWriter, export_readings};
+pub use readings::{READINGS_FILE, ReadingsWriter, each_reading, export_readings};
 pub use recorder::{RECORDING_FILE, Recorder};
 pub use sink::SinkHealth;
 pub use thread::{Finished, Health, Options, RunRecorder};

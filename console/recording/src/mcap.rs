@@ -9,6 +9,7 @@
 //! | `/fix` | `geometry_msgs/PoseWithCovarianceStamped` | every position from ranges |
 //! | `/truth` | `geometry_msgs/PoseStamped` | every tick of a simulated run |
 //! | `/track` | `nav_msgs/Path` | at the end: all estimates |
+//! | `/readings` | `sensor_msgs/PointCloud2` | every tick with readings of a simulated instrument: place, thickness, channel |
 //! | `/log` | `rcl_interfaces/Log` | every line of the log |
 //!
 //! All messages use the frame `tank`; time is mission time.
@@ -18,6 +19,7 @@ mod ros;
 
 use crate::{error::RecordingError, journal::JournalReader};
 use ::mcap::{WriteOptions, Writer, records::MessageHeader};
+use account::{Fold, Reading};
 use cdr::Cdr;
 use mission::{Event, EventKind, Severity, event::RunOpened};
 use nalgebra::{Matrix2, Matrix3};
@@ -47,7 +49,7 @@ pub fn export_mcap(journal: &Path, file: &Path) -> Result<Option<String>, Record
     let out = File::create_new(file).map_err(|error| create(&error))?;
     let options = WriteOptions::new().profile("ros2").library("tankops");
     let out = options.create(BufWriter::new(out)).map_err(|error| create(&error))?;
-    let mut export = Export { out, channels: BTreeMap::new(), run: None };
+    let mut export = Export { out, channels: BTreeMap::new(), run: None, account: None };
     for event in reader.by_ref() {
         export.take(&event?).map_err(|error| write(&error))?;
     }
@@ -66,6 +68,8 @@ struct Export {
     /// Channel and next sequence number of each topic.
     channels: BTreeMap<&'static str, (u16, u32)>,
     run: Option<Run>,
+    /// The account of a run whose instrument reads thickness.
+    account: Option<Box<Fold>>,
 }
 
 /// State of a run that has been opened.
@@ -83,6 +87,15 @@ impl Export {
     fn take(&mut self, event: &Event) -> Done {
         if let (EventKind::RunOpened(opened), None) = (&event.kind, &self.run) {
             self.open(opened, event.t_s)?;
+            let has_readings = opened.mission.instrument.as_ref().is_some_and(|of| of.sampling.is_some());
+            self.account = (has_readings && opened.wear.is_some()).then(Box::default);
+        }
+        if let Some(mut account) = self.account.take() {
+            account.apply(event);
+            if let (EventKind::Estimated { .. }, Some(survey)) = (&event.kind, account.survey()) {
+                self.readings(event.t_s, survey.latest())?;
+            }
+            self.account = Some(account);
         }
         let Some(mut run) = self.run.take() else { return Ok(()) };
         run.now_s = event.t_s;
@@ -198,6 +211,27 @@ impl Export {
         let message = Cdr::new().stamp(Stamp::of(t_s)).pose(Pose3::of(pose));
         let message = all.iter().fold(message, |message, value| message.f64(*value));
         self.message(topic, ros::POSE_WITH_COVARIANCE, t_s, &message)
+    }
+
+    fn readings(&mut self, t_s: f64, readings: &[Reading]) -> Done {
+        if readings.is_empty() {
+            return Ok(());
+        }
+        let length = ros::POINT_BYTES * readings.len() as u32;
+        let message = Cdr::new().stamp(Stamp::of(t_s)).u32(1).u32(readings.len() as u32);
+        let message = message.u32(ros::POINT_FIELDS.len() as u32);
+        let message = ros::POINT_FIELDS
+            .iter()
+            .fold(message, |message, (name, offset, kind)| message.text(name).u32(*offset).u8(*kind).u32(1));
+        let message = message.u8(0).u32(ros::POINT_BYTES).u32(length).u32(length);
+        let message = readings.iter().fold(message, |message, reading| {
+            let [x, y, mm] =
+                [reading.at.x, reading.at.y, reading.thickness_mm].map(|v| (v as f32).to_le_bytes());
+            let [low, high] = reading.channel.to_le_bytes();
+            let rest = [low, high, u8::from(reading.is_testable), 0];
+            [x, y, [0; 4], mm, rest].as_flattened().iter().fold(message, |message, byte| message.u8(*byte))
+        });
+        self.message("/readings", ros::POINTS, t_s, &message.u8(1))
     }
 
     fn path(&mut self, topic: &'static str, t_s: f64, poses: &[(f64, Pose)]) -> Done {

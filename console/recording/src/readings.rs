@@ -1,5 +1,7 @@
 //! The readings of an instrument as a Parquet file.
 
+mod reader;
+
 use crate::{error::RecordingError, journal::JournalReader};
 use account::{Fold, Reading};
 use arrow::{
@@ -12,6 +14,7 @@ use parquet::{
     basic::{Compression, ZstdLevel},
     file::{metadata::KeyValue, properties::WriterProperties},
 };
+pub use reader::each_reading;
 use sha2::{Digest, Sha256};
 use std::{
     fs::{File, OpenOptions},
@@ -37,7 +40,12 @@ const COLUMNS: [(&str, DataType, &str, &str); 9] = [
     ("cov_xy_m2", DataType::Float32, "m2", "covariance of x and y"),
     ("cov_yy_m2", DataType::Float32, "m2", "variance of y"),
     ("thickness_mm", DataType::Float32, "mm", "thickness of the floor"),
-    ("testable", DataType::Boolean, "", "false beside welds, where the reading is not judged"),
+    (
+        "testable",
+        DataType::Boolean,
+        "",
+        "false where the reading is not judged: beside welds, or where floor does not count as scanned",
+    ),
 ];
 
 /// Writes readings; the file is complete only after [`ReadingsWriter::finish`].
@@ -196,6 +204,18 @@ mod tests {
         readings.chunks(333).for_each(|chunk| writer.write(chunk).unwrap());
         let sha256 = writer.finish().unwrap();
         assert_eq!(crate::sha256(&path).unwrap(), sha256);
+        let mut again = Vec::new();
+        each_reading(&path, |reading| again.push(reading)).unwrap();
+        let is_close = |(read, written): (&Reading, &Reading)| {
+            read.channel == written.channel
+                && read.is_testable == written.is_testable
+                && (read.t_s - written.t_s).abs() < 0.0006
+                && (read.at - written.at).norm() < 1e-4
+                && (read.covariance - written.covariance).norm() < 1e-6
+        };
+        assert!(again.len() == readings.len() && again.iter().zip(&readings).all(is_close));
+        std::fs::write(folder.path().join("other"), "text").unwrap();
+        assert!(each_reading(&folder.path().join("other"), |_| {}).is_err(), "it is no Parquet file");
         let file = ParquetRecordBatchReaderBuilder::try_new(File::open(&path).unwrap()).unwrap();
         assert_eq!(file.schema().field_with_name("thickness_mm").unwrap().metadata()["unit"], "mm");
         let read: Vec<f32> = file

@@ -1,5 +1,6 @@
 //! Writes events to a recording for the rerun viewer.
 
+mod corrosion;
 mod document;
 mod drawings;
 mod figures;

@@ -295,6 +295,7 @@ impl Inbox {
         self.readings.contact |= readings.contact.unwrap_or(false);
         if let Some(tether) = readings.tether {
             self.readings.paid_out_m = Some(tether.paid_out_m);
+            self.readings.reel_pull_n = tether.pull_n;
         }
         self.readings.pressure_pa = readings.pressure_pa.or(self.readings.pressure_pa);
         self.readings.sightings = self.outlines.sightings(&readings.outlines);

@@ -33,55 +33,73 @@ struct Loopback {
 /// # Errors
 /// The scenario needs a vehicle that the protocol does not allow.
 pub(crate) fn looped_back(flight: Flight, scenario: &Scenario) -> Result<Flight, Misfit> {
-    let mut behind = Behind::new(scenario);
-    let FromVehicle::Hello(hello) = behind.hello() else {
-        return Err(Misfit { field: "hello".into(), what: "is missing".into() });
-    };
-    let stations =
-        scenario.sim.world.stations.iter().map(|station| (station.name.clone(), station.id)).collect();
-    let session = ToSession::of((*hello).clone());
-    let info = VehicleInfo {
-        name: hello.name.clone(),
-        at: "loopback".into(),
-        protocol: hello.protocol,
-        lease_s: hello.lease_max_s,
-        stop_s: hello.stop_time_s,
-        ..VehicleInfo::default()
-    };
-    let first = behind.first(0.0);
-    let mut loopback = Loopback {
-        is_omni: hello.motion == vehicle::wire::message::MotionKind::Omni,
-        behind,
-        inbox: Inbox::new(stations, "loopback".into()),
-        outbox: Outbox::default(),
-        to_vehicle: (Writer::new(session.clone()), Reader::new(session)),
-        from_vehicle: (Writer::new(FromSession::default()), Reader::new(FromSession::default())),
-        tick: 0,
-        tick_s: scenario.mission.tick_s,
-    };
-    loopback.hear(&FromVehicle::Hello(hello))?;
-    loopback.hear(&first)?;
-    loopback.hear(&FromVehicle::Pong(Pong { echo_s: 0.0, stamp_s: 0.0 }))?;
-    loopback.tell_state()?;
+    let (loopback, info) = Loopback::of(scenario)?;
     Ok(flight.with_vehicle(scenario, Box::new(loopback), info))
 }
 
 impl Loopback {
+    /// The simulator of a scenario, after its introduction, and what it says about itself.
+    fn of(scenario: &Scenario) -> Result<(Self, VehicleInfo), Misfit> {
+        let mut behind = Behind::new(scenario);
+        let FromVehicle::Hello(hello) = behind.hello() else {
+            return Err(Misfit { field: "hello".into(), what: "is missing".into() });
+        };
+        let stations =
+            scenario.sim.world.stations.iter().map(|station| (station.name.clone(), station.id)).collect();
+        let session = ToSession::of((*hello).clone());
+        let info = VehicleInfo {
+            name: hello.name.clone(),
+            at: "loopback".into(),
+            protocol: hello.protocol,
+            lease_s: hello.lease_max_s,
+            stop_s: hello.stop_time_s,
+            ..VehicleInfo::default()
+        };
+        let first = behind.first(0.0);
+        let mut loopback = Self {
+            is_omni: hello.motion == vehicle::wire::message::MotionKind::Omni,
+            behind,
+            inbox: Inbox::new(stations, "loopback".into()),
+            outbox: Outbox::default(),
+            to_vehicle: (Writer::new(session.clone()), Reader::new(session)),
+            from_vehicle: (Writer::new(FromSession::default()), Reader::new(FromSession::default())),
+            tick: 0,
+            tick_s: scenario.mission.tick_s,
+        };
+        let pong = FromVehicle::Pong(Pong { echo_s: 0.0, stamp_s: 0.0 });
+        let state = loopback.behind.state(0.0, Commander::You);
+        for message in [FromVehicle::Hello(hello), first, pong, state] {
+            let line = loopback.line(&message)?;
+            loopback.take(&line);
+        }
+        Ok((loopback, info))
+    }
+
     fn now_s(&self) -> f64 {
         self.tick as f64 * self.tick_s
     }
 
-    fn hear(&mut self, message: &FromVehicle) -> Result<(), Misfit> {
+    /// A message of the vehicle as a line of the wire.
+    fn line(&mut self, message: &FromVehicle) -> Result<Vec<u8>, Misfit> {
         let mut line = Vec::new();
         self.from_vehicle.0.write(message, &mut line)?;
-        let now_s = self.now_s();
-        for heard in self.from_vehicle.1.read(&line) {
-            self.inbox.take(heard, now_s);
-        }
-        Ok(())
+        Ok(line)
     }
 
-    fn say(&mut self) -> Result<(), Misfit> {
+    /// Takes a line of the vehicle.
+    fn take(&mut self, line: &[u8]) {
+        let now_s = self.now_s();
+        for heard in self.from_vehicle.1.read(line) {
+            self.inbox.take(heard, now_s);
+        }
+    }
+
+    /// Sends a command; returns the lines with which the vehicle answers after a tick.
+    fn answered(&mut self, command: Command) -> Result<Vec<Vec<u8>>, Misfit> {
+        let Command { drive, heading_rad, braking_orders } = command;
+        self.inbox.commanded(drive.is_some(), self.now_s());
+        let motion = drive.map(|drive| motion(drive, heading_rad, self.is_omni));
+        self.outbox.command(motion, braking_orders, self.now_s());
         let (mut line, now_s) = (Vec::new(), self.now_s());
         let message = self.outbox.next(|| now_s, &mut now_s.clone());
         self.to_vehicle.0.write(&message, &mut line)?;
@@ -93,12 +111,12 @@ impl Loopback {
         }
         self.tick += 1;
         let readings = self.behind.step(self.now_s());
-        self.hear(&readings)?;
-        if self.tick.is_multiple_of(STATE_EVERY) { self.tell_state() } else { Ok(()) }
-    }
-
-    fn tell_state(&mut self) -> Result<(), Misfit> {
-        self.hear(&self.behind.state(self.now_s(), Commander::You))
+        let mut lines = vec![self.line(&readings)?];
+        if self.tick.is_multiple_of(STATE_EVERY) {
+            let state = self.behind.state(self.now_s(), Commander::You);
+            lines.push(self.line(&state)?);
+        }
+        Ok(lines)
     }
 }
 
@@ -108,12 +126,10 @@ impl Vehicle for Loopback {
         self.inbox.sense(now_s)
     }
 
-    fn act(&mut self, Command { drive, heading_rad, braking_orders }: Command) {
-        self.inbox.commanded(drive.is_some(), self.now_s());
-        let motion = drive.map(|drive| motion(drive, heading_rad, self.is_omni));
-        self.outbox.command(motion, braking_orders, self.now_s());
-        if let Err(misfit) = self.say() {
-            self.inbox.close(misfit.to_string());
+    fn act(&mut self, command: Command) {
+        match self.answered(command) {
+            Ok(lines) => lines.iter().for_each(|line| self.take(line)),
+            Err(misfit) => self.inbox.close(misfit.to_string()),
         }
     }
 
@@ -130,3 +146,6 @@ impl Vehicle for Loopback {
         Err(CannotInject)
     }
 }
+
+#[cfg(test)]
+mod spoiled;

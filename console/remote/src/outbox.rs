@@ -134,7 +134,10 @@ mod tests {
     fn a_motion_older_than_its_lease_is_not_sent_but_a_stop_is() {
         let outbox = Outbox::default();
         let drive = Some([0.3, 0.0, 0.0]);
-        let at = |now_s: f64| outbox.next(|| now_s, &mut f64::NEG_INFINITY);
+        let at = |now_s: f64| {
+            let mut last_ping_s = f64::NEG_INFINITY;
+            outbox.next(|| now_s, &mut last_ping_s)
+        };
         outbox.command(drive, 0, 1.0);
         assert!(matches!(at(1.0 + LEASE_S), ToVehicle::Drive(Drive { seq: 1, .. })));
         // The process is stopped before the motion is written, and continues later.

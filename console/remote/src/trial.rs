@@ -92,6 +92,7 @@ pub fn try_vehicle(
     let messages = rows.len();
     rows.extend([trial::messages(&listened.lines), trial::state(&listened)]);
     rows.extend(trial::readings(&hello, &listened));
+    rows.extend(trial::scanner(&hello, &listened));
     rows.extend([trial::clock(&listened), trial::clock_rate(&listened), trial::standstill(&listened)]);
     // Uneven readings change how exactly a stop is measured, but not how safely the vehicle stops.
     let is_ready = rows.iter().all(|row| row.verdict != Verdict::Fail || row.check == "readings: jitter");

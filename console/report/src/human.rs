@@ -54,7 +54,7 @@ pub fn human(run: &Summary) -> String {
 
 /// The number of readings and indications, and the deepest indication.
 fn readings(readings: &ReadingsSummary) -> String {
-    let ReadingsSummary { count, untestable, indications, deepest } = readings;
+    let ReadingsSummary { count, untestable, indications, deepest, .. } = readings;
     let deepest = deepest.as_ref().map_or_else(String::new, |loss| {
         format!(
             ", the deepest {:.1} ± {:.1} mm at {:.2}, {:.2} m",
@@ -301,12 +301,16 @@ fn tether(tether: &Tether) -> String {
         0 => String::new(),
         n => format!(", {}", counted(n, "snag")),
     };
+    let over_own = match tether.over_own {
+        None | Some(0) => String::new(),
+        Some(n) => format!(", drove over its own tether {}", counted(n, "time")),
+    };
     format!(
-        "{state}, {:.1} m out at the end, {:.1} m maximum, largest wrap {:.0}°, {}{snags}",
+        "{state}, {:.1} m out at the end, {:.1} m maximum, largest wrap {:.0}°, {}{snags}{over_own}",
         tether.end_length_m,
         tether.tether_length_max_m,
         tether.wrap_max_rad.to_degrees(),
-        counted(tether.loops, "loop")
+        counted(tether.loops, "loop"),
     )
 }
 

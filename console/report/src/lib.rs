@@ -26,7 +26,7 @@ pub use document::Document;
 pub use human::human;
 pub use identity::continued;
 pub use merged::{Merged, MergedRun, merged};
-pub use past_run::PastRun;
+pub use past_run::{ImportedReadings, PastRun};
 pub use record::Record;
 pub use rescan::{Rescan, rescan};
 

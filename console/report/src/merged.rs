@@ -142,6 +142,7 @@ mod tests {
             summary: fold.summary(),
             fold,
             record: Record::new(),
+            imported: None,
         }
     }
 

@@ -1,7 +1,9 @@
 //! A past run in the form in which reports use it.
 
 use crate::{document::Files, record::Record};
-use account::{Fold, Logs, Summary};
+use account::{Fold, Imported, Judge, Logs, Summary};
+use mission::Sampling;
+use serde::{Deserialize, Serialize};
 
 /// A past run: its name, its files and their contents.
 #[derive(Debug)]
@@ -20,11 +22,35 @@ pub struct PastRun {
     pub summary: Summary,
     /// The record of the run over time and place.
     pub record: Record,
+    /// Readings of a real instrument that were imported, and where they are from.
+    pub imported: Option<(ImportedReadings, Imported)>,
+}
+
+/// A file of readings that was imported into a run.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ImportedReadings {
+    /// Name of the file.
+    pub file: String,
+    /// SHA-256 of the file, hexadecimal.
+    pub file_sha256: String,
+    /// SHA-256 of the placed readings, `readings.parquet`, hexadecimal.
+    pub readings_sha256: String,
+    /// The program that imported the file.
+    pub by: String,
+    /// What was found in the file, as sentences.
+    pub notes: Vec<String>,
 }
 
 impl PastRun {
     /// Whether the run consists of located readings and is not a mission.
     pub(crate) fn is_located(&self) -> bool {
         self.fold.run().is_some_and(|run| run.measured.is_some())
+    }
+
+    /// The readings of the instrument, simulated or imported, and how it reads; `None` without readings.
+    pub(crate) fn readings(&self) -> Option<(&Judge, Sampling)> {
+        let simulated = || self.fold.survey().map(|survey| (survey.judge(), survey.sampling()));
+        let imported = self.imported.as_ref().map(|(_, imported)| (imported.judge(), imported.sampling()));
+        imported.or_else(simulated)
     }
 }

@@ -172,7 +172,7 @@ mod tests {
         }
         let logs = Logs { journal: None, recording: None, error: None, is_open: false };
         let (files, record, summary) = (Files::default(), Record::new(), fold.summary());
-        PastRun { name: "a".into(), logs, began: None, files, fold, summary, record }
+        PastRun { name: "a".into(), logs, began: None, files, fold, summary, record, imported: None }
     }
 
     fn holds(rescan: &Rescan, x: f64, y: f64) -> bool {

@@ -6,10 +6,12 @@ mod past;
 mod readings;
 mod register;
 mod rescan;
+mod track;
 mod verify;
 
 pub use past::{combined, continued, inspection, read_all, report_page, report_text, summary, text_of};
 pub use readings::readings;
 pub use register::register;
 pub use rescan::{MIN_AREA_M2, MissedScan, NextScan, doubt, missed_scan, rescan_of};
+pub use track::track;
 pub use verify::{Verified, verdict, verify};

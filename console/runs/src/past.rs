@@ -2,6 +2,7 @@
 
 use crate::{
     error::RunError,
+    imported::imported,
     report_file::{Now, Reported},
     standing::is_locked,
 };
@@ -62,8 +63,22 @@ impl Past {
         })?;
         let opened = opened.ok_or_else(|| reader.not_opened())?;
         let shown = |path: &Path| path.exists().then(|| path.display().to_string());
-        let summary = fold.summary();
-        let files = files(folder, &opened, digests, &summary);
+        let mut summary = fold.summary();
+        let mut files = files(folder, &opened, digests, &summary);
+        let imported = imported(folder, &fold).unwrap_or_else(|why| {
+            files.doubts.push(why);
+            None
+        });
+        if let Some((import, _)) = &imported
+            && files.readings_sha256.as_ref() != Some(&import.readings_sha256)
+        {
+            files.doubts.push(format!(
+                "{READINGS_FILE} is not the file that was imported: the SHA-256 digests differ; import the readings again"
+            ));
+        }
+        if let Some(((_, imported), scanned)) = imported.as_ref().zip(fold.scanned()) {
+            summary.readings = Some(imported.summary(scanned.believed().floor()));
+        }
         let doubts = files.doubts.first().cloned();
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let run = PastRun {
@@ -80,6 +95,7 @@ impl Past {
             fold,
             summary,
             record,
+            imported,
         };
         Ok(Self { opened, run, beyond_floor })
     }

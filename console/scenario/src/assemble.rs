@@ -15,7 +15,7 @@ use super::{
 use mission::{BetterPlan, Guarantee, Locating, MissionConfig, ScanConfig, Sensor, TaskConfig, TetherConfig};
 use planner_api::Limits;
 use positioning::Risk;
-use sim::{AeConfig, Mover, NoiseModel, RobotConfig, SimConfig};
+use sim::{AeConfig, Mover, NoiseModel, PhysicalCable, RobotConfig, SimConfig};
 use toml::de::DeTable;
 use world::{Boundary, Obstacle, Point, Pose, Station, World};
 
@@ -85,7 +85,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let start = start(floor.robot.as_ref(), task.as_ref());
     scatter(root, &mut floor, seed, start, task.as_ref());
     check_places(&sections, &floor, start, task.as_ref());
-    let tether = tether_of(&sections, &floor, start, task.as_ref());
+    let (tether, physical) = tether_of(&sections, &floor, start, task.as_ref()).unzip();
     let task = task.map(|task| back_to_the_anchor(task, tether.as_ref()));
     let planner = root.table("planner").map(|section| (task::planner(&section), task::fallback(&section)));
     let plates = if root.has("plates") { floor::plates(root, floor.boundary.as_ref()) } else { None };
@@ -133,12 +133,13 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         start_names_plan: false,
         live: false,
         guard_reaction_s: robot.scanner.map(|_| 0.0),
-        sensor: robot.scanner.as_ref().map(Sensor::of),
+        sensor: robot
+            .scanner
+            .as_ref()
+            .map(|scanner| Sensor { locates: robot.scanner_locates, ..Sensor::of(scanner) }),
         better_plan: rest.better_plan,
         instrument,
     };
-    let tether_anchor = mission.tether.as_ref().map(|tether| tether.anchor);
-    let reel_length_m = mission.tether.as_ref().map(|tether| tether.limits.reel_length_m);
     let world = World {
         boundary: floor.boundary?,
         obstacles: floor.obstacles,
@@ -151,8 +152,9 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         ae: Some(ae),
         tick_s: rest.tick_s,
         movers: floor.movers,
-        tether_anchor,
-        reel_length_m,
+        tether_anchor: mission.tether.as_ref().map(|tether| tether.anchor),
+        reel_length_m: mission.tether.as_ref().map(|tether| tether.limits.reel_length_m),
+        physical: physical.flatten(),
     };
     Some(Scenario {
         name: name?,
@@ -294,7 +296,7 @@ fn tether_of(
     floor: &Floor,
     start: Option<Pose>,
     task: Option<&TaskConfig>,
-) -> Option<TetherConfig> {
+) -> Option<(TetherConfig, Option<PhysicalCable>)> {
     if !sections.root.has("tether") {
         return None;
     }
@@ -304,7 +306,9 @@ fn tether_of(
     if let Some(robot) = &floor.robot {
         tether::check_speed(&section, robot.limits.v_max_m_per_s);
     }
-    let Some(boundary) = &floor.boundary else { return Some(tether) };
+    let v_max_m_per_s = floor.robot.as_ref().map_or(0.0, |robot| robot.limits.v_max_m_per_s);
+    let physical = tether::physical(&section, &tether, v_max_m_per_s);
+    let Some(boundary) = &floor.boundary else { return Some((tether, physical)) };
     let site = Site { boundary, obstacles: &floor.obstacles, zones: &[], radius_m: 0.0 };
     if let Some(start) = start {
         tether::check(&section, &tether, &site, start);
@@ -319,7 +323,7 @@ fn tether_of(
         let place = place.map_or((&section, "anchor_m"), |robot| (robot, "start_m"));
         tether::check_room(place, &tether, &site, (clearance_m, *tolerance_m));
     }
-    Some(tether)
+    Some((tether, physical))
 }
 
 /// A robot that scans the floor on a tether returns to the anchor.

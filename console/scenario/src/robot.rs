@@ -29,6 +29,8 @@ pub(crate) struct Robot {
     pub pressure: Option<PressureSensor>,
     /// The scanner, if it has one.
     pub scanner: Option<Scanner>,
+    /// Whether its scans correct the estimated position.
+    pub scanner_locates: bool,
 }
 
 impl Robot {
@@ -71,8 +73,10 @@ pub(crate) fn robot(section: &Section<'_>) -> Option<Robot> {
     let (slip_mean, slip_sigma) = (section.number("slip_mean"), section.number("slip_sigma"));
     let odometry_sigma_ratio = section.number("odometry_sigma_ratio");
     let gyro_bias_deg = section.number("gyro_bias_deg_per_s");
-    let scanner =
-        if section.has("scanner") { Some(scanner(&section.table("scanner")?, radius_m?)?) } else { None };
+    let scanner = match section.has("scanner").then(|| section.table("scanner")) {
+        Some(section) => Some(scanner(&section?, radius_m?)?),
+        None => None,
+    };
     let amphibious = amphibious?;
     let pressure = if amphibious.is_some() { pressure(section) } else { None };
     // Planners get the faster of the two limits; the zones determine where the slower limit applies.
@@ -98,17 +102,19 @@ pub(crate) fn robot(section: &Section<'_>) -> Option<Robot> {
         odometry_sigma_ratio: odometry_sigma_ratio?,
         gyro_bias_rad_per_s: gyro_bias_deg?.to_radians(),
         pressure,
-        scanner,
+        scanner: scanner.map(|(scanner, _)| scanner),
+        scanner_locates: scanner.is_some_and(|(_, locates)| locates),
     })
 }
 
-/// Reads `[robot.scanner]`, for a hull of the given radius.
-fn scanner(section: &Section<'_>, radius_m: f64) -> Option<Scanner> {
+/// Reads `[robot.scanner]`, for a hull of the given radius: the scanner, and whether its scans correct the position.
+fn scanner(section: &Section<'_>, radius_m: f64) -> Option<(Scanner, bool)> {
     let rays = section.whole("rays");
     let field_of_view_deg = section.number("field_of_view_deg");
     let (range_m, rate_hz) = (section.number("range_m"), section.number("rate_hz"));
     let (sigma_m, lost_share) = (section.number("sigma_m"), section.number("lost_share"));
     let heading_deg = section.number("heading_deg");
+    let locates = section.flag("locates");
     let offset_m = if section.has("offset_m") { section.pair("offset_m") } else { Some([0.0, 0.0]) };
     if let Some([x, y]) = offset_m
         && x.hypot(y) > radius_m
@@ -122,7 +128,7 @@ fn scanner(section: &Section<'_>, radius_m: f64) -> Option<Scanner> {
         section.complain("range_m", Complaint::OutOfRange(must_be));
         return None;
     }
-    Some(Scanner {
+    let scanner = Scanner {
         rays: rays? as u32,
         field_of_view_rad: field_of_view_deg?.to_radians(),
         range_m: range_m?,
@@ -131,7 +137,8 @@ fn scanner(section: &Section<'_>, radius_m: f64) -> Option<Scanner> {
         lost_share: lost_share?,
         offset_m: offset_m?,
         heading_rad: heading_deg?.to_radians(),
-    })
+    };
+    Some((scanner, locates?))
 }
 
 /// The keys of the limits that apply everywhere, and of the limits that depend on the zone.

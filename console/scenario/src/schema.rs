@@ -371,6 +371,7 @@ static SCANNER: &[Key] = &[
     number("lost_share", "", at_least(0.0).up_to(0.7)).or(0.02),
     key("offset_m", "m", Kind::Pair(at_least(-10.0).up_to(10.0))).or_none("`[0, 0]`"),
     number("heading_deg", "deg", ANGLE).or(0.0),
+    key("locates", "", Kind::Flag).or_flag(false),
 ];
 
 static AE: &[Key] = &[
@@ -418,6 +419,8 @@ static TETHER: &[Key] = &[
     number("reel_pay_out_n", "N", at_least(0.0).up_to(100_000.0)).or(0.5),
     number("robot_pull_n", "N", above(0.0).up_to(100_000.0)).or_none("not compared"),
     number("pull_ratio_max", "", above(0.0).up_to(1.0)).or(0.8),
+    word("model", &["taut", "physical"]).or_word("taut"),
+    number("reel_fails_at_s", "s", at_least(0.0)).or_none("never"),
 ];
 
 static STATIONS: &[Key] = &[key("name", "", Kind::Text), point("at_m")];

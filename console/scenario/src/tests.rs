@@ -699,6 +699,27 @@ fn a_reel_is_read_with_its_defaults_and_wrong_keys_are_named() {
 }
 
 #[test]
+fn a_physical_cable_needs_a_reel_and_only_it_can_have_a_reel_that_fails() {
+    let with = |keys: &str| format!("{SMALL}[tether]\nreel_length_m = 30.0\nreel_pull_n = 6.0\n{keys}");
+    assert_eq!(read(&with("")).sim.physical, None);
+    let scenario = read(&with("model = \"physical\"\nreel_fails_at_s = 9.0\nfriction = 0.2"));
+    let physical = scenario.sim.physical.unwrap();
+    let law = physical.law;
+    assert_eq!((law.pull_n, law.pay_out_n, law.friction, law.length_m), (6.0, 0.5, 0.2, 30.0));
+    assert!((law.floor_n_per_m - 0.3 * 0.1 * 9.80665).abs() < 1e-12);
+    assert_eq!(physical.fails_at_s, Some(9.0));
+    let weightless = format!("{SMALL}[tether]\nreel_length_m = 30.0\nmodel = \"physical\"");
+    for (text, key, why) in [
+        (weightless, "tether.reel_pull_n", "a physical cable needs it"),
+        (with("reel_fails_at_s = 9.0"), "tether.reel_fails_at_s", "taut tether"),
+        (with("model = \"elastic\""), "tether.model", "physical"),
+    ] {
+        let text = errors(&text).render();
+        assert!(text.contains(key) && text.contains(why), "{text}");
+    }
+}
+
+#[test]
 fn an_instrument_needs_welds_and_bands_that_cells_can_show() {
     let with = |rest: &str| format!("{SMALL}[instrument]\n{rest}\n");
     let welded = |rest: &str| format!("{SMALL}[plates]\n[instrument]\n{rest}\n");

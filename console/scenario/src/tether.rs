@@ -6,6 +6,7 @@ use super::{
     section::Section,
 };
 use mission::TetherConfig;
+use sim::{CableLaw, PhysicalCable};
 use world::{
     Point,
     tether::{Limits, Reel},
@@ -59,6 +60,31 @@ fn reel(section: &Section<'_>) -> Option<Reel> {
         robot_pull_n: section.number("robot_pull_n"),
         pull_ratio_max: section.number("pull_ratio_max")?,
     })
+}
+
+/// Reads the cable of the simulation: `None` for a taut one. A reel without a speed of its own is twice as fast as the
+/// robot.
+pub(crate) fn physical(
+    section: &Section<'_>,
+    tether: &TetherConfig,
+    v_max_m_per_s: f64,
+) -> Option<PhysicalCable> {
+    if section.word("model") != Some("physical") {
+        section.refuse(&["reel_fails_at_s"], "a taut tether; add model = \"physical\"");
+        return None;
+    }
+    section.require(REEL[0], "add the pull of the reel, in N; a physical cable needs it");
+    let reel = tether.reel?;
+    let speed_m_per_s = section.number("reel_speed_m_per_s").unwrap_or(2.0 * v_max_m_per_s);
+    let law = CableLaw {
+        floor_n_per_m: reel.drag(tether.friction).floor_n_per_m,
+        friction: tether.friction,
+        pull_n: reel.pull_n,
+        pay_out_n: reel.pay_out_n,
+        speed_m_per_s,
+        length_m: tether.limits.reel_length_m,
+    };
+    Some(PhysicalCable { law, fails_at_s: section.number("reel_fails_at_s") })
 }
 
 /// Complains about a reel that is slower than the robot: the certificate assumes that the reel takes up all slack at

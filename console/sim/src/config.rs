@@ -210,4 +210,17 @@ pub struct SimConfig {
     /// farther.
     #[serde(default)]
     pub reel_length_m: Option<f64>,
+    /// A cable with weight and friction, which may be slack; `None` for a cable that is always taut.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub physical: Option<PhysicalCable>,
+}
+
+/// A cable with weight and friction.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PhysicalCable {
+    /// The properties of cable and reel.
+    pub law: cable::Law,
+    /// When the reel stops taking up cable, mission time, seconds; `None` if it never does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fails_at_s: Option<f64>,
 }

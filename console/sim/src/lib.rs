@@ -5,6 +5,7 @@
 //! machine. A tick costs a few distance queries, which take a few microseconds.
 
 mod config;
+mod laid;
 mod motion;
 mod movers;
 mod random;
@@ -14,9 +15,10 @@ mod sight;
 mod simulator;
 mod sweep;
 
+pub use cable::Law as CableLaw;
 pub use config::{
-    AeConfig, BehindColumns, Disturbances, Mover, NoiseModel, RobotConfig, SimConfig, StationFault,
-    TimingErrors, Track,
+    AeConfig, BehindColumns, Disturbances, Mover, NoiseModel, PhysicalCable, RobotConfig, SimConfig,
+    StationFault, TimingErrors, Track,
 };
 pub use ranging::Sounder;
 pub use simulator::Simulator;

@@ -2,6 +2,7 @@
 
 use crate::{
     config::{RobotConfig, SimConfig, StationFault},
+    laid::Laid,
     motion::{Arc, Tracks, bounded},
     movers::Movers,
     random::{RandomStreams, normal},
@@ -31,7 +32,10 @@ pub struct Simulator {
     sounder: Option<Sounder>,
     mode: Mode,
     pose: Pose,
+    /// The taut cable.
     cable: Option<Cable>,
+    /// The cable as it lies, if it has weight.
+    laid: Option<Laid>,
     odometry: Odometry,
     in_contact: bool,
     collided: bool,
@@ -42,6 +46,7 @@ impl Simulator {
     /// Creates a robot at rest at its start; `seed` determines all randomness.
     pub fn new(config: SimConfig, seed: u64) -> Self {
         let map = ObstacleMap::new(&config.world.boundary, &config.world.obstacles);
+        let cable = initial_cable(&config);
         let mut simulator = Self {
             map,
             movers: Movers::new(&config.movers, &config.world.obstacles),
@@ -50,7 +55,8 @@ impl Simulator {
             sounder: config.ae.clone().map(|ae| Sounder::new(ae, &config.world, seed)),
             mode: Mode::of(Medium::at(&config.world.zones, config.robot.start.position)),
             pose: config.robot.start,
-            cable: initial_cable(&config),
+            laid: Laid::along(cable.as_ref(), &config),
+            cable,
             odometry: Odometry::default(),
             in_contact: false,
             collided: false,
@@ -66,6 +72,7 @@ impl Simulator {
     pub fn resumed(config: SimConfig, seed: u64, pose: Pose, cable: Option<Cable>) -> Self {
         let robot = RobotConfig { start: pose, ..config.robot.clone() };
         let mut simulator = Self::new(SimConfig { robot, ..config }, seed);
+        simulator.laid = Laid::along(cable.as_ref(), &simulator.config);
         simulator.cable = cable;
         simulator
     }
@@ -97,7 +104,9 @@ impl Simulator {
             unmeasured_s: 0.0,
             sightings,
             contact: self.in_contact,
-            paid_out_m: self.cable.as_ref().map(Cable::length_m),
+            paid_out_m: self.paid_out_m(),
+            reel_pull_n: self.laid.as_ref().map(Laid::reel_pull_n),
+            robot_pull_n: self.laid.as_ref().map(Laid::robot_pull_n),
             pressure_pa,
             scan,
         }
@@ -110,11 +119,15 @@ impl Simulator {
         let driven = Arc { way_m: by_tracks.way_m * (1.0 - self.draw_slip()), ..by_tracks };
         let reached = sweep(&self.map, self.radius_m(), &self.pose, &driven);
         let cable = self.cable.as_ref().map(|cable| dragged(cable, reached.pose.position));
-        let is_reel_empty = self.is_reel_empty(cable.as_ref());
+        let laid = self.laid.as_ref().map(|laid| laid.moved(reached.pose.position, self.tick));
+        let is_reel_empty = match &laid {
+            Some(laid) => laid.is_at_its_end(),
+            None => self.is_reel_empty(cable.as_ref()),
+        };
         self.pose = if is_reel_empty {
             Pose { heading_rad: reached.pose.heading_rad, ..self.pose }
         } else {
-            self.cable = cable;
+            (self.cable, self.laid) = (cable, laid);
             reached.pose
         };
         self.odometry = self.measure_odometry(&by_tracks);
@@ -145,10 +158,11 @@ impl Simulator {
             clearance_m: self.clearance_m(),
             collided: self.collided,
             tether: self.cable.as_ref().map(|cable| TetherTruth {
-                length_m: cable.length_m(),
+                length_m: self.paid_out_m().unwrap_or_default(),
                 wrap_max_rad: cable.wrap_max_rad(),
                 wrap_total_rad: cable.wrap_total_rad(),
-                detour_m: cable.length_m() - (cable.tip() - cable.anchor()).norm(),
+                detour_m: self.paid_out_m().unwrap_or_default() - (cable.tip() - cable.anchor()).norm(),
+                lies: self.laid.as_ref().map(|laid| laid.lies(self.radius_m(), self.tick)),
             }),
         }
     }
@@ -174,6 +188,9 @@ impl Simulator {
         let world = &mut self.config.world;
         self.movers.advance(&mut world.obstacles, &world.boundary, self.config.tick_s.max(0.0));
         self.map = ObstacleMap::new(&world.boundary, &world.obstacles);
+        if let Some(laid) = &mut self.laid {
+            laid.see(&self.config);
+        }
         self.clearance_m() < 0.0
     }
 
@@ -186,6 +203,12 @@ impl Simulator {
             return false;
         };
         after.length_m() > reel_length_m && after.length_m() > before.length_m()
+    }
+
+    /// Length of cable off the reel, metres.
+    fn paid_out_m(&self) -> Option<f64> {
+        let taut_m = self.cable.as_ref().map(Cable::length_m);
+        self.laid.as_ref().map(Laid::length_m).or(taut_m)
     }
 
     fn radius_m(&self) -> f64 {

@@ -3,10 +3,12 @@
 
 mod frames;
 mod link;
+mod scans;
 mod stops;
 
 pub use frames::{Moved, ahead, turned};
 pub use link::{Lines, Listened, clock, clock_rate, introduction, messages, readings, standstill, state};
+pub use scans::scanner;
 pub use stops::{Cause, Limits, QUIET_S, Sample, moved_again, moving_m_per_s, stands, stop};
 
 use serde::Serialize;

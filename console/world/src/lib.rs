@@ -35,5 +35,5 @@ pub use scan::{NO_ECHO, Scan};
 pub use scanner::Scanner;
 pub use tank::{Obstacle, ObstacleId, Station, StationId, World, Zone, ZoneKind};
 pub use tiles::Tiles;
-pub use truth::{TetherTruth, Truth};
+pub use truth::{CableLies, TetherTruth, Truth};
 pub use wear::{FloorWear, LossProfile, MetalLoss, PlateSide};

@@ -61,6 +61,12 @@ pub struct Readings {
     /// encoder.
     #[serde(default)]
     pub paid_out_m: Option<f64>,
+    /// Pull of the tether at the reel, newtons; `None` without a sensor.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reel_pull_n: Option<f64>,
+    /// Pull of the tether at the robot, newtons; `None` without a sensor.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub robot_pull_n: Option<f64>,
     /// Gauge pressure at the hull, pascals; `None` without a pressure sensor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure_pa: Option<f64>,

@@ -28,6 +28,15 @@ pub struct Detections {
     pub false_calls: usize,
 }
 
+impl Detections {
+    /// The share of the losses that were found; `None` without losses.
+    pub(super) fn share(&self) -> Option<f64> {
+        let sum = |of: fn(&Detection) -> usize| self.classes.iter().map(of).sum::<usize>();
+        let losses = sum(|class| class.losses);
+        (losses > 0).then(|| sum(|class| class.found) as f64 / losses as f64)
+    }
+}
+
 pub(super) fn detections(
     wear: &FloorWear,
     sampling: Sampling,

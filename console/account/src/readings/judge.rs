@@ -1,6 +1,6 @@
 //! Finds indications in readings.
 
-use super::Reading;
+use super::{Reading, ReadingsSummary};
 use mission::Sampling;
 use nalgebra::Matrix2;
 use positioning::fix::ellipse_95;
@@ -13,6 +13,11 @@ use world::{Floor, Point};
 const SAME_CELLS: isize = 2;
 /// The least number of readings above the threshold in an indication; a single one may be noise.
 const LEAST_READINGS: u32 = 2;
+/// Readings of a run that are further apart in time belong to different passes, whose position errors are independent,
+/// seconds.
+const PASS_S: f64 = 5.0;
+/// Upper ends of the classes of loss on a corrosion map, as shares of the nominal thickness; the last class has none.
+pub const LOSS_CLASSES: [f64; 4] = [0.05, 0.1, 0.2, 0.4];
 /// Half width of a 95 % interval, in standard deviations.
 const SIGMAS_95: f64 = 1.96;
 
@@ -32,8 +37,8 @@ pub struct Finding {
     pub high: Point,
     /// 95 % error of the position, metres.
     pub error_m: f64,
-    /// Covariance of the position, square metres; not written, because `error_m` is.
-    #[serde(skip)]
+    /// Covariance of the position, square metres.
+    #[serde(default, with = "world::geometry::symmetric")]
     pub covariance: Matrix2<f64>,
     /// The largest loss that a reading shows, millimetres.
     pub depth_mm: f64,
@@ -64,18 +69,41 @@ struct CellReadings {
 }
 
 /// The readings above the threshold in a cell.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct Hit {
     run: usize,
     t_s: f64,
     depth_mm: f64,
-    covariance: Matrix2<f64>,
+    passes: Vec<Pass>,
     low: Point,
     high: Point,
     /// Sums of depth, and of depth times position.
     depths_mm: f64,
     moments: [f64; 2],
     count: u32,
+}
+
+/// The readings above the threshold of one pass of the instrument. Within a pass, their position errors are the same.
+#[derive(Debug, Clone)]
+struct Pass {
+    run: usize,
+    from_s: f64,
+    to_s: f64,
+    /// Sums of depth, and of depth times covariance.
+    depths_mm: f64,
+    covariances: Matrix2<f64>,
+}
+
+impl Pass {
+    fn holds(&self, other: &Self) -> bool {
+        self.run == other.run && other.from_s - PASS_S < self.to_s && self.from_s - PASS_S < other.to_s
+    }
+
+    fn join(&mut self, other: &Self) {
+        (self.from_s, self.to_s) = (self.from_s.min(other.from_s), self.to_s.max(other.to_s));
+        self.depths_mm += other.depths_mm;
+        self.covariances += other.covariances;
+    }
 }
 
 impl Hit {
@@ -85,7 +113,13 @@ impl Hit {
             run: 0,
             t_s: reading.t_s,
             depth_mm,
-            covariance: reading.covariance,
+            passes: vec![Pass {
+                run: 0,
+                from_s: reading.t_s,
+                to_s: reading.t_s,
+                depths_mm: depth_mm,
+                covariances: reading.covariance * depth_mm,
+            }],
             low: reading.at,
             high: reading.at,
             depths_mm: depth_mm,
@@ -97,7 +131,9 @@ impl Hit {
     fn join(&mut self, other: &Self) {
         if other.depth_mm > self.depth_mm {
             (self.run, self.t_s, self.depth_mm) = (other.run, other.t_s, other.depth_mm);
-            self.covariance = other.covariance;
+        }
+        for pass in &other.passes {
+            self.take(pass.clone());
         }
         (self.low, self.high) = (self.low.inf(&other.low), self.high.sup(&other.high));
         self.depths_mm += other.depths_mm;
@@ -105,15 +141,40 @@ impl Hit {
         self.count += other.count;
     }
 
+    /// The same readings, as those of a run.
+    fn of_run(&self, run: usize) -> Self {
+        let passes = self.passes.iter().map(|pass| Pass { run, ..pass.clone() }).collect();
+        Self { run, passes, ..self.clone() }
+    }
+
+    /// Adds a pass. It may connect passes that were apart before.
+    fn take(&mut self, mut new: Pass) {
+        self.passes.retain(|pass| {
+            let is_same = pass.holds(&new);
+            if is_same {
+                new.join(pass);
+            }
+            !is_same
+        });
+        self.passes.push(new);
+    }
+
+    /// The covariance of the mean place, weighted by depth, of passes with independent errors.
+    fn covariance(&self) -> Matrix2<f64> {
+        let of_pass = |pass: &Pass| pass.covariances * (pass.depths_mm / self.depths_mm.powi(2));
+        self.passes.iter().map(of_pass).sum()
+    }
+
     fn finding(&self, sigma_mm: f64) -> Finding {
+        let covariance = self.covariance();
         Finding {
             t_s: self.t_s,
             run: self.run,
             at: Point::new(self.moments[0] / self.depths_mm, self.moments[1] / self.depths_mm),
             low: self.low,
             high: self.high,
-            error_m: ellipse_95(&self.covariance).0,
-            covariance: self.covariance,
+            error_m: ellipse_95(&covariance).0,
+            covariance,
             depth_mm: self.depth_mm,
             depth_error_mm: SIGMAS_95 * sigma_mm,
             readings: self.count,
@@ -151,7 +212,7 @@ impl Judge {
             (own.t_s, own.run) = (other.t_s, run as u32);
         }
         for (cell, hit) in &other.hits {
-            let hit = Hit { run, ..*hit };
+            let hit = hit.of_run(run);
             self.hits.entry(*cell).and_modify(|known| known.join(&hit)).or_insert(hit);
         }
     }
@@ -165,6 +226,12 @@ impl Judge {
     /// The smallest thickness that a reading shows in a cell, millimetres; `None` without readings.
     pub fn least_mm(&self, cell: usize) -> Option<f64> {
         self.cells.get(cell).filter(|seen| seen.count > 0).map(|seen| f64::from(seen.least_mm))
+    }
+
+    /// The class of the mean loss in a cell: the number of [`LOSS_CLASSES`] below it; `None` without readings.
+    pub fn loss_class(&self, cell: usize) -> Option<u8> {
+        let loss = 1.0 - self.mean_mm(cell)? / self.sampling.thickness_mm;
+        Some(LOSS_CLASSES.iter().take_while(|limit| loss > **limit).count() as u8)
     }
 
     /// The run of the latest reading in a cell, and its mission time, seconds; `None` without readings.
@@ -199,6 +266,18 @@ impl Judge {
         }
         found.sort_by(|a, b| a.run.cmp(&b.run).then(a.t_s.total_cmp(&b.t_s)));
         found
+    }
+}
+
+/// What readings show, with their number and the number of those that are not judged.
+pub(super) fn summary(found: Vec<Finding>, count: u64, untestable: u64) -> ReadingsSummary {
+    ReadingsSummary {
+        count,
+        untestable,
+        indications: found.len() as u64,
+        deepest: found.into_iter().max_by(|a, b| a.depth_mm.total_cmp(&b.depth_mm)),
+        detected: None,
+        false_calls: None,
     }
 }
 

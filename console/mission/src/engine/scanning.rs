@@ -74,11 +74,14 @@ impl Known {
             return Vec::new();
         };
         let World { boundary, obstacles, .. } = self.chart.world();
-        let (charted, map, covariance) = (&obstacles[..], self.chart.map(), estimate.covariance);
+        let (charted, map, covariance) = (&obstacles[..], self.chart.drawn_map(), estimate.covariance);
         let hull_m = self.config.limits.radius_m;
         let reach_m = hull_m + self.config.limits.sensing_range_m;
         let looked =
             perception.look(&View { now_s, scan, pose, covariance, boundary, charted, map, hull_m, reach_m });
+        if self.config.sensor.is_some_and(|sensor| sensor.locates) {
+            self.locator.keep_match(perception.matched());
+        }
         let name = |id| obstacles.iter().find(|obstacle| obstacle.id == id).map(|found| found.name.clone());
         let not_there = |(id, scans)| Some(EventKind::NotThere { id, name: name(id)?, scans });
         looked.not_there.into_iter().filter_map(not_there).collect()

@@ -376,6 +376,7 @@ impl Flight {
             paid_out_m: self.reel.as_ref().map(|cable| cable.length_m() + self.caught_m),
             pressure_pa: self.pressure_pa,
             scan: self.scan(),
+            ..Readings::default()
         };
         self.mission.sense(&Input { readings: &readings, age_s: self.age_s, orders, trouble: self.trouble });
         self.inputs.push((readings, orders.to_vec()));

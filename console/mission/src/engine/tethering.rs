@@ -5,14 +5,14 @@ use crate::{
     event::{EventKind, TetherAlarm},
     phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes},
 };
-use world::Point;
+use world::{Point, Readings};
 
 impl Known {
     /// Moves the cable along with the robot; returns the limit reached in this tick, if any.
     pub(super) fn drag_tether(
         &mut self,
         map_changed: bool,
-        paid_out_m: Option<f64>,
+        readings: &Readings,
         happened: &mut Happened,
     ) -> Option<TetherAlarm> {
         let tether = self.tether.as_mut()?;
@@ -25,7 +25,7 @@ impl Known {
         if error_m.is_some() {
             tether.drag_to(self.locator.position());
         }
-        tether.measure(paid_out_m, error_m, self.config.tick_s);
+        tether.measure(readings, error_m, self.config.tick_s);
         let events = tether.update(world, self.chart.map(), self.config.tick_s);
         let reached = events.iter().find_map(|event| match event {
             EventKind::TetherAlarmRaised { alarm, reached: true } => Some(alarm.clone()),
@@ -68,8 +68,8 @@ impl Known {
 }
 
 impl Mission {
-    /// Holds a running robot whose return path is blocked until the path is free again. Meanwhile, no plan can be certified,
-    /// whichever planner makes it. Returns whether the robot is held for this reason.
+    /// Holds a running robot whose return path is blocked until the path is free again. Meanwhile, no plan that leads back along
+    /// the tether can be certified, whichever planner makes it. Returns whether the robot is held for this reason.
     pub(super) fn waits_for_return_path(&mut self) -> bool {
         let is_blocked = self.known.tether.as_ref().is_some_and(|tether| !tether.can_go_home());
         let waits = is_blocked && matches!(self.known.phase, Phase::Running(gait) if gait != Gait::Back);

@@ -170,6 +170,12 @@ impl Event {
             EventKind::ScannerJudged { trouble: Some(why) } => {
                 line(Severity::Warn, "scanner", format!("scans not usable: {why}"))
             }
+            EventKind::ScanAided { trouble: Some(why) } => {
+                line(Severity::Watch, "scanner", format!("scans do not correct the position: {why}"))
+            }
+            EventKind::ScanAided { trouble: None } => {
+                line(Severity::Info, "scanner", "scans correct the position".into())
+            }
             EventKind::ScannerJudged { trouble: None } => {
                 line(Severity::Info, "scanner", "scans usable again".into())
             }

@@ -89,8 +89,12 @@ pub(crate) fn rounded_command(Command { drive, status }: Command) -> Command {
 impl EventKind {
     fn round(&mut self) {
         match self {
-            Self::TetherTruth { length_m, wrap_max_rad, wrap_total_rad, detour_m } => {
+            Self::TetherTruth { length_m, wrap_max_rad, wrap_total_rad, detour_m, lies } => {
                 [length_m, wrap_max_rad, wrap_total_rad, detour_m].into_iter().for_each(round);
+                if let Some(lies) = lies {
+                    lies.line.iter_mut().for_each(round_point);
+                    round(&mut lies.reel_pull_n);
+                }
             }
             Self::Tethered {
                 length_m,

@@ -62,6 +62,13 @@ pub enum TetherAlarm {
     NoReturnPath,
     /// The robot has left its plan by crossing a cut, so a new plan is needed.
     Strayed,
+    /// The cable does not pull, and the reel has not taken up what the robot has driven back.
+    Slack {
+        /// Cable that has become slack, metres.
+        slack_m: f64,
+        /// Pull of the cable at the robot or, if that is not measured, at the reel, newtons.
+        pull_n: f64,
+    },
 }
 
 impl TetherAlarm {
@@ -77,6 +84,7 @@ impl TetherAlarm {
             Self::Snag { .. } => "snag",
             Self::NoReturnPath => "return path",
             Self::Strayed => "stray",
+            Self::Slack { .. } => "slack",
         }
     }
 }
@@ -98,6 +106,10 @@ impl fmt::Display for TetherAlarm {
             Self::Snag { paid_out_m, explained_m } => write!(
                 f,
                 "tether snagged on an unmapped object: {paid_out_m:.1} m paid out, {explained_m:.1} m expected"
+            ),
+            Self::Slack { slack_m, pull_n } => write!(
+                f,
+                "reel does not take the tether up: {slack_m:.1} m slack behind the robot, pull {pull_n:.1} N"
             ),
             Self::Strayed => f.write_str("robot crossed a cut of its plan; replanning"),
             Self::NoReturnPath => f.write_str("no return path: hull does not fit"),

@@ -149,3 +149,24 @@ fn echoes_from_too_near_are_no_obstacles_and_no_free_space() {
         assert_eq!((drive.perception.trouble(), &drive.looked), (None, &Looked::default()));
     }
 }
+
+#[test]
+fn scans_that_become_wrong_under_way_are_named_and_chart_nothing() {
+    let drawn = vec![column(1, 2.0, 2.0, 0.2), column(2, -3.0, 0.0, 0.25)];
+    let pose = Pose::new(-3.5, -0.8, 0.0);
+    for (spoil, wanted) in [
+        ((|scan| scan.ranges_mm.0.reverse()) as fn(&mut Scan), Trouble::Mirrored),
+        (|scan| scan.ranges_mm.0.rotate_left(180), Trouble::Backwards),
+    ] {
+        let mut drive = Drive::new(drawn.clone(), drawn.clone());
+        for tick in 0..60 {
+            let mut scan = scan_of(&drive.scanner, &drive.boundary, &drive.real, &pose, drive.tick);
+            if tick >= 20 {
+                spoil(&mut scan);
+            }
+            drive.take(&scan, &pose);
+            assert!(drive.shapes().is_empty(), "{tick}: {:?}", drive.shapes());
+        }
+        assert_eq!(drive.perception.trouble(), Some(wanted));
+    }
+}

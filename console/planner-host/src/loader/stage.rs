@@ -65,12 +65,32 @@ fn seal(bytes: &[u8]) -> io::Result<Staged> {
     let fd = memfd_create("planner", MemfdFlags::CLOEXEC | MemfdFlags::ALLOW_SEALING)?;
     let mut file = std::fs::File::from(fd);
     file.write_all(bytes)?;
-    fcntl_add_seals(&file, SealFlags::WRITE | SealFlags::SHRINK | SealFlags::GROW | SealFlags::SEAL)?;
+    let seals = SealFlags::WRITE | SealFlags::SHRINK | SealFlags::GROW | SealFlags::SEAL;
+    while_busy(|| fcntl_add_seals(&file, seals))?;
     let fd: OwnedFd = rustix::io::fcntl_dupfd_cloexec(&file, PLUGIN_AT)?;
     let path = PathBuf::from(format!("/proc/self/fd/{}", fd.as_raw_fd()));
     // Without /proc, the loader has no path to the copy.
     std::fs::metadata(&path)?;
     Ok(Staged { path, _place: Place::Memory { _fd: fd } })
+}
+
+/// Number of attempts to seal memory, and the pause between them.
+#[cfg(target_os = "linux")]
+const ATTEMPTS: usize = 200;
+#[cfg(target_os = "linux")]
+const PAUSE: std::time::Duration = std::time::Duration::from_millis(10);
+
+/// Repeats an action while the system reports that memory is busy. The kernel refuses to seal pages that it is using
+/// itself at that moment, for example while it moves them to other places on a machine with little free memory.
+#[cfg(target_os = "linux")]
+fn while_busy(mut action: impl FnMut() -> rustix::io::Result<()>) -> rustix::io::Result<()> {
+    for _ in 1..ATTEMPTS {
+        match action() {
+            Err(rustix::io::Errno::BUSY) => std::thread::sleep(PAUSE),
+            done => return done,
+        }
+    }
+    action()
 }
 
 #[cfg(any(test, not(target_os = "linux")))]
@@ -97,6 +117,21 @@ mod tests {
         assert_eq!(std::fs::read(&path).expect("readable"), b"content");
         drop(copied);
         assert!(!path.exists());
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn memory_that_is_busy_is_sealed_as_soon_as_it_is_free() {
+        use rustix::io::Errno;
+
+        let mut answers = vec![Ok(()), Err(Errno::BUSY), Err(Errno::BUSY)];
+        assert_eq!(while_busy(|| answers.pop().expect("no further attempt")), Ok(()));
+        let mut attempts = 0;
+        let never = while_busy(|| {
+            attempts += 1;
+            Err(Errno::INVAL)
+        });
+        assert_eq!((never, attempts), (Err(Errno::INVAL), 1), "other errors are final");
     }
 
     #[cfg(target_os = "linux")]

@@ -11,7 +11,7 @@ use mission::{
 use planner_api::{Command, Drive, Leg, LegTag, PoseEstimate, Reason};
 use positioning::{Fix, Ranging};
 use serde::Deserialize;
-use world::{CellRun, Point, Pose, Readings};
+use world::{CableLies, CellRun, Point, Pose, Readings};
 
 /// Reads a line with the fields of an event; those after `;` are optional.
 macro_rules! read {
@@ -49,7 +49,9 @@ pub(super) fn event(line: &[u8]) -> Option<Event> {
         }
         b"tether_truth" => read!(
             line,
-            TetherTruth { length_m: f64, wrap_max_rad: f64, wrap_total_rad: f64, detour_m: f64; }
+            TetherTruth {
+                length_m: f64, wrap_max_rad: f64, wrap_total_rad: f64, detour_m: f64; lies: Option<Box<CableLies>>
+            }
         ),
         b"progressed" => read!(
             line,

@@ -57,6 +57,14 @@ type Part = (&'static str, &'static str);
 
 const TIME: Part = ("builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n");
 const HEADER: Part = ("std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n");
+const POINT_FIELD: Part =
+    ("sensor_msgs/PointField", "string name\nuint32 offset\nuint8 datatype\nuint32 count\n");
+/// The fields of a reading in a point cloud: name, offset in bytes, and type (7: 32-bit float, 4: 16-bit unsigned
+/// number, 2: byte). `z` is 0.
+pub(super) const POINT_FIELDS: [(&str, u32, u8); 6] =
+    [("x", 0, 7), ("y", 4, 7), ("z", 8, 7), ("thickness_mm", 12, 7), ("channel", 16, 4), ("testable", 18, 2)];
+/// Length of a reading in a point cloud, bytes.
+pub(super) const POINT_BYTES: u32 = 20;
 const POINT: Part = ("geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n");
 const QUATERNION: Part = ("geometry_msgs/Quaternion", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n");
 const POSE_PART: Part =
@@ -88,6 +96,11 @@ pub(super) const GRID: Schema = Schema {
     name: "nav_msgs/msg/OccupancyGrid",
     own: "std_msgs/Header header\nnav_msgs/MapMetaData info\nint8[] data\n",
     parts: &[&HEADER, &TIME, &GRID_DATA, &POSE_PART, &POINT, &QUATERNION],
+};
+pub(super) const POINTS: Schema = Schema {
+    name: "sensor_msgs/msg/PointCloud2",
+    own: "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\nbool is_bigendian\nuint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n",
+    parts: &[&HEADER, &TIME, &POINT_FIELD],
 };
 pub(super) const LOG: Schema = Schema {
     name: "rcl_interfaces/msg/Log",

@@ -1,6 +1,7 @@
 //! Folds events into entities.
 
 use super::{
+    corrosion,
     document::Document,
     drawings::Drawings,
     figures::Accounting,
@@ -38,6 +39,8 @@ struct Opened {
     /// `None` if scanning is not the task of the mission.
     raster: Option<Raster>,
     accounting: Accounting,
+    /// Width and height of the floor in cells.
+    size: (usize, usize),
     states: States,
     document: Document,
     /// Whether the previous plan had cuts.
@@ -70,6 +73,9 @@ impl Fold {
                 }
                 log(stream, event, &opened.stations, at)?;
                 opened.apply(event, at, stream)?;
+                if let EventKind::Ended { .. } = event.kind {
+                    opened.corrode(account, stream, at)?;
+                }
                 Ok(u32::from(closes))
             }
         }
@@ -111,6 +117,10 @@ impl Opened {
             &rr::TextDocument::new(format!("```toml\n{}\n```\n", run.scenario_toml))
                 .with_media_type(rr::MediaType::markdown()),
         )?;
+        let sampling = run.mission.instrument.as_ref().and_then(|instrument| instrument.sampling);
+        if let Some(sampling) = sampling.filter(|_| run.wear.is_some()) {
+            corrosion::open(stream, run, sampling)?;
+        }
         let (low, high) = run.world.boundary.bounds();
         let scans = !matches!(run.mission.task, TaskConfig::Goto { .. });
         let opened = Self {
@@ -126,6 +136,7 @@ impl Opened {
             residuals: Residuals::open(stream, &run.world.stations)?,
             raster: scans.then(|| Raster::open(stream, run)).transpose()?,
             accounting: Accounting::open(run, at),
+            size: (run.floor.width, run.floor.height),
             states: States::open(stream, at)?,
             document,
             has_cuts: false,
@@ -191,7 +202,16 @@ impl Opened {
     fn close_tick(&mut self, account: &account::Fold, stream: &Stream, next: At) -> Done {
         let at = self.tick.at;
         self.show_tick(stream, next)?;
-        if self.accounting.is_due(at) { self.account(&account.summary(), stream, at) } else { Ok(()) }
+        if !self.accounting.is_due(at) {
+            return Ok(());
+        }
+        self.corrode(account, stream, at)?;
+        self.account(&account.summary(), stream, at)
+    }
+
+    /// Shows the loss of metal so far, if the instrument reads thickness.
+    fn corrode(&self, account: &account::Fold, stream: &Stream, at: At) -> Done {
+        account.survey().map_or(Ok(()), |survey| corrosion::picture(survey, self.size, stream, at))
     }
 
     fn show_tick(&mut self, stream: &Stream, next: At) -> Done {

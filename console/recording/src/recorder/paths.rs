@@ -51,6 +51,7 @@ pub(crate) const TETHER: &str = "map/world/tether";
 pub(crate) const TETHER_ANCHOR: &str = "map/world/tether/anchor";
 pub(crate) const TETHER_CONTACTS: &str = "map/world/tether/contacts";
 pub(crate) const COVERAGE: &str = "map/world/coverage";
+pub(crate) const CORROSION: &str = "map/world/corrosion";
 
 pub(crate) const SCALARS: &str = "scalars";
 pub(crate) const ERROR: &str = "scalars/position_error";

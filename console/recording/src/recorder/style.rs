@@ -76,3 +76,7 @@ pub(crate) fn on_screen(points: f32) -> rr::Radius {
 pub(crate) fn on_floor(metres: f64) -> rr::Radius {
     rr::Radius::new_scene_units(metres as f32)
 }
+
+/// Loss of metal by class; the lowest one is not drawn.
+pub(crate) const LOSS: [[u8; 4]; 5] =
+    [[0, 0, 0, 0], rgb(246, 227, 161), rgb(237, 179, 90), rgb(217, 112, 58), rgb(200, 40, 30)];

@@ -157,8 +157,13 @@ fn a_tethered_run_has_the_cable_in_every_tick_and_its_figures() {
                 return_length_m: bears.then_some(length_m),
                 bends: vec![],
             };
-            let truth =
-                EventKind::TetherTruth { length_m, wrap_max_rad: 1.0, wrap_total_rad: 1.0, detour_m: 0.0 };
+            let truth = EventKind::TetherTruth {
+                length_m,
+                wrap_max_rad: 1.0,
+                wrap_total_rad: 1.0,
+                detour_m: 0.0,
+                lies: None,
+            };
             [Event { kind: truth, ..event.clone() }, Event { kind, ..event }]
         })
         .collect();

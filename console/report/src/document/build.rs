@@ -121,7 +121,7 @@ impl Document {
             coverage: scanned.coverage(is_to_scan),
             floor,
             runs,
-            follow_ups: follow_up::follow_ups(&layers, &indications),
+            follow_ups: follow_up::follow_ups(&layers, judge.as_ref(), &indications),
             indications,
             thickness: read,
             gate: Vec::new(),

@@ -1,5 +1,6 @@
 //! The report as a drawing: DXF R12 in ASCII, metres, with the layers SHELL, PLATES, OBSTACLES, PIPES, MISSED, TRACK,
-//! INDICATIONS, `NO_GO_ZONES`, ZONES and STATIONS.
+//! INDICATIONS, `NO_GO_ZONES`, ZONES, STATIONS and `FOLLOW_UP` (places that need a test with another method, numbered in
+//! order of travel).
 //!
 //! `tankops import` can read the floor from this drawing: seams end at each other or at the shell, the name of each
 //! plate is on the layer of the seams, and pipes keep their width.
@@ -16,7 +17,7 @@ use mission::RunOpened;
 use world::{PlateLayout, Point, Shape, ZoneKind};
 
 /// The layers and their DXF colour numbers.
-const LAYERS: [(&str, u8); 10] = [
+const LAYERS: [(&str, u8); 11] = [
     ("SHELL", 7),
     ("PLATES", 8),
     ("OBSTACLES", 5),
@@ -27,6 +28,7 @@ const LAYERS: [(&str, u8); 10] = [
     ("NO_GO_ZONES", 30),
     ("ZONES", 9),
     ("STATIONS", 3),
+    ("FOLLOW_UP", 2),
 ];
 /// Simplification tolerance of the track, metres.
 const TRACK_M: f64 = 0.01;
@@ -70,6 +72,10 @@ pub fn dxf(document: &Document, past: &[PastRun]) -> String {
         let name = format!("I{} {}", found.number, found.kind);
         let name = run.map_or_else(|| name.clone(), |run| found_name(&name, run, past.len()));
         drawing.text("INDICATIONS", found.at, &name);
+    }
+    for place in &document.follow_ups {
+        drawing.point("FOLLOW_UP", place.at);
+        drawing.text("FOLLOW_UP", place.at, &place.number.to_string());
     }
     drawing.finish()
 }

@@ -1,9 +1,14 @@
 //! The places that need a test with another method: untestable floor and indications, in order of travel.
 
 use super::{indications::Indication, layers::Layers};
+use account::Judge;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use world::{FloorClass, Point};
+
+/// Why floor is on the list.
+const NOT_TESTABLE: &str = "not testable by this tool";
+const NO_READING: &str = "no reading, though scanned";
 
 /// A place that needs a test with another method, such as a hand-held ultrasonic probe.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -22,9 +27,13 @@ pub struct FollowUp {
     pub depth_mm: Option<f64>,
 }
 
-/// Lists the untestable floor of each plate and every indication. From the start of the mission, each place is the
+/// Lists the untestable floor of each plate, the scanned floor of each plate without readings, and every indication. From the start of the mission, each place is the
 /// nearest one that is left. Empty without an instrument.
-pub(super) fn follow_ups(layers: &Layers<'_>, indications: &[Indication]) -> Vec<FollowUp> {
+pub(super) fn follow_ups(
+    layers: &Layers<'_>,
+    judge: Option<&Judge>,
+    indications: &[Indication],
+) -> Vec<FollowUp> {
     if layers.run.mission.instrument.is_none() {
         return Vec::new();
     }
@@ -36,8 +45,10 @@ pub(super) fn follow_ups(layers: &Layers<'_>, indications: &[Indication]) -> Vec
         area_m2: None,
         depth_mm: found.depth_mm,
     };
-    let mut left: Vec<FollowUp> =
-        untestable(layers).into_iter().chain(indications.iter().map(of_indication)).collect();
+    let untestable = by_plate(layers, NOT_TESTABLE, |cell| layers.is(cell, FloorClass::Untestable));
+    let unread = judge.map(|judge| by_plate(layers, NO_READING, |cell| layers.is_unread(cell, judge)));
+    let areas = untestable.into_iter().chain(unread.into_iter().flatten());
+    let mut left: Vec<FollowUp> = areas.chain(indications.iter().map(of_indication)).collect();
     let (mut here, mut ordered) = (layers.run.mission.start.position, Vec::with_capacity(left.len()));
     let off_m = |place: &FollowUp, here: Point| (place.at - here).norm();
     while let Some(next) =
@@ -50,11 +61,11 @@ pub(super) fn follow_ups(layers: &Layers<'_>, indications: &[Indication]) -> Vec
     ordered
 }
 
-/// The untestable floor of each plate.
-fn untestable(layers: &Layers<'_>) -> Vec<FollowUp> {
+/// The floor of each plate of which a condition is true.
+fn by_plate(layers: &Layers<'_>, what: &str, is_in: impl Fn(usize) -> bool) -> Vec<FollowUp> {
     let floor = layers.floor();
     let mut by_plate: BTreeMap<Option<usize>, Vec<usize>> = BTreeMap::new();
-    for cell in (0..floor.len()).filter(|cell| layers.is(*cell, FloorClass::Untestable)) {
+    for cell in (0..floor.len()).filter(|cell| is_in(*cell)) {
         by_plate.entry(layers.plate_map().and_then(|map| map.plate_of(cell))).or_default().push(cell);
     }
     let place = |(_, cells): (Option<usize>, Vec<usize>)| {
@@ -64,7 +75,7 @@ fn untestable(layers: &Layers<'_>) -> Vec<FollowUp> {
         let at = floor.center(cells.iter().copied().min_by(|a, b| off_m(a).total_cmp(&off_m(b)))?);
         Some(FollowUp {
             number: 0,
-            what: "not testable by this tool".into(),
+            what: what.to_owned(),
             plate: layers.plate_at(at),
             at,
             area_m2: Some(cells.len() as f64 * floor.cell_m2()),

@@ -1,6 +1,7 @@
-//! The report as `GeoJSON`: track, missed areas, plates, obstacles, zones, stations, shell, indications.
+//! The report as `GeoJSON`: track, missed areas, plates, obstacles, zones, stations, shell, indications,
+//! and places that need a test with another method.
 
-use super::{indications::Indication, located, model::Document, shapes::zones};
+use super::{follow_up::FollowUp, indications::Indication, located, model::Document, shapes::zones};
 use crate::{
     drawing::trace::thinned,
     geojson::{Datum, feature, outline, rounded},
@@ -32,6 +33,7 @@ pub fn geojson(document: &Document, past: &[PastRun]) -> String {
     features.extend(plates(&datum, document));
     features.extend(missed(&datum, document));
     features.extend(indications(&datum, document));
+    features.extend(follow_ups(&datum, document));
     let mut properties = json!({
         "document": document.number, "revision": document.revision, "scenario": document.scenario,
         "coordinates": datum.words(),
@@ -131,4 +133,16 @@ fn indications(datum: &Datum<'_>, document: &Document) -> Vec<Value> {
         feature(datum.point(found.at), properties)
     };
     document.indications.iter().map(indication).collect()
+}
+
+/// The places that need a test with another method, in order of travel.
+fn follow_ups(datum: &Datum<'_>, document: &Document) -> Vec<Value> {
+    let place = |place: &FollowUp| {
+        let properties = json!({
+            "layer": "follow_up", "number": place.number, "what": place.what, "plate": place.plate,
+            "area_m2": place.area_m2.map(rounded), "depth_mm": place.depth_mm.map(rounded),
+        });
+        feature(datum.point(place.at), properties)
+    };
+    document.follow_ups.iter().map(place).collect()
 }

@@ -1,7 +1,7 @@
 //! The cells that the maps show.
 
 use crate::drawing::{frame::Fixtures, plates::PlateLines};
-use account::{Evidence, Scanned, plate_map, together};
+use account::{Evidence, Judge, Scanned, plate_map, together};
 use mission::{RunOpened, TaskConfig};
 use world::{Floor, FloorClass, Plate, PlateMap, Point, ShellStretch};
 
@@ -150,6 +150,11 @@ impl<'a> Layers<'a> {
     /// Whether a cell belongs to a class.
     pub(crate) fn is(&self, cell: usize, class: FloorClass) -> bool {
         self.classes[cell] == class
+    }
+
+    /// Whether the tool passed over a cell that it can test, but gave no reading of it.
+    pub(crate) fn is_unread(&self, cell: usize, judge: &Judge) -> bool {
+        self.is_scanned(cell) && !self.is(cell, FloorClass::Untestable) && judge.count(cell) == 0
     }
 
     /// Whether a cell was scanned for every position of the robot within the 95 % error.

@@ -72,6 +72,8 @@ pub(super) struct Table {
     pub(super) rows: Vec<Row>,
     /// Whether the rows of the table become cards on a phone.
     pub(super) is_cards: bool,
+    /// Whether the table fits a phone as it is.
+    pub(super) is_slim: bool,
 }
 
 pub(super) struct Head {
@@ -142,8 +144,10 @@ pub(super) enum Block {
     Heading(String),
     Note(String),
     Words(Vec<(&'static str, String)>),
-    /// Numbered entries in columns.
+    /// Missed areas in columns, with their numbers.
     Columns(Vec<(usize, String)>),
+    /// Other places in columns, with their numbers.
+    Places(Vec<(usize, String)>),
     List(Vec<String>),
     Table(Table),
     Wide(Picture),

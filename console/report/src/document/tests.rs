@@ -59,7 +59,7 @@ fn past_of(run: RunOpened, missed: &[Point]) -> PastRun {
     }
     let logs = Logs { journal: None, recording: None, error: None, is_open: false };
     let (name, files, summary) = ("20261122T040132Z-tiny".to_owned(), Files::default(), fold.summary());
-    PastRun { name, logs, began: None, files, fold, summary, record }
+    PastRun { name, logs, began: None, files, fold, summary, record, imported: None }
 }
 
 fn document(inspection: Inspection) -> Document {

@@ -7,14 +7,12 @@ use super::{
 };
 use crate::{
     drawing::sheet::{Sheet, colour},
-    past_run::PastRun,
+    past_run::{ImportedReadings, PastRun},
 };
-use account::{Detections, Finding, Judge, PlateThickness};
+use account::{Detections, Finding, Judge, LOSS_CLASSES, PlateThickness};
 use mission::{InstrumentKind, Sampling};
 use serde::Serialize;
 
-/// Upper ends of the classes of loss on the corrosion map, as shares of the nominal thickness; the last class has none.
-const LOSS_CLASSES: [f64; 4] = [0.05, 0.1, 0.2, 0.4];
 /// The class of a cell without readings.
 const NO_CLASS: u8 = u8::MAX;
 
@@ -35,30 +33,41 @@ pub struct Thickness {
     pub plates: Vec<PlateThickness>,
     /// The losses of metal, in order of run and time.
     pub losses: Vec<Finding>,
-    /// How the losses compare with the true ones.
-    pub detections: Detections,
+    /// Scanned floor that the instrument can test but gave no reading of, square metres.
+    pub unread_m2: f64,
+    /// How the losses compare with the true ones; absent if these are not known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub detections: Option<Detections>,
+    /// The files from which readings were imported; empty for simulated readings.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub imported: Vec<ImportedReadings>,
 }
 
 /// The thickness over all runs, and the readings by cell; `None` if a run has no readings.
 pub(super) fn thickness(past: &[PastRun], layers: &Layers<'_>) -> Option<(Thickness, Judge)> {
-    let surveys: Vec<_> = past.iter().map(|past| past.fold.survey()).collect::<Option<_>>()?;
+    let read: Vec<_> = past.iter().map(PastRun::readings).collect::<Option<_>>()?;
     let counts: Vec<_> = past.iter().filter_map(|past| past.summary.readings.as_ref()).collect();
-    let (first, floor) = (surveys.first()?, layers.floor());
-    let mut judge = first.judge().clone();
-    for (run, survey) in surveys.iter().enumerate().skip(1) {
-        judge.join(survey.judge(), run);
+    let ((first, sampling), floor) = (*read.first()?, layers.floor());
+    let mut judge = first.clone();
+    for (run, (other, _)) in read.iter().enumerate().skip(1) {
+        judge.join(other, run);
     }
     let losses = judge.findings(floor);
     let is_tested = |at| floor.cell_at(at).is_some_and(|cell| judge.count(cell) > 0);
-    let tested = (0..floor.len()).filter(|cell| judge.count(*cell) > 0).count();
+    let cells_m2 = |is_in: &dyn Fn(usize) -> bool| {
+        (0..floor.len()).filter(|cell| is_in(*cell)).count() as f64 * floor.cell_m2()
+    };
+    let survey = past.first().and_then(|past| past.fold.survey());
     let thickness = Thickness {
         kind: layers.run.mission.instrument.as_ref()?.kind,
-        sampling: first.sampling(),
+        sampling,
         readings: counts.iter().map(|counts| counts.count).sum(),
         untestable: counts.iter().map(|counts| counts.untestable).sum(),
-        tested_m2: tested as f64 * floor.cell_m2(),
+        tested_m2: cells_m2(&|cell| judge.count(cell) > 0),
+        unread_m2: cells_m2(&|cell| layers.is_unread(cell, &judge)),
         plates: layers.plate_map().map_or_else(Vec::new, |map| judge.plates(map, floor.len())),
-        detections: first.detections(&losses, is_tested),
+        detections: survey.map(|survey| survey.detections(&losses, is_tested)),
+        imported: past.iter().filter_map(|past| Some(past.imported.as_ref()?.0.clone())).collect(),
         losses,
     };
     Some((thickness, judge))
@@ -96,12 +105,7 @@ pub(super) fn indications(
 pub(super) fn map(layers: &Layers<'_>, judge: &Judge, thickness: &Thickness) -> Figure {
     let (floor, fixtures) = (layers.floor(), layers.fixtures());
     let nominal_mm = thickness.sampling.thickness_mm;
-    let class = |cell: usize| {
-        let Some(mean_mm) = judge.mean_mm(cell) else { return NO_CLASS };
-        let loss = (nominal_mm - mean_mm) / nominal_mm;
-        LOSS_CLASSES.iter().take_while(|limit| loss > **limit).count() as u8
-    };
-    let classes: Vec<u8> = (0..floor.len()).map(class).collect();
+    let classes: Vec<u8> = (0..floor.len()).map(|cell| judge.loss_class(cell).unwrap_or(NO_CLASS)).collect();
     let mut sheet = Sheet::new(fixtures.boundary, "m", super::maps::FULL_MM, 8.0);
     sheet.define_patterns(floor.cell_m);
     sheet.wall(fixtures.boundary, r##"fill="#fff""##);

@@ -20,3 +20,10 @@ pub(super) fn number(value: f64, decimals: usize) -> String {
 pub(super) fn cm(value_m: f64) -> String {
     number(100.0 * value_m, 1)
 }
+
+/// Formats a whole number with its digits in groups of three.
+pub(super) fn grouped(count: u64) -> String {
+    let digits = count.to_string();
+    let groups = digits.as_bytes().rchunks(3).rev().map(String::from_utf8_lossy);
+    groups.collect::<Vec<_>>().join("\u{202f}")
+}

@@ -37,7 +37,7 @@ fn past(name: &str, run: RunOpened) -> PastRun {
     let files = Files { journal_sha256: Some(digest_of(name)), ..Files::default() };
     // The summary does not affect the identity of the floor.
     let (summary, record) = (Fold::new().summary(), Record::new());
-    PastRun { name: name.into(), logs, began: None, files, fold, summary, record }
+    PastRun { name: name.into(), logs, began: None, files, fold, summary, record, imported: None }
 }
 
 /// The digest that the tests use for the journal of a run.

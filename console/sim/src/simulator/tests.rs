@@ -76,6 +76,7 @@ fn config() -> SimConfig {
         movers: vec![],
         tether_anchor: None,
         reel_length_m: None,
+        physical: None,
     }
 }
 
@@ -397,4 +398,43 @@ fn at_the_end_of_the_reel_a_robot_pulls_in_vain_but_can_turn_and_come_back() {
     assert!((sim.truth().pose.heading_rad - end.pose.heading_rad).abs() > 0.5);
     (0..20).for_each(|_| sim.act(ahead(-0.4)));
     assert!((sim.truth().pose.position - end.pose.position).norm() > 0.2);
+}
+
+/// A robot on a cable with weight, which drives out for 10 s and back for 8 s; the readings and how the cable lay.
+fn out_and_back(pull_n: f64, fails_at_s: Option<f64>) -> Vec<(Readings, world::CableLies)> {
+    let law = crate::CableLaw {
+        floor_n_per_m: 0.3,
+        friction: 0.3,
+        pull_n,
+        pay_out_n: 0.5,
+        speed_m_per_s: 1.0,
+        length_m: 20.0,
+    };
+    let physical = Some(crate::PhysicalCable { law, fails_at_s });
+    let mut sim = Simulator::new(SimConfig { physical, ..tethered(20.0).config }, 1);
+    let drives = (0..180).map(|tick| if tick < 100 { 0.5 } else { -0.5 });
+    let tick = |v_m_per_s| {
+        let (readings, truth) = (sim.sense(), sim.truth());
+        sim.act(Drive::Twist { v_m_per_s, w_rad_per_s: 0.0 });
+        (readings, truth.tether.unwrap().lies.unwrap())
+    };
+    drives.map(tick).collect()
+}
+
+#[test]
+fn a_cable_with_weight_is_slack_behind_a_robot_whose_reel_has_stopped() {
+    let paid_out_m = |of: &[(Readings, world::CableLies)], tick: usize| of[tick].0.paid_out_m.unwrap();
+    let robot_n = |of: &[(Readings, world::CableLies)], tick: usize| of[tick].0.robot_pull_n.unwrap();
+    let taken_up = out_and_back(6.0, None);
+    assert!(robot_n(&taken_up, 90) > 6.0 && robot_n(&taken_up, 170) > 1.0);
+    assert!(paid_out_m(&taken_up, 179) < paid_out_m(&taken_up, 100) - 3.0);
+    assert!(taken_up.iter().all(|(_, lies)| !lies.under_hull));
+    let left = out_and_back(6.0, Some(8.0));
+    assert_eq!(left[79].0.paid_out_m, taken_up[79].0.paid_out_m, "the reel has not stopped yet");
+    assert!(robot_n(&left, 115) < 0.1 && left[170].0.reel_pull_n.unwrap() < 0.1);
+    assert!(robot_n(&left, 170) < 0.3 * 2.5, "the robot drags a loop behind itself");
+    assert!(paid_out_m(&left, 179) > paid_out_m(&left, 100) - 0.1);
+    assert!(left[179].1.under_hull, "the robot is over its own cable");
+    assert!(left.iter().filter(|(_, lies)| !lies.line.is_empty()).count() == 18, "one line a second");
+    assert_eq!(left, out_and_back(6.0, Some(8.0)), "the same again");
 }

@@ -12,6 +12,7 @@ pub(super) fn name(word: &str) -> String {
         "snag" => "tether SNAGGED".into(),
         "return path" => "return path BLOCKED".into(),
         "stray" => "robot crossed a cut of its plan".into(),
+        "slack" => "tether SLACK".into(),
         other => format!("tether: {other}"),
     }
 }
@@ -59,6 +60,21 @@ pub(super) fn guide(word: &str) -> Guide {
                     .when(When::Held),
                     SHOW,
                     run("Stay held (HOLD), and free the tether by hand.", ActionId::Hold),
+                    END,
+                ]
+            },
+        },
+        "slack" => Guide {
+            cause: "The tether does not pull, and the reel has not taken up what the robot has driven back: the reel has \
+            stopped, or it is too weak for the tether.",
+            holds: "At 0.2 m, the robot is held.",
+            effect: "If the robot drives on, it may drive over its own tether.",
+            remedies: const {
+                &[
+                    run("Stay held (HOLD), and check the reel.", ActionId::Hold),
+                    run("Resume: continues the plan with the slack tether. Asks first.", ActionId::Resume)
+                        .when(When::Held),
+                    OTHER_PLANNER,
                     END,
                 ]
             },

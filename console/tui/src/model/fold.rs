@@ -139,6 +139,7 @@ impl Run {
             | EventKind::Uncounted { .. }
             | EventKind::Scanned { .. }
             | EventKind::ScannerJudged { .. }
+            | EventKind::ScanAided { .. }
             | EventKind::Sensed { .. } => {}
             EventKind::Link(_)
             | EventKind::Noticed(_)

@@ -12,6 +12,9 @@ pub struct Scanner {
     pub scan: Option<SeenScan>,
     /// Why the scans cannot be used, as a clause; `None` if they can.
     pub trouble: Option<String>,
+    /// Whether the scans correct the estimated position.
+    #[serde(default)]
+    pub aids: bool,
 }
 
 /// A scan that has arrived.
@@ -51,6 +54,10 @@ impl Run {
             },
             EventKind::ScannerJudged { trouble } => {
                 self.scanner.trouble.clone_from(trouble);
+                return;
+            }
+            EventKind::ScanAided { trouble } => {
+                self.scanner.aids = trouble.is_none();
                 return;
             }
             // The pose is estimated from the readings of the same tick.

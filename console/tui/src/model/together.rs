@@ -147,7 +147,8 @@ mod tests {
         let quarter = half + half / 2;
         own.apply(&[CellRun(half, quarter - half)]);
         let [requested, all] = percent(&own);
-        assert!((requested - 50.0).abs() < 5.0 && (all - 75.0).abs() < 5.0, "{requested} {all}");
+        // The half that was scanned before, and the requested half.
+        assert!((all - (50.0 + requested / 2.0)).abs() < 2.0 && requested > 40.0, "{requested} {all}");
         own.apply(&[CellRun(quarter, floor.len() as u32)]);
         assert_eq!(percent(&own), [100.0, 100.0], "everything has been scanned");
         assert!(

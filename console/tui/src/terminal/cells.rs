@@ -42,10 +42,10 @@ const PLAIN: Pen = Pen { fg: Color::Reset, bg: Color::Reset, modifier: Modifier:
 pub(super) fn write<'a>(to: &mut impl Write, cells: impl Iterator<Item = Placed<'a>>) -> io::Result<()> {
     let (mut at, mut pen, mut out) = (None, PLAIN, String::new());
     for (wanted, cells) in by_pen(cells) {
-        pen.change(&mut out, wanted);
-        pen = wanted;
         for (x, y, cell) in cells {
             move_to(&mut out, at, (x, y));
+            pen.change(&mut out, wanted);
+            pen = wanted;
             out.push_str(cell.symbol());
             // Terminals differ in the width of unusual characters.
             at = (text::width(cell.symbol()) == 1).then_some((x + 1, y));

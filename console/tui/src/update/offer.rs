@@ -24,7 +24,8 @@ pub(crate) fn accept(model: &Model) -> Result<(), String> {
         return demand(model.n_by_hand() > 0, "this scenario has no manual checks");
     }
     let opens = (model.ui.screen.row().opens)(model).is_some();
-    demand(model.ui.overlay != Overlay::None || opens, "nothing to open here")
+    let why = why_nothing_opens(model).unwrap_or("nothing to open here");
+    demand(model.ui.overlay != Overlay::None || opens, why)
 }
 
 /// Why Enter opens nothing on a screen where it sometimes does, as a clause.

@@ -146,7 +146,14 @@ fn curve(look: &Look, columns: usize) -> Line<'static> {
 fn source(look: &Look) -> &'static str {
     let position = &look.run.position;
     let has_fix = position.fix.is_some() && position.failure.is_none();
-    if has_fix && !position.is_fix_stale(look.run.clock.t_s) { "AE and odometry" } else { "odometry only" }
+    let has_ae = has_fix && !position.is_fix_stale(look.run.clock.t_s);
+    let scanner = &look.run.scanner;
+    match (has_ae, scanner.aids && scanner.trouble.is_none()) {
+        (true, true) => "AE, scan, odometry",
+        (true, false) => "AE and odometry",
+        (false, true) => "scan and odometry",
+        (false, false) => "odometry only",
+    }
 }
 
 /// The state and age of the last fix.

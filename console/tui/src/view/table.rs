@@ -89,7 +89,7 @@ mod tests {
         for rows in 4..20 {
             for len in rows + 1..60 {
                 for start in 0..=len - rows {
-                    let bar = thumb(rows, &(start..start + rows), len).unwrap();
+                    let bar = thumb(rows, &(start..start + rows), len).expect("a part is visible");
                     assert!(!bar.is_empty() && bar.end <= rows, "{bar:?} of {rows}");
                     if rows - bar.len() > 1 {
                         assert_eq!(bar.start == 0, start == 0, "{bar:?} for {start} of {len} in {rows}");

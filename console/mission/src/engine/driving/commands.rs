@@ -70,7 +70,7 @@ impl Driving {
         Some(sent.drive)
     }
 
-    /// Discards a command that has arrived but was not sent, because the robot is held.
+    /// Discards a command that has arrived but was not sent, because the robot is held or the planner is closed.
     pub(in crate::engine) fn drop_command(&mut self, happened: &mut Happened) {
         self.blocked.stand();
         if let Some(unsent) = self.command.take() {

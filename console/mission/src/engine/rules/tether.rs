@@ -40,6 +40,11 @@ impl TetherRule {
         let message = alarm.to_string();
         match alarm {
             TetherAlarm::Reel { .. } => self.stop(seen, message, Outcome::Aborted),
+            // A new plan would leave the same slack: the operator must look after the reel, or drive on knowingly.
+            TetherAlarm::Slack { .. } if seen.config.attended => Verdict::Hold(held(message, Resumes::Never)),
+            TetherAlarm::Slack { .. } => {
+                Verdict::End(Outcome::Aborted, format!("unattended hold: {message}"))
+            }
             TetherAlarm::Wrap { .. } | TetherAlarm::WrapTotal { .. } | TetherAlarm::Snag { .. } => {
                 self.stop(seen, message, Outcome::Entangled)
             }

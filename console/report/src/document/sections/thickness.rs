@@ -1,25 +1,31 @@
 //! The thickness of the floor: how it was read, the corrosion map, and each plate.
 
 use super::super::{
+    follow_up::FollowUp,
     model::Document,
     page::{Block, Table, Value, picture},
     thickness::Thickness,
-    words::number,
+    words::{grouped, number},
 };
-use account::Detection;
+use crate::past_run::ImportedReadings;
+use account::{Detection, Detections};
+
+/// Title of the list of places for another method, and the largest number of them in a table.
+const FOLLOW_UPS: &str = "Places that need a test with another method, in order of travel: untestable floor by plate, and indications";
+const MOST_ROWS: usize = 100;
 
 /// How the thickness was read, the corrosion map, the plates, and the places that need a test with another method;
 /// nothing for a report without an instrument.
 pub(super) fn thickness(document: &Document) -> Vec<Block> {
-    let follow_ups = (!document.follow_ups.is_empty()).then(|| Block::Table(follow_ups(document)));
-    let Some(thickness) = &document.thickness else { return follow_ups.into_iter().collect() };
+    let follow_ups = follow_ups(document);
+    let Some(thickness) = &document.thickness else { return follow_ups };
     let mut blocks = vec![
         Block::Heading("Thickness".into()),
         Block::Facts(facts(document, thickness)),
         Block::Wide(picture(&document.pictures.corrosion)),
     ];
     blocks.extend((!thickness.plates.is_empty()).then(|| Block::Table(plates(thickness))));
-    blocks.push(Block::Table(detections(thickness)));
+    blocks.extend(thickness.detections.as_ref().map(|found| Block::Table(detections(thickness, found))));
     blocks.extend(follow_ups);
     blocks
 }
@@ -33,10 +39,15 @@ fn facts(document: &Document, thickness: &Thickness) -> Vec<(&'static str, Value
         number(1000.0 * sampling.pitch_m, 0),
         sampling.sigma_mm
     );
+    let why = if thickness.imported.is_empty() { "beside welds" } else { "beside welds or outside the scan" };
+    let unread = match thickness.unread_m2 {
+        0.0 => String::new(),
+        m2 => format!("; {} m² scanned without a reading", number(m2, 2)),
+    };
     let count = format!(
-        "{}, of which {} beside welds are not judged; {} m² tested",
-        thickness.readings,
-        thickness.untestable,
+        "{}, of which {} {why} are not judged; {} m² tested{unread}",
+        grouped(thickness.readings),
+        grouped(thickness.untestable),
         number(thickness.tested_m2, 2)
     );
     let losses = format!(
@@ -46,17 +57,24 @@ fn facts(document: &Document, thickness: &Thickness) -> Vec<(&'static str, Value
         number(100.0 * sampling.threshold, 0),
         sampling.thickness_mm
     );
+    let of_file = |import: &ImportedReadings| {
+        let what = format!("{}, SHA-256 {}", import.file, import.file_sha256);
+        import.notes.iter().fold(what, |what, note| format!("{what}; {note}"))
+    };
+    let imported = thickness.imported.iter().map(of_file);
     let digest = |run: &super::super::run_part::RunPart| {
         let sha256 = run.files.readings_sha256.as_deref().unwrap_or("no file");
         if document.runs.len() > 1 { format!("{}: {sha256}", run.run) } else { sha256.to_owned() }
     };
     let digests: Vec<String> = document.runs.iter().map(digest).collect();
-    vec![
+    let mut facts = vec![
         ("Instrument", how.into()),
         ("Readings", count.into()),
         ("Indications", losses.into()),
         ("SHA-256 of readings.parquet", digests.join("; ").into()),
-    ]
+    ];
+    facts.extend(imported.map(|text| ("Imported from", text.into())));
+    facts
 }
 
 fn plates(thickness: &Thickness) -> Table {
@@ -71,10 +89,11 @@ fn plates(thickness: &Thickness) -> Table {
             ("Mean", "mm", "r"),
         ],
     );
+    table.is_slim = true;
     for plate in &thickness.plates {
         table.row(vec![
             plate.plate.clone().into(),
-            plate.readings.to_string().into(),
+            grouped(plate.readings).into(),
             number(plate.least_mm, 1).into(),
             number(plate.p5_mm, 1).into(),
             number(plate.mean_mm, 1).into(),
@@ -83,9 +102,33 @@ fn plates(thickness: &Thickness) -> Table {
     table
 }
 
-fn follow_ups(document: &Document) -> Table {
+/// The places that need a test with another method; a long list has columns.
+fn follow_ups(document: &Document) -> Vec<Block> {
+    let places = &document.follow_ups;
+    match places.len() {
+        0 => Vec::new(),
+        1..=MOST_ROWS => vec![Block::Table(table_of(places))],
+        _ => vec![
+            Block::Note(format!("{FOLLOW_UPS}. Plate; x, y in m; area or depth")),
+            Block::Places(places.iter().map(|place| (place.number, line_of(place))).collect()),
+        ],
+    }
+}
+
+/// A place as one line.
+fn line_of(place: &FollowUp) -> String {
+    let of = |value: Option<f64>, decimals, unit: &str| {
+        value.map(|value| format!("{} {unit}", number(value, decimals)))
+    };
+    let size = of(place.depth_mm, 1, "mm").or(of(place.area_m2, 2, "m²")).unwrap_or_default();
+    let plate = place.plate.as_deref().unwrap_or_default();
+    let [x, y] = [place.at.x, place.at.y].map(|m| number(m, 2));
+    format!("{}: {plate}; {x}, {y}; {size}", place.what)
+}
+
+fn table_of(places: &[FollowUp]) -> Table {
     let mut table = Table::new(
-        "Places that need a test with another method, in order of travel: untestable floor by plate, and indications",
+        FOLLOW_UPS,
         &[
             ("No.", "", "r"),
             ("What", "", ""),
@@ -96,10 +139,11 @@ fn follow_ups(document: &Document) -> Table {
             ("Depth", "mm", "r"),
         ],
     );
+    table.is_slim = true;
     let optional = |value: Option<f64>, decimals| {
         value.map_or_else(|| "\u{2013}".to_owned(), |value| number(value, decimals))
     };
-    for place in &document.follow_ups {
+    for place in places {
         table.row(vec![
             place.number.to_string().into(),
             place.what.clone().into(),
@@ -114,8 +158,7 @@ fn follow_ups(document: &Document) -> Table {
 }
 
 /// In a simulation, the true losses are known.
-fn detections(thickness: &Thickness) -> Table {
-    let found = &thickness.detections;
+fn detections(thickness: &Thickness, found: &Detections) -> Table {
     let mut table = Table::new(
         format!(
             "Simulated floor: true losses whose deepest place was tested, and how many of them are in an \
@@ -125,6 +168,7 @@ fn detections(thickness: &Thickness) -> Table {
         ),
         &[("Depth", "% of thickness", "r nw"), ("Losses", "", "r"), ("Found", "", "r"), ("Share", "%", "r")],
     );
+    table.is_slim = true;
     for (index, Detection { from, losses, found: hits }) in found.classes.iter().enumerate() {
         let to = found.classes.get(index + 1).map_or(1.0, |next| next.from);
         let share = (*losses > 0).then(|| number(100.0 * *hits as f64 / *losses as f64, 1));

@@ -306,7 +306,7 @@ fn method() -> Vec<Block> {
          the first one by more than four standard deviations.",
         "Of all ways to pair them one to one, the one with the greatest likelihood counts; its alternative is that \
          indications are unrelated and spread evenly over the tested floor.",
-        "Place: covariance of the position at the deepest reading, of the middle of the readings within the extent, and \
+        "Place: covariance of the position, of the middle of the readings within the extent, and \
          of the grid of the readings.",
         "Depth: the greatest loss of a reading. Its standard deviation is that of a reading, combined with that of \
          missing the deepest place between two channels.",

@@ -30,7 +30,7 @@ impl<'a> Side<'a> {
         let read = thickness(std::slice::from_ref(past), layers);
         let (read, judge) = read.ok_or_else(|| {
             format!(
-                "run {} has no readings of thickness: its scenario needs [instrument] with channels, and [wear]",
+                "run {} has no readings of thickness: its scenario needs [instrument] with channels, and [wear] or an import with `tankops readings`",
                 past.name
             )
         })?;

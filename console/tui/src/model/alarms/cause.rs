@@ -157,7 +157,7 @@ impl Cause {
     /// Each cause once, for tests that go through all of them.
     #[doc(hidden)]
     pub fn every() -> Vec<Self> {
-        let tether = ["reel", "wrap", "total wrap", "snag", "return path", "stray"];
+        let tether = ["reel", "wrap", "total wrap", "snag", "return path", "stray", "slack"];
         let all: Vec<Self> = [
             Self::PositionLost,
             Self::Contradiction,

@@ -139,6 +139,9 @@ fn of_tether(alarm: &TetherAlarm, reached: bool, promised_m: Option<f64>) -> Opt
             Some(reading(now_rad.to_degrees(), share * limit_rad.to_degrees(), degrees))
         }
         TetherAlarm::Snag { paid_out_m, explained_m } => Some(reading(*paid_out_m, *explained_m, metres)),
+        TetherAlarm::Slack { slack_m, .. } => {
+            Some(Reading { now: metres(*slack_m), limit: String::new(), numbers: Some((*slack_m, None)) })
+        }
         TetherAlarm::NoReturnPath | TetherAlarm::Strayed => None,
     }
 }

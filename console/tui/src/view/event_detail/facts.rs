@@ -53,6 +53,8 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::SpeedLimited { .. } => "speed limited",
         EventKind::NotThere { .. } => "obstacle not found",
         EventKind::Guarded { .. } => "guard by the scan",
+        EventKind::ScanAided { trouble: Some(_) } => "scans do not correct the position",
+        EventKind::ScanAided { .. } => "scans correct the position",
         EventKind::ScannerJudged { trouble: Some(_) } => "scans not usable",
         EventKind::ScannerJudged { .. } => "scans usable again",
         EventKind::MediumAwaited => "waiting for the pressure sensor",
@@ -129,7 +131,9 @@ fn of_event(run: &Run, event: &Occurrence) -> Vec<Field> {
         EventKind::NotThere { name, scans, .. } => {
             vec![("obstacle", name.clone()), ("seen through", format!("in {scans} scans"))]
         }
-        EventKind::ScannerJudged { trouble } => trouble.iter().map(|why| ("reason", why.clone())).collect(),
+        EventKind::ScannerJudged { trouble } | EventKind::ScanAided { trouble } => {
+            trouble.iter().map(|why| ("reason", why.clone())).collect()
+        }
         EventKind::Ordered { .. } | EventKind::RangesConsistent | EventKind::Resumed => Vec::new(),
         EventKind::OrderRefused { why, .. } => vec![("reason", why.clone())],
         EventKind::Held { by, resumes } => vec![("reason", by.to_string()), ("resumes", resumed(*resumes))],

@@ -152,12 +152,39 @@ impl Shape for Filled<'_> {
                 }
             }
         }
-        // A pipe thinner than a dot must still be visible.
-        let middle = self.shape.center();
-        if let Some((column, row)) = painter.get_point(middle.x, middle.y) {
-            painter.paint(column, row, self.color);
+        self.draw_thin(painter);
+    }
+}
+
+impl Filled<'_> {
+    /// Draws what the dots may have missed: an outline that is thinner than a dot must still be visible along its length.
+    fn draw_thin(&self, painter: &mut Painter) {
+        let stroke = |painter: &mut Painter, points: &[Point]| {
+            let (window, color) = (self.window, self.color);
+            Stroke { points, window, pattern: Pattern::Solid, color }.draw(painter);
+        };
+        let dot_m = self.window.column_m / f64::from(DOTS.0);
+        match self.shape {
+            world::Shape::Polyline { points, .. } if !self.hatched => stroke(painter, points),
+            world::Shape::Polygon { vertices } if !self.hatched && thickness_m(vertices) < dot_m => {
+                let ring: Vec<Point> = vertices.iter().chain(vertices.first()).copied().collect();
+                stroke(painter, &ring);
+            }
+            _ => {
+                let middle = self.shape.center();
+                if let Some((column, row)) = painter.get_point(middle.x, middle.y) {
+                    painter.paint(column, row, self.color);
+                }
+            }
         }
     }
+}
+
+/// The thickness of a long polygon, metres: its area over half of its outline.
+fn thickness_m(vertices: &[Point]) -> f64 {
+    let ring = vertices.iter().chain(vertices.first()).copied().collect::<Vec<_>>();
+    let half_m = world::polyline::length_m(&ring) / 2.0;
+    if half_m > 0.0 { world::shape::ring_area_m2(vertices).abs() / half_m } else { 0.0 }
 }
 
 /// The points of a closed ellipse around a centre.
@@ -189,6 +216,36 @@ mod tests {
         assert_eq!(window.clipped(Point::new(-100.0, 6.0), Point::new(100.0, 6.0)), None);
         let inside = (Point::new(1.0, 1.0), Point::new(2.0, -3.0));
         assert_eq!(window.clipped(inside.0, inside.1), Some(inside));
+    }
+
+    /// The dots of a filled shape in a window of 20 by 10 characters of half a metre.
+    fn dots(shape: &world::Shape) -> Vec<(usize, usize)> {
+        let window = Window::new(Point::origin(), 0.5, (20, 10));
+        let area = ratatui::layout::Rect::new(0, 0, 20, 10);
+        let mut buffer = ratatui::buffer::Buffer::empty(area);
+        let canvas = ratatui::widgets::canvas::Canvas::default()
+            .x_bounds(window.x)
+            .y_bounds(window.y)
+            .marker(ratatui::symbols::Marker::Braille)
+            .paint(|ctx| ctx.draw(&Filled { shape, window, hatched: false, color: Color::Red }));
+        ratatui::widgets::Widget::render(canvas, area, &mut buffer);
+        let is_drawn = |(x, y): &(u16, u16)| !matches!(buffer[(*x, *y)].symbol(), " " | "\u{2800}");
+        let cells = (0..10).flat_map(|y| (0..20).map(move |x| (x, y))).filter(is_drawn);
+        cells.map(|(x, y)| (usize::from(x), usize::from(y))).collect()
+    }
+
+    #[test]
+    fn a_wall_thinner_than_a_dot_is_drawn_along_its_whole_length() {
+        let (north, south) = (Point::new(0.3, 4.9), Point::new(0.3, -4.9));
+        let wall = world::Shape::Polyline { points: vec![north, south], half_width_m: 0.01 };
+        let side = Vector::new(0.01, 0.0);
+        let plank =
+            world::Shape::Polygon { vertices: vec![north - side, south - side, south + side, north + side] };
+        for shape in [wall, plank] {
+            let rows: std::collections::BTreeSet<usize> =
+                dots(&shape).into_iter().map(|(_, row)| row).collect();
+            assert_eq!(rows.len(), 10, "{shape:?}");
+        }
     }
 
     #[test]

@@ -1,0 +1,351 @@
+//! The columns of a file with readings of thickness, and how a row is interpreted.
+
+use crate::{clock, problem::Problem};
+use csv::StringRecord;
+
+/// Units of thickness and depth, with their factor for conversion to millimetres.
+pub const UNITS: [(&str, f64); 6] =
+    [("mm", 1.0), ("um", 1e-3), ("cm", 10.0), ("in", 25.4), ("inch", 25.4), ("mil", 0.0254)];
+/// Units of time, with their factor for conversion to seconds.
+const TIMES: [(&str, f64); 3] = [("s", 1.0), ("ms", 1e-3), ("us", 1e-6)];
+/// Names of the column with the number of the channel.
+const CHANNEL: [&str; 2] = ["channel", "ch"];
+/// Names of the column with a unit for each row.
+const UNIT: [&str; 2] = ["unit", "units"];
+
+/// A unit of thickness: its name, and its factor for conversion to millimetres.
+pub type Unit = (&'static str, f64);
+
+/// The unit with a name.
+pub fn unit(name: &str) -> Option<Unit> {
+    let name = name.trim().to_lowercase().replace(['µ', 'μ'], "u");
+    UNITS.into_iter().find(|(known, _)| *known == name)
+}
+
+/// What a column states about the floor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Quantity {
+    Thickness,
+    Depth,
+    /// Depth as a percentage of the nominal thickness.
+    Percent,
+}
+
+/// A column with a value.
+#[derive(Debug, Clone, PartialEq)]
+struct Value {
+    index: usize,
+    quantity: Quantity,
+    unit: Option<Unit>,
+    /// The channel, if every channel has its own column.
+    channel: Option<u16>,
+}
+
+/// The columns of a file.
+#[derive(Debug, Clone)]
+pub(super) struct Columns {
+    names: Vec<String>,
+    /// The column with the time; without a unit, it contains dates or times of day.
+    time: (usize, Option<f64>),
+    channel: Option<usize>,
+    unit: Option<usize>,
+    values: Vec<Value>,
+    nominal_mm: f64,
+    has_commas: bool,
+    /// Units and decimal marks of earlier rows.
+    seen: Seen,
+}
+
+#[derive(Debug, Clone, Default)]
+struct Seen {
+    unit: Option<(Unit, u64)>,
+    /// The line of the first number with a decimal point, and of the first one with a decimal comma.
+    marks: [Option<u64>; 2],
+}
+
+/// A reading as it is in a file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Cell {
+    pub(super) channel: u16,
+    pub(super) thickness_mm: f64,
+    /// The column of the value.
+    pub(super) index: usize,
+}
+
+/// The kind of a fault, for counting.
+pub(super) type Kind = &'static str;
+
+impl Columns {
+    /// Finds the columns that the first line names. `given` is the unit of columns that state none.
+    pub(super) fn new(
+        header: &StringRecord,
+        given: Option<Unit>,
+        (nominal_mm, has_commas): (f64, bool),
+    ) -> Result<Self, String> {
+        let names: Vec<String> = header.iter().map(str::to_owned).collect();
+        let found = |what: &str| format!("{what}; columns found: {}", names.join(", "));
+        let (mut time, mut channel, mut unit_column, mut values) = (None, None, None, Vec::new());
+        for (index, name) in names.iter().map(|name| plain(name)).enumerate() {
+            if let Some(factor) = time_factor(&name) {
+                let is_better = time.is_none_or(|(_, known): (usize, Option<f64>)| known.is_none());
+                time = if is_better { Some((index, factor)) } else { time };
+            } else if CHANNEL.contains(&name.as_str()) {
+                channel = Some(index);
+            } else if UNIT.contains(&name.as_str()) {
+                unit_column = Some(index);
+            } else if let Some(value) = value(&name, index) {
+                values.push(value);
+            }
+        }
+        let is_wide = values.iter().any(|value| value.channel.is_some());
+        let time = time.ok_or_else(|| {
+            found("no time column: add t_s, t_ms or t_us, or `time` with dates or times of day")
+        })?;
+        match (values.len(), is_wide, channel) {
+            (0, ..) => {
+                return Err(found(
+                    "no column with readings: add thickness_mm or depth_mm (also in um, cm, in and mil; depth also in \
+                     percent), or a column for each channel: ch0_mm, ch1_mm, ...",
+                ));
+            }
+            (2.., false, _) => {
+                return Err(found(
+                    "more than one column with readings; keep thickness or depth, in one unit",
+                ));
+            }
+            (_, true, Some(_)) => {
+                return Err(found("a column `channel` and a column for each channel; keep one of the two"));
+            }
+            (_, true, None) if values.iter().any(|value| value.channel.is_none()) => {
+                return Err(found("columns for each channel and for all channels; keep one of the two"));
+            }
+            _ => {}
+        }
+        for value in &mut values {
+            value.unit = value.unit.or(given);
+            if value.unit.is_none() && value.quantity != Quantity::Percent && unit_column.is_none() {
+                let name = &names[value.index];
+                return Err(found(&format!(
+                    "column {name} states no unit: name it {name}_mm (or um, cm, in, mil), or give --unit"
+                )));
+            }
+        }
+        let seen = Seen::default();
+        Ok(Self { names, time, channel, unit: unit_column, values, nominal_mm, has_commas, seen })
+    }
+
+    /// The names of the columns that are not used.
+    pub(super) fn ignored(&self) -> Vec<String> {
+        let used = [Some(self.time.0), self.channel, self.unit];
+        let is_used = |index: usize| {
+            used.contains(&Some(index)) || self.values.iter().any(|value| value.index == index)
+        };
+        let names = self.names.iter().enumerate().filter(|(index, _)| !is_used(*index));
+        names.map(|(_, name)| name.clone()).collect()
+    }
+
+    /// The name of a column.
+    pub(super) fn name(&self, index: usize) -> &str {
+        &self.names[index]
+    }
+
+    /// The index of the time column.
+    pub(super) fn time_index(&self) -> usize {
+        self.time.0
+    }
+
+    /// The text of the time in a row.
+    pub(super) fn time_text<'a>(&self, cells: &'a StringRecord) -> &'a str {
+        cells.get(self.time.0).unwrap_or_default()
+    }
+
+    /// Reads a time by the clock of the file, seconds.
+    pub(super) fn time_s(&self, text: &str) -> Result<f64, String> {
+        let example = clock::EXAMPLE;
+        match self.time.1 {
+            _ if text.is_empty() => Err("empty; every row needs a time".into()),
+            Some(factor) => self.number(text).map(|number| number * factor),
+            None if clock::Written::of(text) == clock::Written::Number => Err(format!(
+                "`{text}` is not a time of day or a date; write 07:40:12.250 or {example}, or name the column t_s, t_ms \
+                 or t_us"
+            )),
+            None => clock::time_s(text, self.has_commas),
+        }
+    }
+
+    /// Reads the values in a row; each fault belongs to one value. A cell without a value is left out.
+    pub(super) fn cells(&mut self, cells: &StringRecord, line: u64) -> Vec<Result<Cell, (Kind, Problem)>> {
+        (0..self.values.len()).filter_map(|value| self.cell(cells, line, value).transpose()).collect()
+    }
+
+    fn cell(
+        &mut self,
+        cells: &StringRecord,
+        line: u64,
+        value: usize,
+    ) -> Result<Option<Cell>, (Kind, Problem)> {
+        let Value { index, quantity, unit, channel } = self.values[value].clone();
+        let text = cells.get(index).unwrap_or_default();
+        if text.is_empty() {
+            return Ok(None);
+        }
+        let fault = |kind, index: usize, what| {
+            let column = Some(self.names[index].clone());
+            Err((kind, Problem { line, column, what, is_end: false }))
+        };
+        let (number, written) = split_unit(text);
+        let own = match self.unit.map(|index| (index, cells.get(index).unwrap_or_default())) {
+            Some((index, name)) => match super::columns::unit(name) {
+                Some(unit) => Some(unit),
+                None => {
+                    return fault(
+                        "units",
+                        index,
+                        format!("`{name}` is not a unit; write mm, um, cm, in or mil"),
+                    );
+                }
+            },
+            None => unit,
+        };
+        let own = match (written.map(|name| (name, super::columns::unit(name))), own) {
+            (None, own) => own,
+            (Some((_, Some(written))), Some(own)) if (written.1 - own.1).abs() < 1e-12 => Some(own),
+            (Some((name, _)), Some(own)) => {
+                let what = format!("`{text}` is in {name}, but the column is in {}; use one unit", own.0);
+                return fault("units", index, what);
+            }
+            (Some((name, _)), None) => {
+                return fault("units", index, format!("`{text}`: write the number without `{name}`"));
+            }
+        };
+        if let (Some(own), Some((first, first_line))) = (own, self.seen.unit)
+            && (own.1 - first.1).abs() > 1e-12
+        {
+            let what = format!("{}, but line {first_line} is in {}; use one unit in a file", own.0, first.0);
+            return fault("units", self.unit.unwrap_or(index), what);
+        }
+        let number = match self.number(number) {
+            Ok(number) => number,
+            Err(what) => return fault("numbers", index, what),
+        };
+        let mark = usize::from(text.contains(','));
+        if let Some(other) = self.seen.marks[1 - mark].filter(|_| text.contains([',', '.'])) {
+            let (here, there) = if mark == 1 { ("comma", "point") } else { ("point", "comma") };
+            let what = format!("`{text}` has a decimal {here}, but line {other} has a decimal {there}");
+            return fault("numbers", index, what);
+        }
+        let factor = own.map_or(1.0, |(_, factor)| factor);
+        let thickness_mm = match quantity {
+            Quantity::Thickness => number * factor,
+            Quantity::Depth => self.nominal_mm - number * factor,
+            Quantity::Percent => self.nominal_mm * (1.0 - number / 100.0),
+        };
+        if let Err((kind, what)) = possible(text, quantity, number, (thickness_mm, self.nominal_mm)) {
+            return fault(kind, index, what);
+        }
+        let channel = match (channel, self.channel.map(|index| (index, cells.get(index).unwrap_or_default())))
+        {
+            (Some(channel), _) => channel,
+            (None, None) => 0,
+            (None, Some((index, text))) => match text.parse() {
+                Ok(channel) => channel,
+                Err(_) => {
+                    return fault("channels", index, format!("`{text}` is not the number of a channel"));
+                }
+            },
+        };
+        if text.contains([',', '.']) {
+            self.seen.marks[mark].get_or_insert(line);
+        }
+        if self.unit.is_some() {
+            self.seen.unit = self.seen.unit.or(own.map(|own| (own, line)));
+        }
+        Ok(Some(Cell { channel, thickness_mm, index }))
+    }
+
+    fn number(&self, text: &str) -> Result<f64, String> {
+        let read = if self.has_commas { text.replace(',', ".").parse::<f64>() } else { text.parse() };
+        let read = read.ok().filter(|number| number.is_finite());
+        read.ok_or_else(|| {
+            if !self.has_commas && text.contains(',') {
+                format!("`{text}` has a decimal comma; write a decimal point, or separate the columns with ; or a tab")
+            } else {
+                format!("`{text}` is not a number")
+            }
+        })
+    }
+}
+
+/// Refuses what no instrument can read on a plate.
+fn possible(
+    text: &str,
+    quantity: Quantity,
+    number: f64,
+    (thickness_mm, nominal_mm): (f64, f64),
+) -> Result<(), (Kind, String)> {
+    let is_depth = quantity != Quantity::Thickness;
+    let name = if is_depth { "depth" } else { "thickness" };
+    if number < 0.0 {
+        return Err(("negative values", format!("`{text}`: a {name} is not negative")));
+    }
+    if is_depth && thickness_mm < -1e-9 {
+        let what =
+            format!("`{text}`: deeper than the plate is thick ({nominal_mm} mm, instrument.thickness_mm)");
+        return Err(("depth above thickness", what));
+    }
+    // Where plates overlap, two are under the tool.
+    if thickness_mm > 2.5 * nominal_mm {
+        let what = format!(
+            "`{text}`: {thickness_mm:.1} mm, more than two plates of {nominal_mm} mm (instrument.thickness_mm); is the \
+             unit right?"
+        );
+        return Err(("thickness above two plates", what));
+    }
+    Ok(())
+}
+
+/// Divides a number from a unit that follows it.
+fn split_unit(text: &str) -> (&str, Option<&str>) {
+    let end = text.trim_end_matches(|c: char| c.is_alphabetic() || c == '"').len();
+    let (number, unit) = text.split_at(end);
+    // The letters of a number such as `nan` are no unit.
+    if unit.is_empty() || number.trim().is_empty() { (text, None) } else { (number.trim(), Some(unit)) }
+}
+
+/// A name in lower case, with its words joined by `_`.
+fn plain(name: &str) -> String {
+    let lower = name.to_lowercase().replace(['µ', 'μ'], "u").replace('%', " percent");
+    let words = lower.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
+    words.collect::<Vec<_>>().join("_")
+}
+
+/// The factor of a time column; without a unit, it contains dates or times of day.
+fn time_factor(name: &str) -> Option<Option<f64>> {
+    let unit = ["timestamp", "time", "t"].into_iter().find_map(|base| name.strip_prefix(base))?;
+    if unit.is_empty() {
+        return Some(None);
+    }
+    let unit = unit.strip_prefix('_')?;
+    TIMES.into_iter().find(|(known, _)| *known == unit).map(|(_, factor)| Some(factor))
+}
+
+/// The value that a column contains; `None` for other columns.
+fn value(name: &str, index: usize) -> Option<Value> {
+    let bases = [("thickness", Quantity::Thickness), ("depth", Quantity::Depth), ("loss", Quantity::Depth)];
+    for (base, quantity) in bases {
+        let Some(rest) = name.strip_prefix(base) else { continue };
+        return match rest.strip_prefix('_') {
+            None if rest.is_empty() => Some(Value { index, quantity, unit: None, channel: None }),
+            Some("percent") if quantity == Quantity::Depth => {
+                Some(Value { index, quantity: Quantity::Percent, unit: None, channel: None })
+            }
+            Some(name) => Some(Value { index, quantity, unit: Some(unit(name)?), channel: None }),
+            None => None,
+        };
+    }
+    let rest = CHANNEL.into_iter().find_map(|base| name.strip_prefix(base))?;
+    let (number, of) =
+        rest.trim_start_matches('_').split_once('_').unwrap_or((rest.trim_start_matches('_'), ""));
+    let unit = if of.is_empty() { None } else { Some(unit(of)?) };
+    Some(Value { index, quantity: Quantity::Thickness, unit, channel: Some(number.parse().ok()?) })
+}
