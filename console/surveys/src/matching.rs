@@ -110,13 +110,6 @@ fn gain(off: Vector, covariance: Matrix2<f64>, per_m2: f64) -> Option<f64> {
 /// depths.
 fn groups(candidates: &[Candidate], first: &Survey, second: &Survey) -> Vec<Vec<Candidate>> {
     let mut parent: Vec<usize> = (0..first.indications.len() + second.indications.len()).collect();
-    fn root(parent: &mut [usize], mut node: usize) -> usize {
-        while parent[node] != node {
-            parent[node] = parent[parent[node]];
-            node = parent[node];
-        }
-        node
-    }
     let offset = first.indications.len();
     for pair in candidates {
         let (one, other) = (root(&mut parent, pair.first), root(&mut parent, offset + pair.second));
@@ -136,6 +129,15 @@ fn groups(candidates: &[Candidate], first: &Survey, second: &Survey) -> Vec<Vec<
     all.chunk_by(|(one, _), (other, _)| one == other)
         .map(|group| group.iter().map(|(_, pair)| *pair).collect())
         .collect()
+}
+
+/// The root of a node in a forest of parents.
+fn root(parent: &mut [usize], mut node: usize) -> usize {
+    while parent[node] != node {
+        parent[node] = parent[parent[node]];
+        node = parent[node];
+    }
+    node
 }
 
 /// The best matches of a group.
