@@ -46,7 +46,7 @@ pub(crate) fn compare(args: &CompareSurveysArgs) -> anyhow::Result<ExitCode> {
         Surveyed { past: &second.run, inspection: inspection(second, args.inspection_second.as_deref())? },
     ];
     let comparison =
-        TwoSurveys::new(surveyed, args.minimum_mm, env!("CARGO_PKG_VERSION")).map_err(bad_input)?;
+        TwoSurveys::new(&surveyed, args.minimum_mm, env!("CARGO_PKG_VERSION")).map_err(bad_input)?;
     for part in [&comparison.first, &comparison.second] {
         for doubt in &part.doubts {
             say_line(&format!("WARNING: run {}: {doubt}", part.run))?;

@@ -153,7 +153,7 @@ impl TwoSurveys {
     ///
     /// # Errors
     /// A run has no readings of an instrument or no date, the second survey is not later, or the tanks differ.
-    pub fn new(surveyed: [Surveyed<'_>; 2], minimum_mm: Option<f64>, version: &str) -> Result<Self, String> {
+    pub fn new(surveyed: &[Surveyed<'_>; 2], minimum_mm: Option<f64>, version: &str) -> Result<Self, String> {
         let [a, b] = surveyed.each_ref().map(|one| joined_or_located(std::slice::from_ref(one.past)));
         let (a, b) = (a?, b?);
         let layers = [&a, &b].map(|all| Layers::new(all.run, &all.scanned, &all.evidence, &[]));
