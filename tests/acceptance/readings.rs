@@ -50,7 +50,7 @@ fn simulated_and_real(bench: &Bench) -> (PathBuf, PathBuf) {
     let wear = text.find("[wear]").unwrap();
     let end = wear + text[wear..].find("[[obstacles]]").unwrap();
     let real = bench
-        .file("real.toml", &format!("{}{}", &text[..wear], &text[end..]).replace("inspect-circle", "real"));
+        .file("real.toml", format!("{}{}", &text[..wear], &text[end..]).replace("inspect-circle", "real"));
     bench.fly(&scenario("inspect-circle.toml"), &["--set", "mission.time_limit_s=120"]);
     let simulated = bench.runs().pop().unwrap();
     bench.fly(&real, &["--set", "mission.time_limit_s=120"]);
@@ -73,7 +73,7 @@ fn readings_of_an_instrument_with_another_clock_give_the_findings_of_the_simulat
     let bench = Bench::new();
     let (simulated, real) = simulated_and_real(&bench);
     let (simulated_name, name) = (simulated.to_str().unwrap(), real.to_str().unwrap());
-    bench.file("scan.csv", &table(&simulated, |_| true));
+    bench.file("scan.csv", table(&simulated, |_| true));
     let refused = bench.tankops(&["readings", name, "scan.csv"]);
     assert!(refused.code == Some(2) && refused.err.contains("--clock-offset 3600"), "{refused:?}");
     assert!(!real.join(READINGS_FILE).exists(), "nothing is kept of a refused file");

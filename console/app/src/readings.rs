@@ -96,7 +96,7 @@ pub(crate) fn readings(args: &ReadingsArgs) -> anyhow::Result<ExitCode> {
 
 fn said(args: &ReadingsArgs, folder: &Path, placed: &Placed) -> anyhow::Result<()> {
     if args.json {
-        return Ok(say_json("the results", placed)?);
+        return say_json("the results", placed);
     }
     say(&words::human(placed))?;
     Ok(say_line(&format!(

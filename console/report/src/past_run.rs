@@ -23,7 +23,7 @@ pub struct PastRun {
     /// The record of the run over time and place.
     pub record: Record,
     /// Readings of a real instrument that were imported, and where they are from.
-    pub imported: Option<(ImportedReadings, Imported)>,
+    pub imported: Option<Box<(ImportedReadings, Imported)>>,
 }
 
 /// A file of readings that was imported into a run.
@@ -50,7 +50,7 @@ impl PastRun {
     /// The readings of the instrument, simulated or imported, and how it reads; `None` without readings.
     pub(crate) fn readings(&self) -> Option<(&Judge, Sampling)> {
         let simulated = || self.fold.survey().map(|survey| (survey.judge(), survey.sampling()));
-        let imported = self.imported.as_ref().map(|(_, imported)| (imported.judge(), imported.sampling()));
+        let imported = self.imported.as_ref().map(|of| (of.1.judge(), of.1.sampling()));
         imported.or_else(simulated)
     }
 }

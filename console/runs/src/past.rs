@@ -95,7 +95,7 @@ impl Past {
             fold,
             summary,
             record,
-            imported,
+            imported: imported.map(Box::new),
         };
         Ok(Self { opened, run, beyond_floor })
     }

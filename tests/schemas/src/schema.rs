@@ -178,7 +178,9 @@ impl<'a> Document<'a> {
     fn of_field(&mut self, at: &Defined, field: &Field) -> Value {
         match Serde::of(&field.attrs).with.as_deref() {
             None => self.of_type(at, &field.ty),
-            Some("geometry::symmetric" | "super" | "symmetric") => symmetric(&field.ty),
+            Some("world::geometry::symmetric" | "geometry::symmetric" | "super" | "symmetric") => {
+                symmetric(&field.ty)
+            }
             Some(other) => panic!("serde(with = {other}) is not known to the schemas"),
         }
     }

@@ -86,7 +86,7 @@ impl Columns {
         let found = |what: &str| format!("{what}; columns found: {}", names.join(", "));
         let (mut time, mut channel, mut unit_column, mut values) = (None, None, None, Vec::new());
         for (index, name) in names.iter().map(|name| plain(name)).enumerate() {
-            if let Some(factor) = time_factor(&name) {
+            if let Some(TimeColumn(factor)) = time_factor(&name) {
                 let is_better = time.is_none_or(|(_, known): (usize, Option<f64>)| known.is_none());
                 time = if is_better { Some((index, factor)) } else { time };
             } else if CHANNEL.contains(&name.as_str()) {
@@ -320,13 +320,15 @@ fn plain(name: &str) -> String {
 }
 
 /// The factor of a time column; without a unit, it contains dates or times of day.
-fn time_factor(name: &str) -> Option<Option<f64>> {
+struct TimeColumn(Option<f64>);
+
+fn time_factor(name: &str) -> Option<TimeColumn> {
     let unit = ["timestamp", "time", "t"].into_iter().find_map(|base| name.strip_prefix(base))?;
     if unit.is_empty() {
-        return Some(None);
+        return Some(TimeColumn(None));
     }
     let unit = unit.strip_prefix('_')?;
-    TIMES.into_iter().find(|(known, _)| *known == unit).map(|(_, factor)| Some(factor))
+    TIMES.into_iter().find(|(known, _)| *known == unit).map(|(_, factor)| TimeColumn(Some(factor)))
 }
 
 /// The value that a column contains; `None` for other columns.

@@ -19,8 +19,8 @@ const MOST_GAPS: usize = 1000;
 pub(super) struct Order {
     channels: BTreeMap<u16, Channel>,
     pitch_m: f64,
-    pub(super) out_of_order: u64,
-    pub(super) first_out_of_order: Option<u64>,
+    pub(super) late: u64,
+    pub(super) first_late: Option<u64>,
 }
 
 #[derive(Debug, Default)]
@@ -57,7 +57,7 @@ pub(super) enum Misplaced {
 
 impl Order {
     pub(super) fn new(pitch_m: f64) -> Self {
-        Self { channels: BTreeMap::new(), pitch_m, out_of_order: 0, first_out_of_order: None }
+        Self { channels: BTreeMap::new(), pitch_m, late: 0, first_late: None }
     }
 
     /// Adds a reading of a channel; `way_m` is the way on which floor counts up to it, metres.
@@ -71,8 +71,8 @@ impl Order {
             return Err(Misplaced::Duplicate);
         }
         if place < of.recent.len() {
-            self.out_of_order += 1;
-            self.first_out_of_order.get_or_insert(line);
+            self.late += 1;
+            self.first_late.get_or_insert(line);
         }
         of.recent.insert(place, (t_s, way_m));
         if of.recent.len() > RECENT {
@@ -139,6 +139,6 @@ mod tests {
         assert_eq!(order.take(5, 0, 998.0, 9.98), Err(Misplaced::Duplicate));
         assert_eq!(order.take(6, 0, 10.5, 0.105), Err(Misplaced::TooLate));
         assert_eq!(order.take(7, 1, 998.0, 9.98), Ok(()), "another channel");
-        assert_eq!((order.out_of_order, order.first_out_of_order), (1, Some(3)));
+        assert_eq!((order.late, order.first_late), (1, Some(3)));
     }
 }

@@ -237,7 +237,7 @@ impl<'a> Placing<'a> {
         }
         self.check_unit(readings.count)?;
         let (order, channels) = (self.order, self.run.sampling.channels);
-        let (out_of_order, first_out_of_order) = (order.out_of_order, order.first_out_of_order);
+        let (out_of_order, first_out_of_order) = (order.late, order.first_late);
         let (lost, gaps) = order.finish(self.run.track, channels);
         Ok(Placed {
             rows: self.rows,

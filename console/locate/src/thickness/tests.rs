@@ -238,7 +238,9 @@ fn lost_readings_a_dead_channel_and_rows_out_of_order_are_named() {
     let later = lines.remove(k);
     lines.insert(k + 9, later);
     let mut text = "t_s,channel,thickness_mm\n".to_owned();
-    lines.iter().for_each(|line| writeln!(text, "{line}").unwrap());
+    for line in &lines {
+        writeln!(text, "{line}").unwrap();
+    }
     let (placed, _) = placed(&text, &Options::default());
     assert_eq!((placed.lost, placed.out_of_order), (121, 1), "{:?}", placed.gaps);
     assert_eq!(placed.gaps.len(), 1);
