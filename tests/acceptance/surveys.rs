@@ -71,11 +71,11 @@ fn growth_new_and_gone_indications_agree_with_the_true_floor_in_every_format() {
     assert_eq!(csv.lines().count(), 1 + matched.len() + new.len() + gone.len());
     assert_eq!(plates.lines().count(), 1 + list("plates").len());
     for pair in &matched {
-        let numbers = [&pair["first"]["number"], &pair["second"]["number"]];
+        let numbers = ["first", "second"].map(|side| pair[side]["number"].to_string());
         let rate = pair["growth"]["rate_mm_per_a"].as_f64().unwrap();
         let row = csv.lines().find(|line| {
             let cells: Vec<&str> = line.split(',').collect();
-            cells[0] == "both" && cells[2] == numbers[0].to_string() && cells[7] == numbers[1].to_string()
+            cells[0] == "both" && [cells[2], cells[7]] == numbers
         });
         assert!(row.unwrap().contains(&format!(",{rate:.3},")), "{row:?}");
     }
