@@ -133,10 +133,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         start_names_plan: false,
         live: false,
         guard_reaction_s: robot.scanner.map(|_| 0.0),
-        sensor: robot
-            .scanner
-            .as_ref()
-            .map(|scanner| Sensor { locates: robot.scanner_locates, ..Sensor::of(scanner) }),
+        sensor: sensor(&robot),
         better_plan: rest.better_plan,
         instrument,
     };
@@ -171,6 +168,11 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         expect: expect?,
         inspection: inspection?,
     })
+}
+
+fn sensor(robot: &Robot) -> Option<Sensor> {
+    let scanner = robot.scanner.as_ref()?;
+    Some(Sensor { locates: robot.scanner_locates, ..Sensor::of(scanner) })
 }
 
 /// Checks the digests of the runs that a re-scan continues. Only reports use these digests.

@@ -5,7 +5,6 @@
 //! SEEDS=20 FIRST_SEED=7000 cargo test --release -p scenario --test matching -- --nocapture
 //! ```
 #![allow(clippy::unwrap_used, reason = "tests")]
-#![expect(clippy::print_stdout, reason = "a measurement prints its figures")]
 
 use mission::Locator;
 use perception::{Perception, View};
@@ -73,7 +72,7 @@ fn errors_m(seed: u64, locates: bool) -> Vec<f64> {
             }
         }
         let truth = simulator.truth().pose;
-        if t_s >= SILENT_S[0] && t_s < SILENT_S[1] {
+        if (SILENT_S[0]..SILENT_S[1]).contains(&t_s) {
             errors_m.push((truth.position - pose.position).norm());
         }
         follower.advance(truth.position, |_| true);

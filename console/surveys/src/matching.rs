@@ -106,6 +106,15 @@ fn gain(off: Vector, covariance: Matrix2<f64>, per_m2: f64) -> Option<f64> {
     (distance2 <= GATE && gain.is_finite()).then_some(gain)
 }
 
+/// The representative of the group of a node; `parent` leads to it.
+fn root(parent: &mut [usize], mut node: usize) -> usize {
+    while parent[node] != node {
+        parent[node] = parent[parent[node]];
+        node = parent[node];
+    }
+    node
+}
+
 /// Divides the candidates into groups that do not share an indication; each in an order that depends only on places and
 /// depths.
 fn groups(candidates: &[Candidate], first: &Survey, second: &Survey) -> Vec<Vec<Candidate>> {

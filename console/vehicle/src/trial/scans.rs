@@ -117,7 +117,7 @@ mod tests {
             (
                 row(0.1, |n, scan| {
                     if n % 20 == 0 {
-                        scan.ranges_m.fill(None)
+                        scan.ranges_m.fill(None);
                     }
                 }),
                 "",
@@ -132,7 +132,7 @@ mod tests {
             (
                 row(0.1, |n, scan| {
                     if n % 2 == 0 {
-                        scan.ranges_m.truncate(90)
+                        scan.ranges_m.truncate(90);
                     }
                 }),
                 "from 90 to 360 rays",
@@ -173,7 +173,7 @@ mod tests {
             protocol: 1,
             name: "crawler".into(),
             motion: MotionKind::Unicycle,
-            limits: limits.clone(),
+            limits,
             has: Has { scan, ..Has::default() },
             period_s: 0.1,
             stop_time_s: 0.9,

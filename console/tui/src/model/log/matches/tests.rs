@@ -106,7 +106,7 @@ fn a_warning_of_a_planner_with_other_figures_is_listed_once_where_it_last_occurr
         }
     }
     let mut listed = matches.newest(&log, 0);
-    let newest = listed.next().unwrap();
+    let Some(newest) = listed.next() else { panic!("nothing is listed") };
     assert_eq!((newest.entry.text.as_str(), newest.times, newest.entry.t_s), (texts[2], 9, 11.0));
     let others: Vec<(&str, u32)> = listed.map(|l| (l.entry.text.as_str(), l.times)).collect();
     assert_eq!(others.len(), 13, "twelve plans and one other warning: {others:?}");
