@@ -140,15 +140,6 @@ fn groups(candidates: &[Candidate], first: &Survey, second: &Survey) -> Vec<Vec<
         .collect()
 }
 
-/// The root of a node in a forest of parents.
-fn root(parent: &mut [usize], mut node: usize) -> usize {
-    while parent[node] != node {
-        parent[node] = parent[parent[node]];
-        node = parent[node];
-    }
-    node
-}
-
 /// The best matches of a group.
 fn decide(group: &[Candidate]) -> Result<Vec<Match>, Refusal> {
     let (mut rows, mut columns): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
