@@ -56,7 +56,7 @@ pub struct Indication {
     pub depth_mm: f64,
     /// Standard deviation of the depth, millimetres.
     pub depth_sigma_mm: f64,
-    /// Whether untested floor lies beside it. Its deepest place may be there, so its depth is a lower bound.
+    /// Whether untested floor lies beside its readings. Its deepest place may be there, so its depth is a lower bound.
     pub is_cut: bool,
 }
 

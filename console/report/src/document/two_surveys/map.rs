@@ -93,11 +93,8 @@ pub(super) fn map(comparison: &TwoSurveys, layers: &Layers<'_>) -> Figure {
 fn marks(comparison: &TwoSurveys) -> Vec<(State, Point, String)> {
     let registration = &comparison.registration;
     let matched = comparison.matched.iter().map(|pair| {
-        let state = match pair.is_cut {
-            true => State::Cut,
-            false if pair.is_grown() => State::Grown,
-            false => State::Same,
-        };
+        let grown = if pair.is_grown() { State::Grown } else { State::Same };
+        let state = if pair.is_cut { State::Cut } else { grown };
         (state, registration.apply(pair.second.at), pair.second.number.to_string())
     });
     let new = comparison.new.iter().map(|one| {

@@ -19,8 +19,8 @@ pub(super) fn sections(comparison: &TwoSurveys) -> SurveysPage {
     let css = |text: String| foreign::markup(&text).replace(is_end, " ");
     let sections = [
         section("Registration", registration(comparison)),
-        section("Rates of the plates", plates(comparison)),
         section("Next inspection", next_inspection(comparison)),
+        section("Rates of the plates", plates(comparison)),
         section("Map", vec![Block::Wide(picture(&comparison.map))]),
         section("Indications in both surveys", matched(comparison)),
         section("New and gone indications", singles(comparison)),
@@ -181,7 +181,7 @@ fn plates(comparison: &TwoSurveys) -> Vec<Block> {
 }
 
 fn next_inspection(comparison: &TwoSurveys) -> Vec<Block> {
-    let label = Block::Barred(format!("use as a decision. {NOTICE}"));
+    let label = Block::Barred(format!("use this as a decision. {NOTICE}"));
     let Some(minimum_mm) = comparison.minimum_mm else {
         let why = "No date was calculated: the least thickness that the inspector accepts is not known. Give it with \
                    --minimum-mm.";

@@ -44,7 +44,7 @@ impl<'a> Side<'a> {
                 covariance: place_covariance(finding, &sampling, swath_m),
                 depth_mm: finding.depth_mm,
                 depth_sigma_mm: depth_sigma_mm(finding, &sampling, swath_m),
-                is_cut: !is_read(&judge, layers.floor(), [finding.low, finding.high]),
+                is_cut: is_cut(finding, &sampling, swath_m, |at| is_read(&judge, layers.floor(), at)),
             }
         };
         let survey = Survey {
@@ -80,15 +80,27 @@ impl<'a> Side<'a> {
 
     /// Whether the survey has readings at a place and in all cells around it.
     pub(super) fn is_tested(&self, place: Point) -> bool {
-        is_read(&self.judge, self.floor, [place, place])
+        let rim = Vector::repeat(self.floor.cell_m);
+        is_read(&self.judge, self.floor, [place - rim, place + rim])
     }
 }
 
-/// Whether all cells in a box, and those around it, have readings that were judged.
+/// Whether untested floor lies within the spacing of the readings from the box around an indication. A loss that such
+/// floor cuts has readings above the threshold up to it.
+fn is_cut(
+    finding: &Finding,
+    sampling: &Sampling,
+    swath_m: f64,
+    is_read: impl Fn([Point; 2]) -> bool,
+) -> bool {
+    let rim = Vector::repeat(spacing_m(sampling, swath_m).max(sampling.pitch_m));
+    !is_read([finding.low - rim, finding.high + rim])
+}
+
+/// Whether all cells in a box have readings that were judged.
 fn is_read(judge: &Judge, floor: &Floor, [low, high]: [Point; 2]) -> bool {
-    let rim = Vector::repeat(floor.cell_m);
-    let (low, size) = (low - rim, high - low + 2.0 * rim);
-    let count = |m: f64| (m / floor.cell_m).ceil() as usize;
+    let size = high - low;
+    let count = |m: f64| (m / floor.cell_m).ceil().max(1.0) as usize;
     let at = |k: usize, n: usize, m: f64| m * k as f64 / n as f64;
     let (columns, rows) = (count(size.x), count(size.y));
     let mut places = (0..=rows).flat_map(|row| {
