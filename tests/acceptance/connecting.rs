@@ -48,11 +48,14 @@ fn passes(bench: &Bench, vehicle: &str, except: &[&str]) {
         if tried.code == Some(0) {
             let report = tried.json();
             assert!(report["passed"] == true && report["driven"] == true, "{report}");
-            for row in report["checks"].as_array().unwrap() {
+            // On a busy machine, the rate of a clock may be too uncertain to be measured.
+            let is_as_expected = |row: &Value| {
                 let is_open = except.iter().any(|check| row["check"] == *check);
-                assert_eq!(row["verdict"], if is_open { "not_measured" } else { "pass" }, "{report}");
+                row["verdict"] == if is_open { "not_measured" } else { "pass" }
+            };
+            if report["checks"].as_array().unwrap().iter().all(is_as_expected) {
+                return;
             }
-            return;
         }
         last = Some(tried);
     }
