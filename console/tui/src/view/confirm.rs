@@ -125,6 +125,22 @@ fn asked(model: &Model) -> Option<Vec<String>> {
     asked_with(model, true)
 }
 
+/// The question whether to run a plan without a certificate, with the reason for which it was refused.
+fn uncertified(phase: &Phase) -> Vec<String> {
+    let question = "Run uncertified plan? <accept>: run, <cancel>: stay held.".into();
+    let refused = match phase {
+        Phase::Held(Hold { by: HoldReason::PlanRefused { message }, .. }) => {
+            Some(format!("{}.", text::capitalized(message)))
+        }
+        _ => None,
+    };
+    [question, "The robot will move.".into()]
+        .into_iter()
+        .chain(refused)
+        .chain(["Applies to later plans too, until planning fails.".into()])
+        .collect()
+}
+
 /// The clauses of the open question, with or without the progress of its estimate.
 fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
     let clauses = match &model.ui.overlay {
@@ -143,20 +159,7 @@ fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
             let question = "Resume? The robot will move. <accept>: resume, <cancel>: cancel.".into();
             [question, moves(model)].into_iter().chain(continues(model)).collect()
         }
-        Overlay::Confirm(Ask::FlyUncertified) => {
-            let question = "Run uncertified plan? <accept>: run, <cancel>: stay held.".into();
-            let refused = match model.live.run.phase() {
-                Phase::Held(Hold { by: HoldReason::PlanRefused { message }, .. }) => {
-                    Some(format!("{}.", text::capitalized(message)))
-                }
-                _ => None,
-            };
-            [question, "The robot will move.".into()]
-                .into_iter()
-                .chain(refused)
-                .chain(["Applies to later plans too, until planning fails.".into()])
-                .collect()
-        }
+        Overlay::Confirm(Ask::FlyUncertified) => uncertified(model.live.run.phase()),
         Overlay::Confirm(Ask::Swap(choice)) => {
             let next = text::fit(&choice.id, 18);
             let question = match (choice.parameters.len(), model.live.run.planner_id()) {
