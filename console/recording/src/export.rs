@@ -10,7 +10,7 @@ use std::{path::Path, time::Instant};
 /// journal is cut off, the recording extends to that point, and the returned text states what is missing.
 ///
 /// # Errors
-/// There is no journal, it is damaged, or the recording cannot be written; an existing recording is never
+/// The journal is missing or damaged, or the recording cannot be written; an existing recording is never
 /// overwritten.
 pub fn export(journal: &Path, recording: &Path) -> Result<Option<String>, RecordingError> {
     let now = Instant::now();

@@ -41,7 +41,7 @@ const TRACK_M: f64 = 0.01;
 /// text states what is missing.
 ///
 /// # Errors
-/// There is no journal, it is damaged, or the file cannot be written; an existing file is never overwritten.
+/// The journal is missing or damaged, or the file cannot be written; an existing file is never overwritten.
 pub fn export_mcap(journal: &Path, file: &Path) -> Result<Option<String>, RecordingError> {
     let mut reader = JournalReader::open(journal)?;
     let create =

@@ -139,8 +139,8 @@ impl ReadingsWriter {
 /// point, and the returned text states what is missing.
 ///
 /// # Errors
-/// There is no journal, it is damaged, the instrument of the run reads no thickness, or the file cannot be written; an
-/// existing file is never overwritten.
+/// The journal is missing or damaged, the instrument of the run does not read thickness, or the file cannot be written.
+/// An existing file is never overwritten.
 pub fn export_readings(journal: &Path, file: &Path) -> Result<Option<String>, RecordingError> {
     let mut reader = JournalReader::open(journal)?;
     let mut writer = ReadingsWriter::create(file)?;

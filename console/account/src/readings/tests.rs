@@ -104,7 +104,7 @@ fn the_error_of_a_place_falls_with_the_number_of_independent_passes() {
     let mut same = once.judge().clone();
     same.join(once.judge(), 0);
     let ratio = error_m(&same, &run.floor) / error_m(once.judge(), &run.floor);
-    assert!((ratio - 1.0).abs() < 1e-9, "more readings of one pass are no better: {ratio}");
+    assert!((ratio - 1.0).abs() < 1e-9, "more readings of the same pass do not reduce the error: {ratio}");
 }
 
 #[test]

@@ -308,7 +308,7 @@ fn possible(
 fn split_unit(text: &str) -> (&str, Option<&str>) {
     let end = text.trim_end_matches(|c: char| c.is_alphabetic() || c == '"').len();
     let (number, unit) = text.split_at(end);
-    // The letters of a number such as `nan` are no unit.
+    // The letters of a number such as `nan` are not a unit.
     if unit.is_empty() || number.trim().is_empty() { (text, None) } else { (number.trim(), Some(unit)) }
 }
 

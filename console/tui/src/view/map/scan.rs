@@ -8,7 +8,7 @@ use crate::view::look::Look;
 use ratatui::widgets::canvas::{Context, Points};
 use world::Point;
 
-/// Age of a scan, seconds, from which its points are no longer drawn.
+/// Maximum age of a scan whose points are drawn, seconds.
 const SHOWN_S: f64 = 1.0;
 /// The letter that replaces the dots.
 const LETTER: char = ':';
