@@ -143,17 +143,22 @@ impl ReadingsWriter {
 /// An existing file is never overwritten.
 pub fn export_readings(journal: &Path, file: &Path) -> Result<Option<String>, RecordingError> {
     let mut reader = JournalReader::open(journal)?;
-    let mut writer = ReadingsWriter::create(file)?;
     let mut account = Fold::new();
+    // The first event describes the run. A run without readings leaves no file.
+    let mut writer = None;
     for event in reader.by_ref() {
         let event = event?;
         account.apply(&event);
         let survey = account.survey().ok_or(RecordingError::NoReadings)?;
+        let writer = match &mut writer {
+            Some(writer) => writer,
+            None => writer.insert(ReadingsWriter::create(file)?),
+        };
         if let EventKind::Estimated { .. } = event.kind {
             writer.write(survey.latest())?;
         }
     }
-    writer.finish()?;
+    writer.ok_or(RecordingError::NoReadings)?.finish()?;
     Ok(reader.truncated().map(str::to_owned))
 }
 

@@ -389,7 +389,12 @@ fn a_recording_regenerated_from_the_journal_is_the_same() {
     let finished = recorder.finish(Duration::from_secs(20));
     assert_eq!(finished.error, None);
     let regenerated = folder.path().join("regenerated.rrd");
-    assert_eq!(export(&folder.path().join("events.jsonl.zst"), &regenerated).expect("a whole journal"), None);
+    let journal = folder.path().join("events.jsonl.zst");
+    assert_eq!(export(&journal, &regenerated).expect("a whole journal"), None);
+    // The run has no instrument.
+    let parquet = folder.path().join("readings.parquet");
+    assert!(matches!(recording::export_readings(&journal, &parquet), Err(RecordingError::NoReadings)));
+    assert!(!parquet.exists());
     let first = finished.recording.expect("a recording was asked for");
     assert_eq!(content(&first), content(&regenerated));
     assert_eq!(inspect(&first).expect("readable"), inspect(&regenerated).expect("readable"));
