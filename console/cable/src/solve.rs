@@ -160,11 +160,15 @@ impl Step<'_> {
         }
     }
 
-    /// Goes as far along the change as the energy falls; returns the largest displacement of the change.
+    /// Goes as far along the change as the energy falls, and no node farther than the longest link: the pull of the reel
+    /// does not grow with the length of its link, so almost nothing else bounds a change without friction. Returns the
+    /// largest displacement of the change.
     fn advance(&self, found: &mut Solution, change: &[Vector]) -> f64 {
         let before = found.moved.clone();
         let energy = self.energy(found, &before);
-        let mut share = 1.0;
+        let far_m = change.iter().map(Vector::norm).fold(0.0, f64::max);
+        let most_m = self.links.rest_m.iter().copied().fold(0.0, f64::max);
+        let mut share = if far_m > most_m { most_m / far_m } else { 1.0 };
         for _ in 0..MOST_HALVINGS {
             for (node, change) in change.iter().enumerate() {
                 found.moved[node + 1] = before[node + 1] + change * share;
@@ -174,7 +178,7 @@ impl Step<'_> {
             }
             share *= 0.5;
         }
-        share * change.iter().map(Vector::norm).fold(0.0, f64::max)
+        share * far_m
     }
 
     fn energy(&self, found: &Solution, moved: &[Vector]) -> f64 {

@@ -106,6 +106,22 @@ fn a_weak_reel_leaves_loops_that_the_robot_drives_over() {
 }
 
 #[test]
+fn without_friction_the_reel_keeps_the_cable_taut() {
+    let smooth = |pull_n: f64| Law { floor_n_per_m: 0.0, friction: 0.0, ..law(pull_n) };
+    let path = [(0.2, 0.0), (1.0, 6.0), (8.0, 6.0), (8.0, -3.0), (0.3, -0.2)].map(|(x, y)| Point::new(x, y));
+    for pull_n in [1.0, 6.0, 100.0] {
+        let mut chain = straight(0.2, smooth(pull_n));
+        let mut excess_m: f64 = 0.0;
+        drive(&mut chain, &surfaces(&[]), &path, |chain| {
+            let line = chain.line(0.0);
+            let taut_m = (line[line.len() - 1] - line[0]).norm();
+            excess_m = excess_m.max(chain.paid_out_m() - taut_m);
+        });
+        assert!(excess_m < 0.1, "{excess_m} m at {pull_n} N");
+    }
+}
+
+#[test]
 fn absurd_properties_give_finite_figures() {
     let absurd = [f64::NAN, f64::INFINITY, -1.0, 0.0, 1e300];
     for value in absurd {
