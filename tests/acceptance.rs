@@ -89,6 +89,9 @@ mod signing;
 mod slurm;
 #[path = "acceptance/stopping.rs"]
 mod stopping;
+#[cfg(unix)]
+#[path = "acceptance/streaming.rs"]
+mod streaming;
 #[path = "acceptance/surveys.rs"]
 mod surveys;
 #[cfg(unix)]

@@ -70,7 +70,8 @@ fn shipped_runs_are_valid_by_their_schemas() {
         let stored = std::fs::read_to_string(run.join("report.json")).unwrap();
         let stored: serde_json::Value = serde_json::from_str(&stored).unwrap();
         assert_eq!(stored["report_version"], flown["report_version"]);
-        bench.file("events.jsonl", journal_text(&run));
+        let heartbeat = r#"{"event":"heartbeat","tick":3,"t_s":0.3}"#;
+        bench.file("events.jsonl", journal_text(&run) + heartbeat + "\n");
         let mut files = vec![("report-schema.json", "run.json"), ("events-schema.json", "events.jsonl")];
         if name.starts_with("cover") {
             assert_eq!(bench.tankops(&["report", run.to_str().unwrap(), "-o", "r.json"]).code, Some(0));

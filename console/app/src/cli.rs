@@ -126,7 +126,7 @@ pub(crate) enum Command {
         #[command(flatten)]
         logs: LogsArg,
     },
-    /// Print the events of a past run as JSON lines.
+    /// Print the events of a run as JSON lines, also while it continues.
     Events(EventsArgs),
     /// Export a past run as a regenerated recording, as messages for ROS 2 tools, or as sensor readings.
     Export(ExportArgs),

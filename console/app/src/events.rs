@@ -1,48 +1,59 @@
-//! `tankops events`: the lines of a journal, for `grep` and `jq`.
+//! `tankops events`: the lines of a journal, for `grep`, `jq` and programs that watch a run.
+
+mod socket;
 
 use crate::cli::EventsArgs;
 use flight::failure::COMPLETE;
-use foreign::plain_json;
 use mission::EventKind;
-use recording::{JournalLine, JournalReader, journal_of};
+use recording::{JournalReader, journal_of};
 use report::print::warn_line;
+use review::{Selection, StreamEnd, printed, stream};
 use runs::find;
-use serde::Deserialize;
 use std::{
     io::{self, BufWriter, ErrorKind, Write},
     process::ExitCode,
+    time::Duration,
 };
-
-/// The only part of a line that is parsed.
-#[derive(Deserialize)]
-struct Name<'a> {
-    event: &'a str,
-}
 
 /// Prints the events of a run exactly as stored in its journal, one JSON object per line.
 pub(crate) fn events(args: &EventsArgs) -> anyhow::Result<ExitCode> {
     let folder = find(&args.run, &args.logs.folder())?;
-    let from_s = args.from.unwrap_or(0.0);
-    let mut reader = JournalReader::open_near(&journal_of(&folder), from_s)?;
+    let selection = Selection { kinds: args.kind.clone(), from_s: args.from.unwrap_or(0.0), to_s: args.to };
+    let heartbeat = Duration::from_secs_f64(args.heartbeat);
+    if let Some(at) = &args.socket {
+        return socket::serve((at, args.socket_network), &folder, &selection, heartbeat);
+    }
+    if args.follow {
+        return match stream(&folder, &selection, heartbeat, io::stdout())? {
+            StreamEnd::Complete => Ok(ExitCode::from(COMPLETE)),
+            StreamEnd::Incomplete(None) => {
+                Err(JournalReader::open(&journal_of(&folder))?.not_opened().into())
+            }
+            StreamEnd::Incomplete(Some(tick)) => Ok(incomplete(&format!("it ends in tick {tick}"))),
+            StreamEnd::Closed(error) => ended(&error),
+        };
+    }
+    past(JournalReader::open_near(&journal_of(&folder), selection.from_s)?, &selection)
+}
+
+/// Prints the events that are in the journal now.
+fn past(mut reader: JournalReader, selection: &Selection) -> anyhow::Result<ExitCode> {
     let mut out = BufWriter::new(io::stdout().lock());
     let mut is_opened = false;
     // A journal can also be cut off exactly between two events.
     let mut stops_in = None;
     while let Some(line) = reader.next_line()? {
         is_opened = true;
-        let t_s = line.event.t_s;
         let is_end = matches!(line.event.kind, EventKind::Ended { .. });
         stops_in = (!is_end).then_some(line.event.tick);
-        if args.to.is_some_and(|to_s| t_s > to_s) {
+        if selection.is_past(line.event.t_s) {
             stops_in = None;
             break;
         }
-        if t_s < from_s || !is_wanted(&line, &args.kind) {
+        if !selection.contains(&line) {
             continue;
         }
-        // The values stay the same; control characters are escaped.
-        let text = String::from_utf8_lossy(line.raw);
-        if let Err(error) = out.write_all(plain_json(&text).as_bytes()).and_then(|()| out.write_all(b"\n")) {
+        if let Err(error) = out.write_all(printed(&line).as_bytes()) {
             return ended(&error);
         }
     }
@@ -53,15 +64,13 @@ pub(crate) fn events(args: &EventsArgs) -> anyhow::Result<ExitCode> {
         return Err(reader.not_opened().into());
     }
     let stop = || stops_in.map(|tick| format!("it ends in tick {tick}"));
-    if let Some(why) = reader.truncated().map(str::to_owned).or_else(stop) {
-        warn_line(&format!("note: the journal is incomplete: {why}"));
-    }
-    Ok(ExitCode::from(COMPLETE))
+    let why = reader.truncated().map(str::to_owned).or_else(stop);
+    Ok(why.map_or(ExitCode::from(COMPLETE), |why| incomplete(&why)))
 }
 
-fn is_wanted(JournalLine { raw, .. }: &JournalLine, kinds: &[String]) -> bool {
-    let is_one = |name: Name| kinds.iter().any(|kind| kind == name.event);
-    kinds.is_empty() || serde_json::from_slice(raw).is_ok_and(is_one)
+fn incomplete(why: &str) -> ExitCode {
+    warn_line(&format!("note: the journal is incomplete: {why}"));
+    ExitCode::from(COMPLETE)
 }
 
 /// A closed pipe (as with `head`) is not a fault.

@@ -73,12 +73,15 @@ impl fmt::Display for Address {
     }
 }
 
+/// The option that allows a vehicle on another machine.
+pub(crate) const OPTION: &str = "--vehicle-network";
+
 /// The socket address of a host and port. The wire has no protection of its own, so only addresses of this machine are
 /// accepted, unless the whole network is allowed.
 ///
 /// # Errors
-/// The host is unknown, or is another machine.
-pub(crate) fn resolved(at: &str, network: bool) -> io::Result<SocketAddr> {
+/// The host is unknown, or is another machine; the error names the `option` that allows this.
+pub fn resolved(at: &str, network: bool, option: &str) -> io::Result<SocketAddr> {
     let found = at.to_socket_addrs()?.next();
     let found = found.ok_or_else(|| io::Error::new(io::ErrorKind::NotFound, "the host has no address"))?;
     if network || found.ip().is_loopback() {
@@ -86,7 +89,7 @@ pub(crate) fn resolved(at: &str, network: bool) -> io::Result<SocketAddr> {
     }
     Err(io::Error::new(
         io::ErrorKind::PermissionDenied,
-        "the address is on another machine, and the wire is not protected; `--vehicle-network` allows this",
+        format!("the address is on another machine, and the wire is not protected; `{option}` allows this"),
     ))
 }
 
@@ -110,8 +113,11 @@ mod tests {
 
     #[test]
     fn other_machines_need_the_option() {
-        assert!(resolved("127.0.0.1:9", false).is_ok());
-        assert_eq!(resolved("192.0.2.1:9", false).unwrap_err().kind(), io::ErrorKind::PermissionDenied);
-        assert!(resolved("192.0.2.1:9", true).is_ok());
+        assert!(resolved("127.0.0.1:9", false, "--on").is_ok());
+        assert_eq!(
+            resolved("192.0.2.1:9", false, "--on").unwrap_err().kind(),
+            io::ErrorKind::PermissionDenied
+        );
+        assert!(resolved("192.0.2.1:9", true, "--on").is_ok());
     }
 }

@@ -1,6 +1,6 @@
 //! The vehicle's end of the wire: connections of consoles, and their messages.
 
-use crate::address::{Address, resolved};
+use crate::address::{Address, OPTION, resolved};
 use std::{
     collections::BTreeMap,
     io::{self, Read, Write},
@@ -92,13 +92,13 @@ impl Server {
                 address.clone()
             }
             Address::Tcp(at) => {
-                let listener = TcpListener::bind(resolved(at, network)?)?;
+                let listener = TcpListener::bind(resolved(at, network, OPTION)?)?;
                 let at = Address::Tcp(listener.local_addr()?.to_string());
                 accept_tcp(listener, tell, hello)?;
                 at
             }
             Address::Udp(at) => {
-                let socket = UdpSocket::bind(resolved(at, network)?)?;
+                let socket = UdpSocket::bind(resolved(at, network, OPTION)?)?;
                 socket.set_read_timeout(Some(LOOK_AGAIN))?;
                 let at = Address::Udp(socket.local_addr()?.to_string());
                 let datagrams = Datagrams { socket: Arc::new(socket), tell, hello, clients: BTreeMap::new() };

@@ -1,7 +1,7 @@
 //! The streams to an adapter: its two byte streams, and the handle that ends them.
 
 use crate::{
-    address::{Address, resolved},
+    address::{Address, OPTION, resolved},
     said::Said,
 };
 use rustix::{
@@ -78,7 +78,8 @@ impl Stream {
                 })
             }
             Address::Tcp(at) => {
-                let stream = TcpStream::connect_timeout(&resolved(at, network)?, Duration::from_secs(5))?;
+                let stream =
+                    TcpStream::connect_timeout(&resolved(at, network, OPTION)?, Duration::from_secs(5))?;
                 stream.set_nodelay(true)?;
                 set_socket_send_buffer_size(&stream, WAITING_BYTES)?;
                 let (read, write) = (stream.try_clone()?, stream.try_clone()?);
@@ -90,7 +91,7 @@ impl Stream {
                 })
             }
             Address::Udp(at) => {
-                let peer = resolved(at, network)?;
+                let peer = resolved(at, network, OPTION)?;
                 let own = if peer.is_ipv4() { "0.0.0.0:0" } else { "[::]:0" };
                 let socket = UdpSocket::bind(own)?;
                 socket.connect(peer)?;

@@ -1,4 +1,4 @@
-//! Operations on past runs: read, report, verify, and re-scan missed floor.
+//! Operations on past runs: read, report, verify, and re-scan missed floor; and the stream of a run in progress.
 
 mod flown;
 pub mod package;
@@ -6,6 +6,7 @@ mod past;
 mod readings;
 mod register;
 mod rescan;
+mod stream;
 mod track;
 mod verify;
 
@@ -13,5 +14,6 @@ pub use past::{combined, continued, inspection, read_all, report_page, report_te
 pub use readings::readings;
 pub use register::register;
 pub use rescan::{MIN_AREA_M2, MissedScan, NextScan, doubt, missed_scan, rescan_of};
+pub use stream::{Selection, StreamEnd, StreamLine, printed, stream};
 pub use track::track;
 pub use verify::{Verified, verdict, verify};

@@ -9,7 +9,7 @@ use std::{
 };
 
 /// The crates with the written types.
-const CRATES: [(&str, &str); 11] = [
+const CRATES: [(&str, &str); 12] = [
     ("geometry", "console/geometry/src"),
     ("world", "console/world/src"),
     ("positioning", "console/positioning/src"),
@@ -21,6 +21,7 @@ const CRATES: [(&str, &str); 11] = [
     ("runs", "console/runs/src"),
     ("perception", "console/perception/src"),
     ("vehicle", "console/vehicle/src"),
+    ("review", "console/review/src"),
 ];
 
 fn project() -> PathBuf {
@@ -83,9 +84,13 @@ fn the_schema_of_reports_is_that_of_the_types() {
 #[test]
 fn the_schema_of_events_is_that_of_the_types() {
     let version = version("console/mission/src/event.rs", "JOURNAL_VERSION");
-    let about = "One line of a journal: `events.jsonl.zst` in the folder of a run, decompressed, or `tankops events RUN --json`. The \
+    let about = "One line of a journal: `events.jsonl.zst` in the folder of a run, decompressed, or `tankops events RUN`. The \
                  first line is the event `run_opened`, whose `journal_version` is the version of this schema.";
-    let roots = [Root { of_crate: "mission", name: "Event", about }];
+    let of_stream = "A line of `tankops events RUN --follow` that is not an event of the run.";
+    let roots = [
+        Root { of_crate: "mission", name: "Event", about },
+        Root { of_crate: "review", name: "StreamLine", about: of_stream },
+    ];
     let id = format!("urn:tankops:events:{version}");
     is_committed("events-schema.json", &Document::of(&sources(), "Events of tankops", &id, &roots));
 }

@@ -17,6 +17,19 @@ pub(crate) struct EventsArgs {
     /// Print only events at or before this mission time, in seconds.
     #[arg(long, value_name = "T_S", value_parser = mission_time, allow_negative_numbers = true)]
     pub to: Option<f64>,
+    /// Continue with the events of a run in progress, until it ends.
+    #[arg(long)]
+    pub follow: bool,
+    /// Send the events to each client of this TCP address instead of printing them, for example 127.0.0.1:4720; port 0
+    /// is any free port. Each client receives the events from the first one on. Implies --follow.
+    #[arg(long, value_name = "HOST:PORT")]
+    pub socket: Option<String>,
+    /// Allow an address on the network with --socket; the wire is not protected.
+    #[arg(long, requires = "socket")]
+    pub socket_network: bool,
+    /// Print a line with the event `heartbeat` if no event follows within this time, in seconds.
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.0, value_parser = heartbeat)]
+    pub heartbeat: f64,
     #[command(flatten)]
     pub logs: LogsArg,
 }
@@ -105,4 +118,9 @@ pub(crate) struct ReportArgs {
 fn mission_time(text: &str) -> Result<f64, String> {
     let t_s = text.parse().ok().filter(|t_s: &f64| *t_s >= 0.0 && t_s.is_finite());
     t_s.ok_or_else(|| "write a mission time in seconds, for example 0 or 125.5".into())
+}
+
+fn heartbeat(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|seconds| (0.1..=3600.0).contains(seconds));
+    seconds.ok_or_else(|| "write a number of seconds from 0.1 to 3600".into())
 }
