@@ -148,7 +148,11 @@ fn absurd_properties_give_finite_figures() {
     }
 }
 
-/// The taut cables at the points of a path of straight moves to those goals that can be reached without touching anything.
+/// The largest sum of the wraps, radians: beyond it, the cable can be longer than the margin (`console/docs/tuning.md`).
+const WRAP_TOTAL_RAD: f64 = std::f64::consts::PI;
+
+/// The taut cables at the points of a path of straight moves to those goals that can be reached without touching anything
+/// and without too much wrap.
 fn taut_cables(columns: &[Obstacle], goals: &[(f64, f64)]) -> Vec<tether::Cable> {
     let map = ObstacleMap::new(&WALL, columns);
     let shapes: Vec<Shape> = columns.iter().map(|column| column.shape.clone()).collect();
@@ -156,6 +160,11 @@ fn taut_cables(columns: &[Obstacle], goals: &[(f64, f64)]) -> Vec<tether::Cable>
     let mut cables = vec![cable.clone()];
     for goal in goals.iter().map(|(x, y)| Point::new(*x, *y)) {
         if map.segment_clearance_m(cable.tip(), goal) < 0.25 {
+            continue;
+        }
+        let mut moved = cable.clone();
+        moved.drag_to(goal);
+        if moved.wrap_total_rad() > WRAP_TOTAL_RAD {
             continue;
         }
         for at in polyline::resampled(&[cable.tip(), goal], 0.4 * TICK_S) {
