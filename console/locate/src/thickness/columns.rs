@@ -16,6 +16,11 @@ const UNIT: [&str; 2] = ["unit", "units"];
 /// A unit of thickness: its name, and its factor for conversion to millimetres.
 pub type Unit = (&'static str, f64);
 
+/// Whether two units are the same, such as `in` and `inch`.
+fn is_same(one: Unit, other: Unit) -> bool {
+    (one.1 - other.1).abs() < 1e-12
+}
+
 /// The unit with a name.
 pub fn unit(name: &str) -> Option<Unit> {
     let name = name.trim().to_lowercase().replace(['µ', 'μ'], "u");
@@ -63,6 +68,22 @@ struct Seen {
     marks: [Option<u64>; 2],
 }
 
+impl Seen {
+    /// Refuses a number whose decimal mark differs from that of an earlier number.
+    fn check_mark(&self, text: &str) -> Result<(), String> {
+        let mark = usize::from(text.contains(','));
+        let Some(line) = self.marks[1 - mark].filter(|_| text.contains([',', '.'])) else { return Ok(()) };
+        let (here, there) = if mark == 1 { ("comma", "point") } else { ("point", "comma") };
+        Err(format!("`{text}` has a decimal {here}, but line {line} has a decimal {there}"))
+    }
+
+    fn mark(&mut self, text: &str, line: u64) {
+        if text.contains([',', '.']) {
+            self.marks[usize::from(text.contains(','))].get_or_insert(line);
+        }
+    }
+}
+
 /// A reading as it is in a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Cell {
@@ -74,6 +95,9 @@ pub(super) struct Cell {
 
 /// The kind of a fault, for counting.
 pub(super) type Kind = &'static str;
+
+/// A fault in a value: its kind, the index of the column, and what is wrong.
+type Fault = (Kind, usize, String);
 
 impl Columns {
     /// Finds the columns that the first line names. `given` is the unit of columns that state none.
@@ -184,83 +208,79 @@ impl Columns {
         line: u64,
         value: usize,
     ) -> Result<Option<Cell>, (Kind, Problem)> {
-        let Value { index, quantity, unit, channel } = self.values[value].clone();
-        let text = cells.get(index).unwrap_or_default();
+        let value = self.values[value].clone();
+        let text = cells.get(value.index).unwrap_or_default();
         if text.is_empty() {
             return Ok(None);
         }
-        let fault = |kind, index: usize, what| {
-            let column = Some(self.names[index].clone());
-            Err((kind, Problem { line, column, what, is_end: false }))
-        };
+        let read = self.read(cells, text, &value);
+        let cell = read.map_err(|(kind, index, what)| {
+            (kind, Problem { line, column: Some(self.names[index].clone()), what, is_end: false })
+        })?;
+        self.seen.mark(text, line);
+        if self.unit.is_some() {
+            self.seen.unit = self.seen.unit.or(cell.1.map(|unit| (unit, line)));
+        }
+        Ok(Some(cell.0))
+    }
+
+    /// Reads a value and its unit.
+    fn read(&self, cells: &StringRecord, text: &str, value: &Value) -> Result<(Cell, Option<Unit>), Fault> {
+        let index = value.index;
         let (number, written) = split_unit(text);
-        let own = match self.unit.map(|index| (index, cells.get(index).unwrap_or_default())) {
-            Some((index, name)) => match super::columns::unit(name) {
-                Some(unit) => Some(unit),
-                None => {
-                    return fault(
-                        "units",
-                        index,
-                        format!("`{name}` is not a unit; write mm, um, cm, in or mil"),
-                    );
-                }
-            },
-            None => unit,
-        };
-        let own = match (written.map(|name| (name, super::columns::unit(name))), own) {
-            (None, own) => own,
-            (Some((_, Some(written))), Some(own)) if (written.1 - own.1).abs() < 1e-12 => Some(own),
-            (Some((name, _)), Some(own)) => {
-                let what = format!("`{text}` is in {name}, but the column is in {}; use one unit", own.0);
-                return fault("units", index, what);
-            }
-            (Some((name, _)), None) => {
-                return fault("units", index, format!("`{text}`: write the number without `{name}`"));
-            }
-        };
-        if let (Some(own), Some((first, first_line))) = (own, self.seen.unit)
-            && (own.1 - first.1).abs() > 1e-12
-        {
-            let what = format!("{}, but line {first_line} is in {}; use one unit in a file", own.0, first.0);
-            return fault("units", self.unit.unwrap_or(index), what);
-        }
-        let number = match self.number(number) {
-            Ok(number) => number,
-            Err(what) => return fault("numbers", index, what),
-        };
-        let mark = usize::from(text.contains(','));
-        if let Some(other) = self.seen.marks[1 - mark].filter(|_| text.contains([',', '.'])) {
-            let (here, there) = if mark == 1 { ("comma", "point") } else { ("point", "comma") };
-            let what = format!("`{text}` has a decimal {here}, but line {other} has a decimal {there}");
-            return fault("numbers", index, what);
-        }
-        let factor = own.map_or(1.0, |(_, factor)| factor);
-        let thickness_mm = match quantity {
+        let unit = self.agreed_unit(cells, (text, written), value)?;
+        let number = self.number(number).map_err(|what| ("numbers", index, what))?;
+        self.seen.check_mark(text).map_err(|what| ("numbers", index, what))?;
+        let factor = unit.map_or(1.0, |(_, factor)| factor);
+        let thickness_mm = match value.quantity {
             Quantity::Thickness => number * factor,
             Quantity::Depth => self.nominal_mm - number * factor,
             Quantity::Percent => self.nominal_mm * (1.0 - number / 100.0),
         };
-        if let Err((kind, what)) = possible(text, quantity, number, (thickness_mm, self.nominal_mm)) {
-            return fault(kind, index, what);
-        }
-        let channel = match (channel, self.channel.map(|index| (index, cells.get(index).unwrap_or_default())))
+        possible(text, value.quantity, number, (thickness_mm, self.nominal_mm))
+            .map_err(|(kind, what)| (kind, index, what))?;
+        let channel = self.channel(cells, value)?;
+        Ok((Cell { channel, thickness_mm, index }, unit))
+    }
+
+    /// The unit of a value, which the column, the row or the cell states; they must agree.
+    fn agreed_unit(
+        &self,
+        cells: &StringRecord,
+        (text, written): (&str, Option<&str>),
+        value: &Value,
+    ) -> Result<Option<Unit>, Fault> {
+        let of_row = self.unit.map(|index| {
+            let name = cells.get(index).unwrap_or_default();
+            let what = || format!("`{name}` is not a unit; write mm, um, cm, in or mil");
+            unit(name).ok_or_else(|| ("units", index, what()))
+        });
+        let own = of_row.transpose()?.or(value.unit);
+        if let Some(name) = written
+            && !unit(name).zip(own).is_some_and(|(written, own)| is_same(written, own))
         {
-            (Some(channel), _) => channel,
-            (None, None) => 0,
-            (None, Some((index, text))) => match text.parse() {
-                Ok(channel) => channel,
-                Err(_) => {
-                    return fault("channels", index, format!("`{text}` is not the number of a channel"));
-                }
-            },
+            let what = match own {
+                Some((own, _)) => format!("`{text}` is in {name}, but the column is in {own}; use one unit"),
+                None => format!("`{text}`: write the number without `{name}`"),
+            };
+            return Err(("units", value.index, what));
+        }
+        match own.zip(self.seen.unit) {
+            Some((own, (first, line))) if !is_same(own, first) => {
+                let what = format!("{}, but line {line} is in {}; use one unit in a file", own.0, first.0);
+                Err(("units", self.unit.unwrap_or(value.index), what))
+            }
+            _ => Ok(own),
+        }
+    }
+
+    /// The channel of a value, from its column or from the row.
+    fn channel(&self, cells: &StringRecord, value: &Value) -> Result<u16, Fault> {
+        let Some(index) = self.channel.filter(|_| value.channel.is_none()) else {
+            return Ok(value.channel.unwrap_or(0));
         };
-        if text.contains([',', '.']) {
-            self.seen.marks[mark].get_or_insert(line);
-        }
-        if self.unit.is_some() {
-            self.seen.unit = self.seen.unit.or(own.map(|own| (own, line)));
-        }
-        Ok(Some(Cell { channel, thickness_mm, index }))
+        let text = cells.get(index).unwrap_or_default();
+        text.parse().map_err(|_| ("channels", index, format!("`{text}` is not the number of a channel")))
     }
 
     fn number(&self, text: &str) -> Result<f64, String> {
