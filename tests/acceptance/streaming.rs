@@ -25,15 +25,15 @@ impl Running {
         let slow = slow_scenario(bench);
         let mut command = bench.command();
         let child = command.arg("run").arg(slow).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        let mut run = Self { child, folder: PathBuf::new() };
         let until = Instant::now() + PATIENCE;
-        loop {
-            let begun = bench.runs().pop().filter(|run| run.join("events.jsonl.zst").exists());
-            if let Some(folder) = begun {
-                return Self { child, folder };
-            }
+        let begun = || bench.runs().pop().filter(|run| run.join("events.jsonl.zst").exists());
+        while run.folder.as_os_str().is_empty() {
             assert!(Instant::now() < until, "the run never began");
             std::thread::sleep(Duration::from_millis(10));
+            run.folder = begun().unwrap_or_default();
         }
+        run
     }
 
     fn name(&self) -> &str {

@@ -149,7 +149,7 @@ fn absurd_properties_give_finite_figures() {
 }
 
 /// The largest sum of the wraps, radians: beyond it, the cable can be longer than the margin (`console/docs/tuning.md`).
-const WRAP_TOTAL_RAD: f64 = std::f64::consts::PI;
+const WRAP_TOTAL_RAD: f64 = PI;
 
 /// The taut cables at the points of a path of straight moves to those goals that can be reached without touching anything
 /// and without too much wrap.
