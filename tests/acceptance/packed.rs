@@ -36,6 +36,18 @@ fn forge(bench: &Bench, name: &str, files: &BTreeMap<String, Vec<u8>>) {
     bench.file(name, writer.finish().unwrap().into_inner());
 }
 
+/// Changes to one part of a package that contradict the other parts: the file, the text before and after the change, and
+/// the finding.
+const CONTRADICTIONS: [(&str, &str, &str, &str); 7] = [
+    ("package.json", "\"package_version\": 1", "\"package_version\": 2", "has version 2"),
+    ("package.json", "\"revision\": \"A\"", "\"revision\": \"B\"", "the revision in report.json is not B"),
+    ("package.json", "\"number\": \"2", "\"number\": \"3", "report.html is not the page of report 3"),
+    ("package.json", "\"readings\": \"", "\"readings\": null, \"was\": \"", "belongs to none of the runs"),
+    ("package.json", "\"journal_sha256\": \"", "\"journal_sha256\": \"0", "different digests of the journal"),
+    ("report.json", "\"runs\": [", "\"runs\": [{},", "report.json has 2 runs, but package.json has 1"),
+    ("report.json", "\"signature\": null", "\"signature\": 1", "different signatures"),
+];
+
 #[test]
 fn a_package_holds_readings_grid_notes_and_drawings_and_is_checked_without_the_runs() {
     let bench = Bench::new();
@@ -93,6 +105,19 @@ fn a_package_holds_readings_grid_notes_and_drawings_and_is_checked_without_the_r
     forge(&bench, "forged.zip", &forged);
     let verified = verify(&bench, "forged.zip");
     assert!(verified.code == Some(1) && verified.out.contains("is not the file of run"), "{verified:?}");
+    for (file, from, to, why) in CONTRADICTIONS {
+        let text = String::from_utf8(content[file].clone()).unwrap();
+        assert!(text.contains(from), "{file} does not contain {from}");
+        let mut forged = content.clone();
+        forged.insert(file.into(), text.replacen(from, to, 1).into_bytes());
+        forge(&bench, "forged.zip", &forged);
+        let verified = verify(&bench, "forged.zip");
+        assert!(verified.code == Some(1) && verified.out.contains(why), "{why}: {verified:?}");
+    }
+    let mut emptied = content.clone();
+    emptied.insert("report.html".into(), Vec::new());
+    forge(&bench, "emptied.zip", &emptied);
+    assert!(verify(&bench, "emptied.zip").out.contains("report.html is not the page of report"));
     let mut without = content;
     without.remove("report.json");
     forge(&bench, "without.zip", &without);
@@ -168,7 +193,8 @@ fn damaged_packages_and_names_that_do_not_fit_are_refused() {
     bench.file("short.zip", &bytes[..bytes.len() / 2]);
     let verified = verify(&bench, "short.zip");
     assert!(
-        verified.code == Some(1) && verified.out.contains("refused: this is not a package"),
+        verified.code == Some(1)
+            && verified.out.contains("refused: not a package of tankops, or only a part of one"),
         "{verified:?}"
     );
 }

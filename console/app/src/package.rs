@@ -86,7 +86,7 @@ fn fill(out: &mut File, content: &Content<'_>) -> anyhow::Result<()> {
     text(&mut package, "report.geojson", &geojson::geojson(document, past))?;
     text(&mut package, "report.dxf", &dxf::dxf(document, past))?;
     if document.thickness.is_some() {
-        package.add_with("plate-grid.csv", |sink| plate_grid(past, sink).map_err(bad_input))?;
+        package.add_with("plate-grid.csv", |sink| plate_grid(past, sink).map_err(anyhow::Error::msg))?;
     }
     let name = |(number, past): (usize, &PastRun)| {
         if is_name(&past.name) { past.name.clone() } else { format!("run-{number}") }

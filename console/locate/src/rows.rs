@@ -61,7 +61,7 @@ impl Rows {
             Err(error) => return Err(of_csv(&error, line_of(&reader), path).to_string()),
         };
         if header.is_empty() {
-            return Err("empty; the first line must name the columns, such as t_s,station,range_m".into());
+            return Err("empty; the first line must name the columns".into());
         }
         Ok(Self::Csv { reader, header, has_commas: delimiter != b',', file: path.to_owned() })
     }

@@ -11,8 +11,11 @@ pub enum PackageError {
     /// The file is not in the form in which packages are written.
     #[error("{0}")]
     Form(String),
-    /// An entry has a name that could lead out of the folder in which it is unpacked.
-    #[error("entry \"{0}\" has a name that could be unpacked outside the folder; nothing was unpacked")]
+    /// An entry has a name that packages do not use, because it could lead out of the folder in which it is unpacked.
+    #[error(
+        "entry \"{0}\" has a name that packages do not use: names consist of letters a to z, digits, `.`, `_`, `-` and `/`, \
+         and stay in the folder"
+    )]
     Name(String),
     /// An entry is compressed or encrypted.
     #[error(

@@ -40,8 +40,9 @@ impl<R: Read + Seek> Package<R> {
     /// The file cannot be read, or is not in the form in which [`crate::Writer`] writes packages.
     pub fn open(mut input: R) -> Result<Self, PackageError> {
         let length = input.seek(SeekFrom::End(0))?;
-        let not_one =
-            || PackageError::Form("this is not a package: the file does not end as tankops writes it".into());
+        let not_one = || {
+            PackageError::Form("not a package of tankops, or only a part of one: the end of the file is missing or was changed".into())
+        };
         let end_at = length.checked_sub(END_BYTES).ok_or_else(not_one)?;
         let end = read(&mut input, end_at, END_BYTES)?;
         let (count, bytes, at) = read_end(&end).ok_or_else(not_one)?;

@@ -55,7 +55,11 @@ pub enum RecordingError {
     #[error("the recording on disk differs from what was written: {0}")]
     Changed(#[from] FileChange),
     /// The readings cannot be written; the journal is complete even so.
-    #[error("the readings cannot be written ({why}); `tankops export` makes them from the journal: {}", path.display())]
+    #[error(
+        "the readings cannot be written ({why}); if they are simulated, `tankops export --readings` makes them from the \
+         journal: {}",
+        path.display()
+    )]
     Readings {
         /// The error of the system or the format.
         why: String,

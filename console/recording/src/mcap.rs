@@ -58,7 +58,9 @@ pub fn export_mcap(journal: &Path, file: &Path) -> Result<Option<String>, Record
 }
 
 fn write(error: &::mcap::McapError) -> RecordingError {
-    RecordingError::Write { why: error.to_string() }
+    // The text of the error does not contain the reason of the system.
+    let reason = std::error::Error::source(error).map(|reason| format!(": {reason}")).unwrap_or_default();
+    RecordingError::Write { why: format!("{error}{reason}") }
 }
 
 type Done = Result<(), ::mcap::McapError>;

@@ -1,6 +1,9 @@
 //! Packages of reports: what they state, and their verification without the folder of the runs.
 
+mod agreement;
+
 use crate::{Verified, register};
+use agreement::Parts;
 use package::{Package, PackageError};
 use report::{
     Document, PastRun,
@@ -8,6 +11,7 @@ use report::{
 };
 use runs::Register;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use serde_json::Value;
 use std::{
     collections::BTreeMap,
     fs::File,
@@ -25,6 +29,10 @@ pub const SIGNATURES: &str = "signatures.json";
 const VERSION: u32 = 1;
 /// The longest list, bytes.
 const MOST_BYTES: u64 = 8 << 20;
+/// The longest page, and the longest `report.json`, bytes.
+const MOST_PAGE_BYTES: u64 = 128 << 20;
+/// Name of the report for programs.
+const REPORT: &str = "report.json";
 
 /// Name of the readings of a run in a package.
 pub fn readings_name(run: &str) -> String {
@@ -95,8 +103,8 @@ impl Manifest {
     }
 }
 
-/// Verifies a package. It is equal if every file is as `SHA256SUMS` lists it, the readings are those of the runs, and the
-/// pages are those that were signed.
+/// Verifies a package. It is equal if every file is as `SHA256SUMS` lists it, the readings are those of the runs, the
+/// parts name one report, and the pages are those that were signed.
 ///
 /// # Errors
 /// The file cannot be read.
@@ -143,33 +151,43 @@ fn checked(input: impl Read + Seek, register: &Register) -> Result<Vec<Line>, Pa
     if faults.is_empty() {
         lines.push(Line::Fine(format!("equal: {} files have the SHA-256 in SHA256SUMS", digests.len() - 1)));
     }
-    for name in [PAGE, "report.json"].into_iter().filter(|name| !digests.contains_key(*name)) {
-        lines.push(Line::Different(format!("different: {name} is missing, which every package has")));
+    let manifest = json::<Manifest>(&mut package, MANIFEST, MOST_BYTES)?;
+    let signed = json::<Vec<Revision>>(&mut package, SIGNATURES, MOST_BYTES)?;
+    let report = json::<Value>(&mut package, REPORT, MOST_PAGE_BYTES)?;
+    let page = content(&mut package, PAGE, MOST_PAGE_BYTES)?;
+    if let (Ok(manifest), Ok(report), Ok(page)) = (&manifest, &report, &page) {
+        let page = String::from_utf8_lossy(page);
+        lines.extend(Parts { manifest, report, page: &page, digests: &digests }.compare());
     }
-    let (manifest, signed) =
-        (json::<Manifest>(&mut package, MANIFEST)?, json::<Vec<Revision>>(&mut package, SIGNATURES)?);
-    match (manifest, signed) {
-        (Ok(manifest), Ok(signed)) => {
-            lines.extend(readings(&manifest, &digests));
-            lines.extend(signatures(&manifest, &signed, &digests, register));
-        }
-        (manifest, signed) => {
-            let why = [manifest.err(), signed.err()];
-            lines.extend(why.into_iter().flatten().map(Line::Different));
-        }
+    if let (Ok(manifest), Ok(signed)) = (&manifest, &signed) {
+        lines.extend(readings(manifest, &digests));
+        lines.extend(signatures(manifest, signed, &digests, register));
     }
+    let why = [manifest.err(), signed.err(), report.err(), page.err()];
+    lines.extend(why.into_iter().flatten().map(Line::Different));
     Ok(lines)
 }
 
-/// Reads a list of a package; the inner error is a sentence about its content.
+/// The content of a file that every package has; the inner error is a sentence.
+fn content(
+    package: &mut Package<impl Read + Seek>,
+    name: &str,
+    most_bytes: u64,
+) -> Result<Result<Vec<u8>, String>, PackageError> {
+    let content = package.content(name, most_bytes)?;
+    Ok(content.ok_or_else(|| format!("different: {name} is missing, which every package has")))
+}
+
+/// Reads a file of a package as JSON; the inner error is a sentence about its content.
 fn json<T: DeserializeOwned>(
     package: &mut Package<impl Read + Seek>,
     name: &str,
+    most_bytes: u64,
 ) -> Result<Result<T, String>, PackageError> {
-    let Some(content) = package.content(name, MOST_BYTES)? else {
-        return Ok(Err(format!("different: {name} is missing, which every package has")));
+    let read = |content: Vec<u8>| {
+        serde_json::from_slice(&content).map_err(|error| format!("different: {name} cannot be read: {error}"))
     };
-    Ok(serde_json::from_slice(&content).map_err(|error| format!("different: {name} cannot be read: {error}")))
+    Ok(content(package, name, most_bytes)?.and_then(read))
 }
 
 /// Compares the readings with the digests of the runs.

@@ -15,7 +15,7 @@ pub(crate) struct CompareSurveysArgs {
     pub output: PathBuf,
     /// Least thickness that the inspector accepts, in millimetres; from it, the date of the next inspection is
     /// calculated.
-    #[arg(long, value_name = "MM", value_parser = thickness)]
+    #[arg(long, value_name = "MM", value_parser = thickness, allow_negative_numbers = true)]
     pub minimum_mm: Option<f64>,
     /// TOML file with facts for `[inspection]` of the earlier survey; they override those in its scenario.
     #[arg(long, value_name = "FILE")]

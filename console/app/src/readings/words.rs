@@ -96,12 +96,20 @@ fn channels(numbers: &[u16]) -> String {
     format!("channel{} {text}", if numbers.len() == 1 { "" } else { "s" })
 }
 
+/// A number with its noun.
+fn counted(count: u64, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
 /// The results for people.
 pub(super) fn human(placed: &Placed) -> String {
     let readings = &placed.readings;
     let mut lines = vec![format!(
-        "placed         {} readings of {} rows, {} of them not judged; {} indications",
-        readings.count, placed.rows, readings.untestable, readings.indications
+        "placed         {} of {}, {} of them not judged; {}",
+        counted(readings.count, "reading"),
+        counted(placed.rows, "row"),
+        readings.untestable,
+        counted(readings.indications, "indication")
     )];
     if let Some(deepest) = &readings.deepest {
         lines.push(format!(

@@ -152,7 +152,8 @@ impl TwoSurveys {
     /// which the date of the next inspection is calculated.
     ///
     /// # Errors
-    /// A run has no readings of an instrument or no date, the second survey is not later, or the tanks differ.
+    /// A run has no readings of an instrument or no date, the second survey is not later, the tanks differ, or the least
+    /// thickness is not below the nominal one.
     pub fn new(surveyed: &[Surveyed<'_>; 2], minimum_mm: Option<f64>, version: &str) -> Result<Self, String> {
         let [a, b] = surveyed.each_ref().map(|one| joined_or_located(std::slice::from_ref(one.past)));
         let (a, b) = (a?, b?);
@@ -161,6 +162,13 @@ impl TwoSurveys {
         let (first, second) = (first?, second?);
         if let Some(why) = contradiction([&surveyed[0].inspection, &surveyed[1].inspection]) {
             return Err(format!("the tanks differ: {why}"));
+        }
+        let nominal_mm = second.survey.thickness_mm;
+        if let Some(mm) = minimum_mm.filter(|mm| *mm >= nominal_mm) {
+            return Err(format!(
+                "the least thickness, {mm} mm, is not below the nominal thickness of the floor, {nominal_mm} mm \
+                 (instrument.thickness_mm); give a smaller one"
+            ));
         }
         let days = first.date.until(second.date).map_or(0, |span| span.get_days());
         let years = f64::from(days) / DAYS_PER_YEAR;
