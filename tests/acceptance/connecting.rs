@@ -198,7 +198,7 @@ fn a_trial_needs_an_adapter_and_says_what_is_wrong() {
     let bench = Bench::new();
     for (arguments, why) in [
         (&["check", "--vehicle", "unix:nowhere"][..], "cannot drive the vehicle at unix:nowhere"),
-        (&["check", "--vehicle", "run:true"], "before it introduced the vehicle"),
+        (&["check", "--vehicle", "run:true"], "it did not introduce the vehicle"),
         (&["check", "--vehicle", "loopback"], "cannot be tried"),
         (&["check", "--vehicle", "unix:a", "--drive", "--speed", "0"], "greater than 0"),
         (&["check", "--drive"], "--vehicle"),

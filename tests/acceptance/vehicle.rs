@@ -610,7 +610,7 @@ fn a_vehicle_that_does_not_fit_is_refused_with_every_reason() {
         (&["--vehicle", "serial:1"], "is not a vehicle address"),
         (&["--vehicle", "tcp:192.0.2.1:9"], "`--vehicle-network` allows this"),
         (&["--vehicle", "unix:nowhere"], "cannot drive the vehicle at unix:nowhere"),
-        (&["--vehicle", "run:true"], "before it introduced the vehicle"),
+        (&["--vehicle", "run:true"], "it did not introduce the vehicle"),
     ] {
         let refused = bench.fly(&file, vehicle);
         assert!(refused.code == Some(2) && refused.err.contains(why), "{why}: {refused:?}");

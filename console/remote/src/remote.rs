@@ -229,7 +229,7 @@ fn greeted(
             let fault = inbox.fault();
             let fault =
                 if fault.is_empty() { String::new() } else { format!("; it sent a faulty line: {fault}") };
-            return Err(format!("{why} before it introduced the vehicle{fault}"));
+            return Err(format!("it did not introduce the vehicle: {why}{fault}"));
         }
         drop(inbox);
         thread::sleep(LOOK_AGAIN);

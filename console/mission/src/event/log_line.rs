@@ -234,7 +234,8 @@ fn of_link(link: &LinkSeen) -> LogLine {
     let LinkSeen { heard, missed, faulty, unmeasured_s, .. } = link;
     let unmeasured =
         if *unmeasured_s > 0.0 { format!(", motion unknown for {unmeasured_s:.2} s") } else { String::new() };
-    let figures = format!("{heard} readings arrived, {missed} missing, {faulty} faulty{unmeasured}");
+    let readings = if *heard == 1 { "reading" } else { "readings" };
+    let figures = format!("{heard} {readings} arrived, {missed} missing, {faulty} faulty{unmeasured}");
     match (link.trouble(), link.state.is_heard()) {
         (None, _) => line(Severity::Info, "vehicle", format!("link up: {figures}")),
         (Some(why), true) => line(Severity::Warn, "vehicle", format!("{why} ({figures})")),

@@ -94,7 +94,7 @@ impl Connection {
                 }
                 Ok((_, Err(why))) => {
                     let wrote = said.at_end().map(|text| format!("; it wrote: {text}")).unwrap_or_default();
-                    return Err(failed(format!("{why} before it introduced the vehicle{fault}{wrote}")));
+                    return Err(failed(format!("it did not introduce the vehicle: {why}{fault}{wrote}")));
                 }
                 Err(_) => {}
             }

@@ -251,9 +251,21 @@ fn named(kind: &str, line: &str, error: &serde_json::Error) -> Misfit {
         Some(number) if error.is_syntax() => format!("{number} is not a finite number"),
         _ if said == "number out of range" => "the number is too large".into(),
         _ if error.is_eof() => "the line ends here, before the object is complete".into(),
-        _ => said.chars().take(REASON_CHARS).collect(),
+        _ => without_types(&said.chars().take(REASON_CHARS).collect::<String>()),
     };
     Misfit { field, what }
+}
+
+/// A message of serde without the names of Rust's types.
+fn without_types(said: &str) -> String {
+    let Some((before, expected)) = said.rsplit_once(", expected ") else { return said.to_owned() };
+    let expected = match expected {
+        "f64" | "f32" => "a number",
+        "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number of at least 0",
+        "i64" | "i32" => "a whole number",
+        other => other,
+    };
+    format!("{before}, expected {expected}")
 }
 
 /// The kind of a message that cannot be parsed, if the kind can be found.

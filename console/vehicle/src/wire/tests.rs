@@ -116,7 +116,7 @@ fn a_wrong_line_is_named_by_its_field() {
         ),
         (
             readings(r#""odometry": {"over_s": 1, "forward_m": "far", "turn_rad": 0}"#),
-            "readings.odometry.forward_m: invalid type: string \"far\", expected f64",
+            "readings.odometry.forward_m: invalid type: string \"far\", expected a number",
         ),
         (
             readings(
