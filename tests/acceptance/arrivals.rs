@@ -141,10 +141,12 @@ fn a_planner_that_is_stopped_and_continued_has_no_fault() {
 
 #[test]
 fn a_plan_that_is_cut_short_by_an_interrupt_ends_the_mission_at_once_and_is_proven() {
-    for signal in [Signal::INT, Signal::TERM] {
+    for signal in [Signal::INT, Signal::TERM, Signal::QUIT] {
         let flying = Flying::start(&["fault=plan_hang"], &[]);
         flying.until("the worker", |flying| !flying.workers().is_empty());
         std::thread::sleep(Duration::from_millis(500));
+        // A stray signal has no effect.
+        kill_process(Pid::from_child(&flying.child), Signal::USR1).unwrap();
         kill_process(Pid::from_child(&flying.child), signal).unwrap();
         let (bench, flown) = flying.end();
         assert_eq!(flown.code, Some(1), "{flown:?}");

@@ -90,9 +90,24 @@ fn readings_of_an_instrument_with_another_clock_give_the_findings_of_the_simulat
     }
     let again = bench.tankops(&["readings", name, "scan.csv", "--mark", "-3600=0"]);
     assert!(again.code == Some(2) && again.err.contains("--force"), "{again:?}");
-    fs::write(real.join(READINGS_FILE), "changed").unwrap();
+    fs::copy(simulated.join(READINGS_FILE), real.join(READINGS_FILE)).unwrap();
     let report = bench.tankops(&["report", name]);
     assert!(report.out.contains("imported"), "{report:?}");
+    // A package says by itself that the readings were exchanged before it was made.
+    let packed = bench.tankops(&["report", name, "--package", "a.zip"]);
+    let why = "readings.parquet is not the file that was imported";
+    assert!(
+        packed.code == Some(0) && packed.out.contains("WARNING") && packed.out.contains(why),
+        "{packed:?}"
+    );
+    let verified = bench.tankops(&["verify", "a.zip"]);
+    assert!(verified.code == Some(1) && verified.out.contains(why), "{verified:?}");
+    fs::remove_file(real.join("readings.json")).unwrap();
+    let report = bench.tankops(&["report", name]);
+    assert!(
+        report.out.contains("does not belong to this run, because readings.json is missing"),
+        "{report:?}"
+    );
 }
 
 #[test]

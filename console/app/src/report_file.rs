@@ -81,6 +81,10 @@ pub(crate) fn write(args: &ReportArgs, plugins: &PluginDirs) -> anyhow::Result<E
     for doubt in &chain.doubts {
         say_line(&format!("WARNING: {doubt}"))?;
     }
+    for (past, doubt) in past.iter().flat_map(|past| past.files.doubts.iter().map(move |doubt| (past, doubt)))
+    {
+        say_line(&format!("WARNING: run {}: {doubt}", past.name))?;
+    }
     let written = output.map(|(output, format)| files(output, format, &document, &past)).transpose()?;
     for (file, text) in written.into_iter().flatten() {
         write_file("the report", &file, &text)?;

@@ -1,8 +1,8 @@
-//! Stop requests by signal: SIGINT, SIGTERM, SIGHUP.
+//! Stop requests by signal: SIGINT, SIGTERM, SIGHUP, SIGQUIT. Other signals do not end a run.
 
 use planner_host::Waker;
 use signal_hook::{
-    consts::{SIGHUP, SIGINT, SIGTERM},
+    consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM},
     iterator::Signals,
 };
 use std::{
@@ -13,7 +13,7 @@ use std::{
     thread,
 };
 
-const SIGNALS: [i32; 3] = [SIGINT, SIGTERM, SIGHUP];
+const SIGNALS: [i32; 4] = [SIGINT, SIGTERM, SIGHUP, SIGQUIT];
 
 /// A flag that records whether a signal asked this process to stop.
 #[derive(Debug, Clone)]
@@ -36,6 +36,10 @@ pub(crate) fn listen() -> StopSignal {
                 .and_then(|_| signal_hook::flag::register(signal, Arc::clone(&asked)));
         // If this fails, the signal ends the process, as it does by default.
         drop(registered);
+    }
+    for signal in interactive::STRAY_SIGNALS.into_iter().filter(|signal| !SIGNALS.contains(signal)) {
+        // A handler without effect: without it, the signal would end the run and leave the vehicle to its lease.
+        drop(signal_hook::flag::register(signal, Arc::default()));
     }
     StopSignal(asked)
 }

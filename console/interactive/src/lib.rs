@@ -31,6 +31,7 @@ mod viewing;
 mod watch;
 
 pub use foreground::take_terminal;
+pub use watch::STRAY_SIGNALS;
 
 use config::Config;
 use desk::{Desk, Known, Request, Tools};

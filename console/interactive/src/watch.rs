@@ -30,7 +30,7 @@ const GRACE: Duration = Duration::from_secs(1);
 
 /// Signals that are not meant for a console, but would end a process without a handler and leave the terminal as the
 /// screen has set it. SIGXFSZ is not listed: the failing write reports it.
-const OTHERS: [i32; 11] = [
+pub const STRAY_SIGNALS: [i32; 11] = [
     libc::SIGQUIT,
     libc::SIGTRAP,
     libc::SIGUSR1,
@@ -119,7 +119,7 @@ pub(super) fn keys(
 /// threads do.
 pub(super) fn signals(outbox: &Outbox, engine: Current, foreground: Foreground) -> anyhow::Result<()> {
     let outbox = outbox.clone();
-    let others = OTHERS.into_iter().chain(libc::SIGRTMIN()..=libc::SIGRTMAX());
+    let others = STRAY_SIGNALS.into_iter().chain(libc::SIGRTMIN()..=libc::SIGRTMAX());
     let all = [SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT, SIGTTIN].into_iter().chain(others);
     let mut signals = Signals::new(all).context("listening for signals")?;
     spawn("signals", move || {

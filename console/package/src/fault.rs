@@ -46,6 +46,9 @@ pub enum Fault {
         /// SHA-256 of the content, hexadecimal.
         found: String,
     },
+    /// The content of an entry is the one in the list, but its header states another checksum.
+    #[error("the header of {0} was altered: its CRC-32 is not that of the content")]
+    Checksum(String),
     /// The list names an entry that is not in the package.
     #[error("{0} is missing")]
     Missing(String),

@@ -20,6 +20,8 @@ const PIECE: usize = 1 << 16;
 pub struct Package<R> {
     input: R,
     entries: Vec<Entry>,
+    /// The entries whose content does not have the checksum in their header, as far as they were read.
+    miscounted: BTreeSet<String>,
 }
 
 /// An entry of a package.
@@ -75,7 +77,7 @@ impl<R: Read + Seek> Package<R> {
                 return Err(PackageError::Hidden(entry.name.clone()));
             }
         }
-        Ok(Self { input, entries })
+        Ok(Self { input, entries, miscounted: BTreeSet::new() })
     }
 
     /// The entries, in their order.
@@ -102,14 +104,19 @@ impl<R: Read + Seek> Package<R> {
     /// The file cannot be read.
     pub fn digests(&mut self) -> Result<BTreeMap<String, String>, PackageError> {
         let mut digests = BTreeMap::new();
-        for Entry { name, bytes, begin, .. } in &self.entries {
+        for Entry { name, bytes, begin, crc } in &self.entries {
             self.input.seek(SeekFrom::Start(*begin))?;
             let (mut digest, mut left, mut piece) = (Sha256::new(), *bytes, vec![0; PIECE]);
+            let mut checksum = crc32fast::Hasher::new();
             while left > 0 {
                 let count = left.min(PIECE as u64) as usize;
                 self.input.read_exact(&mut piece[..count])?;
                 digest.update(&piece[..count]);
+                checksum.update(&piece[..count]);
                 left -= count as u64;
+            }
+            if checksum.finalize() != *crc {
+                self.miscounted.insert(name.clone());
             }
             digests.insert(name.clone(), hex::encode(digest.finalize()));
         }
@@ -125,7 +132,7 @@ impl<R: Read + Seek> Package<R> {
         let list = String::from_utf8_lossy(&list);
         let (mut faults, mut listed) = (Vec::new(), BTreeMap::new());
         for (number, line) in (1..).zip(list.lines()) {
-            let Some((sha256, name)) = line.split_once("  ").filter(|(sha256, _)| sha256.len() == 64) else {
+            let Some((sha256, name)) = line.split_once("  ").filter(|(sha256, _)| is_digest(sha256)) else {
                 faults.push(Fault::Line(number));
                 continue;
             };
@@ -137,6 +144,9 @@ impl<R: Read + Seek> Package<R> {
         for (name, expected) in &listed {
             match digests.get(name) {
                 None => faults.push(Fault::Missing(name.clone())),
+                Some(found) if found == expected && self.miscounted.contains(name) => {
+                    faults.push(Fault::Checksum(name.clone()));
+                }
                 Some(found) if found == expected => {}
                 Some(found) => faults.push(Fault::Altered {
                     name: name.clone(),
@@ -149,6 +159,10 @@ impl<R: Read + Seek> Package<R> {
         faults.extend(digests.keys().filter(is_added).cloned().map(Fault::Added));
         Ok(faults)
     }
+}
+
+fn is_digest(text: &str) -> bool {
+    text.len() == 64 && text.bytes().all(|byte| byte.is_ascii_digit() || (b'a'..=b'f').contains(&byte))
 }
 
 fn read(input: &mut (impl Read + Seek), begin: u64, bytes: u64) -> Result<Vec<u8>, PackageError> {

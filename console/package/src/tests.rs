@@ -105,6 +105,20 @@ fn compressed_entries_and_shared_bytes_are_refused_without_unpacking() {
 }
 
 #[test]
+fn a_checksum_that_is_not_that_of_the_content_is_named() {
+    let bytes = packed(&FILES);
+    let crc = crc32fast::hash(FILES[0].1).to_le_bytes();
+    let mut altered = bytes.clone();
+    let places: Vec<usize> = (0..bytes.len() - 4).filter(|at| bytes[*at..at + 4] == crc).collect();
+    assert_eq!(places.len(), 2, "in both headers");
+    for at in places {
+        altered[at] ^= 1;
+    }
+    let named = format!("the header of {} was altered: its CRC-32 is not that of the content", FILES[0].0);
+    assert_eq!(faults(&altered), [named]);
+}
+
+#[test]
 fn bytes_that_no_entry_holds_are_refused() {
     let bytes = packed(&FILES);
     for forged in [[&b"#!/bin/sh\n"[..], &bytes].concat(), [&bytes[..], b"more"].concat()] {

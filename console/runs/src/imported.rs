@@ -27,8 +27,15 @@ pub fn write_import(folder: &Path, import: &ImportedReadings) -> io::Result<()> 
 /// The reason why the readings cannot be used, as a sentence.
 pub(crate) fn imported(folder: &Path, fold: &Fold) -> Result<Option<(ImportedReadings, Imported)>, String> {
     let file = folder.join(IMPORT_FILE);
-    if fold.survey().is_some() || !fs::exists(&file).unwrap_or(false) {
+    if fold.survey().is_some() {
         return Ok(None);
+    }
+    if !fs::exists(&file).unwrap_or(false) {
+        let is_left = fs::exists(folder.join(READINGS_FILE)).unwrap_or(false);
+        let why = format!(
+            "{READINGS_FILE} does not belong to this run, because {IMPORT_FILE} is missing; import the readings again"
+        );
+        return if is_left { Err(why) } else { Ok(None) };
     }
     let unread = |error: &dyn std::fmt::Display| format!("{IMPORT_FILE} cannot be read: {error}");
     let text = read_json(&file, MOST_BYTES).map_err(|error| unread(&error))?;

@@ -25,7 +25,7 @@ pub(crate) struct ReadingsArgs {
     #[arg(long, value_name = "TIME=MISSION_S", value_parser = mark, allow_hyphen_values = true)]
     pub mark: Vec<(String, f64)>,
     /// Standard deviation, in seconds, of a time in the file; it widens the error of each position along the way.
-    #[arg(long, value_name = "S", value_parser = sigma)]
+    #[arg(long, value_name = "S", value_parser = sigma, allow_negative_numbers = true)]
     pub clock_sigma: Option<f64>,
     /// Number of the first channel in the file.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1000))]

@@ -2,6 +2,7 @@
 
 use ::locate::thickness::{Gap, Placed};
 use account::clock;
+use world::coverage::percent_text;
 
 /// Maximum number of gaps that are listed.
 const MOST_GAPS: usize = 12;
@@ -60,8 +61,9 @@ pub(super) fn notes(placed: &Placed) -> Vec<String> {
         ));
     }
     if placed.lost > 0 {
-        let share = 100.0 * placed.lost as f64 / (placed.lost + placed.readings.count) as f64;
-        notes.push(format!("lost on the scanned way: {} readings ({share:.1} %)", placed.lost));
+        let share = placed.lost as f64 / (placed.lost + placed.readings.count) as f64;
+        let percent = percent_text(share, 1);
+        notes.push(format!("lost on the scanned way: {} readings ({percent} %)", placed.lost));
     }
     notes.extend(placed.gaps.iter().take(MOST_GAPS).map(gap));
     if placed.gaps.len() > MOST_GAPS {

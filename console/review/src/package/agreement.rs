@@ -58,6 +58,12 @@ impl Parts<'_> {
             ));
         }
         for (run, of_report) in runs.iter().zip(of_report) {
+            let doubts = of_report["files"]["doubts"].as_array().map(Vec::as_slice).unwrap_or_default();
+            let doubts = doubts.iter().filter_map(Value::as_str).map(foreign::plain);
+            found
+                .extend(doubts.map(|doubt| {
+                    format!("run {} was already in doubt when it was packed: {doubt}", run.run)
+                }));
             let PackedRun { run: name, journal_sha256, recording_sha256, readings_sha256, .. } = run;
             let files = &of_report["files"];
             let digests = [
