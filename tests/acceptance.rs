@@ -51,6 +51,8 @@ mod packed;
 mod planning;
 #[path = "acceptance/proof.rs"]
 mod proof;
+#[path = "acceptance/protection.rs"]
+mod protection;
 #[path = "acceptance/readings.rs"]
 mod readings;
 #[path = "acceptance/recovered.rs"]

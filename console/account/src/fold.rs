@@ -3,6 +3,7 @@
 use crate::{
     Account, Evidence, Solid,
     accuracy::{Accuracy, Claimed},
+    doubt::TakenBack,
     drawn::DrawnZone,
     figures::{Figure, Figures},
     floor::account,
@@ -24,7 +25,7 @@ use mission::{
 use nalgebra::Matrix2;
 use planner_api::PoseEstimate;
 use positioning::fix::{ellipse_95, position_covariance};
-use world::{Obstacle, Point, Pose, Zone};
+use world::{Obstacle, Point, Pose, StationId, Zone};
 
 /// Maximum number of listed faults.
 const MOST_FAULTS: usize = 20;
@@ -121,6 +122,9 @@ impl Fold {
             EventKind::PlannerChosen { choice, info, .. } => self.choose(choice, info),
             EventKind::ParametersChanged { choice, .. } => self.set_parameters(choice),
             EventKind::ZoneDrawn { zone } => self.draw_zone(zone, event.t_s),
+            EventKind::StationBiased { station, bias_m, since_s, .. } => {
+                self.take_back(*station, bias_m.value, *since_s, event.t_s);
+            }
             EventKind::ObstacleFound { obstacle } => {
                 self.known.obstacles_found += 1;
                 self.find(obstacle);
@@ -163,6 +167,14 @@ impl Fold {
         self.known.zones_drawn.push(drawn);
     }
 
+    fn take_back(&mut self, station: StationId, bias_m: f64, since_s: f64, until_s: f64) {
+        let Some((run, scanned)) = self.run.as_ref().zip(self.scanned.as_mut()) else { return };
+        let found = run.world.stations.iter().find(|other| other.id == station);
+        let station = found.map_or_else(|| station.0.to_string(), |found| found.name.clone());
+        let area_m2 = scanned.take_back(since_s);
+        self.known.taken_back.push(TakenBack { station, bias_m, since_s, until_s, area_m2 });
+    }
+
     fn note_fault(&mut self, t_s: f64, whose: &str, message: &str) {
         if self.known.faults.len() < MOST_FAULTS {
             self.known.faults.push(format!("{whose}{message} (at {t_s:.1} s)"));
@@ -203,7 +215,8 @@ impl Fold {
             Some(scanned) => scanned.across_m(here, covariance),
             None => f64::INFINITY,
         };
-        let lately = error_m_lately.map(|error_m| Margins { error_m, margin_m });
+        let t_s = self.known.mission_time_s.unwrap_or_default();
+        let lately = error_m_lately.map(|error_m| Margins { error_m, margin_m, t_s });
         self.scanned.iter_mut().for_each(|scanned| scanned.visit(here, lately));
         self.evidence.iter_mut().for_each(|evidence| evidence.visit(here, error_m, counts));
     }

@@ -10,6 +10,7 @@
 
 mod accuracy;
 mod clock;
+mod doubt;
 mod drawn;
 pub mod estimate;
 pub mod expect;
@@ -34,6 +35,7 @@ mod turning;
 mod vehicle;
 
 pub use clock::clock;
+pub use doubt::TakenBack;
 pub use drawn::DrawnZone;
 pub use estimate::Estimate;
 pub use expect::{Expect, Miss};

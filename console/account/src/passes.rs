@@ -7,12 +7,17 @@ use world::{CoverageGrid, Floor, Pose, Tool};
 
 /// The error of a cell that was never passed.
 const NEVER: u16 = u16::MAX;
+/// The time of a cell that is not guaranteed.
+const NOT_GUARANTEED: u32 = u32::MAX;
 
 /// The counted passes over a floor.
 #[derive(Debug, Clone)]
 pub struct Passes {
     tool: Tool,
-    guaranteed: Vec<bool>,
+    /// The time of the first pass that guarantees a cell, milliseconds.
+    guaranteed_ms: Vec<u32>,
+    /// Cells whose guarantee was taken back.
+    taken_back: Vec<bool>,
     /// The smallest 95 % error with which each cell was passed, millimetres.
     error_mm: Vec<u16>,
     overlap: Overlap,
@@ -25,6 +30,13 @@ pub(crate) struct Margins {
     pub error_m: f64,
     /// The distance by which the position may be off for the floor to be guaranteed, metres.
     pub margin_m: f64,
+    /// Mission time, seconds.
+    pub t_s: f64,
+}
+
+/// Milliseconds, within the bounds of the record.
+fn milliseconds(t_s: f64) -> u32 {
+    (t_s * 1000.0).clamp(0.0, f64::from(NOT_GUARANTEED - 1)) as u32
 }
 
 impl Passes {
@@ -32,7 +44,8 @@ impl Passes {
     pub(crate) fn new(floor: &Floor, tool: Tool) -> Self {
         Self {
             tool,
-            guaranteed: vec![false; floor.len()],
+            guaranteed_ms: vec![NOT_GUARANTEED; floor.len()],
+            taken_back: vec![false; floor.len()],
             error_mm: vec![NEVER; floor.len()],
             overlap: Overlap::new(floor.width, floor.len()),
         }
@@ -46,7 +59,7 @@ impl Passes {
         &mut self,
         believed: &CoverageGrid,
         (from, to): (Pose, Pose),
-        Margins { error_m, margin_m }: Margins,
+        Margins { error_m, margin_m, t_s }: Margins,
     ) {
         let floor = believed.floor();
         let cells = floor.runs_under(self.tool, from, to);
@@ -62,9 +75,23 @@ impl Passes {
         }
         if let Some(narrowed) = self.tool.narrowed(margin_m) {
             for run in floor.runs_under(narrowed, from, to) {
-                self.guaranteed[run.range()].fill(true);
+                let first_ms = self.guaranteed_ms[run.range()].iter_mut();
+                first_ms.for_each(|first_ms| *first_ms = (*first_ms).min(milliseconds(t_s)));
             }
         }
+    }
+
+    /// Takes back the guarantee of cells that no pass before `since_s`, seconds, guarantees. Returns their number.
+    pub(crate) fn take_back(&mut self, since_s: f64) -> usize {
+        let since_ms = milliseconds(since_s);
+        let mut count = 0;
+        for (first_ms, is_taken) in self.guaranteed_ms.iter_mut().zip(&mut self.taken_back) {
+            if (since_ms..NOT_GUARANTEED).contains(first_ms) {
+                (*first_ms, *is_taken) = (NOT_GUARANTEED, true);
+                count += 1;
+            }
+        }
+        count
     }
 
     /// The half-width of the 95 % ellipse of a covariance, square metres, in the direction that matters to the tool:
@@ -78,14 +105,21 @@ impl Passes {
 
     /// Adds the passes of another run on the same floor.
     pub(crate) fn join(&mut self, other: &Self, is_in_both: impl Fn(usize) -> bool) {
-        self.guaranteed.iter_mut().zip(&other.guaranteed).for_each(|(own, other)| *own |= other);
+        let first_ms = self.guaranteed_ms.iter_mut().zip(&other.guaranteed_ms);
+        first_ms.for_each(|(own, other)| *own = (*own).min(*other));
+        self.taken_back.iter_mut().zip(&other.taken_back).for_each(|(own, other)| *own |= other);
         self.error_mm.iter_mut().zip(&other.error_mm).for_each(|(own, other)| *own = (*own).min(*other));
         self.overlap.join(&other.overlap, is_in_both);
     }
 
     /// Whether a cell was under the tool for every position within the 95 % error.
     pub fn is_guaranteed(&self, cell: usize) -> bool {
-        self.guaranteed[cell]
+        self.guaranteed_ms[cell] != NOT_GUARANTEED
+    }
+
+    /// Whether the guarantee of a cell was taken back, and no later pass guarantees the cell.
+    pub fn is_in_doubt(&self, cell: usize) -> bool {
+        self.taken_back[cell] && !self.is_guaranteed(cell)
     }
 
     /// The smallest 95 % error of a pass over a cell, millimetres; `None` if it was never passed.

@@ -66,6 +66,12 @@ impl Scanned {
         }
     }
 
+    /// Takes back the guarantee of floor that no pass before `since_s`, seconds, guarantees; returns its area, square
+    /// metres.
+    pub(crate) fn take_back(&mut self, since_s: f64) -> f64 {
+        self.passes.take_back(since_s) as f64 * self.believed.floor().cell_m2()
+    }
+
     /// The half-width of the 95 % ellipse of a covariance, square metres, that matters to the tool at a pose, metres.
     pub(crate) fn across_m(&self, here: Pose, covariance: &Matrix2<f64>) -> f64 {
         self.passes.across_m(covariance, here.heading_rad)

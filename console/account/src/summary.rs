@@ -1,6 +1,6 @@
 //! The figures of one run, as `run --json` prints them.
 
-use crate::{Account, Figure, VehicleRecord, drawn::DrawnZone, readings::ReadingsSummary};
+use crate::{Account, Figure, TakenBack, VehicleRecord, drawn::DrawnZone, readings::ReadingsSummary};
 use mission::{Check, Outcome, Parameters, Sandbox};
 use serde::{Deserialize, Serialize};
 
@@ -65,6 +65,9 @@ pub struct Summary {
     /// No-go zones that were drawn before or during the mission, in order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub zones_drawn: Vec<DrawnZone>,
+    /// Floor whose guarantee was taken back, because a station was found wrong; in order of time.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub taken_back: Vec<TakenBack>,
     /// The checks before the start, by the console and by the operator; empty for a run without an operator.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub checks: Vec<Check>,

@@ -3,6 +3,7 @@
 use crate::{
     cli::AccuracyArgs,
     output::{check_free, write_file},
+    plan::planned_path,
 };
 use account::estimate::forecast;
 use command::json::say_json;
@@ -10,24 +11,28 @@ use flight::{
     failure::{COMPLETE, bad_input},
     scenarios,
 };
+use planner_host::PluginDirs;
 use positioning::{AccuracyMap, advise};
 use report::{
-    forecast::{ForecastReport, clearance_warning, mirror_warning},
+    forecast::{CheckReport, ForecastReport, clearance_warning, mirror_warning},
     print::{say, warn_line},
 };
 use scenario::Scenario;
 use std::process::ExitCode;
 
 /// Runs `tankops accuracy`.
-pub(crate) fn accuracy(args: &AccuracyArgs) -> anyhow::Result<ExitCode> {
+pub(crate) fn accuracy(args: &AccuracyArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
     args.svg.as_ref().map_or(Ok(()), |file| check_free(file, Some(args.force), &[&args.scenario]))?;
     let (mission, drawing) = (&scenario.mission, scenario.sim.world.as_drawn());
     let forecast = forecast(mission, &drawing);
-    let map = AccuracyMap::new(&drawing, &forecast);
+    let risk = mission.locating.risk.unwrap_or_default();
+    let map = AccuracyMap::new(&drawing, &forecast).with_checks(&drawing, &forecast, &risk);
     let advice = args.advise.map(|count| advise(&drawing, count, &forecast)).transpose();
     let advice = advice.map_err(|error| bad_input(format!("--advise: {error}")))?;
-    let report = ForecastReport::new(&scenario.name, mission, &drawing, &map, advice);
+    let path = args.plan.then(|| planned_path(&scenario, plugins)).transpose()?;
+    let checks = CheckReport::new(mission, &drawing, (&map, &forecast), path.as_deref());
+    let report = ForecastReport::new(&scenario.name, mission, &drawing, &map, advice).with_checks(checks);
     if let Some(file) = &args.svg {
         write_file("the drawing", file, &report.svg(&drawing))?;
     }

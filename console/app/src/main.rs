@@ -88,7 +88,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Run(args)) => headless::run(&args, &plugins),
         Some(Command::Plan(args)) => plan::plan(&args, &plugins),
         Some(Command::Vehicle(VehicleCommand::Simulate(args))) => vehicle::simulate(&args),
-        Some(Command::Accuracy(args)) => accuracy::accuracy(&args),
+        Some(Command::Accuracy(args)) => accuracy::accuracy(&args, &plugins),
         Some(Command::Map(args)) => map::map(&args),
         Some(Command::Import(args)) => import::import(&args, &plugins),
         Some(Command::NewPlanner(args)) => new_planner::create(&args),

@@ -20,6 +20,7 @@ use report::{
 use scenario::Scenario;
 use serde::Serialize;
 use std::{path::Path, process::ExitCode, sync::Arc, time::Instant};
+use world::Point;
 
 /// Runs `tankops plan`.
 pub(crate) fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
@@ -126,6 +127,13 @@ fn format_of(file: &Path) -> anyhow::Result<Format> {
         "dxf" => Ok(Format::Dxf),
         _ => Err(bad_input(format!("{}: unknown plan format; use .csv, .geojson or .dxf", file.display()))),
     }
+}
+
+/// Plans the mission of a scenario; returns the path, which has at least two points, metres.
+pub(crate) fn planned_path(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Vec<Point>> {
+    let made = make_plan(scenario, plugins)?;
+    let why = made.reason.unwrap_or_else(|| "the planner gave no path".into());
+    if made.plan.path.len() < 2 { Err(bad_input(format!("--plan: {why}"))) } else { Ok(made.plan.path) }
 }
 
 fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Made> {

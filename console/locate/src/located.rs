@@ -345,6 +345,8 @@ impl Task<'_> {
         if survey.kind == Kind::Differences || survey.calibration.is_some() {
             config.locating.calibrate_sound_speed = false;
         }
+        // Readings are calibrated as a whole, and the doubts about them are known beforehand.
+        config.locating.session = None;
         if let Some(found) = &survey.calibration {
             config.locating.scale_sigma_ratio = found.scale().1;
         }

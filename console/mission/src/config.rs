@@ -4,7 +4,7 @@ use crate::{instrument::InstrumentConfig, planner::PlannerChoice};
 use geometry::motion::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD};
 use perception::Sensor;
 use planner_api::{Limits, Motion, TetherLimits, TetherPull};
-use positioning::{Aggregation, Forecast, RangeNoise, Risk, SolverKind, Timing};
+use positioning::{Aggregation, Forecast, RangeNoise, Risk, SessionConfig, SolverKind, Timing};
 use serde::{Deserialize, Serialize};
 use world::{Floor, FloorMaker, Point, Pose, PressureSensor, World, coverage::Tool, tether};
 
@@ -118,6 +118,9 @@ pub struct Locating {
     /// The risk for which protection levels are computed; `None` if they are not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub risk: Option<Risk>,
+    /// How the speed of sound and the stations are calibrated from the last fixes; `None` if they are not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub session: Option<SessionConfig>,
 }
 
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "signature required by serde")]
@@ -137,6 +140,7 @@ impl Default for Locating {
             repetitions: 20,
             needs_line_of_sight: false,
             risk: None,
+            session: None,
         }
     }
 }

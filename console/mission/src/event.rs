@@ -34,7 +34,7 @@ use crate::{
     way_back::WayBack,
 };
 use planner_api::{Command, Drawing, Drive, Leg, LegTag, LogLevel, PoseEstimate, Reason};
-use positioning::{Exclusion, Fix, FixError, Ranging, Unprotected};
+use positioning::{Estimated, Exclusion, Fix, FixError, Ranging, Unprotected};
 use serde::{Deserialize, Serialize};
 use vehicle::port::{LinkSeen, Notice};
 use world::tether::Certificate;
@@ -200,6 +200,35 @@ pub enum EventKind {
         /// The protection level, metres.
         level_m: f64,
     },
+    /// The errors of the ranges, estimated from the last fixes. Only in missions with a session calibration.
+    SessionCalibrated {
+        /// Share by which all ranges are too long.
+        scale: Estimated,
+    },
+    /// The ranges of a station are wrong by a constant length. Floor that was scanned since the bias may have begun is in
+    /// doubt, so it is not guaranteed any more.
+    StationBiased {
+        /// Id of the station.
+        station: StationId,
+        /// Length by which its ranges are too long, metres.
+        bias_m: Estimated,
+        /// Earliest mission time at which the bias may have begun, seconds.
+        since_s: f64,
+        /// Whether the bias is subtracted from now on; if not, the station is not used.
+        is_corrected: bool,
+    },
+    /// The ranges of a station that had a bias are right again.
+    StationUnbiased {
+        /// Id of the station.
+        station: StationId,
+    },
+    /// The last fixes cannot tell a bias of a station from an error of the speed of sound.
+    NotSeparable {
+        /// The correlation of the two errors, 0 to 1.
+        correlation: f64,
+    },
+    /// The last fixes can tell the two errors apart again.
+    Separable,
     /// The position error grew beyond the limit, or the fixes stopped.
     PositionLost {
         /// Half width of the 95 % error, metres.

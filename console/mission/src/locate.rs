@@ -2,6 +2,7 @@
 
 mod protection;
 mod scan_aid;
+mod session;
 
 use crate::{config::MissionConfig, event::EventKind};
 use perception::Matched;
@@ -12,6 +13,7 @@ use positioning::{
 };
 use protection::Protection;
 use scan_aid::ScanAid;
+use session::Session;
 use std::{
     collections::{BTreeMap, BTreeSet},
     mem::discriminant,
@@ -27,6 +29,8 @@ pub struct Locator {
     /// The protection of the pose; `None` if the scenario states no risk.
     protection: Option<Protection>,
     scan_aid: ScanAid,
+    /// The calibration from the last fixes; `None` if the scenario asks for none.
+    session: Option<Session>,
     limit_m: f64,
     /// The largest speed and turn rate of the robot, metres and radians per second.
     fastest: [f64; 2],
@@ -67,6 +71,7 @@ impl Locator {
         };
         Self {
             protection: locating.risk.map(|risk| Protection::new(&positioner, risk)),
+            session: locating.session.map(|how| Session::new(how, &positioner, config.tick_s)),
             positioner: Positioner::new(positioner),
             scan_aid: ScanAid::default(),
             limit_m: config.position_limit_m,
@@ -94,6 +99,7 @@ impl Locator {
     /// radians.
     pub fn wander(&mut self, most_m: f64, most_rad: f64) {
         self.positioner.wander(most_m, most_rad);
+        self.session.iter_mut().for_each(|session| session.wander(most_m));
         self.protection.iter_mut().for_each(|protection| protection.guard.wander(most_m, most_rad));
     }
 
@@ -130,6 +136,8 @@ impl Locator {
             let [most_m_per_s, most_rad_per_s] = self.fastest;
             self.wander(most_m_per_s * readings.unmeasured_s, most_rad_per_s * readings.unmeasured_s);
         }
+        let heading_rad = self.pose().heading_rad;
+        self.session.iter_mut().for_each(|session| session.predict(&readings.odometry, heading_rad));
         self.positioner.predict(&readings.odometry);
         self.protection.iter_mut().for_each(|protection| protection.guard.predict(&readings.odometry));
         let mut events: Vec<EventKind> = aided.into_iter().collect();
@@ -144,15 +152,24 @@ impl Locator {
 
     fn cycle(&mut self, readings: &Readings) -> Vec<EventKind> {
         let heard = readings.ranges.iter().filter(|set| !self.unused.contains(&set.station));
-        let heard: Vec<RangeSet> = heard.cloned().collect();
+        let mut heard: Vec<RangeSet> = heard.cloned().collect();
+        let mut events = Vec::new();
+        if let Some(session) = &mut self.session {
+            let estimate = self.positioner.estimate();
+            events = session.take(&heard, &estimate);
+            let doubt = session.doubt();
+            heard = session.corrected(&heard);
+            self.doubt(doubt);
+        }
         let mut result = self.positioner.cycle(&heard);
         self.protection.iter_mut().for_each(|protection| protection.guard.cycle(&heard, &result.fix));
         (self.impossible, self.sides) = (std::mem::take(&mut result.impossible), result.sides);
         if let Ok(fix) = &mut result.fix {
             let by_order = fix.excluded.iter_mut().filter(|(station, _)| self.unused.contains(station));
             by_order.for_each(|(_, reason)| *reason = Exclusion::ByOrder);
+            self.session.iter().for_each(|session| session.explain(fix));
         }
-        let mut events = vec![EventKind::Ranged { ranges: result.rangings }];
+        events.push(EventKind::Ranged { ranges: result.rangings });
         events.extend(self.heed(&result.fix));
         match result.fix {
             Ok(fix) => {

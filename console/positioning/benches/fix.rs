@@ -1,12 +1,12 @@
-//! Measures the time of fixes from 60 ranges, of fixes from eight stations of which some are wrong, and of filter
-//! steps.
+//! Measures the time of fixes from 60 ranges, of fixes from eight stations of which some are wrong, of protection
+//! levels, of the session calibration, and of filter steps.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::Matrix2;
 use positioning::{
     Aggregation, Bounded, Calibration, Consensus, Ekf, FixedLag, LinearLs, MotionNoise, Nls, Particles,
-    ParticlesConfig, PositionSolver, Positioner, PositionerConfig, RangeNoise, Screened, Unknowns,
-    WeightedLinear,
+    ParticlesConfig, PositionSolver, Positioner, PositionerConfig, RangeNoise, Risk, Screened,
+    SessionCalibration, SessionConfig, Timing, Unknowns, WeightedLinear, protection::level_m,
 };
 use rand::{RngExt, SeedableRng};
 use std::hint::black_box;
@@ -129,5 +129,30 @@ fn filter(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, fixes, eight_stations, filter);
+/// The design allows 2 us for a fix with its level, and 200 us for a step of the session calibration.
+fn integrity(criterion: &mut Criterion) {
+    for n in [6, 8] {
+        let (stations, risk) = (ring(n), Risk::default());
+        let rangings = Aggregation::Mean.aggregate(&cycle(&stations), &NOISE).expect("usable ranges");
+        criterion.bench_function(&format!("{n} stations, fix with protection level"), |b| {
+            b.iter(|| {
+                let fix = Nls.solve(black_box(&rangings), &stations, None).expect("a fix");
+                level_m(&fix, &stations, &risk, false)
+            });
+        });
+        let ways = (Aggregation::Mean, NOISE, Timing::default());
+        let config = SessionConfig::default();
+        let mut session = SessionCalibration::new(config, &stations, ways, MotionNoise::default());
+        let sets = cycle(&stations);
+        let mut t_s = 0.0;
+        criterion.bench_function(&format!("{n} stations, step of the session calibration"), |b| {
+            b.iter(|| {
+                t_s += 1.0;
+                session.take(black_box(&sets), (TRUTH, 0.02), t_s)
+            });
+        });
+    }
+}
+
+criterion_group!(benches, fixes, eight_stations, integrity, filter);
 criterion_main!(benches);

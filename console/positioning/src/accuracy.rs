@@ -6,9 +6,11 @@ pub mod checks;
 use crate::{
     fix::{Ranging, ellipse_95},
     noise::{RangeNoise, Timing},
+    protection::Risk,
     quality::{NO_GEOMETRY, inverse_of},
     sides::mirrored,
 };
+use checks::Checks;
 use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
 use world::{ObstacleMap, Point, Station, World};
@@ -50,6 +52,9 @@ pub struct Accuracy {
     /// ranges.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mirror: Option<Point>,
+    /// How well the stations check each other; absent without a fix, and in maps that do not contain it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub checks: Option<Checks>,
 }
 
 /// The forecast for every cell of the floor, row by row from the south-west corner.
@@ -80,6 +85,19 @@ impl AccuracyMap {
             .map(|at| (map.clearance_m(at) >= 0.0).then(|| forecast.at(at, &drawing.stations, &map)))
             .collect();
         Self { origin: grid.origin, cell_m: grid.cell_m, width: grid.width, height: grid.height, cells }
+    }
+
+    /// Adds to each cell how well the stations check each other there; see [`Forecast::checks_at`].
+    #[must_use]
+    pub fn with_checks(mut self, drawing: &World, forecast: &Forecast, risk: &Risk) -> Self {
+        let map = ObstacleMap::new(&drawing.boundary, &drawing.obstacles);
+        for index in 0..self.cells.len() {
+            let at = self.center(index);
+            if let Some(cell) = &mut self.cells[index] {
+                cell.checks = forecast.checks_at(at, &drawing.stations, &map, risk);
+            }
+        }
+        self
     }
 
     /// Returns the centre of a cell, metres.
@@ -123,6 +141,7 @@ impl Forecast {
             gdop: covariance.and_then(|_| sum.gdop()),
             heard: sum.heard,
             mirror: covariance.and_then(|_| self.mirror(place, heard(), stations)),
+            checks: None,
         }
     }
 

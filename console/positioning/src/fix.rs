@@ -86,6 +86,11 @@ pub enum Exclusion {
         /// The longest possible range, metres.
         most_m: f64,
     },
+    /// The session calibration found that the ranges of the station are wrong by a constant length.
+    Biased {
+        /// The length by which the ranges are too long, metres.
+        bias_m: f64,
+    },
 }
 
 /// How far the fix can be trusted.

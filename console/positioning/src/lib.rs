@@ -25,6 +25,7 @@ pub mod particle;
 pub mod positioner;
 pub mod protection;
 pub mod session;
+pub mod session_calibration;
 
 mod anchor;
 #[cfg(test)]
@@ -57,6 +58,7 @@ pub use protection::{Guard, Multipliers, Risk, Unprotected};
 pub use quality::{alarm_limit, scatter_limit};
 pub use screened::Screened;
 pub use session::{CommonError, Session, Verdict, Wrong};
+pub use session_calibration::{Estimated, News, OnBias, SessionCalibration, SessionConfig, SoundSpeed};
 pub use sides::{Sides, mirrored};
 pub use solver_kind::SolverKind;
 pub use weighted::WeightedLinear;

@@ -55,6 +55,9 @@ pub enum Unprotected {
     /// Fewer stations than a level needs.
     #[error("too few stations to check each other")]
     TooFewStations,
+    /// All stations are on one line, so that every place has a mirror image.
+    #[error("all stations are on one line")]
+    OnOneLine,
     /// Two wrong stations at once are more probable than the accepted risk.
     #[error("two wrong stations at once are more probable than the accepted risk")]
     TooRisky,

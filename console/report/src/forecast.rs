@@ -1,10 +1,12 @@
 //! Forecast of the accuracy of fixes, place by place, with advised station positions: for scripts and people, and as
 //! a picture.
 
+mod checks;
 mod mirror;
 
 use crate::drawing::forecast::svg;
 use account::estimate::forecast;
+pub use checks::CheckReport;
 pub use mirror::{Mirrored, line_of_stations};
 use mission::{MissionConfig, TaskConfig};
 use positioning::{Accuracy, AccuracyMap, Advice};
@@ -40,6 +42,8 @@ pub struct ForecastReport<'a> {
     beyond_limit: Vec<Place>,
     map: &'a AccuracyMap,
     advice: Option<Advice>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    checks: Option<CheckReport>,
 }
 
 #[derive(Debug, Serialize)]
@@ -89,7 +93,14 @@ impl<'a> ForecastReport<'a> {
             beyond_limit: beyond,
             map,
             advice,
+            checks: None,
         }
+    }
+
+    /// Adds how well the stations check each other.
+    #[must_use]
+    pub fn with_checks(self, checks: CheckReport) -> Self {
+        Self { checks: Some(checks), ..self }
     }
 
     /// The forecast as an SVG document; rings mark the advised stations.
@@ -131,6 +142,9 @@ impl<'a> ForecastReport<'a> {
         let rest = self.beyond_limit.len().saturating_sub(MOST_SHOWN);
         if rest > 0 {
             let _ = writeln!(text, "  and {rest} more cells of {:.2} m", self.map.cell_m);
+        }
+        if let Some(checks) = &self.checks {
+            text += &checks.human(self.map.cell_m);
         }
         if let Some(advice) = &self.advice {
             let _ = writeln!(

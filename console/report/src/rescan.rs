@@ -52,15 +52,21 @@ pub fn rescan(runs: &[PastRun], min_area_m2: f64, most: usize) -> Result<Rescan,
     let Joined { run, scanned, evidence } = joined(runs)?;
     let grid = scanned.believed();
     let floor = grid.floor();
-    let is_missed = |index: usize| floor.is_reachable(index) && !grid.is_covered(index);
+    let is_in_doubt = |index: usize| grid.is_covered(index) && scanned.passes().is_in_doubt(index);
+    let is_missed =
+        |index: usize| floor.is_reachable(index) && (!grid.is_covered(index) || is_in_doubt(index));
     let lanes = updated_floor(run, floor, &evidence, run.mission.lane_m()).into_floor();
     let (swath_m, reasons) = (run.mission.swath_m, evidence.reasons(run));
     let is_asked = |index: usize| is_missed(index) && evidence.is_asked(index);
-    let why_missed = |index: usize| reasons.why_missed(floor.center(index), index);
+    let why_missed = |index: usize| {
+        let missed = || reasons.why_missed(floor.center(index), index);
+        if is_in_doubt(index) { MissReason::InDoubt } else { missed() }
+    };
     let no_lane = |index: usize| {
         let is_narrow = || !lanes.is_reachable(index) || reasons.beyond_lanes_m(floor.center(index)) > 0.0;
         match why_missed(index) {
             MissReason::BeyondReel => Some(MissReason::BeyondReel),
+            MissReason::InDoubt => None,
             _ => is_narrow().then_some(MissReason::Narrow),
         }
     };

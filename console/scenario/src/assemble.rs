@@ -197,13 +197,16 @@ impl Floor {
         if let (Some(section), Some(heard)) = (ae, &mut heard) {
             heard.disturbances.faults = ranging::faults(section, &stations);
         }
+        let locating = ae
+            .zip(heard.as_ref())
+            .and_then(|(section, heard)| ranging::locating(section, heard, stations.len()));
         Self {
             obstacles,
             movers,
             zones: floor::zones(sections.root),
             robot: sections.robot.as_ref().and_then(robot::robot),
             stations,
-            locating: ae.zip(heard.as_ref()).and_then(|(section, heard)| ranging::locating(section, heard)),
+            locating,
             ae: heard,
             boundary,
         }

@@ -2,13 +2,16 @@
 
 use super::{floor::Names, problem::Complaint, section::Section};
 use mission::{Locating, spelling::nearest};
-use positioning::{Aggregation, RangeNoise, Risk, SolverKind, Timing};
+use positioning::{Aggregation, OnBias, RangeNoise, Risk, SessionConfig, SolverKind, SoundSpeed, Timing};
 use sim::{AeConfig, BehindColumns, Disturbances, NoiseModel, StationFault, TimingErrors};
 use world::{Boundary, Station, StationId};
 
 /// The largest distance in metres by which a station may be outside the wall: sensors are mounted on the wall, and
 /// drawings are rounded to centimetres.
 const ON_WALL_M: f64 = 0.01;
+
+/// The least number of stations of a session calibration: without one of them, the others must still give a fix.
+const LEAST_STATIONS: usize = 4;
 
 /// Reads `[ae]` except for its stations.
 pub(crate) fn ae(section: &Section<'_>) -> Option<AeConfig> {
@@ -28,7 +31,7 @@ pub(crate) fn ae(section: &Section<'_>) -> Option<AeConfig> {
 }
 
 /// The estimator's settings for ranging. The estimator uses the stated scatter, but has no information about faults.
-pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig) -> Option<Locating> {
+pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig, n_stations: usize) -> Option<Locating> {
     let (solver, aggregation) = (section.word("solver"), section.word("aggregation"));
     let calibrate_sound_speed = section.flag("calibrate_sound_speed");
     let noise = match ae.noise {
@@ -66,6 +69,7 @@ pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig) -> Option<Locating>
         },
         calibrate_sound_speed: calibrate_sound_speed?,
         risk: risk(section),
+        session: session(section, calibrate_sound_speed?, n_stations)?,
         repetitions: ae.repetitions,
         needs_line_of_sight: !matches!(behind, BehindColumns::Heard | BehindColumns::Creeping),
     })
@@ -80,6 +84,35 @@ fn risk(section: &Section<'_>) -> Option<Risk> {
         integrity_risk: risk.unwrap_or(default.integrity_risk),
         station_faults_per_hour: faults.unwrap_or(default.station_faults_per_hour),
     })
+}
+
+/// The calibration from the last fixes; `None` within if it is off.
+fn session(
+    section: &Section<'_>,
+    calibrates_scale: bool,
+    n_stations: usize,
+) -> Option<Option<SessionConfig>> {
+    let (model, on_bias) = (section.word("session_calibration"), section.word("biased_station"));
+    let fixes = section.whole("session_fixes")?;
+    let on_bias = if on_bias? == "correct" { OnBias::Correct } else { OnBias::Exclude };
+    let sound_speed = match model? {
+        "constant" => SoundSpeed::Constant,
+        "linear" => SoundSpeed::Linear,
+        _ => {
+            section.refuse(&["session_fixes", "biased_station"], "session_calibration = \"off\"");
+            return Some(None);
+        }
+    };
+    if n_stations < LEAST_STATIONS {
+        let must_be =
+            format!("\"off\" with fewer than {LEAST_STATIONS} stations: none of them could be tested");
+        section.complain("session_calibration", Complaint::OutOfRange(must_be));
+    }
+    if calibrates_scale {
+        let must_be = "false: session_calibration also estimates the speed of sound";
+        section.complain("calibrate_sound_speed", Complaint::OutOfRange(must_be.into()));
+    }
+    Some(Some(SessionConfig { sound_speed, on_bias, fixes: fixes as usize }))
 }
 
 /// Refuses methods that assume noise proportional to distance if the times also have errors.

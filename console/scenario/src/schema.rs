@@ -396,6 +396,9 @@ static AE: &[Key] = &[
     key("calibrate_sound_speed", "", Kind::Flag).or_flag(false),
     number("integrity_risk", "", above(0.0).up_to(0.01)).or_none("no protection levels, or `1e-5`"),
     number("station_faults_per_hour", "", above(0.0).up_to(1.0)).or_none("no protection levels, or `1e-4`"),
+    word("session_calibration", &["off", "constant", "linear"]).or_word("off"),
+    key("session_fixes", "", Kind::Whole(20, 200)).or_whole(60),
+    word("biased_station", &["exclude", "correct"]).or_word("exclude"),
 ];
 
 static FAULTS: &[Key] = &[

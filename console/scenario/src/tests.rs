@@ -320,6 +320,34 @@ const MISTAKES: &[(&str, &str, &str)] = &[
         "5:65: ae.stations.1.at_m = [5, 0]: is the same as that of station \"A\"",
     ),
     (
+        "[ae]",
+        "[ae]\nsession_calibration = \"cubic\"",
+        "5:23: ae.session_calibration = \"cubic\": must be one of off, constant, linear",
+    ),
+    (
+        "[ae]",
+        "[ae]\nsession_calibration = \"linear\"",
+        "5:23: ae.session_calibration = \"linear\": must be \"off\" with fewer than 4 stations: none of them could be tested",
+    ),
+    (
+        "[ae]",
+        "[ae]\nsession_fixes = 30",
+        "5:17: ae.session_fixes = 30: has no effect with session_calibration = \"off\"",
+    ),
+    ("[ae]", "[ae]\nsession_fixes = 19", "5:17: ae.session_fixes = 19: must be at least 20"),
+    ("[ae]", "[ae]\nsession_fixes = 201", "5:17: ae.session_fixes = 201: must be at most 200"),
+    ("[ae]", "[ae]\nsession_fixes = 1e99", "5:17: ae.session_fixes = 1e99: must be a whole number"),
+    (
+        "[ae]",
+        "[ae]\nbiased_station = \"correct\"",
+        "5:18: ae.biased_station = \"correct\": has no effect with session_calibration = \"off\"",
+    ),
+    (
+        "[ae]",
+        "[ae]\nbiased_station = \"ignore\"",
+        "5:18: ae.biased_station = \"ignore\": must be one of exclude, correct",
+    ),
+    (
         "name = \"B\"",
         "name = \"A\"",
         "5:53: ae.stations.1.name = \"A\": is the same as that of ae.stations.0.name",

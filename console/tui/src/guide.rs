@@ -21,6 +21,8 @@ pub fn name(cause: &Cause, of: &Run) -> String {
         Cause::PositionLost => "position lost".into(),
         Cause::Contradiction => "AE ranges contradict each other".into(),
         Cause::NotProtected => "position not protected".into(),
+        Cause::Bias(id) => format!("station {} biased", of.station_name(*id).trim_start_matches("station ")),
+        Cause::NotSeparable => "station bias not separable".into(),
         Cause::NoFix => "no position fix".into(),
         Cause::Station(id) => {
             format!("station {} rejected", of.station_name(*id).trim_start_matches("station "))
@@ -56,6 +58,8 @@ pub fn guide(cause: &Cause) -> Guide {
         Cause::PositionLost => position::POSITION_LOST,
         Cause::Contradiction => position::CONTRADICTION,
         Cause::NotProtected => position::NOT_PROTECTED,
+        Cause::Bias(_) => position::BIAS,
+        Cause::NotSeparable => position::NOT_SEPARABLE,
         Cause::NoFix => position::NO_FIX,
         Cause::Station(_) => position::STATION,
         Cause::Recording => console::RECORDING,

@@ -30,6 +30,8 @@ pub enum MissReason {
     NotReached,
     /// A plan led to the floor, but the robot passed to one side of it.
     PassedBeside,
+    /// Scanned while a station was wrong, so that its guarantee was taken back.
+    InDoubt,
 }
 
 /// The reason why floor is unreachable.
@@ -95,6 +97,7 @@ impl Explained for MissReason {
                 format!("planned, not reached: mission ended up to {value_m:.1} m earlier")
             }
             Self::PassedBeside => format!("planned, but the robot passed {value_m:.2} m to one side"),
+            Self::InDoubt => self.plainly().to_owned(),
         }
     }
 
@@ -119,6 +122,7 @@ impl MissReason {
             Self::BeyondReel => "not planned (beyond the tether)",
             Self::NotReached => "mission ended",
             Self::PassedBeside => "the robot passed to one side",
+            Self::InDoubt => "scanned while a station was wrong",
         }
     }
 
@@ -136,6 +140,7 @@ impl MissReason {
             Self::BeyondReel => "not planned (beyond the tether)",
             Self::NotReached => "planned, not reached: mission ended",
             Self::PassedBeside => "planned, but the robot passed to one side",
+            Self::InDoubt => "scanned while a station was wrong, guarantee taken back",
         }
     }
 }

@@ -105,7 +105,7 @@ impl Reasons<'_> {
             MissReason::Wrap => least(&|cell| self.cut_m(floor.center(cell))).map(Measure::of),
             MissReason::NotPlanned => depth(&|cell| evidence.is_passed(cell) || evidence.is_ahead(cell))
                 .map(|m| Measure::of(m).against(self.lane_m)),
-            MissReason::NoPlan => None,
+            MissReason::NoPlan | MissReason::InDoubt => None,
             MissReason::BeyondReel => {
                 let reach = self.reach.as_ref()?;
                 most(&|cell| reach.beyond_m(floor.center(cell)))

@@ -252,7 +252,7 @@ fn guaranteed_is_what_the_tool_passed_wherever_the_robot_stood_within_its_error(
         let covariance = Matrix2::from_row_slice(&covariance_m2);
         scanned.visit(at(-1.0), None);
         let margin_m = scanned.across_m(at(1.0), &covariance);
-        scanned.visit(at(1.0), Some(Margins { error_m: 0.25, margin_m }));
+        scanned.visit(at(1.0), Some(Margins { error_m: 0.25, margin_m, t_s: 0.0 }));
         believed.mark(run.mission.tool(), at(-1.0), at(1.0));
     }
     scanned.believe(&runs_of((0..run.floor.len()).filter(|index| believed.is_covered(*index))));

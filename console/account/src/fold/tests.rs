@@ -115,6 +115,35 @@ fn floor_that_is_passed_while_a_held_robot_brakes_has_an_error_and_is_guaranteed
 }
 
 #[test]
+fn a_biased_station_takes_the_guarantee_back_until_a_later_pass() {
+    let start = json!({ "event": "ordered", "order": "start" });
+    let bias_m = json!({ "value": 0.15, "sigma": 0.02 });
+    let biased = json!({
+        "event": "station_biased", "station": 1, "bias_m": bias_m, "since_s": 1.0, "is_corrected": false
+    });
+    let there = [(0, opened()), (0, start), (1, estimated(0.25, 0.0, 0.01)), (3, estimated(1.25, 0.0, 0.01))];
+    let passed = |events: &[(u64, Value)]| {
+        let run = fold(events);
+        let (scanned, area_m2) =
+            (run.scanned().unwrap(), run.summary().taken_back.first().map(|t| t.area_m2));
+        let count =
+            |is: &dyn Fn(usize) -> bool| (0..scanned.believed().floor().len()).filter(|c| is(*c)).count();
+        let passes = scanned.passes();
+        (count(&|cell| passes.is_guaranteed(cell)), count(&|cell| passes.is_in_doubt(cell)), area_m2)
+    };
+    let (early, ..) = passed(&there[..3]);
+    let (all, none, _) = passed(&there);
+    assert!(early > 0 && all > early && none == 0, "{early} of {all}");
+    let doubted = [&there[..], &[(4, biased)]].concat();
+    let (left, in_doubt, area_m2) = passed(&doubted);
+    assert_eq!((left, in_doubt), (early, all - early));
+    assert!(area_m2.unwrap() > 0.0);
+    let back = [&doubted[..], &[(5, estimated(0.25, 0.0, 0.01))]].concat();
+    let (again, in_doubt, _) = passed(&back);
+    assert_eq!((again, in_doubt), (all, 0));
+}
+
+#[test]
 fn nothing_counts_before_the_start() {
     let run = fold(&[(0, opened()), (0, estimated(-1.75, 0.0, 0.01)), (1, estimated(-1.25, 0.0, 0.01))]);
     let passes = run.scanned().unwrap().passes();

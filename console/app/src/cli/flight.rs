@@ -82,6 +82,9 @@ pub(crate) struct AccuracyArgs {
     /// Find the best positions on the wall for this many stations, 3 to 32.
     #[arg(long, value_name = "N")]
     pub advise: Option<usize>,
+    /// Plan the mission, and judge the session of fixes along the planned path.
+    #[arg(long)]
+    pub plan: bool,
 }
 
 fn seconds(text: &str) -> Result<f64, String> {

@@ -66,6 +66,28 @@ impl Event {
             EventKind::ProtectionRegained { level_m } => {
                 line(Severity::Info, "ae", format!("position protected again: level {level_m:.2} m"))
             }
+            EventKind::StationBiased { station, bias_m, since_s, is_corrected } => {
+                let name = station_text(*station, stations);
+                let value_m = bias_m.value;
+                let deed = if *is_corrected { "corrected" } else { "not used" };
+                let text = format!(
+                    "{name} {deed}: ranges wrong by {value_m:+.2} m; floor in doubt since {since_s:.0} s"
+                );
+                line(Severity::Warn, "ae", text)
+            }
+            EventKind::StationUnbiased { station } => {
+                let name = station_text(*station, stations);
+                line(Severity::Info, "ae", format!("{name} without bias again"))
+            }
+            EventKind::NotSeparable { correlation } => {
+                let text = format!(
+                    "station bias and wrong speed of sound not separable (correlation {correlation:.2})"
+                );
+                line(Severity::Warn, "ae", text)
+            }
+            EventKind::Separable => {
+                line(Severity::Info, "ae", "station bias and wrong speed of sound separable again".into())
+            }
             EventKind::RangesInconsistent { chi2, degrees_of_freedom } => line(
                 Severity::Crit,
                 "ae",
@@ -195,6 +217,7 @@ impl Event {
             | EventKind::FixFailed { .. }
             | EventKind::Estimated { .. }
             | EventKind::Protected { .. }
+            | EventKind::SessionCalibrated { .. }
             | EventKind::ObstacleMoved { .. }
             | EventKind::Commanded { .. }
             | EventKind::Snapshotted { .. }
@@ -502,6 +525,7 @@ fn exclusion_text(reason: &Exclusion) -> String {
     match reason {
         Exclusion::Silent => "not heard".into(),
         Exclusion::ByOrder => "excluded by the operator".into(),
+        Exclusion::Biased { bias_m } => format!("ranges wrong by {bias_m:+.2} m"),
         Exclusion::Residual { residual_m, gate_m } => {
             format!("residual {residual_m:.2} m, gate {gate_m:.2} m")
         }

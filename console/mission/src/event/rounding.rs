@@ -141,6 +141,10 @@ impl EventKind {
             Self::Fixed { fix } => round_fix(fix),
             Self::Protected { level_m } => level_m.iter_mut().for_each(round),
             Self::ProtectionRegained { level_m } => round(level_m),
+            Self::SessionCalibrated { scale: both } | Self::StationBiased { bias_m: both, .. } => {
+                [&mut both.value, &mut both.sigma].into_iter().for_each(round);
+            }
+            Self::NotSeparable { correlation } => round(correlation),
             Self::Estimated { pose: PoseEstimate { position, heading_rad, covariance } } => {
                 round_point(position);
                 round(heading_rad);
@@ -195,6 +199,7 @@ fn round_fix(fix: &mut Fix) {
             | Exclusion::Impossible { range_m: one, most_m: other } => {
                 [one, other].into_iter().for_each(round);
             }
+            Exclusion::Biased { bias_m } => round(bias_m),
             Exclusion::Silent | Exclusion::ByOrder => {}
         }
     }

@@ -6,13 +6,16 @@ use crate::{
     positioner::{Doubt, Positioner, PositionerConfig},
     quality::largest_sigma_m,
 };
-use world::{Odometry, Point, RangeSet, Station, StationId};
+use nalgebra::Matrix2;
+use world::{Odometry, Point, RangeSet, Station, StationId, Vector};
 
 /// The least number of stations: without one of them, the others must still exclude a mirror image.
 const NEEDED: usize = 4;
 /// The number of cycles in a row without a fix after which the pose counts as not protected: the level covers wrong
 /// stations, but not slip of the tracks.
 const MOST_SILENT: u32 = 10;
+/// Least width of the layout of the stations, as a share of its length.
+const LEAST_WIDTH: f64 = 0.01;
 /// The number of cycles in a row whose ranges must contradict a hypothesis to disprove it. One correct cycle in 1000
 /// does, so a correct hypothesis is lost in one of 10^15 cycles.
 const DISPROVED_AFTER: u32 = 5;
@@ -26,6 +29,7 @@ const DISPROVED_AFTER: u32 = 5;
 pub struct Guard {
     risk: Risk,
     others: Vec<Other>,
+    is_on_line: bool,
     /// Whether the last ranges fit the hypothesis that at most one station is wrong.
     is_explained: bool,
     /// Cycles in a row without a fix.
@@ -59,7 +63,13 @@ impl Guard {
         let plain = PositionerConfig { risk: None, ..config.clone() };
         let positioner = Positioner::new(plain);
         let other = |s: &Station| Other { station: s.id, positioner: positioner.clone(), contradicted: 0 };
-        Self { risk, others: config.stations.iter().map(other).collect(), is_explained: true, silent: 0 }
+        Self {
+            risk,
+            others: config.stations.iter().map(other).collect(),
+            is_on_line: is_on_line(&config.stations),
+            is_explained: true,
+            silent: 0,
+        }
     }
 
     /// Moves all hypotheses by one tick of odometry.
@@ -96,6 +106,9 @@ impl Guard {
         if n < NEEDED {
             return Err(Unprotected::TooFewStations);
         }
+        if self.is_on_line {
+            return Err(Unprotected::OnOneLine);
+        }
         if self.silent >= MOST_SILENT {
             return Err(Unprotected::Silent);
         }
@@ -112,6 +125,19 @@ impl Guard {
         }
         if level_m.is_finite() { Ok(level_m) } else { Err(Unprotected::TooFewStations) }
     }
+}
+
+/// Whether all stations are nearly on one line, or in one place.
+fn is_on_line(stations: &[Station]) -> bool {
+    let mean = stations.iter().map(|s| s.position.coords).sum::<Vector>() / stations.len().max(1) as f64;
+    let spread: Matrix2<f64> = stations
+        .iter()
+        .map(|station| station.position.coords - mean)
+        .map(|away| away * away.transpose())
+        .sum();
+    let spreads = spread.symmetric_eigenvalues();
+    // The comparison also holds for stations in one place.
+    spreads.min() <= spreads.max() * LEAST_WIDTH.powi(2)
 }
 
 fn contradicts(fix: &Result<Fix, FixError>) -> bool {

@@ -5,7 +5,7 @@ use crate::{
     past_run::PastRun,
     record::{Incident, StationRecord},
 };
-use account::{Accuracy, Positioning, Summary, Tether};
+use account::{Accuracy, Positioning, Summary, TakenBack, Tether};
 use mission::Outcome;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -149,6 +149,9 @@ pub struct RunPart {
     pub accuracy: Option<Accuracy>,
     /// Accuracy of the position compared with the true position.
     pub positioning: Option<Positioning>,
+    /// Floor whose guarantee was taken back, because a station was found wrong.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub taken_back: Vec<TakenBack>,
     /// The tether record.
     pub tether: Option<TetherPart>,
     /// The fixes, station by station.
@@ -190,6 +193,7 @@ impl RunPart {
             drivers: record.planners.iter().map(driver).collect(),
             accuracy: summary.accuracy,
             positioning: summary.positioning,
+            taken_back: summary.taken_back.clone(),
             tether: tether(past, summary),
             stations: record.stations(),
             incidents: record.incidents(),

@@ -113,6 +113,13 @@ fn sort(kind: &EventKind) -> Option<(&'static str, Option<String>, Option<String
         EventKind::PositionRegained { .. } => ("", None, key("position")),
         EventKind::ProtectionLost { .. } => ("alarm", key("protection"), None),
         EventKind::ProtectionRegained { .. } => ("", None, key("protection")),
+        EventKind::StationBiased { station, .. } => {
+            let bias = format!("bias {}", station.0);
+            ("alarm", key(&bias), key(&bias))
+        }
+        EventKind::StationUnbiased { station } => ("", None, key(&format!("bias {}", station.0))),
+        EventKind::NotSeparable { .. } => ("alarm", key("separable"), None),
+        EventKind::Separable => ("", None, key("separable")),
         EventKind::RangesInconsistent { .. } => ("alarm", key("ranges"), None),
         EventKind::RangesConsistent => ("", None, key("ranges")),
         EventKind::TetherAlarmRaised { alarm, .. } => ("alarm", key(alarm.word()), None),

@@ -41,6 +41,28 @@ pub(super) const NOT_PROTECTED: Guide = Guide {
     ],
 };
 
+pub(super) const BIAS: Guide = Guide {
+    cause: "All ranges of the station are too long or too short by the same length: its clock, its survey data or its \
+    coupling to the shell changed.",
+    holds: "",
+    effect: "Floor scanned since the bias may have begun is in doubt: its guarantee is taken back. The station is not \
+    used, or corrected (scenario: biased_station).",
+    remedies: &[
+        check("Check the clock and the coupling of the station."),
+        check("After the mission, scan the floor in doubt again: <rescan> on the screen Result."),
+        SHOW,
+        HOLD,
+    ],
+};
+
+pub(super) const NOT_SEPARABLE: Guide = Guide {
+    cause: "At the places of the last fixes, a station with a bias looks like a wrong speed of sound: too few stations \
+    are heard, or the robot moved too little.",
+    holds: "",
+    effect: "A bias of a station is not detected meanwhile.",
+    remedies: &[wait("Wait until the robot has moved on."), HOLD],
+};
+
 pub(super) const NO_FIX: Guide = Guide {
     cause: "No position can be computed from the ranges of this cycle: too few stations were heard, or they \
     are all on one line.",

@@ -64,6 +64,11 @@ impl Run {
             | EventKind::Protected { .. }
             | EventKind::ProtectionLost { .. }
             | EventKind::ProtectionRegained { .. }
+            | EventKind::SessionCalibrated { .. }
+            | EventKind::StationBiased { .. }
+            | EventKind::StationUnbiased { .. }
+            | EventKind::NotSeparable { .. }
+            | EventKind::Separable
             | EventKind::PositionLost { .. }
             | EventKind::PositionRegained { .. }
             | EventKind::RangesInconsistent { .. }
@@ -218,7 +223,9 @@ impl Run {
         self.coverage = Some(Raster::new(run.floor.clone()));
         let (low, high) = run.world.boundary.bounds();
         let forecast = run.mission.forecast((high - low).amax() / FORECAST_CELLS);
-        let accuracy = AccuracyMap::new(&run.world.as_drawn(), &forecast);
+        let risk = run.mission.locating.risk.unwrap_or_default();
+        let drawing = run.world.as_drawn();
+        let accuracy = AccuracyMap::new(&drawing, &forecast).with_checks(&drawing, &forecast, &risk);
         self.accuracy_stamp = accuracy_stamp(&accuracy, run.mission.position_limit_m);
         self.accuracy = Some(accuracy);
         self.planning.choice = Some(run.mission.planner.clone());
@@ -290,10 +297,11 @@ impl Run {
     }
 }
 
-/// Mixes the forecast errors and their limit into a stamp (FNV-1a).
+/// Mixes the forecast errors, the levels and their limit into a stamp (FNV-1a).
 fn accuracy_stamp(map: &AccuracyMap, limit_m: f64) -> u64 {
-    let error_m = |cell: &Option<Accuracy>| cell.and_then(|cell| cell.error_95_m).unwrap_or(f64::INFINITY);
-    let errors_m = map.cells.iter().map(error_m);
+    let level_m = |cell: Accuracy| cell.checks.and_then(|checks| checks.level_m);
+    let both_m = |cell: &Option<Accuracy>| [cell.and_then(|cell| cell.error_95_m), cell.and_then(level_m)];
+    let errors_m = map.cells.iter().flat_map(both_m).map(|length| length.unwrap_or(f64::INFINITY));
     [map.origin.x, map.origin.y, map.cell_m, map.width as f64, limit_m]
         .into_iter()
         .chain(errors_m)

@@ -23,6 +23,9 @@ pub struct Position {
     /// protected.
     #[serde(default)]
     pub protection: Option<Option<f64>>,
+    /// The share by which all ranges are too long; `None` if the mission does not estimate it.
+    #[serde(default)]
+    pub scale: Option<positioning::Estimated>,
     /// The last fix.
     pub fix: Option<Fix>,
     /// Mission time of the fix, seconds.

@@ -173,12 +173,22 @@ pub enum MapLayer {
     Accuracy,
     /// The points of the last scan.
     Scan,
+    /// Floor where fixes are forecast to have a large protection level, or none.
+    Protection,
 }
 
 impl MapLayer {
     /// All layers, in the order of the layer list.
-    pub const ALL: [Self; 7] =
-        [Self::Scanned, Self::Trail, Self::Plan, Self::Drawings, Self::Stations, Self::Accuracy, Self::Scan];
+    pub const ALL: [Self; 8] = [
+        Self::Scanned,
+        Self::Trail,
+        Self::Plan,
+        Self::Drawings,
+        Self::Stations,
+        Self::Accuracy,
+        Self::Scan,
+        Self::Protection,
+    ];
 
     /// The layer's name in the list.
     pub fn name(self) -> &'static str {
@@ -190,6 +200,7 @@ impl MapLayer {
             Self::Stations => "AE stations",
             Self::Accuracy => "accuracy forecast",
             Self::Scan => "scan points",
+            Self::Protection => "protection level",
         }
     }
 }
@@ -201,9 +212,10 @@ pub struct Layers {
 }
 
 impl Default for Layers {
-    /// Shows every layer except the forecast, which is for planning rather than for watching.
+    /// Shows every layer except the forecasts, which are for planning rather than for watching.
     fn default() -> Self {
-        Self { hidden: MapLayer::ALL.map(|layer| layer == MapLayer::Accuracy) }
+        let is_forecast = |layer| matches!(layer, MapLayer::Accuracy | MapLayer::Protection);
+        Self { hidden: MapLayer::ALL.map(is_forecast) }
     }
 }
 

@@ -47,6 +47,7 @@ fn is_telemetry(kind: &EventKind) -> bool {
         kind,
         EventKind::Estimated { .. }
             | EventKind::Protected { .. }
+            | EventKind::SessionCalibrated { .. }
             | EventKind::Ranged { .. }
             | EventKind::Fixed { .. }
             | EventKind::Tethered { .. }

@@ -86,7 +86,9 @@ fn largest_residual(model: &Model) -> Option<(StationId, f64)> {
     let used = fix.residuals.iter().map(|residual| (residual.station, residual.residual_m));
     let rejected = fix.excluded.iter().filter_map(|(station, why)| match why {
         Exclusion::Residual { residual_m, .. } => Some((*station, *residual_m)),
-        Exclusion::Silent | Exclusion::ByOrder | Exclusion::Impossible { .. } => None,
+        Exclusion::Silent | Exclusion::ByOrder | Exclusion::Impossible { .. } | Exclusion::Biased { .. } => {
+            None
+        }
     });
     used.chain(rejected).max_by(|one, other| one.1.abs().total_cmp(&other.1.abs()))
 }

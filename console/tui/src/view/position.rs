@@ -47,6 +47,10 @@ fn wide_lines(look: &Look, inner: Rect) -> Vec<(u8, Line<'static>)> {
         ),
         (4, curve(look, columns)),
     ];
+    if let Some(scale) = run.position.scale {
+        let words = format!("{:+.2} % ±{:.2} %", 100.0 * scale.value, 200.0 * scale.sigma);
+        lines.push((2, row("all ranges", (Role::Text, words))));
+    }
     let rows = usize::from(inner.height).saturating_sub(lines.len()).max(1);
     lines.extend(station_lines(look, columns, rows).into_iter().map(|line| (3, line)));
     lines
@@ -235,6 +239,7 @@ fn rejected(run: &Run, id: StationId, why: &Exclusion) -> String {
     match why {
         Exclusion::Silent => format!("{name} not heard"),
         Exclusion::ByOrder => format!("{name} excluded"),
+        Exclusion::Biased { bias_m } => format!("{name} biased by {} m", text::number(*bias_m, 2)),
         Exclusion::Impossible { range_m, most_m } => {
             format!("{name} impossible: {} > {} m", text::number(*range_m, 1), text::number(*most_m, 1))
         }

@@ -105,6 +105,7 @@ fn state(look: &Look, station: StationId) -> (Role, Option<f64>, Option<f64>, &'
     match left_out {
         Some((_, Exclusion::Silent)) => (Role::Watch, None, None, "SILENT"),
         Some((_, Exclusion::ByOrder)) => (Role::Watch, None, None, "EXCLUDED"),
+        Some((_, Exclusion::Biased { bias_m })) => (Role::Watch, Some(*bias_m), None, "BIASED"),
         Some((_, Exclusion::Impossible { .. })) => (Role::Watch, None, None, "INVALID"),
         Some((_, Exclusion::Residual { residual_m, gate_m })) => {
             (Role::Watch, Some(*residual_m), Some(*gate_m), "REJECTED")

@@ -213,6 +213,8 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
         Block::Pair(vec![picture(&pictures.accuracy), picture(&pictures.guaranteed)]),
         Block::Table(accuracy_statement(document)),
     ];
+    let taken_back = document.runs.iter().flat_map(|run| &run.taken_back);
+    blocks.extend(taken_back.map(|floor| Block::Text(format!("Guarantee taken back: {floor}."))));
     blocks.extend(truth);
     blocks
 }

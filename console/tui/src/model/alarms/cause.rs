@@ -13,6 +13,10 @@ pub enum Cause {
     Contradiction,
     /// The position is not protected against a wrong station.
     NotProtected,
+    /// The ranges of a station are wrong by a constant length.
+    Bias(world::StationId),
+    /// A bias of a station and a wrong speed of sound cannot be told apart.
+    NotSeparable,
     /// No position can be computed from the ranges.
     NoFix,
     /// A station is not used in the fix.
@@ -74,6 +78,10 @@ impl Cause {
             EventKind::PositionLost { .. } | EventKind::PositionRegained { .. } => Self::PositionLost,
             EventKind::RangesInconsistent { .. } | EventKind::RangesConsistent => Self::Contradiction,
             EventKind::ProtectionLost { .. } | EventKind::ProtectionRegained { .. } => Self::NotProtected,
+            EventKind::StationBiased { station, .. } | EventKind::StationUnbiased { station } => {
+                Self::Bias(*station)
+            }
+            EventKind::NotSeparable { .. } | EventKind::Separable => Self::NotSeparable,
             EventKind::FixFailed { .. } => Self::NoFix,
             EventKind::ObstacleFound { .. } => Self::Map,
             EventKind::NotThere { name, .. } => Self::NotThere(name.clone()),
@@ -102,6 +110,8 @@ impl Cause {
             Self::PositionLost => "position_lost".into(),
             Self::Contradiction => "contradiction".into(),
             Self::NotProtected => "not_protected".into(),
+            Self::Bias(id) => format!("bias {}", id.0),
+            Self::NotSeparable => "not_separable".into(),
             Self::NoFix => "no_fix".into(),
             Self::Station(id) => format!("station {}", id.0),
             Self::Map => "map".into(),
@@ -162,6 +172,8 @@ impl Cause {
             Self::PositionLost,
             Self::Contradiction,
             Self::NotProtected,
+            Self::Bias(world::StationId(1)),
+            Self::NotSeparable,
             Self::NoFix,
             Self::Station(world::StationId(1)),
             Self::Map,
@@ -195,6 +207,8 @@ impl Cause {
                 Self::PositionLost
                 | Self::Contradiction
                 | Self::NotProtected
+                | Self::Bias(_)
+                | Self::NotSeparable
                 | Self::NoFix
                 | Self::Station(_)
                 | Self::Map

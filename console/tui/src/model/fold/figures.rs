@@ -99,6 +99,7 @@ fn residual(reason: &Exclusion) -> Reading {
     match reason {
         Exclusion::Silent => words("not heard"),
         Exclusion::ByOrder => words("excluded"),
+        Exclusion::Biased { bias_m } => Reading { now: format!("{bias_m:+.2} m"), ..Reading::default() },
         Exclusion::Impossible { range_m, most_m } => {
             Reading { now: format!("{range_m:.1} m"), limit: format!("{most_m:.1} m"), numbers: None }
         }

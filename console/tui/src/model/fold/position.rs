@@ -31,6 +31,11 @@ impl Run {
             EventKind::Protected { level_m } => self.position.protection = Some(*level_m),
             EventKind::ProtectionLost { .. } => self.raise_as_logged(event, Cause::NotProtected),
             EventKind::ProtectionRegained { .. } => self.clear(&Cause::NotProtected),
+            EventKind::SessionCalibrated { scale } => self.position.scale = Some(*scale),
+            EventKind::StationBiased { station, .. } => self.raise_as_logged(event, Cause::Bias(*station)),
+            EventKind::StationUnbiased { station } => self.clear(&Cause::Bias(*station)),
+            EventKind::NotSeparable { .. } => self.raise_as_logged(event, Cause::NotSeparable),
+            EventKind::Separable => self.clear(&Cause::NotSeparable),
             EventKind::PositionLost { .. } => {
                 self.position.lost = true;
                 self.raise_as_logged(event, Cause::PositionLost);

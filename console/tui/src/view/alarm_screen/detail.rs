@@ -46,7 +46,10 @@ fn fields_of(look: &Look, alarm: &Alarm) -> Vec<Field> {
         fields.push(("Shelved", signed(shelf.by.as_deref(), &until)));
     }
     fields.extend(alarm.place.map(|place| ("Place", text::place(place))));
-    let is_acoustic = matches!(alarm.cause, Cause::PositionLost | Cause::Contradiction | Cause::Station(_));
+    let is_acoustic = matches!(
+        alarm.cause,
+        Cause::PositionLost | Cause::Contradiction | Cause::Station(_) | Cause::Bias(_)
+    );
     if is_acoustic && alarm.is_active() {
         fields.extend(residuals(look).map(|residuals| ("Residuals", residuals)));
     }
@@ -110,6 +113,7 @@ fn residuals(look: &Look) -> Option<String> {
         let residual = match why {
             Exclusion::Silent => "not heard".to_owned(),
             Exclusion::ByOrder => "excluded".to_owned(),
+            Exclusion::Biased { bias_m } => format!("{bias_m:+.2} m bias, not used"),
             Exclusion::Impossible { range_m, .. } => format!("{range_m:.1} m impossible"),
             Exclusion::Residual { residual_m, .. } => format!("{residual_m:+.2} m rejected"),
         };

@@ -28,6 +28,10 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::PositionRegained { .. } => "position recovered",
         EventKind::ProtectionLost { .. } => "position not protected",
         EventKind::ProtectionRegained { .. } => "position protected again",
+        EventKind::StationBiased { .. } => "station biased",
+        EventKind::StationUnbiased { .. } => "station without bias",
+        EventKind::NotSeparable { .. } => "bias not separable",
+        EventKind::Separable => "bias separable again",
         EventKind::RangesInconsistent { .. } => "ranges contradict each other",
         EventKind::RangesConsistent => "ranges agree again",
         EventKind::ObstacleFound { .. } => "new obstacle",
@@ -121,6 +125,14 @@ fn of_event(run: &Run, event: &Occurrence) -> Vec<Field> {
         EventKind::PositionRegained { error_m } => vec![("error", metres(*error_m) + " (95 %)")],
         EventKind::ProtectionLost { why } => vec![("reason", why.to_string())],
         EventKind::ProtectionRegained { level_m } => vec![("level", metres(*level_m))],
+        EventKind::StationBiased { station, bias_m, since_s, is_corrected } => vec![
+            ("station", station_text(run, *station)),
+            ("bias", format!("{:+.2} m, σ {:.2} m", bias_m.value, bias_m.sigma)),
+            ("in doubt", format!("floor scanned since {since_s:.0} s")),
+            ("ranges", if *is_corrected { "corrected" } else { "not used" }.to_owned()),
+        ],
+        EventKind::StationUnbiased { station } => vec![("station", station_text(run, *station))],
+        EventKind::NotSeparable { correlation } => vec![("correlation", text::number(*correlation, 2))],
         EventKind::RangesInconsistent { chi2, degrees_of_freedom } => {
             let limit = positioning::alarm_limit((*degrees_of_freedom).max(1));
             let text =
@@ -271,6 +283,9 @@ fn rejected(run: &Run, id: StationId, reason: &Exclusion, range: Option<&Ranging
     let mut facts = vec![("station", station_text(run, id))];
     match (reason, range) {
         (Exclusion::ByOrder, _) => facts.push(("reason", "excluded by the operator".into())),
+        (Exclusion::Biased { bias_m }, _) => {
+            facts.push(("reason", format!("all its ranges are wrong by {bias_m:+.2} m")));
+        }
         (Exclusion::Impossible { range_m, most_m }, _) => {
             let reason = format!("{range_m:.2} m is impossible in this tank; at most {most_m:.2} m");
             facts.push(("reason", reason));

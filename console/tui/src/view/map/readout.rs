@@ -41,11 +41,21 @@ pub(super) fn floor(look: &Look, at: Point) -> String {
     let plate = plates::name_at(look, at).map_or_else(String::new, |name| format!("{name}  "));
     let forecast = look.run.accuracy.as_ref().and_then(|map| map.at(at));
     let error = match forecast.map(|forecast| forecast.error_95_m) {
-        Some(Some(error_m)) => format!("AE ±{} m", text::number(error_m, 2)),
+        Some(Some(error_m)) => format!("AE ±{} m{}", text::number(error_m, 2), level(look, at)),
         Some(None) => "AE no fix".into(),
         None => "AE -".into(),
     };
     format!("{plate}{}  {error}", word(look, at, (class, times)))
+}
+
+/// The forecast protection level of a fix, if the scenario states a risk.
+fn level(look: &Look, at: Point) -> String {
+    let states_risk = look.run.about.as_ref().is_some_and(|about| about.mission.locating.risk.is_some());
+    let here = look.run.accuracy.as_ref().and_then(|map| map.at(at)).filter(|_| states_risk);
+    here.map_or_else(String::new, |here| match here.checks.and_then(|checks| checks.level_m) {
+        Some(level_m) => format!(", level {} m", text::number(level_m, 2)),
+        None => ", not protected".into(),
+    })
 }
 
 /// The class of the floor at a place, and why it was missed, is left out or cannot be reached.

@@ -23,6 +23,10 @@ pub(crate) enum Shade {
     PoorFix,
     /// Forecast: the error of a fix exceeds half the limit here.
     WeakFix,
+    /// Forecast: the protection level of a fix exceeds the limit here, or a fix is not protected.
+    NotProtected,
+    /// Forecast: the protection level of a fix exceeds half the limit here.
+    HighLevel,
     /// Scanned only by the run being replayed.
     OnlyA,
     /// Scanned only by the run with which it is compared.
@@ -52,6 +56,8 @@ impl Shade {
             Self::Before => ('+', Role::Dim),
             Self::PoorFix => ('$', Role::Crit),
             Self::WeakFix => ('_', Role::Warn),
+            Self::NotProtected => ('&', Role::Crit),
+            Self::HighLevel => ('~', Role::Warn),
             Self::OnlyA => ('A', Role::Good),
             Self::OnlyB => ('B', Role::Ghost),
         }
@@ -122,13 +128,13 @@ impl FromIterator<Option<Shade>> for Painted {
 }
 
 /// The inputs from which the shades are computed; the stamps are those of the raster, of the raster with which it is
-/// compared, and of the forecast if it is shown.
+/// compared, and of the forecast that is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Key {
     raster: Option<u64>,
     other: Option<u64>,
     before: Option<u64>,
-    forecast: Option<u64>,
+    forecast: Option<(MapLayer, u64)>,
     window: Window,
     /// Shade rows per character row.
     rows_per_row: u16,
@@ -136,11 +142,13 @@ pub(crate) struct Key {
 }
 
 /// The shades in the order of the legend, the most important first, each with its legend text.
-pub(super) const LEGEND: [(Shade, &str); 14] = [
+pub(super) const LEGEND: [(Shade, &str); 16] = [
     (Shade::Floor(FloorClass::Missed), "missed"),
     (Shade::NotReached, "not reached"),
     (Shade::PoorFix, "poor fix"),
     (Shade::WeakFix, "weak fix"),
+    (Shade::NotProtected, "not protected"),
+    (Shade::HighLevel, "high level"),
     (Shade::Floor(FloorClass::Scanned), "scanned"),
     (Shade::Before, "scanned before"),
     (Shade::Floor(FloorClass::Again), "overlap"),
@@ -213,24 +221,26 @@ fn paint_cell(look: &Look, upper: Option<Shade>, lower: Option<Shade>, cell: &mu
 fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
     let (run, layers) = (look.run, look.model.ui.layers);
     let raster = look.model.live.scanned().filter(|_| layers.shows(MapLayer::Scanned));
-    let shows_forecast = layers.shows(MapLayer::Accuracy);
+    let forecasts = [MapLayer::Accuracy, MapLayer::Protection];
+    let shown = forecasts.into_iter().find(|layer| layers.shows(*layer));
     // The combined map shows what all runs have scanned.
     let before = look.model.live.scanned_before.as_ref().filter(|_| look.model.live.together().is_none());
     let before = before.map(|before| &before.raster);
-    let (other, has_missed) = (compared(look).filter(|_| !shows_forecast), run.has_missed());
+    let (other, has_missed) = (compared(look).filter(|_| shown.is_none()), run.has_missed());
     let key = Key {
         raster: raster.map(Raster::stamp),
         other: other.map(Raster::stamp),
         before: before.map(Raster::stamp),
-        forecast: shows_forecast.then_some(run.accuracy_stamp),
+        forecast: shown.map(|layer| (layer, run.accuracy_stamp)),
         window,
         rows_per_row,
         has_missed,
     };
     look.cache.borrow_mut().shades(key, || {
         let dots = window.dots(rows_per_row);
-        if shows_forecast {
-            let shade = |(at, edge_m)| forecast(look, at).or_else(|| floor(raster?, at, edge_m, has_missed));
+        if let Some(layer) = shown {
+            let shade =
+                |(at, edge_m)| forecast(look, layer, at).or_else(|| floor(raster?, at, edge_m, has_missed));
             return Rc::new(dots.map(shade).collect());
         }
         let Some(raster) = raster else { return Rc::new(Painted::from_iter([])) };
@@ -289,12 +299,19 @@ fn scanned_before(before: &Raster, at: Point, edge_m: f64) -> Option<Shade> {
     matches!(class, FloorClass::Scanned | FloorClass::Again | FloorClass::Partial).then_some(Shade::Before)
 }
 
-/// The forecast shade at a point: beyond the limit, or beyond half of the limit.
-fn forecast(look: &Look, at: Point) -> Option<Shade> {
+/// The shade of a forecast at a point: beyond the limit, or beyond half of the limit.
+fn forecast(look: &Look, layer: MapLayer, at: Point) -> Option<Shade> {
     let limit_m = look.run.about.as_ref()?.mission.position_limit_m;
-    match look.run.accuracy.as_ref()?.at(at)?.error_95_m {
-        Some(error_m) if error_m <= limit_m / 2.0 => None,
-        Some(error_m) if error_m <= limit_m => Some(Shade::WeakFix),
-        _ => Some(Shade::PoorFix),
+    let here = look.run.accuracy.as_ref()?.at(at)?;
+    let (radius, weak, poor) = match layer {
+        MapLayer::Protection => {
+            (here.checks.and_then(|checks| checks.level_m), Shade::HighLevel, Shade::NotProtected)
+        }
+        _ => (here.error_95_m, Shade::WeakFix, Shade::PoorFix),
+    };
+    match radius {
+        Some(radius_m) if radius_m <= limit_m / 2.0 => None,
+        Some(radius_m) if radius_m <= limit_m => Some(weak),
+        _ => Some(poor),
     }
 }

@@ -1,0 +1,79 @@
+//! The session calibration of a mission, and what it changes.
+
+use crate::event::EventKind;
+use positioning::{
+    CommonError, Doubt, Estimate, Exclusion, Fix, News, OnBias, PositionerConfig, SessionCalibration,
+    SessionConfig,
+};
+use world::{Odometry, RangeSet};
+
+/// The calibration, with the time of the mission.
+#[derive(Clone)]
+pub(super) struct Session {
+    calibration: SessionCalibration,
+    on_bias: OnBias,
+    tick_s: f64,
+    /// The number of ticks so far; the first one is at time 0.
+    ticks: u64,
+}
+
+impl Session {
+    /// Creates the calibration for the positioner with this configuration.
+    pub(super) fn new(config: SessionConfig, positioner: &PositionerConfig, tick_s: f64) -> Self {
+        let PositionerConfig { stations, aggregation, noise, timing, odometry, .. } = positioner;
+        let ways = (*aggregation, *noise, *timing);
+        let calibration = SessionCalibration::new(config, stations, ways, *odometry);
+        Self { calibration, on_bias: config.on_bias, tick_s, ticks: 0 }
+    }
+
+    /// Adds the motion of a tick, which begins with this heading, radians.
+    pub(super) fn predict(&mut self, odometry: &Odometry, heading_rad: f64) {
+        self.ticks += 1;
+        self.calibration.predict(odometry, heading_rad);
+    }
+
+    /// Adds an unmeasured motion of at most this length, metres.
+    pub(super) fn wander(&mut self, most_m: f64) {
+        self.calibration.wander(most_m);
+    }
+
+    /// Adds the ranges of a cycle; returns the resulting events.
+    pub(super) fn take(&mut self, sets: &[RangeSet], estimate: &Estimate) -> Vec<EventKind> {
+        let heading_sigma_rad = estimate.covariance[(2, 2)].max(0.0).sqrt();
+        let near = (estimate.pose.position, heading_sigma_rad);
+        let news = self.calibration.take(sets, near, self.ticks.saturating_sub(1) as f64 * self.tick_s);
+        let is_corrected = self.on_bias == OnBias::Correct;
+        let event = |news| match news {
+            News::Biased { station, bias_m, since_s } => {
+                EventKind::StationBiased { station, bias_m, since_s, is_corrected }
+            }
+            News::Sound { station } => EventKind::StationUnbiased { station },
+            News::NotSeparable { correlation } => EventKind::NotSeparable { correlation },
+            News::Separable => EventKind::Separable,
+        };
+        let scale = self.calibration.scale();
+        [EventKind::SessionCalibrated { scale }].into_iter().chain(news.into_iter().map(event)).collect()
+    }
+
+    /// Returns the ranges without their known errors.
+    pub(super) fn corrected(&self, sets: &[RangeSet]) -> Vec<RangeSet> {
+        self.calibration.corrected(sets)
+    }
+
+    /// The errors that the corrected ranges probably still have.
+    pub(super) fn doubt(&self) -> Doubt {
+        let scale = CommonError::Share(self.calibration.scale().sigma);
+        let biases_m = self.calibration.biases_m().filter(|_| self.on_bias == OnBias::Correct);
+        let likely_m = biases_m.map(|(_, bias_m)| bias_m.sigma).fold(0.0, f64::hypot);
+        Doubt { likely_errors: [scale, CommonError::default()], likely_m, ..Doubt::default() }
+    }
+
+    /// Names the bias as the reason for which a fix does not use a station.
+    pub(super) fn explain(&self, fix: &mut Fix) {
+        for (station, bias_m) in self.calibration.biases_m() {
+            let left_out =
+                fix.excluded.iter_mut().filter(|(id, why)| *id == station && *why == Exclusion::Silent);
+            left_out.for_each(|(_, why)| *why = Exclusion::Biased { bias_m: bias_m.value });
+        }
+    }
+}

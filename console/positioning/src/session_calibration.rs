@@ -1,0 +1,323 @@
+//! Calibrates the speed of sound and the stations during a mission, from the last fixes and the motion between them.
+//!
+//! The unknowns are the position of each of the last fixes, the scale of all ranges (constant, or linear in time), and
+//! the biases of stations that were found wrong. A bounded number of Gauss-Newton steps per cycle fits them to the
+//! ranges and to the odometry between the fixes. All biases at once cannot be told from a shift of the whole path, so a
+//! bias is tested one station at a time, beside a free scale: its size over its standard deviation decides (Baarda
+//! 1968).
+
+mod system;
+mod window;
+
+use crate::{
+    accuracy::checks::NOT_SEPARABLE,
+    aggregate::Aggregation,
+    calibration::MOST_SCALE,
+    ekf::MotionNoise,
+    noise::{RangeNoise, Timing},
+};
+use serde::{Deserialize, Serialize};
+use window::{Fitted, Node, Window};
+use world::{Odometry, Point, RangeSet, Station, StationId, Vector};
+
+/// Number of standard deviations above which a bias is detected. Least detectable errors are forecast for 3.29 in a
+/// single test; a mission tests every station in every cycle.
+const DETECTED: f64 = 5.0;
+/// Number of standard deviations above which a bias is suspected: floor scanned from then on is in doubt if the
+/// suspicion is confirmed without a break.
+const SUSPECTED: f64 = 2.5;
+/// Number of standard deviations below which a suspicion or a detected bias is over.
+const CLEARED: f64 = 2.0;
+/// Correlation below which errors can be told apart again.
+const SEPARABLE: f64 = 0.9;
+/// The number of fixes before a bias can be detected.
+const LEAST_FIXES: usize = 10;
+/// Number of standard deviations of a station's residuals above which a known bias is estimated again: it has changed.
+const CHANGED: f64 = 5.0;
+
+/// How the speed of sound may change during the fixes that are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SoundSpeed {
+    /// Not at all.
+    #[default]
+    Constant,
+    /// Linearly in time.
+    Linear,
+}
+
+/// What happens to the ranges of a station whose bias was detected.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum OnBias {
+    /// They are not used.
+    #[default]
+    Exclude,
+    /// The bias is subtracted.
+    Correct,
+}
+
+/// The settings of a session calibration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SessionConfig {
+    /// How the speed of sound may change.
+    pub sound_speed: SoundSpeed,
+    /// What happens to a station with a bias.
+    pub on_bias: OnBias,
+    /// The number of fixes that are kept.
+    pub fixes: usize,
+}
+
+impl Default for SessionConfig {
+    fn default() -> Self {
+        Self { sound_speed: SoundSpeed::Constant, on_bias: OnBias::Exclude, fixes: 60 }
+    }
+}
+
+/// A value with its standard deviation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Estimated {
+    /// The value.
+    pub value: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+}
+
+impl Estimated {
+    fn score(self) -> f64 {
+        self.value.abs() / self.sigma
+    }
+}
+
+/// News about the stations.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum News {
+    /// The ranges of a station are wrong by a constant length, or by a different one than before.
+    Biased {
+        /// The station.
+        station: StationId,
+        /// The length by which its ranges are too long, metres.
+        bias_m: Estimated,
+        /// The earliest time at which the bias may have begun, seconds.
+        since_s: f64,
+    },
+    /// The ranges of a station are right again.
+    Sound {
+        /// The station.
+        station: StationId,
+    },
+    /// A bias of some station and an error of the speed of sound cannot be told apart.
+    NotSeparable {
+        /// Their correlation, 0 to 1.
+        correlation: f64,
+    },
+    /// They can be told apart again.
+    Separable,
+}
+
+/// What is known about a station.
+#[derive(Debug, Clone, Copy, Default)]
+struct Known {
+    /// If a bias is suspected or detected: the earliest time at which it may have begun, seconds.
+    since_s: Option<f64>,
+    /// The detected bias.
+    bias_m: Option<Estimated>,
+    /// Time from which the bias is estimated, seconds.
+    from_s: f64,
+}
+
+/// Estimates the errors of the ranges from the last fixes of a mission. The same input gives the same estimates.
+#[derive(Debug, Clone)]
+pub struct SessionCalibration {
+    config: SessionConfig,
+    stations: Vec<Station>,
+    known: Vec<Known>,
+    window: Window,
+    scale: Estimated,
+    aggregation: Aggregation,
+    noise: RangeNoise,
+    timing: Timing,
+    motion: MotionNoise,
+    /// Motion since the last fix: the displacement, and the length of the way, metres.
+    moved: (Vector, f64),
+    is_separable: bool,
+}
+
+impl SessionCalibration {
+    /// Creates a calibration without any data.
+    pub fn new(
+        config: SessionConfig,
+        stations: &[Station],
+        (aggregation, noise, timing): (Aggregation, RangeNoise, Timing),
+        motion: MotionNoise,
+    ) -> Self {
+        Self {
+            config,
+            stations: stations.to_vec(),
+            known: vec![Known::default(); stations.len()],
+            window: Window::new(config.fixes, config.sound_speed == SoundSpeed::Linear),
+            scale: Estimated { value: 0.0, sigma: window::SCALE_SIGMA },
+            aggregation,
+            noise,
+            timing,
+            motion,
+            moved: (Vector::zeros(), 0.0),
+            is_separable: true,
+        }
+    }
+
+    /// Adds the motion of a tick, which begins with this heading, radians.
+    pub fn predict(&mut self, odometry: &Odometry, heading_rad: f64) {
+        let (sin, cos) = (heading_rad + odometry.turn_rad / 2.0).sin_cos();
+        let Odometry { forward_m, sideways_m, .. } = *odometry;
+        self.moved.0 += Vector::new(cos * forward_m - sin * sideways_m, sin * forward_m + cos * sideways_m);
+        self.moved.1 += forward_m.hypot(sideways_m);
+    }
+
+    /// Adds an unmeasured motion of at most this length, metres: the fixes before and after it are not connected.
+    pub fn wander(&mut self, most_m: f64) {
+        self.moved.1 += most_m / self.motion.sigma_per_m.max(1e-3);
+    }
+
+    /// The share by which all ranges are too long.
+    pub fn scale(&self) -> Estimated {
+        self.scale
+    }
+
+    /// The stations with a detected bias: the length by which their ranges are too long, metres.
+    pub fn biases_m(&self) -> impl Iterator<Item = (StationId, Estimated)> + '_ {
+        self.stations.iter().zip(&self.known).filter_map(|(station, known)| Some((station.id, known.bias_m?)))
+    }
+
+    /// Returns ranges without their known errors; those of a biased station are left out or corrected.
+    pub fn corrected(&self, sets: &[RangeSet]) -> Vec<RangeSet> {
+        let by = 1.0 / (1.0 + self.scale.value);
+        let one = |set: &RangeSet| {
+            let index = self.stations.iter().position(|station| station.id == set.station);
+            let bias_m = index.and_then(|index| self.known[index].bias_m);
+            if bias_m.is_some() && self.config.on_bias == OnBias::Exclude {
+                return None;
+            }
+            let bias_m = bias_m.map_or(0.0, |bias_m| bias_m.value);
+            let ranges_m = set.ranges_m.iter().map(|range_m| (range_m - bias_m) * by).collect();
+            Some(RangeSet { station: set.station, ranges_m })
+        };
+        sets.iter().filter_map(one).collect()
+    }
+
+    /// Adds the uncorrected ranges of a cycle at time `t_s`, seconds, near a position with a heading error of this
+    /// standard deviation, radians. Returns what changed.
+    ///
+    /// A cycle with an unusable range, with fewer than three stations, or at a time that is not later than the last one
+    /// changes nothing.
+    pub fn take(&mut self, sets: &[RangeSet], near: (Point, f64), t_s: f64) -> Vec<News> {
+        let Some(node) = self.node(sets, near, t_s) else { return Vec::new() };
+        self.moved = (Vector::zeros(), 0.0);
+        self.window.push(node);
+        let active: Vec<(usize, f64)> = (0..self.stations.len())
+            .filter(|station| self.known[*station].bias_m.is_some())
+            .map(|station| (station, self.known[station].from_s))
+            .collect();
+        let Some(fitted) = self.window.fit(self.stations.len(), &active) else { return Vec::new() };
+        if fitted.scale.value.abs() < MOST_SCALE {
+            self.scale = fitted.scale;
+        }
+        let mut news: Vec<News> = self.separable(&fitted).into_iter().collect();
+        news.extend(self.judge(&fitted));
+        news
+    }
+
+    fn node(&self, sets: &[RangeSet], (near, heading_sigma_rad): (Point, f64), t_s: f64) -> Option<Node> {
+        let is_later = self.window.last_s().is_none_or(|last_s| t_s > last_s);
+        let mut ranges = self.aggregation.aggregate(sets, &self.noise).ok().filter(|_| is_later)?;
+        self.timing.apply(&mut ranges, &self.noise, 0.0);
+        let heard = ranges.iter().filter_map(|range| {
+            let station = self.stations.iter().position(|station| station.id == range.station)?;
+            Some(window::Heard {
+                station,
+                at: self.stations[station].position,
+                range_m: range.range_m,
+                sigma_m: range.sigma_m,
+            })
+        });
+        let (moved, way_m) = self.moved;
+        let sigma_m = way_m * self.motion.sigma_per_m.hypot(heading_sigma_rad);
+        let biases_m: Vec<f64> =
+            self.known.iter().map(|known| known.bias_m.map_or(0.0, |b| b.value)).collect();
+        Node::new(t_s, near, heard.collect(), (moved, sigma_m))?.settled(self.scale.value, &biases_m)
+    }
+
+    /// Compares the largest correlation with its limit.
+    fn separable(&mut self, fitted: &Fitted) -> Option<News> {
+        if self.window.len() < LEAST_FIXES {
+            return None;
+        }
+        let correlation = fitted.tests.iter().flatten().map(|test| test.correlation).fold(0.0, f64::max);
+        let limit = if self.is_separable { NOT_SEPARABLE } else { SEPARABLE };
+        let was_separable = std::mem::replace(&mut self.is_separable, correlation <= limit);
+        match (was_separable, self.is_separable) {
+            (true, false) => Some(News::NotSeparable { correlation }),
+            (false, true) => Some(News::Separable),
+            _ => None,
+        }
+    }
+
+    /// Updates what is known about each station. At most one new bias is detected in a cycle: the most significant one,
+    /// because it also shows in the residuals of the other stations.
+    fn judge(&mut self, fitted: &Fitted) -> Vec<News> {
+        let mut news = Vec::new();
+        for (station, bias_m) in &fitted.biases_m {
+            news.extend(self.follow(*station, *bias_m));
+        }
+        let begin_s = self.window.first_s();
+        let mut worst: Option<(usize, Estimated)> = None;
+        for (station, test) in fitted.tests.iter().enumerate() {
+            if self.known[station].bias_m.is_some() {
+                continue;
+            }
+            let bias_m = test.filter(|test| test.correlation <= NOT_SEPARABLE).map(|test| test.bias_m);
+            let score = bias_m.map_or(0.0, Estimated::score);
+            let since_s = &mut self.known[station].since_s;
+            *since_s = match *since_s {
+                Some(since_s) if score >= CLEARED => Some(since_s),
+                None if score >= SUSPECTED => Some(begin_s),
+                _ => None,
+            };
+            let is_worst = worst.is_none_or(|(_, other)| score > other.score());
+            worst = bias_m.filter(|_| is_worst).map_or(worst, |bias_m| Some((station, bias_m)));
+        }
+        let is_long = self.window.len() >= LEAST_FIXES;
+        if let Some((station, bias_m)) = worst.filter(|(_, bias_m)| is_long && bias_m.score() > DETECTED) {
+            let known = &mut self.known[station];
+            let since_s = known.since_s.unwrap_or(begin_s);
+            let (from_s, _) = self.window.change(station);
+            *known = Known { since_s: Some(since_s), bias_m: Some(bias_m), from_s };
+            news.push(News::Biased { station: self.stations[station].id, bias_m, since_s });
+        }
+        news
+    }
+
+    /// Follows a detected bias, which may end or change.
+    fn follow(&mut self, index: usize, bias_m: Estimated) -> Option<News> {
+        let station = self.stations[index].id;
+        if self.window.heard(index) < LEAST_FIXES.min(self.config.fixes) {
+            return None;
+        }
+        let (changed_s, change) = self.window.change(index);
+        let first_s = self.window.first_s();
+        let known = &mut self.known[index];
+        if change > CHANGED && changed_s > known.from_s {
+            (known.from_s, known.bias_m) = (changed_s, Some(bias_m));
+            return Some(News::Biased { station, bias_m, since_s: first_s });
+        }
+        if bias_m.score() < CLEARED {
+            *known = Known::default();
+            return Some(News::Sound { station });
+        }
+        known.bias_m = Some(bias_m);
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests;

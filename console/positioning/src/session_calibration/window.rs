@@ -1,0 +1,294 @@
+//! The last fixes, and their fit to the errors of the ranges.
+
+use super::{
+    Estimated,
+    system::{Column, System},
+};
+use nalgebra::{Matrix2, Vector2};
+use std::collections::VecDeque;
+use world::{Point, Vector};
+
+/// Standard deviation of the speed of sound before any fix, as a share.
+pub(super) const SCALE_SIGMA: f64 = 0.03;
+/// Standard deviation of the change of the speed of sound, as a share per hour.
+const DRIFT_SIGMA: f64 = 0.02;
+/// Standard deviation of a bias before any fix, metres.
+const BIAS_SIGMA_M: f64 = 10.0;
+/// Standard deviation of the motion between two fixes, beside that of odometry, metres.
+const MOTION_SIGMA_M: f64 = 0.01;
+/// The number of Gauss-Newton steps of a cycle, and of those that settle the position of a new fix.
+const ROUNDS: usize = 2;
+const SETTLING_ROUNDS: usize = 6;
+/// Number of standard deviations beyond which a residual counts less, in inverse proportion to its size.
+const HUBER: f64 = 3.0;
+/// Number of standard deviations beyond which a range counts as an outlier of its cycle.
+const OUTLIER: f64 = 30.0;
+/// Largest distance of a fix from the expected position, metres: ranges that lead further away cannot be right.
+const FARTHEST_M: f64 = 5.0;
+/// The least number of ranges of a fix.
+const LEAST_RANGES: usize = 3;
+/// The shortest distance to a station that is used, metres.
+const NEAREST_M: f64 = 0.05;
+
+/// A range of a fix.
+#[derive(Debug, Clone)]
+pub(super) struct Heard {
+    /// Index of the station.
+    pub station: usize,
+    /// Place of the station, metres.
+    pub at: Point,
+    pub range_m: f64,
+    pub sigma_m: f64,
+}
+
+/// A fix, with the motion since the one before.
+#[derive(Debug, Clone)]
+pub(super) struct Node {
+    t_s: f64,
+    at: Point,
+    heard: Vec<Heard>,
+    moved: Vector,
+    moved_sigma_m: f64,
+}
+
+/// The residual of a range with its weight, and the direction and distance of the station.
+struct Seen {
+    direction: Vector2<f64>,
+    distance_m: f64,
+    residual_m: f64,
+    weight: f64,
+}
+
+impl Heard {
+    fn seen(&self, from: Point, stretch: f64, bias_m: f64) -> Seen {
+        let away = from - self.at;
+        let distance_m = away.norm().max(NEAREST_M);
+        let residual_m = self.range_m - distance_m * stretch - bias_m;
+        Seen {
+            direction: away / distance_m,
+            distance_m,
+            residual_m,
+            weight: weight(residual_m.abs(), self.sigma_m),
+        }
+    }
+}
+
+/// The weight of a residual with this standard deviation (Huber 1964).
+fn weight(size: f64, sigma: f64) -> f64 {
+    let full = sigma.powi(-2);
+    if size > HUBER * sigma { full * HUBER * sigma / size } else { full }
+}
+
+impl Node {
+    /// `None` if the time, the place or the motion is not a number, or too few stations were heard.
+    pub(super) fn new(
+        t_s: f64,
+        at: Point,
+        heard: Vec<Heard>,
+        (moved, sigma_m): (Vector, f64),
+    ) -> Option<Self> {
+        let numbers = [t_s, at.x, at.y, moved.x, moved.y, sigma_m];
+        let moved_sigma_m = sigma_m.hypot(MOTION_SIGMA_M);
+        let is_usable = heard.len() >= LEAST_RANGES && numbers.iter().all(|number| number.is_finite());
+        is_usable.then_some(Self { t_s, at, heard, moved, moved_sigma_m })
+    }
+
+    /// Returns the fix at the position that fits its ranges best, without outliers; `None` if too few ranges are left or
+    /// they give no position.
+    pub(super) fn settled(mut self, scale: f64, biases_m: &[f64]) -> Option<Self> {
+        let expected = self.at;
+        for _ in 0..SETTLING_ROUNDS {
+            let (mut information, mut pull) = (Matrix2::zeros(), Vector2::zeros());
+            for heard in &self.heard {
+                let seen = heard.seen(self.at, 1.0 + scale, biases_m[heard.station]);
+                information += seen.direction * seen.direction.transpose() * seen.weight;
+                pull += seen.direction * (seen.weight * seen.residual_m);
+            }
+            self.at += information.try_inverse()? * pull;
+        }
+        let at = self.at;
+        let fits = |heard: &Heard| {
+            let residual_m = heard.seen(at, 1.0 + scale, biases_m[heard.station]).residual_m;
+            residual_m.abs() <= OUTLIER * heard.sigma_m.hypot(SCALE_SIGMA * heard.range_m / OUTLIER)
+        };
+        self.heard.retain(fits);
+        let is_near = (at - expected).norm() <= FARTHEST_M;
+        (is_near && self.heard.len() >= LEAST_RANGES).then_some(self)
+    }
+}
+
+/// The test of a station for a bias.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Test {
+    /// The bias that fits best, beside a free scale.
+    pub bias_m: Estimated,
+    /// Correlation of the bias with the scale, 0 to 1.
+    pub correlation: f64,
+}
+
+/// The errors that fit the fixes best.
+#[derive(Debug)]
+pub(super) struct Fitted {
+    /// At the last fix.
+    pub scale: Estimated,
+    /// The biases of the active stations, by the index of the station.
+    pub biases_m: Vec<(usize, Estimated)>,
+    /// For each station that is not active.
+    pub tests: Vec<Option<Test>>,
+}
+
+/// The last fixes.
+#[derive(Debug, Clone)]
+pub(super) struct Window {
+    most: usize,
+    is_linear: bool,
+    nodes: VecDeque<Node>,
+    scale: f64,
+    /// Change of the scale, per hour.
+    drift: f64,
+    /// Sizes of the active biases, metres, with the times from which they count, by station.
+    biases: Vec<Option<(f64, f64)>>,
+}
+
+impl Window {
+    pub(super) fn new(most: usize, is_linear: bool) -> Self {
+        let nodes = VecDeque::with_capacity(most + 1);
+        Self { most: most.max(1), is_linear, nodes, scale: 0.0, drift: 0.0, biases: Vec::new() }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Time of the first fix, seconds; 0 without a fix.
+    pub(super) fn first_s(&self) -> f64 {
+        self.nodes.front().map_or(0.0, |node| node.t_s)
+    }
+
+    /// Time of the last fix, seconds.
+    pub(super) fn last_s(&self) -> Option<f64> {
+        self.nodes.back().map(|node| node.t_s)
+    }
+
+    pub(super) fn push(&mut self, node: Node) {
+        self.nodes.push_back(node);
+        if self.nodes.len() > self.most {
+            self.nodes.pop_front();
+        }
+    }
+
+    /// Fits positions, scale and the biases of the active stations, each from its time on, seconds.
+    pub(super) fn fit(&mut self, n_stations: usize, active: &[(usize, f64)]) -> Option<Fitted> {
+        let before = std::mem::take(&mut self.biases);
+        self.biases = vec![None; n_stations];
+        for (station, from_s) in active {
+            let bias_m = before.get(*station).copied().flatten().map_or(0.0, |(bias_m, _)| bias_m);
+            self.biases[*station] = Some((bias_m, *from_s));
+        }
+        let mut columns = vec![Column::SCALE];
+        columns.extend(self.is_linear.then_some(Column::DRIFT));
+        columns.extend(active.iter().map(|(station, _)| Column::bias(*station)));
+        let mut found = None;
+        for _ in 0..ROUNDS {
+            let mut system = self.system();
+            system.eliminate();
+            let solved = system.solve(&columns)?;
+            let steps = system.back(&columns, &solved);
+            for (node, step) in self.nodes.iter_mut().zip(&steps) {
+                node.at += step;
+            }
+            self.scale += solved.step[0];
+            self.drift += if self.is_linear { solved.step[1] } else { 0.0 };
+            let first = columns.len() - active.len();
+            for ((station, _), step) in active.iter().zip(solved.step.iter().skip(first)) {
+                self.biases[*station].iter_mut().for_each(|(bias_m, _)| *bias_m += step);
+            }
+            found = Some((system, solved));
+        }
+        let (system, solved) = found?;
+        let first = columns.len() - active.len();
+        let bias = |(index, (station, _)): (usize, &(usize, f64))| {
+            let (bias_m, _) = self.biases[*station]?;
+            Some((*station, Estimated { value: bias_m, sigma: solved.sigma(first + index) }))
+        };
+        let test = |station: usize| {
+            let is_active = self.biases[station].is_some();
+            let (bias_m, sigma, correlation) =
+                system.test(&columns, Column::bias(station)).filter(|_| !is_active)?;
+            Some(Test { bias_m: Estimated { value: bias_m, sigma }, correlation })
+        };
+        let fitted = Fitted {
+            scale: Estimated { value: self.scale, sigma: solved.sigma(0) },
+            biases_m: active.iter().enumerate().filter_map(bias).collect(),
+            tests: (0..n_stations).map(test).collect(),
+        };
+        let is_sound = self.nodes.iter().all(|node| node.at.x.is_finite() && node.at.y.is_finite());
+        if !(is_sound && self.scale.is_finite() && self.drift.is_finite()) {
+            // The next fixes begin again.
+            *self = Self::new(self.most, self.is_linear);
+            return None;
+        }
+        Some(fitted)
+    }
+
+    /// The linearised equations at the present estimates.
+    fn system(&self) -> System {
+        let last_s = self.last_s().unwrap_or(0.0);
+        let mut system = System::new(self.nodes.len(), self.biases.len());
+        system.prior(Column::SCALE, self.scale, SCALE_SIGMA);
+        system.prior(Column::DRIFT, self.drift, DRIFT_SIGMA);
+        for (station, bias) in self.biases.iter().enumerate() {
+            system.prior(Column::bias(station), bias.map_or(0.0, |(bias_m, _)| bias_m), BIAS_SIGMA_M);
+        }
+        for (index, node) in self.nodes.iter().enumerate() {
+            let hours = (node.t_s - last_s) / 3600.0;
+            let stretch = 1.0 + self.scale + self.drift * hours;
+            for heard in &node.heard {
+                let bias_m = self.bias_at(heard.station, node.t_s);
+                let seen = heard.seen(node.at, stretch, bias_m.unwrap_or(0.0));
+                let by = [seen.distance_m, seen.distance_m * hours];
+                let bias = bias_m.map(|_| Column::bias(heard.station));
+                system.range(index, (seen.direction * stretch, by, bias), seen.residual_m, seen.weight);
+            }
+        }
+        for (index, (before, node)) in self.nodes.iter().zip(self.nodes.iter().skip(1)).enumerate() {
+            let off = node.at - before.at - node.moved;
+            system.link(index, off, weight(off.norm(), node.moved_sigma_m));
+        }
+        system
+    }
+
+    /// The bias that the ranges of a station have at a time; `None` before the time from which it counts.
+    fn bias_at(&self, station: usize, t_s: f64) -> Option<f64> {
+        match self.biases[station] {
+            None => Some(0.0),
+            Some((bias_m, from_s)) => (t_s >= from_s).then_some(bias_m),
+        }
+    }
+
+    /// The number of fixes with a range of a station.
+    pub(super) fn heard(&self, station: usize) -> usize {
+        self.nodes.iter().filter(|node| node.heard.iter().any(|heard| heard.station == station)).count()
+    }
+
+    /// Returns the time from which the residuals of a station differ most from zero, seconds, and by how many standard
+    /// deviations.
+    pub(super) fn change(&self, station: usize) -> (f64, f64) {
+        let (mut sum, mut information) = (0.0, 0.0);
+        let mut best = (self.first_s(), 0.0);
+        let last_s = self.last_s().unwrap_or(0.0);
+        for node in self.nodes.iter().rev() {
+            let stretch = 1.0 + self.scale + self.drift * (node.t_s - last_s) / 3600.0;
+            let bias_m = self.bias_at(station, node.t_s).unwrap_or(0.0);
+            for heard in node.heard.iter().filter(|heard| heard.station == station) {
+                let seen = heard.seen(node.at, stretch, bias_m);
+                (sum, information) = (sum + seen.weight * seen.residual_m, information + seen.weight);
+            }
+            let score = if information > 0.0 { sum.abs() / information.sqrt() } else { 0.0 };
+            if score > best.1 {
+                best = (node.t_s, score);
+            }
+        }
+        best
+    }
+}

@@ -1,0 +1,115 @@
+//! Protection levels in a mission, and the forecast of how well the stations check each other.
+
+use crate::bench::{Bench, journal, of_kind, scenario};
+use serde_json::Value;
+
+/// A shipped scenario with more keys in `[ae]`.
+fn with_ae(bench: &Bench, name: &str, keys: &str) -> std::path::PathBuf {
+    let text = std::fs::read_to_string(scenario(name)).unwrap();
+    assert!(text.contains("[ae]\n"), "{name}");
+    bench.file("changed.toml", text.replace("[ae]\n", &format!("[ae]\n{keys}\n")))
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is not a number"))
+}
+
+/// All stations are silent for an hour.
+#[test]
+fn a_run_with_a_stated_risk_has_a_level_that_contains_the_error_and_says_when_it_has_none() {
+    let bench = Bench::new();
+    let changed =
+        with_ae(&bench, "inspect-circle.toml", "integrity_risk = 1e-5\noutages_s = [[40.0, 3640.0]]");
+    let flown = bench
+        .fly(&changed, &["--set", "mission.guarantee=\"protection\"", "--set", "mission.time_limit_s=7200"]);
+    let report = flown.json();
+    let protection = &report["accuracy"]["protection"];
+    assert_eq!(protection["guarantees"], true, "{flown:?}");
+    let unprotected = number(&protection["unprotected"]);
+    assert!(unprotected > 0.5 && unprotected < 0.95, "{protection}");
+    let run = &bench.runs()[0];
+    let events = journal(run);
+    assert_eq!(of_kind(&events, "protection_lost")[0]["why"], "silent");
+    assert!(!of_kind(&events, "protection_regained").is_empty());
+    let (mut truth, mut level) = (Value::Null, Value::Null);
+    let mut compared = 0;
+    for event in &events {
+        match event["event"].as_str() {
+            Some("truth") => truth = event["pose"]["position"].clone(),
+            Some("protected") => level = event["level_m"].clone(),
+            Some("protection_lost") => level = Value::Null,
+            Some("estimated") if level.is_number() && truth.is_array() => {
+                let at = &event["pose"]["position"];
+                let off = |axis: usize| number(&at[axis]) - number(&truth[axis]);
+                let error_m = off(0).hypot(off(1));
+                assert!(error_m <= number(&level), "{error_m} m, {level} m: {event}");
+                compared += 1;
+            }
+            _ => {}
+        }
+    }
+    assert!(compared > 1_000, "{compared}");
+    bench.prove(run);
+}
+
+#[test]
+fn the_forecast_names_level_least_error_and_the_place_of_one_more_station() {
+    let bench = Bench::new();
+    let file = scenario("inspect-circle.toml");
+    let said = bench.tankops(&["accuracy", file.to_str().unwrap(), "--plan", "--json"]);
+    let checks = &said.json()["checks"];
+    assert_eq!(checks["is_stated"], false, "{checks}");
+    assert_eq!(checks["session_is_planned"], true);
+    assert_eq!(checks["session"]["fixes"], 60);
+    let session_m = number(&checks["session"]["detectable_m"]);
+    assert!(session_m < number(&checks["median_detectable_m"]) / 2.0, "{checks}");
+    // One more of four stations lets more of the floor be protected.
+    let more = &checks["one_more"];
+    assert!(number(&more["not_separable_share"]) <= number(&checks["not_separable_share"]), "{checks}");
+    let read = bench.tankops(&["accuracy", file.to_str().unwrap()]);
+    assert!(read.out.contains("defaults, the scenario states no risk"), "{read:?}");
+    assert!(read.out.contains("60 fixes spread over the floor: separable"), "{read:?}");
+    assert!(read.out.contains("one more  at_m = ["), "{read:?}");
+}
+
+#[test]
+fn with_three_stations_no_place_is_protected_and_none_is_separable() {
+    let bench = Bench::new();
+    let file = scenario("spiral-paper.toml");
+    let said = bench.tankops(&["accuracy", file.to_str().unwrap(), "--json"]);
+    let checks = &said.json()["checks"];
+    for share in ["unprotected_share", "not_separable_share"] {
+        assert!((number(&checks[share]) - 1.0).abs() < 1e-9, "{share}: {checks}");
+    }
+    let read = bench.tankops(&["accuracy", file.to_str().unwrap()]);
+    assert!(read.out.contains("100.0 % of the floor is not protected"), "{read:?}");
+    assert!(read.out.contains("correlation 1.00, not separable"), "{read:?}");
+}
+
+/// The shipped scenario with a speed of sound that is wrong by 2 % and a station that becomes wrong at 600 s.
+#[test]
+fn a_station_that_becomes_wrong_is_found_and_its_floor_loses_the_guarantee() {
+    let bench = Bench::new();
+    let flown = bench.fly(&scenario("biased-station.toml"), &[]);
+    let report = flown.json();
+    assert_eq!(flown.code, Some(0), "{flown:?}");
+    let run = &bench.runs()[0];
+    let events = journal(run);
+    let scales = of_kind(&events, "session_calibrated");
+    assert!((number(&scales[60]["scale"]["value"]) - 0.02).abs() < 0.002, "{}", scales[60]);
+    let biased = of_kind(&events, "station_biased");
+    assert!(!biased.is_empty() && biased.iter().all(|event| event["station"] == 2), "{biased:?}");
+    // Found within 60 fixes, and all floor since it began is in doubt.
+    let (found_s, since_s) = (number(&biased[0]["t_s"]), number(&biased[0]["since_s"]));
+    assert!(found_s > 600.0 && found_s <= 660.0 && since_s <= 600.0, "{}", biased[0]);
+    let taken = &report["taken_back"];
+    assert!(taken[0]["station"] == "B" && number(&taken[0]["area_m2"]) > 1.0, "{taken}");
+    // The guarantee of the rest holds.
+    let truly = &report["coverage"]["by_truth"]["guaranteed_truly"];
+    assert!(number(truly) >= 0.9999, "{truly}");
+    let guaranteed = number(&report["floor"]["reachable"]["percent"]["guaranteed"]);
+    assert!(guaranteed > 15.0, "{guaranteed} % of the reachable floor, of which a quarter is scanned");
+    let rescan = bench.tankops(&["rescan", run.to_str().unwrap(), "-o", "again.toml"]);
+    assert!(rescan.out.contains("scanned while a station was wrong"), "{rescan:?}");
+    bench.prove(run);
+}
