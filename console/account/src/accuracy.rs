@@ -85,16 +85,17 @@ pub(crate) struct Accuracy {
 }
 
 impl Accuracy {
-    /// Adds the true position of a tick.
-    pub(crate) fn truth(&mut self, tick: u64, position: Point) {
+    /// Adds the true position of a tick; returns the error, metres, if the estimate is known.
+    pub(crate) fn truth(&mut self, tick: u64, position: Point) -> Option<f64> {
         self.truth = Some((tick, position));
-        self.pair();
+        self.pair()
     }
 
-    /// Adds the estimated position of a tick with its covariance, square metres.
-    pub(crate) fn estimate(&mut self, tick: u64, position: Point, covariance: Matrix2<f64>) {
+    /// Adds the estimated position of a tick with its covariance, square metres; returns the error, metres, if the true
+    /// position is known.
+    pub(crate) fn estimate(&mut self, tick: u64, position: Point, covariance: Matrix2<f64>) -> Option<f64> {
         self.estimate = Some((tick, position, covariance));
-        self.pair();
+        self.pair()
     }
 
     /// Marks the position as lost from now on.
@@ -107,13 +108,10 @@ impl Accuracy {
         self.position_lost_s += self.lost_since_s.take().map_or(0.0, |since_s| t_s - since_s);
     }
 
-    fn pair(&mut self) {
-        let (Some((tick, truth)), Some((estimate_tick, position, covariance))) = (self.truth, self.estimate)
-        else {
-            return;
-        };
+    fn pair(&mut self) -> Option<f64> {
+        let ((tick, truth), (estimate_tick, position, covariance)) = (self.truth?, self.estimate?);
         if tick != estimate_tick {
-            return;
+            return None;
         }
         self.estimate = None;
         let error = truth - position;
@@ -123,6 +121,7 @@ impl Accuracy {
         // Squared Mahalanobis distance, multiplied by the determinant to avoid a division by zero.
         let scaled = c * error.x * error.x - 2.0 * b * error.x * error.y + a * error.y * error.y;
         self.in_ellipse += usize::from(scaled <= ELLIPSE_95 * determinant);
+        Some(error.norm())
     }
 
     /// The figures of a run up to `now_s`; `None` if no tick had both truth and estimate.

@@ -154,6 +154,14 @@ pub struct PlateAccount {
     /// none of the plate was scanned, and in older reports.
     #[serde(default)]
     pub error_max_m: Option<f64>,
+    /// The true position error that 95 % of the cells passed by the tool do not exceed, taking the worst pass over each
+    /// cell, metres; absent if the true position is not known, and in older reports.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub true_error_p95_m: Option<f64>,
+    /// The largest true position error with which the tool passed the plate, metres; absent if the true position is not
+    /// known, and in older reports.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub true_error_max_m: Option<f64>,
     /// The division of the plate's floor.
     #[serde(flatten)]
     pub shares: Shares,
@@ -263,6 +271,9 @@ fn plate_beside(floor: &Floor, map: &PlateMap, place: Point) -> Option<String> {
     Some(map.plates[map.plate_of(nearest?)?].name.clone())
 }
 
+/// A plate with its cell counts, and its errors according to the estimate and to the truth, millimetres.
+type Tallied<'a> = ((&'a world::Plate, &'a Tally), (Vec<u16>, Vec<u16>));
+
 fn plate_accounts(
     map: &PlateMap,
     by_plate: &[Tally],
@@ -271,19 +282,25 @@ fn plate_accounts(
 ) -> Vec<PlateAccount> {
     let mut errors_mm: Vec<Vec<u16>> =
         by_plate.iter().map(|tally| Vec::with_capacity(tally.counts.covered)).collect();
-    for cell in (0..covered.len()).filter(|cell| covered[*cell]) {
-        if let Some((plate, error_mm)) = map.plate_of(cell).zip(scanned.passes().error_mm(cell)) {
-            errors_mm[plate].push(error_mm);
-        }
+    let mut true_errors_mm = vec![Vec::new(); by_plate.len()];
+    for cell in 0..covered.len() {
+        let Some(plate) = map.plate_of(cell) else { continue };
+        let error_mm = scanned.passes().error_mm(cell).filter(|_| covered[cell]);
+        errors_mm[plate].extend(error_mm);
+        true_errors_mm[plate].extend(scanned.true_error_mm(cell));
     }
-    let tallied = map.plates.iter().zip(by_plate).zip(errors_mm);
-    let plate = |((plate, tally), mut errors_mm): ((&world::Plate, &Tally), Vec<u16>)| {
+    let metres = |mm: u16| f64::from(mm) / 1000.0;
+    let tallied = map.plates.iter().zip(by_plate).zip(errors_mm.into_iter().zip(true_errors_mm));
+    let plate = |((plate, tally), (mut errors_mm, mut true_errors_mm)): Tallied| {
         errors_mm.sort_unstable();
+        true_errors_mm.sort_unstable();
         PlateAccount {
             name: plate.name.clone(),
             kind: plate.kind,
-            error_p95_m: nearest_rank(&errors_mm, 0.95).map(|mm| f64::from(mm) / 1000.0),
-            error_max_m: errors_mm.last().map(|mm| f64::from(*mm) / 1000.0),
+            error_p95_m: nearest_rank(&errors_mm, 0.95).map(metres),
+            error_max_m: errors_mm.last().copied().map(metres),
+            true_error_p95_m: nearest_rank(&true_errors_mm, 0.95).map(metres),
+            true_error_max_m: true_errors_mm.last().copied().map(metres),
             shares: tally.shares(scanned.believed().floor().cell_m2()),
         }
     };

@@ -81,8 +81,9 @@ impl Fold {
         match &event.kind {
             EventKind::RunOpened(run) => self.open(run),
             EventKind::Truth { pose, clearance_m, collided } => {
-                self.accuracy.truth(event.tick, pose.position);
                 self.see_truth(*pose, *clearance_m, *collided);
+                let error_m = self.accuracy.truth(event.tick, pose.position);
+                self.note_error(error_m);
             }
             EventKind::TetherAlarmRaised { alarm: TetherAlarm::Snag { .. }, .. } => self.snag(true),
             EventKind::TetherAlarmCleared { alarm: TetherAlarm::Snag { .. } } => self.snag(false),
@@ -187,7 +188,8 @@ impl Fold {
         let here = Pose { position: estimate.position, heading_rad: estimate.heading_rad };
         let covariance = position_covariance(&estimate.covariance);
         let (error_m, limit_m) = (ellipse_95(&covariance).0, self.scan_limit_m());
-        self.accuracy.estimate(event.tick, here.position, covariance);
+        let true_error_m = self.accuracy.estimate(event.tick, here.position, covariance);
+        self.note_error(true_error_m);
         self.claimed.estimate(here.position, error_m, limit_m);
         let counts = match self.tool.as_mut().map(|tool| tool.visit(event.t_s, estimate)) {
             None => Passage::of(&self.standing.phase, error_m, limit_m) == Passage::Counts,
@@ -219,6 +221,13 @@ impl Fold {
         let lately = error_m_lately.map(|error_m| Margins { error_m, margin_m, t_s });
         self.scanned.iter_mut().for_each(|scanned| scanned.visit(here, lately));
         self.evidence.iter_mut().for_each(|evidence| evidence.visit(here, error_m, counts));
+    }
+
+    /// Adds the true position error of a tick, metres, to the floor that the tool truly passed in it.
+    fn note_error(&mut self, error_m: Option<f64>) {
+        if let Some((scanned, error_m)) = self.scanned.as_mut().zip(error_m) {
+            scanned.note_error(error_m);
+        }
     }
 
     /// Whether the protection level decides which floor is guaranteed.

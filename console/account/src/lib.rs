@@ -31,6 +31,7 @@ mod scanned;
 pub mod summary;
 mod tethered;
 mod tracking;
+mod true_errors;
 mod turning;
 mod vehicle;
 

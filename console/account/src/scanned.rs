@@ -4,6 +4,7 @@
 use crate::{
     passes::{Margins, Passes},
     summary::{Coverage, CoverageByTruth},
+    true_errors::TrueErrors,
 };
 use nalgebra::Matrix2;
 use world::{CellRun, Counts, CoverageGrid, Floor, FloorClass, KindRun, Pose, Tool};
@@ -14,6 +15,7 @@ pub struct Scanned {
     believed: CoverageGrid,
     /// Cells that the tool truly passed.
     truth: Vec<bool>,
+    true_errors: TrueErrors,
     passes: Passes,
     tool: Tool,
     last: Pose,
@@ -25,8 +27,9 @@ impl Scanned {
     pub fn new(floor: Floor, tool: Tool, start: Pose) -> Self {
         let passes = Passes::new(&floor, tool);
         let truth = vec![false; floor.len()];
+        let true_errors = TrueErrors::new(floor.len());
         let believed = CoverageGrid::new(floor);
-        Self { believed, truth, passes, tool, last: start, has_truth: false }
+        Self { believed, truth, true_errors, passes, tool, last: start, has_truth: false }
     }
 
     /// The floor with the cells scanned according to the mission's estimate.
@@ -55,6 +58,7 @@ impl Scanned {
         self.passes.join(&other.passes, is_in_both);
         self.believed.join(&other.believed);
         self.truth.iter_mut().zip(&other.truth).for_each(|(own, other)| *own |= other);
+        self.true_errors.join(&other.true_errors);
         self.has_truth &= other.has_truth;
     }
 
@@ -80,9 +84,22 @@ impl Scanned {
     /// Adds the robot's true movement from `a` to `b`.
     pub(crate) fn pass(&mut self, a: Pose, b: Pose) {
         self.has_truth = true;
-        for run in self.believed.floor().runs_under(self.tool, a, b) {
+        let cells = self.believed.floor().runs_under(self.tool, a, b);
+        for run in &cells {
             self.truth[run.range()].fill(true);
         }
+        self.true_errors.pass(cells);
+    }
+
+    /// Adds the position error on the robot's latest true movement, metres.
+    pub(crate) fn note_error(&mut self, error_m: f64) {
+        self.true_errors.note(error_m);
+    }
+
+    /// The largest true position error with which the tool passed a cell, millimetres; `None` if it is not known, or not
+    /// for all runs.
+    pub(crate) fn true_error_mm(&self, cell: usize) -> Option<u16> {
+        self.true_errors.mm(cell).filter(|_| self.has_truth)
     }
 
     /// The class of a cell during the mission.

@@ -20,7 +20,7 @@ pub struct Said {
     next_line: u64,
     notice: Option<String>,
     question: Option<String>,
-    standing: String,
+    standing: Vec<String>,
     tenths: u8,
     /// How many forecasts of the open what-if have been printed.
     forecasts: usize,
@@ -49,9 +49,12 @@ impl Said {
         lines.extend(newly(&mut self.question, question(model)));
         let standing = standing(model);
         if standing != self.standing {
+            // Of a state that continues, only the sentences that have changed are printed.
+            let same = standing.iter().zip(&self.standing).take_while(|(now, before)| now == before).count();
+            let new = standing[same..].join(" ");
             // A log line that has just been printed may begin the sentence about the state.
-            let said = entries.iter().find_map(|entry| standing.strip_prefix(&format!("{}. ", entry.text)));
-            lines.push(said.unwrap_or(&standing).to_owned());
+            let said = entries.iter().find_map(|entry| new.strip_prefix(&format!("{}. ", entry.text)));
+            lines.extend(Some(said.unwrap_or(&new).to_owned()).filter(|new| !new.is_empty()));
             self.standing = standing;
         }
         lines.extend(self.coverage(model));

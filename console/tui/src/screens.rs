@@ -120,7 +120,7 @@ const ROWS: &[Row] = &[
         run: |m| m.review.run(&m.home).map(|run| run.name.clone()),
         ..row(shows(Screen::Review, "review", "Screen 6: past runs: replay, compare", &[Key::Char('6')]), "Review",
             &[&[On(Screen::Review), Rows]], view::review::draw) },
-    Row { first: ActionId::Rescan, select: go::select_missed,
+    Row { first: ActionId::Rescan, select: go::select_in_result,
         ..row(shows(Screen::Result, "result", "Screen 7: what was achieved", &[Key::Char('7')])
                 .when(|m| offer::demand(m.live.result.is_some(), "no run has ended yet")), "Result",
             &[&[On(Screen::Result), Map, Rows], &[On(Screen::Result), Map, Pan, Cursor]], view::result::draw) },

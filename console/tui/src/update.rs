@@ -45,7 +45,7 @@ use crate::actions::{ActionId, context::contexts, find};
 use crate::keys::{Key, KeyPress};
 use crate::model::console::{Bell, Notice};
 use crate::model::plugins::differences;
-use crate::model::{Cause, Model, Overlay, Pane, Screen, ui::Arrangement};
+use crate::model::{Cause, Model, Overlay, Screen, ui::Arrangement};
 use mission::{Hold, Phase, PlannerInfo, RefusedPlugin, Severity};
 use send::hold_now;
 
@@ -153,9 +153,14 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
     {
         return Vec::new();
     }
-    let Some(action) = find::action_for(&model.console.keys, press.key, &contexts(model)) else {
+    let of_list = find::action_for(&model.console.keys, press.key, &contexts(model));
+    let of_list = of_list.filter(|action| !remedies::is_unused(model, action.id));
+    let Some(action) = of_list.or_else(|| remedies::behind(model, press.key)) else {
         return unknown(model, press.key);
     };
+    if of_list.is_none() && offered(model, action.id).is_ok() {
+        model.ui.overlay = Overlay::None;
+    }
     match action.id {
         // A repeat of a held key still stops the robot, but does nothing else.
         ActionId::Hold if press.repeat && model.live.may_move() && !model.live.hold_asked => hold_now(model),
@@ -205,7 +210,7 @@ fn resize(model: &mut Model, width: u16, height: u16) {
     let whole = matches!(model.ui.arrangement(), Arrangement::Wide | Arrangement::Narrow);
     let turns = whole || model.ui.screen == Screen::Plan;
     if turns && !model.ui.panes().is_empty() && !model.ui.panes().contains(&model.ui.pane) {
-        model.ui.pane = Pane::Map;
+        model.ui.pane = model.ui.first_pane();
     }
 }
 

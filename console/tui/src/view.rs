@@ -154,6 +154,12 @@ fn draw_pane(look: &Look, frame: &mut Frame, area: Rect, pane: Pane) {
         Pane::Missed => missed::draw(look, frame, area),
         Pane::Chart(chart) => charts::draw(look, frame, area, chart),
         // Panes of the plan and result screens.
-        Pane::Plan | Pane::Promise | Pane::LeftOut | Pane::Parameters | Pane::Checks | Pane::Figures => {}
+        Pane::Plan
+        | Pane::Promise
+        | Pane::LeftOut
+        | Pane::Parameters
+        | Pane::Checks
+        | Pane::Figures
+        | Pane::Plates => {}
     }
 }

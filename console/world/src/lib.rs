@@ -5,6 +5,7 @@
 //! counter-clockwise. Cost: distance queries use a bounding volume hierarchy, so their cost grows with the logarithm of
 //! the number of obstacles.
 
+mod beside_limit;
 pub mod coverage;
 pub mod medium;
 pub mod obstacles;
@@ -21,6 +22,7 @@ mod total;
 mod truth;
 mod wear;
 
+pub use beside_limit::beside_limit;
 pub use coverage::{
     Cell, CellRun, Counts, CoverageGrid, Floor, FloorClass, FloorMaker, KindRun, ShellFigures, ShellStretch,
     ShellZone, SweptArea, Tool,

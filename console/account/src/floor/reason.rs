@@ -2,7 +2,7 @@
 
 use super::{areas::Explained, measure::Measure};
 use serde::{Deserialize, Serialize};
-use world::Cell;
+use world::{Cell, beside_limit};
 
 /// The reason why reachable floor was not scanned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -68,7 +68,8 @@ impl Explained for MissReason {
         let (limit_m, near) = (limit_m.unwrap_or(0.0), near.as_deref().unwrap_or("a solid object"));
         match self {
             Self::PositionUncertain => {
-                format!("passed with position error {value_m:.2} m, limit {limit_m:.2} m")
+                let [error, limit] = beside_limit(*value_m, limit_m, 2);
+                format!("passed with position error {error} m, limit {limit} m")
             }
             Self::FoundObstacle => format!("{} from {near}, found during the run", measure.range()),
             Self::NotAsked => format!("not requested, up to {value_m:.2} m outside the requested areas"),

@@ -13,7 +13,7 @@ use crate::{
 use planner_api::LogLevel;
 use positioning::Exclusion;
 use vehicle::port::{LinkSeen, Notice};
-use world::{Station, StationId, tether::Certificate};
+use world::{Station, StationId, beside_limit, tether::Certificate};
 
 /// A line of the event log: its severity, its source and its text.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -52,11 +52,10 @@ impl Event {
             EventKind::StationRestored { station } => {
                 line(Severity::Info, "ae", format!("{} no longer rejected", station_text(*station, stations)))
             }
-            EventKind::PositionLost { error_m, limit_m } => line(
-                Severity::Crit,
-                "ae",
-                format!("position lost: 95 % error {error_m:.2} m, limit {limit_m:.2} m"),
-            ),
+            EventKind::PositionLost { error_m, limit_m } => {
+                let [error, limit] = beside_limit(*error_m, *limit_m, 2);
+                line(Severity::Crit, "ae", format!("position lost: 95 % error {error} m, limit {limit} m"))
+            }
             EventKind::PositionRegained { error_m } => {
                 line(Severity::Info, "ae", format!("position recovered: 95 % error {error_m:.2} m"))
             }
@@ -527,10 +526,13 @@ fn exclusion_text(reason: &Exclusion) -> String {
         Exclusion::ByOrder => "excluded by the operator".into(),
         Exclusion::Biased { bias_m } => format!("ranges wrong by {bias_m:+.2} m"),
         Exclusion::Residual { residual_m, gate_m } => {
-            format!("residual {residual_m:.2} m, gate {gate_m:.2} m")
+            let [size, gate] = beside_limit(residual_m.abs(), *gate_m, 2);
+            let sign = if *residual_m < 0.0 { "-" } else { "" };
+            format!("residual {sign}{size} m, gate {gate} m")
         }
         Exclusion::Impossible { range_m, most_m } => {
-            format!("range {range_m:.2} m, impossible in this tank (at most {most_m:.2} m)")
+            let [range, most] = beside_limit(*range_m, *most_m, 2);
+            format!("range {range} m, impossible in this tank (at most {most} m)")
         }
     }
 }

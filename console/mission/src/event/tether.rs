@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
-use world::Point;
+use world::{Point, beside_limit};
 
 /// A contact of the cable with an obstacle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -93,15 +93,16 @@ impl fmt::Display for TetherAlarm {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Reel { out_m, reel_length_m } => {
-                write!(f, "{out_m:.1} m of tether out, reel holds {reel_length_m:.1} m")
+                let [out, reel] = beside_limit(*out_m, *reel_length_m, 1);
+                write!(f, "{out} m of tether out, reel holds {reel} m")
             }
             Self::Wrap { on, wrap_rad, limit_rad } => {
-                let (wrap, limit) = (wrap_rad.to_degrees(), limit_rad.to_degrees());
-                write!(f, "tether wraps {wrap:.0}° around {on}, limit {limit:.0}°")
+                let [wrap, limit] = beside_limit(wrap_rad.to_degrees(), limit_rad.to_degrees(), 0);
+                write!(f, "tether wraps {wrap}° around {on}, limit {limit}°")
             }
             Self::WrapTotal { sum_rad, limit_rad } => {
-                let (sum, limit) = (sum_rad.to_degrees(), limit_rad.to_degrees());
-                write!(f, "total tether wrap {sum:.0}°, limit {limit:.0}°")
+                let [sum, limit] = beside_limit(sum_rad.to_degrees(), limit_rad.to_degrees(), 0);
+                write!(f, "total tether wrap {sum}°, limit {limit}°")
             }
             Self::Snag { paid_out_m, explained_m } => write!(
                 f,

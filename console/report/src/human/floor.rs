@@ -35,7 +35,11 @@ fn plates(plates: &[PlateAccount]) -> Vec<String> {
     let line = |plate: &PlateAccount| {
         let error = plate.error_p95_m.map(|m| format!(", 95 % error {m:.3} m p95")).unwrap_or_default();
         let worst = plate.error_max_m.map(|m| format!(", {m:.3} m worst")).unwrap_or_default();
-        format!("{} {}{error}{worst}", plate.name, shares(&plate.shares))
+        let truth = plate.true_error_p95_m.zip(plate.true_error_max_m);
+        let truth = truth
+            .map(|(p95_m, max_m)| format!(", true error {p95_m:.3} m p95, {max_m:.3} m worst"))
+            .unwrap_or_default();
+        format!("{} {}{error}{worst}{truth}", plate.name, shares(&plate.shares))
     };
     if plates.len() <= MOST_PLATES {
         return plates.iter().map(line).collect();
@@ -168,6 +172,8 @@ mod tests {
                 kind: PlateKind::Rectangular,
                 error_p95_m: None,
                 error_max_m: None,
+                true_error_p95_m: None,
+                true_error_max_m: None,
                 shares,
             }
         };

@@ -35,4 +35,9 @@ fn leave_out_new(computed: &mut Summary, reported: &Summary) {
     for plate in computed.floor.iter_mut().flat_map(|floor| &mut floor.plates).filter(|_| is_older) {
         plate.error_max_m = None;
     }
+    let mut plates = reported.floor.iter().flat_map(|floor| &floor.plates);
+    let has_no_truth = plates.all(|plate| plate.true_error_max_m.is_none());
+    for plate in computed.floor.iter_mut().flat_map(|floor| &mut floor.plates).filter(|_| has_no_truth) {
+        (plate.true_error_p95_m, plate.true_error_max_m) = (None, None);
+    }
 }

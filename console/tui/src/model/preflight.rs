@@ -7,7 +7,7 @@ use super::{Model, ui::Arrangement};
 use account::LeftOut;
 use mission::{Check, CheckOutcome, PlanId, Readiness, TaskConfig};
 use serde::{Deserialize, Serialize};
-use world::coverage::percent_text;
+use world::{beside_limit, coverage::percent_text};
 
 /// The minimum number of stations for a position fix.
 const LEAST_STATIONS: usize = 2;
@@ -144,7 +144,8 @@ impl Model {
             (Some(plan), None) => {
                 let what = match self.live.left_out() {
                     Some(left_out) => {
-                        format!("scans {} % of the requested floor", percent_text(left_out.scanned(), 1))
+                        let scanned = percent_text(left_out.scanned(), 1);
+                        format!("scans {scanned} % of the requested floor{}", why_not_all(left_out))
                     }
                     None => "only part of the task".to_owned(),
                 };
@@ -218,17 +219,17 @@ impl Model {
                 format!("{stations}; no fix on {:.1} m of the path", estimate.without_fix_m),
             ),
             Some(estimate) => match estimate.accuracy_worst {
-                Some(worst) if worst.value > limit_m => (
-                    CheckOutcome::Warning,
-                    format!(
-                        "{stations}; ±{:.2} m at {:.1}, {:.1} m, limit {limit_m:.2} m",
-                        worst.value, worst.at.x, worst.at.y
-                    ),
-                ),
-                Some(worst) => (
-                    CheckOutcome::Passed,
-                    format!("{stations}; at worst ±{:.2} m, limit {limit_m:.2} m", worst.value),
-                ),
+                Some(worst) => {
+                    let [error, limit] = beside_limit(worst.value, limit_m, 2);
+                    if worst.value > limit_m {
+                        let (x, y) = (worst.at.x, worst.at.y);
+                        let found = format!("{stations}; ±{error} m at {x:.1}, {y:.1} m, limit {limit} m");
+                        (CheckOutcome::Warning, found)
+                    } else {
+                        let found = format!("{stations}; at worst ±{error} m, limit {limit} m");
+                        (CheckOutcome::Passed, found)
+                    }
+                }
                 None => (CheckOutcome::Passed, format!("{stations}")),
             },
         };
@@ -254,6 +255,16 @@ fn all_but(left_out: &LeftOut) -> String {
     let areas =
         if left_out.areas.len() == 1 { "1 area".into() } else { format!("{} areas", left_out.areas.len()) };
     format!("all but {areas}, {area_m2:.1} m²")
+}
+
+/// Why a plan leaves floor out, as the end of a sentence: the reason for the largest area.
+fn why_not_all(left_out: &LeftOut) -> String {
+    let Some(largest) = left_out.areas.first() else { return String::new() };
+    let areas = match left_out.areas.len() {
+        1 => "1 area left out".to_owned(),
+        n => format!("{n} areas left out, the largest"),
+    };
+    format!("; {areas}, {:.2} m²: {}", largest.area_m2, largest.reason.briefly())
 }
 
 fn check(what: &str, outcome: CheckOutcome, found: String) -> Check {

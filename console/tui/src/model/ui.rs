@@ -29,6 +29,9 @@ pub struct Ui {
     pub layers: Layers,
     /// The index of the selected missed area in the list on the result screen.
     pub missed: usize,
+    /// The index of the selected plate in the list on the result screen, most missed first.
+    #[serde(default)]
+    pub plate: usize,
     /// The index of the selected area in the list of what the plan leaves out.
     #[serde(default)]
     pub left_out: usize,
@@ -63,6 +66,7 @@ impl Default for Ui {
             map: MapView::default(),
             layers: Layers::default(),
             missed: 0,
+            plate: 0,
             left_out: 0,
             plugin: 0,
             cursor: None,
@@ -111,6 +115,8 @@ pub enum Pane {
     Checks,
     /// The result screen: the achieved figures.
     Figures,
+    /// The result screen: the plates.
+    Plates,
 }
 
 impl Pane {
@@ -122,9 +128,13 @@ impl Pane {
     /// The panes beside the map of the plan screen that are shown one at a time on a narrow terminal, in Tab order.
     pub const PLAN_PARTS: [Self; 4] = [Self::Map, Self::LeftOut, Self::Checks, Self::Parameters];
     /// The panes of the result screen that are shown one at a time on a small terminal, in Tab order.
-    pub const RESULT_PAGES: [Self; 4] = [Self::Figures, Self::Coverage, Self::Missed, Self::Map];
+    pub const RESULT_PAGES: [Self; 5] =
+        [Self::Figures, Self::Coverage, Self::Missed, Self::Plates, Self::Map];
     /// The panes of the result screen that share a place on a narrow terminal, in Tab order.
-    pub const RESULT_PARTS: [Self; 2] = [Self::Figures, Self::Map];
+    pub const RESULT_PARTS: [Self; 3] = [Self::Figures, Self::Plates, Self::Map];
+    /// The panes of the result screen on a wide terminal, in Tab order: the figures with the map, and the plates, which take
+    /// the place of the map.
+    pub const RESULT_WHOLE: [Self; 2] = [Self::Figures, Self::Plates];
 }
 
 /// The quantity of a chart.
@@ -450,7 +460,7 @@ impl Ui {
         }
         self.screen = screen;
         if screen == Screen::Result {
-            self.pane = Pane::Figures;
+            self.pane = self.first_pane();
         } else if !self.panes().is_empty() && !self.panes().contains(&self.pane) {
             self.pane = Pane::Map;
         }
@@ -460,10 +470,17 @@ impl Ui {
         }
     }
 
+    /// The pane with which a screen begins: the figures of a result, the map of any other screen.
+    pub fn first_pane(&self) -> Pane {
+        let first = self.panes().first().filter(|_| self.screen == Screen::Result);
+        first.copied().unwrap_or(Pane::Map)
+    }
+
     /// Whether a pane is visible.
     pub fn shows(&self, pane: Pane) -> bool {
         if self.screen == Screen::Result && !self.panes().is_empty() {
-            return self.pane == pane;
+            let is_beside = pane == Pane::Map && self.arrangement() == Arrangement::Wide;
+            return self.pane == pane || is_beside && self.pane != Pane::Plates;
         }
         if self.screen != Screen::Mission {
             let is_paged = self.screen == Screen::Plan && self.arrangement() == Arrangement::Paged;
@@ -489,6 +506,7 @@ impl Ui {
             (Screen::Plan, Arrangement::Wide) => return &[Pane::Map, Pane::LeftOut],
             (Screen::Plan, Arrangement::Narrow) => return &Pane::PLAN_PARTS,
             (Screen::Plan, Arrangement::Paged) => return &Pane::PLAN_PAGES,
+            (Screen::Result, Arrangement::Wide) => return &Pane::RESULT_WHOLE,
             (Screen::Result, Arrangement::Narrow) => return &Pane::RESULT_PARTS,
             (Screen::Result, Arrangement::Paged) => return &Pane::RESULT_PAGES,
             (Screen::Mission, _) => {}

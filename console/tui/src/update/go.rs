@@ -7,7 +7,7 @@ use crate::actions::ActionId;
 use crate::model::home::HomeList;
 use crate::model::log::clock;
 use crate::model::ui::Arrangement;
-use crate::model::{Cause, Live, Model, Overlay, RunId, ScenarioEntry, Screen, Source};
+use crate::model::{Cause, Live, Model, Overlay, Pane, RunId, ScenarioEntry, Screen, Source};
 use mission::{PlannerChoice, Severity};
 use world::Point;
 
@@ -106,7 +106,8 @@ pub(super) fn open(model: &mut Model, source: Source, planner: Option<PlannerCho
         if before.is_opening { before.before } else { before.source.is_some().then(|| Box::new(before)) };
     model.live =
         Live { id, source: Some(source.clone()), is_opening: true, before, speed, ..Live::default() };
-    (model.ui.map, model.ui.cursor, model.ui.missed) = (crate::model::ui::MapView::default(), None, 0);
+    (model.ui.map, model.ui.cursor) = (crate::model::ui::MapView::default(), None);
+    (model.ui.missed, model.ui.plate) = (0, 0);
     model.console.notice = None;
     model.ui.go(Screen::Plan);
     vec![Effect::Open { id, source, planner, speed }]
@@ -131,6 +132,15 @@ pub(crate) fn again(model: &mut Model) -> Vec<Effect> {
     let Some(source) = model.live.source.clone() else { return Vec::new() };
     let planner = model.live.run.planning.choice.clone();
     open(model, source, planner)
+}
+
+/// Moves the selection down by `by` lines of the list of the result screen that responds to the arrow keys.
+pub(crate) fn select_in_result(model: &mut Model, by: isize) {
+    if model.ui.pane != Pane::Plates {
+        return select_missed(model, by);
+    }
+    let last = model.live.floor().map_or(0, |floor| floor.plates.len().saturating_sub(1));
+    model.ui.plate = model.ui.plate.saturating_add_signed(by).min(last);
 }
 
 /// Moves the selection down by `by` missed areas and centres the map on the area.

@@ -3,10 +3,12 @@
 use super::act::{act, hold_only};
 use super::message::Effect;
 use super::offer::{accepted, demand, offered, refuse};
-use crate::actions::ActionId;
+use crate::actions::{Action, ActionId, context::Context, find};
 use crate::guide;
+use crate::keys::Key;
 use crate::model::step::{Deed, Step};
 use crate::model::{Cause, Model, Overlay};
+use crate::screens;
 use mission::Order;
 use positioning::Exclusion;
 use std::borrow::Cow;
@@ -115,6 +117,22 @@ pub(crate) fn can(model: &Model, deed: &Deed) -> Result<(), String> {
 
 fn order(model: &Model, station: StationId, used: bool) -> Order {
     Order::UseStation { station, used, by: model.console.preferences.operator.clone() }
+}
+
+/// Whether a number is not among the actions of the open action list.
+pub(super) fn is_unused(model: &Model, id: ActionId) -> bool {
+    match (&model.ui.overlay, id) {
+        (Overlay::Remedies { steps, .. }, ActionId::Remedy(number)) => usize::from(number) > steps.len(),
+        _ => false,
+    }
+}
+
+/// The action of a key that the open action list does not use: the one that the key has on the screen behind the list,
+/// so that every key that the screen and the list name works. The alarm of the list is the selected one there.
+pub(super) fn behind(model: &Model, key: Key) -> Option<&'static Action> {
+    let Overlay::Remedies { .. } = &model.ui.overlay else { return None };
+    let contexts = [&[Context::Anywhere, Context::Screen], screens::contexts(model)].concat();
+    find::action_for(&model.console.keys, key, &contexts)
 }
 
 /// Runs the action with the given number, from 1, in the open action list, and closes the list. Actions that move the

@@ -49,13 +49,16 @@ fn question_lines(model: &Model, columns: u16) -> Vec<String> {
                 | Ask::Set { .. }
         )
     );
-    if !is_whole {
+    // The question itself is never cut.
+    let first = clauses.first().map_or(0, |first| text::width(first));
+    if !is_whole && first <= columns {
         return vec![next::joined(&clauses, columns)];
     }
     // What does not fit is left out whole, the least important clause first.
     let wrapped = |n: usize| text::wrap(&clauses[..n].join(" "), columns);
-    let fits = (ALWAYS..=clauses.len()).rev().find(|n| wrapped(*n).len() <= MOST_ROWS);
-    let mut lines = wrapped(fits.unwrap_or(ALWAYS).min(clauses.len()));
+    let always = if is_whole { ALWAYS } else { 1 };
+    let fits = (always..=clauses.len()).rev().find(|n| wrapped(*n).len() <= MOST_ROWS);
+    let mut lines = wrapped(fits.unwrap_or(always).min(clauses.len()));
     lines.truncate(MOST_ROWS);
     lines
 }

@@ -115,22 +115,22 @@ pub(crate) fn by_command(model: &Model) -> Vec<String> {
     by_phase(model).1.iter().map(|clause| keys.spelled(clause)).collect()
 }
 
-/// What happens next, without the figures that keep changing.
-pub(crate) fn standing(model: &Model) -> String {
+/// What happens next, in sentences, without the figures that keep changing.
+pub(crate) fn standing(model: &Model) -> Vec<String> {
     if let (Phase::Held(hold), None, false) =
         (model.live.run.phase(), &model.live.asked, model.live.is_cut_off || model.live.is_look_only())
     {
         let work = model.live.busy.as_ref().map(|busy| format!("{}.", busy.work));
         let clauses = held::clauses(model, hold).into_iter().chain(work);
-        return clauses.map(|clause| model.console.keys.spelled(&clause)).collect::<Vec<_>>().join(" ");
+        return clauses.map(|clause| model.console.keys.spelled(&clause)).collect();
     }
     if let Some(busy) = &model.live.busy {
-        return format!("{}.", busy.work);
+        return vec![format!("{}.", busy.work)];
     }
     if model.live.run.is_running() {
-        return "Mission running.".into();
+        return vec!["Mission running.".into()];
     }
-    clauses(model).1.join(" ")
+    clauses(model).1
 }
 
 /// The keys for what can be done after a mission has ended.

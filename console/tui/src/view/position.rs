@@ -8,7 +8,7 @@ use positioning::{Exclusion, Integrity};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
-use world::{Station, StationId};
+use world::{Station, StationId, beside_limit};
 
 /// The mission time covered by the curve, seconds.
 const CURVE_S: usize = 120;
@@ -128,7 +128,12 @@ fn error(look: &Look) -> (Role, String) {
     };
     let error = error_m.map_or_else(|| "-".into(), |error_m| format!("±{}", text::number(error_m, 2)));
     let lost = if run.position.lost { "LOST " } else { "" };
-    let limit = text::number(limit_m, 2);
+    let (error, limit) = match error_m.map(|error_m| beside_limit(error_m, limit_m, 2)) {
+        Some([beside, limit]) if limit_m.is_finite() && run.position.protection.is_none() => {
+            (format!("±{beside}"), limit)
+        }
+        _ => (error, text::number(limit_m, 2)),
+    };
     let (role, words) = match run.position.protection {
         None => (role, format!("{lost}{error} m (limit {limit})")),
         Some(Some(level_m)) => (role, format!("{lost}{error} m, protected {} m", text::number(level_m, 2))),

@@ -33,6 +33,7 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
         Arrangement::Wide => 2,
     };
     let missed_rows = missed::rows(look).min(MISSED[size]).max(3);
+    let missed_rows = if size == 2 { beside_plates(look, area, result, missed_rows) } else { missed_rows };
     let [above, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(missed_rows)]).areas(area);
     let [left, right] =
         Layout::horizontal([Constraint::Fill(1), Constraint::Length(SIDE[size])]).areas(above);
@@ -42,10 +43,14 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     let rows = (figures::rows(look, result, columns) + 2).min(right.height.saturating_sub(shares));
     let [achieved, rest] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(right);
     figures::draw(look, frame, achieved, result);
-    if size == 0 && look.model.ui.pane != Pane::Map {
-        floor::draw(look, frame, left, result);
-    } else {
-        map::draw(look, frame, left);
+    match look.model.ui.pane {
+        Pane::Plates => plates::draw(look, frame, left),
+        Pane::Map => map::draw(look, frame, left),
+        _ if size > 0 => map::draw(look, frame, left),
+        _ => floor::draw(look, frame, left, result),
+    }
+    // A narrow screen shows the floor shares in one place only.
+    if size > 0 || matches!(look.model.ui.pane, Pane::Map | Pane::Plates) {
         side(look, frame, rest, (result, size));
     }
     missed::draw(look, frame, below, result);
@@ -58,13 +63,30 @@ fn side(look: &Look, frame: &mut Frame, area: Rect, (result, size): (&RunResult,
         return;
     }
     let wanted = floor::rows(look, result, columns) + 2;
-    let has_plates = size == 2 && look.model.live.floor().is_some_and(|floor| !floor.plates.is_empty());
+    let has_plates = size == 2 && n_plates(look) > 0 && look.model.ui.pane != Pane::Plates;
     let shares = if has_plates { wanted.min(area.height) } else { area.height };
     let [floor, plates] = Layout::vertical([Constraint::Length(shares), Constraint::Fill(1)]).areas(area);
     floor::draw(look, frame, floor, result);
-    if let Some(floor) = look.model.live.floor().filter(|_| has_plates && plates.height > 3) {
-        plates::draw(look, frame, plates, floor);
+    if has_plates && plates.height > 3 {
+        plates::draw(look, frame, plates);
     }
+}
+
+fn n_plates(look: &Look) -> usize {
+    look.model.live.floor().map_or(0, |floor| floor.plates.len())
+}
+
+/// The rows of the list of missed areas on a large screen: fewer if the plates would not all fit above it.
+fn beside_plates(look: &Look, area: Rect, result: &RunResult, missed_rows: u16) -> u16 {
+    if n_plates(look) == 0 {
+        return missed_rows;
+    }
+    let columns = SIDE[2].saturating_sub(2);
+    let above = figures::rows(look, result, columns) + floor::rows(look, result, columns) + 4;
+    // The frame and the headings.
+    let plates = (n_plates(look) + 3).min(usize::from(u16::MAX)) as u16;
+    let left = area.height.saturating_sub(above + plates);
+    missed_rows.min(left.max(MISSED[0]))
 }
 
 /// One pane at a time.
@@ -73,6 +95,7 @@ fn page(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
         Pane::Map => map::draw(look, frame, area),
         Pane::Coverage => floor::draw(look, frame, area, result),
         Pane::Missed => missed::draw(look, frame, area, result),
+        Pane::Plates => plates::draw(look, frame, area),
         _ => figures::draw(look, frame, area, result),
     }
 }

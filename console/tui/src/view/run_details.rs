@@ -32,7 +32,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, glimpse: &Glimpse
     if let Some(floor) = floor {
         missed(look, frame, above, floor);
         if middle.height > FRAME {
-            plates::draw(look, frame, middle, floor);
+            plates::list(look, frame, middle, floor, None);
         }
     }
     curves(look, frame, below, &glimpse.run);

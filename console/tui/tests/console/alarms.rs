@@ -621,3 +621,34 @@ fn the_numbers_of_an_open_list_of_actions_keep_their_actions() {
     screen.press([Key::Esc, Key::Enter]);
     assert_ne!(numbered(&screen), before, "opened again, it has the actions of a hold");
 }
+
+#[test]
+fn every_key_of_the_screen_works_while_the_list_of_actions_is_open() {
+    let mut screen = troubled();
+    screen.press(ENTER);
+    let Overlay::Remedies { cause, .. } = &screen.model.ui.overlay else { panic!("the list must be open") };
+    let cause = cause.clone();
+    let effects = screen.type_text("a");
+    let is_noted = |effect: &Effect| matches!(effect, Effect::Order(Order::Note(note)) if matches!(&note.what, Noted::Acknowledged { alarm, .. } if *alarm == cause.key()));
+    assert!(effects.iter().any(is_noted), "{effects:?}");
+    assert_eq!(screen.model.ui.overlay, Overlay::None);
+}
+
+#[test]
+fn a_digit_beyond_the_actions_shows_its_screen_and_one_among_them_runs_its_action() {
+    let mut screen = troubled();
+    screen.press(ENTER);
+    let Overlay::Remedies { steps, .. } = &mut screen.model.ui.overlay else {
+        panic!("the list must be open")
+    };
+    steps.truncate(2);
+    let before = screen.clone();
+    for (digit, shown) in [("3", tui::model::Screen::Mission), ("6", tui::model::Screen::Review)] {
+        let mut screen = before.clone();
+        screen.type_text(digit);
+        assert_eq!((screen.model.ui.screen, &screen.model.ui.overlay), (shown, &Overlay::None), "{digit}");
+    }
+    let mut screen = before;
+    screen.type_text("1");
+    assert_eq!(screen.model.ui.screen, SHOWN, "the first action runs");
+}

@@ -245,7 +245,7 @@ fn result() {
     let mut screen = ended().0;
     sizes::store("result", &mut screen, sizes::is_log);
     screen.send(Msg::Resize { width: 60, height: 16 });
-    let pages = ["Coverage", "Missed:", "Map", "Result"];
+    let pages = ["Coverage", "Missed:", "Plates", "Map", "Result"];
     for page in pages {
         screen.press([tui::Key::Tab]);
         let shown = text(&drawn(&screen.model, RICH, (60, 16)));

@@ -1,6 +1,7 @@
 //! The pull that moves a taut cable along itself, against the friction of the floor and of what the cable bears on.
 
 use super::cable::Cable;
+use crate::beside_limit;
 use geometry::Point;
 use serde::{Deserialize, Serialize};
 
@@ -42,12 +43,17 @@ impl Reel {
         Drag { floor_n_per_m: self.floor_friction * self.mass_kg_per_m * GRAVITY_M_PER_S2, friction }
     }
 
+    /// Returns the pull up to which a path is certified without a warning, newtons.
+    pub fn preferred_n(&self) -> f64 {
+        self.pull_ratio_max * self.pull_n
+    }
+
     /// Returns the limits of a path, with the coefficient of friction of the cable on everything except the floor.
     pub fn limits(&self, friction: f64) -> PullLimits {
         PullLimits {
             drag: self.drag(friction),
             reel_n: self.pull_n,
-            preferred_n: self.pull_ratio_max * self.pull_n,
+            preferred_n: self.preferred_n(),
             pay_out_n: self.pay_out_n,
             robot_n: self.robot_pull_n,
         }
@@ -99,7 +105,8 @@ impl Pull {
     /// assert_eq!(pull.text(), "3.9 of 6.0 N at -2.5, 5.1 m");
     /// ```
     pub fn text(&self) -> String {
-        format!("{:.1} of {:.1} N at {:.1}, {:.1} m", self.needed_n, self.reel_n, self.at.x, self.at.y)
+        let [needed, reel] = beside_limit(self.needed_n, self.reel_n, 1);
+        format!("{needed} of {reel} N at {:.1}, {:.1} m", self.at.x, self.at.y)
     }
 }
 

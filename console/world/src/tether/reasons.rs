@@ -4,6 +4,7 @@ use super::{
     cable::Cable, cable_obstacles::Bearing, case::Case, certificate::Certificate, clearance::Clearance,
     replay::Replay, sealed_region::SealedRegions,
 };
+use crate::beside_limit;
 use geometry::Point;
 
 /// Distance from the anchor within which a path must end to have returned, metres.
@@ -47,20 +48,21 @@ impl Reasons<'_> {
         reasons.extend(self.collision(certificate));
         if certificate.tether_length_max_m > limits.reel_length_m {
             let (most_m, at) = self.replay.max_cable;
-            let (place, reel_m) = (place(at), limits.reel_length_m);
-            reasons.push(format!("{most_m:.1} m of tether out at {place}, but the reel holds {reel_m:.1} m"));
+            let (place, [most, reel]) = (place(at), beside_limit(most_m, limits.reel_length_m, 1));
+            reasons.push(format!("{most} m of tether out at {place}, but the reel holds {reel} m"));
         }
         if certificate.wrap_max_rad > limits.wrap_max_rad {
             let (wrap_rad, on) = self.replay.max_wrap;
-            let (wrap, limit, on) =
-                (wrap_rad.to_degrees(), limits.wrap_max_rad.to_degrees(), self.name_of(on));
-            reasons.push(format!("tether wraps {wrap:.0}° around {on}, limit {limit:.0}°"));
+            let [wrap, limit] = beside_limit(wrap_rad.to_degrees(), limits.wrap_max_rad.to_degrees(), 0);
+            let on = self.name_of(on);
+            reasons.push(format!("tether wraps {wrap}° around {on}, limit {limit}°"));
         }
         if certificate.wrap_total_max_rad > limits.wrap_total_max_rad {
             let (total_rad, at) = self.replay.max_sum;
-            let (total, limit, place) =
-                (total_rad.to_degrees(), limits.wrap_total_max_rad.to_degrees(), place(at));
-            reasons.push(format!("total tether wrap {total:.0}° at {place}, limit {limit:.0}°"));
+            let [total, limit] =
+                beside_limit(total_rad.to_degrees(), limits.wrap_total_max_rad.to_degrees(), 0);
+            let place = place(at);
+            reasons.push(format!("total tether wrap {total}° at {place}, limit {limit}°"));
         }
         reasons.extend(self.too_much_pull(certificate));
         reasons.extend(self.left_out(certificate));
@@ -80,7 +82,8 @@ impl Reasons<'_> {
         let (Some(pull), Some(limits)) = (certificate.pull, self.case.pull) else { return Vec::new() };
         let (ratio, limit) = (pull.ratio(), limits.preferred_n / limits.reel_n);
         let warning = || {
-            format!("reeling in needs {}, ratio {ratio:.2}: above {limit:.2}, slack may remain", pull.text())
+            let [ratio, limit] = beside_limit(ratio, limit, 2);
+            format!("reeling in needs {}, ratio {ratio}: above {limit}, slack may remain", pull.text())
         };
         (pull.needed_n > limits.preferred_n && ratio <= 1.0).then(warning).into_iter().collect()
     }
@@ -94,9 +97,9 @@ impl Reasons<'_> {
             )
         };
         let weak_robot = |limit_n: f64| {
+            let [needed, limit] = beside_limit(pull.robot_needed_n, limit_n, 1);
             format!(
-                "the robot must pull {:.1} N at {} to draw out its tether, but can pull {limit_n:.1} N",
-                pull.robot_needed_n,
+                "the robot must pull {needed} N at {} to draw out its tether, but can pull {limit} N",
                 place(pull.robot_at)
             )
         };
@@ -111,12 +114,8 @@ impl Reasons<'_> {
             1 => "1 segment of the path lacks clearance,".to_owned(),
             n => format!("{n} segments of the path lack clearance, the first"),
         };
-        Some(format!(
-            "{lack} at {} near {name}: minimum {:.3} m, required {:.3} m",
-            place(*at),
-            certificate.clearance_min_m,
-            self.case.room_m
-        ))
+        let [least, required] = beside_limit(certificate.clearance_min_m, self.case.room_m, 3);
+        Some(format!("{lack} at {} near {name}: minimum {least} m, required {required} m", place(*at)))
     }
 
     fn left_out(&self, certificate: &Certificate) -> Option<String> {

@@ -4,6 +4,7 @@ use crate::model::alarms::{Reading, rule::reel_limit_m};
 use crate::model::{Cause, Run};
 use mission::{EventKind, Severity, event::TetherAlarm};
 use positioning::{Exclusion, Fix, FixError};
+use world::beside_limit;
 
 impl Run {
     /// Updates the figures of the alarms from an event.
@@ -39,11 +40,11 @@ impl Run {
             EventKind::PositionLost { error_m, limit_m } => (*error_m, Some(*limit_m)),
             _ => (self.position.error_m().unwrap_or(f64::NAN), limit_m),
         };
-        let metres = |m: f64| format!("±{m:.2} m");
-        self.read(&Cause::PositionLost, || Reading {
-            now: metres(error_m),
-            limit: limit_m.map(metres).unwrap_or_default(),
-            numbers: Some((error_m, limit_m)),
+        self.read(&Cause::PositionLost, || {
+            let written = beside_limit(error_m, limit_m.unwrap_or(f64::NAN), 2);
+            let [now, limit] = written.map(|m| format!("±{m} m"));
+            let limit = limit_m.map_or_else(String::new, |_| limit);
+            Reading { now, limit, numbers: Some((error_m, limit_m)) }
         });
     }
 
@@ -101,13 +102,18 @@ fn residual(reason: &Exclusion) -> Reading {
         Exclusion::ByOrder => words("excluded"),
         Exclusion::Biased { bias_m } => Reading { now: format!("{bias_m:+.2} m"), ..Reading::default() },
         Exclusion::Impossible { range_m, most_m } => {
-            Reading { now: format!("{range_m:.1} m"), limit: format!("{most_m:.1} m"), numbers: None }
+            let [now, limit] = beside_limit(*range_m, *most_m, 1).map(|m| format!("{m} m"));
+            Reading { now, limit, numbers: None }
         }
-        Exclusion::Residual { residual_m, gate_m } => Reading {
-            now: format!("{residual_m:+.2} m"),
-            limit: format!("{gate_m:.2} m"),
-            numbers: Some((residual_m.abs(), Some(*gate_m))),
-        },
+        Exclusion::Residual { residual_m, gate_m } => {
+            let [size, gate] = beside_limit(residual_m.abs(), *gate_m, 2);
+            let sign = if *residual_m < 0.0 { '-' } else { '+' };
+            Reading {
+                now: format!("{sign}{size} m"),
+                limit: format!("{gate} m"),
+                numbers: Some((residual_m.abs(), Some(*gate_m))),
+            }
+        }
     }
 }
 
@@ -121,13 +127,11 @@ fn used_residual(residual_m: f64) -> Reading {
 /// `reached`, or what the certified plan promises, metres, if that is more.
 fn of_tether(alarm: &TetherAlarm, reached: bool, promised_m: Option<f64>) -> Option<Reading> {
     let share = if reached { 1.0 } else { TetherAlarm::NEAR };
-    let reading = |now: f64, limit: f64, written: fn(f64) -> String| Reading {
-        now: written(now),
-        limit: written(limit),
-        numbers: Some((now, Some(limit))),
+    let reading = |value: f64, most: f64, (decimals, unit): (usize, &str)| {
+        let [now, limit] = beside_limit(value, most, decimals).map(|written| format!("{written}{unit}"));
+        Reading { now, limit, numbers: Some((value, Some(most))) }
     };
-    let metres = |m: f64| format!("{m:.1} m");
-    let degrees = |degrees: f64| format!("{degrees:.0}°");
+    let (metres, degrees) = ((1, " m"), (0, "°"));
     match alarm {
         TetherAlarm::Reel { out_m, reel_length_m } if reached => {
             Some(reading(*out_m, *reel_length_m, metres))
@@ -141,7 +145,8 @@ fn of_tether(alarm: &TetherAlarm, reached: bool, promised_m: Option<f64>) -> Opt
         }
         TetherAlarm::Snag { paid_out_m, explained_m } => Some(reading(*paid_out_m, *explained_m, metres)),
         TetherAlarm::Slack { slack_m, .. } => {
-            Some(Reading { now: metres(*slack_m), limit: String::new(), numbers: Some((*slack_m, None)) })
+            let now = format!("{slack_m:.1} m");
+            Some(Reading { now, limit: String::new(), numbers: Some((*slack_m, None)) })
         }
         TetherAlarm::NoReturnPath | TetherAlarm::Strayed => None,
     }

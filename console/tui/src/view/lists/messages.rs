@@ -1,6 +1,6 @@
 //! The history of messages, newest first.
 
-use super::list::{List, hint, paragraph};
+use super::list::{List, hint};
 use crate::model::{Message, log::clock};
 use crate::theme::Role;
 use crate::view::look::{Look, Parts as Row};
@@ -13,33 +13,58 @@ const DAY_S: f64 = 86_400.0;
 pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
     let messages = &look.model.console.messages;
     let room = usize::from(columns).saturating_sub(3);
-    let chosen = messages.iter().rev().nth(selected);
-    let whole = chosen.into_iter().flat_map(|message| paragraph(Role::Text, &said(message), room));
-    let mut below: Vec<Row> = std::iter::once(Row::new()).chain(whole).collect();
-    if messages.is_empty() {
-        below = vec![hint(" No messages yet.")];
+    let entries: Vec<Vec<Row>> = messages.iter().rev().map(|message| rows(message, room)).collect();
+    let first = entries.iter().take(selected).map(Vec::len).sum();
+    let selected_rows = entries.get(selected).map_or(1, Vec::len);
+    // The lines after the first one of a message are not counted.
+    let mut headings = Vec::new();
+    let mut at = 0;
+    for entry in &entries {
+        headings.extend(at + 1..at + entry.len());
+        at += entry.len();
     }
+    let below = if messages.is_empty() { vec![hint(" No messages yet.")] } else { Vec::new() };
     List {
         title: format!("Messages  {}", messages.len()),
         note: "newest first".into(),
         above: vec![hint(" run        UTC      message")],
-        rows: messages.iter().rev().map(|message| row(message, room)).collect(),
-        selected,
+        rows: entries.concat(),
+        headings,
+        selected: first,
+        selected_rows,
         needed_below: below.len(),
         below,
         ..List::default()
     }
 }
 
-fn row(message: &Message, room: usize) -> Row {
+/// A message in as many rows as it needs.
+fn rows(message: &Message, room: usize) -> Vec<Row> {
     let run = message.t_s.map_or_else(|| "-".into(), |t_s| format!("T+{}", clock(t_s)));
     let day = clock(message.wall_unix_s.rem_euclid(DAY_S));
     let role = if message.severity == Severity::Info { Role::Text } else { events::role(message.severity) };
     let times = format!("{} {} ", text::column(&run, 10), text::column(&day, 8));
     let rest = room.saturating_sub(text::width(&times));
-    vec![(Role::Dim, times), (role, text::fit(&said(message), rest))]
+    let indent = " ".repeat(text::width(&times));
+    let lines = text::wrap(&text::capitalized(&message.text), rest).into_iter();
+    let lines = lines.flat_map(|line| divided(&line, rest)).enumerate();
+    lines
+        .map(|(line, words)| {
+            let front = if line == 0 { times.clone() } else { indent.clone() };
+            vec![(Role::Dim, front), (role, words)]
+        })
+        .collect()
 }
 
-fn said(message: &Message) -> String {
-    text::capitalized(&message.text)
+/// A line whose words are too long for a row, for example a path, in as many rows as it needs.
+fn divided(line: &str, columns: usize) -> Vec<String> {
+    let mut rows = vec![String::new()];
+    for letter in line.chars() {
+        let more = text::width(letter.encode_utf8(&mut [0; 4]));
+        match rows.last_mut() {
+            Some(row) if row.is_empty() || text::width(row) + more <= columns => row.push(letter),
+            _ => rows.push(letter.into()),
+        }
+    }
+    rows
 }

@@ -103,8 +103,14 @@ fn undrivable(head: Head, by: &HoldReason, link: &LinkSeen) -> Option<Vec<String
 
 /// A hold during which the planner has ended, too.
 fn held_without_planner(head: Head, by: &HoldReason, fault: &str) -> Vec<String> {
+    // The state and one key fit into 60 columns.
+    let state = match by {
+        HoldReason::PlannerReplaced => head.with(": new planner has failed."),
+        HoldReason::Stepped => head.with(" after a step; planner has failed."),
+        by => head.with(&format!("{}; planner has failed.", reason(by))),
+    };
     vec![
-        head.with(&format!("{}; planner has failed.", reason(by))),
+        state,
         "<resume>: restart it and resume.".into(),
         "<planner>: change planner.".into(),
         format!("{}.", text::capitalized(fault)),

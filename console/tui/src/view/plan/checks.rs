@@ -12,7 +12,10 @@ use ratatui::text::Line;
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let checks = look.model.checks();
     let keys = if area.width >= 44 { look.keys("<preflight> all") } else { look.keys("<preflight>") };
-    let block = look.pane(Pane::Checks, &title(&checks, look.model.n_by_hand()), &keys);
+    let room = usize::from(area.width)
+        .saturating_sub(text::width(&keys) + text::width(&look.pane_key(Pane::Checks)) + 8);
+    let title = text::wording(titles(&checks, look.model.n_by_hand()), room);
+    let block = look.pane(Pane::Checks, &title, &keys);
     let columns = usize::from(block.inner(area).width).saturating_sub(1);
     let rows = usize::from(block.inner(area).height);
     let (bad, good): (Vec<&Check>, Vec<&Check>) = checks.iter().partition(|check| is_bad(check));
@@ -33,14 +36,22 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     fill(frame, area, block, lines);
 }
 
-fn title(checks: &[Check], by_hand: usize) -> String {
+/// The title with its counts, from the longest wording to the shortest: what blocks or warns is left out last.
+fn titles(checks: &[Check], by_hand: usize) -> [String; 4] {
     let count = |outcome: CheckOutcome| checks.iter().filter(|check| check.outcome == outcome).count();
     let ok = count(CheckOutcome::Passed) + count(CheckOutcome::Ticked);
     let (failed, warned) = (count(CheckOutcome::Failed), count(CheckOutcome::Warning));
     let failed = if failed > 0 { format!(", {failed} FAIL") } else { String::new() };
     let warned = if warned > 0 { format!(", {warned} WARN") } else { String::new() };
     let by_hand = if by_hand > 0 { format!(", {by_hand} by hand") } else { String::new() };
-    format!("Pre-flight  {ok} ok{failed}{warned}{by_hand}")
+    let bad = format!("{failed}{warned}");
+    let bad = bad.strip_prefix(", ").unwrap_or("ok");
+    [
+        format!("Pre-flight  {ok} ok{failed}{warned}{by_hand}"),
+        format!("Pre-flight  {ok} ok{failed}{warned}"),
+        format!("Pre-flight  {bad}"),
+        "Pre-flight".to_owned(),
+    ]
 }
 
 fn is_bad(check: &Check) -> bool {

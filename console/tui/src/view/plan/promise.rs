@@ -15,13 +15,15 @@ use ratatui::layout::{Constraint, Layout, Rect};
 const LABEL: usize = 12;
 const VALUE: usize = 9;
 const LIMIT: usize = 8;
+/// Width of a clock that is left, with the blank behind it, columns.
+const LEFT: usize = 14;
 /// The minimum width at which limits are shown beside two columns of figures, columns.
 const WITH_LIMIT: usize = 42;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let second = second(look);
     let columns = usize::from(look.pane(Pane::Promise, "", "").inner(area).width);
-    let widths = Widths::new(columns, second.is_some());
+    let widths = Widths::new(columns, second.as_ref());
     let note = if widths.limit > 0 { "limit" } else { "" };
     let block = look.pane(Pane::Promise, "Promised figures", note);
     let Some(mission) = look.run.about.as_ref().map(|about| &about.mission) else {
@@ -30,7 +32,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let mut rows: Vec<Parts> =
         second.as_ref().map(|second| head(look, second, &widths)).into_iter().collect();
     let cell = |figure: Figure, estimate: Option<&Estimate>, (role, room): (Role, usize)| {
-        let limit = (figure.limit)(mission);
+        let limit = (figure.warns)(mission).or_else(|| (figure.limit)(mission));
         estimate.and_then(|estimate| (figure.promised)(estimate, look.run)).map_or(
             (role, "-".into()),
             |found| {
@@ -93,7 +95,7 @@ pub(super) fn in_a_line(look: &Look, columns: usize) -> String {
     let mut figures: Vec<(bool, String)> = Vec::new();
     for figure in FIGURES {
         let Some(found) = (figure.promised)(estimate, look.run) else { continue };
-        let limit = mission.and_then(figure.limit);
+        let limit = mission.and_then(|mission| (figure.warns)(mission).or_else(|| (figure.limit)(mission)));
         let is_beyond = found.is_beyond(figure, limit);
         let over = limit
             .filter(|_| is_beyond)
@@ -122,11 +124,18 @@ struct Widths {
 }
 
 impl Widths {
-    fn new(columns: usize, has_second: bool) -> Self {
+    fn new(columns: usize, second: Option<&Second>) -> Self {
+        let has_second = second.is_some();
         // A second column takes precedence over the limits: a figure beyond its limit is marked.
         let limit = if has_second && columns < WITH_LIMIT { 0 } else { LIMIT };
         let room = columns.saturating_sub(1 + LABEL + limit + usize::from(limit > 0));
-        let second = if has_second { room / 2 } else { 0 };
+        let second = match second {
+            // A figure that is left says so, if there is room.
+            Some(Second::Now) if room > VALUE + LEFT => (room / 2).max(LEFT),
+            Some(Second::Now) => room / 2,
+            Some(Second::Compared(..)) => room / 2,
+            None => 0,
+        };
         Self { first: room.saturating_sub(second + 1), second: second.saturating_sub(1), limit }
     }
 }
@@ -135,6 +144,7 @@ impl Widths {
 fn head(look: &Look, second: &Second, widths: &Widths) -> Parts {
     let fits = |name: &str, word: &str, width| text::wording([name.to_owned(), word.to_owned()], width);
     let (mine, second) = match second {
+        Second::Now if widths.second + 1 < LEFT => ("promised".into(), (Role::Title, "left/now".into())),
         Second::Now => ("promised".into(), (Role::Title, "now".into())),
         Second::Compared(id, _) => (
             fits(look.run.planner_id().unwrap_or("-"), "active", widths.first),
@@ -169,6 +179,8 @@ struct Figure {
     decimals: usize,
     promised: fn(&Estimate, &Run) -> Option<Found>,
     limit: fn(&MissionConfig) -> Option<f64>,
+    /// The value above which the figure is marked, if that is not the limit.
+    warns: fn(&MissionConfig) -> Option<f64>,
     /// Whether the figure must not be below its limit, instead of above it.
     is_least: bool,
     /// The current figure during the mission, in a longer and a shorter wording.
@@ -241,6 +253,7 @@ const fn figure(label: &'static str, letter: &'static str, unit: &'static str, d
         decimals,
         promised: |_, _| None,
         limit: |_| None,
+        warns: |_| None,
         is_least: false,
         now: |_| None,
     }
@@ -297,11 +310,13 @@ const FIGURES: [Figure; 10] = [
     Figure {
         promised: |e, run| {
             let worst = e.tether.as_ref()?.pull_max_n?;
-            let reel_n = run.about.as_ref()?.mission.tether.as_ref()?.reel?.pull_n;
-            let note = format!(" of {} N", text::number(reel_n, 1));
-            Some(Found { note, ..Found::worst(worst) })
+            let preferred_n = run.about.as_ref()?.mission.tether.as_ref()?.reel?.preferred_n();
+            let is_much = worst.value > preferred_n;
+            let note = is_much.then(|| format!(" above {} N", text::number(preferred_n, 1)));
+            Some(Found { note: note.unwrap_or_default(), ..Found::worst(worst) })
         },
-        limit: |m| Some(m.tether.as_ref()?.reel?).map(|reel| reel.pull_ratio_max * reel.pull_n),
+        limit: |m| Some(m.tether.as_ref()?.reel?.pull_n),
+        warns: |m| Some(m.tether.as_ref()?.reel?.preferred_n()),
         now: |run| Some(alike(format!("{} N", text::number(run.tether.as_ref()?.pull_n?, 1)))),
         ..figure("pull", "p", " N", 1)
     },
@@ -326,7 +341,7 @@ const FIGURES: [Figure; 10] = [
     },
 ];
 
-/// A value as the amount that is left, in a longer and a shorter wording.
+/// A value as the amount that is left, in a longer and a shorter wording; the head of a narrow column says `left`, too.
 fn left(value: String) -> [String; 2] {
     [format!("{value} left"), value]
 }

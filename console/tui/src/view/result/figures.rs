@@ -1,7 +1,7 @@
 //! The achieved figures alongside the plan's estimate.
 
 use super::{next_page, plates, role, title};
-use crate::model::RunResult;
+use crate::model::{Pane, RunResult};
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
 use crate::view::text;
@@ -42,7 +42,8 @@ pub(super) fn rows(look: &Look, result: &RunResult, columns: u16) -> u16 {
 }
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
-    let block = look.block(role(result), &title(result), &next_page(look));
+    let title = format!("{}{}", look.pane_key(Pane::Figures), title(result));
+    let block = look.block(role(result), &title, &next_page(look));
     let inner = block.inner(area);
     let mut lines = lines(look, result, usize::from(inner.width));
     lines.truncate(usize::from(inner.height));
@@ -85,7 +86,13 @@ fn lines(look: &Look, result: &RunResult, columns: usize) -> Vec<Line<'static>> 
     let plate = plates::worst(look, columns).filter(|_| columns >= WORST);
     lines.extend(plate.map(|parts| look.line(parts)));
     lines.extend(worst(result, columns).into_iter().map(|parts| look.line(parts)));
-    let notes = true_error(result).into_iter().chain(scan_limit(look, result));
+    if look.model.live.is_replay() && look.model.live.plans.estimate.is_none() {
+        lines.extend(wrapped(
+            Role::Dim,
+            "No predictions: a run does not keep those that were made before it.",
+        ));
+    }
+    let notes = true_error(look, result).into_iter().chain(scan_limit(look, result));
     lines.extend(notes.flat_map(|words| wrapped(Role::Text, &words)));
     lines
 }
@@ -221,11 +228,15 @@ fn requested(look: &Look) -> Vec<String> {
 }
 
 /// The error against the true position.
-fn true_error(result: &RunResult) -> Option<String> {
+fn true_error(look: &Look, result: &RunResult) -> Option<String> {
     let error = result.summary.positioning.as_ref()?;
+    let worst = result.summary.extremes.iter().find(|figure| figure.id == FigureId::TrueError);
+    let at = worst.and_then(|figure| figure.worst);
+    let at = at.map_or_else(String::new, |worst| format!(" at {}", text::place(worst.at)));
+    let plate = plates::worst_true(look).map_or_else(String::new, |words| format!("; {words}"));
     let metres = |m: f64| text::number(m, 3);
     Some(format!(
-        "Error against the true position: mean {}, median {}, p95 {}, worst {} m.",
+        "Error against the true position: mean {}, median {}, p95 {}, worst {} m{at}{plate}.",
         metres(error.mean_error_m),
         metres(error.p50_m),
         metres(error.p95_m),

@@ -1,7 +1,7 @@
 //! The missed areas: the position and a short reason for each one, and all reasons for the selected one.
 
 use super::next_page;
-use crate::model::RunResult;
+use crate::model::{Pane, RunResult};
 use crate::theme::Role;
 use crate::update::Rows;
 use crate::view::look::{Look, Parts, fill};
@@ -43,7 +43,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResul
     let title =
         text::wording([title(look, listed, true), title(look, listed, false)], columns.saturating_sub(4));
     let room = columns.saturating_sub(text::width(&title) + 8);
-    let block = look.block(Role::Focus, &title, text::wording(notes, room).trim());
+    let border = if look.model.ui.pane == Pane::Plates { Role::Border } else { Role::Focus };
+    let block = look.block(border, &title, text::wording(notes, room).trim());
     let mut lines = table::rows(look, rows, Some(selected), (columns, height));
     lines.extend(why.into_iter().map(|parts| look.line(parts)));
     let kept_role = if result.is_kept { Role::Dim } else { Role::Crit };
@@ -54,6 +55,9 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResul
 
 /// The missed areas and, apart from them, those that were not reached because the mission ended.
 fn title(look: &Look, listed: &[&Area<MissReason>], full: bool) -> String {
+    if look.model.live.floor().is_none() {
+        return "Missed: this mission does not scan".into();
+    }
     let is_ahead = |area: &&&Area<MissReason>| area.reason == MissReason::NotReached;
     let missed: Vec<_> = listed.iter().filter(|area| !is_ahead(area)).collect();
     let ahead: Vec<_> = listed.iter().filter(is_ahead).collect();
