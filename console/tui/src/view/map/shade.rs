@@ -56,8 +56,8 @@ impl Shade {
             Self::Before => ('+', Role::Dim),
             Self::PoorFix => ('$', Role::Crit),
             Self::WeakFix => ('_', Role::Warn),
-            Self::NotProtected => ('&', Role::Crit),
-            Self::HighLevel => ('~', Role::Warn),
+            Self::NotProtected => ('?', Role::Crit),
+            Self::HighLevel => ('(', Role::Warn),
             Self::OnlyA => ('A', Role::Good),
             Self::OnlyB => ('B', Role::Ghost),
         }
