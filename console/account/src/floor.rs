@@ -283,9 +283,9 @@ fn plate_accounts(
     let mut errors_mm: Vec<Vec<u16>> =
         by_plate.iter().map(|tally| Vec::with_capacity(tally.counts.covered)).collect();
     let mut true_errors_mm = vec![Vec::new(); by_plate.len()];
-    for cell in 0..covered.len() {
+    for (cell, is_scanned) in covered.iter().enumerate() {
         let Some(plate) = map.plate_of(cell) else { continue };
-        let error_mm = scanned.passes().error_mm(cell).filter(|_| covered[cell]);
+        let error_mm = scanned.passes().error_mm(cell).filter(|_| *is_scanned);
         errors_mm[plate].extend(error_mm);
         true_errors_mm[plate].extend(scanned.true_error_mm(cell));
     }

@@ -16,7 +16,7 @@ pub struct Scanned {
     /// Cells that the tool truly passed.
     truth: Vec<bool>,
     true_errors: TrueErrors,
-    passes: Passes,
+    passes: Box<Passes>,
     tool: Tool,
     last: Pose,
     has_truth: bool,
@@ -25,7 +25,7 @@ pub struct Scanned {
 impl Scanned {
     /// A floor on which nothing has been scanned yet.
     pub fn new(floor: Floor, tool: Tool, start: Pose) -> Self {
-        let passes = Passes::new(&floor, tool);
+        let passes = Box::new(Passes::new(&floor, tool));
         let truth = vec![false; floor.len()];
         let true_errors = TrueErrors::new(floor.len());
         let believed = CoverageGrid::new(floor);

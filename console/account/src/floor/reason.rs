@@ -87,7 +87,7 @@ impl Explained for MissReason {
                 "not planned: up to {value_m:.2} m from the planned lanes (lanes \
                 are {limit_m:.2} m wide)"
             ),
-            Self::NoPlan => self.plainly().to_owned(),
+            Self::NoPlan | Self::InDoubt => self.plainly().to_owned(),
             Self::BeyondReel => {
                 format!(
                     "not planned: {value_m:.1} m beyond the reach of the tether; lanes are within \
@@ -98,7 +98,6 @@ impl Explained for MissReason {
                 format!("planned, not reached: mission ended up to {value_m:.1} m earlier")
             }
             Self::PassedBeside => format!("planned, but the robot passed {value_m:.2} m to one side"),
-            Self::InDoubt => self.plainly().to_owned(),
         }
     }
 

@@ -33,7 +33,8 @@ fn questions() -> Vec<Overlay> {
 
 #[test]
 fn no_question_is_cut_at_60x16() {
-    for mut screen in [Screen::held(), Screen::tethered(), Screen::idle()] {
+    for make in [Screen::held, Screen::tethered, Screen::idle] {
+        let mut screen = make();
         screen.send(Msg::Resize { width: 60, height: 16 });
         // The question about a planner that is active already names its parameters.
         if let Some(active) = &mut screen.model.live.run.planning.choice {

@@ -132,8 +132,7 @@ impl Widths {
         let second = match second {
             // A figure that is left says so, if there is room.
             Some(Second::Now) if room > VALUE + LEFT => (room / 2).max(LEFT),
-            Some(Second::Now) => room / 2,
-            Some(Second::Compared(..)) => room / 2,
+            Some(_) => room / 2,
             None => 0,
         };
         Self { first: room.saturating_sub(second + 1), second: second.saturating_sub(1), limit }
