@@ -69,7 +69,7 @@ pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig, n_stations: usize) 
         },
         calibrate_sound_speed: calibrate_sound_speed?,
         risk: risk(section),
-        session: session(section, calibrate_sound_speed?, n_stations)?,
+        session: session(section, calibrate_sound_speed?, n_stations),
         repetitions: ae.repetitions,
         needs_line_of_sight: !matches!(behind, BehindColumns::Heard | BehindColumns::Creeping),
     })
@@ -86,12 +86,8 @@ fn risk(section: &Section<'_>) -> Option<Risk> {
     })
 }
 
-/// The calibration from the last fixes; `None` within if it is off.
-fn session(
-    section: &Section<'_>,
-    calibrates_scale: bool,
-    n_stations: usize,
-) -> Option<Option<SessionConfig>> {
+/// The calibration from the last fixes; `None` if it is off, or if a key is wrong.
+fn session(section: &Section<'_>, calibrates_scale: bool, n_stations: usize) -> Option<SessionConfig> {
     let (model, on_bias) = (section.word("session_calibration"), section.word("biased_station"));
     let fixes = section.whole("session_fixes")?;
     let on_bias = if on_bias? == "correct" { OnBias::Correct } else { OnBias::Exclude };
@@ -100,7 +96,7 @@ fn session(
         "linear" => SoundSpeed::Linear,
         _ => {
             section.refuse(&["session_fixes", "biased_station"], "session_calibration = \"off\"");
-            return Some(None);
+            return None;
         }
     };
     if n_stations < LEAST_STATIONS {
@@ -112,7 +108,7 @@ fn session(
         let must_be = "false: session_calibration also estimates the speed of sound";
         section.complain("calibrate_sound_speed", Complaint::OutOfRange(must_be.into()));
     }
-    Some(Some(SessionConfig { sound_speed, on_bias, fixes: fixes as usize }))
+    Some(SessionConfig { sound_speed, on_bias, fixes: fixes as usize })
 }
 
 /// Refuses methods that assume noise proportional to distance if the times also have errors.

@@ -193,10 +193,13 @@ fn three_stations_cannot_separate_a_bias_from_the_speed_of_sound() {
     assert_eq!(run.biased(), []);
 }
 
+/// The ranges that a run receives.
+type Input<'a> = &'a dyn Fn(&mut Run) -> Vec<RangeSet>;
+
 /// Absurd input, and the cycles after it.
 #[test]
 fn absurd_input_stays_finite_and_sound_ranges_recover() {
-    let absurd: [&dyn Fn(&mut Run) -> Vec<RangeSet>; 5] = [
+    let absurd: [Input<'_>; 5] = [
         &|_| Vec::new(),
         &|run| run.stations.iter().map(|s| RangeSet { station: s.id, ranges_m: vec![1e9] }).collect(),
         &|run| vec![RangeSet { station: run.stations[0].id, ranges_m: vec![3.0; 1_000] }],
