@@ -84,6 +84,18 @@ pub(crate) fn depth_m(floor: &Floor, cells: &[usize], is_other: impl Fn(usize) -
     edges_m.reduce(f64::max)
 }
 
+/// The largest distance of some cells from the nearest reference cell, metres, wherever it is; `None` without reference
+/// cells. Takes the time of cells times edge cells, so [`depth_m`] is preferred for cells beside reference cells.
+pub(crate) fn apart_m(floor: &Floor, cells: &[usize], is_other: impl Fn(usize) -> bool) -> Option<f64> {
+    let is_edge = |cell: &usize| is_other(*cell) && around(floor, *cell).any(|next| !is_other(next));
+    let edge: Vec<usize> = (0..floor.len()).filter(is_edge).collect();
+    let nearest_m = |cell: usize| {
+        let distances_m = edge.iter().map(|other| (floor.center(cell) - floor.center(*other)).norm());
+        distances_m.reduce(f64::min)
+    };
+    cells.iter().filter_map(|cell| nearest_m(*cell)).reduce(f64::max)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -99,5 +111,11 @@ mod tests {
         let depth = |rows: usize| depth_m(&floor, &strip(rows), |cell| cell >= rows * floor.width);
         assert!((depth(1).unwrap_or(0.0) - 0.1).abs() < 1e-9 && (depth(3).unwrap_or(0.0) - 0.3).abs() < 1e-9);
         assert_eq!(depth_m(&floor, &strip(2), |_| false), None);
+        // A row that the reference cells do not touch.
+        let row = 5 * floor.width;
+        let is_other = |cell: usize| cell >= row && cell < row + floor.width;
+        assert_eq!(depth_m(&floor, &strip(1), is_other), None);
+        assert!((apart_m(&floor, &strip(1), is_other).unwrap_or(0.0) - 0.5).abs() < 1e-9);
+        assert_eq!(apart_m(&floor, &strip(1), |_| false), None);
     }
 }

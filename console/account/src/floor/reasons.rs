@@ -2,7 +2,7 @@
 
 use super::{
     evidence::{Evidence, Solid},
-    measure::{Measure, depth_m},
+    measure::{Measure, apart_m, depth_m},
     reason::{MissReason, OutOfReach},
 };
 use std::collections::BTreeMap;
@@ -94,7 +94,12 @@ impl Reasons<'_> {
             MissReason::FoundObstacle => {
                 Measure::off(cells.iter().filter_map(|cell| evidence.nearest_found(floor.center(*cell))))
             }
-            MissReason::NotAsked => depth_m(floor, cells, |cell| evidence.is_asked(cell)).map(Measure::of),
+            MissReason::NotAsked => {
+                let is_asked = |cell| evidence.is_asked(cell);
+                // Between the area and the requested floor, there may be floor with another reason.
+                let depth_m = depth_m(floor, cells, is_asked).or_else(|| apart_m(floor, cells, is_asked));
+                depth_m.map(Measure::of)
+            }
             // In a corner, a cell may be near enough to the nearest wall, and yet no lane can reach it.
             MissReason::Narrow => most(&|cell| Some(self.beyond_lanes_m(floor.center(cell))))
                 .filter(|beyond_m| *beyond_m > 0.0)
