@@ -4,6 +4,7 @@
 //! tense and self-contained. They do not contain the wall-clock time or anything else that would differ between two
 //! equal runs.
 
+mod better_plan;
 mod effort;
 mod log_line;
 mod measured;
@@ -15,6 +16,7 @@ mod severity;
 mod shadow;
 mod tether;
 
+pub use better_plan::{PlanDropped, PlanMade, PlanTaken};
 pub use effort::Effort;
 pub use log_line::{LogLine, late_text};
 pub use measured::{Asked, Measured, ToolTrack};
@@ -467,55 +469,12 @@ pub enum EventKind {
     },
     /// After a repair, a plan for the rest of the task was made in the background. It begins at a place ahead on the
     /// current plan.
-    BetterPlanned {
-        /// Id of the ask that this answers.
-        ask: AskId,
-        /// Id of the planner.
-        planner: String,
-        /// The path.
-        path: Vec<Point>,
-        /// Whether the plan achieves the whole task.
-        complete: bool,
-        /// The stretches of the path and their purposes, if the planner states them.
-        #[serde(default, skip_serializing_if = "Vec::is_empty")]
-        legs: Vec<Leg>,
-        /// Lines that the tethered robot never crosses.
-        #[serde(default, skip_serializing_if = "Vec::is_empty")]
-        cuts: Vec<Vec<Point>>,
-        /// The effort of the current plan from that place on.
-        flown: Effort,
-        /// The effort of this plan.
-        better: Effort,
-        /// The floor that both plans scan; absent if this plan saves too little to be offered.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        scans: Option<PlanScans>,
-        /// The reason why the plan is not offered, as a sentence; absent if it is offered.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        objection: Option<String>,
-    },
+    BetterPlanned(PlanMade),
     /// The better plan was taken in this tick. The events for the activation of its planner, the plan from here on, and
     /// the certificate of that plan follow.
-    BetterPlanTaken {
-        /// Id of the planner.
-        planner: String,
-        /// The effort of the previous plan from here on.
-        flown: Effort,
-        /// The effort of this plan.
-        better: Effort,
-    },
+    BetterPlanTaken(PlanTaken),
     /// The better plan was dropped, either while it was being made or after it had been offered.
-    BetterPlanDropped {
-        /// Id of the planner that made the plan.
-        planner: String,
-        /// The reason, as a sentence.
-        why: String,
-        /// The stage of the offer; absent if the plan was still being made.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        stage: Option<OfferStage>,
-        /// The reason; absent in older journals.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        reason: Option<OfferEnd>,
-    },
+    BetterPlanDropped(PlanDropped),
     /// The robot drives back by order, without a planner.
     ReturnBegan {
         /// The way.

@@ -18,7 +18,7 @@ use super::{
 use crate::{
     ask::{AskId, Said},
     config::BetterPlan,
-    event::{Effort, EventKind, OfferEnd, OfferStage},
+    event::{Effort, EventKind, OfferEnd, OfferStage, PlanDropped, PlanMade, PlanTaken},
     task::rest_of,
 };
 use geometry::PathFollower;
@@ -79,7 +79,12 @@ impl Mission {
         self.workers.close(worker.leave());
         let (planner, why) = (worker.choice.id, reason.to_string());
         let stage = better.stage(self.known.config.better_plan);
-        self.happened.push(EventKind::BetterPlanDropped { planner, why, stage, reason: Some(reason) });
+        self.happened.push(EventKind::BetterPlanDropped(PlanDropped {
+            planner,
+            why,
+            stage,
+            reason: Some(reason),
+        }));
     }
 
     /// Starts the search for a better plan if one is due. When the robot reaches the place where an offered plan begins,
@@ -131,7 +136,7 @@ impl Mission {
         let effort = |path: &[Point]| Effort::of(&[before, path].concat(), &self.known.config.limits);
         let (flown, better) = (effort(&rest), effort(&plan.path));
         let (scans, objection) = self.known.judge_better(&way, &rest, (flown, better), &plan);
-        self.happened.push(EventKind::BetterPlanned {
+        self.happened.push(EventKind::BetterPlanned(PlanMade {
             ask,
             planner: worker.id().to_owned(),
             path: plan.path.clone(),
@@ -142,7 +147,7 @@ impl Mission {
             better,
             scans,
             objection: objection.clone(),
-        });
+        }));
         if objection.is_some() {
             self.workers.close(worker.leave());
             return None;
@@ -165,7 +170,7 @@ impl Mission {
             let reason = OfferEnd::Unsafe { message: objection.message };
             return self.close_better_plan(worker, &Better::Offered(offer), reason);
         }
-        self.happened.push(EventKind::BetterPlanTaken { planner, flown, better });
+        self.happened.push(EventKind::BetterPlanTaken(PlanTaken { planner, flown, better }));
         self.take_over(Driving::with_plan(worker, Vec::new(), Prepare::No), Said::default(), evaluated);
         self.left = None;
     }

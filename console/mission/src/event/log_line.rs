@@ -1,7 +1,7 @@
 //! Events as lines of text. The log on the screen, the recording and the command line use the same words.
 
 use super::{
-    Event, EventKind, OfferStage, TetherAlarm,
+    Event, EventKind, OfferStage, PlanDropped, PlanMade, PlanTaken, TetherAlarm,
     severity::{self, Severity},
 };
 use crate::engine::side;
@@ -122,9 +122,9 @@ impl Event {
             | EventKind::PlannerLogged { .. }
             | EventKind::PlannerLate { .. }
             | EventKind::PlannerFailed { .. } => of_planner(&self.kind)?,
-            EventKind::BetterPlanned { .. }
-            | EventKind::BetterPlanTaken { .. }
-            | EventKind::BetterPlanDropped { .. } => of_better_plan(&self.kind)?,
+            EventKind::BetterPlanned(_) | EventKind::BetterPlanTaken(_) | EventKind::BetterPlanDropped(_) => {
+                of_better_plan(&self.kind)?
+            }
             EventKind::ShadowBegan { .. }
             | EventKind::Shadowed { .. }
             | EventKind::ShadowMissed { .. }
@@ -338,18 +338,18 @@ fn of_planner(kind: &EventKind) -> Option<LogLine> {
 
 fn of_better_plan(kind: &EventKind) -> Option<LogLine> {
     Some(match kind {
-        EventKind::BetterPlanned { planner, flown, better, objection: None, .. } => {
+        EventKind::BetterPlanned(PlanMade { planner, flown, better, objection: None, .. }) => {
             let text = format!("better plan of {planner}: {}", better.saving(flown));
             line(Severity::Watch, "plan", text)
         }
-        EventKind::BetterPlanned { planner, objection: Some(why), .. } => {
+        EventKind::BetterPlanned(PlanMade { planner, objection: Some(why), .. }) => {
             line(Severity::Info, "plan", format!("{planner} replanned: {why}; the current plan is kept"))
         }
-        EventKind::BetterPlanTaken { planner, flown, better } => {
+        EventKind::BetterPlanTaken(PlanTaken { planner, flown, better }) => {
             let text = format!("better plan of {planner} taken: {}", better.saving(flown));
             line(Severity::Info, "plan", text)
         }
-        EventKind::BetterPlanDropped { planner, why, stage, .. } => match stage {
+        EventKind::BetterPlanDropped(PlanDropped { planner, why, stage, .. }) => match stage {
             None => line(Severity::Info, "plan", format!("better plan of {planner} dropped: {why}")),
             Some(OfferStage::Offered) => line(Severity::Info, "plan", format!("offer ended: {why}")),
             Some(OfferStage::Accepted) => {

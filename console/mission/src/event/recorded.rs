@@ -1,6 +1,6 @@
 //! Answers from a journal. An event that answers an ask contains everything needed to repeat that answer.
 
-use super::EventKind;
+use super::{EventKind, PlanMade};
 use crate::{
     ask::{Answer, Ask, AskId, Given, Said, What},
     planner::{Cause, During, Fault},
@@ -82,7 +82,7 @@ impl EventKind {
             | Self::ShadowBegan { ask, .. }
             | Self::ShadowMissed { ask, .. }
             | Self::Snapshotted { ask, .. }
-            | Self::BetterPlanned { ask, .. }
+            | Self::BetterPlanned(PlanMade { ask, .. })
             | Self::Discarded { ask, .. } => Some(*ask),
             Self::Shadowed { of } => of.closes(),
             Self::PlannerChosen { ask, .. }
@@ -108,7 +108,7 @@ impl EventKind {
             Self::Planned { ask: Some(_), return_path, path, complete, legs, cuts, .. } => {
                 without_return_path(*return_path, path, *complete, legs, cuts).map(Given::Plan)
             }
-            Self::BetterPlanned { path, complete, legs, cuts, .. } => {
+            Self::BetterPlanned(PlanMade { path, complete, legs, cuts, .. }) => {
                 without_return_path(0, path, *complete, legs, cuts).map(Given::Plan)
             }
             Self::Commanded { ask: Some(_), command, asked } => Ok(Given::Command(asked.unwrap_or(*command))),

@@ -6,7 +6,7 @@
 //! Plans are not rounded, because the planners' answers are replayed from the journal. Commands are rounded before they
 //! are sent ([`crate::Sending::as_sent`]).
 
-use super::{Event, EventKind, TetherContact};
+use super::{Event, EventKind, PlanMade, TetherContact};
 use crate::{ask::Said, way_back::WayBack};
 use nalgebra::SMatrix;
 use planner_api::{Command, Drawing, Drive, PoseEstimate};
@@ -131,7 +131,7 @@ impl EventKind {
                 [length_m, clearance_m].into_iter().for_each(round);
             }
             Self::ZoneBreached { depth_m, .. } => round(depth_m),
-            Self::BetterPlanned { scans: Some(scans), .. } => {
+            Self::BetterPlanned(PlanMade { scans: Some(scans), .. }) => {
                 for scan in [&mut scans.flown, &mut scans.better] {
                     [&mut scan.left_m2, &mut scan.covered_reachable].into_iter().for_each(round);
                 }

@@ -5,7 +5,7 @@ mod ready;
 use super::{InShadow, PositionTrust, Readiness, Standing};
 use crate::{
     config::BetterPlan,
-    event::{EventKind, OfferStage},
+    event::{EventKind, OfferStage, PlanMade},
     order::Order,
     phase::{Gait, Hold, Phase},
     plan_id::PlanId,
@@ -100,11 +100,11 @@ impl FoldedStanding {
             EventKind::RangesInconsistent { .. } => self.is_alarmed = true,
             EventKind::RangesConsistent => self.is_alarmed = false,
             EventKind::PlannerChosen { info, .. } => self.planner = Some(info.clone()),
-            EventKind::BetterPlanned { objection, .. } => {
+            EventKind::BetterPlanned(PlanMade { objection, .. }) => {
                 let stage = if self.takes_offers { OfferStage::Accepted } else { OfferStage::Offered };
                 self.offer = objection.is_none().then_some(stage);
             }
-            EventKind::BetterPlanTaken { .. } | EventKind::BetterPlanDropped { .. } => self.offer = None,
+            EventKind::BetterPlanTaken(_) | EventKind::BetterPlanDropped(_) => self.offer = None,
             EventKind::Promoted { .. } | EventKind::ShadowEnded { .. } => self.shadow = None,
             _ => {}
         }

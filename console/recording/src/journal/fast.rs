@@ -6,7 +6,7 @@ mod within;
 
 use mission::{
     AskId, Event, EventKind,
-    event::{Effort, PlanScans, TetherContact},
+    event::{Effort, PlanMade, PlanScans, TetherContact},
 };
 use planner_api::{Command, Drive, Leg, LegTag, PoseEstimate, Reason};
 use positioning::{Fix, Ranging};
@@ -15,7 +15,7 @@ use world::{CableLies, CellRun, Point, Pose, Readings};
 
 /// Reads a line with the fields of an event; those after `;` are optional.
 macro_rules! read {
-    ($line:expr, $kind:ident { $($field:ident: $type:ty),*; $($optional:ident: $some:ty),* }) => {{
+    ($line:expr, $kind:ident $(($of:ident))? { $($field:ident: $type:ty),*; $($optional:ident: $some:ty),* }) => {{
         #[derive(Deserialize)]
         struct Fields {
             tick: u64,
@@ -24,8 +24,14 @@ macro_rules! read {
             $(#[serde(default)] $optional: $some,)*
         }
         let Fields { tick, t_s, $($field,)* $($optional,)* } = serde_json::from_str($line).ok()?;
-        Some(Event { tick, t_s, kind: EventKind::$kind { $($field,)* $($optional,)* } })
+        Some(Event { tick, t_s, kind: made!($kind $(($of))? { $($field,)* $($optional,)* }) })
     }};
+}
+
+/// Makes an event of its fields, which may be those of a type of their own.
+macro_rules! made {
+    ($kind:ident { $($field:ident,)* }) => { EventKind::$kind { $($field,)* } };
+    ($kind:ident ($of:ident) { $($field:ident,)* }) => { EventKind::$kind($of { $($field,)* }) };
 }
 
 /// Reads a plan, or an event that occurs in every tick, from a line in the form that this program writes. `None` for
@@ -77,7 +83,7 @@ pub(super) fn event(line: &[u8]) -> Option<Event> {
         ),
         b"better_planned" => read!(
             line,
-            BetterPlanned {
+            BetterPlanned(PlanMade) {
                 ask: AskId, planner: String, path: Vec<Point>, complete: bool, flown: Effort, better: Effort;
                 legs: Vec<Leg>, cuts: Vec<Vec<Point>>, scans: Option<PlanScans>, objection: Option<String>
             }

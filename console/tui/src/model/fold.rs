@@ -96,9 +96,9 @@ impl Run {
             | EventKind::Scalars { .. }
             | EventKind::PlannerFailed { .. }
             | EventKind::PlannerLate { .. }
-            | EventKind::BetterPlanned { .. }
-            | EventKind::BetterPlanTaken { .. }
-            | EventKind::BetterPlanDropped { .. }
+            | EventKind::BetterPlanned(_)
+            | EventKind::BetterPlanTaken(_)
+            | EventKind::BetterPlanDropped(_)
             | EventKind::PlannerRejected { .. } => self.planned(event, &mut change),
             EventKind::ShadowBegan { .. }
             | EventKind::Shadowed { .. }

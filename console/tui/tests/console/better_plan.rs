@@ -3,7 +3,7 @@
 
 use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};
-use mission::event::{Effort, OfferEnd, OfferStage, PlanScan, PlanScans};
+use mission::event::{Effort, OfferEnd, OfferStage, PlanDropped, PlanMade, PlanScan, PlanScans, PlanTaken};
 use mission::{AskId, BetterPlan, EventKind, Order, WorkerId};
 use tui::{Effect, Key, RunMsg, Speed};
 use world::Point;
@@ -22,7 +22,7 @@ fn hear(screen: &mut Screen, kind: EventKind) {
 }
 
 fn better_plan(objection: Option<String>) -> EventKind {
-    EventKind::BetterPlanned {
+    EventKind::BetterPlanned(PlanMade {
         ask: AskId { worker: WorkerId(2), n: 2 },
         planner: "rpf".into(),
         path: vec![Point::new(2.0, 1.5), Point::new(4.0, 1.5)],
@@ -33,7 +33,7 @@ fn better_plan(objection: Option<String>) -> EventKind {
         better: BETTER,
         scans: objection.is_none().then_some(SCANS),
         objection,
-    }
+    })
 }
 
 fn with_offer() -> Screen {
@@ -49,7 +49,7 @@ fn shown_at(screen: &Screen, size: (u16, u16)) -> String {
 fn dropped() -> EventKind {
     let reason = OfferEnd::Passed;
     let (why, stage) = (reason.to_string(), Some(OfferStage::Offered));
-    EventKind::BetterPlanDropped { planner: "rpf".into(), why, stage, reason: Some(reason) }
+    EventKind::BetterPlanDropped(PlanDropped { planner: "rpf".into(), why, stage, reason: Some(reason) })
 }
 
 #[test]
@@ -77,7 +77,10 @@ fn a_better_plan_is_taken_by_its_key_or_by_its_command_after_a_question() {
         hear(&mut screen, EventKind::Ordered { order: Order::TakePlan });
         let shown = shown_at(&screen, (120, 36));
         assert!(shown.contains("Better plan accepted"), "{shown}");
-        hear(&mut screen, EventKind::BetterPlanTaken { planner: "rpf".into(), flown: FLOWN, better: BETTER });
+        hear(
+            &mut screen,
+            EventKind::BetterPlanTaken(PlanTaken { planner: "rpf".into(), flown: FLOWN, better: BETTER }),
+        );
         assert!(screen.model.live.run.planning.offer.is_none());
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};
-use mission::event::Effort;
+use mission::event::{Effort, PlanMade};
 use mission::{AskId, EventKind, HoldReason, Order, Resumes, WorkerId};
 use planner_api::{Leg, LegTag};
 use tui::RunMsg;
@@ -23,7 +23,7 @@ pub(crate) fn state(screen: &Screen) -> String {
 
 fn offer() -> EventKind {
     let effort = |time_s| Effort { length_m: 860.0, rotation_rad: 190.0, time_s };
-    EventKind::BetterPlanned {
+    EventKind::BetterPlanned(PlanMade {
         ask: AskId { worker: WorkerId(2), n: 2 },
         planner: "rpf".into(),
         path: vec![Point::new(2.0, 1.5), Point::new(4.0, 1.5)],
@@ -34,7 +34,7 @@ fn offer() -> EventKind {
         better: effort(2238.0),
         scans: None,
         objection: None,
-    }
+    })
 }
 
 /// Position lost for two seconds, and recovered.

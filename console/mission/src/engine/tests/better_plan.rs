@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     AskId, FoldedStanding, WorkerId,
-    event::{Effort, OfferEnd, OfferStage},
+    event::{Effort, OfferEnd, OfferStage, PlanDropped, PlanMade},
 };
 use planner_api::Reason;
 use proptest::prelude::*;
@@ -78,9 +78,9 @@ fn folded(flight: &Flight) -> FoldedStanding {
 /// The log lines about better plans, each with its tick.
 fn better_events(flight: &Flight) -> Vec<(u64, String)> {
     let of = |event: &Event| match &event.kind {
-        EventKind::BetterPlanned { .. }
-        | EventKind::BetterPlanTaken { .. }
-        | EventKind::BetterPlanDropped { .. } => Some((event.tick, event.log_line(&[])?.text)),
+        EventKind::BetterPlanned(_) | EventKind::BetterPlanTaken(_) | EventKind::BetterPlanDropped(_) => {
+            Some((event.tick, event.log_line(&[])?.text))
+        }
         _ => None,
     };
     flight.events.iter().filter_map(of).collect()
@@ -162,7 +162,7 @@ fn an_offer_is_taken_by_order_also_by_one_that_is_given_while_the_robot_is_held(
         }
         assert!(refusal(&flight.tick(&[Order::TakePlan])).is_some(), "the plan has already been accepted");
         fly_past(&mut flight, &[COLUMN], 40_000);
-        assert_eq!(count(&flight, |kind| matches!(kind, EventKind::BetterPlanTaken { .. })), 1);
+        assert_eq!(count(&flight, |kind| matches!(kind, EventKind::BetterPlanTaken(_))), 1);
         assert_eq!(flight.ended(), Some(Outcome::Complete));
     }
 }
@@ -264,7 +264,7 @@ fn orders_that_change_the_plan_drop_it() {
         assert_eq!(
             count(
                 &flight,
-                |kind| matches!(kind, EventKind::BetterPlanDropped { stage: s, reason: r, .. } if (s, r) == (&stage, &reason))
+                |kind| matches!(kind, EventKind::BetterPlanDropped(PlanDropped { stage: s, reason: r, .. }) if (s, r) == (&stage, &reason))
             ),
             1
         );
@@ -291,7 +291,7 @@ fn a_zone_that_drops_an_accepted_plan_says_so() {
 fn an_offer_says_how_much_floor_both_plans_scan() {
     let flight = with_offer();
     let scans = flight.events.iter().find_map(|event| match &event.kind {
-        EventKind::BetterPlanned { scans, .. } => *scans,
+        EventKind::BetterPlanned(PlanMade { scans, .. }) => *scans,
         _ => None,
     });
     let scans = scans.unwrap();
@@ -335,7 +335,9 @@ fn a_turn_at_the_joint_counts_for_both() {
     let mut taken = flight(wasteful(BetterPlan::Take));
     fly_past(&mut taken, &[COLUMN], 4000);
     let said = taken.events.iter().find_map(|event| match &event.kind {
-        EventKind::BetterPlanned { flown, better, path, .. } => Some((*flown, *better, path.clone())),
+        EventKind::BetterPlanned(PlanMade { flown, better, path, .. }) => {
+            Some((*flown, *better, path.clone()))
+        }
         _ => None,
     });
     let (flown, better, path) = said.unwrap();

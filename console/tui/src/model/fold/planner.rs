@@ -3,7 +3,7 @@
 use crate::model::{Cause, Change, Offer, PlanShown, Run, Withdrawn, planning};
 use mission::{
     BetterPlan, During, Event, EventKind, ParamValue, Phase, PlannerChoice, PlannerInfo, Severity,
-    event::late_text,
+    event::{PlanDropped, PlanMade, late_text},
 };
 use planner_api::{Command, Drawing, LegTag};
 
@@ -74,7 +74,7 @@ impl Run {
             EventKind::PlannerLate { planner, ticks } => {
                 change.say(Severity::Watch, late_text(planner, *ticks));
             }
-            EventKind::BetterPlanned { path, legs, flown, better, scans, objection, .. } => {
+            EventKind::BetterPlanned(PlanMade { path, legs, flown, better, scans, objection, .. }) => {
                 self.planning.candidate = None;
                 if objection.is_none() {
                     let (flown, better, scans, begins) = (*flown, *better, *scans, path.first().copied());
@@ -89,11 +89,11 @@ impl Run {
                     self.planning.offer = Some(offer);
                 }
             }
-            EventKind::BetterPlanTaken { .. } => {
+            EventKind::BetterPlanTaken(_) => {
                 self.planning.offer = None;
                 change.say(Severity::Info, "better plan taken");
             }
-            EventKind::BetterPlanDropped { why, .. } => {
+            EventKind::BetterPlanDropped(PlanDropped { why, .. }) => {
                 self.planning.candidate = None;
                 match self.planning.offer.take() {
                     Some(offer) if offer.is_taken => {

@@ -6,7 +6,7 @@ use crate::view::fields::Field;
 use crate::view::text;
 use mission::{
     EventKind, PlannerChoice, PlannerInfo, Resumes,
-    event::{Effort, TetherAlarm},
+    event::{Effort, PlanDropped, PlanMade, PlanTaken, TetherAlarm},
 };
 use planner_api::Reason;
 use positioning::{Exclusion, FixError, Ranging};
@@ -40,9 +40,9 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::PlannerRejected { .. } => "planner rejected",
         EventKind::ParametersChanged { .. } => "parameters changed",
         EventKind::Planned { .. } => "plan",
-        EventKind::BetterPlanned { .. } => "better plan",
-        EventKind::BetterPlanTaken { .. } => "better plan taken",
-        EventKind::BetterPlanDropped { .. } => "no better plan",
+        EventKind::BetterPlanned(_) => "better plan",
+        EventKind::BetterPlanTaken(_) => "better plan taken",
+        EventKind::BetterPlanDropped(_) => "no better plan",
         EventKind::ReturnBegan { .. } => "drive back",
         EventKind::ZoneBreached { .. } => "hull in no-go zone",
         EventKind::ZoneLeft { .. } => "hull outside no-go zone",
@@ -203,12 +203,12 @@ fn of_planner(kind: &EventKind) -> Vec<Field> {
         EventKind::ParametersChanged { choice, .. } => {
             vec![("planner", choice.id.clone()), ("parameters", parameters(choice))]
         }
-        EventKind::BetterPlanned { planner, flown, better, .. }
-        | EventKind::BetterPlanTaken { planner, flown, better } => {
+        EventKind::BetterPlanned(PlanMade { planner, flown, better, .. })
+        | EventKind::BetterPlanTaken(PlanTaken { planner, flown, better }) => {
             vec![("planner", planner.clone()), ("current", effort(flown)), ("better", effort(better))]
         }
         EventKind::PlannerRejected { planner, why }
-        | EventKind::BetterPlanDropped { planner, why, .. }
+        | EventKind::BetterPlanDropped(PlanDropped { planner, why, .. })
         | EventKind::ShadowEnded { planner, why }
         | EventKind::PromotionRefused { planner, why } => {
             vec![("planner", planner.clone()), ("reason", why.clone())]
