@@ -1,7 +1,10 @@
 //! The table of the figures that panes show, charts draw, and recordings store: name, unit, value and limit of each.
 
 use crate::extremes::{Extreme, Worst};
-use mission::{Event, EventKind, MissionConfig, event::RunOpened};
+use mission::{
+    Event, EventKind, MissionConfig,
+    event::{RunOpened, SLACK_M},
+};
 use planner_api::Drive;
 use positioning::fix::{ellipse_95, position_covariance};
 use serde::{Deserialize, Serialize};
@@ -33,6 +36,10 @@ pub enum FigureId {
     WrapTotal,
     /// Pull at the reel that taking up the tether needs; only with a reel in the scenario.
     Pull,
+    /// Measured pull on the tether; only with a sensor.
+    PullMeasured,
+    /// Slack of the tether; only with a sensor of the pull.
+    Slack,
     /// Distance between the estimated and the true position.
     TrueError,
     /// True distance from the hull to the nearest solid object.
@@ -45,7 +52,7 @@ pub enum FigureId {
 
 impl FigureId {
     /// All figures, in the order of the table.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 17] = [
         Self::PositionError,
         Self::Protection,
         Self::Clearance,
@@ -57,6 +64,8 @@ impl FigureId {
         Self::WrapLargest,
         Self::WrapTotal,
         Self::Pull,
+        Self::PullMeasured,
+        Self::Slack,
         Self::TrueError,
         Self::TrueClearance,
         Self::TrueSpeed,
@@ -77,6 +86,8 @@ impl FigureId {
             Self::WrapLargest => "largest wrap",
             Self::WrapTotal => "total wrap",
             Self::Pull => "pull",
+            Self::PullMeasured => "pull measured",
+            Self::Slack => "slack",
             Self::TrueError => "true error",
             Self::TrueClearance => "clearance (true)",
             Self::TrueSpeed => "speed (true)",
@@ -90,7 +101,7 @@ impl FigureId {
             Self::Covered => "%",
             Self::SpeedSent | Self::TrueSpeed => "m/s",
             Self::WrapLargest | Self::WrapTotal => "°",
-            Self::Pull => "N",
+            Self::Pull | Self::PullMeasured => "N",
             _ => "m",
         }
     }
@@ -99,7 +110,12 @@ impl FigureId {
     pub fn decimals(self) -> usize {
         match self {
             Self::WrapLargest | Self::WrapTotal => 0,
-            Self::Covered | Self::TetherOut | Self::ReturnPath | Self::Pull | Self::TrueTetherOut => 1,
+            Self::Covered
+            | Self::TetherOut
+            | Self::ReturnPath
+            | Self::Pull
+            | Self::PullMeasured
+            | Self::TrueTetherOut => 1,
             _ => 2,
         }
     }
@@ -118,6 +134,8 @@ impl FigureId {
                 | Self::WrapLargest
                 | Self::WrapTotal
                 | Self::Pull
+                | Self::PullMeasured
+                | Self::Slack
                 | Self::TrueTetherOut
         )
     }
@@ -132,9 +150,15 @@ impl FigureId {
             | Self::WrapLargest
             | Self::WrapTotal
             | Self::Pull
+            | Self::Slack
             | Self::TrueError
             | Self::TrueTetherOut => Some(Worst::Most),
-            Self::Covered | Self::CrossTrack | Self::SpeedSent | Self::ReturnPath | Self::TrueSpeed => None,
+            Self::PullMeasured
+            | Self::Covered
+            | Self::CrossTrack
+            | Self::SpeedSent
+            | Self::ReturnPath
+            | Self::TrueSpeed => None,
         }
     }
 
@@ -150,7 +174,9 @@ impl FigureId {
             Self::WrapLargest => Limit::Most(tether?.wrap_max_rad.to_degrees()),
             Self::WrapTotal => Limit::Most(tether?.wrap_total_max_rad.to_degrees()),
             Self::Pull => Limit::Most(config.tether.as_ref()?.reel?.pull_n),
-            Self::Protection
+            Self::Slack => Limit::Most(SLACK_M),
+            Self::PullMeasured
+            | Self::Protection
             | Self::Covered
             | Self::CrossTrack
             | Self::ReturnPath
@@ -292,13 +318,21 @@ impl Figures {
                 self.set(FigureId::SpeedSent, t_s, Some(0.0));
             }
             EventKind::Tethered {
-                length_m, wrap_max_rad, wrap_total_rad, pull_n, return_length_m, ..
+                length_m,
+                wrap_max_rad,
+                wrap_total_rad,
+                pull_n,
+                measured,
+                return_length_m,
+                ..
             } => {
                 self.set(FigureId::TetherOut, t_s, Some(*length_m));
                 self.set(FigureId::ReturnPath, t_s, *return_length_m);
                 self.set(FigureId::WrapLargest, t_s, Some(wrap_max_rad.to_degrees()));
                 self.set(FigureId::WrapTotal, t_s, Some(wrap_total_rad.to_degrees()));
                 self.set(FigureId::Pull, t_s, *pull_n);
+                self.set(FigureId::PullMeasured, t_s, measured.map(|measured| measured.pull_n));
+                self.set(FigureId::Slack, t_s, measured.map(|measured| measured.slack_m));
             }
             EventKind::TetherTruth { length_m, .. } => {
                 self.set(FigureId::TrueTetherOut, t_s, Some(*length_m));
@@ -315,7 +349,9 @@ impl Figures {
         let tether = config.tether.as_ref();
         let has = |id: &FigureId| match id {
             FigureId::Protection => config.locating.risk.is_some(),
-            FigureId::Pull => tether.is_some_and(|tether| tether.reel.is_some()),
+            FigureId::Pull | FigureId::PullMeasured | FigureId::Slack => {
+                tether.is_some_and(|tether| tether.reel.is_some())
+            }
             id => tether.is_some() || !id.is_of_tether(),
         };
         let row = |id: FigureId| Figure { id, value: None, limit: id.limit(config), worst: None };

@@ -26,7 +26,7 @@ pub(crate) use rounding::rounded_command;
 pub use run_opened::RunOpened;
 pub use severity::Severity;
 pub use shadow::{READY_AFTER, ShadowTally};
-pub use tether::{TetherAlarm, TetherContact, taut_line};
+pub use tether::{MeasuredPull, SLACK_M, TetherAlarm, TetherContact, taut_line};
 
 use crate::{
     ask::AskId,
@@ -112,6 +112,9 @@ pub enum EventKind {
         /// Pull at the reel that taking up this cable needs, newtons; absent if the scenario does not describe the reel.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pull_n: Option<f64>,
+        /// The pull on the cable, as measured; absent without a sensor.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        measured: Option<MeasuredPull>,
         /// Length of the return path along the cable, metres; absent if the hull does not fit.
         return_length_m: Option<f64>,
         /// The bends of the taut cable between the anchor and the robot.

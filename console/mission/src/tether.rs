@@ -189,6 +189,7 @@ impl Tether {
             wrap_total_rad,
             pull_factor: capstan_factor(self.config.friction, wrap_total_rad),
             pull_n: self.config.reel.map(|reel| self.cable.pull_at_anchor_n(reel.drag(self.config.friction))),
+            measured: self.slack.measured(),
             return_length_m,
             bends: bends(&self.cable),
         }];

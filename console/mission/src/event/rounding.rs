@@ -6,7 +6,7 @@
 //! Plans are not rounded, because the planners' answers are replayed from the journal. Commands are rounded before they
 //! are sent ([`crate::Sending::as_sent`]).
 
-use super::{Event, EventKind, PlanMade, TetherContact};
+use super::{Event, EventKind, PlanMade, MeasuredPull, TetherContact};
 use crate::{ask::Said, way_back::WayBack};
 use nalgebra::SMatrix;
 use planner_api::{Command, Drawing, Drive, PoseEstimate};
@@ -105,11 +105,15 @@ impl EventKind {
                 wrap_total_rad,
                 pull_factor,
                 pull_n,
+                measured,
                 return_length_m,
                 bends,
             } => {
                 [length_m, free_m, wrap_max_rad, wrap_total_rad, pull_factor].into_iter().for_each(round);
                 [paid_out_m, return_length_m, pull_n].into_iter().flatten().for_each(round);
+                if let Some(MeasuredPull { pull_n, slack_m }) = measured {
+                    [pull_n, slack_m].into_iter().for_each(round);
+                }
                 bends.iter_mut().for_each(round_point);
                 for TetherContact { wrap_rad, at, .. } in contacts {
                     round(wrap_rad);

@@ -24,6 +24,19 @@ pub fn taut_line(anchor: Point, bends: &[Point], robot: Point) -> Vec<Point> {
     line
 }
 
+/// Cable that may be slack, metres. It is less than the hull of a robot is long, so that the robot can stop before it
+/// drives over its own cable, and more than the position estimate moves by itself in that time.
+pub const SLACK_M: f64 = 0.2;
+
+/// The measured pull on the cable, and the slack that follows from it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct MeasuredPull {
+    /// Pull at the robot or, without a sensor there, at the reel, newtons.
+    pub pull_n: f64,
+    /// Cable that has become slack since it last pulled, metres; 0 while it pulls.
+    pub slack_m: f64,
+}
+
 /// The alarms of the cable.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -1,11 +1,8 @@
 //! Tells a slack cable from a caught one: both have more cable out than the map explains, but a slack cable does not pull.
 
-use crate::event::TetherAlarm;
+use crate::event::{MeasuredPull, SLACK_M, TetherAlarm};
 use world::tether::Reel;
 
-/// Cable that may be slack, metres. It is less than the hull of a robot is long, so that the robot can stop before it
-/// drives over its own cable, and more than the position estimate moves by itself in that time.
-const SLACK_M: f64 = 0.2;
 /// Share of the reel's pull up to which a cable counts as slack.
 const LITTLE: f64 = 0.05;
 /// Length of cable, besides the slack, whose friction on the floor the robot may feel although the cable is slack, metres:
@@ -21,7 +18,8 @@ pub(super) struct Slack {
     taut_excess_m: Option<f64>,
     /// Cable that has become slack since then, metres.
     loose_m: f64,
-    pull_n: f64,
+    /// Measured pull, newtons; `None` without a sensor.
+    pull_n: Option<f64>,
 }
 
 impl Slack {
@@ -35,7 +33,7 @@ impl Slack {
             *self = Self::default();
             return true;
         };
-        self.pull_n = pull_n;
+        self.pull_n = Some(pull_n);
         if pull_n > little_n {
             (self.taut_excess_m, self.loose_m) = (excess_m.or(self.taut_excess_m), 0.0);
             return true;
@@ -49,7 +47,13 @@ impl Slack {
 
     /// The alarm, with the slack as a share of its limit.
     pub(super) fn alarm(&self) -> (TetherAlarm, f64) {
-        (TetherAlarm::Slack { slack_m: self.loose_m, pull_n: self.pull_n }, self.loose_m / SLACK_M)
+        let pull_n = self.pull_n.unwrap_or_default();
+        (TetherAlarm::Slack { slack_m: self.loose_m, pull_n }, self.loose_m / SLACK_M)
+    }
+
+    /// The last measured pull with the slack; `None` without a sensor.
+    pub(super) fn measured(&self) -> Option<MeasuredPull> {
+        self.pull_n.map(|pull_n| MeasuredPull { pull_n, slack_m: self.loose_m })
     }
 }
 

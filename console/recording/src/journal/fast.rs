@@ -6,7 +6,7 @@ mod within;
 
 use mission::{
     AskId, Event, EventKind,
-    event::{Effort, PlanMade, PlanScans, TetherContact},
+    event::{Effort, MeasuredPull, PlanMade, PlanScans, TetherContact},
 };
 use planner_api::{Command, Drive, Leg, LegTag, PoseEstimate, Reason};
 use positioning::{Fix, Ranging};
@@ -71,7 +71,7 @@ pub(super) fn event(line: &[u8]) -> Option<Event> {
             Tethered {
                 length_m: f64, free_m: f64, contacts: Vec<TetherContact>, wrap_max_rad: f64, wrap_total_rad: f64,
                 pull_factor: f64, bends: Vec<Point>;
-                paid_out_m: Option<f64>, return_length_m: Option<f64>, pull_n: Option<f64>
+                paid_out_m: Option<f64>, return_length_m: Option<f64>, pull_n: Option<f64>, measured: Option<MeasuredPull>
             }
         ),
         b"planned" => read!(
@@ -146,7 +146,7 @@ mod tests {
             json!({ "event": "progressed", "done": 0.5, "along_m": null, "cross_track_m": 0.1, "target": [1.0, 2.0],
                     "covered_reachable": 0.25, "covered_whole": 0.2, "leg": "swath" }),
             json!({ "event": "tethered", "length_m": 1.0, "free_m": 2.0, "contacts": [{ "on": "C1", "wrap_rad": 0.1, "at": [0.0, 1.0] }],
-                    "wrap_max_rad": 0.1, "wrap_total_rad": 0.1, "pull_factor": 1.1, "return_length_m": null, "bends": [[0.0, 0.5]] }),
+                    "wrap_max_rad": 0.1, "wrap_total_rad": 0.1, "pull_factor": 1.1, "measured": { "pull_n": 3.5, "slack_m": 0.0 }, "return_length_m": null, "bends": [[0.0, 0.5]] }),
         ];
         for kind in kinds {
             let mut line = json!({ "tick": 26, "t_s": 2.6 });

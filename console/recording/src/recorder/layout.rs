@@ -141,11 +141,14 @@ impl Sketch {
         let figures = self.plot_with_legend("Planner", paths::PLANNER_SCALARS);
         match (&mission.task, &mission.tether) {
             (_, Some(tether)) => {
-                let out = [paths::TETHER_OUT, paths::TETHER_OUT_TRUE, paths::TETHER_HOME];
+                let out =
+                    [paths::TETHER_OUT, paths::TETHER_OUT_TRUE, paths::TETHER_HOME, paths::TETHER_SLACK];
                 let out = self.plot("Tether [m]", &out, None);
                 let wraps = self.plot("Wraps [deg]", &[paths::TETHER_WRAP, paths::TETHER_SUM], None);
-                let pull =
-                    tether.reel.map(|_| self.plot("Pull at the reel [N]", &[paths::TETHER_PULL], None));
+                let pull = tether.reel.map(|_| {
+                    let pulls = [paths::TETHER_PULL, paths::TETHER_PULL_MEASURED];
+                    self.plot("Pull on the tether [N]", &pulls, None)
+                });
                 let cross_track = self.plot("Cross-track [m]", &[paths::CROSS_TRACK], None);
                 let residuals = self.residuals();
                 let others = [cross_track, residuals, forces, figures];

@@ -49,6 +49,7 @@ pub(crate) const DRAWN: &str = "map/world/drawn";
 /// The taut cable according to the estimate, and its contacts.
 pub(crate) const TETHER: &str = "map/world/tether";
 pub(crate) const TETHER_ANCHOR: &str = "map/world/tether/anchor";
+pub(crate) const TETHER_CABLE: &str = "map/world/tether/cable";
 pub(crate) const TETHER_CONTACTS: &str = "map/world/tether/contacts";
 pub(crate) const COVERAGE: &str = "map/world/coverage";
 pub(crate) const CORROSION: &str = "map/world/corrosion";
@@ -73,7 +74,9 @@ pub(crate) const TETHER_OUT_TRUE: &str = "scalars/tether/out_true";
 pub(crate) const TETHER_HOME: &str = "scalars/tether/return_path";
 pub(crate) const TETHER_WRAP: &str = "scalars/tether_wrap/largest";
 pub(crate) const TETHER_SUM: &str = "scalars/tether_wrap/sum";
-pub(crate) const TETHER_PULL: &str = "scalars/tether_pull";
+pub(crate) const TETHER_PULL: &str = "scalars/tether_pull/needed";
+pub(crate) const TETHER_PULL_MEASURED: &str = "scalars/tether_pull/measured";
+pub(crate) const TETHER_SLACK: &str = "scalars/tether/slack";
 
 /// Lanes of the timeline of states.
 pub(crate) const STATE: &str = "state";

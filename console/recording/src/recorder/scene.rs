@@ -221,6 +221,7 @@ fn style_moving(stream: &Stream, run: &RunOpened) -> Done {
     stream.always(paths::RANGES, &rr::LineStrips2D::update_fields().with_radii([style::on_screen(0.7)]))?;
     let Some(tether) = &run.mission.tether else { return Ok(()) };
     stream.always(paths::TETHER, &line_style(style::TETHER, 1.5))?;
+    stream.always(paths::TETHER_CABLE, &line_style(style::TRUE, 1.0))?;
     stream.always(paths::TETHER_CONTACTS, &dots(style::WARNING, 4.0))?;
     let anchor = rr::Points2D::new([flat(tether.anchor)]).with_colors([style::color(style::TETHER)]);
     stream.always(paths::TETHER_ANCHOR, &anchor.with_radii([style::on_screen(5.0)]))

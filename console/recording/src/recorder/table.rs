@@ -42,9 +42,16 @@ const TETHER_FIGURES: [Figure; 5] = [
     }),
 ];
 
-/// The figure of a run whose scenario describes the reel.
-const PULL_FIGURE: Figure =
-    (paths::TETHER_PULL, FigureId::Pull, style::WARNING, |tick| tick.tether.as_ref()?.pull_n);
+/// The figures of a run whose scenario describes the reel.
+const PULL_FIGURES: [Figure; 3] = [
+    (paths::TETHER_PULL, FigureId::Pull, style::WARNING, |tick| tick.tether.as_ref()?.pull_n),
+    (paths::TETHER_PULL_MEASURED, FigureId::PullMeasured, style::ESTIMATE, |tick| {
+        Some(tick.tether.as_ref()?.measured?.pull_n)
+    }),
+    (paths::TETHER_SLACK, FigureId::Slack, style::WARNING, |tick| {
+        Some(tick.tether.as_ref()?.measured?.slack_m)
+    }),
+];
 
 /// A gap in the curve means that the position is not protected.
 const PROTECTION_FIGURES: [Figure; 1] =
@@ -73,6 +80,7 @@ fn moving(run: &RunOpened) -> Vec<Box<dyn Series>> {
 fn tether() -> Vec<Box<dyn Series>> {
     vec![
         rows(paths::TETHER, |tick| Some(Strip(tick.tether.as_ref()?.line.clone()))),
+        rows(paths::TETHER_CABLE, |tick| tick.cable.clone().map(Strip)),
         changes(paths::TETHER_CONTACTS, |tick| Some(Spots(tick.tether.as_ref()?.contacts.clone()))),
     ]
 }
@@ -95,7 +103,7 @@ impl Table {
         if let Some(config) = &run.mission.tether {
             series.extend(tether());
             figures.extend(TETHER_FIGURES);
-            figures.extend(config.reel.map(|_| PULL_FIGURE));
+            figures.extend(config.reel.into_iter().flat_map(|_| PULL_FIGURES));
         }
         for (path, id, color, value) in figures {
             stream.always(path, &curve(id.name(), color))?;

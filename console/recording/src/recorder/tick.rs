@@ -4,7 +4,10 @@ use super::{
     lane::{Flat, flat},
     stream::At,
 };
-use mission::{EventKind, event::taut_line};
+use mission::{
+    EventKind,
+    event::{MeasuredPull, taut_line},
+};
 use planner_api::{Drawing, Drive};
 use positioning::{
     Fix, Ranging,
@@ -27,6 +30,8 @@ pub(crate) struct Tick {
     pub cross_track_m: Option<f64>,
     pub tether: Option<Tether>,
     pub true_tether_m: Option<f64>,
+    /// The line of the true cable, in the ticks that state it.
+    pub cable: Option<Vec<Flat>>,
     pub ranges: Option<Vec<Ranging>>,
     pub fix: Option<Fix>,
     /// Protection level, metres.
@@ -71,6 +76,7 @@ pub(crate) struct Tether {
     pub wrap_max_deg: f64,
     pub wrap_total_deg: f64,
     pub pull_n: Option<f64>,
+    pub measured: Option<MeasuredPull>,
 }
 
 impl Tick {
@@ -117,13 +123,18 @@ impl Tick {
                 self.covered = Some(*covered_reachable);
                 self.cross_track_m = *cross_track_m;
             }
-            EventKind::TetherTruth { length_m, .. } => self.true_tether_m = Some(*length_m),
+            EventKind::TetherTruth { length_m, lies, .. } => {
+                self.true_tether_m = Some(*length_m);
+                let line = lies.as_ref().map(|lies| &lies.line).filter(|line| !line.is_empty());
+                self.cable = line.map(|line| line.iter().copied().map(flat).collect());
+            }
             EventKind::Tethered {
                 length_m,
                 contacts,
                 wrap_max_rad,
                 wrap_total_rad,
                 pull_n,
+                measured,
                 return_length_m,
                 bends,
                 ..
@@ -138,6 +149,7 @@ impl Tick {
                     wrap_max_deg: wrap_max_rad.to_degrees(),
                     wrap_total_deg: wrap_total_rad.to_degrees(),
                     pull_n: *pull_n,
+                    measured: *measured,
                 });
             }
             _ => {}

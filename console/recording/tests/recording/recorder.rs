@@ -154,6 +154,7 @@ fn a_tethered_run_has_the_cable_in_every_tick_and_its_figures() {
                 wrap_total_rad: 1.0,
                 pull_factor: 1.3,
                 pull_n: Some(1.2 + 0.01 * length_m),
+                measured: None,
                 return_length_m: bears.then_some(length_m),
                 bends: vec![],
             };

@@ -20,10 +20,16 @@ use world::{Obstacle, ObstacleId};
 const FORECAST_CELLS: f64 = 100.0;
 
 impl Run {
-    /// Folds in one event. Information that only the simulator can have is ignored.
+    /// Folds in one event. Information that only the simulator can have is ignored, except how a simulated cable lies: its
+    /// loops are drawn.
     #[allow(clippy::too_many_lines, reason = "one arm for each kind of event")]
     pub fn fold(&mut self, event: &Event) -> Change {
         let mut change = Change::default();
+        if let EventKind::TetherTruth { lies: Some(lies), .. } = &event.kind
+            && !lies.line.is_empty()
+        {
+            self.tether.get_or_insert_default().lies.clone_from(&lies.line);
+        }
         if matches!(event.kind, EventKind::Truth { .. } | EventKind::TetherTruth { .. }) {
             return change;
         }

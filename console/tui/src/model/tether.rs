@@ -3,7 +3,7 @@
 use super::History;
 use mission::{
     EventKind,
-    event::{TetherContact, taut_line},
+    event::{MeasuredPull, TetherContact, taut_line},
 };
 use serde::{Deserialize, Serialize};
 use world::Point;
@@ -25,6 +25,12 @@ pub struct Tether {
     /// Pull at the reel that taking up the cable needs, newtons; `None` if the scenario does not describe the reel.
     #[serde(default)]
     pub pull_n: Option<f64>,
+    /// The pull on the cable, as measured; `None` without a sensor.
+    #[serde(default)]
+    pub measured: Option<MeasuredPull>,
+    /// The line of the true cable from the anchor to the robot, in a simulation whose cable can be slack; else empty.
+    #[serde(default)]
+    pub lies: Vec<Point>,
     /// Length of the return path along the cable, metres; `None` if there is none.
     pub return_length_m: Option<f64>,
     /// Whether more is paid out than the map explains; the geometry of the cable is then unknown.
@@ -69,6 +75,7 @@ impl Tether {
             wrap_total_rad,
             pull_factor,
             pull_n,
+            measured,
             return_length_m,
             bends,
             ..
@@ -77,7 +84,7 @@ impl Tether {
             self.length_m = paid_out_m.unwrap_or(*length_m);
             (self.free_m, self.wrap_total_rad) = (*free_m, *wrap_total_rad);
             (self.pull_factor, self.return_length_m) = (*pull_factor, *return_length_m);
-            self.pull_n = *pull_n;
+            (self.pull_n, self.measured) = (*pull_n, *measured);
             self.contacts.clone_from(contacts);
             self.line = ends.map_or_else(Vec::new, |(anchor, robot)| taut_line(anchor, bends, robot));
             self.t_s = Some(t_s);

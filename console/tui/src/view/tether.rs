@@ -5,7 +5,10 @@ use super::text;
 use crate::model::history::HISTORY_S;
 use crate::model::{Pane, Tether};
 use crate::theme::Role;
-use mission::Phase;
+use mission::{
+    Phase,
+    event::{MeasuredPull, SLACK_M},
+};
 use ratatui::{Frame, layout::Rect};
 
 /// Width from which the pane uses full words, columns.
@@ -46,17 +49,18 @@ fn wide_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> 
     let mut lines = vec![
         row(1, "paid out", (out_role(look, tether), out)),
         row(2, "wrap", (wrap_role(look, tether), worst(look, tether, ("", room)))),
-        row(3, "total wrap", (Role::Text, total(tether))),
-        row(5, "contacts", (Role::Text, contacts(tether))),
+        row(4, "total wrap", (Role::Text, total(tether))),
+        row(6, "contacts", (Role::Text, contacts(tether))),
         row(0, "return path", home(tether)),
     ];
-    lines.push((4, trend(look, tether, columns)));
-    lines.push(match pull(look, tether, ("", room)) {
-        Some(pull) => row(3, "pull needed", pull),
-        None => (7, vec![(Role::Dim, format!(" {:<12} no pull sensor", "tension"))]),
+    lines.push((5, trend(look, tether, columns)));
+    lines.extend(pull(look, tether, ("", room)).map(|pull| row(4, "pull needed", pull)));
+    lines.push(match tether.measured {
+        Some(measured) => row(3, "pull, slack", felt(measured)),
+        None => (8, vec![(Role::Dim, format!(" {:<12} no sensor", "pull, slack"))]),
     });
     if look.run.has_ended() {
-        lines.push(row(5, "at end", (Role::Text, still_out)));
+        lines.push(row(6, "at end", (Role::Text, still_out)));
     }
     lines
 }
@@ -81,13 +85,15 @@ fn narrow_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)
     let (out, reel) = (metres(tether.length_m), reel(look));
     let out = [format!("{out} of {reel} m out"), format!("{out} of {reel} m")];
     let pull = pull(look, tether, ("pull ", room)).map(|pull| row(3, "", pull));
+    let felt = tether.measured.map(|measured| row(3, "pull, slack ", felt(measured)));
     [
         row(1, "", (out_role(look, tether), metered(out_share(look, tether), out, room))),
         row(2, "", (wrap_role(look, tether), worst(look, tether, ("wrap ", room)))),
-        row(3, "total ", (Role::Text, total(tether))),
+        row(4, "total ", (Role::Text, total(tether))),
     ]
     .into_iter()
     .chain(pull)
+    .chain(felt)
     .chain([row(0, "return path ", home(tether))])
     .collect()
 }
@@ -169,6 +175,13 @@ fn pull(look: &Look, tether: &Tether, (label, room): (&str, usize)) -> Option<(R
     };
     let words = format!("{label}{} of {} N", text::number(pull_n, 1), text::number(reel.pull_n, 1));
     Some((role, metered(share, [words.clone(), words], room)))
+}
+
+/// The measured pull, and the slack beside its limit.
+fn felt(MeasuredPull { pull_n, slack_m }: MeasuredPull) -> (Role, String) {
+    let [slack, limit] = world::beside_limit(slack_m, SLACK_M, 2);
+    let words = format!("{} N, {slack} of {limit} m", text::number(pull_n, 1));
+    (beside_limit(slack_m / SLACK_M), words)
 }
 
 fn contacts(tether: &Tether) -> String {

@@ -485,6 +485,7 @@ impl ScriptedMission {
             wrap_total_rad: cable.wrap_total_rad(),
             pull_factor: capstan_factor(config.friction, cable.wrap_total_rad()),
             pull_n: config.reel.map(|reel| cable.pull_at_anchor_n(reel.drag(config.friction))),
+            measured: None,
             return_length_m: Some(cable.length_m() + 0.4),
             bends: cable.taut_line().split_last().map_or(vec![], |(_, line)| line[1..].to_vec()),
         })

@@ -2,7 +2,10 @@
 
 use crate::model::alarms::{Reading, rule::reel_limit_m};
 use crate::model::{Cause, Run};
-use mission::{EventKind, Severity, event::TetherAlarm};
+use mission::{
+    EventKind, Severity,
+    event::{MeasuredPull, SLACK_M, TetherAlarm},
+};
 use positioning::{Exclusion, Fix, FixError};
 use world::beside_limit;
 
@@ -78,7 +81,9 @@ impl Run {
         let limits = config.limits;
         let reel = TetherAlarm::Reel { out_m, reel_length_m: limits.reel_length_m };
         let total = TetherAlarm::WrapTotal { sum_rad: total_rad, limit_rad: limits.wrap_total_max_rad };
-        for alarm in [reel, total] {
+        let slack =
+            tether.measured.map(|MeasuredPull { pull_n, slack_m }| TetherAlarm::Slack { slack_m, pull_n });
+        for alarm in [reel, total].into_iter().chain(slack) {
             let cause = Cause::Tether(alarm.word().to_owned());
             let reached = self.alarms.get(&cause).is_some_and(|alarm| alarm.severity == Severity::Crit);
             self.read(&cause, || of_tether(&alarm, reached, promised_m).unwrap_or_default());
@@ -144,10 +149,7 @@ fn of_tether(alarm: &TetherAlarm, reached: bool, promised_m: Option<f64>) -> Opt
             Some(reading(now_rad.to_degrees(), share * limit_rad.to_degrees(), degrees))
         }
         TetherAlarm::Snag { paid_out_m, explained_m } => Some(reading(*paid_out_m, *explained_m, metres)),
-        TetherAlarm::Slack { slack_m, .. } => {
-            let now = format!("{slack_m:.1} m");
-            Some(Reading { now, limit: String::new(), numbers: Some((*slack_m, None)) })
-        }
+        TetherAlarm::Slack { slack_m, .. } => Some(reading(*slack_m, SLACK_M, (2, " m"))),
         TetherAlarm::NoReturnPath | TetherAlarm::Strayed => None,
     }
 }

@@ -43,6 +43,8 @@ pub(super) const BLOCKED: Ink = ink(Role::Crit, Pattern::Zigzag, 'W');
 pub(super) const OUTLINE: Ink = ink(Role::Title, Pattern::Rope, 'Z');
 /// The tether.
 pub(super) const TETHER: Ink = ink(Role::Tether, Pattern::Double, '~');
+/// A simulated tether that can be slack, as it lies on the floor.
+pub(super) const CABLE: Ink = ink(Role::Tether, Pattern::Fine, '-');
 /// A planner drawing of a force that attracts the robot.
 pub(super) const PULL: Ink = ink(Role::Pull, Pattern::Jagged, '{');
 /// A planner drawing of a force that repels the robot.
@@ -57,7 +59,7 @@ mod tests {
     #[test]
     fn lines_that_are_on_the_map_together_differ_without_colours() {
         let together: [&[Ink]; 3] = [
-            &[TRAIL, LEG, AHEAD, OFFER, SHADOW, TETHER, OTHER, PULL, PUSH, DRAWN, OUTLINE, BLOCKED],
+            &[TRAIL, LEG, AHEAD, OFFER, SHADOW, TETHER, CABLE, OTHER, PULL, PUSH, DRAWN, OUTLINE, BLOCKED],
             &[PLAN, WAY, OTHER, OFFER],
             &[DRIVEN, LEG, AHEAD, OFFER, SHADOW, OTHER, OUTLINE, BLOCKED],
         ];

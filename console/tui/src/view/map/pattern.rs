@@ -23,6 +23,8 @@ pub(in crate::view) enum Pattern {
     Dashed,
     /// Every third dot.
     Dotted,
+    /// Every other dot.
+    Fine,
     /// A line with short strokes across it.
     Ticked,
     /// Two dots wide.
@@ -72,6 +74,7 @@ impl Pattern {
             Self::DashDotted => step % 6 != 3 && step % 6 != 5,
             Self::Dashed => step % 5 < 3,
             Self::Dotted => step.is_multiple_of(3),
+            Self::Fine => step.is_multiple_of(2),
             Self::LongDashed => step % 8 < 5,
         }
     }
@@ -156,6 +159,7 @@ mod tests {
             Pattern::Solid,
             Pattern::Dashed,
             Pattern::Dotted,
+            Pattern::Fine,
             Pattern::Ticked,
             Pattern::Thick,
             Pattern::LongDashed,
@@ -169,7 +173,7 @@ mod tests {
         let samples = all.map(|pattern| pattern.sample(4));
         assert_eq!(
             samples,
-            ["⠤⠤⠤⠤", "⠤⠄⠠⠤", "⠄⠠ ⠄", "⠤⡦⠤⢴", "⣤⣤⣤⣤", "⠤⠤⠄ ", "⣒⣒⣒⣒", "⢄⢄⢄⢄", "⣤ ⣤ ", "⠤⠄⠄⠤", "⠢⡀⡠⠢", "⡦⡦⡦⡦"]
+            ["⠤⠤⠤⠤", "⠤⠄⠠⠤", "⠄⠠ ⠄", "⠄⠄⠄⠄", "⠤⡦⠤⢴", "⣤⣤⣤⣤", "⠤⠤⠄ ", "⣒⣒⣒⣒", "⢄⢄⢄⢄", "⣤ ⣤ ", "⠤⠄⠄⠤", "⠢⡀⡠⠢", "⡦⡦⡦⡦"]
                 .map(str::to_owned)
         );
     }

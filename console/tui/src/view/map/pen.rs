@@ -93,6 +93,7 @@ impl Pen<'_> {
     /// The taut cable, on top of everything else that does not move.
     pub(super) fn tether(&self, ctx: &mut Context<'_>) {
         if let Some(tether) = &self.look.run.tether {
+            self.draw(ctx, &tether.lies, ink::CABLE);
             self.draw(ctx, &tether.line, ink::TETHER);
         }
     }

@@ -17,7 +17,7 @@ pub(super) const RUN_B: &str = "run B";
 pub(super) type IsDrawn = fn(&Look, Option<&Course>) -> bool;
 
 /// The kinds of lines, the most important first, each with its legend text.
-pub(super) const LINES: [(Ink, &str, IsDrawn); 13] = [
+pub(super) const LINES: [(Ink, &str, IsDrawn); 14] = [
     (ink::BLOCKED, "blocked", |look, _| !zone::blocked(look).is_empty()),
     (ink::OUTLINE, "new zone", |look, _| zones::drawn(look.model).is_some()),
     (ink::LEG, "this leg", |_, course| course.is_some_and(|course| course.leg.0 < course.leg.1)),
@@ -31,6 +31,9 @@ pub(super) const LINES: [(Ink, &str, IsDrawn); 13] = [
     (ink::TETHER, "tether", |look, _| {
         let line = look.run.tether.as_ref().map(|tether| &tether.line);
         line.is_some_and(|line| line.windows(2).any(|pair| pair[0] != pair[1]))
+    }),
+    (ink::CABLE, "tether, true", |look, _| {
+        look.run.tether.as_ref().is_some_and(|tether| !tether.lies.is_empty())
     }),
     (ink::TRAIL, "trail", |look, _| course::shows_trail(look)),
     (ink::OTHER, RUN_B, |look, _| {
