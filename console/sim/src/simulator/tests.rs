@@ -1,6 +1,6 @@
 use super::*;
 use crate::config::{Mover, Track};
-use crate::{AeConfig, Disturbances, NoiseModel, RobotConfig, TimingErrors};
+use crate::{AeConfig, ChannelFault, Disturbances, NoiseModel, RobotConfig, TimingErrors};
 use proptest::prelude::*;
 use world::{
     Amphibious, Boundary, Medium, Obstacle, ObstacleId, Point, PressureSensor, Scanner, Shape, Station,
