@@ -51,7 +51,7 @@ pub struct Fold {
     figures: Figures,
     run: Option<Box<RunOpened>>,
     evidence: Option<Evidence>,
-    survey: Option<Survey>,
+    survey: Option<Box<Survey>>,
     /// The channels of the instrument; `None` before the run is opened.
     channels: Option<Channels>,
     /// The way of a tool whose readings may be imported; `None` for any other run.
@@ -342,7 +342,7 @@ impl Fold {
 
     /// The instrument and its readings; `None` if it reads no thickness, and without the account of the floor.
     pub fn survey(&self) -> Option<&Survey> {
-        self.survey.as_ref()
+        self.survey.as_deref()
     }
 
     /// Whether floor on the way to the latest estimated position counts as scanned.
@@ -414,7 +414,7 @@ impl Fold {
         self.known.parameters = Some(run.mission.planner.parameters.clone());
         self.channels = Some(Channels::new(&run.mission));
         self.evidence = (!self.leaves_out_floor).then(|| Evidence::new(run));
-        self.survey = (!self.leaves_out_floor).then(|| Survey::new(run)).flatten();
+        self.survey = (!self.leaves_out_floor).then(|| Survey::new(run)).flatten().map(Box::new);
         self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start));
         let may_import = !self.leaves_out_floor && self.survey.is_none();
         let reads = run.mission.instrument.as_ref().is_some_and(|instrument| instrument.sampling.is_some());

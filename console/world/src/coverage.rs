@@ -248,7 +248,9 @@ impl CoverageGrid {
         cells.sort_unstable();
         cells.dedup();
         let mut runs = Vec::new();
-        cells.into_iter().for_each(|cell| CellRun::append(&mut runs, cell..cell + 1));
+        for cell in cells {
+            CellRun::append(&mut runs, cell..cell + 1);
+        }
         runs
     }
 
