@@ -19,6 +19,8 @@ mod breach;
 mod campaign;
 #[path = "acceptance/carts.rs"]
 mod carts;
+#[path = "acceptance/channels.rs"]
+mod channels;
 #[path = "acceptance/command_line.rs"]
 mod command_line;
 #[cfg(unix)]

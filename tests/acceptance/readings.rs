@@ -136,6 +136,11 @@ fn a_dead_channel_is_named_and_faulty_rows_are_kept_aside() {
     let json: Value = serde_json::from_str(&json).unwrap();
     assert!(json["thickness"]["unread_m2"].as_f64().unwrap() > 0.0);
     assert!(json["thickness"]["imported"][0]["notes"].to_string().contains("channel 7"), "{json}");
+    // The floor under the dead channel does not count as scanned, unlike in the run without the import.
+    assert!(json.to_string().contains("while channel 7 was dead"), "{json}");
+    losses(&bench, &simulated);
+    let whole = fs::read_to_string(bench.path().join("r.json")).unwrap();
+    assert!(!whole.contains("was dead"), "{whole}");
 }
 
 #[test]

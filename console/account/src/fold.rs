@@ -11,6 +11,7 @@ use crate::{
     protection::Protection,
     readings::{Survey, Way},
     scanned::Scanned,
+    silence::{Silence, Step, Way as TrackedWay},
     summary::{self, REPORT_VERSION, Summary, Tether},
     tethered::Tethered,
     tracking::Tracker,
@@ -18,9 +19,9 @@ use crate::{
     vehicle::VehicleRecord,
 };
 use mission::{
-    Cause, Event, EventKind, FoldedStanding, Guarantee, Order, Outcome, ParamKind, ParamValue, Parameters,
-    Passage, PlannerChoice, PlannerInfo, TaskConfig,
-    event::{RunOpened, TetherAlarm, ToolTrack},
+    Cause, Channels, Event, EventKind, FoldedStanding, Guarantee, Order, Outcome, ParamKind, ParamValue,
+    Parameters, Passage, PlannerChoice, PlannerInfo, TaskConfig,
+    event::{ChannelsJudged, RunOpened, TetherAlarm, ToolTrack},
 };
 use nalgebra::Matrix2;
 use planner_api::PoseEstimate;
@@ -50,7 +51,11 @@ pub struct Fold {
     figures: Figures,
     run: Option<Box<RunOpened>>,
     evidence: Option<Evidence>,
-    survey: Option<Survey>,
+    survey: Option<Box<Survey>>,
+    /// The channels of the instrument; `None` before the run is opened.
+    channels: Option<Channels>,
+    /// The way of a tool whose readings may be imported; `None` for any other run.
+    way: Option<TrackedWay>,
     /// Whether floor on the way to the latest estimated position counts as scanned.
     counts: bool,
     /// Whether the previous event drew a zone: the change to the floor that follows belongs to that zone.
@@ -95,6 +100,7 @@ impl Fold {
                     }
                 }
             }
+            EventKind::ChannelsJudged(judged) => self.judge_channels(judged),
             EventKind::Protected { level_m } => self.protection.take(*level_m),
             EventKind::Estimated { pose } => self.estimate(event, pose),
             EventKind::Ranged { .. } => self.claimed.end_cycle(),
@@ -205,7 +211,8 @@ impl Fold {
         self.counts = counts;
         if let (Some(survey), Some(truth), Some(scanned)) = (&mut self.survey, self.truth, &self.scanned) {
             let way = Way { floor: scanned.believed().floor(), counts };
-            survey.visit((event.tick, event.t_s), estimate, truth, way);
+            let is_dead = |channel| self.channels.as_ref().is_some_and(|channels| channels.is_dead(channel));
+            survey.visit((event.tick, event.t_s), estimate, truth, way, is_dead);
         }
     }
 
@@ -219,8 +226,23 @@ impl Fold {
         };
         let t_s = self.known.mission_time_s.unwrap_or_default();
         let lately = error_m_lately.map(|error_m| Margins { error_m, margin_m, t_s });
+        if let Some(way) = &mut self.way {
+            way.push(Step { t_s, here, error_m, margins: lately });
+        }
         self.scanned.iter_mut().for_each(|scanned| scanned.visit(here, lately));
         self.evidence.iter_mut().for_each(|evidence| evidence.visit(here, error_m, counts));
+    }
+
+    /// Other channels of the instrument are dead from the last pose on.
+    fn judge_channels(&mut self, judged: &ChannelsJudged) {
+        let Some(channels) = &mut self.channels else { return };
+        channels.apply(judged);
+        self.way.iter_mut().for_each(|way| way.declare(&judged.dead));
+        self.evidence.iter_mut().for_each(|evidence| evidence.test_with(channels));
+        if let Some(scanned) = &mut self.scanned {
+            let rim_m = scanned.believed().floor().rim_m();
+            scanned.test_with(channels.live(rim_m));
+        }
     }
 
     /// Adds the true position error of a tick, metres, to the floor that the tool truly passed in it.
@@ -243,6 +265,17 @@ impl Fold {
 
     fn snag(&mut self, snagged: bool) {
         self.tethered.iter_mut().for_each(|tethered| tethered.snag(snagged));
+    }
+
+    /// Takes floor back that silent channels of imported readings passed, and no other channel tested. The summary
+    /// changes with it.
+    pub fn silence(&mut self, silences: &[Silence]) {
+        let (Some(run), Some(way), false) = (&self.run, &self.way, silences.is_empty()) else { return };
+        let (Some(scanned), Some(evidence)) = (&mut self.scanned, &mut self.evidence) else { return };
+        let taken: Vec<(f64, f64)> =
+            self.known.taken_back.iter().map(|taken| (taken.since_s, taken.until_s)).collect();
+        let mut channels = Channels::new(&run.mission);
+        way.silence(silences, (&mut channels, run.mission.start), (scanned, evidence), &taken);
     }
 
     /// The figures so far. Figures that no event provides are absent; the app fills them in.
@@ -309,7 +342,7 @@ impl Fold {
 
     /// The instrument and its readings; `None` if it reads no thickness, and without the account of the floor.
     pub fn survey(&self) -> Option<&Survey> {
-        self.survey.as_ref()
+        self.survey.as_deref()
     }
 
     /// Whether floor on the way to the latest estimated position counts as scanned.
@@ -379,9 +412,13 @@ impl Fold {
         self.known.vehicle = run.vehicle.as_deref().map(VehicleRecord::new);
         self.known.planner = Some(run.mission.planner.id.clone());
         self.known.parameters = Some(run.mission.planner.parameters.clone());
+        self.channels = Some(Channels::new(&run.mission));
         self.evidence = (!self.leaves_out_floor).then(|| Evidence::new(run));
-        self.survey = (!self.leaves_out_floor).then(|| Survey::new(run)).flatten();
+        self.survey = (!self.leaves_out_floor).then(|| Survey::new(run)).flatten().map(Box::new);
         self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start));
+        let may_import = !self.leaves_out_floor && self.survey.is_none();
+        let reads = run.mission.instrument.as_ref().is_some_and(|instrument| instrument.sampling.is_some());
+        self.way = (may_import && reads).then(TrackedWay::default);
         if let Some(measured) = &run.measured {
             // Adds a located pose; the floor passed there counts only while the tool was on.
             self.known.located = Some(measured.file.clone());

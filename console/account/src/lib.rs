@@ -28,6 +28,7 @@ mod sampled;
 #[cfg(test)]
 mod samples;
 mod scanned;
+mod silence;
 pub mod summary;
 mod tethered;
 mod tracking;
@@ -57,6 +58,7 @@ pub use readings::{
     Survey, Track, Whereabouts,
 };
 pub use scanned::Scanned;
+pub use silence::Silence;
 pub use summary::{
     Accuracy, Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, Protection, REPORT_VERSION, Stops,
     Summary, Tether, Tracking,

@@ -3,7 +3,7 @@
 use crate::overlap::Overlap;
 use nalgebra::Matrix2;
 use positioning::fix::{across_95_m, ellipse_95};
-use world::{CoverageGrid, Floor, Pose, Tool};
+use world::{CellRun, CoverageGrid, Floor, Pose, Tool, ToolPart};
 
 /// The error of a cell that was never passed.
 const NEVER: u16 = u16::MAX;
@@ -34,6 +34,18 @@ pub(crate) struct Margins {
     pub t_s: f64,
 }
 
+/// The cells under parts of a tool, each made another tool; `from` and `to` are poses of the whole tool. A cell may occur
+/// under two parts of a tool that turns.
+fn runs_under(
+    floor: &Floor,
+    parts: &[ToolPart],
+    (from, to): (Pose, Pose),
+    tool: impl Fn(&ToolPart) -> Option<Tool>,
+) -> Vec<CellRun> {
+    let under = |part: &ToolPart| Some(floor.runs_under(tool(part)?, part.at(from), part.at(to)));
+    parts.iter().filter_map(under).flatten().collect()
+}
+
 /// Milliseconds, within the bounds of the record.
 fn milliseconds(t_s: f64) -> u32 {
     (t_s * 1000.0).clamp(0.0, f64::from(NOT_GUARANTEED - 1)) as u32
@@ -51,18 +63,20 @@ impl Passes {
         }
     }
 
-    /// Adds a pass of the tool from one estimated pose to the next; it counts as scanned.
+    /// Adds a pass of the tool from one estimated pose to the next; it counts as scanned under the given parts of the tool,
+    /// whose channels work.
     ///
     /// Floor that is under the tool for every position within the margin of the estimate is guaranteed. To find it, the
     /// tool is narrowed on each side by the margin.
     pub(crate) fn pass(
         &mut self,
         believed: &CoverageGrid,
+        parts: &[ToolPart],
         (from, to): (Pose, Pose),
         Margins { error_m, margin_m, t_s }: Margins,
     ) {
         let floor = believed.floor();
-        let cells = floor.runs_under(self.tool, from, to);
+        let cells = runs_under(floor, parts, (from, to), |part| Some(part.tool()));
         let way_m = (to.position - from.position).norm();
         if way_m.is_finite() {
             self.overlap.pass(way_m, self.tool.swath_m(), &cells, |cell| {
@@ -73,12 +87,15 @@ impl Passes {
         for run in cells {
             self.error_mm[run.range()].iter_mut().for_each(|mm| *mm = (*mm).min(error_mm));
         }
-        if let Some(narrowed) = self.tool.narrowed(margin_m) {
-            for run in floor.runs_under(narrowed, from, to) {
-                let first_ms = self.guaranteed_ms[run.range()].iter_mut();
-                first_ms.for_each(|first_ms| *first_ms = (*first_ms).min(milliseconds(t_s)));
-            }
+        for run in runs_under(floor, parts, (from, to), |part| part.tool().narrowed(margin_m)) {
+            let first_ms = self.guaranteed_ms[run.range()].iter_mut();
+            first_ms.for_each(|first_ms| *first_ms = (*first_ms).min(milliseconds(t_s)));
         }
+    }
+
+    /// The tool.
+    pub(crate) fn tool(&self) -> Tool {
+        self.tool
     }
 
     /// Takes back the guarantee of cells that no pass before `since_s`, seconds, guarantees. Returns their number.

@@ -110,7 +110,15 @@ impl Survey {
     }
 
     /// Moves the instrument to a pose. It takes readings on the way there if floor on the way counts as scanned.
-    pub(crate) fn visit(&mut self, (tick, t_s): (u64, f64), to: &PoseEstimate, truth: Pose, way: Way<'_>) {
+    /// Dead channels take none.
+    pub(crate) fn visit(
+        &mut self,
+        (tick, t_s): (u64, f64),
+        to: &PoseEstimate,
+        truth: Pose,
+        way: Way<'_>,
+        is_dead: impl Fn(u16) -> bool,
+    ) {
         self.latest.clear();
         let estimated = Pose { position: to.position, heading_rad: to.heading_rad };
         let now = Before { t_s, estimated, truth };
@@ -122,16 +130,23 @@ impl Survey {
         let mut sample = 0;
         while self.due_m < way_m {
             let share = self.due_m / way_m;
-            self.read((tick, sample), between(&from, &now, share), to, way.floor);
+            self.read((tick, sample), between(&from, &now, share), to, way.floor, &is_dead);
             self.due_m += self.sampling.pitch_m;
             sample += 1;
         }
         self.due_m -= way_m;
     }
 
-    /// Takes a reading of every channel.
-    fn read(&mut self, (tick, sample): (u64, u64), here: Before, estimate: &PoseEstimate, floor: &Floor) {
-        for channel in 0..self.sampling.channels {
+    /// Takes a reading of every channel that works.
+    fn read(
+        &mut self,
+        (tick, sample): (u64, u64),
+        here: Before,
+        estimate: &PoseEstimate,
+        floor: &Floor,
+        is_dead: &impl Fn(u16) -> bool,
+    ) {
+        for channel in (0..self.sampling.channels).filter(|channel| !is_dead(*channel)) {
             let offset_m = self.sampling.offset_m(channel, self.swath_m);
             let at = beside(here.estimated, offset_m);
             let Some(cell) = floor.cell_at(at).filter(|cell| floor.is_floor(*cell)) else { continue };

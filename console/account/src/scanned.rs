@@ -3,11 +3,12 @@
 
 use crate::{
     passes::{Margins, Passes},
+    silence::kept,
     summary::{Coverage, CoverageByTruth},
     true_errors::TrueErrors,
 };
 use nalgebra::Matrix2;
-use world::{CellRun, Counts, CoverageGrid, Floor, FloorClass, KindRun, Pose, Tool};
+use world::{CellRun, Counts, CoverageGrid, Floor, FloorClass, KindRun, Pose, Tool, ToolPart};
 
 /// A floor with the cells that were scanned so far.
 #[derive(Debug, Clone)]
@@ -17,7 +18,8 @@ pub struct Scanned {
     truth: Vec<bool>,
     true_errors: TrueErrors,
     passes: Box<Passes>,
-    tool: Tool,
+    /// The parts of the tool whose channels work.
+    live: Vec<ToolPart>,
     last: Pose,
     has_truth: bool,
 }
@@ -29,7 +31,32 @@ impl Scanned {
         let truth = vec![false; floor.len()];
         let true_errors = TrueErrors::new(floor.len());
         let believed = CoverageGrid::new(floor);
-        Self { believed, truth, true_errors, passes, tool, last: start, has_truth: false }
+        let live = vec![ToolPart::whole(tool)];
+        Self { believed, truth, true_errors, passes, live, last: start, has_truth: false }
+    }
+
+    /// From now on, only these parts of the tool test the floor.
+    pub(crate) fn test_with(&mut self, live: Vec<ToolPart>) {
+        self.live = live;
+    }
+
+    /// Forgets all passes, so that they can be made again; returns the floor with the cells scanned so far.
+    pub(crate) fn begin_again(&mut self, start: Pose) -> CoverageGrid {
+        let floor = self.believed.floor().clone();
+        *self.passes = Passes::new(&floor, self.passes.tool());
+        (self.live, self.last) = (vec![ToolPart::whole(self.passes.tool())], start);
+        std::mem::replace(&mut self.believed, CoverageGrid::new(floor))
+    }
+
+    /// Marks the floor under the working channels between two poses as scanned.
+    pub(crate) fn scan(&mut self, from: Pose, to: Pose) {
+        let runs = self.believed.not_covered_under_parts(&self.live, from, to);
+        self.believed.apply(&runs);
+    }
+
+    /// Keeps the cells that were scanned before, if they were scanned again or are to be kept.
+    pub(crate) fn keep_where(&mut self, before: &CoverageGrid, is_kept: impl Fn(usize) -> bool) {
+        self.believed = kept(before, &self.believed, is_kept);
     }
 
     /// The floor with the cells scanned according to the mission's estimate.
@@ -66,7 +93,7 @@ impl Scanned {
     pub(crate) fn visit(&mut self, here: Pose, margins: Option<Margins>) {
         let before = std::mem::replace(&mut self.last, here);
         if let Some(margins) = margins {
-            self.passes.pass(&self.believed, (before, here), margins);
+            self.passes.pass(&self.believed, &self.live, (before, here), margins);
         }
     }
 
@@ -84,7 +111,9 @@ impl Scanned {
     /// Adds the robot's true movement from `a` to `b`.
     pub(crate) fn pass(&mut self, a: Pose, b: Pose) {
         self.has_truth = true;
-        let cells = self.believed.floor().runs_under(self.tool, a, b);
+        let floor = self.believed.floor();
+        let under = |part: &ToolPart| floor.runs_under(part.tool(), part.at(a), part.at(b));
+        let cells: Vec<CellRun> = self.live.iter().flat_map(under).collect();
         for run in &cells {
             self.truth[run.range()].fill(true);
         }

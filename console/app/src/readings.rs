@@ -5,9 +5,9 @@ mod words;
 use crate::{cli::ReadingsArgs, input};
 use ::locate::{
     Problem,
-    thickness::{Options, Placed, Scanned, Sink, place},
+    thickness::{Gap, Options, Placed, Scanned, Sink, place},
 };
-use account::Reading;
+use account::{Reading, Silence};
 use anyhow::Context;
 use command::json::say_json;
 use flight::failure::{COMPLETE, bad_input};
@@ -81,6 +81,7 @@ pub(crate) fn readings(args: &ReadingsArgs) -> anyhow::Result<ExitCode> {
         file_sha256: sha256(file.path()).with_context(|| format!("reading {}", file.shown()))?,
         readings_sha256,
         by: format!("tankops {}", env!("CARGO_PKG_VERSION")),
+        silences: placed.gaps.iter().map(silence).collect(),
         notes: words::notes(&placed),
     };
     write_import(&folder, &import)
@@ -92,6 +93,11 @@ pub(crate) fn readings(args: &ReadingsArgs) -> anyhow::Result<ExitCode> {
     }
     said(args, &folder, &placed)?;
     Ok(ExitCode::from(COMPLETE))
+}
+
+/// A gap as the account of the floor needs it.
+fn silence(gap: &Gap) -> Silence {
+    Silence { channels: gap.channels.clone(), from_s: gap.from_s, to_s: gap.to_s }
 }
 
 fn said(args: &ReadingsArgs, folder: &Path, placed: &Placed) -> anyhow::Result<()> {

@@ -210,6 +210,7 @@ fn told(readings: &Readings, stations: &[Station], tick_s: f64) -> message::Read
         contact: Some(readings.contact),
         tether: readings.paid_out_m.map(|paid_out_m| Tether { paid_out_m, pull_n: readings.reel_pull_n }),
         pressure_pa: readings.pressure_pa,
+        dead_channels: readings.dead_channels.clone(),
         outlines: readings.sightings.iter().map(outline).collect(),
         ..message::Readings::default()
     }

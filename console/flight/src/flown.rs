@@ -47,7 +47,15 @@ impl Forked {
         });
         let robot = RobotConfig { scanner: None, ..scenario.sim.robot.clone() };
         let physical = scenario.sim.physical.map(|cable| PhysicalCable { fails_at_s: None, ..cable });
-        let config = SimConfig { world, robot, ae, movers: Vec::new(), physical, ..scenario.sim.clone() };
+        let config = SimConfig {
+            world,
+            robot,
+            ae,
+            movers: Vec::new(),
+            physical,
+            channel_faults: Vec::new(),
+            ..scenario.sim.clone()
+        };
         Flight {
             vehicle: Box::new(Simulated::new(Simulator::resumed(config, scenario.seed, pose, cable))),
             watch: None,

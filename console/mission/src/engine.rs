@@ -170,6 +170,8 @@ impl Mission {
             self.obey(order);
         }
         let before = self.known.locator.pose();
+        let judged = self.known.channels.judge(input.readings.dead_channels.as_deref());
+        self.happened.extend(judged.map(EventKind::ChannelsJudged));
         let located = self.known.locator.take(input.readings);
         self.happened.extend(located);
         self.happened.extend(self.known.take_pressure(input.readings.pressure_pa));

@@ -5,6 +5,7 @@
 //! equal runs.
 
 mod better_plan;
+mod channels;
 mod effort;
 mod log_line;
 mod measured;
@@ -17,6 +18,7 @@ mod shadow;
 mod tether;
 
 pub use better_plan::{PlanDropped, PlanMade, PlanTaken};
+pub use channels::ChannelsJudged;
 pub use effort::Effort;
 pub use log_line::{LogLine, late_text};
 pub use measured::{Asked, Measured, ToolTrack};
@@ -591,6 +593,9 @@ pub enum EventKind {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         trouble: Option<String>,
     },
+    /// Other channels of the instrument are dead than before. It comes before the pose of its tick, and is about the floor
+    /// that the tool passes from the pose of the tick before on.
+    ChannelsJudged(ChannelsJudged),
     /// The robot may move again.
     Resumed,
     /// An unattended mission of a real vehicle is held because its position is not reliable. It resumes automatically when

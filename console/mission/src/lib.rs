@@ -9,6 +9,7 @@
 //! to planners).
 
 pub mod ask;
+mod channels;
 mod chart;
 pub mod config;
 pub mod engine;
@@ -32,6 +33,7 @@ mod way_back;
 mod zone_cost;
 
 pub use ask::{Answer, Ask, AskId, Awaits, Given, Said, What, WorkerId};
+pub use channels::Channels;
 pub use config::{BetterPlan, Guarantee, Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
 pub use engine::{Fork, Input, Mission, Sending, Step};
 pub use event::{Event, EventKind, LogLine, RunOpened, Severity};

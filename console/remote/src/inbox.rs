@@ -9,7 +9,7 @@ use crate::taking::info;
 use ages::Ages;
 use notices::Notices;
 use outlines::Outlines;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use vehicle::{
     link::{Hold, Link, Motions, Sequence, State as Reached},
     port::{LinkSeen, LinkState, Live, Notice, Sensed, Stamps, Stood},
@@ -298,6 +298,9 @@ impl Inbox {
             self.readings.reel_pull_n = tether.pull_n;
         }
         self.readings.pressure_pa = readings.pressure_pa.or(self.readings.pressure_pa);
+        if let Some(dead) = &readings.dead_channels {
+            self.readings.dead_channels = Some(ascending(dead));
+        }
         self.readings.sightings = self.outlines.sightings(&readings.outlines);
         if let Some(ae) = readings.ae.as_ref().filter(|_| age_s.is_none_or(|age_s| age_s <= RANGES_MAX_AGE_S))
         {
@@ -504,6 +507,12 @@ fn add(sum: &mut world::Odometry, moved: Odometry) {
         sideways_m: sum.sideways_m + forward_m * sin + sideways_m * cos,
         turn_rad: sum.turn_rad + turn_rad,
     };
+}
+
+/// The channels in ascending order, each once.
+fn ascending(channels: &[u16]) -> Vec<u16> {
+    let each: BTreeSet<u16> = channels.iter().copied().collect();
+    each.into_iter().collect()
 }
 
 fn scanned(scan: &Scan) -> world::Scan {

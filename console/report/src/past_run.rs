@@ -1,7 +1,7 @@
 //! A past run in the form in which reports use it.
 
 use crate::{document::Files, record::Record};
-use account::{Fold, Imported, Judge, Logs, Summary};
+use account::{Fold, Imported, Judge, Logs, Silence, Summary};
 use mission::Sampling;
 use serde::{Deserialize, Serialize};
 
@@ -27,7 +27,7 @@ pub struct PastRun {
 }
 
 /// A file of readings that was imported into a run.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ImportedReadings {
     /// Name of the file.
     pub file: String,
@@ -37,6 +37,9 @@ pub struct ImportedReadings {
     pub readings_sha256: String,
     /// The program that imported the file.
     pub by: String,
+    /// The times in which channels gave no readings; absent in files of older versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub silences: Vec<Silence>,
     /// What was found in the file, as sentences.
     pub notes: Vec<String>,
 }

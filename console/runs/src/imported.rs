@@ -21,11 +21,15 @@ pub fn write_import(folder: &Path, import: &ImportedReadings) -> io::Result<()> 
     write_whole(&folder.join(IMPORT_FILE), text.as_bytes())
 }
 
-/// The description of the import into a run, and what the readings show; `None` if nothing was imported.
+/// The description of the import into a run, and what the readings show. Floor under channels that gave no readings is
+/// taken back from the account; `None` if nothing was imported.
 ///
 /// # Errors
 /// The reason why the readings cannot be used, as a sentence.
-pub(crate) fn imported(folder: &Path, fold: &Fold) -> Result<Option<(ImportedReadings, Imported)>, String> {
+pub(crate) fn imported(
+    folder: &Path,
+    fold: &mut Fold,
+) -> Result<Option<(ImportedReadings, Imported)>, String> {
     let file = folder.join(IMPORT_FILE);
     if fold.survey().is_some() {
         return Ok(None);
@@ -41,6 +45,7 @@ pub(crate) fn imported(folder: &Path, fold: &Fold) -> Result<Option<(ImportedRea
     let text = read_json(&file, MOST_BYTES).map_err(|error| unread(&error))?;
     let import: ImportedReadings = serde_json::from_str(&text).map_err(|error| unread(&error))?;
     let sampling = fold.run().and_then(|run| run.mission.instrument.as_ref()?.sampling);
+    fold.silence(&import.silences);
     let (Some(sampling), Some(scanned)) = (sampling, fold.scanned()) else {
         return Err(
             "readings were imported, but the scenario of the run has no [instrument] with channels".into()

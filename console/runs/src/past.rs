@@ -65,7 +65,7 @@ impl Past {
         let shown = |path: &Path| path.exists().then(|| path.display().to_string());
         let mut summary = fold.summary();
         let mut files = files(folder, &opened, digests, &summary);
-        let imported = imported(folder, &fold).unwrap_or_else(|why| {
+        let imported = imported(folder, &mut fold).unwrap_or_else(|why| {
             files.doubts.push(why);
             None
         });
@@ -77,6 +77,8 @@ impl Past {
             ));
         }
         if let Some(((_, imported), scanned)) = imported.as_ref().zip(fold.scanned()) {
+            let silenced = fold.summary();
+            (summary.floor, summary.coverage) = (silenced.floor, silenced.coverage);
             summary.readings = Some(imported.summary(scanned.believed().floor()));
         }
         let doubts = files.doubts.first().cloned();

@@ -97,7 +97,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let inspection = inspection::section(root);
     let rest = Rest::read(&sections, &floor);
     let cell_m = rest.as_ref().map(|rest| rest.cell_m);
-    let instrument = instrument::instrument(root, plates.as_ref(), cell_m);
+    let (instrument, channel_faults) = instrument::instrument(root, plates.as_ref(), cell_m).unzip();
 
     let (planner, fallback) = planner?;
     let (robot, rest, start, ae, locating) = (floor.robot?, rest?, start?, floor.ae?, floor.locating?);
@@ -152,6 +152,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         tether_anchor: mission.tether.as_ref().map(|tether| tether.anchor),
         reel_length_m: mission.tether.as_ref().map(|tether| tether.limits.reel_length_m),
         physical: physical.flatten(),
+        channel_faults: channel_faults.unwrap_or_default(),
     };
     Some(Scenario {
         name: name?,

@@ -2,14 +2,16 @@
 
 use super::{problem::Complaint, section::Section};
 use mission::{InstrumentConfig, InstrumentKind, Sampling};
+use sim::ChannelFault;
 use world::{DeadBands, PlateLayout};
 
-/// Reads `[instrument]`, if there is one. `cell_m` is the edge of a cell of the coverage grid.
+/// Reads `[instrument]`, if there is one, and when channels of the simulated one are dead. `cell_m` is the edge of a cell
+/// of the coverage grid.
 pub(crate) fn instrument(
     root: &Section<'_>,
     plates: Option<&PlateLayout>,
     cell_m: Option<f64>,
-) -> Option<InstrumentConfig> {
+) -> Option<(InstrumentConfig, Vec<ChannelFault>)> {
     if !root.has("instrument") {
         return None;
     }
@@ -24,9 +26,10 @@ pub(crate) fn instrument(
         check_cells(&section, ("dead_square_m", square_m), cell_m, "equal to");
     }
     let sampling = if section.has("channels") { Some(sampling(&section)?) } else { None };
+    let dead = channel_faults(&section, sampling.map(|sampling| sampling.channels));
     let (kind, band_m, square_m) = (kind?, band_m?, square_m?);
     if band_m <= 0.0 && square_m <= 0.0 {
-        return Some(InstrumentConfig { kind, dead_bands: None, sampling });
+        return Some((InstrumentConfig { kind, dead_bands: None, sampling }, dead));
     }
     if !root.has("plates") {
         root.require(
@@ -35,7 +38,8 @@ pub(crate) fn instrument(
         );
     }
     let plates = plates?.clone();
-    Some(InstrumentConfig { kind, dead_bands: Some(DeadBands { plates, band_m, square_m }), sampling })
+    let dead_bands = Some(DeadBands { plates, band_m, square_m });
+    Some((InstrumentConfig { kind, dead_bands, sampling }, dead))
 }
 
 /// Reads how the instrument reads thickness.
@@ -55,6 +59,35 @@ fn sampling(section: &Section<'_>) -> Option<Sampling> {
         sigma_mm: sigma_mm?,
         threshold: threshold?,
     })
+}
+
+/// Reads the times at which channels of the simulated instrument are dead.
+fn channel_faults(section: &Section<'_>, channels: Option<u16>) -> Vec<ChannelFault> {
+    if !section.has("dead") {
+        return Vec::new();
+    }
+    section.require(
+        "channels",
+        "add channels = ..., the number of channels across the swath, or leave out dead",
+    );
+    section.tables("dead").iter().filter_map(|entry| channel_fault(entry, channels)).collect()
+}
+
+fn channel_fault(entry: &Section<'_>, channels: Option<u16>) -> Option<ChannelFault> {
+    let (channel, from_s, to_s) = (entry.whole("channel"), entry.number("from_s"), entry.number("to_s"));
+    if let (Some(channel), Some(channels)) = (channel, channels)
+        && channel >= i64::from(channels)
+    {
+        let wanted = format!(
+            "0 to {}: [instrument] has {channels} channels, and channel 0 is on the right",
+            channels - 1
+        );
+        entry.complain("channel", Complaint::OutOfRange(wanted));
+    }
+    if from_s? >= to_s? {
+        entry.complain("to_s", Complaint::OutOfRange(format!("greater than from_s, {} s", from_s?)));
+    }
+    Some(ChannelFault { channel: channel? as u16, from_s: from_s?, to_s: to_s? })
 }
 
 /// Complains about a width that is above zero but too small to show in cells.

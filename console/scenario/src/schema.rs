@@ -270,6 +270,13 @@ static INSTRUMENT: &[Key] = &[
     number("thickness_mm", "mm", above(0.0).up_to(100.0)).or_none("for `channels`"),
     number("sigma_mm", "mm", at_least(0.0).up_to(10.0)).or(0.3),
     number("threshold", "", above(0.0).up_to(1.0)).or(0.2),
+    key("dead", "", Kind::Tables(DEAD_CHANNELS)).or_none("none"),
+];
+
+static DEAD_CHANNELS: &[Key] = &[
+    key("channel", "", Kind::Whole(0, 511)),
+    number("from_s", "s", at_least(0.0)),
+    number("to_s", "s", above(0.0)),
 ];
 
 static WEAR: &[Key] = &[

@@ -821,3 +821,23 @@ fn readings_need_a_thickness_and_losses_fit_into_the_floor() {
         assert_eq!(errors(&text).problems.len(), 1, "{shown}");
     }
 }
+
+#[test]
+fn dead_channels_are_channels_of_the_instrument_for_a_time() {
+    let with = |rest: &str| format!("{SMALL}[instrument]\nkind = \"mfl\"\n{rest}\n");
+    let twenty = |dead: &str| with(&format!("channels = 20\nthickness_mm = 8\ndead = [{dead}]"));
+    let faults = read(&twenty("{ channel = 19, from_s = 60, to_s = 120 }")).sim.channel_faults;
+    assert_eq!(faults, [sim::ChannelFault { channel: 19, from_s: 60.0, to_s: 120.0 }]);
+    assert!(read(SMALL).sim.channel_faults.is_empty());
+    let cases = [
+        (twenty("{ channel = 20, from_s = 60, to_s = 120 }"), "0 to 19: [instrument] has 20 channels"),
+        (twenty("{ channel = 2, from_s = 60, to_s = 60 }"), "greater than from_s, 60 s"),
+        (twenty("{ from_s = 60, to_s = 70 }"), "channel: missing"),
+        (with("dead = [{ channel = 2, from_s = 60, to_s = 70 }]"), "add channels = ..."),
+    ];
+    for (text, wanted) in cases {
+        let shown = errors(&text).render();
+        assert!(shown.contains(wanted), "{wanted}:\n{shown}");
+        assert_eq!(errors(&text).problems.len(), 1, "{shown}");
+    }
+}

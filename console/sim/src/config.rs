@@ -213,6 +213,20 @@ pub struct SimConfig {
     /// A cable with weight and friction, which may be slack; `None` for a cable that is always taut.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub physical: Option<PhysicalCable>,
+    /// The times at which channels of the instrument are dead.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub channel_faults: Vec<ChannelFault>,
+}
+
+/// A time at which a channel of the instrument is dead.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ChannelFault {
+    /// The channel; channel 0 is on the right.
+    pub channel: u16,
+    /// Mission time at which it begins, seconds.
+    pub from_s: f64,
+    /// Mission time at which it ends, seconds.
+    pub to_s: f64,
 }
 
 /// A cable with weight and friction.

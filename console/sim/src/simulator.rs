@@ -108,6 +108,7 @@ impl Simulator {
             reel_pull_n: self.laid.as_ref().map(Laid::reel_pull_n),
             robot_pull_n: self.laid.as_ref().map(Laid::robot_pull_n),
             pressure_pa,
+            dead_channels: self.dead_channels(t_s),
             scan,
         }
     }
@@ -178,6 +179,15 @@ impl Simulator {
         let medium = Medium::at(&self.config.world.zones, self.pose.position);
         self.mode = self.mode.toward(medium, amphibious.transition_steps);
         self.tracks.set_limits(amphibious.pace(self.mode.weight()));
+    }
+
+    /// The channels that were dead at some moment since the last tick; `None` if none ever is.
+    fn dead_channels(&self, t_s: f64) -> Option<Vec<u16>> {
+        let faults = &self.config.channel_faults;
+        let since_s = t_s - self.config.tick_s.max(0.0);
+        let dead = faults.iter().filter(|fault| fault.from_s <= t_s && since_s < fault.to_s);
+        let dead: std::collections::BTreeSet<u16> = dead.map(|fault| fault.channel).collect();
+        (!faults.is_empty()).then(|| dead.into_iter().collect())
     }
 
     /// Moves the moving obstacles; returns whether one of them hits the hull.

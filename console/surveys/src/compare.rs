@@ -1,6 +1,8 @@
 //! The comparison of two surveys.
 
-use crate::{Growth, Match, PlateRate, Refusal, Registration, Survey, matching::matches, plates::plates};
+use crate::{
+    Growth, Match, PlateRate, Refusal, Registration, Survey, matching::matches, parts::Both, plates::plates,
+};
 use serde::Serialize;
 use world::Point;
 
@@ -31,6 +33,16 @@ pub struct Unmatched {
     pub index: usize,
     /// Whether the other survey tested its place.
     pub is_tested: bool,
+    /// The larger indication of the other survey of which it is a part, as an index among those of that survey. If there
+    /// is one, this indication is neither new nor gone.
+    pub part_of: Option<usize>,
+}
+
+impl Unmatched {
+    /// Whether the other survey tested its place and shows no loss there: the indication is new, or gone.
+    pub fn is_alone(&self) -> bool {
+        self.is_tested && self.part_of.is_none()
+    }
 }
 
 /// Compares two surveys of one floor. `is_tested` tells whether the first and whether the second survey tested a place,
@@ -50,7 +62,10 @@ pub fn compare(
         return Err(Refusal::Thickness { first_mm: first.thickness_mm, second_mm: second.thickness_mm });
     }
     let registration = Registration::of(&first.tank, &second.tank)?;
-    let pairs = matches(first, second, &registration)?;
+    let both = Both { first, second, registration: &registration };
+    let mut pairs = matches(first, second, &registration)?;
+    pairs.extend(both.matches(&pairs));
+    pairs.sort_by_key(|pair| pair.first);
     let grown = |pair: Match| {
         (pair, Growth::between(&first.indications[pair.first], &second.indications[pair.second], years))
     };
@@ -58,11 +73,11 @@ pub fn compare(
     let is_gone = |index: &usize| pairs.iter().all(|pair| pair.first != *index);
     let new = (0..second.indications.len()).filter(is_new).map(|index| {
         let place = registration.apply(second.indications[index].at);
-        Unmatched { index, is_tested: is_tested[0](place) }
+        Unmatched { index, is_tested: is_tested[0](place), part_of: both.whole_of_second(index) }
     });
     let gone = (0..first.indications.len()).filter(is_gone).map(|index| {
         let place = registration.back(first.indications[index].at);
-        Unmatched { index, is_tested: is_tested[1](place) }
+        Unmatched { index, is_tested: is_tested[1](place), part_of: both.whole_of_first(index) }
     });
     let (new, gone): (Vec<_>, Vec<_>) = (new.collect(), gone.collect());
     let matched: Vec<(Match, Growth)> = pairs.iter().copied().map(grown).collect();

@@ -9,6 +9,7 @@ mod compare;
 mod growth;
 mod matching;
 mod outlook;
+mod parts;
 mod plates;
 mod refusal;
 mod register;
@@ -49,6 +50,12 @@ pub struct Indication {
     pub plate: Option<String>,
     /// The middle, in the frame of the survey, metres.
     pub at: Point,
+    /// South-west corner of its readings, in the frame of the survey, metres.
+    #[serde(skip)]
+    pub low: Point,
+    /// North-east corner of its readings, in the frame of the survey, metres.
+    #[serde(skip)]
+    pub high: Point,
     /// Covariance of the middle, square metres.
     #[serde(skip)]
     pub covariance: Matrix2<f64>,
@@ -58,6 +65,13 @@ pub struct Indication {
     pub depth_sigma_mm: f64,
     /// Whether untested floor lies beside its readings. Its deepest place may be there, so its depth is a lower bound.
     pub is_cut: bool,
+}
+
+impl Indication {
+    /// The longer side of its extent, metres.
+    pub fn size_m(&self) -> f64 {
+        (self.high - self.low).max()
+    }
 }
 
 #[cfg(test)]

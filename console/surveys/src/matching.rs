@@ -94,7 +94,7 @@ fn reach_m(first: &Survey, second: &Survey, registration: &Registration) -> f64 
     (GATE * (widest(first) + widest(second) + registration.covariance().trace())).sqrt()
 }
 
-fn grows_back(one: &Indication, other: &Indication) -> bool {
+pub(crate) fn grows_back(one: &Indication, other: &Indication) -> bool {
     one.depth_mm - other.depth_mm > SHALLOWER_SIGMAS * one.depth_sigma_mm.hypot(other.depth_sigma_mm)
 }
 

@@ -50,10 +50,10 @@ pub(crate) fn plates(
         found.matched += 1;
         found.growths.extend((!pair.is_cut).then_some(*growth));
     }
-    for one in new.iter().filter(|one| one.is_tested) {
+    for one in new.iter().filter(|one| one.is_alone()) {
         on.entry(name(second, one.index)).or_default().new += 1;
     }
-    for one in gone.iter().filter(|one| one.is_tested) {
+    for one in gone.iter().filter(|one| one.is_alone()) {
         on.entry(name(first, one.index)).or_default().gone += 1;
     }
     on.into_iter().map(|(plate, found)| found.rate(plate, years)).collect()

@@ -19,6 +19,8 @@ fn pit(number: usize, x: f64, y: f64, depth_mm: f64) -> Indication {
         number,
         plate: Some("P".into()),
         at: Point::new(x, y),
+        low: Point::new(x, y),
+        high: Point::new(x, y),
         covariance,
         depth_mm,
         depth_sigma_mm: 0.2,
@@ -48,8 +50,8 @@ fn a_pit_that_grew_has_its_rate_and_new_and_gone_ones_are_named() {
     assert!((growth.rate_mm_per_a - 0.25).abs() < 1e-9);
     let half_mm = 1.96 * 0.08_f64.sqrt();
     assert!((growth.interval_mm[1] - 1.0 - half_mm).abs() < 1e-9, "{growth:?}");
-    assert_eq!(found.new, [Unmatched { index: 1, is_tested: true }]);
-    assert_eq!(found.gone, [Unmatched { index: 1, is_tested: true }]);
+    assert_eq!(found.new, [Unmatched { index: 1, is_tested: true, part_of: None }]);
+    assert_eq!(found.gone, [Unmatched { index: 1, is_tested: true, part_of: None }]);
     let [plate] = &found.plates[..] else { panic!("{found:?}") };
     assert_eq!((plate.matched, plate.new, plate.gone), (1, 1, 1));
     assert_eq!(plate.mean.unwrap().mm.to_bits(), plate.greatest.unwrap().mm.to_bits());
@@ -64,6 +66,42 @@ fn the_best_assignment_is_not_the_nearest_neighbour() {
     let pairs: Vec<_> =
         found.matched.iter().map(|(pair, _)| (pair.first, pair.second, pair.rivals)).collect();
     assert_eq!(pairs, [(0, 0, 1), (1, 1, 1)]);
+}
+
+/// A pit with an extent of a half width, metres.
+fn wide(half_m: f64, pit: Indication) -> Indication {
+    let half = world::Vector::repeat(half_m);
+    Indication { low: pit.at - half, high: pit.at + half, ..pit }
+}
+
+#[test]
+fn the_pieces_of_a_larger_indication_are_not_new_and_a_pit_beside_it_is() {
+    let first = survey(vec![wide(0.3, pit(1, 0.0, 0.0, 2.0))]);
+    let pieces = [(0.0, 0.01), (0.25, 0.1), (-0.2, -0.25), (0.6, 0.0)];
+    let piece = |(k, (x, y)): (usize, &(f64, f64))| wide(0.02, pit(k, *x, *y, 2.4));
+    let second = survey(pieces.iter().enumerate().map(piece).collect());
+    let found = compared(&first, &second);
+    assert_eq!(found.matched.len(), 1);
+    let whole: Vec<_> = found.new.iter().map(|one| (one.index, one.part_of)).collect();
+    assert_eq!(whole, [(1, Some(0)), (2, Some(0)), (3, None)]);
+    assert_eq!(found.plates.iter().map(|plate| plate.new).sum::<usize>(), 1);
+    // The other way round, pits that grew together are not gone.
+    let merged = compared(&second, &survey(vec![wide(0.3, pit(1, 0.0, 0.0, 2.8))]));
+    let whole: Vec<_> = merged.gone.iter().map(|one| (one.index, one.part_of)).collect();
+    assert_eq!(whole, [(1, Some(0)), (2, Some(0)), (3, None)]);
+    // Two pits that grew together have another middle, too far from either of them to match by place.
+    let apart = survey(vec![wide(0.03, pit(1, -0.25, 0.0, 2.0)), wide(0.03, pit(2, 0.25, 0.0, 3.0))]);
+    let joined = compared(&apart, &survey(vec![wide(0.3, pit(1, 0.0, 0.0, 3.4))]));
+    let [(pair, growth)] = &joined.matched[..] else { panic!("{joined:?}") };
+    assert_eq!((pair.first, pair.second), (1, 0), "the deepest part is the partner");
+    assert!((growth.mm - 0.4).abs() < 1e-9 && joined.new.is_empty());
+    assert_eq!(joined.gone, [Unmatched { index: 0, is_tested: true, part_of: Some(0) }]);
+    // A larger indication is not a part of a smaller one.
+    let grown = compared(
+        &survey(vec![wide(0.02, pit(1, 0.0, 0.0, 6.0))]),
+        &survey(vec![wide(0.3, pit(1, 0.0, 0.0, 2.0))]),
+    );
+    assert_eq!((grown.new[0].part_of, grown.gone[0].part_of), (None, Some(0)));
 }
 
 #[test]

@@ -24,6 +24,7 @@ pub fn name(cause: &Cause, of: &Run) -> String {
         Cause::Bias(id) => format!("station {} biased", of.station_name(*id).trim_start_matches("station ")),
         Cause::NotSeparable => "station bias not separable".into(),
         Cause::NoFix => "no position fix".into(),
+        Cause::DeadChannel => "channel dead".into(),
         Cause::Station(id) => {
             format!("station {} rejected", of.station_name(*id).trim_start_matches("station "))
         }
@@ -62,6 +63,7 @@ pub fn guide(cause: &Cause) -> Guide {
         Cause::NotSeparable => position::NOT_SEPARABLE,
         Cause::NoFix => position::NO_FIX,
         Cause::Station(_) => position::STATION,
+        Cause::DeadChannel => vehicle::DEAD_CHANNEL,
         Cause::Recording => console::RECORDING,
         Cause::Writer => console::WRITER,
         Cause::Console => console::CONSOLE,

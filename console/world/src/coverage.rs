@@ -3,6 +3,7 @@
 mod floor;
 mod floor_class;
 mod floor_maker;
+mod parts;
 mod percents;
 pub mod regions;
 mod room;
@@ -16,6 +17,7 @@ pub use floor::{Cell, CellRun, Floor, KindRun};
 pub use floor_class::FloorClass;
 pub use floor_maker::FloorMaker;
 pub(crate) use floor_maker::clearances_m;
+pub use parts::ToolPart;
 pub use percents::{percent, percent_text, percents};
 pub use shell::{ShellFigures, ShellStretch, ShellZone};
 pub use swept_area::SweptArea;
@@ -223,6 +225,33 @@ impl CoverageGrid {
             }
         }
         new
+    }
+
+    /// Returns the cells of [`Self::not_covered_under`] for the parts of a tool whose other parts do not test the floor.
+    /// `a` and `b` are poses of the whole tool.
+    ///
+    /// ```
+    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, ToolPart, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// let grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
+    /// let (a, b) = (Pose::new(0.0, 0.0, 0.0), Pose::new(2.0, 0.0, 0.0));
+    /// let left = ToolPart::between(Tool::Bar { swath_m: 0.6 }, [0.0, 0.3]);
+    /// assert_eq!(grid.not_covered_under_parts(&[left], a, b).len(), 3, "one run in each row");
+    /// ```
+    pub fn not_covered_under_parts(&self, parts: &[ToolPart], a: Pose, b: Pose) -> Vec<CellRun> {
+        let under = |part: &ToolPart| self.not_covered_under(part.tool(), part.at(a), part.at(b));
+        if let [only] = parts {
+            return under(only);
+        }
+        let mut cells: Vec<usize> = parts.iter().flat_map(under).flat_map(CellRun::range).collect();
+        cells.sort_unstable();
+        cells.dedup();
+        let mut runs = Vec::new();
+        for cell in cells {
+            CellRun::append(&mut runs, cell..cell + 1);
+        }
+        runs
     }
 
     /// Marks cells as scanned; cells beyond the grid and untestable cells are ignored.

@@ -25,7 +25,7 @@ mod wear;
 pub use beside_limit::beside_limit;
 pub use coverage::{
     Cell, CellRun, Counts, CoverageGrid, Floor, FloorClass, FloorMaker, KindRun, ShellFigures, ShellStretch,
-    ShellZone, SweptArea, Tool,
+    ShellZone, SweptArea, Tool, ToolPart,
 };
 /// Points, poses and shapes are re-exported, so that a crate that uses the tank need not also depend on `geometry`.
 pub use geometry::{self, Amphibious, Boundary, Pace, Point, Pose, Shape, Vector, polyline, shape};

@@ -70,6 +70,10 @@ pub struct Readings {
     /// Gauge pressure at the hull, pascals; `None` without a pressure sensor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure_pa: Option<f64>,
+    /// The channels of the instrument that are dead, in ascending order; `None` if nothing was reported since the last
+    /// readings. Channel 0 is on the right.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dead_channels: Option<Vec<u16>>,
     /// The last scan of the surroundings; `None` without a scanner, and in ticks without a scan.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scan: Option<Scan>,

@@ -2,10 +2,10 @@
 
 use super::{reasons::Reasons, zone::CRITICAL_ZONE_M};
 use crate::sampled::sampled;
-use mission::{TaskConfig, event::RunOpened};
+use mission::{Channels, TaskConfig, event::RunOpened};
 use world::{
     Boundary, Cell, CellRun, Floor, FloorMaker, KindRun, Obstacle, ObstacleId, Point, Pose, Shape,
-    ShellStretch, ShellZone, SweptArea, Tool, ZoneKind, tether::Reach,
+    ShellStretch, ShellZone, SweptArea, Tool, ToolPart, ZoneKind, tether::Reach,
 };
 
 /// Maximum length of the pieces in which a plan is drawn on the floor, metres.
@@ -33,6 +33,12 @@ pub struct Evidence {
     passed: Vec<bool>,
     /// The smallest 95 % error of an uncounted pass of the tool, millimetres; [`NEVER`] if there was none.
     uncertain_mm: Vec<u16>,
+    /// The parts of the tool whose channels work.
+    live: Vec<ToolPart>,
+    /// The dead channels, each with the part of the tool beside it.
+    blind: Vec<(u16, ToolPart)>,
+    /// The dead channel that passed a cell while the position was known well enough; [`NEVER`] if there was none.
+    passed_blind: Vec<u16>,
     /// The current 95 % error, metres.
     error_m: f64,
     /// The floor that had to be scanned; `None` for all of it.
@@ -61,6 +67,9 @@ impl Evidence {
             before: None,
             passed: none,
             uncertain_mm: vec![NEVER; run.floor.len()],
+            live: vec![ToolPart::whole(run.mission.tool())],
+            blind: Vec::new(),
+            passed_blind: vec![NEVER; run.floor.len()],
             error_m: 0.0,
             asked: asked(run),
             found: Vec::new(),
@@ -135,9 +144,37 @@ impl Evidence {
         let before = std::mem::replace(&mut self.last, here);
         self.error_m = error_m;
         if counts {
-            self.shell.pass(self.tool, before, here);
-            self.area.pass(self.tool, before, here);
+            for part in &self.live {
+                self.shell.pass(part.tool(), part.at(before), part.at(here));
+                self.area.pass(part.tool(), part.at(before), part.at(here));
+            }
+            for (channel, part) in &self.blind {
+                for index in self.grid.cells_under(part.tool(), part.at(before), part.at(here)) {
+                    self.passed_blind[index] = self.passed_blind[index].min(*channel);
+                }
+            }
         }
+    }
+
+    /// Forgets where the tool went, so that it can go there again; plans and other evidence stay.
+    pub(crate) fn begin_again(&mut self, start: Pose) {
+        self.live = vec![ToolPart::whole(self.tool)];
+        self.blind.clear();
+        self.passed_blind.fill(NEVER);
+        self.shell = ShellZone::new(&self.boundary, CRITICAL_ZONE_M);
+        self.area = SweptArea::new(&self.boundary);
+        self.last = start;
+    }
+
+    /// From now on, these channels of the tool are dead.
+    pub fn test_with(&mut self, channels: &Channels) {
+        self.live = channels.live(0.0);
+        self.blind = channels.blind(self.grid.rim_m());
+    }
+
+    /// The dead channel that passed a cell; `None` if there was none.
+    pub(crate) fn dead_channel(&self, index: usize) -> Option<u16> {
+        Some(self.passed_blind[index]).filter(|channel| *channel != NEVER)
     }
 
     /// The scanned state of the critical zone, stretch by stretch along the shell.
@@ -219,6 +256,9 @@ impl Evidence {
         self.plan.is_whole &= other.plan.is_whole;
         self.plan.cuts.extend(other.plan.cuts.iter().cloned());
         for (own, other) in self.uncertain_mm.iter_mut().zip(&other.uncertain_mm) {
+            *own = (*own).min(*other);
+        }
+        for (own, other) in self.passed_blind.iter_mut().zip(&other.passed_blind) {
             *own = (*own).min(*other);
         }
         self.asked = match (self.asked.take(), &other.asked) {

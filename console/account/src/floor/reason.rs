@@ -10,6 +10,8 @@ use world::{Cell, beside_limit};
 pub enum MissReason {
     /// The tool passed, but the position error was above the limit.
     PositionUncertain,
+    /// The tool passed, but a channel that was dead touched the floor.
+    DeadChannel,
     /// Beside an obstacle that was found during the run.
     FoundObstacle,
     /// Outside the areas that the mission had to scan.
@@ -71,6 +73,9 @@ impl Explained for MissReason {
                 let [error, limit] = beside_limit(*value_m, limit_m, 2);
                 format!("passed with position error {error} m, limit {limit} m")
             }
+            Self::DeadChannel => {
+                format!("passed while {near} was dead, up to {value_m:.2} m from scanned floor")
+            }
             Self::FoundObstacle => format!("{} from {near}, found during the run", measure.range()),
             Self::NotAsked => format!("not requested, up to {value_m:.2} m outside the requested areas"),
             Self::Narrow => {
@@ -112,6 +117,7 @@ impl MissReason {
     pub fn briefly(self) -> &'static str {
         match self {
             Self::PositionUncertain => "position error above the limit",
+            Self::DeadChannel => "dead channel",
             Self::FoundObstacle => "beside a found obstacle",
             Self::NotAsked => "not requested",
             Self::Narrow => "outside the outermost lane",
@@ -130,6 +136,7 @@ impl MissReason {
     pub fn plainly(self) -> &'static str {
         match self {
             Self::PositionUncertain => "passed, but the position error was above the limit",
+            Self::DeadChannel => "passed, but a channel of the instrument was dead",
             Self::FoundObstacle => "beside an obstacle found during the run",
             Self::NotAsked => "not requested",
             Self::Narrow => "outside the outermost lane",

@@ -5,7 +5,7 @@ use super::{
     measure::{Measure, apart_m, depth_m},
     reason::{MissReason, OutOfReach},
 };
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use world::{Cell, CoverageGrid, Point, polyline, tether::Reach};
 
 /// The names of the zones of some cells, the zone with the most cells first; `None` without zones.
@@ -16,6 +16,18 @@ fn named<'a>(zones: impl Iterator<Item = &'a Solid>) -> Option<String> {
     names.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
     let names: Vec<&str> = names.into_iter().map(|(name, _)| name).collect();
     (!names.is_empty()).then(|| names.join(" and "))
+}
+
+/// The largest number of channels that are named one by one.
+const MOST_NAMED: usize = 3;
+
+/// The names of channels, or their number if there are many.
+fn channels_text(channels: &BTreeSet<u16>) -> String {
+    if channels.len() > MOST_NAMED {
+        return format!("each of {} channels", channels.len());
+    }
+    let names: Vec<String> = channels.iter().map(|channel| format!("channel {channel}")).collect();
+    names.join(" or ")
 }
 
 /// Finds the reasons for missed floor.
@@ -37,7 +49,9 @@ impl Reasons<'_> {
     /// The reason why a cell was missed.
     pub fn why_missed(&self, center: Point, index: usize) -> MissReason {
         let evidence = self.evidence;
-        if evidence.uncertain_m(index).is_some() {
+        if evidence.dead_channel(index).is_some() {
+            MissReason::DeadChannel
+        } else if evidence.uncertain_m(index).is_some() {
             MissReason::PositionUncertain
         } else if self.is_left_beyond_reel(index, center) {
             MissReason::BeyondReel
@@ -90,6 +104,11 @@ impl Reasons<'_> {
         match reason {
             MissReason::PositionUncertain => {
                 most(&|cell| evidence.uncertain_m(cell)).map(|m| Measure::of(m).against(self.limit_m))
+            }
+            MissReason::DeadChannel => {
+                let channels: BTreeSet<u16> =
+                    cells.iter().filter_map(|cell| evidence.dead_channel(*cell)).collect();
+                depth(&|cell| grid.is_covered(cell)).map(|m| Measure::of(m).beside(&channels_text(&channels)))
             }
             MissReason::FoundObstacle => {
                 Measure::off(cells.iter().filter_map(|cell| evidence.nearest_found(floor.center(*cell))))

@@ -34,7 +34,7 @@ fn drive(survey: &mut Survey, floor: &Floor, (from, to): (Point, Point), off: Ve
         let estimate = PoseEstimate { position, heading_rad, covariance };
         let truth = Pose { position: position + off, heading_rad };
         let way = Way { floor, counts: k > 0 };
-        survey.visit((k, k as f64 * 0.1), &estimate, truth, way);
+        survey.visit((k, k as f64 * 0.1), &estimate, truth, way, |_| false);
     }
 }
 

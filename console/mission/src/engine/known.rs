@@ -6,6 +6,7 @@ use super::{
     governing::{guarding::ScanGuard, state::Governor},
 };
 use crate::{
+    channels::Channels,
     chart::Chart,
     config::MissionConfig,
     locate::Locator,
@@ -31,6 +32,8 @@ pub(super) struct Known {
     pub chart: Chart,
     pub task: Task,
     pub floor: ScannedFloor,
+    /// The channels of the instrument.
+    pub channels: Channels,
     /// `None` without a tether, or if the anchor is at an impossible place.
     pub tether: Option<Tether>,
     /// The path driven, with one point per decimetre.
@@ -67,6 +70,7 @@ impl Known {
             chart: Chart::new(drawing, &config, seed),
             task: Task::new(&config.task, start),
             floor: ScannedFloor::new(floor),
+            channels: Channels::new(&config),
             trail: vec![start],
             last_drive: Drive::STILL,
             back: None,

@@ -115,7 +115,8 @@ impl Known {
         if passage == Passage::Idle {
             return;
         }
-        let fresh = self.floor.coverage.not_covered_under(self.config.tool(), before, here);
+        let live = self.channels.live(self.floor.coverage.floor().rim_m());
+        let fresh = self.floor.coverage.not_covered_under_parts(&live, before, here);
         if !fresh.is_empty() && passage == Passage::Counts {
             self.floor.coverage.apply(&fresh);
             happened.push(EventKind::Covered { runs: fresh });

@@ -200,6 +200,10 @@ impl Event {
             EventKind::ScannerJudged { trouble: None } => {
                 line(Severity::Info, "scanner", "scans usable again".into())
             }
+            EventKind::ChannelsJudged(judged) => {
+                let severity = if judged.dead.is_empty() { Severity::Info } else { Severity::Warn };
+                line(severity, "tool", judged.to_string())
+            }
             EventKind::Resumed => line(Severity::Info, "mission", "resumed".into()),
             EventKind::Ended { outcome, reason } => {
                 let severity = if *outcome == Outcome::Complete { Severity::Info } else { Severity::Warn };

@@ -452,3 +452,14 @@ fn the_place_of_half_a_line_before_a_silence_or_an_end_is_named() {
     let why = "the adapter ended the connection; its last line is incomplete: readings.odometry.turn_rad";
     assert_eq!(inbox.closed(), Some(why));
 }
+
+#[test]
+fn dead_channels_arrive_in_order_and_stay_unsaid_between_messages() {
+    let mut inbox = inbox();
+    say(&mut inbox, Readings { dead_channels: Some(vec![7, 3, 7]), ..moved(1, 0.0, 0.0) }, 0.1);
+    say(&mut inbox, moved(2, 0.0, 0.0), 0.15);
+    assert_eq!(inbox.sense(0.2).readings.dead_channels, Some(vec![3, 7]));
+    assert_eq!(inbox.sense(0.3).readings.dead_channels, None);
+    say(&mut inbox, Readings { dead_channels: Some(vec![]), ..moved(3, 0.0, 0.0) }, 0.35);
+    assert_eq!(inbox.sense(0.4).readings.dead_channels, Some(vec![]));
+}

@@ -94,6 +94,15 @@ pub struct Single {
     pub indication: Indication,
     /// Whether the other survey tested its place.
     pub is_tested: bool,
+    /// Number of the larger indication of the other survey of which it is a part; absent if it is not a part.
+    pub part_of: Option<usize>,
+}
+
+impl Single {
+    /// Whether the other survey tested its place and shows no loss there: the indication is new, or gone.
+    fn is_alone(&self) -> bool {
+        self.is_tested && self.part_of.is_none()
+    }
 }
 
 /// The calculated date.
@@ -179,9 +188,10 @@ impl TwoSurveys {
         let outlook = minimum_mm.and_then(|mm| Outlook::of(&found, &second.survey, mm));
         let due = outlook.map(|outlook| due(outlook, &second));
         let (of_first, of_second) = (&first.survey.indications, &second.survey.indications);
-        let single = |all: &[Indication], one: &surveys::Unmatched| Single {
+        let single = |all: &[Indication], others: &[Indication], one: &surveys::Unmatched| Single {
             indication: all[one.index].clone(),
             is_tested: one.is_tested,
+            part_of: one.part_of.map(|whole| others[whole].number),
         };
         let grown = |(pair, growth): &(surveys::Match, Growth)| Grown {
             first: of_first[pair.first].clone(),
@@ -199,8 +209,8 @@ impl TwoSurveys {
             second: second.part,
             years,
             matched: found.matched.iter().map(grown).collect(),
-            new: found.new.iter().map(|one| single(of_second, one)).collect(),
-            gone: found.gone.iter().map(|one| single(of_first, one)).collect(),
+            new: found.new.iter().map(|one| single(of_second, of_first, one)).collect(),
+            gone: found.gone.iter().map(|one| single(of_first, of_second, one)).collect(),
             registration: found.registration,
             plates: found.plates,
             due,
@@ -246,7 +256,7 @@ fn basis(of: Basis) -> &'static str {
     match of {
         Basis::Matched => "upper end of the 95 % interval of its rate",
         Basis::WholeDepth => {
-            "new, or cut by untested floor: its depth and 95 % error, divided by the years between the surveys, as if \
+            "new, a part of a larger indication, or cut by untested floor: its depth and 95 % error, divided by the years between the surveys, as if \
              all of it had grown since the first survey"
         }
     }

@@ -185,6 +185,8 @@ fn survey(
             number: index,
             plate: None,
             at,
+            low: at,
+            high: at,
             covariance,
             depth_mm: measured_mm,
             depth_sigma_mm,

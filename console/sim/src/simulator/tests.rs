@@ -1,6 +1,6 @@
 use super::*;
 use crate::config::{Mover, Track};
-use crate::{AeConfig, Disturbances, NoiseModel, RobotConfig, TimingErrors};
+use crate::{AeConfig, ChannelFault, Disturbances, NoiseModel, RobotConfig, TimingErrors};
 use proptest::prelude::*;
 use world::{
     Amphibious, Boundary, Medium, Obstacle, ObstacleId, Point, PressureSensor, Scanner, Shape, Station,
@@ -77,6 +77,7 @@ fn config() -> SimConfig {
         tether_anchor: None,
         reel_length_m: None,
         physical: None,
+        channel_faults: vec![],
     }
 }
 
@@ -437,4 +438,20 @@ fn a_cable_with_weight_is_slack_behind_a_robot_whose_reel_has_stopped() {
     assert!(left[179].1.under_hull, "the robot is over its own cable");
     assert!(left.iter().filter(|(_, lies)| !lies.line.is_empty()).count() == 18, "one line a second");
     assert_eq!(left, out_and_back(6.0, Some(8.0)), "the same again");
+}
+
+#[test]
+fn a_channel_is_dead_in_every_tick_that_its_fault_touches() {
+    let channel_faults = vec![ChannelFault { channel: 3, from_s: 0.25, to_s: 0.5 }];
+    let mut sim = Simulator::new(SimConfig { tick_s: 0.1, channel_faults, ..config() }, 1);
+    let mut dead = Vec::new();
+    for tick in 0..8 {
+        if sim.sense().dead_channels.unwrap() == [3] {
+            dead.push(tick);
+        }
+        sim.act(Drive::STILL);
+    }
+    // The readings of tick 3 are about the time from 0.2 to 0.3 s.
+    assert_eq!(dead, [3, 4, 5]);
+    assert_eq!(Simulator::new(config(), 1).sense().dead_channels, None);
 }

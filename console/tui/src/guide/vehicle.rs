@@ -78,3 +78,15 @@ pub(super) const STOP_NOT_CONFIRMED: Guide = Guide {
     effect: "The robot may still move. The console repeats the command in every tick.",
     remedies: &[check("Use the emergency stop of the robot."), HOLD, END],
 };
+
+pub(super) const DEAD_CHANNEL: Guide = Guide {
+    cause: "A channel of the instrument has failed: its sensor, its cable or its amplifier.",
+    holds: "",
+    effect: "The floor under the channel does not count as scanned. It is missed floor with the reason \
+    \"dead channel\".",
+    remedies: &[
+        HOLD,
+        check("Check the cable and the sensor of the channel, and test the tool on the reference plate."),
+        check("After the mission, scan the missed floor again: <rescan> on the screen Result."),
+    ],
+};

@@ -5,7 +5,7 @@ mod class;
 use account::{Overlap, Shares};
 use class::Tally;
 use serde::{Deserialize, Serialize};
-use world::{CellRun, CoverageGrid, Floor, KindRun, Pose, Tiles, Tool, coverage::Counts};
+use world::{CellRun, CoverageGrid, Floor, KindRun, Pose, Tiles, ToolPart, coverage::Counts};
 
 /// The blocks of cells at one zoom level.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -92,16 +92,19 @@ impl Raster {
         }
     }
 
-    /// Records that, according to the estimate, the robot moved from `a` to `b` with its tool on the floor.
-    pub fn pass(&mut self, tool: Tool, a: Pose, b: Pose) {
+    /// Records that, according to the estimate, the robot moved from `a` to `b` with these parts of its tool, which has the
+    /// given swath, on the floor.
+    pub fn pass(&mut self, swath_m: f64, parts: &[ToolPart], a: Pose, b: Pose) {
         let way_m = (b.position - a.position).norm();
         if !way_m.is_finite() {
             return;
         }
-        let cells = self.grid.floor().runs_under(tool, a, b);
+        let floor = self.grid.floor();
+        let under = |part: &ToolPart| floor.runs_under(part.tool(), part.at(a), part.at(b));
+        let cells: Vec<CellRun> = parts.iter().flat_map(under).collect();
         let grid = &self.grid;
         let is_scanned = |cell| grid.is_covered(cell) && grid.floor().is_floor(cell);
-        for (cell, is_first) in self.overlap.pass(way_m, tool.swath_m(), &cells, is_scanned) {
+        for (cell, is_first) in self.overlap.pass(way_m, swath_m, &cells, is_scanned) {
             if is_first {
                 self.count(cell, |block| block.again += 1);
                 self.note(cell as u64);
@@ -164,7 +167,7 @@ impl Raster {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use world::{Boundary, FloorClass, Point, World};
+    use world::{Boundary, FloorClass, Point, Tool, World};
 
     fn raster() -> Raster {
         let vertices =
@@ -239,10 +242,10 @@ mod tests {
         raster.apply(&[CellRun(128, 16)]);
         stamps.push(raster.stamp());
         let at = |step: i32| Pose::new(0.5 + 0.5 * f64::from(step), 4.25, 0.0);
-        let tool = Tool::Bar { swath_m: 0.6 };
-        (0..11).for_each(|step| raster.pass(tool, at(step), at(step + 1)));
+        let parts = [ToolPart::whole(Tool::Bar { swath_m: 0.6 })];
+        (0..11).for_each(|step| raster.pass(0.6, &parts, at(step), at(step + 1)));
         assert_eq!((class(&raster), raster.overlap()), (Some((FloorClass::Scanned, 1)), Some(0.0)));
-        (0..11).rev().for_each(|step| raster.pass(tool, at(step + 1), at(step)));
+        (0..11).rev().for_each(|step| raster.pass(0.6, &parts, at(step + 1), at(step)));
         stamps.push(raster.stamp());
         assert_eq!(class(&raster), Some((FloorClass::Again, 2)));
         assert!(raster.overlap() > Some(0.5), "{:?}", raster.overlap());

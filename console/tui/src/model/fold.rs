@@ -11,7 +11,8 @@ mod tether;
 use super::alarms::rule;
 use super::{About, Cause, Change, Progress, Raster, Run, Withdrawn};
 use mission::{
-    Event, EventKind, Hold, HoldReason, Order, Outcome, Phase, Severity, TaskConfig, event::RunOpened,
+    Event, EventKind, Hold, HoldReason, Order, Outcome, Phase, Severity, TaskConfig,
+    event::{ChannelsJudged, RunOpened},
 };
 use positioning::{Accuracy, AccuracyMap};
 use world::{Obstacle, ObstacleId};
@@ -61,6 +62,7 @@ impl Run {
                 change.answered = Some(order.clone());
                 change.say(Severity::Warn, format!("order refused: {why}"));
             }
+            EventKind::ChannelsJudged(judged) => self.judge_channels(event, judged),
             EventKind::Ranged { .. }
             | EventKind::Fixed { .. }
             | EventKind::FixFailed { .. }
@@ -250,6 +252,16 @@ impl Run {
     }
 
     /// Raises an alarm with the text of the log line.
+    /// Other channels of the instrument are dead than before.
+    fn judge_channels(&mut self, event: &Event, judged: &ChannelsJudged) {
+        self.dead_channels.clone_from(&judged.dead);
+        if judged.dead.is_empty() {
+            self.clear(&Cause::DeadChannel);
+        } else {
+            self.raise_as_logged(event, Cause::DeadChannel);
+        }
+    }
+
     fn raise_as_logged(&mut self, event: &Event, cause: Cause) {
         if let Some(line) = event.log_line(self.stations()) {
             self.raise(event, cause, line.severity, line.text);

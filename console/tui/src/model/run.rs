@@ -51,6 +51,9 @@ pub struct Run {
     /// The scanner.
     #[serde(default)]
     pub scanner: Scanner,
+    /// The dead channels of the instrument, in ascending order.
+    #[serde(default)]
+    pub dead_channels: Vec<u16>,
     /// The planner and its latest output.
     pub planning: Planning,
     /// The planner in shadow; `None` without one.

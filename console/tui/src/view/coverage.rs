@@ -66,8 +66,24 @@ fn wide_lines(look: &Look, bases: &Bases, columns: usize) -> Vec<(u8, Line<'stat
     if run.covers() {
         lines.insert(2, row(3, to_do_label(run), shares(&first_to_do, &second_to_do)));
     }
+    lines.extend(channels(run, room).map(|strip| row(5, "channels", strip)));
     lines.extend(untestable(run).map(|share| row(4, "not testable", format!("{share} % of whole floor"))));
     lines
+}
+
+/// The channels of the instrument from left to right, as the robot sees them, and the numbers of the dead ones; `None`
+/// if the instrument reads nothing.
+fn channels(run: &Run, room: usize) -> Option<String> {
+    let instrument = run.about.as_ref()?.mission.instrument.as_ref()?;
+    let (count, dead) = (instrument.sampling?.channels, &run.dead_channels);
+    if dead.is_empty() {
+        return Some(format!("{count} work"));
+    }
+    let mark = |channel: u16| if dead.binary_search(&channel).is_ok() { '·' } else { '█' };
+    let numbers: Vec<String> = dead.iter().map(ToString::to_string).collect();
+    let numbers = format!("dead: {}", numbers.join(", "));
+    let strip = format!("{} {numbers}", (0..count).rev().map(mark).collect::<String>());
+    Some(text::wording([strip, numbers], room))
 }
 
 fn narrow_lines(look: &Look, bases: &Bases) -> Vec<(u8, Line<'static>)> {

@@ -16,6 +16,8 @@ const ENTRIES_MAX: usize = 64;
 const RANGES_MAX: usize = 1000;
 const RAYS_MAX: usize = 4096;
 const OUTLINES_MAX: usize = 1000;
+/// The most channels of an instrument.
+const CHANNELS_MAX: usize = 512;
 const POINTS_MAX: usize = 1000;
 
 /// A field with a value that is out of bounds.
@@ -117,6 +119,12 @@ impl Readings {
         self.scan.as_ref().map_or(Ok(()), Scan::check)?;
         self.tether.as_ref().map_or(Ok(()), Tether::check)?;
         self.pressure_pa.map_or(Ok(()), |pascals| within("readings.pressure_pa", pascals, -1e8..=1e8))?;
+        let dead = self.dead_channels.as_deref().unwrap_or_default();
+        at_most("readings.dead_channels", dead.len(), CHANNELS_MAX)?;
+        for channel in dead {
+            let most = (CHANNELS_MAX - 1) as f64;
+            within("readings.dead_channels", f64::from(*channel), 0.0..=most)?;
+        }
         at_most("readings.outlines", self.outlines.len(), OUTLINES_MAX)?;
         self.outlines.iter().enumerate().try_for_each(|(at, outline)| outline.check(at))?;
         at_most("readings.channels", self.channels.len(), ENTRIES_MAX)?;

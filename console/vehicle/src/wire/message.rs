@@ -169,6 +169,10 @@ pub struct Readings {
     /// Gauge pressure at the hull, pascals.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure_pa: Option<f64>,
+    /// The channels of the instrument that are dead: at most 512 numbers, each at most 511; channel 0 is on the right. An
+    /// empty list states that all channels work. Without this part, the state before remains valid.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dead_channels: Option<Vec<u16>>,
     /// Outlines of obstacles, for a vehicle with a tracker of its own: at most 1000.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub outlines: Vec<Outline>,

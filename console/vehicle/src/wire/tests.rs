@@ -128,6 +128,8 @@ fn a_wrong_line_is_named_by_its_field() {
             readings(r#""ae": {"ranges": [{"station": "A", "ranges_m": [1, -2]}]}"#),
             "readings.ae.ranges[0].ranges_m[1]: -2 is out of range: greater than 0 and at most 1000 is allowed",
         ),
+        (readings(r#""dead_channels": [3, 512]"#), "readings.dead_channels: 512"),
+        (readings(r#""dead_channels": [-1]"#), "readings.dead_channels"),
         (r#"{"type": "readings", "stamp_s": 5}"#.into(), "readings.seq: missing field `seq`"),
         (r#"{"type": "readings", "seq": -1, "stamp_s": 5}"#.into(), "readings.seq: invalid value"),
         (r#"{"type": "readings", "seq": 1, "stamp_s"#.into(), "readings.seq: the line ends here, before"),

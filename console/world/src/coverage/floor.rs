@@ -344,6 +344,19 @@ impl Floor {
         self.runs_under(tool, a, b).into_iter().flat_map(CellRun::range).collect()
     }
 
+    /// Returns the largest distance of a point in a cell from the centre of the cell, metres: half its diagonal.
+    ///
+    /// ```
+    /// # use world::{Boundary, Floor, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// assert!((floor.rim_m() - 0.0707).abs() < 1e-4);
+    /// ```
+    pub fn rim_m(&self) -> f64 {
+        self.cell_m * std::f64::consts::FRAC_1_SQRT_2
+    }
+
     /// Returns the cells of [`Self::cells_under`] as runs: one in each row, or more if the tool turned about one of its
     /// own points.
     ///

@@ -1,6 +1,6 @@
 //! The map of the comparison.
 
-use super::TwoSurveys;
+use super::{Single, TwoSurveys};
 use crate::{
     document::{
         layers::Layers,
@@ -26,10 +26,11 @@ enum State {
     Cut,
     New,
     Gone,
+    Part,
 }
 
 impl State {
-    const ALL: [Self; 5] = [Self::Grown, Self::Same, Self::Cut, Self::New, Self::Gone];
+    const ALL: [Self; 6] = [Self::Grown, Self::Same, Self::Cut, Self::New, Self::Gone, Self::Part];
 
     fn words(self) -> &'static str {
         match self {
@@ -38,6 +39,7 @@ impl State {
             Self::Cut => "in both, cut by untested floor: growth not known",
             Self::New => "only in the second survey (N and its number there)",
             Self::Gone => "only in the first survey (G and its number there)",
+            Self::Part => "part of a larger indication of the other survey",
         }
     }
 
@@ -48,6 +50,7 @@ impl State {
             Self::Cut => ("#fff", colour::TRACK),
             Self::New => ("#fff", colour::TETHER),
             Self::Gone => ("none", colour::OUT),
+            Self::Part => ("none", colour::TRACK),
         };
         let dashes = if self == Self::Gone { r#" stroke-dasharray=".6 .4""# } else { "" };
         format!(r#"fill="{fill}" stroke="{stroke}" stroke-width=".4"{dashes}"#)
@@ -56,7 +59,7 @@ impl State {
     fn ink(self) -> &'static str {
         match self {
             Self::Grown => colour::MISSED_LINE,
-            Self::Same | Self::Cut => colour::TRACK,
+            Self::Same | Self::Cut | Self::Part => colour::TRACK,
             Self::New => colour::TETHER,
             Self::Gone => colour::SOFT,
         }
@@ -92,6 +95,7 @@ pub(super) fn map(comparison: &TwoSurveys, layers: &Layers<'_>) -> Figure {
 /// Each indication with its state, place and label.
 fn marks(comparison: &TwoSurveys) -> Vec<(State, Point, String)> {
     let registration = &comparison.registration;
+    let single = |state, one: &Single| if one.part_of.is_some() { State::Part } else { state };
     let matched = comparison.matched.iter().map(|pair| {
         let grown = if pair.is_grown() { State::Grown } else { State::Same };
         let state = if pair.is_cut { State::Cut } else { grown };
@@ -99,12 +103,12 @@ fn marks(comparison: &TwoSurveys) -> Vec<(State, Point, String)> {
     });
     let new = comparison.new.iter().map(|one| {
         let label = format!("N{}", one.indication.number);
-        (State::New, registration.apply(one.indication.at), label)
+        (single(State::New, one), registration.apply(one.indication.at), label)
     });
     let gone = comparison
         .gone
         .iter()
-        .map(|one| (State::Gone, one.indication.at, format!("G{}", one.indication.number)));
+        .map(|one| (single(State::Gone, one), one.indication.at, format!("G{}", one.indication.number)));
     // Marks that were drawn last lie on top.
     gone.chain(matched).chain(new).collect()
 }

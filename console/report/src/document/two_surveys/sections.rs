@@ -21,11 +21,12 @@ pub(super) fn sections(comparison: &TwoSurveys) -> SurveysPage {
         section("Registration", registration(comparison)),
         section("Next inspection", next_inspection(comparison)),
         section("Rates of the plates", plates(comparison)),
-        section("Map", vec![Block::Wide(picture(&comparison.map))]),
         section("Indications in both surveys", matched(comparison)),
         section("New and gone indications", singles(comparison)),
         section("How the figures are computed", method()),
         section("Provenance", provenance(comparison)),
+        // The map fills a sheet: before other sections, it would leave the sheet in front of it half empty.
+        Section { is_new_sheet: true, ..section("Map", vec![Block::Wide(picture(&comparison.map))]) },
     ];
     SurveysPage {
         title: format!("Two surveys {tank}"),
@@ -75,32 +76,39 @@ fn verdict(comparison: &TwoSurveys) -> Verdict {
             number(high, 2)
         )
     });
-    let is_worse = grown > 0 || comparison.new.iter().any(|one| one.is_tested);
+    let is_worse = grown > 0 || comparison.new.iter().any(Single::is_alone);
     Verdict {
         class: if is_worse { "part" } else { "" },
         lead: format!(
             "{grown} of {all} indications that both surveys show grew by more than their 95 % error; {} are new.",
-            comparison.new.iter().filter(|one| one.is_tested).count()
+            comparison.new.iter().filter(|one| one.is_alone()).count()
         ),
         cause: fastest,
     }
 }
 
 fn shares(comparison: &TwoSurveys) -> Vec<Share> {
-    let untested = |all: &[Single]| all.iter().filter(|one| !one.is_tested).count();
+    let count = |all: &[Single], is: fn(&Single) -> bool| all.iter().filter(|one| is(one)).count();
     let share = |count: usize, of, about: String| Share { value: count.to_string(), unit: "", of, about };
-    let not_tested = |all: &[Single], which: &str| match untested(all) {
-        0 => format!("all of them on floor that the {which} survey tested"),
-        count => format!("{count} of them on floor that the {which} survey did not test"),
+    let not_alone = |all: &[Single], which: &str| {
+        let parts = match count(all, |one| one.part_of.is_some()) {
+            0 => String::new(),
+            parts => format!("; {parts} more are parts of larger indications of the {which} survey"),
+        };
+        match count(all, |one| one.part_of.is_none() && !one.is_tested) {
+            0 => format!("all of them on floor that the {which} survey tested{parts}"),
+            untested => format!("{untested} of them on floor that the {which} survey did not test{parts}"),
+        }
     };
+    let whole = |all: &[Single]| count(all, |one| one.part_of.is_none());
     vec![
         share(
             comparison.matched.len(),
             "in both surveys",
             format!("{} grown by more than the 95 % error", grown(comparison)),
         ),
-        share(comparison.new.len(), "only in the second survey", not_tested(&comparison.new, "first")),
-        share(comparison.gone.len(), "only in the first survey", not_tested(&comparison.gone, "second")),
+        share(whole(&comparison.new), "only in the second survey", not_alone(&comparison.new, "first")),
+        share(whole(&comparison.gone), "only in the first survey", not_alone(&comparison.gone, "second")),
     ]
 }
 
@@ -276,14 +284,18 @@ fn singles(comparison: &TwoSurveys) -> Vec<Block> {
                 ("The other survey", "", ""),
             ],
         );
-        for Single { indication: one, is_tested } in all {
+        for Single { indication: one, is_tested, part_of } in all {
             table.row(vec![
                 one.number.to_string().into(),
                 one.plate.clone().unwrap_or_default().into(),
                 number(one.at.x, 2).into(),
                 number(one.at.y, 2).into(),
                 format!("{} ±{}", number(one.depth_mm, 1), error_mm(one)).into(),
-                if *is_tested { "tested this place" } else { "did not test this place" }.into(),
+                match (part_of, is_tested) {
+                    (Some(number), _) => format!("shows number {number}, of which this is a part").into(),
+                    (None, true) => "tested this place".into(),
+                    (None, false) => "did not test this place".into(),
+                },
             ]);
         }
         if all.is_empty() { Block::Text(no.into()) } else { Block::Table(table) }
@@ -306,6 +318,9 @@ fn method() -> Vec<Block> {
          the first one by more than four standard deviations.",
         "Of all ways to pair them one to one, the one with the greatest likelihood counts; its alternative is that \
          indications are unrelated and spread evenly over the tested floor.",
+        "Part: an indication without a partner is a part of a larger one of the other survey if the squared distance of its \
+         middle from the extent of that one, in units of both covariances and of the residual, is at most 5.99 (95 %). It \
+         counts neither as new nor as gone. For the next inspection, it counts with its whole depth.",
         "Place: covariance of the position, of the middle of the readings within the extent, and \
          of the grid of the readings.",
         "Depth: the greatest loss of a reading. Its standard deviation is that of a reading, combined with that of \

@@ -41,6 +41,8 @@ impl<'a> Side<'a> {
                 number,
                 plate: layers.plate_at(finding.at),
                 at: finding.at,
+                low: finding.low,
+                high: finding.high,
                 covariance: place_covariance(finding, &sampling, swath_m),
                 depth_mm: finding.depth_mm,
                 depth_sigma_mm: depth_sigma_mm(finding, &sampling, swath_m),

@@ -37,7 +37,7 @@ fn indications(comparison: &TwoSurveys) -> String {
         row.extend([Some(&pair.first), Some(&pair.second)].into_iter().flat_map(cells));
         row.extend([format!("{:.3}", pair.apart_m), pair.rivals.to_string()]);
         row.extend(grown(Some(&pair.growth)));
-        row.extend(["yes".into(), yes(pair.is_cut)]);
+        row.extend(["yes".into(), yes(pair.is_cut), String::new()]);
         row
     });
     let single = |state: &str, one: &super::Single, is_first: bool| {
@@ -48,6 +48,7 @@ fn indications(comparison: &TwoSurveys) -> String {
         row.extend([String::new(), String::new()]);
         row.extend(grown(None));
         row.extend([yes(one.is_tested), yes(indication.is_cut)]);
+        row.push(one.part_of.map_or_else(String::new, |number| number.to_string()));
         row
     };
     let new = comparison.new.iter().map(|one| single("new", one, false));
@@ -75,6 +76,7 @@ fn indications(comparison: &TwoSurveys) -> String {
         "rate_high_mm_per_a",
         "tested_by_both",
         "cut_by_untested",
+        "part_of_number",
     ];
     table(&head, matched.chain(new).chain(gone))
 }

@@ -21,6 +21,8 @@ pub enum Cause {
     NoFix,
     /// A station is not used in the fix.
     Station(world::StationId),
+    /// Channels of the instrument are dead.
+    DeadChannel,
     /// An obstacle was found that is not on the drawing.
     Map,
     /// The scans do not show an obstacle of this name where it is drawn or was found.
@@ -83,6 +85,7 @@ impl Cause {
             }
             EventKind::NotSeparable { .. } | EventKind::Separable => Self::NotSeparable,
             EventKind::FixFailed { .. } => Self::NoFix,
+            EventKind::ChannelsJudged(_) => Self::DeadChannel,
             EventKind::ObstacleFound { .. } => Self::Map,
             EventKind::NotThere { name, .. } => Self::NotThere(name.clone()),
             EventKind::TetherAlarmRaised { alarm, .. } | EventKind::TetherAlarmCleared { alarm } => {
@@ -113,6 +116,7 @@ impl Cause {
             Self::Bias(id) => format!("bias {}", id.0),
             Self::NotSeparable => "not_separable".into(),
             Self::NoFix => "no_fix".into(),
+            Self::DeadChannel => "dead_channel".into(),
             Self::Station(id) => format!("station {}", id.0),
             Self::Map => "map".into(),
             Self::NotThere(name) => format!("not there {name}"),
@@ -175,6 +179,7 @@ impl Cause {
             Self::Bias(world::StationId(1)),
             Self::NotSeparable,
             Self::NoFix,
+            Self::DeadChannel,
             Self::Station(world::StationId(1)),
             Self::Map,
             Self::NotThere("column 5".into()),
@@ -210,6 +215,7 @@ impl Cause {
                 | Self::Bias(_)
                 | Self::NotSeparable
                 | Self::NoFix
+                | Self::DeadChannel
                 | Self::Station(_)
                 | Self::Map
                 | Self::NotThere(_)

@@ -1,7 +1,7 @@
 //! Folds position events into a run.
 
 use crate::model::{Cause, Change, Run, Withdrawn, position};
-use mission::{Event, EventKind, Passage, Severity};
+use mission::{Channels, Event, EventKind, Passage, Severity};
 use planner_api::PoseEstimate;
 use world::Pose;
 
@@ -66,7 +66,10 @@ impl Run {
         if let Some(coverage) = self.coverage.as_mut().filter(|_| passage == Passage::Counts) {
             let at = |pose: &PoseEstimate| Pose { position: pose.position, heading_rad: pose.heading_rad };
             let before = self.position.pose.as_ref().map_or(mission.start, at);
-            coverage.pass(mission.tool(), before, at(here));
+            let mut channels = Channels::new(mission);
+            channels.judge(Some(&self.dead_channels));
+            let live = channels.live(coverage.floor().rim_m());
+            coverage.pass(mission.swath_m, &live, before, at(here));
         }
     }
 }

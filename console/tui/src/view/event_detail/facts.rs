@@ -61,6 +61,8 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::ScanAided { .. } => "scans correct the position",
         EventKind::ScannerJudged { trouble: Some(_) } => "scans not usable",
         EventKind::ScannerJudged { .. } => "scans usable again",
+        EventKind::ChannelsJudged(judged) if judged.dead.is_empty() => "channels work again",
+        EventKind::ChannelsJudged(_) => "channel dead",
         EventKind::MediumAwaited => "waiting for the pressure sensor",
         EventKind::MediumKnown { .. } => "floor medium detected",
         EventKind::Held { .. } => "mission held",
