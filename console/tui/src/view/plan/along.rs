@@ -21,7 +21,9 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     // The points that are drawn cut corners; the axis has the length that every screen states.
     let (drawn_m, length_m) = (polyline::length_m(&plan.path), plan.length_m);
     let mut points = errors(map, &plan.path, drawn_m / (PER_COLUMN * f64::from(area.width)));
-    points.iter_mut().for_each(|point| point.x *= length_m / drawn_m);
+    for point in &mut points {
+        point.x *= length_m / drawn_m;
+    }
     if points.len() < 2 {
         return;
     }
