@@ -116,13 +116,33 @@ fn a_closed_terminal_ends_the_console_and_closes_the_run() {
     let console = session.console_pid();
     session.hang_up();
     session.until("the console to end", |_| {
-        !Path::new(&format!("/proc/{console}")).exists() || is_zombie(console)
+        !Path::new(&format!("/proc/{console}")).exists() || is_in_state(console, 'Z')
     });
     assert_eq!(kinds(&session.run()).last().map(String::as_str), Some("ended"));
 }
 
-fn is_zombie(pid: i32) -> bool {
-    std::fs::read_to_string(format!("/proc/{pid}/stat")).is_ok_and(|stat| stat.contains(") Z "))
+/// Whether a process is in the state with this letter, as in `/proc/PID/stat`.
+fn is_in_state(pid: i32, state: char) -> bool {
+    let stat = std::fs::read_to_string(format!("/proc/{pid}/stat"));
+    stat.is_ok_and(|stat| stat.contains(&format!(") {state} ")))
+}
+
+#[test]
+fn a_suspended_console_has_written_the_hold_before_it_stops() {
+    let mut session = Session::open(&goto(), 80, 24);
+    session.start();
+    session.see("RUN");
+    let console = session.console_pid();
+    session.press("\x1a");
+    session.until("the console to stop", |_| is_in_state(console, 'T'));
+    let written = kinds(&session.run());
+    assert!(written.iter().any(|kind| kind == "held"), "{written:?}");
+    session.signal_console(rustix::process::Signal::CONT);
+    session.see("HELD by operator");
+    session.press("1q");
+    session.see("Enter");
+    session.agree();
+    assert_eq!(session.back_in_the_shell(), "code=1");
 }
 
 #[test]

@@ -1,6 +1,9 @@
 //! Floor whose guarantee was taken back, because a station was found wrong.
 
+use crate::Fold;
+use mission::{Event, EventKind};
 use serde::{Deserialize, Serialize};
+use world::Point;
 
 /// Floor that lost its guarantee when a biased station was detected.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -26,4 +29,69 @@ impl std::fmt::Display for TakenBack {
              wrong by {bias_m:+.2} m"
         )
     }
+}
+
+/// Floor in doubt, with its place.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct InDoubt {
+    /// The floor that lost its guarantee, as in the report.
+    pub floor: TakenBack,
+    /// The place in this floor that is closest to its middle, metres, tank frame; `None` if the floor is empty.
+    pub at: Option<Point>,
+}
+
+/// Follows the events of a run, and states which floor is in doubt while the run goes on. The figures are those of the
+/// report, because both use the same fold.
+#[derive(Debug)]
+pub struct DoubtWatch {
+    fold: Fold,
+    listed: Vec<InDoubt>,
+}
+
+impl DoubtWatch {
+    /// A watch of the run that an event opens; `None` for any other event, and for a mission that looks for no biased
+    /// stations, in which no floor can be in doubt.
+    pub fn opening(event: &Event) -> Option<Self> {
+        let EventKind::RunOpened(run) = &event.kind else { return None };
+        run.mission.locating.session?;
+        let mut watch = Self { fold: Fold::of_figures(), listed: Vec::new() };
+        watch.fold.apply(event);
+        Some(watch)
+    }
+
+    /// Adds an event; events must come in the order of the journal. Returns the list of the floor in doubt, oldest first, if
+    /// the event adds to it.
+    pub fn apply(&mut self, event: &Event) -> Option<&[InDoubt]> {
+        if !matches!(event.kind, EventKind::StationBiased { .. }) {
+            self.fold.apply(event);
+            return None;
+        }
+        let before = self.cells();
+        self.fold.apply(event);
+        let added: Vec<Point> = self
+            .cells()
+            .into_iter()
+            .zip(before)
+            .filter_map(|(cell, before)| cell.filter(|_| before.is_none()))
+            .collect();
+        let floor = self.fold.taken_back().last()?.clone();
+        self.listed.push(InDoubt { floor, at: middle(&added) });
+        Some(&self.listed)
+    }
+
+    /// The centre of each cell that is in doubt; `None` for the other cells.
+    fn cells(&self) -> Vec<Option<Point>> {
+        let Some(scanned) = self.fold.scanned() else { return Vec::new() };
+        let floor = scanned.believed().floor();
+        let cell = |index| scanned.passes().is_in_doubt(index).then(|| floor.center(index));
+        (0..floor.len()).map(cell).collect()
+    }
+}
+
+/// The point that is closest to the mean of all points.
+fn middle(points: &[Point]) -> Option<Point> {
+    let sum = points.iter().fold(world::Vector::zeros(), |sum, point| sum + point.coords);
+    let mean = Point::from(sum / points.len() as f64);
+    let away_m = |point: &&Point| (**point - mean).norm();
+    points.iter().min_by(|one, other| away_m(one).total_cmp(&away_m(other))).copied()
 }

@@ -10,7 +10,7 @@ use positioning::{AccuracyMap, Forecast};
 use serde::{Deserialize, Serialize};
 use world::{
     CoverageGrid, Floor, ObstacleMap, Point, Shape, World, polyline,
-    tether::{Bearing, Cable},
+    tether::{BACK_M, Bearing, Cable},
 };
 
 /// Distance between the points at which a path is evaluated, metres.
@@ -125,7 +125,9 @@ fn tether(mission: &MissionConfig, drawing: &World, path: &[Point]) -> Option<Te
         end_length_m: 0.0,
         pull_max_n: drag.map(|_| none),
     };
-    for at in path {
+    // The tether that is still out at the anchor counts, as in the certificate.
+    let returns = path.last().is_some_and(|last| (*last - anchor).norm() <= BACK_M);
+    for at in path.iter().chain(returns.then_some(&anchor)) {
         cable.drag_to(*at);
         if cable.length_m() > estimate.length_max.value {
             estimate.length_max = Worst { value: cable.length_m(), at: *at };
@@ -232,6 +234,45 @@ mod tests {
         let stops_s = 2.0 * limits.v_max_m_per_s / limits.acceleration_m_per_s2;
         assert!((estimate.time_s - drive_s - turn_s - stops_s).abs() < 0.1, "{}", estimate.time_s);
         assert_eq!((estimate.tether, estimate.accuracy_worst, estimate.reachable), (None, None, None));
+    }
+
+    #[test]
+    fn a_tether_left_hooked_on_return_is_as_long_as_the_certificate_says() {
+        let anchor = Point::new(-5.0, 0.0);
+        let tether = serde_json::json!({
+            "anchor": anchor, "friction": 0.3,
+            "limits": { "reel_length_m": 40.0, "wrap_max_rad": 9.0, "wrap_total_max_rad": 9.0 },
+        });
+        let mission = MissionConfig { tether: Some(serde_json::from_value(tether).unwrap()), ..mission() };
+        let drawing = drawing();
+        // Around the column; the goal is reached within its tolerance, a step before the anchor.
+        let path = [
+            anchor,
+            Point::new(4.0, -1.5),
+            Point::new(5.5, 0.0),
+            Point::new(4.0, 1.5),
+            Point::new(-4.8, 0.1),
+        ];
+        let estimate = Estimate::new(&mission, &drawing, &path, true).tether.unwrap();
+        let shapes = [drawing.obstacles[0].clone()];
+        let case = world::tether::Case {
+            path: &path,
+            anchor,
+            cable: None,
+            boundary: &drawing.boundary,
+            obstacles: &shapes,
+            room_m: 0.3,
+            limits: mission.tether.as_ref().unwrap().limits,
+            pull: None,
+            returns: true,
+            cuts: &[],
+        };
+        let left_m = world::tether::certify(&case).unwrap().end_length_m.unwrap();
+        assert!(left_m > 18.0, "{left_m}");
+        assert!(
+            (estimate.end_length_m - left_m).abs() < 0.01 && estimate.length_max.value >= left_m - 0.01,
+            "{estimate:?}"
+        );
     }
 
     #[test]

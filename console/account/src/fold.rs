@@ -340,6 +340,11 @@ impl Fold {
         self.scanned.as_ref()
     }
 
+    /// The floor whose guarantee was taken back so far, oldest first.
+    pub fn taken_back(&self) -> &[TakenBack] {
+        &self.known.taken_back
+    }
+
     /// The instrument and its readings; `None` if it reads no thickness, and without the account of the floor.
     pub fn survey(&self) -> Option<&Survey> {
         self.survey.as_deref()

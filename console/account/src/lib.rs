@@ -37,7 +37,7 @@ mod turning;
 mod vehicle;
 
 pub use clock::clock;
-pub use doubt::TakenBack;
+pub use doubt::{DoubtWatch, InDoubt, TakenBack};
 pub use drawn::DrawnZone;
 pub use estimate::Estimate;
 pub use expect::{Expect, Miss};

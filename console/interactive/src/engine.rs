@@ -16,6 +16,7 @@ use super::{
     pace::{Pace, Reached, window},
 };
 use crate::Drill;
+use account::DoubtWatch;
 use flight::{
     Flight,
     answers::{Window, Windowed},
@@ -32,7 +33,7 @@ use std::{
     path::{Path, PathBuf},
     sync::{
         Arc,
-        mpsc::{self, Receiver},
+        mpsc::{self, Receiver, Sender},
     },
     thread::{self, JoinHandle},
     time::{Duration, Instant},
@@ -73,7 +74,8 @@ impl Engine {
         // Set this before the screen receives the run, so that the screen's first order finds an engine.
         current.set(Some(handle.clone()));
         // Send this before the thread runs, so that the first frame shows the scenario and every key takes effect.
-        screen.send(RunMsg::Events(vec![flight.opened()]));
+        let opened = flight.opened();
+        screen.send(RunMsg::Events(vec![opened.clone()]));
         let now = Instant::now();
         let engine = EngineThread {
             scenario: scenario.clone(),
@@ -98,6 +100,8 @@ impl Engine {
             closed: None,
             health_sent_at: now,
             reached: Reached::since(now),
+            doubt: DoubtWatch::opening(&opened),
+            settling: None,
             drill,
         };
         let thread = thread::Builder::new().name("engine".into()).spawn(move || engine.fly())?;
@@ -150,6 +154,10 @@ struct EngineThread {
     closed: Option<Closed>,
     health_sent_at: Instant,
     reached: Reached,
+    /// Finds the floor in doubt; `None` if no floor can be.
+    doubt: Option<DoubtWatch>,
+    /// The thread that waits until the next tick is in the journal.
+    settling: Option<Sender<()>>,
     drill: Option<Drill>,
 }
 
@@ -170,6 +178,9 @@ impl EngineThread {
                 let ticks = if self.is_idle() { IDLE } else { 1 };
                 pace.tick_flown(Instant::now(), self.flight.tick_length() * ticks, self.speed, self.waits());
                 self.tick(orders);
+            }
+            if let Some(answer) = self.settling.take() {
+                self.settle(answer);
             }
         }
     }
@@ -262,9 +273,20 @@ impl EngineThread {
         }
         self.reached.count();
         self.keep(&events);
+        self.watch_doubt(&events);
         self.now = events.last().map_or((0, 0.0), |event| (event.tick, event.t_s));
         self.printed = remains::keep(&mut self.host, self.log.as_mut(), self.now);
         events
+    }
+
+    /// Reports floor that has come into doubt to the screen.
+    fn watch_doubt(&mut self, events: &[Event]) {
+        let Some(watch) = &mut self.doubt else { return };
+        for event in events {
+            if let Some(floor) = watch.apply(event) {
+                self.screen.send(RunMsg::InDoubt(floor.to_vec()));
+            }
+        }
     }
 
     /// Reports planning work that takes longer than this tick, and its progress, to the screen.

@@ -25,6 +25,8 @@ pub(super) enum Request {
     Speed(Speed),
     /// Answer immediately, to measure how long an order waits.
     Answer(Sender<()>),
+    /// Answer when the journal has been handed to the system, with the effects of all orders before this request.
+    Settle(Sender<()>),
     /// Return a copy of the mission in its current state, for forecasts.
     Fork(Sender<Forked>),
     /// End the run, close everything and stop.
@@ -88,6 +90,14 @@ impl EngineHandle {
         let asked = Instant::now();
         self.request(Request::Answer(answer), true);
         answered.recv_timeout(patience).ok().map(|()| asked.elapsed())
+    }
+
+    /// Waits until the effects of all orders sent before are in the journal on disk, but not longer than `patience`; returns
+    /// whether they are.
+    pub(super) fn settle(&self, patience: Duration) -> bool {
+        let (answer, answered) = mpsc::channel();
+        self.request(Request::Settle(answer), true);
+        answered.recv_timeout(patience).is_ok()
     }
 
     /// Copies the flight in its current state, for forecasts; `None` if the engine does not answer within `patience`.

@@ -21,6 +21,8 @@ use tui::{
 const BURST: usize = 256;
 /// The longest time spent on these messages before the next frame.
 const BURST_TIME: Duration = Duration::from_millis(5);
+/// Maximum time for which a suspension waits until the hold is in the journal on disk.
+const SETTLE: Duration = Duration::from_secs(1);
 /// The shortest time between two frames that only show new values of a robot at rest.
 const CALM_FRAME: Duration = Duration::from_secs(1);
 /// The largest data rate for new values, in bytes per second: on a local line, on a line over SSH, and on any line while
@@ -215,8 +217,10 @@ impl Screen {
         Ok(None)
     }
 
-    /// Releases the terminal and stops the process until the shell continues it.
+    /// Releases the terminal and stops the process until the shell continues it. The hold that was ordered before takes effect
+    /// first, and is in the journal: while the process is stopped, nothing else would carry it out.
     fn suspend(&mut self) -> anyhow::Result<()> {
+        self.session.settle(SETTLE);
         self.terminal.suspend();
         rustix::process::kill_process(rustix::process::getpid(), rustix::process::Signal::STOP)
             .context("stopping the process")?;

@@ -74,6 +74,13 @@ impl Session {
         effects.into_iter().filter_map(|effect| self.carry_out(effect)).collect()
     }
 
+    /// Waits until the orders sent so far have taken effect and are in the journal on disk, but not longer than `patience`.
+    pub(super) fn settle(&self, patience: Duration) {
+        if let Some(engine) = self.engine.get() {
+            engine.settle(patience);
+        }
+    }
+
     /// The orders that the last message caused; a later message accepts or refuses them.
     pub(super) fn sent(&self) -> &[Order] {
         &self.sent

@@ -1,6 +1,7 @@
 //! Watching a run: its journal is read while another process writes it, or after the run has ended.
 
 use super::inbox::RunOutbox;
+use account::{DoubtWatch, InDoubt};
 use anyhow::Context;
 use mission::{Event, EventKind, Severity};
 use recording::{JournalReader, journal_of};
@@ -32,7 +33,7 @@ pub(super) fn begin(folder: &Path, screen: RunOutbox) -> anyhow::Result<()> {
         thread::sleep(LOOK_AGAIN);
         standing(&writer) == Standing::Running
     })?;
-    let viewing = Viewing { folder, screen, read: Vec::new(), sent_at: Instant::now() };
+    let viewing = Viewing { folder, screen, read: Vec::new(), sent_at: Instant::now(), doubt: None };
     let began = thread::Builder::new().name("journal".into()).spawn(move || viewing.read(reader));
     began.map(drop).context("starting the thread that reads the journal")
 }
@@ -43,6 +44,8 @@ struct Viewing {
     /// Events that were read but not sent yet.
     read: Vec<Event>,
     sent_at: Instant,
+    /// Finds the floor in doubt; `None` if no floor can be.
+    doubt: Option<DoubtWatch>,
 }
 
 impl Viewing {
@@ -70,10 +73,24 @@ impl Viewing {
             if is_new_tick && (self.read.len() >= MOST || self.sent_at.elapsed() >= PATIENCE) {
                 self.send();
             }
+            let in_doubt = self.watch_doubt(&event);
             self.read.push(event);
+            if let Some(floor) = in_doubt {
+                self.send();
+                self.screen.send(RunMsg::InDoubt(floor));
+            }
         }
         self.send();
         Ok(has_ended)
+    }
+
+    /// The floor in doubt, if the event adds to it.
+    fn watch_doubt(&mut self, event: &Event) -> Option<Vec<InDoubt>> {
+        if let Some(watch) = &mut self.doubt {
+            return watch.apply(event).map(<[InDoubt]>::to_vec);
+        }
+        self.doubt = DoubtWatch::opening(event);
+        None
     }
 
     fn send(&mut self) {

@@ -22,12 +22,12 @@ use std::{
     sync::{
         Arc, Mutex, PoisonError,
         atomic::Ordering,
-        mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel},
+        mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, sync_channel},
     },
     thread,
     time::{Duration, Instant},
 };
-use writer::{Ended, Writer};
+use writer::{Batch, Ended, Writer};
 
 /// Maximum number of batches of events in the queue; if it is full, the sender waits.
 const QUEUE: usize = 8192;
@@ -90,7 +90,7 @@ pub struct Finished {
 /// truncates. The other file and the mission continue. [`crate::FAILURE_FILE`] in the folder of the run states the
 /// reason for later readers.
 pub struct RunRecorder {
-    sender: Option<SyncSender<Arc<[Event]>>>,
+    sender: Option<SyncSender<Batch>>,
     /// A lock protects the value so that screens can read the health from other threads; only `close` takes the value
     /// out.
     ended: Mutex<Receiver<Ended>>,
@@ -173,8 +173,17 @@ impl RunRecorder {
     pub fn send(&self, events: impl Into<Arc<[Event]>>) {
         let Some(sender) = &self.sender else { return };
         self.shared.sent.fetch_add(1, Ordering::Relaxed);
-        if sender.send(events.into()).is_err() {
+        if sender.send(Batch::Events(events.into())).is_err() {
             self.shared.lose(&"the recorder's thread has ended");
+        }
+    }
+
+    /// Hands the journal to the system, including all events that were sent before, and then answers; waits only while the
+    /// queue is full. A stop of the whole process after the answer loses none of these events.
+    pub fn flush(&self, done: Sender<()>) {
+        if let Some(sender) = &self.sender {
+            // A thread that has ended has reported why; the caller's end of the channel is then closed.
+            let _ = sender.send(Batch::Flush(done));
         }
     }
 

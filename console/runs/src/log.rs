@@ -6,7 +6,7 @@ use mission::{Event, EventKind};
 use recording::{Health, JournalWriter, Options, RunRecorder, sha256};
 use std::{
     path::Path,
-    sync::Arc,
+    sync::{Arc, mpsc::Sender},
     time::{Duration, Instant, SystemTime},
 };
 
@@ -88,6 +88,12 @@ impl RunLog {
         if let Some(beside) = &mut self.beside {
             beside.keep_crash(files);
         }
+    }
+
+    /// Hands the journal to the system, including all events that were taken before, and then answers. Nothing waits for
+    /// the answer.
+    pub fn flush(&self, done: Sender<()>) {
+        self.recorder.flush(done);
     }
 
     /// How far recording has progressed.

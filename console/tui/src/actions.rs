@@ -46,6 +46,7 @@ pub enum ActionId {
     ForecastDraft,
     PresetSave,
     PresetLoad,
+    TickValue,
     NextCandidate,
     PreviousCandidate,
     Preflight,

@@ -13,6 +13,7 @@ use crate::model::{Alarm, Cause, Run};
 use crate::screens::Screen;
 use crate::view::text;
 use mission::Phase;
+use positioning::Exclusion;
 use remedy::{END, HOLD, OTHER_PLANNER, PARAMETERS, PLAN_AGAIN, RESUME, SHOW, check, run};
 
 /// The name of an alarm in a table, short enough for one row.
@@ -26,7 +27,9 @@ pub fn name(cause: &Cause, of: &Run) -> String {
         Cause::NoFix => "no position fix".into(),
         Cause::DeadChannel => "channel dead".into(),
         Cause::Station(id) => {
-            format!("station {} rejected", of.station_name(*id).trim_start_matches("station "))
+            let is_by_order = of.position.exclusion(*id) == Some(&Exclusion::ByOrder);
+            let what = if is_by_order { "excluded" } else { "rejected" };
+            format!("station {} {what}", of.station_name(*id).trim_start_matches("station "))
         }
         Cause::Map => "new obstacle, not on drawing".into(),
         Cause::NotThere(name) => format!("{} not found", text::fit(name, 18)),
@@ -53,7 +56,16 @@ pub fn name(cause: &Cause, of: &Run) -> String {
     }
 }
 
-/// The meaning of an alarm, and what the operator can do about it.
+/// The meaning of an alarm now. A station that the fix does not use has several possible causes; the last fix states which
+/// one applies.
+pub fn meaning(cause: &Cause, of: &Run) -> Guide {
+    match cause {
+        Cause::Station(id) => of.position.exclusion(*id).map_or(position::STATION, position::excluded),
+        cause => guide(cause),
+    }
+}
+
+/// The meaning of an alarm, and what the operator can do about it, as far as they do not depend on the run.
 pub fn guide(cause: &Cause) -> Guide {
     match cause {
         Cause::PositionLost => position::POSITION_LOST,
@@ -159,7 +171,7 @@ pub fn guide(cause: &Cause) -> Guide {
 
 /// The consequence of an alarm now, in sentences. A hold is stated only while the robot is held.
 pub fn effect(alarm: &Alarm, of: &Run) -> String {
-    let guide = guide(&alarm.cause);
+    let guide = meaning(&alarm.cause, of);
     if !alarm.is_active() {
         return "None any more: the cause is gone.".into();
     }
@@ -181,18 +193,20 @@ pub fn remedies<'a>(cause: &Cause, of: &'a Run) -> impl Iterator<Item = &'static
     let is_active = of.alarms.get(cause).is_none_or(Alarm::is_active);
     // A wait is over when its cause is gone.
     let applies = move |remedy: &&Remedy| remedy.when.holds(of) && (is_active || remedy.action.is_some());
-    guide(cause).remedies.iter().filter(applies)
+    meaning(cause, of).remedies.iter().filter(applies)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::actions::ACTIONS;
+    use world::StationId;
 
     #[test]
     fn every_alarm_has_cause_effect_and_one_to_four_remedies() {
-        for cause in Cause::every() {
-            let guide = guide(&cause);
+        let of_stations = position::EXCLUDED.map(|guide| (Cause::Station(StationId(1)), guide));
+        let all = Cause::every().into_iter().map(|cause| (cause.clone(), guide(&cause)));
+        for (cause, guide) in all.chain(of_stations) {
             let texts = guide.remedies.iter().map(|remedy| remedy.text);
             let effects = [guide.holds, guide.effect].into_iter().filter(|text| !text.is_empty());
             assert!(effects.clone().next().is_some(), "{cause:?} has an effect");

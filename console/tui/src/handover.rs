@@ -150,8 +150,12 @@ fn done(model: &Model) -> Vec<String> {
         .then(|| format!("Scanned: {first} % of the {floor}, {second} % of the {other}"));
     let earlier = &model.live.earlier;
     let before = (!earlier.is_empty()).then(|| format!("Re-scan of what {} left", earlier.join(" and ")));
+    let in_doubt = model.live.in_doubt().into_iter().map(|doubt| {
+        let at = doubt.at.map_or_else(String::new, |at| format!(", around {:.2}, {:.2} m", at.x, at.y));
+        format!("In doubt: {}{at}", doubt.floor)
+    });
     let moving = format!("Mission time {}, under way {}", clock(run.clock.t_s), clock(run.clock.moving_s));
-    task.map(str::to_owned).into_iter().chain(before).chain(scanned).chain([moving]).collect()
+    task.map(str::to_owned).into_iter().chain(before).chain(scanned).chain(in_doubt).chain([moving]).collect()
 }
 
 /// What the operator decided: the decisions in the journal, then the acknowledgements after the end of the mission, which

@@ -104,8 +104,14 @@ pub(crate) fn mission(area: Rect, (width, height): (u16, u16), shown: Shown) -> 
 }
 
 /// The panes of the plan screen and their areas. On a small screen the panes beside the map, or all panes, are shown
-/// one at a time; `pane` is the one that responds to keys.
-pub(crate) fn plan(area: Rect, (width, height): (u16, u16), pane: Pane) -> Vec<(Pane, Rect)> {
+/// one at a time; `pane` is the one that responds to keys. `rows` gives the rows that the state of the plan needs in a given
+/// width, with its frame: a reason why the plan is refused must be legible, so it comes first.
+pub(crate) fn plan(
+    area: Rect,
+    (width, height): (u16, u16),
+    pane: Pane,
+    rows: &dyn Fn(u16) -> u16,
+) -> Vec<(Pane, Rect)> {
     let arrangement = Arrangement::of(width, height);
     if arrangement == Arrangement::Paged {
         return match pane {
@@ -121,32 +127,22 @@ pub(crate) fn plan(area: Rect, (width, height): (u16, u16), pane: Pane) -> Vec<(
     let mut placed = vec![(Pane::Map, map)];
     // On a tall screen, a curve is shown below the figures.
     let promise = wish(Pane::Promise, 10, if area.height >= TALL { area.height } else { 12 });
+    let needed = rows(side.width).clamp(5, area.height.saturating_sub(promise.least).max(5));
+    let state = wish(Pane::Plan, needed, needed.max(6));
     if arrangement == Arrangement::Narrow {
         placed.extend(match pane {
             Pane::LeftOut | Pane::Checks | Pane::Parameters => {
                 stack(side, &[wish(pane, 8, side.height), wish(Pane::Plan, 5, 6)])
             }
-            _ => stack(side, &[promise, wish(Pane::Plan, 5, 8), wish(Pane::Checks, 3, 5)]),
+            _ => stack(side, &[state, promise, wish(Pane::Checks, 3, 5)]),
         });
         return placed;
     }
     let panes = if area.height >= TALL {
         // The curve gets what the lists do not need.
-        [
-            promise,
-            wish(Pane::Plan, 5, 6),
-            wish(Pane::LeftOut, 4, 10),
-            wish(Pane::Checks, 4, 5),
-            wish(Pane::Parameters, 3, 10),
-        ]
+        [state, promise, wish(Pane::LeftOut, 4, 10), wish(Pane::Checks, 4, 5), wish(Pane::Parameters, 3, 10)]
     } else {
-        [
-            promise,
-            wish(Pane::Plan, 5, 8),
-            wish(Pane::LeftOut, 4, 12),
-            wish(Pane::Checks, 4, 8),
-            wish(Pane::Parameters, 3, 14),
-        ]
+        [state, promise, wish(Pane::LeftOut, 4, 12), wish(Pane::Checks, 4, 8), wish(Pane::Parameters, 3, 14)]
     };
     placed.extend(stack(side, &panes));
     placed

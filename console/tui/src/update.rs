@@ -57,6 +57,7 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
     let said_before = model.console.notice.clone().map(|notice| (notice, Pressing::of(model)));
     let question_before = unseen::question(model).cloned();
     let judges_before = judging::is_open(model);
+    let estimates_before = setting::is_open(model);
     let mut effects = Vec::new();
     match msg {
         Msg::Key(press) => effects = press_key(model, press),
@@ -86,7 +87,7 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
     }
     events::refresh(model);
     unseen::note(model, question_before.as_ref());
-    effects.extend(setting::follow(model, question_before.as_ref()));
+    effects.extend(setting::follow(model, estimates_before));
     effects.extend(go::glimpse(model));
     if let Some((notice, before)) = said_before
         && model.console.notice.as_ref() == Some(&notice)

@@ -97,22 +97,33 @@ fn draw(model: &Model, caps: Caps, theme: &Theme, cache: &mut Cache, frame: &mut
     *cache = shared.into_inner();
 }
 
-/// Draws a screen between the top lines and the two bottom lines, which every screen has. Returns the rows of the notice.
-fn framed(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) -> u16 {
+/// The parts of the terminal on every screen, from top to bottom: the top line, the line of screens, the screen itself, the
+/// notice, the state with the open question, and the keys.
+fn parts(model: &Model, area: Rect) -> [Rect; 6] {
     let has_tabs = tabs::has_row(area);
-    let state = confirm::rows(look, area.width);
+    let state = confirm::rows(model, area.width);
     let free = area.height.saturating_sub(2 + u16::from(has_tabs) + state);
-    let [top, screens, body, notice, next, keys] = Layout::vertical([
+    Layout::vertical([
         Constraint::Length(1),
         Constraint::Length(has_tabs.into()),
         Constraint::Fill(1),
-        Constraint::Length(notice::rows(look.model, area.width, free)),
+        Constraint::Length(notice::rows(model, area.width, free)),
         Constraint::Length(state),
         Constraint::Length(1),
     ])
-    .areas(area);
+    .areas(area)
+}
+
+/// The area of the screen itself, between the lines that every screen has.
+pub(crate) fn body(model: &Model, area: Rect) -> Rect {
+    parts(model, area)[2]
+}
+
+/// Draws a screen between the top lines and the two bottom lines, which every screen has. Returns the rows of the notice.
+fn framed(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) -> u16 {
+    let [top, screens, body, notice, next, keys] = parts(look.model, area);
     top::draw(look, frame, top);
-    if has_tabs {
+    if tabs::has_row(area) {
         tabs::draw(look, frame, screens, tabs::Form::Names);
     }
     notice::draw(look, frame, notice);

@@ -45,3 +45,4 @@ pub use ground::Ground;
 pub use homotopy::{HomotopySignature, RayCrossing, Rays};
 pub use pull::{Drag, Pull, PullLimits, Reel};
 pub use reach::Reach;
+pub use reasons::BACK_M;

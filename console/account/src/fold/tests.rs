@@ -3,7 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::float_cmp, reason = "tests with exact figures")]
 
 use super::*;
-use crate::samples::{chosen, estimated, fold, full_run, opened, truth, zone_drawn};
+use crate::DoubtWatch;
+use crate::samples::{chosen, estimated, event, fold, full_run, opened, truth, zone_drawn};
 use mission::{During, Fault};
 use serde_json::{Value, json};
 
@@ -141,6 +142,36 @@ fn a_biased_station_takes_the_guarantee_back_until_a_later_pass() {
     let back = [&doubted[..], &[(5, estimated(0.25, 0.0, 0.01))]].concat();
     let (again, in_doubt, _) = passed(&back);
     assert_eq!((again, in_doubt), (all, 0));
+}
+
+#[test]
+fn the_floor_in_doubt_is_listed_as_in_the_report_with_its_place() {
+    let start = json!({ "event": "ordered", "order": "start" });
+    let biased = json!({
+        "event": "station_biased", "station": 1, "bias_m": { "value": 0.15, "sigma": 0.02 }, "since_s": 1.0,
+        "is_corrected": false
+    });
+    let mut opened = event(0, &opened());
+    assert!(DoubtWatch::opening(&opened).is_none(), "this mission looks for no biased stations");
+    if let EventKind::RunOpened(run) = &mut opened.kind {
+        run.mission.locating.session = Some(positioning::SessionConfig::default());
+    }
+    let mut watch = DoubtWatch::opening(&opened).unwrap();
+    let mut reported = Fold::new();
+    reported.apply(&opened);
+    let there = [(0, start), (1, estimated(0.25, 0.0, 0.01)), (3, estimated(1.25, 0.0, 0.01))];
+    for (tick, kind) in &there {
+        assert!(watch.apply(&event(*tick, kind)).is_none());
+        reported.apply(&event(*tick, kind));
+    }
+    let biased = event(4, &biased);
+    let listed = watch.apply(&biased).unwrap().to_vec();
+    reported.apply(&biased);
+    let floors: Vec<TakenBack> = listed.iter().map(|doubt| doubt.floor.clone()).collect();
+    assert!(!floors.is_empty() && floors == reported.summary().taken_back, "{floors:?}");
+    // Only the second half of the way is in doubt.
+    let at = listed[0].at.unwrap();
+    assert!(at.x > 0.5 && at.x < 1.6 && at.y.abs() < 0.3, "{at}");
 }
 
 #[test]

@@ -6,6 +6,7 @@ use account::Stops;
 use flight::{hosts, remains};
 use mission::Event;
 use runs::{CLOSE_TIMEOUT, Closed, Kept, RunLog};
+use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 use tui::{Health, Recording, RunMsg, RunResult};
 
@@ -36,6 +37,15 @@ impl EngineThread {
             Some(log) => log.keep(events),
             None if self.closed.is_none() => self.early.extend_from_slice(events),
             None => {}
+        }
+    }
+
+    /// Answers when the journal has been handed to the system; at once if nothing is recorded.
+    pub(super) fn settle(&self, answer: Sender<()>) {
+        match &self.log {
+            Some(log) => log.flush(answer),
+            // The screen may have stopped waiting.
+            None => drop(answer.send(())),
         }
     }
 

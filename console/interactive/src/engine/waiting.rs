@@ -66,6 +66,12 @@ impl EngineThread {
                     // The requester may have stopped waiting.
                     let _ = answer.send(());
                 }
+                // Orders before this request are carried out first.
+                Ok(Request::Settle(answer)) if !orders.is_empty() => {
+                    self.settling = Some(answer);
+                    return (orders, None);
+                }
+                Ok(Request::Settle(answer)) => self.settle(answer),
                 Ok(Request::Close { hurry }) => return (orders, Some(hurry)),
                 // The process of a planner has ended.
                 Err(RecvTimeoutError::Timeout) if !self.is_under_way() => return (orders, None),

@@ -149,6 +149,17 @@ impl JournalWriter {
         self.report()
     }
 
+    /// Hands all data to the system now, without closing the journal.
+    ///
+    /// # Errors
+    /// See [`JournalWriter::tick`].
+    pub fn flush(&mut self, now: Instant) -> Result<(), JournalError> {
+        self.pack(Packer::flush);
+        self.flushed_at = now;
+        self.backlog.drain();
+        self.report()
+    }
+
     /// Hands all data to the system and closes the journal.
     ///
     /// # Errors

@@ -16,7 +16,7 @@ use std::{
     sync::{
         Arc,
         atomic::Ordering,
-        mpsc::{Receiver, RecvTimeoutError},
+        mpsc::{Receiver, RecvTimeoutError, Sender},
     },
     time::{Duration, Instant},
 };
@@ -29,6 +29,14 @@ const GATHER: Duration = Duration::from_millis(2);
 /// Interval between comparisons of the files on disk with those that are being written. Together with [`IDLE`] and
 /// the 400 ms refresh of a screen, an operator sees a problem within a second.
 const WATCH_PERIOD: Duration = Duration::from_millis(300);
+
+/// A message to the thread.
+pub(super) enum Batch {
+    /// The events of a tick.
+    Events(Arc<[Event]>),
+    /// Hand everything to the system that came before, then answer.
+    Flush(Sender<()>),
+}
 
 /// The result of the thread.
 pub(super) struct Ended {
@@ -69,17 +77,31 @@ impl Writer {
     }
 
     /// Writes until all senders are dropped.
-    pub(super) fn run(mut self, batches: &Receiver<Arc<[Event]>>) -> Ended {
+    pub(super) fn run(mut self, batches: &Receiver<Batch>) -> Ended {
         loop {
             match batches.recv_timeout(IDLE) {
-                Ok(events) => self.write(&events),
+                Ok(batch) => self.take(batch),
                 Err(RecvTimeoutError::Timeout) => self.idle(),
                 Err(RecvTimeoutError::Disconnected) => return self.close(),
             }
-            for events in batches.try_iter() {
-                self.write(&events);
+            for batch in batches.try_iter() {
+                self.take(batch);
             }
             std::thread::sleep(GATHER);
+        }
+    }
+
+    fn take(&mut self, batch: Batch) {
+        match batch {
+            Batch::Events(events) => self.write(&events),
+            Batch::Flush(done) => {
+                let now = Instant::now();
+                // Errors of the journal are read below.
+                let _ = self.journal.as_mut().map(|journal| journal.flush(now));
+                self.look(now);
+                // The caller may have stopped waiting.
+                let _ = done.send(());
+            }
         }
     }
 

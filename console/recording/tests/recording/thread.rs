@@ -1,12 +1,12 @@
 //! The recorder's thread.
 
 use crate::{events, journal::read_journal, synthetic};
-use recording::{FAILURE_FILE, JournalWriter, Options, RunRecorder, inspect, recorded_failure};
+use recording::{FAILURE_FILE, JOURNAL_FILE, JournalWriter, Options, RunRecorder, inspect, recorded_failure};
 use std::{
     fs,
     io::{self, Write},
     path::Path,
-    sync::{Arc, Condvar, Mutex},
+    sync::{Arc, Condvar, Mutex, mpsc},
     time::{Duration, Instant},
 };
 use tempfile::tempdir;
@@ -42,6 +42,21 @@ fn what_is_not_asked_for_is_not_written_but_the_hash_is_the_same() {
     assert_eq!((no_files, one_file), (0, 1));
     assert!(nothing.is_some());
     assert_eq!(nothing, journal);
+}
+
+#[test]
+fn a_flushed_journal_has_every_event_that_was_sent_before() {
+    let folder = tempdir().expect("a folder");
+    let recorder = RunRecorder::start(folder.path(), Options::default()).expect("new files");
+    for events in synthetic::run(7) {
+        recorder.send(events);
+    }
+    let (done, answered) = mpsc::channel();
+    recorder.flush(done);
+    answered.recv_timeout(Duration::from_secs(20)).expect("an answer");
+    // A stopped process writes nothing more: the file is read as it is now.
+    let journal = read_journal(&folder.path().join(JOURNAL_FILE)).expect("readable");
+    assert_eq!(journal.events, events(7));
 }
 
 #[test]

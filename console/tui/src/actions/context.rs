@@ -30,6 +30,8 @@ pub enum Context {
     WhatIf,
     /// In the list of pre-flight checks.
     Preflight,
+    /// In the list of the changes that a preset would make.
+    Preset,
     /// In the parameter list.
     Parameters,
     /// In the parameter list of a forecast draft.
@@ -67,6 +69,7 @@ const OVER: &[&[Context]] = &[
     &[Context::Anywhere, Context::List, Context::Rows],
     &[Context::Anywhere, Context::List, Context::Rows, Context::Parameters],
     &[Context::Anywhere, Context::List, Context::Rows, Context::Parameters, Context::Draft],
+    &[Context::Anywhere, Context::List, Context::Rows, Context::Preset],
     &[Context::Anywhere, Context::List, Context::Rows, Context::Preflight],
     &[Context::Anywhere, Context::List, Context::Rows, Context::Remedies],
     &[Context::Anywhere, Context::WhatIf, Context::Map],
@@ -102,10 +105,10 @@ pub fn contexts(model: &Model) -> Vec<Context> {
         Overlay::Parameters { edit: None, .. } => &[Context::List, Context::Rows, Context::Parameters],
         Overlay::WhatIf => &[Context::WhatIf, Context::Map],
         Overlay::ZoneDraft(_) => &[Context::Drawing, Context::Pan],
+        Overlay::Preset { .. } => &[Context::List, Context::Rows, Context::Preset],
         Overlay::Preflight { .. } => &[Context::List, Context::Rows, Context::Preflight],
         Overlay::Remedies { .. } => &[Context::List, Context::Rows, Context::Remedies],
         Overlay::Planners { .. }
-        | Overlay::Preset { .. }
         | Overlay::Layers { .. }
         | Overlay::Finish { .. }
         | Overlay::Messages { .. } => &[Context::List, Context::Rows],

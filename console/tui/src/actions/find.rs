@@ -15,6 +15,12 @@ pub fn row(id: ActionId) -> Option<&'static Action> {
     ACTIONS.iter().find(|action| action.id == id)
 }
 
+/// The actions that a sentence names by placeholders, such as `<planner>`; `<press>` is only a verb.
+pub fn named_in(sentence: &str) -> impl Iterator<Item = &'static Action> {
+    let names = sentence.split('<').skip(1).filter_map(|part| Some(part.split_once('>')?.0));
+    names.filter_map(|name| ACTIONS.iter().find(|action| action.name == name))
+}
+
 /// Every action that is a command.
 pub fn commands() -> impl Iterator<Item = &'static Action> {
     ACTIONS.iter().filter(|action| action.is_command())

@@ -88,6 +88,15 @@ impl Keymap {
         if self.spells_commands {
             return Some(self.command(action));
         }
+        Some(match self.key_of(action) {
+            Some(key) => key.to_string(),
+            None if action.is_command() => format!(":{name}"),
+            None => "(no key)".into(),
+        })
+    }
+
+    /// The key with which a sentence names an action; `None` if the action has only a command.
+    pub fn key_of(&self, action: &Action) -> Option<Key> {
         // One key holds, resumes and plays; another opens what is selected.
         let also = match action.id {
             ActionId::Resume | ActionId::Play => Some(ActionId::Hold),
@@ -95,11 +104,7 @@ impl Keymap {
             _ => None,
         };
         let also = also.and_then(|id| ACTIONS.iter().find(|action| action.id == id));
-        Some(match self.of(action).first().or_else(|| self.of(also?).first()) {
-            Some(key) => key.to_string(),
-            None if action.is_command() => format!(":{name}"),
-            None => "(no key)".into(),
-        })
+        self.of(action).first().or_else(|| self.of(also?).first()).copied()
     }
 
     /// How to run an action without a keyboard.

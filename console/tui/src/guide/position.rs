@@ -2,6 +2,7 @@
 
 use super::remedy::{END, Guide, HOLD, SHOW, STAY, When, check, run, wait};
 use crate::actions::ActionId;
+use positioning::Exclusion;
 
 pub(super) const POSITION_LOST: Guide = Guide {
     cause: "The 95 % position error is above the mission's limit: too few stations are heard, their \
@@ -75,6 +76,73 @@ pub(super) const STATION: Guide = Guide {
     cause: "The station's range disagrees with the others by more than its gate, or the station was not \
     heard: echo, blocked sound path, or wrong station data.",
     holds: "",
-    effect: "The position is computed without this station and is less accurate.",
+    effect: LESS_ACCURATE,
+    remedies: &[wait("Wait: the station is used again as soon as its range agrees."), SHOW, HOLD],
+};
+
+/// The meaning of the alarm about a station that the last fix did not use for this reason.
+pub(super) const fn excluded(why: &Exclusion) -> Guide {
+    match why {
+        Exclusion::ByOrder => BY_ORDER,
+        Exclusion::Silent => SILENT,
+        Exclusion::Impossible { .. } => IMPOSSIBLE,
+        Exclusion::Biased { .. } => LEFT_OUT,
+        Exclusion::Residual { .. } => DISAGREES,
+    }
+}
+
+/// Every guide of a station that a fix does not use, for tests.
+#[cfg(test)]
+pub(super) const EXCLUDED: [Guide; 5] = [BY_ORDER, SILENT, IMPOSSIBLE, LEFT_OUT, DISAGREES];
+
+const LESS_ACCURATE: &str = "The position is computed without this station and is less accurate.";
+
+const BY_ORDER: Guide = Guide {
+    cause: "An operator excluded the station.",
+    holds: "",
+    effect: LESS_ACCURATE,
+    remedies: &[
+        check("The station stays excluded until you include it: `:include` and its name."),
+        SHOW,
+        HOLD,
+    ],
+};
+
+const SILENT: Guide = Guide {
+    cause: "The station was not heard: its sound path is blocked, or it has no power or no connection.",
+    holds: "",
+    effect: LESS_ACCURATE,
+    remedies: &[
+        wait("Wait: the station is used again as soon as it is heard."),
+        check("If it stays silent, check its power, its cable and its coupling."),
+        SHOW,
+        HOLD,
+    ],
+};
+
+const IMPOSSIBLE: Guide = Guide {
+    cause: "The station reports a range that is not possible in this tank: echo, or wrong station data.",
+    holds: "",
+    effect: LESS_ACCURATE,
+    remedies: &[wait("Wait: the station is used again as soon as its range is possible."), SHOW, HOLD],
+};
+
+const LEFT_OUT: Guide = Guide {
+    cause: "All ranges of the station are wrong by the same length.",
+    holds: "",
+    effect: LESS_ACCURATE,
+    remedies: &[
+        check("Check the clock, the survey data and the coupling of the station."),
+        wait("Wait: the station is used again as soon as its ranges are right."),
+        SHOW,
+        HOLD,
+    ],
+};
+
+const DISAGREES: Guide = Guide {
+    cause: "The station's range disagrees with the others by more than its gate: echo, blocked sound path, or wrong \
+    station data.",
+    holds: "",
+    effect: LESS_ACCURATE,
     remedies: &[wait("Wait: the station is used again as soon as its range agrees."), SHOW, HOLD],
 };

@@ -1,7 +1,7 @@
 //! The open run, and the communication between the operator and its mission.
 
 use super::{Combination, Earlier, Health, Plans, Preflight, Raster, Replay, Run, Speed, Together, WhatIf};
-use account::{Account, Area, Estimate, LeftOut, MissReason, Summary};
+use account::{Account, Area, Estimate, InDoubt, LeftOut, MissReason, Summary, TakenBack};
 use mission::{Order, Phase, WayBack, ZoneCost};
 use serde::{Deserialize, Serialize};
 use world::Point;
@@ -99,6 +99,9 @@ pub struct Live {
     /// `None` until either is known.
     #[serde(default)]
     pub way_back: Option<Result<WayBack, String>>,
+    /// The floor whose guarantee was taken back so far, oldest first, as the engine states it.
+    #[serde(default)]
+    pub in_doubt: Vec<InDoubt>,
     /// The cost of the no-go zone that was drawn; `None` until it is known.
     #[serde(default)]
     pub zone_cost: Option<ZoneCost>,
@@ -205,6 +208,19 @@ impl Live {
         let asked = || self.areas().filter(|area| area.reason != MissReason::NotAsked);
         let is_missed = |area: &&Area<MissReason>| area.reason != MissReason::NotReached;
         asked().filter(is_missed).chain(asked().filter(|area| !is_missed(area))).collect()
+    }
+
+    /// The floor whose guarantee was taken back until the moment that is shown, oldest first. The report of a replayed run
+    /// does not state the places.
+    pub fn in_doubt(&self) -> Vec<InDoubt> {
+        let reported = || self.result.iter().flat_map(|result| &result.summary.taken_back);
+        let until_now = |floor: &&TakenBack| floor.until_s <= self.run.clock.t_s;
+        match &self.in_doubt[..] {
+            [] => {
+                reported().filter(until_now).map(|floor| InDoubt { floor: floor.clone(), at: None }).collect()
+            }
+            floor => floor.to_vec(),
+        }
     }
 
     /// The part of the reachable floor that was requested of this run: its area in square metres and its scanned share.

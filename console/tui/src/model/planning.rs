@@ -103,7 +103,10 @@ impl PlanShown {
     /// The length of the path from the point nearest to the robot to its end, metres. The next target does not tell it:
     /// for some planners, the target is the goal.
     pub fn rest_m(&self, robot: Point, done: f64) -> f64 {
-        polyline::length_m(&self.path[self.nearest(robot, done)..])
+        // The points that are drawn cut corners, so their distances are shares of the whole length.
+        let drawn_m = polyline::length_m(&self.path);
+        let rest_m = polyline::length_m(&self.path[self.nearest(robot, done)..]);
+        if drawn_m > 0.0 { rest_m / drawn_m * self.length_m } else { 0.0 }
     }
 
     /// The index of the path point at the robot's next target; 0 if the path is empty.

@@ -103,6 +103,12 @@ impl Position {
         }
     }
 
+    /// Why the last fix did not use a station; `None` if it did, and before the first fix.
+    pub fn exclusion(&self, station: StationId) -> Option<&Exclusion> {
+        let excluded = self.fix.as_ref()?.excluded.iter();
+        excluded.filter(|(id, _)| *id == station).map(|(_, why)| why).next()
+    }
+
     /// The share of the fixes in which a station was not used, 0 to 1; `None` before the first fix.
     pub fn unused_share(&self, station: StationId) -> Option<f64> {
         let unused = self.unused.get(&station).copied().unwrap_or(0);

@@ -3,6 +3,7 @@
 use super::parameter;
 use mission::{ParamInfo, ParamValue, Parameters, PlannerChoice, PlannerInfo};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// The maximum length of a preset's name, characters.
 const LONGEST: usize = 40;
@@ -40,6 +41,22 @@ pub fn differences<'a>(
         then: parameter::value(Some(then), info),
     });
     all.filter(|difference| difference.now != difference.then).collect()
+}
+
+/// The planner of a preset with the values that the operator takes; the parameters in `left` keep their current values.
+pub fn picked(
+    now: Option<&PlannerChoice>,
+    then: &PlannerChoice,
+    info: &PlannerInfo,
+    left: &BTreeSet<String>,
+) -> PlannerChoice {
+    let now = now.filter(|now| now.id == then.id);
+    let value = |info: &ParamInfo| {
+        let of = if left.contains(&info.key) { now } else { Some(then) };
+        (info.key.clone(), parameter::value(of, info))
+    };
+    let parameters: Parameters = info.parameters.iter().map(value).collect();
+    by_hand(&PlannerChoice { id: info.id.clone(), parameters }, info)
 }
 
 /// A planner with the value of every parameter, defaults included, so that a later change of a default does not

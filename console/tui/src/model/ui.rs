@@ -8,6 +8,7 @@ use crate::screens::Screen;
 use crate::theme::ThemeName;
 use mission::{Order, ParamValue, PlanId, PlannerChoice};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use world::Point;
 
 /// What the operator is looking at.
@@ -32,6 +33,9 @@ pub struct Ui {
     /// The index of the selected plate in the list on the result screen, most missed first.
     #[serde(default)]
     pub plate: usize,
+    /// The number of rows by which the active pane of text is scrolled on the result screen.
+    #[serde(default)]
+    pub scrolled: usize,
     /// The index of the selected area in the list of what the plan leaves out.
     #[serde(default)]
     pub left_out: usize,
@@ -67,6 +71,7 @@ impl Default for Ui {
             layers: Layers::default(),
             missed: 0,
             plate: 0,
+            scrolled: 0,
             left_out: 0,
             plugin: 0,
             cursor: None,
@@ -127,14 +132,12 @@ impl Pane {
         [Self::Map, Self::Promise, Self::LeftOut, Self::Checks, Self::Parameters];
     /// The panes beside the map of the plan screen that are shown one at a time on a narrow terminal, in Tab order.
     pub const PLAN_PARTS: [Self; 4] = [Self::Map, Self::LeftOut, Self::Checks, Self::Parameters];
-    /// The panes of the result screen that are shown one at a time on a small terminal, in Tab order.
+    /// The panes of the result screen on a terminal that is not wide, in Tab order. A small terminal shows one at a time; on a
+    /// narrow one, the plates and the map take the place of others.
     pub const RESULT_PAGES: [Self; 5] =
         [Self::Figures, Self::Coverage, Self::Missed, Self::Plates, Self::Map];
-    /// The panes of the result screen that share a place on a narrow terminal, in Tab order.
-    pub const RESULT_PARTS: [Self; 3] = [Self::Figures, Self::Plates, Self::Map];
-    /// The panes of the result screen on a wide terminal, in Tab order: the figures with the map, and the plates, which take
-    /// the place of the map.
-    pub const RESULT_WHOLE: [Self; 2] = [Self::Figures, Self::Plates];
+    /// The panes of the result screen on a wide terminal, in Tab order: the plates take the place of the map.
+    pub const RESULT_WHOLE: [Self; 4] = [Self::Figures, Self::Coverage, Self::Missed, Self::Plates];
 }
 
 /// The quantity of a chart.
@@ -280,6 +283,9 @@ pub enum Overlay {
         choice: PlannerChoice,
         /// The index of the selected line.
         selected: usize,
+        /// The parameters whose values are not to be taken.
+        #[serde(default)]
+        left: BTreeSet<String>,
     },
     /// The layers of the map.
     Layers {
@@ -507,8 +513,7 @@ impl Ui {
             (Screen::Plan, Arrangement::Narrow) => return &Pane::PLAN_PARTS,
             (Screen::Plan, Arrangement::Paged) => return &Pane::PLAN_PAGES,
             (Screen::Result, Arrangement::Wide) => return &Pane::RESULT_WHOLE,
-            (Screen::Result, Arrangement::Narrow) => return &Pane::RESULT_PARTS,
-            (Screen::Result, Arrangement::Paged) => return &Pane::RESULT_PAGES,
+            (Screen::Result, Arrangement::Narrow | Arrangement::Paged) => return &Pane::RESULT_PAGES,
             (Screen::Mission, _) => {}
             _ => return &[],
         }

@@ -178,15 +178,20 @@ pub(crate) fn turn_to(model: &mut Model, by: isize) {
     let panes = model.ui.panes();
     let at = panes.iter().position(|pane| *pane == model.ui.pane).unwrap_or(0);
     let next = (at as isize + by).rem_euclid(panes.len().max(1) as isize) as usize;
-    model.ui.pane = panes.get(next).copied().unwrap_or(Pane::Map);
+    turn_to_pane(model, panes.get(next).copied().unwrap_or(Pane::Map));
 }
 
 /// Goes to the pane with a number, from 1.
 pub(crate) fn turn_to_number(model: &mut Model, number: u8) {
     let panes = model.ui.numbered_panes();
     if let Some(pane) = usize::from(number).checked_sub(1).and_then(|index| panes.get(index)) {
-        model.ui.pane = *pane;
+        turn_to_pane(model, *pane);
     }
+}
+
+/// Moves the focus to a pane; a pane of text begins at its top.
+fn turn_to_pane(model: &mut Model, pane: Pane) {
+    (model.ui.pane, model.ui.scrolled) = (pane, 0);
 }
 
 /// Moves the selection down by `by` lines in the list that responds to the arrow keys.

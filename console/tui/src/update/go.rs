@@ -8,6 +8,7 @@ use crate::model::home::HomeList;
 use crate::model::log::clock;
 use crate::model::ui::Arrangement;
 use crate::model::{Cause, Live, Model, Overlay, Pane, RunId, ScenarioEntry, Screen, Source};
+use crate::view::result;
 use mission::{PlannerChoice, Severity};
 use world::Point;
 
@@ -107,7 +108,7 @@ pub(super) fn open(model: &mut Model, source: Source, planner: Option<PlannerCho
     model.live =
         Live { id, source: Some(source.clone()), is_opening: true, before, speed, ..Live::default() };
     (model.ui.map, model.ui.cursor) = (crate::model::ui::MapView::default(), None);
-    (model.ui.missed, model.ui.plate) = (0, 0);
+    (model.ui.missed, model.ui.plate, model.ui.scrolled) = (0, 0, 0);
     model.console.notice = None;
     model.ui.go(Screen::Plan);
     vec![Effect::Open { id, source, planner, speed }]
@@ -134,11 +135,21 @@ pub(crate) fn again(model: &mut Model) -> Vec<Effect> {
     open(model, source, planner)
 }
 
-/// Moves the selection down by `by` lines of the list of the result screen that responds to the arrow keys.
+/// Moves the selection down by `by` lines of the pane of the result screen that responds to the arrow keys; a pane of text
+/// is scrolled.
 pub(crate) fn select_in_result(model: &mut Model, by: isize) {
-    if model.ui.pane != Pane::Plates {
-        return select_missed(model, by);
+    match model.ui.pane {
+        Pane::Figures | Pane::Coverage => {
+            let most = result::most_scrolled(model, model.ui.pane);
+            model.ui.scrolled = model.ui.scrolled.min(most).saturating_add_signed(by).min(most);
+        }
+        Pane::Plates => select_plate(model, by),
+        _ => select_missed(model, by),
     }
+}
+
+/// Moves the selection down by `by` plates.
+fn select_plate(model: &mut Model, by: isize) {
     let last = model.live.floor().map_or(0, |floor| floor.plates.len().saturating_sub(1));
     model.ui.plate = model.ui.plate.saturating_add_signed(by).min(last);
 }

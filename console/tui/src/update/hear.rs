@@ -54,6 +54,7 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
         }
         RunMsg::WayBack(way) => finish::found(model, way),
         RunMsg::ZoneCost(corners, cost) => zones::priced(model, &corners, cost),
+        RunMsg::InDoubt(floor) => model.live.in_doubt = floor,
         RunMsg::LeftOut(ask, left_out) => model.live.plans.left_out = Some((ask, *left_out)),
         RunMsg::CompareAt(share, what) => {
             if let Some(ghost) = &mut model.live.plans.ghost {

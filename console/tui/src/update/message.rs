@@ -9,7 +9,7 @@ use crate::model::{
     home::Found,
     replay::{Align, Reel, Side},
 };
-use account::{Estimate, LeftOut, Notes, Summary};
+use account::{Estimate, InDoubt, LeftOut, Notes, Summary};
 use mission::{
     AskId, Check, Event, Order, PlannerChoice, PlannerInfo, RefusedPlugin, Severity, WayBack, ZoneCost,
 };
@@ -172,6 +172,8 @@ pub enum RunMsg {
     WayBack(Result<WayBack, String>),
     /// The cost of a no-go zone with these corners, or the reason why it would be refused, as a sentence.
     ZoneCost(Vec<Point>, Result<ZoneCost, String>),
+    /// The floor whose guarantee was taken back so far, oldest first.
+    InDoubt(Vec<InDoubt>),
     /// The floor that a plan leaves out, for the plan that answers the given ask.
     LeftOut(Option<AskId>, Box<LeftOut>),
     /// The progress of the plan for comparison: the share done, and the current activity.

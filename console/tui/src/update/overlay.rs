@@ -70,7 +70,7 @@ pub(crate) fn accept(model: &mut Model) -> Vec<Effect> {
             }
             Vec::new()
         }
-        Overlay::Preset { name, choice, .. } => take_preset(model, &name, choice),
+        Overlay::Preset { name, choice, left, .. } => take_preset(model, &name, &choice, &left),
         Overlay::WhatIf => what_if::choose(model),
         Overlay::Finish { selected } => finish::choose(model, selected),
         Overlay::ZoneDraft(_) => zones::set(model),

@@ -5,8 +5,10 @@ use super::message::Effect;
 use super::offer::{accepted, demand, refuse};
 use super::overlay::open;
 use super::send::send;
+use super::setting;
 use crate::model::{Model, Overlay, preset};
 use mission::{Noted, Order, PlannerChoice, Severity};
+use std::collections::BTreeSet;
 
 /// Checks that a preset can be applied now.
 ///
@@ -34,9 +36,35 @@ pub(super) fn save(model: &mut Model, name: String) -> Vec<Effect> {
 /// Shows what a preset would change; the operator applies it from there.
 pub(super) fn load(model: &mut Model, name: &str) -> Vec<Effect> {
     match loaded(model, name) {
-        Ok(choice) => open(model, Overlay::Preset { name: name.to_owned(), choice, selected: 0 }),
+        Ok(choice) => {
+            let estimate = setting::estimate(model, choice.clone());
+            let preset =
+                Overlay::Preset { name: name.to_owned(), choice, selected: 0, left: BTreeSet::new() };
+            [open(model, preset), estimate].concat()
+        }
         Err(why) => refuse(model, why),
     }
+}
+
+/// Takes or leaves the selected value, and requests an estimate of the effect of those that are taken.
+pub(crate) fn tick(model: &mut Model) -> Vec<Effect> {
+    let Overlay::Preset { choice, selected, left, .. } = &model.ui.overlay else { return Vec::new() };
+    let (now, mut left) = (model.live.run.planning.choice.as_ref(), left.clone());
+    let Some(info) = model.info_of(&choice.id) else { return Vec::new() };
+    let differences = preset::differences(now, choice, info);
+    let Some(key) = differences.get(*selected).map(|difference| difference.info.key.clone()) else {
+        return Vec::new();
+    };
+    if !left.remove(&key) {
+        left.insert(key);
+    }
+    let takes_any = left.len() < differences.len();
+    let picked = preset::picked(now, choice, info, &left);
+    if let Overlay::Preset { left: of_list, .. } = &mut model.ui.overlay {
+        *of_list = left;
+    }
+    let stop = setting::stop(model);
+    if takes_any { [stop, setting::estimate(model, picked)].concat() } else { stop }
 }
 
 fn loaded(model: &Model, name: &str) -> Result<PlannerChoice, String> {
@@ -56,8 +84,22 @@ fn loaded(model: &Model, name: &str) -> Result<PlannerChoice, String> {
 }
 
 /// Applies a preset after the review. Nothing moves: the planner replans with the new parameters.
-pub(super) fn take(model: &mut Model, name: &str, choice: PlannerChoice) -> Vec<Effect> {
+pub(super) fn take(
+    model: &mut Model,
+    name: &str,
+    choice: &PlannerChoice,
+    left: &BTreeSet<String>,
+) -> Vec<Effect> {
     model.ui.overlay = Overlay::None;
+    let Some(info) = model.info_of(&choice.id) else {
+        return refuse(model, format!("planner {} not found", choice.id));
+    };
+    let now = model.live.run.planning.choice.as_ref();
+    let n_changes = preset::differences(now, choice, info).len();
+    if n_changes > 0 && left.len() >= n_changes {
+        return refuse(model, format!("nothing was sent: no value of preset {name} is ticked"));
+    }
+    let choice = preset::picked(now, choice, info, left);
     let planner = choice.id.clone();
     let order = Order::ChoosePlanner(choice);
     // Check again: the mission may have changed in the meantime.

@@ -7,7 +7,7 @@ use super::send::set_parameter;
 use super::what_if;
 use crate::model::ui::Ask;
 use crate::model::{Ghost, Model, Overlay, parameter};
-use mission::{Order, ParamValue};
+use mission::{Order, ParamValue, PlannerChoice};
 
 /// Asks whether to send a new value, and requests an estimate of its effect. A value that is in effect already is not
 /// sent. `list` is the line of the list of parameters to which the operator returns.
@@ -20,18 +20,19 @@ pub(super) fn propose(model: &mut Model, key: String, value: ParamValue, list: O
         return refuse(model, format!("nothing was sent: {key} is already {value}"));
     }
     let changed = model.live.with_parameter(&key, &value);
-    let estimate = match changed {
-        Some(changed) if model.live.waits() => {
-            let since_mono_s = model.console.now.mono_s;
-            model.live.plans.ghost =
-                Some(Ghost { choice: changed.clone(), since_mono_s, at: None, made: None });
-            vec![Effect::Compare(changed)]
-        }
-        Some(changed) => what_if::estimate(model, changed),
-        None => Vec::new(),
-    };
+    let estimate = changed.map_or_else(Vec::new, |changed| estimate(model, changed));
     ask(model, Ask::Set { key, value, list });
     estimate
+}
+
+/// Requests an estimate of the effect of running a planner with changed parameters.
+pub(super) fn estimate(model: &mut Model, changed: PlannerChoice) -> Vec<Effect> {
+    if !model.live.waits() {
+        return what_if::estimate(model, changed);
+    }
+    let since_mono_s = model.console.now.mono_s;
+    model.live.plans.ghost = Some(Ghost { choice: changed.clone(), since_mono_s, at: None, made: None });
+    vec![Effect::Compare(changed)]
 }
 
 /// Sends the value, and returns to the list from which the change was made.
@@ -42,13 +43,18 @@ pub(super) fn take(model: &mut Model, key: String, value: ParamValue, list: Opti
     set_parameter(model, key, value)
 }
 
-/// Ends the estimate of a change whose question has just been closed; `before` is the question that was open before the
-/// message.
-pub(super) fn follow(model: &mut Model, before: Option<&Overlay>) -> Vec<Effect> {
-    let was_open = matches!(before, Some(Overlay::Confirm(Ask::Set { .. })));
-    if !was_open || matches!(model.ui.overlay, Overlay::Confirm(Ask::Set { .. })) {
-        return Vec::new();
-    }
+/// Whether a question or a list is open that shows the estimated effect of a change.
+pub(super) fn is_open(model: &Model) -> bool {
+    matches!(model.ui.overlay, Overlay::Confirm(Ask::Set { .. }) | Overlay::Preset { .. })
+}
+
+/// Ends the estimate of a change that is not shown any more; `was_open` states whether it was shown before the message.
+pub(super) fn follow(model: &mut Model, was_open: bool) -> Vec<Effect> {
+    if was_open && !is_open(model) { stop(model) } else { Vec::new() }
+}
+
+/// Ends the estimate of a change.
+pub(super) fn stop(model: &mut Model) -> Vec<Effect> {
     let plan = model.live.plans.ghost.take().map(|_| Effect::StopComparing);
     plan.into_iter().chain(what_if::stop_estimate(model)).collect()
 }

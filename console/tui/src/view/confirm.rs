@@ -19,48 +19,24 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
 use ratatui::widgets::Paragraph;
 
-/// Maximum rows of a question.
-const MOST_ROWS: usize = 3;
-/// The clauses of a question in several lines that are never left out: the question, and what matters most.
-const ALWAYS: usize = 2;
+/// The rows of the screen that an open question leaves: the top line, a row of the screen, the state and the keys.
+const OTHER_ROWS: usize = 4;
 
 /// The rows of the lines: one for the state, and as many as the open question needs.
-pub(super) fn rows(look: &Look, columns: u16) -> u16 {
-    let is_typed =
-        matches!(look.model.ui.overlay, Overlay::Filter(_) | Overlay::Shelve(_) | Overlay::Bookmark(_));
-    1 + u16::from(is_typed) + question_lines(look.model, columns).len() as u16
+pub(super) fn rows(model: &Model, columns: u16) -> u16 {
+    let is_typed = matches!(model.ui.overlay, Overlay::Filter(_) | Overlay::Shelve(_) | Overlay::Bookmark(_));
+    1 + u16::from(is_typed) + question_lines(model, columns).len() as u16
 }
 
-/// The open question in as many lines as it needs. In a small area, a question that needs no figures is shortened.
+/// The open question in as many lines as it needs: an operator who answers a question must be able to read all of it. On a
+/// terminal that is too small even for that, the last line ends in an ellipsis.
 fn question_lines(model: &Model, columns: u16) -> Vec<String> {
     // The ways to end the mission are in a list.
     let is_list = matches!(model.ui.overlay, Overlay::Finish { .. });
     let Some(clauses) = asked(model).filter(|_| !is_list) else { return Vec::new() };
     let columns = usize::from(columns).saturating_sub(2);
-    let is_whole = matches!(
-        model.ui.overlay,
-        Overlay::Confirm(
-            Ask::Start(_)
-                | Ask::Resume
-                | Ask::DriveBack
-                | Ask::DrawZone(_)
-                | Ask::TakePlan
-                | Ask::Promote
-                | Ask::Set { .. }
-        )
-    );
-    // The question itself is never cut.
-    let first = clauses.first().map_or(0, |first| text::width(first));
-    if !is_whole && first <= columns {
-        return vec![next::joined(&clauses, columns)];
-    }
-    // What does not fit is left out whole, the least important clause first.
-    let wrapped = |n: usize| text::wrap(&clauses[..n].join(" "), columns);
-    let always = if is_whole { ALWAYS } else { 1 };
-    let fits = (always..=clauses.len()).rev().find(|n| wrapped(*n).len() <= MOST_ROWS);
-    let mut lines = wrapped(fits.unwrap_or(always).min(clauses.len()));
-    lines.truncate(MOST_ROWS);
-    lines
+    let most = usize::from(model.ui.height).saturating_sub(OTHER_ROWS).max(1);
+    text::first_lines(text::wrap(&clauses.join(" "), columns), most, columns)
 }
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {

@@ -3,7 +3,7 @@
 use super::look::{Look, fill, ranked};
 use super::text;
 use crate::model::coverage::Raster;
-use crate::model::{Earlier, Live, Pane, Run};
+use crate::model::{Earlier, Live, Model, Pane, Run};
 use crate::theme::Role;
 use account::{Percent, Shares};
 use ratatui::Frame;
@@ -59,7 +59,7 @@ fn wide_lines(look: &Look, bases: &Bases, columns: usize) -> Vec<(u8, Line<'stat
         row(7, "unreachable", out_of_reach),
         row(5, "speed", pace(run, room)),
         row(6, "overlap", format!("{overlap} % of scanned floor")),
-        row(4, way_label(run), way(run)),
+        row(4, way_label(run, room), way(run)),
         row(2, "time left", left(look, true)),
     ];
     // A drive to a goal or along a path has no floor to scan.
@@ -67,6 +67,10 @@ fn wide_lines(look: &Look, bases: &Bases, columns: usize) -> Vec<(u8, Line<'stat
         lines.insert(2, row(3, to_do_label(run), shares(&first_to_do, &second_to_do)));
     }
     lines.extend(channels(run, room).map(|strip| row(5, "channels", strip)));
+    lines.extend(in_doubt(look.model).map(|words| {
+        let label = (Role::Dim, format!(" {:<LABEL$}", "in doubt"));
+        (1, look.line([label, (Role::Warn, text::wording(words, room))]))
+    }));
     lines.extend(untestable(run).map(|share| row(4, "not testable", format!("{share} % of whole floor"))));
     lines
 }
@@ -97,7 +101,9 @@ fn narrow_lines(look: &Look, bases: &Bases) -> Vec<(u8, Line<'static>)> {
         format!("left {}", left(look, false))
     };
     let mark = if is_stale(look) { "◌" } else { " " };
-    vec![
+    let doubt =
+        in_doubt(look.model).map(|[_, short]| (1, look.line([(Role::Warn, format!(" in doubt {short}"))])));
+    let lines = vec![
         (
             0,
             look.line([
@@ -106,9 +112,21 @@ fn narrow_lines(look: &Look, bases: &Bases) -> Vec<(u8, Line<'static>)> {
             ]),
         ),
         (3, text(format!("{:BAR$} {second:>5} % {of_second}", ""))),
-        (2, text(format!("{} {}", way_label(run), way(run)))),
+        (2, text(format!("{} {}", way_label(run, 0), way(run)))),
         (1, text(left_or_missed)),
-    ]
+    ];
+    doubt.into_iter().chain(lines).collect()
+}
+
+/// The floor in doubt, in a longer and a shorter wording; `None` if no floor is.
+fn in_doubt(model: &Model) -> Option<[String; 2]> {
+    let all = model.live.in_doubt();
+    let first = all.first()?;
+    let area_m2: f64 = all.iter().map(|doubt| doubt.floor.area_m2).sum();
+    let mut stations: Vec<&str> = all.iter().map(|doubt| doubt.floor.station.as_str()).collect();
+    stations.dedup();
+    let short = format!("{} m², {}", text::number(area_m2, 1), stations.join(" "));
+    Some([format!("{short}, since T+{}", text::clock(first.floor.since_s)), short])
 }
 
 /// The two floors to which the scanned shares of a mission refer: the reachable and the whole floor; for a re-scan, the
@@ -203,8 +221,14 @@ fn pace(run: &Run, room: usize) -> String {
     text::wording([format!("{pace}, {scanned} m² scanned"), format!("{pace}, {scanned} m²"), pace], room)
 }
 
-fn way_label(run: &Run) -> &'static str {
-    if run.about.as_ref().is_some_and(|about| about.preset_m.is_some()) { "path" } else { "plan" }
+/// The label of the path that the task presets or, without one, of the planner's path; the two have different lengths.
+/// `room` is the width of the value, columns; 0 in a narrow pane.
+fn way_label(run: &Run, room: usize) -> &'static str {
+    match run.about.as_ref().is_some_and(|about| about.preset_m.is_some()) {
+        true if room > 0 => "preset path",
+        true => "preset",
+        false => "plan",
+    }
 }
 
 fn way(run: &Run) -> String {

@@ -48,7 +48,9 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
             planners::list(look, *purpose, (*selected, *is_unfolded), columns)
         }
         Overlay::Parameters { selected, edit } => parameters::list(look, *selected, edit.as_ref(), columns),
-        Overlay::Preset { name, choice, selected } => preset::list(look, name, choice, *selected, columns),
+        Overlay::Preset { name, choice, selected, left } => {
+            preset::list(look, (name, choice), (*selected, left), columns)
+        }
         Overlay::Preflight { selected } => preflight::list(look, *selected, columns),
         Overlay::Finish { selected } => finish::list(look, *selected, columns),
         Overlay::Messages { selected } => messages::list(look, *selected, columns),

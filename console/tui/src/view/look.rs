@@ -80,8 +80,15 @@ impl Look<'_> {
 
     /// A frame with a title; a mark before the title shows that the arrow keys apply here.
     pub(crate) fn block<'t>(&self, border: Role, title: &str, note: &str) -> Block<'t> {
-        let title = if border == Role::Focus { format!("▸ {title} ") } else { format!(" {title} ") };
-        self.frame(border, (Role::Title, &title), note)
+        if border == Role::Focus {
+            return self.focused(border, title, note);
+        }
+        self.frame(border, (Role::Title, &format!(" {title} ")), note)
+    }
+
+    /// A frame with its own border around the pane to which the arrow keys apply.
+    pub(crate) fn focused<'t>(&self, border: Role, title: &str, note: &str) -> Block<'t> {
+        self.frame(border, (Role::Title, &format!("▸ {title} ")), note)
     }
 
     /// A frame around a list that lies over the screen.

@@ -3,10 +3,12 @@
 mod held;
 
 use super::{confirm, events, home, text};
+use crate::actions::{context::contexts, find};
 use crate::guide;
 use crate::model::planning::Lead;
 use crate::model::{Alarm, Busy, Model, Offer, Overlay, Replay, Screen, ui::Ask};
 use crate::theme::Role;
+use crate::update::offered;
 use held::Head;
 use mission::{Outcome, Phase, Readiness, Severity};
 
@@ -18,6 +20,12 @@ pub(super) type Clauses = (Role, Vec<String>);
 /// What comes next, with the operator's keys.
 pub(super) fn clauses(model: &Model) -> Clauses {
     let (role, mut clauses) = by_phase(model);
+    // A list that lies over the screen takes the key of the start.
+    if let Some(first) = clauses.first_mut().filter(|first| first.contains("<start>") && !works(model, first))
+    {
+        *first = "Ready.".into();
+    }
+    clauses.retain(|clause| works(model, clause));
     // While a question is open, other keys do not do what they usually do.
     if model.ui.overlay.is_question() || matches!(model.ui.overlay, Overlay::ZoneDraft(_)) {
         clauses.retain(|clause| !clause.contains(['<', '>']));
@@ -99,20 +107,33 @@ fn ended(model: &Model, outcome: Outcome) -> Clauses {
         Outcome::Complete => (Role::Good, format!("DONE: {}.", run.end_reason)),
         outcome => (Role::Warn, format!("ENDED ({}): {}.", outcome.word(), run.end_reason)),
     };
-    match held::head(run) {
-        Head::Held => (role, vec![state, more(model)]),
-        Head::Stopping => (Role::Warn, vec![state, "The stop is not confirmed yet.".into(), more(model)]),
-        Head::NotConfirmed => {
-            (Role::Crit, vec![state, "STOP NOT CONFIRMED: go to the vehicle.".into(), more(model)])
-        }
-    }
+    let (role, warning) = match held::head(run) {
+        Head::Held => (role, None),
+        Head::Stopping => (Role::Warn, Some("The stop is not confirmed yet.")),
+        Head::NotConfirmed => (Role::Crit, Some("STOP NOT CONFIRMED: go to the vehicle.")),
+    };
+    let warning = warning.map(str::to_owned);
+    (role, std::iter::once(state).chain(warning).chain(more(model)).collect())
 }
 
 /// What comes next, as the state and then what the operator can do, with commands instead of keys.
 pub(crate) fn by_command(model: &Model) -> Vec<String> {
     let mut keys = model.console.keys.clone();
     keys.spells_commands = true;
-    by_phase(model).1.iter().map(|clause| keys.spelled(clause)).collect()
+    let clauses = by_phase(model).1;
+    let can = |clause: &&String| find::named_in(clause).all(|action| offered(model, action.id).is_ok());
+    clauses.iter().filter(can).map(|clause| keys.spelled(clause)).collect()
+}
+
+/// Whether every key that a clause names, such as `<planner>`, does something now on this screen. The footer and the keys
+/// use the same table.
+fn works(model: &Model, clause: &str) -> bool {
+    let contexts = contexts(model);
+    find::named_in(clause).all(|action| {
+        let key = model.console.keys.key_of(action);
+        let has_key = key.is_none_or(|key| find::action_for(&model.console.keys, key, &contexts).is_some());
+        has_key && offered(model, action.id).is_ok()
+    })
 }
 
 /// What happens next, in sentences, without the figures that keep changing.
@@ -121,8 +142,9 @@ pub(crate) fn standing(model: &Model) -> Vec<String> {
         (model.live.run.phase(), &model.live.asked, model.live.is_cut_off || model.live.is_look_only())
     {
         let work = model.live.busy.as_ref().map(|busy| format!("{}.", busy.work));
-        let clauses = held::clauses(model, hold).into_iter().chain(work);
-        return clauses.map(|clause| model.console.keys.spelled(&clause)).collect();
+        let mut clauses: Vec<String> = held::clauses(model, hold).into_iter().chain(work).collect();
+        clauses.retain(|clause| works(model, clause));
+        return clauses.iter().map(|clause| model.console.keys.spelled(clause)).collect();
     }
     if let Some(busy) = &model.live.busy {
         return vec![format!("{}.", busy.work)];
@@ -134,14 +156,16 @@ pub(crate) fn standing(model: &Model) -> Vec<String> {
 }
 
 /// The keys for what can be done after a mission has ended.
-fn more(model: &Model) -> String {
-    match model.ui.screen {
-        Screen::Result if model.live.missed().is_empty() => "<again>: replan, <home>: home.",
-        Screen::Result => "<again>: replan, <rescan>: re-scan, <home>: home.",
-        Screen::Home => "<result>: result.",
-        _ => "<result>: result. <home>: home.",
-    }
-    .into()
+fn more(model: &Model) -> impl Iterator<Item = String> {
+    let keys: &[&str] = match model.ui.screen {
+        Screen::Result if model.live.missed().is_empty() && model.live.in_doubt().is_empty() => {
+            &["<again>: replan.", "<home>: home."]
+        }
+        Screen::Result => &["<again>: replan.", "<rescan>: re-scan.", "<home>: home."],
+        Screen::Home => &["<result>: result."],
+        _ => &["<result>: result.", "<home>: home."],
+    };
+    keys.iter().map(|key| (*key).to_owned())
 }
 
 /// A planner's work: its progress, elapsed time, limit and current activity.
@@ -164,8 +188,7 @@ pub(super) fn joined(clauses: &[String], columns: usize) -> String {
 
 /// The clauses that fit; the first one is shortened if necessary.
 fn fitting(clauses: &[String], columns: usize) -> Vec<String> {
-    let mut kept: Vec<String> =
-        clauses.first().map(|first| text::clauses(first, columns)).into_iter().collect();
+    let mut kept: Vec<String> = clauses.first().map(|first| shortened(first, columns)).into_iter().collect();
     let mut used = kept.first().map_or(0, |first| text::width(first));
     for clause in clauses.iter().skip(1) {
         let more = 1 + text::width(clause);
@@ -175,6 +198,15 @@ fn fitting(clauses: &[String], columns: usize) -> Vec<String> {
         }
     }
     kept
+}
+
+/// The leading clauses of a sentence that fit. They end as a sentence, because the name of a key may follow.
+fn shortened(sentence: &str, columns: usize) -> String {
+    if text::width(sentence) <= columns {
+        return sentence.to_owned();
+    }
+    let short = text::clauses(sentence, columns.saturating_sub(1));
+    if sentence.ends_with('.') && short.ends_with(char::is_alphanumeric) { short + "." } else { short }
 }
 
 /// The line in a given width. While the robot is held, the first clause also states where the robot is and how far the
@@ -315,6 +347,15 @@ mod tests {
         let clauses = ["HELD by operator.", "space: resume.", "P."].map(str::to_owned);
         assert_eq!(joined(&clauses, 40), "HELD by operator. space: resume. P.");
         assert_eq!(joined(&clauses, 20), "HELD by operator. P.");
-        assert_eq!(joined(&clauses, 8), "HELD by…");
+        assert_eq!(joined(&clauses, 9), "HELD by…");
+    }
+
+    #[test]
+    fn a_sentence_that_is_shortened_before_a_key_keeps_its_full_stop() {
+        let clauses =
+            ["DONE: back at the start, 26.8 % of the floor scanned.", "p: replan."].map(str::to_owned);
+        assert_eq!(joined(&clauses, 40), "DONE: back at the start. p: replan.");
+        assert_eq!(joined(&clauses, 24), "DONE: back at the start.");
+        assert_eq!(joined(&clauses, 23), "DONE: back at the sta…");
     }
 }

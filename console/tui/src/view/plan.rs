@@ -24,7 +24,8 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
         return failure(look, frame, area, why);
     }
     let size = (frame.area().width, frame.area().height);
-    for (pane, area) in layout::plan(area, size, look.model.ui.pane) {
+    let rows = |width| state::rows(look, width);
+    for (pane, area) in layout::plan(area, size, look.model.ui.pane, &rows) {
         match pane {
             Pane::Map if arrangement == Arrangement::Paged => map_with_estimate(look, frame, area),
             Pane::Map => map::draw(look, frame, area),

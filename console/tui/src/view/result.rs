@@ -6,9 +6,9 @@ mod floor;
 mod missed;
 pub(super) mod plates;
 
-use super::look::{Look, fill};
-use super::map;
-use crate::model::{Pane, RunResult, ui::Arrangement};
+use super::look::{Look, Parts, fill};
+use super::{map, table, text};
+use crate::model::{Model, Pane, RunResult, ui::Arrangement};
 use crate::theme::Role;
 use mission::Outcome;
 use ratatui::Frame;
@@ -20,84 +20,158 @@ const SIDE: [u16; 3] = [42, 62, 88];
 const LARGE: u16 = 170;
 /// Rows of the list of missed areas, including the frame, on a narrow, a wide and a large screen.
 const MISSED: [u16; 3] = [8, 10, 20];
+/// Rows of the panes above the list of missed areas while the list has the focus.
+const ABOVE_MISSED: u16 = 8;
+/// The share of the side panes' rows that the floor shares get beside figures that need more than the rest: one part in
+/// this many.
+const FLOOR_PART: u16 = 3;
 
-pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, _: Arrangement) {
     let Some(result) = &look.model.live.result else {
         let block = look.block(Role::Border, "Result", "");
         return fill(frame, area, block, vec![look.line([(Role::Dim, " No run has ended yet.".into())])]);
     };
-    let size = match arrangement {
-        Arrangement::Paged | Arrangement::Strip => return page(look, frame, area, result),
+    for (pane, area) in placed(look.model, area, result) {
+        match pane {
+            Pane::Map => map::draw(look, frame, area),
+            Pane::Coverage => floor::draw(look, frame, area, result),
+            Pane::Missed => missed::draw(look, frame, area, result),
+            Pane::Plates => plates::draw(look, frame, area),
+            _ => figures::draw(look, frame, area, result),
+        }
+    }
+}
+
+/// The panes and their areas. The pane that responds to the arrow keys gets the rows that it needs; on a small screen, it
+/// is the only one.
+fn placed(model: &Model, area: Rect, result: &RunResult) -> Vec<(Pane, Rect)> {
+    let pane = model.ui.pane;
+    let size = match model.ui.arrangement() {
+        Arrangement::Paged | Arrangement::Strip => return vec![(pane, area)],
         Arrangement::Narrow => 0,
         Arrangement::Wide if area.width < LARGE => 1,
         Arrangement::Wide => 2,
     };
-    let missed_rows = missed::rows(look).min(MISSED[size]).max(3);
-    let missed_rows = if size == 2 { beside_plates(look, area, result, missed_rows) } else { missed_rows };
+    let needed = missed::rows(model, area.width).max(3);
+    let missed_rows = match size {
+        _ if pane == Pane::Missed => needed.min(area.height.saturating_sub(ABOVE_MISSED)).max(3),
+        2 => beside_plates(model, area, result, needed.min(MISSED[2])),
+        size => needed.min(MISSED[size]),
+    };
     let [above, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(missed_rows)]).areas(area);
+    let missed = (Pane::Missed, below);
+    // The table of the plates needs the whole width of a narrow screen.
+    if size == 0 && pane == Pane::Plates {
+        return vec![(Pane::Plates, above), missed];
+    }
     let [left, right] =
         Layout::horizontal([Constraint::Fill(1), Constraint::Length(SIDE[size])]).areas(above);
-    let columns = right.width.saturating_sub(2);
-    // Beside a map, the figures leave room for the floor shares.
-    let shares = if size > 0 { floor::least(look, result, columns) } else { 0 };
-    let rows = (figures::rows(look, result, columns) + 2).min(right.height.saturating_sub(shares));
-    let [achieved, rest] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(right);
-    figures::draw(look, frame, achieved, result);
-    match look.model.ui.pane {
-        Pane::Plates => plates::draw(look, frame, left),
-        Pane::Map => map::draw(look, frame, left),
-        _ if size > 0 => map::draw(look, frame, left),
-        _ => floor::draw(look, frame, left, result),
+    // A narrow screen shows the shares of the floor in one place only.
+    if size == 0 && pane != Pane::Map {
+        return vec![(Pane::Coverage, left), (Pane::Figures, right), missed];
     }
-    // A narrow screen shows the floor shares in one place only.
-    if size > 0 || matches!(look.model.ui.pane, Pane::Map | Pane::Plates) {
-        side(look, frame, rest, (result, size));
-    }
-    missed::draw(look, frame, below, result);
+    let mut panes = vec![(if pane == Pane::Plates { pane } else { Pane::Map }, left), missed];
+    panes.extend(side(model, right, (result, size)));
+    panes
 }
 
-/// The panes that fit below the figures: the floor shares and, on a large screen, the plates.
-fn side(look: &Look, frame: &mut Frame, area: Rect, (result, size): (&RunResult, usize)) {
+/// The panes beside the map: the figures, the shares of the floor and, on a large screen, the plates.
+fn side(model: &Model, area: Rect, (result, size): (&RunResult, usize)) -> Vec<(Pane, Rect)> {
     let columns = area.width.saturating_sub(2);
-    if area.height < floor::least(look, result, columns) {
-        return;
+    let figures = figures::rows(model, result, columns) + 2;
+    let floor = floor::rows(model, result, columns) + 2;
+    let least = floor::least(model, result, columns).min(floor);
+    let has_focus = model.ui.pane == Pane::Coverage;
+    let floor_rows = match area.height.saturating_sub(figures) {
+        _ if has_focus => floor.min(area.height.saturating_sub(area.height / FLOOR_PART)),
+        left if left >= floor => left,
+        _ => floor.min(least.max(area.height / FLOOR_PART)),
+    };
+    // A narrow screen with a map has no room for both panes.
+    if floor_rows + least > area.height {
+        return vec![(if has_focus { Pane::Coverage } else { Pane::Figures }, area)];
     }
-    let wanted = floor::rows(look, result, columns) + 2;
-    let has_plates = size == 2 && n_plates(look) > 0 && look.model.ui.pane != Pane::Plates;
-    let shares = if has_plates { wanted.min(area.height) } else { area.height };
-    let [floor, plates] = Layout::vertical([Constraint::Length(shares), Constraint::Fill(1)]).areas(area);
-    floor::draw(look, frame, floor, result);
-    if has_plates && plates.height > 3 {
-        plates::draw(look, frame, plates);
-    }
+    let has_plates = size == 2 && n_plates(model) > 0 && model.ui.pane != Pane::Plates;
+    let shares = if has_plates { floor.min(floor_rows) } else { floor_rows };
+    let [achieved, rest] =
+        Layout::vertical([Constraint::Length(figures.min(area.height - floor_rows)), Constraint::Fill(1)])
+            .areas(area);
+    let shares = if has_plates { shares } else { rest.height };
+    let [floor, plates] = Layout::vertical([Constraint::Length(shares), Constraint::Fill(1)]).areas(rest);
+    let mut panes = vec![(Pane::Figures, achieved), (Pane::Coverage, floor)];
+    panes.extend((has_plates && plates.height > 3).then_some((Pane::Plates, plates)));
+    panes
 }
 
-fn n_plates(look: &Look) -> usize {
-    look.model.live.floor().map_or(0, |floor| floor.plates.len())
+fn n_plates(model: &Model) -> usize {
+    model.live.floor().map_or(0, |floor| floor.plates.len())
 }
 
 /// The rows of the list of missed areas on a large screen: fewer if the plates would not all fit above it.
-fn beside_plates(look: &Look, area: Rect, result: &RunResult, missed_rows: u16) -> u16 {
-    if n_plates(look) == 0 {
+fn beside_plates(model: &Model, area: Rect, result: &RunResult, missed_rows: u16) -> u16 {
+    if n_plates(model) == 0 {
         return missed_rows;
     }
     let columns = SIDE[2].saturating_sub(2);
-    let above = figures::rows(look, result, columns) + floor::rows(look, result, columns) + 4;
+    let above = figures::rows(model, result, columns) + floor::rows(model, result, columns) + 4;
     // The frame and the headings.
-    let plates = (n_plates(look) + 3).min(usize::from(u16::MAX)) as u16;
+    let plates = (n_plates(model) + 3).min(usize::from(u16::MAX)) as u16;
     let left = area.height.saturating_sub(above + plates);
     missed_rows.min(left.max(MISSED[0]))
 }
 
-/// One pane at a time.
-fn page(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
-    match look.model.ui.pane {
-        Pane::Map => map::draw(look, frame, area),
-        Pane::Coverage => floor::draw(look, frame, area, result),
-        Pane::Missed => missed::draw(look, frame, area, result),
-        Pane::Plates => plates::draw(look, frame, area),
-        _ => figures::draw(look, frame, area, result),
-    }
+/// How many rows a pane of text can be scrolled at most, at the size of the screen; 0 if all of it is visible, or if the
+/// pane is not shown.
+pub(crate) fn most_scrolled(model: &Model, pane: Pane) -> usize {
+    let Some(result) = &model.live.result else { return 0 };
+    let area = super::body(model, Rect::new(0, 0, model.ui.width, model.ui.height));
+    let shown = placed(model, area, result).into_iter().find(|(other, _)| *other == pane);
+    shown.map_or(0, |(_, area)| {
+        let columns = area.width.saturating_sub(2);
+        let rows = match pane {
+            Pane::Figures => figures::rows(model, result, columns),
+            Pane::Coverage => floor::rows(model, result, columns),
+            _ => 0,
+        };
+        usize::from(rows).saturating_sub(area.height.saturating_sub(2).into())
+    })
+}
+
+/// Draws the visible part of a pane of text; its title says which rows are visible if not all of them are.
+fn scrolled(
+    look: &Look,
+    frame: &mut Frame,
+    (pane, area): (Pane, Rect),
+    (role, title): (Role, &str),
+    rows: Vec<Parts>,
+) {
+    let has_focus = look.model.ui.pane == pane;
+    let height = usize::from(area.height.saturating_sub(2));
+    let most = rows.len().saturating_sub(height);
+    let first = if has_focus { look.model.ui.scrolled.min(most) } else { 0 };
+    let shown = first..(first + height).min(rows.len());
+    let title = format!("{}{title}", look.pane_key(pane));
+    let place = if most > 0 { table::counted(&shown, rows.len()) } else { String::new() };
+    let next = next_page(look);
+    let keys = if most > 0 && has_focus { look.keys("<down> <up>") } else { String::new() };
+    let scroll = if keys.is_empty() { String::new() } else { format!("{keys} scroll") };
+    let joined =
+        |parts: &[&str]| parts.iter().filter(|part| !part.is_empty()).copied().collect::<Vec<_>>().join("  ");
+    let notes = [
+        joined(&[&place, &scroll, &next]),
+        joined(&[&place, &keys, &next]),
+        joined(&[&place, &keys]),
+        place.clone(),
+    ];
+    let room = usize::from(area.width).saturating_sub(text::width(&title) + 11);
+    let border = if has_focus && role == Role::Border { Role::Focus } else { role };
+    let note = text::wording(notes, room);
+    let block =
+        if has_focus { look.focused(border, &title, &note) } else { look.block(border, &title, &note) };
+    let (inner, len) = (block.inner(area), rows.len());
+    let lines = rows.into_iter().skip(first).take(height).map(|parts| look.line(parts)).collect();
+    fill(frame, area, block, lines);
+    table::bar(look, frame, inner, &shown, len);
 }
 
 /// The title of the figures.

@@ -3,7 +3,7 @@
 use super::text;
 use crate::model::setting::{Effect, Figures};
 use crate::model::{Model, log::clock, parameter};
-use mission::{ParamValue, Phase};
+use mission::{ParamValue, Phase, PlannerChoice};
 
 /// The clauses of the question, the most important first. The first one contains the question and its keys; the second
 /// one is the effect that matters most. The progress of the estimate is left out on request.
@@ -17,17 +17,22 @@ pub(super) fn clauses(model: &Model, key: &str, value: &ParamValue, has_progress
         Phase::Held(_) => "No motion yet.",
         Phase::Waiting | Phase::Ended(_) => "The planner makes a new plan.",
     };
-    let effect = model.live.with_parameter(key, value).map(|changed| model.live.effect_of(&changed));
-    let effect = effect.map(|effect| match effect {
-        Effect::Computing(_) if !has_progress => Effect::Computing(None),
-        effect => effect,
-    });
-    let required_m = model.live.run.about.as_ref().map(|about| about.mission.clearance_m);
-    let mut clauses =
-        effect.map_or_else(Vec::new, |effect| effect_of(&effect, model.live.waits(), required_m));
+    let changed = model.live.with_parameter(key, value);
+    let mut clauses = changed.map_or_else(Vec::new, |changed| effect(model, &changed, has_progress));
     clauses.insert(1.min(clauses.len()), when.into());
     clauses.insert(0, format!("Set {change}{default}? <accept>: set, <cancel>: cancel."));
     clauses
+}
+
+/// The estimated effect of running a planner with changed parameters, as sentences, the most important first. The progress
+/// of the estimate is left out on request.
+pub(super) fn effect(model: &Model, changed: &PlannerChoice, has_progress: bool) -> Vec<String> {
+    let effect = match model.live.effect_of(changed) {
+        Effect::Computing(_) if !has_progress => Effect::Computing(None),
+        effect => effect,
+    };
+    let required_m = model.live.run.about.as_ref().map(|about| about.mission.clearance_m);
+    effect_of(&effect, model.live.waits(), required_m)
 }
 
 /// The estimated effect, as sentences; before the start, the effect on the plan. `required_m` is the clearance that the

@@ -173,8 +173,9 @@ fn pull(look: &Look, tether: &Tether, (label, room): (&str, usize)) -> Option<(R
         share if share > reel.pull_ratio_max => Role::Warn,
         _ => Role::Text,
     };
-    let words = format!("{label}{} of {} N", text::number(pull_n, 1), text::number(reel.pull_n, 1));
-    Some((role, metered(share, [words.clone(), words], room)))
+    let [now, most] = [pull_n, reel.pull_n].map(|newtons| text::number(newtons, 1));
+    let words = [format!("{label}{now} N, reel pulls {most} N"), format!("{label}{now} of {most} N")];
+    Some((role, metered(share, words, room)))
 }
 
 /// The measured pull, and the slack beside its limit.

@@ -147,19 +147,38 @@ pub(crate) fn width(text: &str) -> usize {
     Span::raw(text).width()
 }
 
-/// Wraps a sentence into lines of a given maximum width.
+/// Wraps a sentence into lines of a given maximum width. A word that is too long for a line, such as a path, is divided.
 pub(crate) fn wrap(sentence: &str, columns: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    for word in sentence.split_whitespace() {
+    for word in sentence.split_whitespace().flat_map(|word| divided(word, columns)) {
         match lines.last_mut() {
-            Some(line) if width(line) + 1 + width(word) < columns => {
+            Some(line) if width(line) + 1 + width(&word) < columns => {
                 line.push(' ');
-                line.push_str(word);
+                line.push_str(&word);
             }
-            _ => lines.push(word.to_owned()),
+            _ => lines.push(word),
         }
     }
     lines
+}
+
+/// A word in pieces of a maximum width, divided behind a mark such as `/` or `-`; a piece without a mark is divided between
+/// two letters.
+fn divided(word: &str, columns: usize) -> Vec<String> {
+    const MARKS: [char; 5] = ['/', '-', '_', ',', '='];
+    let mut pieces: Vec<String> = Vec::new();
+    let mut rest = word;
+    while width(rest) > columns && columns > 0 {
+        let ends = rest.char_indices().map(|(at, letter)| at + letter.len_utf8());
+        let ends: Vec<usize> = ends.take_while(|end| width(&rest[..*end]) <= columns).collect();
+        let marked = ends.iter().rev().find(|end| rest[..**end].ends_with(MARKS));
+        let first = rest.chars().next().map_or(0, char::len_utf8);
+        let end = marked.or(ends.last()).copied().unwrap_or(first);
+        pieces.push(rest[..end].to_owned());
+        rest = &rest[end..];
+    }
+    pieces.extend((!rest.is_empty()).then(|| rest.to_owned()));
+    pieces
 }
 
 /// Items in lines of a maximum width, with a gap between the items of a line; a longer item is cut at its end.
@@ -310,5 +329,13 @@ mod tests {
     fn words_are_wrapped_and_none_is_lost() {
         let lines = wrap("one planner drives at a time", 12);
         assert_eq!(lines, ["one planner", "drives at a", "time"]);
+    }
+
+    #[test]
+    fn a_long_word_is_divided_behind_a_mark_if_it_has_one() {
+        let lines = wrap("kept in logs/20261129T171737Z-tether-cart/events.jsonl", 20);
+        assert_eq!(lines, ["kept in logs/", "20261129T171737Z-", "tether-cart/", "events.jsonl"]);
+        assert_eq!(wrap("abcdefgh", 3), ["abc", "def", "gh"]);
+        assert_eq!(wrap("word", 0), ["word"]);
     }
 }

@@ -5,7 +5,7 @@ use super::tabs::{self, Form};
 use super::text;
 use crate::model::{Model, Recording, ui::Arrangement};
 use crate::theme::Role;
-use mission::{Gait, Hold, HoldReason, Outcome, Phase, Severity};
+use mission::{Gait, Outcome, Phase, Severity};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use world::Boundary;
@@ -105,10 +105,8 @@ pub(super) fn state(model: &Model) -> Parts {
         Phase::Running(Gait::OneTick | Gait::To(_)) => ("OPER", Role::Run, "▶ STEP"),
         Phase::Running(Gait::Back) => ("OPER", Role::Run, "▶ BACK"),
         Phase::Held(_) if model.live.run.is_live() => ("LIVE", held_role(model), held_word(model)),
-        Phase::Held(Hold {
-            by: HoldReason::Operator | HoldReason::Stepped | HoldReason::PlannerReplaced,
-            ..
-        }) => ("OPER", Role::Hold, "‖ HOLD"),
+        // The operator is in control if only an order can move the robot, whatever has held it.
+        Phase::Held(hold) if hold.resumes.is_never() => ("OPER", Role::Hold, "‖ HOLD"),
         Phase::Held(_) => ("AUTO", Role::Hold, "‖ HOLD"),
         Phase::Ended(Outcome::Complete) => ("OPER", Role::Good, "✓ DONE"),
         Phase::Ended(_) => ("OPER", Role::Warn, "■ ENDED"),

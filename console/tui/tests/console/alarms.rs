@@ -652,3 +652,27 @@ fn a_digit_beyond_the_actions_shows_its_screen_and_one_among_them_runs_its_actio
     screen.type_text("1");
     assert_eq!(screen.model.ui.screen, SHOWN, "the first action runs");
 }
+
+#[test]
+fn the_alarm_of_an_excluded_station_names_the_order_and_not_an_echo() {
+    let mut screen = Screen::running();
+    let excluded = screen.mission.excluded();
+    screen.hear(RunMsg::Events(vec![excluded]));
+    let station = world::StationId(4);
+    let fix = screen.model.live.run.position.fix.as_mut().unwrap();
+    fix.excluded = vec![(station, positioning::Exclusion::ByOrder)];
+    screen.type_text("4");
+    screen.model.ui.alarm = Some(Cause::Station(station));
+    let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+    for words in
+        ["station S4 excluded", "An operator excluded the station.", ":include", "Use station S4 again"]
+    {
+        assert!(shown.contains(words), "{words}\n{shown}");
+    }
+    assert!(!shown.contains("echo") && !shown.contains("as soon as its"), "{shown}");
+    // The other reasons have advice of their own.
+    let fix = screen.model.live.run.position.fix.as_mut().unwrap();
+    fix.excluded = vec![(station, positioning::Exclusion::Silent)];
+    let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+    assert!(shown.contains("station S4 rejected") && shown.contains("was not heard"), "{shown}");
+}

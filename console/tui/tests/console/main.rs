@@ -5,6 +5,7 @@ mod alarms;
 mod better_plan;
 mod commands;
 mod cuts;
+mod doubt;
 mod drawing;
 mod ending;
 mod events;

@@ -79,7 +79,7 @@ fn left_out() -> LeftOut {
 }
 
 /// A re-scan: the scan resumes at a place on the way.
-fn rescan() -> Screen {
+pub(crate) fn rescan() -> Screen {
     let mut screen = planned();
     let ask = Some(AskId { worker: WorkerId(0), n: 2 });
     let resumption = Resumption { at: Point::new(4.2, -3.0), after_m: 12.34, again_m2: 5.6 };

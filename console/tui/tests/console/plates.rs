@@ -92,3 +92,96 @@ fn a_mission_without_a_scan_says_so() {
         );
     }
 }
+
+/// The text of a pane of the result, scrolled from its first to its last row.
+fn scrolled(screen: &mut Screen, pane: Pane, size: (u16, u16)) -> String {
+    screen.send(Msg::Resize { width: size.0, height: size.1 });
+    for _ in 0..5 {
+        if screen.model.ui.pane != pane {
+            screen.press([Key::Tab]);
+        }
+    }
+    assert_eq!(screen.model.ui.pane, pane, "{size:?}");
+    let mut pages = String::new();
+    for _ in 0..60 {
+        pages += &shown(screen, size);
+        screen.press([Key::Down]);
+    }
+    let end = shown(screen, size);
+    // The list does not run away from its end: the first key up moves it.
+    screen.press([Key::Up]);
+    assert!(screen.model.ui.scrolled == 0 || shown(screen, size) != end, "{size:?}\n{end}");
+    pages
+}
+
+#[test]
+fn every_figure_of_a_result_can_be_reached_at_every_size() {
+    for size in sizes::SIZES {
+        let mut screen = plated();
+        screen.model.live.result.as_mut().unwrap().summary.violations =
+            Some((0..12).map(|n| format!("expected figure {n}, actual none")).collect());
+        let pages = scrolled(&mut screen, Pane::Figures, size);
+        for words in
+            ["Error against the true position", "worst 0.098 m", "p95 0.070", "actual none", "95 % error"]
+        {
+            assert!(pages.contains(words), "{size:?}: {words}\n{pages}");
+        }
+        assert!(size.1 > 36 || pages.contains("↓ ↑"), "{size:?}: the title names the keys\n{pages}");
+    }
+}
+
+#[test]
+fn every_share_of_the_floor_can_be_reached_at_every_size() {
+    for size in sizes::SIZES {
+        let mut screen = plated();
+        let floor = screen.model.live.result.as_mut().unwrap().summary.floor.as_mut().unwrap();
+        (floor.whole.untestable, floor.whole.percent.untestable) = (0.173, 17.3);
+        let pages = scrolled(&mut screen, Pane::Coverage, size);
+        for words in ["reachable", "whole floor", "Critical zone", "Plates: ", "17.3"] {
+            assert!(pages.contains(words), "{size:?}: {words}\n{pages}");
+        }
+        assert!(pages.contains("untst.") || pages.contains("not testable"), "{size:?}\n{pages}");
+    }
+}
+
+#[test]
+fn the_plates_have_all_true_errors_at_80x24() {
+    let mut screen = plated();
+    screen.send(Msg::Resize { width: 80, height: 24 });
+    while screen.model.ui.pane != Pane::Plates {
+        screen.press([Key::Tab]);
+    }
+    let shown = shown(&screen, (80, 24));
+    for head in ["scanned", "missed", "error p95", "true p95", "true worst"] {
+        assert!(shown.contains(head), "{head}\n{shown}");
+    }
+}
+
+#[test]
+fn every_reason_of_a_missed_area_can_be_read_at_every_size() {
+    for size in sizes::SIZES {
+        let mut screen = plated();
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        while screen.model.ui.pane != Pane::Missed {
+            screen.press([Key::Tab]);
+        }
+        let shown = shown(&screen, size);
+        assert!(!shown.contains("more reason"), "{size:?}\n{shown}");
+    }
+}
+
+#[test]
+fn the_arrow_keys_choose_a_missed_area_only_in_its_list_and_n_does_so_everywhere() {
+    let mut screen = plated();
+    let area = screen.model.live.result.as_ref().unwrap().summary.floor.as_ref().unwrap().missed[0].clone();
+    screen.model.live.result.as_mut().unwrap().summary.floor.as_mut().unwrap().missed.push(area);
+    screen.press([Key::Down]);
+    assert_eq!((screen.model.ui.pane, screen.model.ui.missed), (Pane::Figures, 0));
+    screen.type_text("n");
+    assert_eq!(screen.model.ui.missed, 1);
+    while screen.model.ui.pane != Pane::Missed {
+        screen.press([Key::Tab]);
+    }
+    screen.press([Key::Up]);
+    assert_eq!(screen.model.ui.missed, 0);
+}

@@ -43,20 +43,31 @@ fn a_preset_is_taken_after_a_look_at_what_it_changes() {
         (offered(Screen::held()), vec![note.clone(), order.clone()]),
         (offered(Screen::idle()), vec![note, order, Effect::Order(Order::Plan)]),
     ] {
-        assert_eq!(run(&mut screen, "preset-load soft"), []);
+        let estimated = run(&mut screen, "preset-load soft");
+        assert!(matches!(&estimated[..], [Effect::Compare(_) | Effect::Forecast(_)]), "{estimated:?}");
         let shown = text(&drawn(&screen.model, RICH, (80, 24)));
-        for words in
-            ["Preset soft (rpf)", "rpf_gain", "1 of 5 parameters change. Enter: apply them.", "Nothing moves"]
-        {
+        for words in [
+            "Preset soft (rpf)",
+            "[x] rpf_gain",
+            "1 of 1 changes taken",
+            "Enter: apply them",
+            "Nothing moves",
+        ] {
             assert!(shown.contains(words), "{words}: {shown}");
         }
-        assert_eq!(screen.press([Key::Enter]), effects);
+        let taken = screen.press([Key::Enter]);
+        assert_eq!(taken[..effects.len()], effects);
+        assert!(matches!(taken.last(), Some(Effect::StopComparing | Effect::StopForecasting)), "{taken:?}");
         assert_eq!(screen.model.ui.overlay, Overlay::None);
     }
     let mut screen = offered(Screen::held());
     run(&mut screen, "preset-load other");
-    assert!(text(&drawn(&screen.model, RICH, (80, 24))).contains("Enter: change planner to apf."));
-    assert_eq!(screen.press([Key::Esc, Key::Enter]), [], "Esc leaves everything as it is");
+    assert!(text(&drawn(&screen.model, RICH, (80, 24))).contains("Enter: change planner to apf"));
+    let closed = screen.press([Key::Esc, Key::Enter]);
+    assert!(
+        !closed.iter().any(|effect| matches!(effect, Effect::Order(_))),
+        "Esc leaves everything as it is"
+    );
 }
 
 #[test]
@@ -77,6 +88,37 @@ fn what_cannot_be_taken_says_why() {
     let resumed = screen.mission.obeyed(Order::Resume);
     screen.hear(RunMsg::Events(resumed));
     assert_eq!(screen.press([Key::Enter]), [], "checked again when it is taken");
+}
+
+#[test]
+fn the_values_of_a_preset_are_chosen_one_by_one_and_their_effect_is_estimated() {
+    let two = [("rpf_gain", ParamValue::Float(0.8)), ("order", ParamValue::Int(3))];
+    let mut screen = offered(Screen::idle());
+    screen.model.console.presets.push(Preset { name: "two".into(), choice: Ok(with("rpf", &two)) });
+    assert_eq!(run(&mut screen, "preset-load two"), [Effect::Compare(with("rpf", &two))]);
+    // The second value is left as it is: the estimate is made again without it.
+    assert_eq!(
+        screen.press([Key::Down, Key::Char('t')]),
+        [Effect::StopComparing, Effect::Compare(with("rpf", &two[..1]))]
+    );
+    for size in crate::sizes::SIZES {
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        let shown = text(&drawn(&screen.model, RICH, size));
+        for words in ["[x] rpf_gain", "[ ] order", "Computing the effect", "1 of 2 changes taken"] {
+            assert!(shown.contains(words), "{size:?}: {words}\n{shown}");
+        }
+    }
+    let taken = screen.press([Key::Enter]);
+    assert!(taken.contains(&Effect::Order(Order::ChoosePlanner(with("rpf", &two[..1])))), "{taken:?}");
+    // Without any value, there is nothing to send.
+    run(&mut screen, "preset-load two");
+    assert_eq!(
+        screen.press([Key::Char('t'), Key::Down, Key::Char('t')]).last(),
+        Some(&Effect::StopComparing)
+    );
+    let sent = screen.press([Key::Enter]);
+    assert!(!sent.iter().any(|effect| matches!(effect, Effect::Order(_))), "{sent:?}");
+    assert_eq!(notice(&screen), "nothing was sent: no value of preset two is ticked");
 }
 
 #[test]

@@ -1,11 +1,13 @@
 //! Every question, with its keys, at the smallest size of a whole screen.
 
 use crate::fixture::{RICH, Screen, choice};
-use crate::screens::{drawn, text};
-use mission::{HoldReason, ParamValue, PlannerChoice};
-use tui::model::Overlay;
+use crate::screens::{drawn, roles, text};
+use crate::sizes::SIZES;
+use mission::{HoldReason, ParamValue, PlannerChoice, ZoneCost};
 use tui::model::ui::Ask;
+use tui::model::{Continued, Overlay};
 use tui::{Msg, RunMsg};
+use world::Point;
 
 /// The longest id of a shipped planner, with parameters that are not the default.
 fn long_choice() -> PlannerChoice {
@@ -48,6 +50,59 @@ fn no_question_is_cut_at_60x16() {
             let asked = lines[from.saturating_sub(1)..].join("\n");
             assert!(asked.contains("Esc: "), "{question:?}\n{shown}");
             assert!(!lines[lines.len() - 4..].iter().any(|line| line.contains('…')), "{question:?}\n{shown}");
+        }
+    }
+}
+
+/// The words of the open question: those of the rows that have its colour, without the state and the keys.
+fn asked(screen: &mut Screen, size: (u16, u16)) -> String {
+    screen.send(Msg::Resize { width: size.0, height: size.1 });
+    let (shown, roles) = (text(&drawn(&screen.model, RICH, size)), roles(&screen.model, RICH, size));
+    let rows = shown.lines().zip(roles.lines()).filter(|(_, roles)| roles.trim_matches('_').starts_with('c'));
+    rows.flat_map(|(row, _)| row.split_whitespace()).collect::<Vec<_>>().join(" ")
+}
+
+/// A re-scan that waits for its start away from where the earlier run left the robot.
+fn rescan() -> Screen {
+    let mut screen = crate::maps::rescan();
+    let left_at = Some(Point::new(-2.0, 3.0));
+    screen.hear(RunMsg::Continues(Ok(Continued { runs: vec!["first".into()], left_at })));
+    screen
+}
+
+#[test]
+fn every_question_says_the_same_at_every_size() {
+    let cost = ZoneCost {
+        path_m: 12.4,
+        closed_m2: 3.21,
+        lost_m2: 1.05,
+        holds: true,
+        drops_offer: true,
+        blocks_way_back: true,
+    };
+    for make in [Screen::held, Screen::tethered, Screen::idle, rescan] {
+        let mut screen = make();
+        screen.model.live.zone_cost = Some(cost);
+        for question in questions() {
+            screen.model.ui.overlay = question.clone();
+            let whole = asked(&mut screen, SIZES[3]);
+            assert!(whole.contains("Esc: "), "{question:?}: {whole}");
+            for size in SIZES {
+                assert_eq!(asked(&mut screen, size), whole, "{question:?} at {size:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_question_before_a_re_scan_says_where_the_robot_must_stand_at_every_size() {
+    let mut screen = rescan();
+    screen.model.ui.overlay = Overlay::Confirm(Ask::Start(None));
+    for size in SIZES {
+        let question = asked(&mut screen, size);
+        for words in ["must stand at 9.40, 0.00 m", "it was left ", "The scan resumes at ", "a second time."]
+        {
+            assert!(question.contains(words), "{size:?}: {words}: {question}");
         }
     }
 }

@@ -254,9 +254,8 @@ fn a_tether_alarm_says_what_happened_and_where() {
 
 #[test]
 fn the_screen_that_is_open_is_not_offered() {
-    let mut screen = Screen::running();
-    let ended = screen.mission.ended(mission::Outcome::Complete, "path driven");
-    screen.hear(RunMsg::Events(vec![ended]));
+    let mut screen = crate::overviews::ended().0;
+    screen.type_text("3");
     assert!(state(&screen).contains("7: result. 1: home."), "{}", state(&screen));
     screen.type_text("1");
     assert!(state(&screen).contains("7: result.") && !state(&screen).contains("home."), "{}", state(&screen));
@@ -314,4 +313,44 @@ fn the_end_of_a_live_mission_is_good_only_when_the_stop_is_confirmed() {
     hear(&mut screen, [EventKind::Stood { confirmed: true, after_s: 1.0, moved: false }]);
     let line = state(&screen);
     assert!(line.starts_with("DONE: floor scanned. ") && !line.contains("onfirmed"), "{line}");
+}
+
+#[test]
+fn the_state_names_only_keys_that_do_something_on_the_screen() {
+    use tui::actions::{context::contexts, find};
+    let refused = HoldReason::PlanRefused { message: "it would wind the tether".into() };
+    let stuck = HoldReason::Stuck { message: "no progress at 2.0, 3.0 m".into() };
+    for by in [HoldReason::Operator, HoldReason::PositionLost, refused, stuck] {
+        let mut screen = Screen::running();
+        let held = screen.mission.held(by.clone());
+        screen.hear(RunMsg::Events(vec![held]));
+        for (number, has_planner) in [("2", true), ("3", true), ("4", false), ("5", false), ("1", false)] {
+            screen.type_text(number);
+            let line = state(&screen);
+            // The key changes the planner exactly where the line offers it.
+            let contexts = contexts(&screen.model);
+            let action = find::action_for(&screen.model.console.keys, tui::Key::Char('P'), &contexts);
+            assert_eq!(action.is_some(), has_planner, "{by:?} on screen {number}");
+            assert!(has_planner || !line.contains("P: "), "{by:?} on screen {number}: {line}");
+        }
+        // A list takes the keys of the screen.
+        screen.type_text("3L");
+        assert!(!state(&screen).contains("P: "), "{}", state(&screen));
+    }
+}
+
+#[test]
+fn the_operator_is_in_control_during_every_hold_that_only_an_order_ends() {
+    let top =
+        |screen: &Screen| text(&drawn(&screen.model, RICH, (120, 36))).lines().next().unwrap().to_owned();
+    let mut screen = Screen::held();
+    assert!(top(&screen).starts_with(" OPER ‖ HOLD"), "{}", top(&screen));
+    // A zone drawn over the hull adds a reason for the hold, but changes nothing about who ends it.
+    let zone = screen.mission.held(HoldReason::ZoneBreached { zone: "zone 1".into() });
+    screen.hear(RunMsg::Events(vec![zone]));
+    assert!(top(&screen).starts_with(" OPER ‖ HOLD"), "{}", top(&screen));
+    let mut screen = Screen::running();
+    let lost = screen.mission.held_until(HoldReason::PositionLost, Resumes::WhenCleared);
+    screen.hear(RunMsg::Events(vec![lost]));
+    assert!(top(&screen).starts_with(" AUTO ‖ HOLD"), "{}", top(&screen));
 }

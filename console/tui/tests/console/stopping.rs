@@ -68,7 +68,12 @@ fn overlays() -> Vec<Overlay> {
         Overlay::Parameters { selected: 0, edit: None },
         Overlay::Parameters { selected: 0, edit },
         Overlay::Layers { selected: 0 },
-        Overlay::Preset { name: "soft".into(), choice: choice("apf"), selected: 0 },
+        Overlay::Preset {
+            name: "soft".into(),
+            choice: choice("apf"),
+            selected: 0,
+            left: std::collections::BTreeSet::new(),
+        },
         Overlay::Preflight { selected: 0 },
         Overlay::WhatIf,
         Overlay::Filter("a".into()),

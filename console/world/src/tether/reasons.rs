@@ -8,7 +8,7 @@ use crate::beside_limit;
 use geometry::Point;
 
 /// Distance from the anchor within which a path must end to have returned, metres.
-const BACK_M: f64 = 0.3;
+pub const BACK_M: f64 = 0.3;
 
 /// The data that the reasons are derived from, besides the certificate.
 pub(super) struct Reasons<'a> {

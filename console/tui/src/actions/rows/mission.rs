@@ -53,6 +53,7 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::TryParameters, "try-parameters", "Change parameters for another forecast", &[Key::Char('p')], &[Context::WhatIf]).label("parameters").does(what_if::draft),
     action(ActionId::ForecastDraft, "forecast-draft", "Forecast with these parameters", &[Key::Char('w')], &[Context::Draft]).label("forecast").does(what_if::forecast_draft),
     action(ActionId::PresetLoad, "preset-load", "Show what a parameter preset changes", &[], &[Context::Screen]).args(&[must("preset", Kind::Preset)]).when(preset::can_load),
+    action(ActionId::TickValue, "tick-value", "Take or leave the value of the preset", &[Key::Char('t')], &[Context::Preset]).label("take/leave").does(preset::tick),
     action(ActionId::PresetSave, "preset-save", "Save the parameters as a preset", &[], &[Context::Screen]).args(&[must("name", Kind::Text)]).when(offer::parameters),
     action(ActionId::Preflight, "preflight", "Run the pre-flight checks", &[Key::Char('A')], &[On(Screen::Plan), On(Screen::Mission)]).label("pre-flight").reaches(Reach::Mission)
         .when(|m| demand(m.live.waits(), "checks can only be run before the start")).does(preflight::open),

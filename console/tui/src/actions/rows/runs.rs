@@ -7,16 +7,15 @@ use crate::actions::{ActionId, Kind};
 use crate::keys::Key;
 use crate::model::Screen;
 use crate::model::replay::Jump;
-use crate::update::act::select;
 use crate::update::offer::{self, demand};
 use crate::update::{go, replay, review};
 
 #[rustfmt::skip]
 pub(super) const ROWS: &[Action] = &[
     action(ActionId::Open, "open", "Open a scenario", &[], &[Context::Screen]).args(&[must("scenario", Kind::Scenario), may("planner", Kind::Planner)]).reaches(Reach::Runs).when(offer::nothing_under_way),
-    action(ActionId::NextMissed, "next-missed", "Show the next missed area", &[Key::Char('n')], &[On(Screen::Result)]).label("missed").repeats().when(offer::missed).looks(|m| select(m, 1)),
+    action(ActionId::NextMissed, "next-missed", "Show the next missed area", &[Key::Char('n')], &[On(Screen::Result)]).label("missed").repeats().when(offer::missed).looks(|m| go::select_missed(m, 1)),
     action(ActionId::PreviousMissed, "previous-missed", "Show the previous missed area", &[Key::Char('N')], &[On(Screen::Result)]).label("missed").repeats()
-        .when(offer::missed).looks(|m| select(m, -1)),
+        .when(offer::missed).looks(|m| go::select_missed(m, -1)),
     action(ActionId::Again, "again", "Plan the same scenario again", &[Key::Char('p')], &[On(Screen::Result)]).label("plan again").reaches(Reach::Mission)
         .when(|m| demand(m.live.source.is_some() && !m.live.is_under_way(), "a mission is in progress")).does(go::again),
     action(ActionId::Play, "play", "Play or pause the run (<hold>)", &[], &[Context::Replay]).when(replay::is_loaded).does(replay::toggle),

@@ -1,6 +1,6 @@
 //! The actions on an alarm, numbered, and the advice about it.
 
-use crate::guide::{effect, guide, name};
+use crate::guide::{effect, meaning, name};
 use crate::model::step::Step;
 use crate::model::{Alarm, Cause, Overlay};
 use crate::theme::Role;
@@ -83,7 +83,7 @@ pub(in crate::view) fn list(look: &Look, cause: &Cause, selected: usize, columns
     let advice = advice(look, cause).into_iter();
     below.extend(advice.flat_map(|words| rows("·", Role::Text, &words, room)));
     let effect = look.run.alarms.get(cause).map_or_else(String::new, |alarm| effect(alarm, look.run));
-    below.extend(paragraph(Role::Dim, &format!("{} {effect}", guide(cause).cause), room));
+    below.extend(paragraph(Role::Dim, &format!("{} {effect}", meaning(cause, look.run).cause), room));
     // If space is short, the last lines about the alarm are dropped, never an action.
     below.truncate(usize::from(look.model.ui.height).saturating_sub(FRAME + steps.len()));
     List {

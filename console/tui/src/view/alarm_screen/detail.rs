@@ -1,6 +1,6 @@
 //! The details of one alarm.
 
-use crate::guide::{effect, guide, name};
+use crate::guide::{effect, meaning, name};
 use crate::model::alarms::State;
 use crate::model::log::severity_word;
 use crate::model::{Alarm, Cause};
@@ -10,6 +10,7 @@ use crate::view::look::Look;
 use crate::view::text;
 use positioning::Exclusion;
 use ratatui::text::Line;
+use world::StationId;
 
 /// Width of the figure names, columns.
 const NAMES: usize = 10;
@@ -25,12 +26,12 @@ pub(super) fn lines(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'sta
 /// The cause of an alarm in a few lines.
 pub(super) fn cause(look: &Look, alarm: &Alarm, columns: usize, rows: usize) -> Vec<Line<'static>> {
     let columns = columns.saturating_sub(2);
-    let lines = text::first_lines(text::wrap(guide(&alarm.cause).cause, columns), rows, columns);
+    let lines = text::first_lines(text::wrap(meaning(&alarm.cause, look.run).cause, columns), rows, columns);
     lines.into_iter().map(|line| look.line([(Role::Text, format!(" {line}"))])).collect()
 }
 
 fn fields_of(look: &Look, alarm: &Alarm) -> Vec<Field> {
-    let guide = guide(&alarm.cause);
+    let guide = meaning(&alarm.cause, look.run);
     let mut fields: Vec<Field> = vec![("Cause", guide.cause.into()), ("Effect", effect(alarm, look.run))];
     fields.push(("Message", text::capitalized(&alarm.text)));
     if let Some((_, text)) = &alarm.fallen {
@@ -46,6 +47,9 @@ fn fields_of(look: &Look, alarm: &Alarm) -> Vec<Field> {
         fields.push(("Shelved", signed(shelf.by.as_deref(), &until)));
     }
     fields.extend(alarm.place.map(|place| ("Place", text::place(place))));
+    if let Cause::Bias(station) = &alarm.cause {
+        fields.extend(in_doubt(look, *station).map(|words| ("In doubt", words)));
+    }
     let is_acoustic = matches!(
         alarm.cause,
         Cause::PositionLost | Cause::Contradiction | Cause::Station(_) | Cause::Bias(_)
@@ -54,6 +58,18 @@ fn fields_of(look: &Look, alarm: &Alarm) -> Vec<Field> {
         fields.extend(residuals(look).map(|residuals| ("Residuals", residuals)));
     }
     fields
+}
+
+/// The floor that is in doubt because of a station.
+fn in_doubt(look: &Look, station: StationId) -> impl Iterator<Item = String> {
+    let name = look.run.station_name(station);
+    let floors = look.model.live.in_doubt().into_iter();
+    floors.filter(move |doubt| doubt.floor.station == name).map(|doubt| {
+        let times = [doubt.floor.since_s, doubt.floor.until_s].map(text::clock);
+        let at = doubt.at.map_or_else(String::new, |at| format!(", around {}", text::place(at)));
+        let area_m2 = text::number(doubt.floor.area_m2, 1);
+        format!("{area_m2} m², scanned T+{} to T+{}{at}", times[0], times[1])
+    })
 }
 
 /// The action of a person, with the person's name if it is known.

@@ -46,25 +46,11 @@ fn rows(message: &Message, room: usize) -> Vec<Row> {
     let times = format!("{} {} ", text::column(&run, 10), text::column(&day, 8));
     let rest = room.saturating_sub(text::width(&times));
     let indent = " ".repeat(text::width(&times));
-    let lines = text::wrap(&text::capitalized(&message.text), rest).into_iter();
-    let lines = lines.flat_map(|line| divided(&line, rest)).enumerate();
+    let lines = text::wrap(&text::capitalized(&message.text), rest).into_iter().enumerate();
     lines
         .map(|(line, words)| {
             let front = if line == 0 { times.clone() } else { indent.clone() };
             vec![(Role::Dim, front), (role, words)]
         })
         .collect()
-}
-
-/// A line whose words are too long for a row, for example a path, in as many rows as it needs.
-fn divided(line: &str, columns: usize) -> Vec<String> {
-    let mut rows = vec![String::new()];
-    for letter in line.chars() {
-        let more = text::width(letter.encode_utf8(&mut [0; 4]));
-        match rows.last_mut() {
-            Some(row) if row.is_empty() || text::width(row) + more <= columns => row.push(letter),
-            _ => rows.push(letter.into()),
-        }
-    }
-    rows
 }

@@ -3,7 +3,7 @@
 use super::ink::{self, Ink};
 use super::pen::{Pen, within};
 use super::shapes::Window;
-use super::thin::{Thin, Thinning, divided};
+use super::thin::{self, Thin, Thinning, divided};
 use crate::model::{Lane, Overlay, Screen, WhatIf, ui::MapLayer};
 use crate::view::look::Look;
 use ratatui::widgets::canvas::Context;
@@ -68,6 +68,9 @@ pub(super) fn parts(look: &Look, course: &Course) -> Vec<(Lane, bool)> {
 /// The lanes that are drawn: those of the plan, and those of a second plan beside it.
 pub(super) fn thinnings(look: &Look, window: Window) -> [Thinning; 2] {
     let lane_m = look.run.about.as_ref().map_or(0.0, |about| about.mission.lane_m());
+    // A path that passes its places once is drawn without gaps, however close together its turns are.
+    let is_single = |course: Course| !thin::passes_again(course.track.path, lane_m);
+    let lane_m = if !look.run.covers() && course(look).is_some_and(is_single) { 0.0 } else { lane_m };
     let paths = 1 + usize::from(offer(look).is_some() || compared(look).is_some() || shadow(look).is_some());
     [0, 1].map(|which| Thinning::new(lane_m, window, (which.min(paths - 1), paths)))
 }

@@ -23,6 +23,23 @@ const SAME_LINE_RAD: f64 = 0.3;
 /// A link spans at most this many times the distance between the lanes drawn.
 const LINK: f64 = 2.5;
 
+/// A path passes its places again if more than this share of it runs beside an earlier part.
+const AGAIN: f64 = 0.3;
+/// The distance within which one part of a path runs beside another, lane widths.
+const BESIDE_LANES: f64 = 1.5;
+
+/// Whether most of a path runs beside an earlier part of it, as the turns of a spiral do. The lanes are `lane_m` metres
+/// apart.
+pub(super) fn passes_again(path: &[Point], lane_m: f64) -> bool {
+    let length_m = polyline::length_m(path);
+    if lane_m <= 0.0 || length_m <= 0.0 {
+        return false;
+    }
+    let alone = joined(apart(path, BESIDE_LANES * lane_m));
+    let alone_m: f64 = alone.iter().map(|(from, to)| polyline::length_m(&path[*from..=*to])).sum();
+    length_m - alone_m > AGAIN * length_m
+}
+
 /// Which lanes of a path are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Thinning {
@@ -308,6 +325,23 @@ mod tests {
         let [one, other] =
             [0, 1].map(|which| Thin::new(&path, &lanes, Thinning::new(0.5, window(0.5), (which, 2))).lanes);
         assert!(one.len() > 1 && other.len() > 1 && one.iter().all(|lane| !other.contains(lane)));
+    }
+
+    #[test]
+    fn a_path_that_passes_its_places_once_is_told_from_a_spiral_and_from_lanes() {
+        let spiral =
+            world::spiral::Spiral { outer_radius_m: 9.0, inner_radius_m: 0.5, pitch_m: 0.5, step_rad: 0.05 };
+        assert!(passes_again(&spiral.points(), 0.5));
+        assert!(passes_again(&meander(8).0, 0.5));
+        // Around two columns and on, as a path to a goal leads.
+        let once: Vec<Point> = (0..400)
+            .map(|step| {
+                let along = 0.05 * f64::from(step);
+                Point::new(along, (0.7 * along).sin())
+            })
+            .collect();
+        assert!(!passes_again(&once, 0.5));
+        assert!(!passes_again(&[], 0.5));
     }
 
     #[test]

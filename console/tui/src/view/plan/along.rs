@@ -18,8 +18,12 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let (run, fits) = (look.run, area.width >= LEAST.0 && area.height >= LEAST.1);
     let Some(plan) = run.planning.plan.as_ref().filter(|plan| fits && plan.path.len() > 1) else { return };
     let Some((map, about)) = run.accuracy.as_ref().zip(run.about.as_ref()) else { return };
-    let length_m = polyline::length_m(&plan.path);
-    let points = errors(map, &plan.path, length_m / (PER_COLUMN * f64::from(area.width)));
+    // The points that are drawn cut corners; the axis has the length that every screen states.
+    let (drawn_m, length_m) = (polyline::length_m(&plan.path), plan.length_m);
+    let mut points = errors(map, &plan.path, drawn_m / (PER_COLUMN * f64::from(area.width)));
+    for point in &mut points {
+        point.x *= length_m / drawn_m;
+    }
     if points.len() < 2 {
         return;
     }

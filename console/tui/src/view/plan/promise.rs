@@ -95,17 +95,18 @@ pub(super) fn in_a_line(look: &Look, columns: usize) -> String {
     let mut figures: Vec<(bool, String)> = Vec::new();
     for figure in FIGURES {
         let Some(found) = (figure.promised)(estimate, look.run) else { continue };
-        let limit = mission.and_then(|mission| (figure.warns)(mission).or_else(|| (figure.limit)(mission)));
-        let is_beyond = found.is_beyond(figure, limit);
-        let over = limit
-            .filter(|_| is_beyond)
-            .map_or_else(String::new, |limit| format!(" > {}", figure.said(limit)));
+        let limits = [(figure.limit, ""), (figure.warns, "preferred ")];
+        let limits = limits.map(|(limit, word)| (mission.and_then(limit), word));
+        let over = limits.into_iter().find(|(limit, _)| found.is_beyond(figure, *limit));
+        let over = over.and_then(|(limit, word)| Some(format!(" > {word}{}", figure.said(limit?))));
+        let is_beyond = over.is_some();
+        let over = over.unwrap_or_default();
         figures.push((is_beyond, format!("{} {}{over}", figure.brief, figure.said(found.value))));
     }
     figures.sort_by_key(|(is_beyond, _)| !is_beyond);
-    let mut line = String::new();
+    let mut line = "Promised:".to_owned();
     for (_, words) in figures {
-        let gap = if line.is_empty() { "" } else { "  " };
+        let gap = if line.ends_with(':') { " " } else { "  " };
         if text::width(&line) + gap.len() + text::width(&words) <= columns {
             line = line + gap + &words;
         }
@@ -311,7 +312,7 @@ const FIGURES: [Figure; 10] = [
             let worst = e.tether.as_ref()?.pull_max_n?;
             let preferred_n = run.about.as_ref()?.mission.tether.as_ref()?.reel?.preferred_n();
             let is_much = worst.value > preferred_n;
-            let note = is_much.then(|| format!(" above {} N", text::number(preferred_n, 1)));
+            let note = is_much.then(|| format!(" (preferred {} N)", text::number(preferred_n, 1)));
             Some(Found { note: note.unwrap_or_default(), ..Found::worst(worst) })
         },
         limit: |m| Some(m.tether.as_ref()?.reel?.pull_n),

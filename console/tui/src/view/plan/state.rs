@@ -8,9 +8,6 @@ use mission::Phase;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
-/// Maximum number of rows for objections to a plan.
-const REASONS: usize = 6;
-
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let keys = ["<planner> planner  <compare> compare", "<planner> <compare>"];
     let keys = keys.map(|keys| look.keys(keys));
@@ -21,16 +18,33 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         let line = look.line(one(in_a_line(look, columns)));
         return fill(frame, area, block, vec![line]);
     }
+    let [mut rows, ghost] = [about_plan(look, columns), ghost(look, columns)];
+    let room = usize::from(block.inner(area).height).saturating_sub(rows.len() + ghost.len());
+    let why = text::first_lines(reasons(look, columns), room, columns);
+    rows.extend(why.into_iter().map(|line| one((Role::Warn, line))));
+    rows.extend(ghost);
+    fill(frame, area, block, rows.into_iter().map(|parts| look.line(parts)).collect());
+}
+
+/// The rows that the pane needs in a given width, with its frame.
+pub(super) fn rows(look: &Look, width: u16) -> u16 {
+    let columns = usize::from(width).saturating_sub(3);
+    let rows = [about_plan(look, columns), ghost(look, columns)].concat().len();
+    (rows + reasons(look, columns).len() + 2).min(usize::from(u16::MAX)) as u16
+}
+
+/// How far the plan is made or what it achieves, its certificate and its planner.
+fn about_plan(look: &Look, columns: usize) -> Vec<Parts> {
     let mut rows = wrapped(progress(look), columns);
     rows.extend(resumption(look).into_iter().flat_map(|words| wrapped((Role::Text, words), columns)));
     rows.extend(certificate(look, columns).map(one));
     rows.push(one((Role::Text, text::wording(planner(look), columns))));
-    let ghost = ghost(look, columns);
-    let room = usize::from(block.inner(area).height).saturating_sub(rows.len() + ghost.len()).min(REASONS);
-    let why = objections(look).into_iter().flat_map(|why| text::wrap(&why, columns)).collect();
-    rows.extend(text::first_lines(why, room, columns).into_iter().map(|line| one((Role::Warn, line))));
-    rows.extend(ghost);
-    fill(frame, area, block, rows.into_iter().map(|parts| look.line(parts)).collect());
+    rows
+}
+
+/// The objections to the plan, in lines.
+fn reasons(look: &Look, columns: usize) -> Vec<String> {
+    objections(look).into_iter().flat_map(|why| text::wrap(&why, columns)).collect()
 }
 
 /// The state of the plan, and whether it is certified, in one line.

@@ -1,14 +1,13 @@
 //! The achieved figures alongside the plan's estimate.
 
-use super::{next_page, plates, role, title};
-use crate::model::{Pane, RunResult};
+use super::{plates, role, title};
+use crate::model::{Model, Pane, RunResult};
 use crate::theme::Role;
-use crate::view::look::{Look, Parts, fill};
+use crate::view::look::{Look, Parts};
 use crate::view::text;
 use account::{FigureId, Shares, Summary};
 use ratatui::Frame;
 use ratatui::layout::Rect;
-use ratatui::text::Line;
 
 /// Width of the names in the table, columns.
 const LABEL: usize = 17;
@@ -36,65 +35,66 @@ impl Figure {
     }
 }
 
-/// The rows that the table needs.
-pub(super) fn rows(look: &Look, result: &RunResult, columns: u16) -> u16 {
-    lines(look, result, columns.into()).len() as u16
+/// The rows that the pane needs.
+pub(super) fn rows(model: &Model, result: &RunResult, columns: u16) -> u16 {
+    lines(model, result, columns.into()).len() as u16
 }
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
-    let title = format!("{}{}", look.pane_key(Pane::Figures), title(result));
-    let block = look.block(role(result), &title, &next_page(look));
-    let inner = block.inner(area);
-    let mut lines = lines(look, result, usize::from(inner.width));
-    lines.truncate(usize::from(inner.height));
-    fill(frame, area, block, lines);
+    let lines = lines(look.model, result, usize::from(area.width.saturating_sub(2)));
+    super::scrolled(look, frame, (Pane::Figures, area), (role(result), &title(result)), lines);
 }
 
-/// The reason for the end, unmet expectations, and the figures; most important first.
-fn lines(look: &Look, result: &RunResult, columns: usize) -> Vec<Line<'static>> {
+/// The reason for the end, unmet expectations, the figures, the errors against the true position, and the worst values;
+/// most important first.
+fn lines(model: &Model, result: &RunResult, columns: usize) -> Vec<Parts> {
     let wrapped = |role: Role, words: &str| {
         let lines = text::wrap(&text::capitalized(words), columns.saturating_sub(1)).into_iter();
-        lines.map(|line| look.line([(role, format!(" {line}"))])).collect::<Vec<Line>>()
+        lines.map(|line| vec![(role, format!(" {line}"))]).collect::<Vec<Parts>>()
     };
     let reason = result.summary.reason.as_deref().unwrap_or("cut off");
     let mut lines = wrapped(role(result), reason);
-    lines.extend(requested(look).iter().flat_map(|words| wrapped(Role::Text, words)));
+    lines.extend(requested(model).iter().flat_map(|words| wrapped(Role::Text, words)));
     for violation in result.summary.violations.iter().flatten() {
         lines.extend(wrapped(Role::Warn, &format!("! {violation}")));
     }
-    let (label, width) = widths(columns);
-    let head = ["", "predicted", "actual", "limit"].map(str::to_owned);
-    let table = std::iter::once((Role::Dim, head)).chain(figures(look, result).into_iter().map(|row| {
-        let role = if row.is_beyond { Role::Warn } else { Role::Text };
-        (role, row.cells)
-    }));
-    lines.extend(table.map(|(role, [what, predicted, actual, limit])| {
-        // Without colours, the mark shows that a limit has been exceeded.
-        let mark = if role == Role::Warn { "!" } else { " " };
-        // A narrow table omits the words after a value that state what the value refers to.
-        let name = what.split(" (").next().unwrap_or_default().to_owned();
-        let what = text::wording([what, name], label);
-        look.line([
-            (Role::Dim, format!(" {}", text::column(&what, label))),
-            (Role::Dim, format!("{predicted:>width$}")),
-            (role, format!("{actual:>width$}{mark}")),
-            (Role::Dim, format!("{limit:>width$}", width = width.saturating_sub(1))),
-        ])
-    }));
-    lines.extend(trouble(look, result, columns).into_iter().map(|parts| look.line(parts)));
+    lines.extend(table(model, result, columns));
+    lines.extend(trouble(model, result, columns));
+    let notes = true_error(model, result).into_iter().chain(scan_limit(model, result));
+    lines.extend(notes.flat_map(|words| wrapped(Role::Text, &words)));
     // On a narrower screen, the shares of the floor have the line about the plate.
-    let plate = plates::worst(look, columns).filter(|_| columns >= WORST);
-    lines.extend(plate.map(|parts| look.line(parts)));
-    lines.extend(worst(result, columns).into_iter().map(|parts| look.line(parts)));
-    if look.model.live.is_replay() && look.model.live.plans.estimate.is_none() {
+    lines.extend(plates::worst(model, columns).filter(|_| columns >= WORST));
+    lines.extend(worst(result, columns));
+    if model.live.is_replay() && model.live.plans.estimate.is_none() {
         lines.extend(wrapped(
             Role::Dim,
             "No predictions: a run does not keep those that were made before it.",
         ));
     }
-    let notes = true_error(look, result).into_iter().chain(scan_limit(look, result));
-    lines.extend(notes.flat_map(|words| wrapped(Role::Text, &words)));
     lines
+}
+
+/// The table of the figures with its heading.
+fn table(model: &Model, result: &RunResult, columns: usize) -> impl Iterator<Item = Parts> {
+    let (label, width) = widths(columns);
+    let head = ["", "predicted", "actual", "limit"].map(str::to_owned);
+    let rows = figures(model, result).into_iter().map(|row| {
+        let role = if row.is_beyond { Role::Warn } else { Role::Text };
+        (role, row.cells)
+    });
+    std::iter::once((Role::Dim, head)).chain(rows).map(move |(role, [what, predicted, actual, limit])| {
+        // Without colours, the mark shows that a limit has been exceeded.
+        let mark = if role == Role::Warn { "!" } else { " " };
+        // A narrow table omits the words after a value that state what the value refers to.
+        let name = what.split(" (").next().unwrap_or_default().to_owned();
+        let what = text::wording([what, name], label);
+        vec![
+            (Role::Dim, format!(" {}", text::column(&what, label))),
+            (Role::Dim, format!("{predicted:>width$}")),
+            (role, format!("{actual:>width$}{mark}")),
+            (Role::Dim, format!("{limit:>width$}", width = width.saturating_sub(1))),
+        ]
+    })
 }
 
 /// The widths of a label and of a value, which has room for a clock.
@@ -128,9 +128,9 @@ fn worst(result: &RunResult, columns: usize) -> Vec<Parts> {
     rows
 }
 
-fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {
-    let (run, summary) = (look.run, &result.summary);
-    let promised = look.model.live.plans.estimate.as_ref().map(|(_, estimate)| estimate);
+fn figures(model: &Model, result: &RunResult) -> Vec<Figure> {
+    let (run, summary) = (&model.live.run, &result.summary);
+    let promised = model.live.plans.estimate.as_ref().map(|(_, estimate)| estimate);
     let mission = run.about.as_ref().map(|about| &about.mission);
     let metres = |decimals| move |m: f64| format!("{} m", text::number(m, decimals));
     let degrees = |rad: f64| format!("{}°", text::number(rad.to_degrees(), 0));
@@ -161,7 +161,7 @@ fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {
         let estimate = promised.and_then(|p| p.tether.as_ref());
         let limits = mission.and_then(|m| m.tether.as_ref()).map(|tether| tether.limits);
         figures.push(at_most(
-            "tether out",
+            "tether out (true)",
             metres(1),
             [
                 estimate.map(|t| t.length_max.value),
@@ -170,7 +170,7 @@ fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {
             ],
         ));
         figures.push(at_most(
-            "wrap",
+            "wrap (true)",
             degrees,
             [
                 estimate.map(|t| t.wrap_max.value),
@@ -201,8 +201,8 @@ fn estimated_clearance(summary: &Summary) -> Option<f64> {
 
 /// The scanned share of the requested floor, and why the share of the whole is smaller; for a re-scan, also what all runs
 /// have scanned.
-fn requested(look: &Look) -> Vec<String> {
-    let live = &look.model.live;
+fn requested(model: &Model) -> Vec<String> {
+    let live = &model.live;
     let own = live.result.as_ref().and_then(|result| result.summary.floor.as_ref());
     let own = live.requested().zip(own).map(|((area_m2, scanned), own)| {
         let (scanned, area_m2) = (text::percent(scanned), text::number(area_m2, 1));
@@ -228,12 +228,12 @@ fn requested(look: &Look) -> Vec<String> {
 }
 
 /// The error against the true position.
-fn true_error(look: &Look, result: &RunResult) -> Option<String> {
+fn true_error(model: &Model, result: &RunResult) -> Option<String> {
     let error = result.summary.positioning.as_ref()?;
     let worst = result.summary.extremes.iter().find(|figure| figure.id == FigureId::TrueError);
     let at = worst.and_then(|figure| figure.worst);
     let at = at.map_or_else(String::new, |worst| format!(" at {}", text::place(worst.at)));
-    let plate = plates::worst_true(look).map_or_else(String::new, |words| format!("; {words}"));
+    let plate = plates::worst_true(model).map_or_else(String::new, |words| format!("; {words}"));
     let metres = |m: f64| text::number(m, 3);
     Some(format!(
         "Error against the true position: mean {}, median {}, p95 {}, worst {} m{at}{plate}.",
@@ -246,8 +246,8 @@ fn true_error(look: &Look, result: &RunResult) -> Option<String> {
 
 /// The limit above which floor does not count as scanned, if it is not the limit of the position, and where it was
 /// exceeded.
-fn scan_limit(look: &Look, result: &RunResult) -> Option<String> {
-    let mission = &look.run.about.as_ref()?.mission;
+fn scan_limit(model: &Model, result: &RunResult) -> Option<String> {
+    let mission = &model.live.run.about.as_ref()?.mission;
     let (accuracy, _) = (result.summary.accuracy.as_ref()?, result.summary.floor.as_ref()?);
     let limit_m = mission.scan_limit_m();
     (limit_m < mission.position_limit_m).then(|| {
@@ -287,9 +287,9 @@ fn dash() -> String {
 }
 
 /// The holds, collisions, faults and alarms, in lines.
-fn trouble(look: &Look, result: &RunResult, columns: usize) -> Vec<Parts> {
+fn trouble(model: &Model, result: &RunResult, columns: usize) -> Vec<Parts> {
     let summary = &result.summary;
-    let alarms = look.run.alarms.open().count();
+    let alarms = model.live.run.alarms.open().count();
     let words = format!(
         "Holds {}, {}planner faults {}, alarms open {alarms}.{}",
         summary.holds,

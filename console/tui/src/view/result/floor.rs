@@ -1,48 +1,41 @@
 //! The floor shares, relative to the whole and to the reachable floor, and the critical zone along the shell.
 
-use super::{figures, next_page, plates};
-use crate::model::RunResult;
+use super::{figures, plates};
+use crate::model::{Model, Pane, RunResult};
 use crate::theme::Role;
-use crate::view::look::{Look, Parts, fill};
+use crate::view::look::{Look, Parts};
 use crate::view::text;
 use account::{Percent, Shares};
 use ratatui::Frame;
 use ratatui::layout::Rect;
-use ratatui::text::Line;
 
 /// The maximum missed share at which a plate counts as scanned except for slivers, per cent.
 const MISSED_PERCENT: f64 = 1.0;
 
 /// The minimum rows of the pane, including its frame: those without the notes.
-pub(super) fn least(look: &Look, result: &RunResult, columns: u16) -> u16 {
-    bases(look, result, usize::from(columns).saturating_sub(1)).len() as u16 + 2
+pub(super) fn least(model: &Model, result: &RunResult, columns: u16) -> u16 {
+    bases(model, result, usize::from(columns).saturating_sub(1)).len() as u16 + 2
 }
 
-/// The rows that the pane needs.
-pub(super) fn rows(look: &Look, result: &RunResult, columns: u16) -> u16 {
-    let columns = usize::from(columns).saturating_sub(1);
-    let notes: usize = notes(look, result, columns).iter().map(Vec::len).sum();
-    (bases(look, result, columns).len() + notes) as u16
+/// The rows that the pane needs, without its frame.
+pub(super) fn rows(model: &Model, result: &RunResult, columns: u16) -> u16 {
+    lines(model, result, usize::from(columns).saturating_sub(1)).len() as u16
 }
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
-    let note = next_page(look);
-    let note = if note.is_empty() { "% by estimated position" } else { &note };
-    let block = look.block(Role::Border, "Coverage", note);
-    let columns = usize::from(block.inner(area).width).saturating_sub(1);
-    let mut rows = bases(look, result, columns);
-    // A note that does not fit would end in mid-sentence; all notes are in the report.
-    for note in notes(look, result, columns) {
-        if rows.len() + note.len() <= usize::from(block.inner(area).height) {
-            rows.extend(note.into_iter().map(|line| vec![(Role::Text, format!(" {line}"))]));
-        }
-    }
-    let lines: Vec<Line> = rows.into_iter().map(|parts| look.line(parts)).collect();
-    fill(frame, area, block, lines);
+    let columns = usize::from(area.width).saturating_sub(3);
+    let lines = lines(look.model, result, columns);
+    super::scrolled(look, frame, (Pane::Coverage, area), (Role::Border, "Coverage"), lines);
+}
+
+fn lines(model: &Model, result: &RunResult, columns: usize) -> Vec<Parts> {
+    let notes = notes(model, result).into_iter().flat_map(|note| text::wrap(&note, columns));
+    let notes = notes.map(|line| vec![(Role::Text, format!(" {line}"))]);
+    bases(model, result, columns).into_iter().chain(notes).collect()
 }
 
 /// The shares of each floor of which shares are stated, as bars.
-fn bases(look: &Look, result: &RunResult, columns: usize) -> Vec<Parts> {
+fn bases(model: &Model, result: &RunResult, columns: usize) -> Vec<Parts> {
     let Some(account) = &result.summary.floor else {
         return vec![vec![(Role::Dim, " Not a scanning mission.".into())]];
     };
@@ -50,17 +43,33 @@ fn bases(look: &Look, result: &RunResult, columns: usize) -> Vec<Parts> {
     let mut rows = vec![vec![(Role::Dim, at.head())]];
     rows.push(at.row("reachable", &account.reachable));
     rows.push(at.row("whole floor", &account.whole));
-    if let Some((area_m2, scanned)) = look.model.live.requested() {
+    if let Some((area_m2, scanned)) = model.live.requested() {
         let scanned = (1000.0 * scanned).round() / 10.0;
         let percent = Percent { scanned, missed: 100.0 - scanned, ..Percent::default() };
         rows.push(at.row("requested", &Shares { area_m2, percent, ..Shares::default() }));
     }
-    if let Some(all) = look.model.live.together() {
+    if let Some(all) = model.live.together() {
         rows.push(at.row("all, reach.", &all.floor.reachable));
         rows.push(at.row("all, whole", &all.floor.whole));
     }
-    rows.extend(plates::worst(look, columns).filter(|_| columns < figures::WORST));
+    let others = others(&account.whole.percent).filter(|_| at.others == 0);
+    let others = others.into_iter().flat_map(|words| text::wrap(&words, columns));
+    rows.extend(others.map(|line| vec![(Role::Text, format!(" {line}"))]));
+    rows.extend(plates::worst(model, columns).filter(|_| columns < figures::WORST));
     rows
+}
+
+/// The shares of the whole floor for which a narrow table has no columns, as a sentence; `None` if all of them are zero.
+fn others(percent: &Percent) -> Option<String> {
+    let shares = [
+        ("not testable by this tool", percent.untestable),
+        ("unreachable", percent.unreachable),
+        ("margin", percent.margin),
+    ];
+    let shares = shares.into_iter().filter(|(_, share)| *share > 0.0);
+    let shares: Vec<String> =
+        shares.map(|(name, share)| format!("{name} {} %", text::number(share, 1))).collect();
+    (!shares.is_empty()).then(|| format!("Of the whole floor: {}.", shares.join(", ")))
 }
 
 /// The widths of the columns; 0 for a column that does not fit.
@@ -131,8 +140,8 @@ impl Columns {
 }
 
 /// Which runs are combined, or why they are not.
-fn of_all_runs(look: &Look) -> Option<String> {
-    let live = &look.model.live;
+fn of_all_runs(model: &Model) -> Option<String> {
+    let live = &model.live;
     match &live.combined {
         Some(Ok(all)) => Some(format!(
             "All runs: this one and {}; map, zone, plates and missed areas are for all runs.",
@@ -149,8 +158,8 @@ fn of_all_runs(look: &Look) -> Option<String> {
     }
 }
 
-/// The notes below the table, in lines.
-fn notes(look: &Look, result: &RunResult, columns: usize) -> Vec<Vec<String>> {
+/// The notes below the table, as sentences.
+fn notes(model: &Model, result: &RunResult) -> Vec<String> {
     let summary = &result.summary;
     let overlap = summary.coverage.as_ref().and_then(|coverage| coverage.overlap);
     let again = overlap.map(|share| {
@@ -160,7 +169,7 @@ fn notes(look: &Look, result: &RunResult, columns: usize) -> Vec<Vec<String>> {
         summary.coverage.as_ref().and_then(|coverage| coverage.by_truth).map(|truth| {
             format!("By true position: {} % of reachable floor.", text::percent(truth.reachable))
         });
-    let zone = look.model.live.floor().map(|floor| {
+    let zone = model.live.floor().map(|floor| {
         let zone = &floor.critical_zone;
         let width_mm = text::number(1000.0 * zone.width_m, 0);
         if zone.done {
@@ -170,7 +179,7 @@ fn notes(look: &Look, result: &RunResult, columns: usize) -> Vec<Vec<String>> {
             format!("Critical zone, {width_mm} mm along the shell: NOT done, full width on {done_m} of {length_m} m.")
         }
     });
-    let plates = look.model.live.floor().filter(|floor| !floor.plates.is_empty()).map(|floor| {
+    let plates = model.live.floor().filter(|floor| !floor.plates.is_empty()).map(|floor| {
         let all = floor.plates.iter().filter(|plate| plate.shares.percent.missed <= MISSED_PERCENT).count();
         format!("Plates: {all} of {} with at most {MISSED_PERCENT} % missed.", floor.plates.len())
     });
@@ -182,7 +191,10 @@ fn notes(look: &Look, result: &RunResult, columns: usize) -> Vec<Vec<String>> {
         });
         format!("Readings: {}; indications: {}{deepest}.", readings.count, readings.indications)
     });
-    let notes =
-        of_all_runs(look).into_iter().chain(zone).chain(readings).chain(plates).chain(again).chain(truth);
-    notes.map(|note| text::wrap(&note, columns)).collect()
+    let in_doubt = model.live.in_doubt().into_iter().map(|doubt| {
+        let at = doubt.at.map_or_else(String::new, |at| format!(", around {}", text::place(at)));
+        model.console.keys.spelled(&format!("IN DOUBT: {}{at}. <rescan>: re-scan it.", doubt.floor))
+    });
+    let notes = in_doubt.chain(of_all_runs(model)).chain(zone).chain(readings).chain(plates);
+    notes.chain(again).chain(truth).collect()
 }

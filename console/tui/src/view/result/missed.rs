@@ -1,7 +1,7 @@
 //! The missed areas: the position and a short reason for each one, and all reasons for the selected one.
 
 use super::next_page;
-use crate::model::{Pane, RunResult};
+use crate::model::{Model, Pane, RunResult};
 use crate::theme::Role;
 use crate::update::Rows;
 use crate::view::look::{Look, Parts, fill};
@@ -15,11 +15,15 @@ use ratatui::layout::Rect;
 const AREA: usize = 12;
 const SHARE: usize = 8;
 
-/// The rows that the pane would fill, including the frame.
-pub(super) fn rows(look: &Look) -> u16 {
-    let listed = look.model.live.missed();
-    let causes = listed.iter().map(|area| area.causes.len()).max().unwrap_or(0);
-    (listed.len() + causes + 4).min(usize::from(u16::MAX)) as u16
+/// The fewest rows of the list beside the reasons for the selected area.
+const LEAST_LISTED: usize = 3;
+
+/// The rows that the pane would fill, including the frame, at a width.
+pub(super) fn rows(model: &Model, columns: u16) -> u16 {
+    let listed = model.live.missed();
+    let columns = usize::from(columns).saturating_sub(2);
+    let why = listed.iter().map(|area| reasons(area, columns, usize::MAX).len()).max().unwrap_or(0);
+    (listed.len() + why + 3).min(usize::from(u16::MAX)) as u16
 }
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
@@ -27,10 +31,14 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResul
     let inner = look.block(Role::Border, "", "").inner(area);
     let (columns, height) = (usize::from(inner.width), usize::from(inner.height).saturating_sub(1));
     let selected = look.model.ui.missed.min(listed.len().saturating_sub(1));
-    // The list keeps at least half of the rows.
-    let why = listed.get(selected).map_or_else(Vec::new, |area| reasons(area, columns, height / 2));
+    let has_focus = look.model.ui.pane == Pane::Missed;
+    // The list keeps at least half of the rows; if the arrow keys apply to it, or it needs fewer, the reasons may take
+    // more.
+    let least = if has_focus { LEAST_LISTED } else { height - height / 2 };
+    let most = height.saturating_sub(least.min(listed.len()));
+    let why = listed.get(selected).map_or_else(Vec::new, |area| reasons(area, columns, most));
     let rows: Vec<Parts> = listed.iter().enumerate().map(|(index, area)| row(index, area, columns)).collect();
-    let height = height - why.len();
+    let height = height.saturating_sub(why.len());
     let shown = table::window(selected, rows.len(), height);
     table::place(look, inner, Rows::Missed, shown.clone());
     let is_cut = shown.len() < rows.len();
@@ -40,10 +48,11 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResul
     let next = next_page(look);
     let notes =
         [format!("{place}{walk}  {next}"), format!("{place}{next}"), place.trim().to_owned(), String::new()];
-    let title =
-        text::wording([title(look, listed, true), title(look, listed, false)], columns.saturating_sub(4));
+    let key = look.pane_key(Pane::Missed);
+    let titles = [title(look, listed, true), title(look, listed, false)].map(|title| format!("{key}{title}"));
+    let title = text::wording(titles, columns.saturating_sub(4));
     let room = columns.saturating_sub(text::width(&title) + 8);
-    let border = if look.model.ui.pane == Pane::Plates { Role::Border } else { Role::Focus };
+    let border = if has_focus { Role::Focus } else { Role::Border };
     let block = look.block(border, &title, text::wording(notes, room).trim());
     let mut lines = table::rows(look, rows, Some(selected), (columns, height));
     lines.extend(why.into_iter().map(|parts| look.line(parts)));

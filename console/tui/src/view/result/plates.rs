@@ -1,7 +1,7 @@
 //! The plates with their shares and the accuracy of the position on each, most missed first.
 
 use super::next_page;
-use crate::model::Pane;
+use crate::model::{Model, Pane};
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
 use crate::view::{table, text};
@@ -114,8 +114,8 @@ pub(in crate::view) fn list(
 }
 
 /// The plate on which the position was least accurate, in one line; `None` if no plate has a figure.
-pub(super) fn worst(look: &Look, columns: usize) -> Option<Parts> {
-    let floor = look.model.live.floor()?;
+pub(super) fn worst(model: &Model, columns: usize) -> Option<Parts> {
+    let floor = model.live.floor()?;
     let figures = floor.plates.iter().filter_map(|plate| Some((plate.error_max_m?, plate)));
     let (error_m, plate) = figures.max_by(|one, other| one.0.total_cmp(&other.0))?;
     let limit_m = floor.position_limit_m;
@@ -133,9 +133,8 @@ pub(super) fn worst(look: &Look, columns: usize) -> Option<Parts> {
 }
 
 /// The plate with the largest true error, as the end of a sentence; `None` if no plate has a figure.
-pub(super) fn worst_true(look: &Look) -> Option<String> {
-    let figures = look
-        .model
+pub(super) fn worst_true(model: &Model) -> Option<String> {
+    let figures = model
         .live
         .floor()?
         .plates

@@ -73,9 +73,25 @@ pub(super) fn shown(look: &Look, window: Window) -> Vec<Entry> {
     let written = |(ink, word, _): (Ink, &'static str, IsDrawn)| {
         let entry = entry(look, ink, word);
         let is_thinned = every > 1 && matches!(ink, ink::PLAN | ink::AHEAD);
-        if is_thinned { Entry { word: format!("{word}, 1 lane in {every}").into(), ..entry } } else { entry }
+        if is_thinned {
+            Entry { word: format!("{word}, every {} lane", ordinal(every)).into(), ..entry }
+        } else {
+            entry
+        }
     };
     lines.map(written).collect()
+}
+
+/// A number as a word that counts: `3rd`, `15th`.
+fn ordinal(n: usize) -> String {
+    let end = match (n % 10, n % 100) {
+        (_, 11..=13) => "th",
+        (1, _) => "st",
+        (2, _) => "nd",
+        (3, _) => "rd",
+        _ => "th",
+    };
+    format!("{n}{end}")
 }
 
 /// The planner's drawings that are large enough to be seen in the window.
