@@ -341,7 +341,12 @@ impl Task<'_> {
         config.fallback = None;
         if survey.kind == Kind::Differences {
             config.locating.solver = SolverKind::Differences;
+        } else if config.locating.solver == SolverKind::Differences {
+            // The readings state distances, whatever the scenario expects of a mission.
+            config.locating.solver = SolverKind::default();
         }
+        // Readings whose stations have clocks of their own are refused (see `check_findable`).
+        config.locating.clocks = None;
         if survey.kind == Kind::Differences || survey.calibration.is_some() {
             config.locating.calibrate_sound_speed = false;
         }

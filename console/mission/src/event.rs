@@ -5,6 +5,7 @@
 //! equal runs.
 
 mod better_plan;
+mod clock_offset;
 mod effort;
 mod log_line;
 mod measured;
@@ -17,6 +18,7 @@ mod shadow;
 mod tether;
 
 pub use better_plan::{PlanDropped, PlanMade, PlanTaken};
+pub use clock_offset::ClockOffset;
 pub use effort::Effort;
 pub use log_line::{LogLine, late_text};
 pub use measured::{Asked, Measured, ToolTrack};
@@ -206,6 +208,11 @@ pub enum EventKind {
     SessionCalibrated {
         /// Share by which all ranges are too long.
         scale: Estimated,
+    },
+    /// The clocks of the stations. Only in missions whose stations share no common clock.
+    ClocksEstimated {
+        /// The offset of each station.
+        offsets: Vec<ClockOffset>,
     },
     /// The ranges of a station are wrong by a constant length. Floor that was scanned since the bias may have begun is in
     /// doubt, so it is not guaranteed any more.

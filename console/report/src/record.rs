@@ -129,6 +129,7 @@ impl Record {
                 self.planners.push((**info).clone());
             }
             EventKind::Fixed { fix } => self.stations.fix(fix),
+            EventKind::ClocksEstimated { offsets } => self.stations.clocks(offsets),
             _ => {}
         }
     }

@@ -104,6 +104,9 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     // A guarantee by the protection level needs one, even if the scenario leaves the risk to its defaults.
     let needed = (rest.scan.guarantee == Guarantee::Protection).then(Risk::default);
     let locating = Locating { risk: locating.risk.or(needed), ..locating };
+    if let Some(section) = &sections.ae {
+        ranging::check_protection(section, &locating, &floor.stations);
+    }
     let mission = MissionConfig {
         task: task?,
         tether,
@@ -197,9 +200,8 @@ impl Floor {
         if let (Some(section), Some(heard)) = (ae, &mut heard) {
             heard.disturbances.faults = ranging::faults(section, &stations);
         }
-        let locating = ae
-            .zip(heard.as_ref())
-            .and_then(|(section, heard)| ranging::locating(section, heard, stations.len()));
+        let locating =
+            ae.zip(heard.as_ref()).and_then(|(section, heard)| ranging::locating(section, heard, &stations));
         Self {
             obstacles,
             movers,

@@ -38,6 +38,13 @@ impl Task<'_> {
                 self.shown
             )));
         }
+        if self.scenario.mission.locating.clocks.is_some() && columns.kind() == Kind::Differences {
+            return Err(bad_input(format!(
+                "{}: the stations of this scenario have clocks of their own, which only a mission estimates; subtract \
+                 their offsets from the arrivals, and remove clock_offset_sigma_m and clock_drift_sigma_m_per_h from [ae]",
+                self.shown
+            )));
+        }
         Ok(())
     }
 

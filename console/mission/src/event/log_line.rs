@@ -217,6 +217,7 @@ impl Event {
             | EventKind::Estimated { .. }
             | EventKind::Protected { .. }
             | EventKind::SessionCalibrated { .. }
+            | EventKind::ClocksEstimated { .. }
             | EventKind::ObstacleMoved { .. }
             | EventKind::Commanded { .. }
             | EventKind::Snapshotted { .. }

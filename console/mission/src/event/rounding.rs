@@ -145,6 +145,10 @@ impl EventKind {
                 [&mut both.value, &mut both.sigma].into_iter().for_each(round);
             }
             Self::NotSeparable { correlation } => round(correlation),
+            Self::ClocksEstimated { offsets } => {
+                let numbers = offsets.iter_mut().map(|offset| &mut offset.offset_m);
+                numbers.flat_map(|both| [&mut both.value, &mut both.sigma]).for_each(round);
+            }
             Self::Estimated { pose: PoseEstimate { position, heading_rad, covariance } } => {
                 round_point(position);
                 round(heading_rad);

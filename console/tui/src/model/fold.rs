@@ -65,6 +65,7 @@ impl Run {
             | EventKind::ProtectionLost { .. }
             | EventKind::ProtectionRegained { .. }
             | EventKind::SessionCalibrated { .. }
+            | EventKind::ClocksEstimated { .. }
             | EventKind::StationBiased { .. }
             | EventKind::StationUnbiased { .. }
             | EventKind::NotSeparable { .. }

@@ -48,6 +48,7 @@ fn is_telemetry(kind: &EventKind) -> bool {
         EventKind::Estimated { .. }
             | EventKind::Protected { .. }
             | EventKind::SessionCalibrated { .. }
+            | EventKind::ClocksEstimated { .. }
             | EventKind::Ranged { .. }
             | EventKind::Fixed { .. }
             | EventKind::Tethered { .. }

@@ -29,21 +29,21 @@ pub(in crate::document) fn equipment(document: &Document) -> Vec<Block> {
     ])];
     for run in document.runs.iter().filter(|run| !run.stations.is_empty()) {
         let of = if document.runs.len() > 1 { format!(" ({})", run.run) } else { String::new() };
-        let mut table = Table::new(
-            format!("Stations and their use in the run{of}"),
-            &[
-                ("Station", "", ""),
-                ("x", "m", "r nw"),
-                ("y", "m", "r nw"),
-                ("Used", "fixes", "r"),
-                ("Rejected", "fixes", "r"),
-                ("Residual, mean", "cm", "r"),
-                ("Residual, rms", "cm", "r"),
-            ],
-        );
+        let has_clocks = run.stations.iter().any(|station| station.clock_offset_m.is_some());
+        let mut columns = vec![
+            ("Station", "", ""),
+            ("x", "m", "r nw"),
+            ("y", "m", "r nw"),
+            ("Used", "fixes", "r"),
+            ("Rejected", "fixes", "r"),
+            ("Residual, mean", "cm", "r"),
+            ("Residual, rms", "cm", "r"),
+        ];
+        columns.extend(has_clocks.then_some(("Clock offset, 95 %", "cm of sound", "r")));
+        let mut table = Table::new(format!("Stations and their use in the run{of}"), &columns);
         let residual = |m: Option<f64>| m.map_or_else(|| "\u{2013}".to_owned(), cm);
         for station in &run.stations {
-            table.row(vec![
+            let mut cells = vec![
                 station.name.clone().into(),
                 number(station.at.x, 2).into(),
                 number(station.at.y, 2).into(),
@@ -51,7 +51,13 @@ pub(in crate::document) fn equipment(document: &Document) -> Vec<Block> {
                 station.rejected.to_string().into(),
                 residual(station.residual_mean_m).into(),
                 residual(station.residual_rms_m).into(),
-            ]);
+            ];
+            if has_clocks {
+                let clock = station.clock_offset_m;
+                let words = clock.map(|clock| format!("{} ± {}", cm(clock.value), cm(2.0 * clock.sigma)));
+                cells.push(words.unwrap_or_else(|| "\u{2013}".to_owned()).into());
+            }
+            table.row(cells);
         }
         blocks.push(Block::Table(table));
     }
