@@ -10,6 +10,7 @@ mod effort;
 mod log_line;
 mod measured;
 mod offer;
+mod pulse;
 mod recorded;
 mod rounding;
 mod run_opened;
@@ -23,6 +24,7 @@ pub use effort::Effort;
 pub use log_line::{LogLine, late_text};
 pub use measured::{Asked, Measured, ToolTrack};
 pub use offer::{OfferEnd, OfferStage, PlanScan, PlanScans};
+pub use pulse::{PulsePhase, pulse_text};
 pub use recorded::RecordedAnswers;
 pub(crate) use rounding::rounded_command;
 pub use run_opened::RunOpened;
@@ -38,7 +40,7 @@ use crate::{
     way_back::WayBack,
 };
 use planner_api::{Command, Drawing, Drive, Leg, LegTag, LogLevel, PoseEstimate, Reason};
-use positioning::{Estimated, Exclusion, Fix, FixError, Ranging, Unprotected};
+use positioning::{Estimated, Exclusion, Fix, FixError, PulseTest, Ranging, Unprotected};
 use serde::{Deserialize, Serialize};
 use vehicle::port::{LinkSeen, Notice};
 use world::tether::Certificate;
@@ -208,6 +210,13 @@ pub enum EventKind {
     SessionCalibrated {
         /// Share by which all ranges are too long.
         scale: Estimated,
+    },
+    /// The stations sent pulses that the others heard.
+    PulsesTested {
+        /// The part of the run.
+        phase: PulsePhase,
+        /// The result.
+        test: PulseTest,
     },
     /// The clocks of the stations. Only in missions whose stations share no common clock.
     ClocksEstimated {

@@ -66,6 +66,7 @@ impl Run {
             | EventKind::ProtectionRegained { .. }
             | EventKind::SessionCalibrated { .. }
             | EventKind::ClocksEstimated { .. }
+            | EventKind::PulsesTested { .. }
             | EventKind::StationBiased { .. }
             | EventKind::StationUnbiased { .. }
             | EventKind::NotSeparable { .. }

@@ -49,6 +49,7 @@ fn is_telemetry(kind: &EventKind) -> bool {
             | EventKind::Protected { .. }
             | EventKind::SessionCalibrated { .. }
             | EventKind::ClocksEstimated { .. }
+            | EventKind::PulsesTested { .. }
             | EventKind::Ranged { .. }
             | EventKind::Fixed { .. }
             | EventKind::Tethered { .. }

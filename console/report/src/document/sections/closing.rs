@@ -4,7 +4,7 @@ use super::super::{
     model::Document,
     page::{Block, SignatureBlock, Table, Value},
     readings::Readings,
-    run_part::RunPart,
+    run_part::{RunPart, pulse_tests},
     words::{cm, number},
 };
 
@@ -21,7 +21,7 @@ pub(in crate::document) fn equipment(document: &Document) -> Vec<Block> {
         ),
         ("Calibration before", Value::fact(facts.calibration_before.as_ref(), "calibration_before")),
         ("Calibration after", Value::fact(facts.calibration_after.as_ref(), "calibration_after")),
-        ("Stations: survey and pulse test", Value::fact(facts.station_check.as_ref(), "station_check")),
+        ("Stations: survey and pulse test", station_check(document)),
         ("Speed of sound", Value::fact(facts.sound_speed.as_ref(), "sound_speed")),
         ("Nominal thickness of the floor", Value::fact(thickness.as_ref(), "nominal_thickness_mm")),
         ("Procedure", Value::fact(facts.procedure.as_ref(), "procedure")),
@@ -62,6 +62,16 @@ pub(in crate::document) fn equipment(document: &Document) -> Vec<Block> {
         blocks.push(Block::Table(table));
     }
     blocks
+}
+
+/// Survey and pulse test of the stations: as stated, and as measured by pulses during the runs.
+fn station_check(document: &Document) -> Value {
+    let stated = document.inspection.station_check.as_ref();
+    let measured: Vec<&str> = pulse_tests(document).map(|test| test.found.as_str()).collect();
+    if measured.is_empty() {
+        return Value::fact(stated, "station_check");
+    }
+    stated.map(String::as_str).into_iter().chain(measured).collect::<Vec<_>>().join(". ").into()
 }
 
 /// The limitations of the report.
