@@ -163,8 +163,9 @@ impl PulseSeries {
     /// The tests before and after a time, and the share of the way between them.
     fn around(&self, t_s: f64) -> Option<(&PulseTest, &PulseTest, f64)> {
         let next = self.tests.partition_point(|(at_s, _)| *at_s <= t_s);
-        let (from_s, before) = self.tests.get(next.saturating_sub(1))?;
-        let (to_s, after) = self.tests.get(next).unwrap_or(&self.tests[next - 1]);
+        let last = self.tests.len().checked_sub(1)?;
+        let (from_s, before) = &self.tests[next.saturating_sub(1)];
+        let (to_s, after) = &self.tests[next.min(last)];
         let share = if to_s > from_s { ((t_s - from_s) / (to_s - from_s)).clamp(0.0, 1.0) } else { 0.0 };
         Some((before, after, share))
     }
