@@ -100,13 +100,8 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let instrument = instrument::instrument(root, plates.as_ref(), cell_m);
 
     let (planner, fallback) = planner?;
-    let (robot, rest, start, ae, locating) = (floor.robot?, rest?, start?, floor.ae?, floor.locating?);
-    // A guarantee by the protection level needs one, even if the scenario leaves the risk to its defaults.
-    let needed = (rest.scan.guarantee == Guarantee::Protection).then(Risk::default);
-    let locating = Locating { risk: locating.risk.or(needed), ..locating };
-    if let Some(section) = &sections.ae {
-        ranging::check_protection(section, &locating, &floor.stations);
-    }
+    let (robot, rest, start, ae, mut locating) = (floor.robot?, rest?, start?, floor.ae?, floor.locating?);
+    protect(&mut locating, rest.scan.guarantee, &sections, &floor.stations);
     let mission = MissionConfig {
         task: task?,
         tether,
@@ -171,6 +166,16 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         expect: expect?,
         inspection: inspection?,
     })
+}
+
+/// Adds the risk that the guarantee needs. Complains if the stations do not suffice for a protection level.
+fn protect(locating: &mut Locating, guarantee: Guarantee, sections: &Sections<'_>, stations: &[Station]) {
+    // A guarantee by the protection level needs one, even if the scenario leaves the risk to its defaults.
+    let needed = (guarantee == Guarantee::Protection).then(Risk::default);
+    locating.risk = locating.risk.or(needed);
+    if let Some(section) = &sections.ae {
+        ranging::check_protection(section, locating, stations);
+    }
 }
 
 fn sensor(robot: &Robot) -> Option<Sensor> {

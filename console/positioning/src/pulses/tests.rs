@@ -29,7 +29,9 @@ fn speed_of_sound_and_clocks_scatter_as_stated() {
         let mut draws = Draws::new(0.0, 1, 61);
         let mut offsets_m: Vec<f64> = (0..n).map(|_| 3.0 * draws.bell()).collect();
         let mean_m = offsets_m.iter().sum::<f64>() / f64::from(n);
-        offsets_m.iter_mut().for_each(|offset_m| *offset_m -= mean_m);
+        for offset_m in &mut offsets_m {
+            *offset_m -= mean_m;
+        }
         let (mut by_scale, mut by_offset) = (0.0, 0.0);
         for _ in 0..2_000 {
             let test = PulseTest::new(&pulses(&stations, -0.013, &offsets_m, &mut draws), &stations).unwrap();
