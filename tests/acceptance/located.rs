@@ -176,6 +176,41 @@ fn the_samples_are_located() {
     assert!(bench.runs().is_empty());
 }
 
+/// The sample's ranges are too long by 2 %, and every station has a clock of its own: offsets of up to 35 cm of sound.
+#[test]
+fn pulses_of_the_stations_correct_the_readings_and_are_in_the_report() {
+    let bench = Bench::new();
+    let (demo, file) = (scenario("demo.toml"), workspace().join("scenarios/readings/demo-pulses.csv"));
+    let locate = |file: &std::path::Path, more: &[&str]| {
+        let paths = [file.to_str().unwrap(), "--scenario", demo.to_str().unwrap()];
+        bench.tankops(&[&["locate"][..], &paths[..], more].concat())
+    };
+    let figures = locate(&file, &["--json"]).json();
+    assert_eq!(figures["fixes"], serde_json::json!({ "ok": 5 }), "{figures}");
+    assert!(figures["fix_error_m"][0].as_f64().unwrap() < 0.05, "{figures}");
+    let tests = figures["pulse_tests"].as_array().unwrap();
+    assert_eq!(tests.iter().map(|test| &test["phase"]).collect::<Vec<_>>(), ["before", "after"]);
+    for test in tests {
+        assert_eq!(test["survey"], "ok", "{test}");
+        let scale = test["range_scale"][0].as_f64().unwrap();
+        assert!((scale - 0.02).abs() < 0.01, "{test}");
+        let late_m = test["clock_offsets_m"]["A"][0].as_f64().unwrap();
+        assert!((late_m - 0.35).abs() < 0.08, "{test}");
+    }
+    let run = bench.runs().pop().unwrap();
+    let report = bench.tankops(&["report", run.to_str().unwrap(), "-o", "r.html"]);
+    assert_eq!(report.code, Some(0), "{report:?}");
+    let page = std::fs::read_to_string(bench.path().join("r.html")).unwrap();
+    assert!(page.contains("pulse test before the run: 20 pulses"), "the report states the test");
+    // Without the pulses, the ranges contradict each other in every fix.
+    let text = std::fs::read_to_string(&file).unwrap();
+    let is_pulse = |line: &&str| line.split(',').nth(2).is_some_and(|sender| sender.len() == 1);
+    let without: Vec<&str> = text.lines().filter(|line| !is_pulse(line)).collect();
+    let without = bench.file("without.csv", without.join("\n"));
+    let figures = locate(&without, &["--json", "--no-record"]).json();
+    assert_eq!(figures["fixes"], serde_json::json!({ "alarm": 5 }), "{figures}");
+}
+
 #[test]
 fn bad_rows_are_refused_by_line_and_column() {
     let bench = Bench::new();

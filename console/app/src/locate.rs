@@ -7,15 +7,15 @@ use crate::{
     input,
     output::check_free,
 };
-use ::locate::{Doubts, Fixes, Refused, Survey, Tally, Task};
+use ::locate::{Doubts, Fixes, Pulsed, Refused, Survey, Tally, Task};
 use account::{Expect, PlannerCalls};
 use command::json::say_json;
 use flight::{
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input, exit_code},
     scenarios,
 };
-use mission::Event;
-use positioning::Wrong;
+use mission::{Event, event::PulsePhase};
+use positioning::{Estimated, Wrong};
 use report::print::{say, say_line, warn_line};
 use runs::{CLOSE_TIMEOUT, Kept, RunLog};
 use scenario::Scenario;
@@ -46,6 +46,9 @@ struct Figures<'a> {
     session: Session<'a>,
     /// Emissions with several readings of the same station.
     repeated_readings: Option<RepeatedReadings<'a>>,
+    /// The pulse tests of the stations; absent without pulses.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pulse_tests: Vec<PulseFigures<'a>>,
     sides: Sides,
     /// If the measured motion is not used because fixes contradict it: the number of fixes that contradict it, and the
     /// number of fixes tested.
@@ -85,6 +88,22 @@ struct RepeatedReadings<'a> {
     widest_m: f64,
     /// The mission time in seconds.
     widest_t_s: f64,
+}
+
+#[derive(Serialize)]
+struct PulseFigures<'a> {
+    phase: PulsePhase,
+    /// The mission time in seconds.
+    t_s: f64,
+    pulses: usize,
+    /// The share by which ranges were too long, and its standard deviation.
+    range_scale: [f64; 2],
+    /// The offset of each clock from their mean, as a length that sound travels in metres, and its standard deviation.
+    clock_offsets_m: BTreeMap<&'a str, [f64; 2]>,
+    /// `ok`, `suspect` or `alarm`; `untestable` if the pulses do not suffice.
+    survey: positioning::Integrity,
+    /// The station that contradicts the others.
+    suspect: Option<&'a str>,
 }
 
 /// The numbers of fixes with a mirror image, by how the right side was determined.
@@ -204,6 +223,7 @@ fn figures<'a>(
         clock_offset_m: found(FindArg::ClockOffset).map(|calibration| pair(calibration.offset_m())),
         session: session(scenario, survey),
         repeated_readings: repeated(scenario, survey),
+        pulse_tests: survey.pulses.iter().map(|pulsed| pulsed_figures(scenario, survey, pulsed)).collect(),
         sides: Sides {
             by_walls: doubts.sides_by_walls,
             by_start_and_track: doubts.sides_by_track,
@@ -229,6 +249,21 @@ fn session<'a>(scenario: &'a Scenario, survey: &Survey) -> Session<'a> {
         scale: verdict.scale.as_ref().map(of),
         offset_m: verdict.offset_m.as_ref().map(of),
         stations_m: verdict.stations.iter().map(station).collect(),
+    }
+}
+
+fn pulsed_figures<'a>(scenario: &'a Scenario, survey: &Survey, pulsed: &Pulsed) -> PulseFigures<'a> {
+    let test = &pulsed.test;
+    let offset =
+        |(id, offset): &(StationId, Estimated)| (name_of(scenario, id.0), [offset.value, offset.sigma]);
+    PulseFigures {
+        phase: pulsed.phase,
+        t_s: pulsed.t_s - survey.first_s,
+        pulses: test.pulses,
+        range_scale: [test.scale.value, test.scale.sigma],
+        clock_offsets_m: test.offsets_m.iter().map(offset).collect(),
+        survey: test.integrity,
+        suspect: test.suspect.map(|id| name_of(scenario, id.0)),
     }
 }
 

@@ -36,8 +36,9 @@ const TRUE_X: usize = 11;
 const TRUE_Y: usize = 12;
 const TRUE_HEADING: usize = 13;
 const TOOL_ON: usize = 14;
+const SENDER: usize = 15;
 
-const COLUMNS: [Column; 15] = [
+const COLUMNS: [Column; 16] = [
     ("t", TIME_OR_DATE),
     ("emission", NAME),
     ("station", NAME),
@@ -53,6 +54,7 @@ const COLUMNS: [Column; 15] = [
     ("true_y", LENGTH),
     ("true_heading", ANGLE),
     ("tool_on", NAME),
+    ("sender", NAME),
 ];
 
 /// The largest number of repetitions that one mean may stand for.
@@ -91,6 +93,8 @@ pub(crate) struct Row {
     /// The emission that the row belongs to.
     pub emission: Option<String>,
     pub range: Option<Heard>,
+    /// The pulse of a station that another station heard.
+    pub pulse: Option<Sent>,
     pub motion: Option<Odometry>,
     pub truth: Option<Pose>,
     /// Whether the tool is on from this row on; `None` if the row does not state it.
@@ -105,6 +109,13 @@ pub(crate) struct Heard {
     /// may be negative.
     pub range_m: f64,
     pub repetitions: u32,
+}
+
+/// A pulse of a station, as another station heard it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Sent {
+    pub sender: StationId,
+    pub heard: Heard,
 }
 
 impl Columns {
@@ -216,17 +227,44 @@ impl Columns {
         });
         let truth = number(TRUE_X)?.zip(number(TRUE_Y)?);
         let heading_rad = number(TRUE_HEADING)?.unwrap_or_default();
+        let heard = self.heard(cells, line, range_m)?;
+        let pulse = self.sent(cells, line, heard)?;
         let time_cell = if self.has(T) { T } else { ARRIVAL };
         Ok(Row {
             line,
             t_s,
             written: Written::of(self.cell(cells, time_cell)),
             emission: Some(self.cell(cells, EMISSION)).filter(|text| !text.is_empty()).map(str::to_owned),
-            range: self.heard(cells, line, range_m)?,
+            range: heard.filter(|_| pulse.is_none()),
+            pulse,
             motion,
             truth: truth.map(|(x, y)| Pose { position: Point::new(x, y), heading_rad }),
             tool_on: self.tool_on(cells, line)?,
         })
+    }
+
+    /// The pulse of a row that names a sender.
+    fn sent(&self, cells: &StringRecord, line: u64, heard: Option<Heard>) -> Result<Option<Sent>, Problem> {
+        let written = self.cell(cells, SENDER);
+        if written.is_empty() {
+            return Ok(None);
+        }
+        let wrong = |what: String| Err(self.problem(line, SENDER, what));
+        let Some(sender) = self.stations.get(written).copied() else {
+            return wrong(format!("the scenario has no station `{written}`, only {}", self.station_names));
+        };
+        match heard {
+            _ if self.kind() == Kind::Differences => wrong(format!(
+                "the pulse of station {written} needs its time of emission; add the column emitted_s, or range_m"
+            )),
+            None => wrong(format!(
+                "station {written} sent a pulse, but the row has no reading; name the station that heard it"
+            )),
+            Some(heard) if heard.station == sender => wrong(format!(
+                "station {written} hears its own pulse; name the station that heard it in `station`"
+            )),
+            Some(heard) => Ok(Some(Sent { sender, heard })),
+        }
     }
 
     fn tool_on(&self, cells: &StringRecord, line: u64) -> Result<Option<bool>, Problem> {

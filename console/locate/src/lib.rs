@@ -15,6 +15,7 @@ mod located;
 mod measured;
 mod moments;
 mod problem;
+mod pulsing;
 mod repeats;
 mod rows;
 mod tally;
@@ -29,6 +30,7 @@ pub use found::Found;
 pub use located::{Survey, Task};
 pub use measured::MeasuredWriter;
 pub use problem::Problem;
+pub use pulsing::Pulsed;
 pub use repeats::{Repeated, Repeats};
 pub use tally::Tally;
 

@@ -7,6 +7,7 @@ use crate::{
     found::Found,
     moments::{Moment, Moments},
     problem::Problem,
+    pulsing::{Pulsed, Pulsing, series},
     repeats::{Repeats, Scatter},
     rows::Rows,
     tool::{self, Stretches},
@@ -16,7 +17,7 @@ use mission::{
     Event, EventKind, Locator, MissionConfig, Outcome, PlannerChoice,
     event::{Asked, Measured, ToolTrack},
 };
-use positioning::{Agreement, Doubt, Possible, RangeNoise, SolverKind, Verdict};
+use positioning::{Agreement, Doubt, Possible, PulseSeries, RangeNoise, SolverKind, Verdict};
 use scenario::Scenario;
 use std::path::Path;
 use world::{CoverageGrid, ObstacleMap, RangeSet, StationId, Tool};
@@ -29,6 +30,9 @@ const LISTED: usize = 10;
 const GAP: f64 = 5.0;
 /// The number of intervals between motions from which the usual interval is determined.
 const INTERVALS: usize = 4_096;
+
+/// Least standard deviation of a pulse, metres: noise-free scenarios have one, too.
+const LEAST_SIGMA_M: f64 = 1e-4;
 
 /// Minimum number of contradicting fixes for the motion to be ignored. A wrong start alone makes three fixes contradict
 /// the motion.
@@ -84,6 +88,8 @@ pub struct Survey {
     pub verdict: Verdict,
     /// The scatter of several readings of one station in one emission.
     pub repeats: Repeats,
+    /// The pulse tests of the stations, in chronological order; their corrections are used.
+    pub pulses: Vec<Pulsed>,
     /// The first time in the file, as written there, seconds.
     pub first_s: f64,
     /// The first and the last time, with their dates, in UTC; absent if times have no date.
@@ -136,11 +142,13 @@ impl Task<'_> {
         let (mut problems, mut bad) = (Vec::new(), 0);
         let (mut first, mut last): (Option<Moment>, Option<Moment>) = (None, None);
         let (mut repeats, scatter) = (Repeats::default(), self.scatter(columns.kind()));
+        let mut pulsing = Pulsing::default();
         let (mut intervals_s, mut moved_s): (Vec<f64>, Option<f64>) = (Vec::new(), None);
         for moment in moments.by_ref() {
             match moment {
                 Ok(moment) => {
                     repeats.take(&moment, &scatter);
+                    pulsing.take(&moment);
                     stretches.take(moment.t_s, moment.tool_on);
                     if moment.odometry.is_some() {
                         let since_s = moved_s.replace(moment.t_s).map(|before_s| moment.t_s - before_s);
@@ -163,14 +171,15 @@ impl Task<'_> {
             return Err(bad_input(self.listed(&problems, bad)));
         }
         let (first, last) = first.zip(last).ok_or_else(|| bad_input(format!("{}: no rows", self.shown)))?;
-        let calibration = self.found(&columns, &repeats)?;
+        let pulses = self.pulsed(&pulsing)?;
+        let pulse_series = series(&pulses);
+        let known = (&columns, &repeats, &pulse_series);
+        let calibration = self.found(known)?;
         let assumed = match calibration {
-            None if self.scenario.mission.locating.calibrate_sound_speed => {
-                self.found_under_way(&columns, &repeats)?
-            }
+            None if self.scenario.mission.locating.calibrate_sound_speed => self.found_under_way(known)?,
             found => found,
         };
-        let verdict = self.judged((&columns, &repeats), assumed.as_ref())?.verdict();
+        let verdict = self.judged(known, assumed.as_ref())?.verdict();
         intervals_s.sort_by(f64::total_cmp);
         let tool_on = self.tool_on(in_file, stretches, [first.t_s, last.t_s])?;
         let from_first = |[from_s, to_s]: [f64; 2]| [from_s - first.t_s, to_s - first.t_s];
@@ -186,6 +195,7 @@ impl Task<'_> {
             tool_on_s: tool_on.map(|stretches| stretches.into_iter().map(from_first).collect()),
             verdict,
             repeats,
+            pulses,
             first_s: first.t_s,
             dates: (first.written == Written::Dated).then(|| [first.t_s, last.t_s].map(clock::written)),
             gap_s: intervals_s.get(intervals_s.len() / 2).map_or(f64::INFINITY, |usual_s| GAP * usual_s),
@@ -200,13 +210,38 @@ impl Task<'_> {
         Ok(survey)
     }
 
-    /// Iterates over the moments of the file. Readings that are copies of each other are merged into one.
-    fn moments(&self, repeats: &Repeats) -> anyhow::Result<impl Iterator<Item = Moment> + use<>> {
-        let are_one = repeats.are_narrow();
+    /// Evaluates the pulse tests of the file.
+    fn pulsed(&self, pulsing: &Pulsing) -> anyhow::Result<Vec<Pulsed>> {
+        let (noise, timing) = (self.noise(), self.scenario.mission.locating.timing);
+        let sigma_m = |distance_m: f64| {
+            let share_m = noise.sigma_ratio() * distance_m.abs();
+            share_m.hypot(timing.mean_sigma_m(share_m, 1.0)).max(LEAST_SIGMA_M)
+        };
+        let tests = pulsing.tests(&self.scenario.sim.world.stations, sigma_m).map_err(|(phase, what)| {
+            bad_input(format!("{}: pulses {}: {what}", self.shown, phase.words()))
+        })?;
+        if !tests.is_empty() && (self.finds_sound_speed || self.finds_clock_offset) {
+            return Err(bad_input(format!(
+                "{}: the pulses of the stations already give the speed of sound and the clocks; leave out --find",
+                self.shown
+            )));
+        }
+        Ok(tests)
+    }
+
+    /// Iterates over the moments of the file. Readings that are copies of each other are merged into one, and the
+    /// corrections by pulse tests are applied.
+    fn moments(
+        &self,
+        repeats: &Repeats,
+        pulses: &PulseSeries,
+    ) -> anyhow::Result<impl Iterator<Item = Moment> + use<>> {
+        let (are_one, pulses) = (repeats.are_narrow(), pulses.clone());
         let counted = move |mut moment: Moment| {
             if are_one {
                 moment.ranges.iter_mut().for_each(as_one);
             }
+            pulses.correct(moment.t_s, &mut moment.ranges);
             moment
         };
         Ok(self.open()?.0.flatten().map(counted))
@@ -317,7 +352,11 @@ impl Task<'_> {
         let ratio = scale.filter(|scale| scale.is_proven).map_or(0.0, |scale| scale.value.abs());
         let is_emission_free = survey.kind == Kind::Differences;
         let likely_errors = survey.verdict.likely_errors(is_emission_free);
-        for mut moment in self.moments(&survey.repeats)? {
+        let mut tests = survey.pulses.iter().peekable();
+        for mut moment in self.moments(&survey.repeats, &series(&survey.pulses))? {
+            while let Some(pulsed) = tests.next_if(|pulsed| pulsed.t_s <= moment.t_s) {
+                take(&[track.pulses_tested(pulsed, survey.first_s)]);
+            }
             moment.t_s -= survey.first_s;
             if let Some(calibration) = &survey.calibration {
                 calibration.correct(&mut moment.ranges);
@@ -341,7 +380,12 @@ impl Task<'_> {
         config.fallback = None;
         if survey.kind == Kind::Differences {
             config.locating.solver = SolverKind::Differences;
+        } else if config.locating.solver == SolverKind::Differences {
+            // The readings state distances, whatever the scenario expects of a mission.
+            config.locating.solver = SolverKind::default();
         }
+        // Readings whose stations have clocks of their own are refused (see `check_findable`).
+        config.locating.clocks = None;
         if survey.kind == Kind::Differences || survey.calibration.is_some() {
             config.locating.calibrate_sound_speed = false;
         }
@@ -399,6 +443,12 @@ impl Swept {
 impl Track {
     fn event(&self, kind: EventKind) -> Event {
         Event { tick: self.tick, t_s: self.t_s, kind }.rounded()
+    }
+
+    /// The event about a pulse test.
+    fn pulses_tested(&self, pulsed: &Pulsed, first_s: f64) -> Event {
+        let kind = EventKind::PulsesTested { phase: pulsed.phase, test: pulsed.test.clone() };
+        Event { tick: self.tick, t_s: pulsed.t_s - first_s, kind }.rounded()
     }
 
     fn events(&mut self, moment: &Moment) -> Vec<Event> {

@@ -2,7 +2,7 @@
 
 use crate::{
     clock::{self, Written},
-    columns::{Columns, Heard, Kind, Row},
+    columns::{Columns, Heard, Kind, Row, Sent},
     problem::Problem,
     rows::Rows,
 };
@@ -25,6 +25,8 @@ pub(crate) struct Moment {
     pub ranges: Vec<RangeSet>,
     /// The possible readings behind `ranges`, row by row.
     pub heard: Vec<Heard>,
+    /// The pulses of stations.
+    pub pulses: Vec<Sent>,
     /// Motion since the previous moment, if measured.
     pub odometry: Option<Odometry>,
     /// The true pose of the robot, if known.
@@ -209,6 +211,7 @@ impl Moment {
             t_s: first.t_s,
             ranges: Vec::new(),
             heard: Vec::new(),
+            pulses: Vec::new(),
             odometry: None,
             truth: None,
             written: first.written,
@@ -220,6 +223,7 @@ impl Moment {
 
     fn add(&mut self, row: &Row) {
         self.heard.extend(row.range);
+        self.pulses.extend(row.pulse);
         if let Some(Heard { station, range_m, repetitions }) = row.range {
             let index = self.ranges.iter().position(|set| set.station == station);
             let index = index.unwrap_or_else(|| {

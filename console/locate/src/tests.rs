@@ -7,6 +7,8 @@ use std::{collections::BTreeMap, fmt::Write as _, path::PathBuf};
 use tempfile::TempDir;
 use world::{Odometry, Point, Pose, RangeSet, Readings};
 
+mod pulses;
+
 const SCENARIO: &str = r#"
 name = "bare"
 seed = 1

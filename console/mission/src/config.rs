@@ -4,7 +4,7 @@ use crate::{instrument::InstrumentConfig, planner::PlannerChoice};
 use geometry::motion::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD};
 use perception::Sensor;
 use planner_api::{Limits, Motion, TetherLimits, TetherPull};
-use positioning::{Aggregation, Forecast, RangeNoise, Risk, SessionConfig, SolverKind, Timing};
+use positioning::{Aggregation, ClockConfig, Forecast, RangeNoise, Risk, SessionConfig, SolverKind, Timing};
 use serde::{Deserialize, Serialize};
 use world::{Floor, FloorMaker, Point, Pose, PressureSensor, World, coverage::Tool, tether};
 
@@ -92,6 +92,25 @@ impl Guarantee {
     }
 }
 
+/// The clocks of stations that share no common clock, as known before the mission.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct OwnClocks {
+    /// Standard deviation of the offset of a station's clock, as a length that sound travels, metres.
+    pub offset_sigma_m: f64,
+    /// Standard deviation of the drift of a station's clock, metres per hour.
+    pub drift_sigma_m_per_h: f64,
+}
+
+impl OwnClocks {
+    /// The settings of the estimator, for ticks of this length, seconds.
+    pub fn config(&self, tick_s: f64) -> ClockConfig {
+        ClockConfig {
+            offset_sigma_m: self.offset_sigma_m,
+            drift_sigma_m_per_tick: self.drift_sigma_m_per_h * tick_s / 3600.0,
+        }
+    }
+}
+
 /// How positions are computed from ranges.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -121,6 +140,10 @@ pub struct Locating {
     /// How the speed of sound and the stations are calibrated from the last fixes; `None` if they are not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub session: Option<SessionConfig>,
+    /// The clocks of the stations, which are estimated during the mission; `None` if the stations share one clock. Needs
+    /// [`SolverKind::Differences`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clocks: Option<OwnClocks>,
 }
 
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "signature required by serde")]
@@ -141,6 +164,7 @@ impl Default for Locating {
             needs_line_of_sight: false,
             risk: None,
             session: None,
+            clocks: None,
         }
     }
 }
@@ -342,6 +366,7 @@ impl MissionConfig {
             timing: self.locating.timing,
             repetitions: self.locating.repetitions,
             needs_line_of_sight: self.locating.needs_line_of_sight,
+            is_emission_unknown: self.locating.solver == SolverKind::Differences,
             cell_m,
         }
     }

@@ -6,10 +6,12 @@
 
 mod better_plan;
 mod channels;
+mod clock_offset;
 mod effort;
 mod log_line;
 mod measured;
 mod offer;
+mod pulse;
 mod recorded;
 mod rounding;
 mod run_opened;
@@ -19,10 +21,12 @@ mod tether;
 
 pub use better_plan::{PlanDropped, PlanMade, PlanTaken};
 pub use channels::ChannelsJudged;
+pub use clock_offset::ClockOffset;
 pub use effort::Effort;
 pub use log_line::{LogLine, late_text};
 pub use measured::{Asked, Measured, ToolTrack};
 pub use offer::{OfferEnd, OfferStage, PlanScan, PlanScans};
+pub use pulse::{PulsePhase, pulse_text};
 pub use recorded::RecordedAnswers;
 pub(crate) use rounding::rounded_command;
 pub use run_opened::RunOpened;
@@ -38,7 +42,7 @@ use crate::{
     way_back::WayBack,
 };
 use planner_api::{Command, Drawing, Drive, Leg, LegTag, LogLevel, PoseEstimate, Reason};
-use positioning::{Estimated, Exclusion, Fix, FixError, Ranging, Unprotected};
+use positioning::{Estimated, Exclusion, Fix, FixError, PulseTest, Ranging, Unprotected};
 use serde::{Deserialize, Serialize};
 use vehicle::port::{LinkSeen, Notice};
 use world::tether::Certificate;
@@ -211,6 +215,18 @@ pub enum EventKind {
     SessionCalibrated {
         /// Share by which all ranges are too long.
         scale: Estimated,
+    },
+    /// The stations sent pulses that the others heard.
+    PulsesTested {
+        /// The part of the run.
+        phase: PulsePhase,
+        /// The result.
+        test: PulseTest,
+    },
+    /// The clocks of the stations. Only in missions whose stations share no common clock.
+    ClocksEstimated {
+        /// The offset of each station.
+        offsets: Vec<ClockOffset>,
     },
     /// The ranges of a station are wrong by a constant length. Floor that was scanned since the bias may have begun is in
     /// doubt, so it is not guaranteed any more.

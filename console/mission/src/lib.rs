@@ -34,9 +34,11 @@ mod zone_cost;
 
 pub use ask::{Answer, Ask, AskId, Awaits, Given, Said, What, WorkerId};
 pub use channels::Channels;
-pub use config::{BetterPlan, Guarantee, Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
+pub use config::{
+    BetterPlan, Guarantee, Locating, MissionConfig, OwnClocks, ScanConfig, TaskConfig, TetherConfig,
+};
 pub use engine::{Fork, Input, Mission, Sending, Step};
-pub use event::{Event, EventKind, LogLine, RunOpened, Severity};
+pub use event::{ClockOffset, Event, EventKind, LogLine, RunOpened, Severity};
 pub use instrument::{InstrumentConfig, InstrumentKind, Sampling};
 pub use locate::Locator;
 pub use order::{Check, CheckOutcome, Injection, Note, Noted, Order, Outlook, RangeFault};

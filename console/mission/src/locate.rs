@@ -4,7 +4,10 @@ mod protection;
 mod scan_aid;
 mod session;
 
-use crate::{config::MissionConfig, event::EventKind};
+use crate::{
+    config::MissionConfig,
+    event::{ClockOffset, EventKind},
+};
 use perception::Matched;
 use planner_api::PoseEstimate;
 use positioning::{
@@ -67,6 +70,7 @@ impl Locator {
                 slip_chance: 0.0,
             },
             risk: locating.risk,
+            clocks: locating.clocks.map(|clocks| clocks.config(config.tick_s)),
             ..PositionerConfig::new(drawing.stations.clone(), config.start)
         };
         Self {
@@ -169,6 +173,7 @@ impl Locator {
             by_order.for_each(|(_, reason)| *reason = Exclusion::ByOrder);
             self.session.iter().for_each(|session| session.explain(fix));
         }
+        events.extend(self.clocks());
         events.push(EventKind::Ranged { ranges: result.rangings });
         events.extend(self.heed(&result.fix));
         match result.fix {
@@ -183,6 +188,13 @@ impl Locator {
             }
         }
         events
+    }
+
+    /// The clocks of the stations; `None` if they share one clock.
+    fn clocks(&self) -> Option<EventKind> {
+        let offsets = self.positioner.clocks()?.offsets_m();
+        let offsets = offsets.map(|(station, offset_m)| ClockOffset { station, offset_m }).collect();
+        Some(EventKind::ClocksEstimated { offsets })
     }
 
     /// Raises the alarm if the ranges contradict each other and leaving out a station does not resolve the contradiction.

@@ -11,7 +11,7 @@ use crate::{
     sides::mirrored,
 };
 use checks::Checks;
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
 use world::{ObstacleMap, Point, Station, World};
 
@@ -35,6 +35,9 @@ pub struct Forecast {
     pub repetitions: u32,
     /// Whether a station is unusable wherever an obstacle hides it from the robot.
     pub needs_line_of_sight: bool,
+    /// Whether the time of emission is unknown, so that only the differences of ranges count.
+    #[serde(default)]
+    pub is_emission_unknown: bool,
     /// Edge length of a cell, metres.
     pub cell_m: f64,
 }
@@ -133,7 +136,7 @@ impl Forecast {
     pub fn at(&self, place: Point, stations: &[Station], map: &ObstacleMap) -> Accuracy {
         let heard =
             || stations.iter().filter(|s| !self.needs_line_of_sight || is_in_sight(map, place, s.position));
-        let mut sum = Seen::default();
+        let mut sum = Seen { is_emission_unknown: self.is_emission_unknown, ..Seen::default() };
         heard().for_each(|station| sum.add(&self.seen(place, station.position)));
         let covariance = sum.covariance();
         Accuracy {
@@ -176,7 +179,15 @@ impl Forecast {
         let direction = away / distance_m;
         let square = direction * direction.transpose();
         let sigma_m = self.sigma_m(distance_m);
-        Seen { heard: 1, geometry: square, information: square / sigma_m.powi(2) }
+        Seen {
+            heard: 1,
+            geometry: square,
+            information: square / sigma_m.powi(2),
+            directions: direction,
+            pull: direction / sigma_m.powi(2),
+            weight: sigma_m.powi(-2),
+            ..Seen::default()
+        }
     }
 }
 
@@ -184,8 +195,19 @@ impl Forecast {
 #[derive(Debug, Clone, Copy, Default)]
 struct Seen {
     heard: u32,
+    /// Whether all ranges are too long by one unknown length.
+    is_emission_unknown: bool,
     geometry: Matrix2<f64>,
     information: Matrix2<f64>,
+    /// Sum of the directions, without and with their weights.
+    directions: Vector2<f64>,
+    pull: Vector2<f64>,
+    weight: f64,
+}
+
+/// The least number of stations for an unambiguous fix.
+fn needed(is_emission_unknown: bool) -> usize {
+    3 + usize::from(is_emission_unknown)
 }
 
 impl Seen {
@@ -193,15 +215,28 @@ impl Seen {
         self.heard += other.heard;
         self.geometry += other.geometry;
         self.information += other.information;
+        self.directions += other.directions;
+        self.pull += other.pull;
+        self.weight += other.weight;
     }
 
-    /// Returns the covariance of a fix; `None` for fewer than three stations, which leave a mirror image.
+    /// Returns the covariance of a fix; `None` for too few stations, which leave a mirror image.
     fn covariance(&self) -> Option<Matrix2<f64>> {
-        inverse_of(&self.information).filter(|covariance| self.heard >= 3 && covariance.trace().is_finite())
+        let information = self.for_position(&self.information, &self.pull, self.weight);
+        let needed = needed(self.is_emission_unknown);
+        inverse_of(&information)
+            .filter(|covariance| self.heard as usize >= needed && covariance.trace().is_finite())
+    }
+
+    /// Returns the information about the position alone: what is left after the unknown length that all ranges share is
+    /// fitted, too (Schur complement).
+    fn for_position(&self, all: &Matrix2<f64>, pull: &Vector2<f64>, weight: f64) -> Matrix2<f64> {
+        if self.is_emission_unknown { all - pull * pull.transpose() / weight } else { *all }
     }
 
     fn gdop(&self) -> Option<f64> {
-        Some(inverse_of(&self.geometry)?.trace().max(0.0).sqrt()).filter(|gdop| *gdop < NO_GEOMETRY)
+        let geometry = self.for_position(&self.geometry, &self.directions, f64::from(self.heard));
+        Some(inverse_of(&geometry)?.trace().max(0.0).sqrt()).filter(|gdop| *gdop < NO_GEOMETRY)
     }
 }
 

@@ -24,8 +24,10 @@ pub mod fixed_lag;
 pub mod particle;
 pub mod positioner;
 pub mod protection;
+pub mod pulses;
 pub mod session;
 pub mod session_calibration;
+pub mod station_clocks;
 
 mod anchor;
 #[cfg(test)]
@@ -54,11 +56,13 @@ pub use nonlinear::Nls;
 pub use particle::{Particles, ParticlesConfig};
 pub use positioner::{Agreement, CycleResult, Doubt, Estimate, Positioner, PositionerConfig};
 pub use possible::{Impossible, Possible};
-pub use protection::{Guard, Multipliers, Risk, Unprotected};
+pub use protection::{Guard, Multipliers, Risk, Unprotected, are_on_line};
+pub use pulses::{Pulse, PulseError, PulseSeries, PulseTest};
 pub use quality::{alarm_limit, scatter_limit};
 pub use screened::Screened;
 pub use session::{CommonError, Session, Verdict, Wrong};
 pub use session_calibration::{Estimated, News, OnBias, SessionCalibration, SessionConfig, SoundSpeed};
 pub use sides::{Sides, mirrored};
 pub use solver_kind::SolverKind;
+pub use station_clocks::{ClockConfig, StationClocks};
 pub use weighted::WeightedLinear;

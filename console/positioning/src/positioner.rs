@@ -14,6 +14,7 @@ use crate::{
     session::{CommonError, shift_by},
     sides::{Sides, both, is_behind},
     solver_kind::SolverKind,
+    station_clocks::StationClocks,
 };
 use nalgebra::{Matrix2, Matrix3};
 use world::{Odometry, Point, Pose, RangeSet, Station, StationId};
@@ -95,6 +96,8 @@ pub struct Positioner {
     possible: Option<Possible>,
     filter: Ekf,
     sound: Calibration,
+    /// The clocks of the stations; `None` if they share one clock.
+    clocks: Option<StationClocks>,
     doubt: Doubt,
     /// Whether some motion was not measured, so that the heading may be lost.
     has_wandered: bool,
@@ -115,6 +118,9 @@ impl Positioner {
     pub fn new(config: PositionerConfig) -> Self {
         let filter = Ekf::new(config.start, config.start_sigma_m, config.heading_sigma_rad, config.odometry);
         let sound = Calibration::new(&config.stations, Unknowns::default());
+        let clocks = config.clocks.map(|clocks| {
+            StationClocks::new(clocks, &config.stations, config.start.position, config.start_sigma_m)
+        });
         let too_long_ratio = if config.calibrate_sound_speed { MOST_SCALE } else { 0.0 };
         let noise = (&config.noise, config.timing);
         let possible =
@@ -124,6 +130,7 @@ impl Positioner {
             possible,
             filter,
             sound,
+            clocks,
             doubt: Doubt::default(),
             has_wandered: false,
             is_confirmed: false,
@@ -137,16 +144,24 @@ impl Positioner {
 
     /// Moves the estimate by one tick of odometry.
     pub fn predict(&mut self, odometry: &Odometry) {
+        let before = self.filter.pose().position;
         if self.has_wandered {
             self.filter.predict_unsure(odometry);
         } else {
             self.filter.predict(odometry);
+        }
+        if let Some(clocks) = &mut self.clocks {
+            let moved = self.filter.pose().position - before;
+            let heading_sigma_rad = self.filter.covariance()[(2, 2)].max(0.0).sqrt();
+            let share = self.config.odometry.sigma_per_m.hypot(heading_sigma_rad);
+            clocks.predict(moved, odometry.forward_m.hypot(odometry.sideways_m) * share);
         }
     }
 
     /// Widens the pose for an unmeasured motion; see [`Ekf::wander`].
     pub fn wander(&mut self, most_m: f64, most_rad: f64) {
         self.filter.wander(most_m, most_rad);
+        self.clocks.iter_mut().for_each(|clocks| clocks.wander(most_m));
         self.has_wandered = true;
     }
 
@@ -186,11 +201,20 @@ impl Positioner {
             let _ = self.sound.take(&rangings, Some(prior));
             rangings = self.sound.corrected(&rangings);
         }
+        if let Some(clocks) = &mut self.clocks {
+            clocks.take(&rangings);
+            rangings = clocks.corrected(&rangings);
+        }
         self.widen(&mut rangings);
         result.fix = self.solve(&rangings, &result.impossible);
         if let Ok(fix) = &mut result.fix {
             self.common = self.in_common(fix);
             self.allow_for_likely(fix);
+            if let Some(clocks) = &self.clocks {
+                let by_clocks = clocks.spread(fix);
+                self.common += by_clocks;
+                fix.covariance += by_clocks;
+            }
         }
         if let (SolverKind::Differences, Ok(fix)) = (self.config.solver, &result.fix) {
             take_excess_out(fix, &mut rangings, &self.config.stations);
@@ -207,8 +231,13 @@ impl Positioner {
             fix.integrity = fix.integrity.min_trust(Integrity::Suspect);
         }
         if let (Some(risk), Ok(fix)) = (&self.config.risk, &mut result.fix) {
-            fix.protection_level_m =
-                protection::level_m(fix, &self.config.stations, risk, !self.are_distances());
+            // A wrong station may have spoilt the clocks of the others, which one fix alone does not show: then only
+            // the pose has a level (see `Guard`).
+            fix.protection_level_m = if self.clocks.is_some() {
+                None
+            } else {
+                protection::level_m(fix, &self.config.stations, risk, !self.are_distances())
+            };
         }
         CycleResult { rangings, ..result }
     }
@@ -265,6 +294,11 @@ impl Positioner {
         let Doubt { likely_errors, likely_m, .. } = self.doubt;
         fix.covariance += self.spread_by(&likely_errors, fix);
         fix.covariance += Matrix2::identity() * likely_m.powi(2);
+    }
+
+    /// The clocks of the stations; `None` if they share one clock.
+    pub fn clocks(&self) -> Option<&StationClocks> {
+        self.clocks.as_ref()
     }
 
     /// Returns how well fixes and measured motion have agreed so far; only fixes without other doubts count.

@@ -8,7 +8,7 @@
 
 mod guard;
 
-pub use guard::Guard;
+pub use guard::{Guard, are_on_line};
 
 use crate::{
     fix::{Exclusion, Fix},

@@ -255,6 +255,19 @@ pub(crate) fn shift_by(
     Some((Free::of(&seen, is_emission_free)?.inverse * pull).xy())
 }
 
+/// Returns by how much the position of a fix moves for each metre that the range of a station is longer. `None` if the
+/// fix has no free position.
+pub(crate) fn position_by_range(
+    fix: &Fix,
+    stations: &[Station],
+    is_emission_free: bool,
+) -> Option<Vec<(StationId, Vector2<f64>)>> {
+    let seen = seen(fix, stations, is_emission_free);
+    let free = Free::of(&seen, is_emission_free)?;
+    let by = |seen: &Seen| (stations[seen.error - 1].id, (free.inverse * seen.by * seen.weight).xy());
+    Some(seen.iter().map(by).collect())
+}
+
 /// Collects the ranges of a fix.
 fn seen(fix: &Fix, stations: &[Station], is_emission_free: bool) -> Vec<Seen> {
     let seen = |residual: &Residual| {

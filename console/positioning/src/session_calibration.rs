@@ -17,7 +17,7 @@ use crate::{
     noise::{RangeNoise, Timing},
 };
 use serde::{Deserialize, Serialize};
-use window::{Fitted, Node, Window};
+use window::{Fitted, Node, Test, Window};
 use world::{Odometry, Point, RangeSet, Station, StationId, Vector};
 
 /// Number of standard deviations above which a bias is detected. Least detectable errors are forecast for 3.29 in a
@@ -224,6 +224,7 @@ impl SessionCalibration {
         }
         let mut news: Vec<News> = self.separable(&fitted).into_iter().collect();
         news.extend(self.judge(&fitted));
+        news.extend(self.detected(&fitted, &active));
         news
     }
 
@@ -262,39 +263,50 @@ impl SessionCalibration {
         }
     }
 
-    /// Updates what is known about each station. At most one new bias is detected in a cycle: the most significant one,
-    /// because it also shows in the residuals of the other stations.
+    /// Updates what is known about each station.
     fn judge(&mut self, fitted: &Fitted) -> Vec<News> {
         let mut news = Vec::new();
         for (station, bias_m) in &fitted.biases_m {
             news.extend(self.follow(*station, *bias_m));
         }
         let begin_s = self.window.first_s();
-        let mut worst: Option<(usize, Estimated)> = None;
         for (station, test) in fitted.tests.iter().enumerate() {
             if self.known[station].bias_m.is_some() {
                 continue;
             }
-            let bias_m = test.filter(|test| test.correlation <= NOT_SEPARABLE).map(|test| test.bias_m);
-            let score = bias_m.map_or(0.0, Estimated::score);
+            let score = separable_bias_m(*test).map_or(0.0, Estimated::score);
             let since_s = &mut self.known[station].since_s;
             *since_s = match *since_s {
                 Some(since_s) if score >= CLEARED => Some(since_s),
                 None if score >= SUSPECTED => Some(begin_s),
                 _ => None,
             };
-            let is_worst = worst.is_none_or(|(_, other)| score > other.score());
-            worst = bias_m.filter(|_| is_worst).map_or(worst, |bias_m| Some((station, bias_m)));
-        }
-        let is_long = self.window.len() >= LEAST_FIXES;
-        if let Some((station, bias_m)) = worst.filter(|(_, bias_m)| is_long && bias_m.score() > DETECTED) {
-            let known = &mut self.known[station];
-            let since_s = known.since_s.unwrap_or(begin_s);
-            let (from_s, _) = self.window.change(station);
-            *known = Known { since_s: Some(since_s), bias_m: Some(bias_m), from_s };
-            news.push(News::Biased { station: self.stations[station].id, bias_m, since_s });
         }
         news
+    }
+
+    /// Detects a bias that begins in the window. At most one is detected in a cycle: the most significant one, because it
+    /// also shows in the residuals of the other stations.
+    ///
+    /// The test counts the bias in the whole window, most of which may be from before it began. Once it is detected, the
+    /// window is fitted again with a bias from its onset on, which gives its size.
+    fn detected(&mut self, fitted: &Fitted, active: &[(usize, f64)]) -> Option<News> {
+        if self.window.len() < LEAST_FIXES {
+            return None;
+        }
+        let tested = |(station, test): (usize, &Option<Test>)| Some((station, separable_bias_m(*test)?));
+        let found = fitted.tests.iter().enumerate().filter_map(tested);
+        let (station, tested_m) = found.max_by(|a, b| a.1.score().total_cmp(&b.1.score()))?;
+        if tested_m.score() <= DETECTED {
+            return None;
+        }
+        let since_s = self.known[station].since_s.unwrap_or(self.window.first_s());
+        let (from_s, _) = self.window.change(station);
+        let with: Vec<(usize, f64)> = active.iter().copied().chain([(station, from_s)]).collect();
+        let refitted = self.window.fit(self.stations.len(), &with)?;
+        let bias_m = refitted.biases_m.iter().find(|(index, _)| *index == station)?.1;
+        self.known[station] = Known { since_s: Some(since_s), bias_m: Some(bias_m), from_s };
+        Some(News::Biased { station: self.stations[station].id, bias_m, since_s })
     }
 
     /// Follows a detected bias, which may end or change.
@@ -317,6 +329,11 @@ impl SessionCalibration {
         known.bias_m = Some(bias_m);
         None
     }
+}
+
+/// The bias of a test, if it can be told from an error of the speed of sound.
+fn separable_bias_m(test: Option<Test>) -> Option<Estimated> {
+    test.filter(|test| test.correlation <= NOT_SEPARABLE).map(|test| test.bias_m)
 }
 
 #[cfg(test)]

@@ -36,7 +36,7 @@ pub use located::located_json;
 pub use maps::Figure;
 pub use model::{Document, GateItem};
 pub use readings::{Located, Readings};
-pub use run_part::{Driver, Files, Recovered, RunPart, TetherPart};
+pub use run_part::{Driver, Files, PulseRecord, Recovered, RunPart, TetherPart};
 pub use signed::{Revision, Signature, SignedRun};
 pub use task::TaskPart;
 pub use two_surveys::{

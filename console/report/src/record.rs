@@ -9,9 +9,12 @@ pub use stations::StationRecord;
 pub use tether::{Lay, TetherPoint, TetherRecord};
 
 use incidents::Incidents;
-use mission::{Event, EventKind, PlannerInfo};
+use mission::{Event, EventKind, PlannerInfo, event::PulsePhase};
 use planner_api::LegTag;
-use positioning::fix::{ellipse_95, position_covariance};
+use positioning::{
+    PulseTest,
+    fix::{ellipse_95, position_covariance},
+};
 use stations::Stations;
 use world::{Point, Pose};
 
@@ -63,6 +66,8 @@ pub struct Record {
     pub planners: Vec<PlannerInfo>,
     truth: Option<(u64, Pose)>,
     stations: Stations,
+    /// The pulse tests of the stations.
+    pub pulses: Vec<(PulsePhase, PulseTest)>,
     incidents: Incidents,
 }
 
@@ -129,6 +134,8 @@ impl Record {
                 self.planners.push((**info).clone());
             }
             EventKind::Fixed { fix } => self.stations.fix(fix),
+            EventKind::PulsesTested { phase, test } => self.pulses.push((*phase, test.clone())),
+            EventKind::ClocksEstimated { offsets } => self.stations.clocks(offsets),
             _ => {}
         }
     }

@@ -100,10 +100,8 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let (instrument, channel_faults) = instrument::instrument(root, plates.as_ref(), cell_m).unzip();
 
     let (planner, fallback) = planner?;
-    let (robot, rest, start, ae, locating) = (floor.robot?, rest?, start?, floor.ae?, floor.locating?);
-    // A guarantee by the protection level needs one, even if the scenario leaves the risk to its defaults.
-    let needed = (rest.scan.guarantee == Guarantee::Protection).then(Risk::default);
-    let locating = Locating { risk: locating.risk.or(needed), ..locating };
+    let (robot, rest, start, ae, mut locating) = (floor.robot?, rest?, start?, floor.ae?, floor.locating?);
+    protect(&mut locating, rest.scan.guarantee, &sections, &floor.stations);
     let mission = MissionConfig {
         task: task?,
         tether,
@@ -171,6 +169,16 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     })
 }
 
+/// Adds the risk that the guarantee needs. Complains if the stations do not suffice for a protection level.
+fn protect(locating: &mut Locating, guarantee: Guarantee, sections: &Sections<'_>, stations: &[Station]) {
+    // A guarantee by the protection level needs one, even if the scenario leaves the risk to its defaults.
+    let needed = (guarantee == Guarantee::Protection).then(Risk::default);
+    locating.risk = locating.risk.or(needed);
+    if let Some(section) = &sections.ae {
+        ranging::check_protection(section, locating, stations);
+    }
+}
+
 fn sensor(robot: &Robot) -> Option<Sensor> {
     let scanner = robot.scanner.as_ref()?;
     Some(Sensor { locates: robot.scanner_locates, ..Sensor::of(scanner) })
@@ -198,9 +206,8 @@ impl Floor {
         if let (Some(section), Some(heard)) = (ae, &mut heard) {
             heard.disturbances.faults = ranging::faults(section, &stations);
         }
-        let locating = ae
-            .zip(heard.as_ref())
-            .and_then(|(section, heard)| ranging::locating(section, heard, stations.len()));
+        let locating =
+            ae.zip(heard.as_ref()).and_then(|(section, heard)| ranging::locating(section, heard, &stations));
         Self {
             obstacles,
             movers,

@@ -1,5 +1,9 @@
 //! Reads acoustic-emission ranging: `[ae]`.
 
+mod clocks;
+
+pub(crate) use clocks::check_protection;
+
 use super::{floor::Names, problem::Complaint, section::Section};
 use mission::{Locating, spelling::nearest};
 use positioning::{Aggregation, OnBias, RangeNoise, Risk, SessionConfig, SolverKind, SoundSpeed, Timing};
@@ -16,7 +20,7 @@ const LEAST_STATIONS: usize = 4;
 /// Reads `[ae]` except for its stations.
 pub(crate) fn ae(section: &Section<'_>) -> Option<AeConfig> {
     let (period_s, repetitions) = (section.number("period_s"), section.whole("repetitions"));
-    let (noise, timing) = (noise(section), timing(section));
+    let (noise, timing, clocks) = (noise(section), timing(section), clocks::true_clocks(section));
     let dropout_probability = section.number("dropout_probability");
     let (outages_s, disturbances) = (section.times("outages_s"), disturbances(section));
     Some(AeConfig {
@@ -24,6 +28,7 @@ pub(crate) fn ae(section: &Section<'_>) -> Option<AeConfig> {
         repetitions: repetitions? as u32,
         noise: noise?,
         timing: timing?,
+        clocks: clocks?,
         dropout_probability: dropout_probability?,
         outages_s: outages_s?,
         disturbances: disturbances?,
@@ -31,7 +36,7 @@ pub(crate) fn ae(section: &Section<'_>) -> Option<AeConfig> {
 }
 
 /// The estimator's settings for ranging. The estimator uses the stated scatter, but has no information about faults.
-pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig, n_stations: usize) -> Option<Locating> {
+pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig, stations: &[Station]) -> Option<Locating> {
     let (solver, aggregation) = (section.word("solver"), section.word("aggregation"));
     let calibrate_sound_speed = section.flag("calibrate_sound_speed");
     let noise = match ae.noise {
@@ -49,6 +54,9 @@ pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig, n_stations: usize) 
     if !ae.timing.is_none() {
         refuse_beside_timing(section, solver, aggregation);
     }
+    if ae.clocks.is_emission_unknown {
+        clocks::check(section, stations);
+    }
     let behind = ae.disturbances.behind_columns;
     Some(Locating {
         noise,
@@ -61,6 +69,7 @@ pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig, n_stations: usize) 
             _ => Aggregation::Mean,
         },
         solver: match solver? {
+            _ if ae.clocks.is_emission_unknown => SolverKind::Differences,
             "linear" => SolverKind::Linear,
             "weighted-linear" => SolverKind::WeightedLinear,
             "bounded" => SolverKind::Bounded,
@@ -69,7 +78,8 @@ pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig, n_stations: usize) 
         },
         calibrate_sound_speed: calibrate_sound_speed?,
         risk: risk(section),
-        session: session(section, calibrate_sound_speed?, n_stations),
+        session: session(section, calibrate_sound_speed?, stations.len()),
+        clocks: clocks::expected(ae.clocks),
         repetitions: ae.repetitions,
         needs_line_of_sight: !matches!(behind, BehindColumns::Heard | BehindColumns::Creeping),
     })

@@ -348,6 +348,21 @@ const MISTAKES: &[(&str, &str, &str)] = &[
         "5:18: ae.biased_station = \"ignore\": must be one of exclude, correct",
     ),
     (
+        "[ae]",
+        "[ae]\nclock_offset_sigma_m = 1",
+        "5:24: ae.clock_offset_sigma_m = 1: has no effect with emission_time = \"known\"",
+    ),
+    (
+        "[ae]",
+        "[ae]\nemission_time = \"late\"",
+        "5:17: ae.emission_time = \"late\": must be one of known, unknown",
+    ),
+    (
+        "[ae]",
+        "[ae]\nemission_time = \"unknown\"",
+        "5:17: ae.emission_time = \"unknown\": must be \"known\" with fewer than 4 stations: the position has two unknowns, the time of emission is a third, and one station excludes mirror images",
+    ),
+    (
         "name = \"B\"",
         "name = \"A\"",
         "5:53: ae.stations.1.name = \"A\": is the same as that of ae.stations.0.name",
@@ -839,5 +854,58 @@ fn dead_channels_are_channels_of_the_instrument_for_a_time() {
         let shown = errors(&text).render();
         assert!(shown.contains(wanted), "{wanted}:\n{shown}");
         assert_eq!(errors(&text).problems.len(), 1, "{shown}");
+    }
+}
+
+/// Five stations with clocks of their own, whose keys may be replaced.
+fn differences(from: &str, to: &str) -> Result<Scenario, ScenarioErrors> {
+    let stations = r#"emission_time = "unknown"
+clock_offset_sigma_m = 3
+integrity_risk = 1e-5
+stations = [
+    { name = "A", at_m = [5, 0] }, { name = "B", at_m = [0, 5] }, { name = "C", at_m = [-5, 0] },
+    { name = "D", at_m = [0, -5] }, { name = "E", at_m = [3, 3] },
+]"#;
+    let from_small = "stations = [{ name = \"A\", at_m = [5, 0] }, { name = \"B\", at_m = [0, 5] }]";
+    assert!(SMALL.contains(from_small) && stations.contains(from), "{from}");
+    Scenario::parse(&SMALL.replace(from_small, &stations.replace(from, to)), "x.toml")
+}
+
+#[test]
+fn an_unknown_time_of_emission_uses_differences_and_clocks_of_their_own_are_passed_on() {
+    let read = differences("integrity_risk = 1e-5", "integrity_risk = 1e-5")
+        .unwrap_or_else(|errors| panic!("{}", errors.render()));
+    let locating = &read.mission.locating;
+    assert_eq!(locating.solver, positioning::SolverKind::Differences);
+    assert_eq!(locating.clocks.map(|clocks| clocks.offset_sigma_m), Some(3.0));
+    assert!(read.sim.ae.unwrap().clocks.is_emission_unknown);
+    assert!(read.mission.forecast(0.5).is_emission_unknown);
+}
+
+#[test]
+fn too_few_stations_for_differences_or_stations_on_one_line_are_refused_with_the_reason() {
+    let said = |from: &str, to: &str| match differences(from, to) {
+        Ok(_) => panic!("{to} is accepted"),
+        Err(errors) => errors.render(),
+    };
+    let four = said(", { name = \"E\", at_m = [3, 3] }", "");
+    assert!(four.contains("fewer than 5 stations: with four, a wrong clock would not show"), "{four}");
+    assert!(four.contains("without one of them, the others give no fix"), "{four}");
+    let on_line = "stations = [ { name = \"A\", at_m = [-4, 1] }, { name = \"B\", at_m = [-2, 1] }, \
+                   { name = \"C\", at_m = [0, 1] }, { name = \"D\", at_m = [2, 1] }, { name = \"E\", at_m = [4, 1] }]\n";
+    let all = r#"stations = [
+    { name = "A", at_m = [5, 0] }, { name = "B", at_m = [0, 5] }, { name = "C", at_m = [-5, 0] },
+    { name = "D", at_m = [0, -5] }, { name = "E", at_m = [3, 3] },
+]"#;
+    let line = said(all, on_line);
+    assert!(line.contains("all stations on one line: every place has a mirror image"), "{line}");
+    for (key, reason) in [
+        ("solver = \"nls\"", "has no effect with emission_time = \"unknown\""),
+        ("aggregation = \"midrange\"", "must be \"mean\" or \"trimmed-mean\""),
+        ("calibrate_sound_speed = true", "must be false with emission_time = \"unknown\""),
+        ("session_calibration = \"constant\"", "must be \"off\" with emission_time = \"unknown\""),
+    ] {
+        let words = said("integrity_risk = 1e-5", &format!("integrity_risk = 1e-5\n{key}"));
+        assert!(words.contains(reason), "{key}: {words}");
     }
 }

@@ -107,6 +107,30 @@ impl TimingErrors {
     }
 }
 
+/// The time of emission, and the clocks of the stations.
+///
+/// A range is the time from emission to arrival, times the assumed speed of sound. With an unknown time of emission, all
+/// ranges of a cycle are too long by the same random length; a station with a clock of its own adds the offset of this
+/// clock, which grows linearly in time.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Clocks {
+    /// Whether the time of emission is unknown.
+    pub is_emission_unknown: bool,
+    /// Standard deviation of the offsets of the stations' clocks, as a length that sound travels, metres; drawn once per
+    /// run.
+    pub offset_sigma_m: f64,
+    /// Standard deviation of the drifts of the stations' clocks, metres per hour; drawn once per run.
+    pub drift_sigma_m_per_h: f64,
+}
+
+impl Clocks {
+    /// Whether the time of emission is known and all stations share one clock.
+    pub fn is_common(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 /// Acoustic-emission ranging.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AeConfig {
@@ -119,6 +143,9 @@ pub struct AeConfig {
     /// The timing errors of the ranges.
     #[serde(default, skip_serializing_if = "TimingErrors::is_none")]
     pub timing: TimingErrors,
+    /// The time of emission, and the clocks of the stations.
+    #[serde(default, skip_serializing_if = "Clocks::is_common")]
+    pub clocks: Clocks,
     /// Probability that a station is not heard in a cycle, 0 to 1.
     pub dropout_probability: f64,
     /// Intervals of mission time in which there are no ranges, seconds: start, end.

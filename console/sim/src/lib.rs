@@ -17,7 +17,7 @@ mod sweep;
 
 pub use cable::Law as CableLaw;
 pub use config::{
-    AeConfig, BehindColumns, ChannelFault, Disturbances, Mover, NoiseModel, PhysicalCable, RobotConfig,
+    AeConfig, BehindColumns, ChannelFault, Clocks, Disturbances, Mover, NoiseModel, PhysicalCable, RobotConfig,
     SimConfig, StationFault, TimingErrors, Track,
 };
 pub use ranging::Sounder;

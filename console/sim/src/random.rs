@@ -33,6 +33,8 @@ pub(crate) struct RandomStreams {
     pub pressure: Pcg64,
     /// Errors and lost rays of the scanner.
     pub scanner: Pcg64,
+    /// Times of emission, and clocks of the stations.
+    pub clocks: Pcg64,
 }
 
 impl RandomStreams {
@@ -48,6 +50,7 @@ impl RandomStreams {
             timing: stream(7),
             pressure: stream(8),
             scanner: stream(9),
+            clocks: stream(10),
         }
     }
 }

@@ -14,6 +14,10 @@ use world::{Point, RangeSet, Station, Vector, World};
 /// Tolerance for deciding whether the time is a multiple of the period, as a share of the period.
 const SLACK: f64 = 1e-6;
 
+/// The shortest and the longest delay of an emission whose time is unknown, as a length that sound travels, metres. The
+/// delay exceeds any offset of a clock, so that every range is positive.
+const EMISSION_DELAY_M: [f64; 2] = [150.0, 250.0];
+
 /// The stations of a tank at their true positions, and the random errors of their ranges.
 ///
 /// The same configuration, tank, seed and positions produce the same ranges on every machine.
@@ -22,9 +26,24 @@ pub struct Sounder {
     config: AeConfig,
     /// The stations at their true positions.
     stations: Vec<Station>,
+    /// The clock of each station.
+    clocks: Vec<Clock>,
     propagation: Propagation,
     streams: RandomStreams,
     ended: f64,
+}
+
+/// The error of a station's clock, as a length that sound travels.
+#[derive(Debug, Clone, Copy)]
+struct Clock {
+    offset_m: f64,
+    drift_m_per_h: f64,
+}
+
+impl Clock {
+    fn late_m(self, t_s: f64) -> f64 {
+        self.offset_m + self.drift_m_per_h * t_s / 3600.0
+    }
 }
 
 impl Sounder {
@@ -36,8 +55,13 @@ impl Sounder {
             let error = Vector::new(normal(&mut streams.survey), normal(&mut streams.survey));
             station.position += error * config.disturbances.survey_sigma_m;
         }
+        let clock = |_: &Station| Clock {
+            offset_m: config.clocks.offset_sigma_m * normal(&mut streams.clocks),
+            drift_m_per_h: config.clocks.drift_sigma_m_per_h * normal(&mut streams.clocks),
+        };
+        let clocks = stations.iter().map(clock).collect();
         let propagation = Propagation::new(world);
-        Self { config, stations, propagation, streams, ended: 0.0 }
+        Self { config, stations, clocks, propagation, streams, ended: 0.0 }
     }
 
     /// Adds a fault of a station to the faults in the configuration.
@@ -61,10 +85,22 @@ impl Sounder {
 
     /// The ranges of one cycle that ends at time `t_s`.
     pub fn cycle(&mut self, t_s: f64, truth: Point) -> Vec<RangeSet> {
-        let Self { config, stations, propagation, streams, .. } = self;
+        let Self { config, stations, clocks, propagation, streams, .. } = self;
+        let [least_m, most_m] = EMISSION_DELAY_M;
+        let delay_m = if config.clocks.is_emission_unknown {
+            streams.clocks.random_range(least_m..most_m)
+        } else {
+            0.0
+        };
         // Random numbers are drawn for every station, whether it is heard or not, so a loss does not change later ranges.
-        let mut sets: Vec<RangeSet> =
-            stations.iter().map(|station| measure(config, propagation, station, truth, streams)).collect();
+        let mut sets: Vec<RangeSet> = stations
+            .iter()
+            .zip(clocks)
+            .map(|(station, clock)| {
+                let late_m = delay_m + clock.late_m(t_s);
+                measure(config, propagation, (station, late_m), truth, streams)
+            })
+            .collect();
         sets.retain(|_| streams.dropout.random::<f64>() >= config.dropout_probability);
         for fault in config.disturbances.faults.iter().filter(|f| (f.from_s..f.to_s).contains(&t_s)) {
             sets.iter_mut()
@@ -88,10 +124,11 @@ fn apply_fault(set: &mut RangeSet, fault: &StationFault) {
     }
 }
 
+/// The ranges of a station in a cycle, all of which are late by the given length, metres.
 fn measure(
     config: &AeConfig,
     propagation: &Propagation,
-    station: &Station,
+    (station, late_m): (&Station, f64),
     truth: Point,
     streams: &mut RandomStreams,
 ) -> RangeSet {
@@ -111,7 +148,7 @@ fn measure(
         let is_heard = streams.disturbance.random::<f64>() >= what.ping_dropout_probability;
         if let Some(path) = path.filter(|_| is_heard) {
             let scale = 1.0 + what.sound_speed_error_ratio;
-            let range_m = path.length_m * (1.0 + error) * scale + excess_range_m + ping_late_m;
+            let range_m = path.length_m * (1.0 + error) * scale + excess_range_m + ping_late_m + late_m;
             ranges_m.push(reported_m(timed_m(config.timing, range_m, streams)));
         }
     }
@@ -133,7 +170,7 @@ fn exponential(streams: &mut RandomStreams) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{BehindColumns, Disturbances, NoiseModel};
+    use crate::{BehindColumns, Clocks, Disturbances, NoiseModel};
     use world::{Boundary, Obstacle, ObstacleId, Shape, StationId};
 
     fn config() -> AeConfig {
@@ -142,6 +179,7 @@ mod tests {
             repetitions: 3,
             noise: NoiseModel::Uniform { ratio: 0.05 },
             timing: TimingErrors::default(),
+            clocks: Clocks::default(),
             dropout_probability: 0.0,
             outages_s: vec![],
             disturbances: Disturbances::default(),
@@ -286,6 +324,26 @@ mod tests {
         let moved = disturbed(Disturbances { survey_sigma_m: 0.1, ..Disturbances::default() }, &[]);
         let errors = [1, 2, 3].map(|station| excess(&moved, station)[0]);
         assert!(errors.iter().all(|e| e.abs() > 1e-6 && e.abs() < 0.5), "{errors:?}");
+    }
+
+    #[test]
+    fn an_unknown_emission_delays_all_ranges_of_a_cycle_by_the_same_and_clocks_drift_apart() {
+        let late = |clocks: Clocks, t_s: f64| -> Vec<f64> {
+            let config = AeConfig { noise: NoiseModel::None, clocks, repetitions: 1, ..config() };
+            let mut sounder = Sounder::new(config, &tank(&[]), 5);
+            let sets = sounder.cycle(t_s, Point::origin());
+            (1..=3).map(|station| excess(&sets, station)[0]).collect()
+        };
+        let unknown = Clocks { is_emission_unknown: true, ..Clocks::default() };
+        let [first, second] = [1.0, 3_601.0].map(|t_s| late(unknown, t_s));
+        assert!(first.iter().all(|m| (150.0..250.0).contains(m) && (m - first[0]).abs() < 1e-9), "{first:?}");
+        assert!((first[0] - second[0]).abs() < 1e-9, "the delay depends on the cycle, not on the time");
+        let own = Clocks { offset_sigma_m: 2.0, drift_sigma_m_per_h: 0.5, ..unknown };
+        let apart = |ranges: &[f64]| ranges[1] - ranges[0];
+        let (begin_m, later_m) = (apart(&late(own, 0.0)), apart(&late(own, 3_600.0)));
+        assert!(begin_m.abs() > 0.01 && (later_m - begin_m).abs() > 0.01, "{begin_m}, {later_m}");
+        let without_drift = Clocks { drift_sigma_m_per_h: 0.0, ..own };
+        assert!((apart(&late(without_drift, 3_600.0)) - begin_m).abs() < 1e-9);
     }
 
     #[test]

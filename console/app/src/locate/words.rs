@@ -3,6 +3,7 @@
 use super::{figures, name_of};
 use crate::cli::LocateArgs;
 use ::locate::{Doubts, Survey, Tally};
+use mission::event::pulse_text;
 use positioning::{Agreement, Wrong};
 use report::forecast::line_of_stations;
 use scenario::Scenario;
@@ -44,6 +45,7 @@ pub(super) fn human(
     let mut text = Lines::default();
     of_file(&mut text, survey, shown);
     text.line("tool", tool(survey));
+    text.lines("pulses", pulses(scenario, survey));
     of_sound(&mut text, args, scenario, survey, (tally, doubts));
     text.lines("residuals", residuals(args, scenario, survey));
     text.lines("repetitions", repetitions(scenario, survey));
@@ -81,6 +83,15 @@ pub(super) fn human(
         }
     }
     text.0
+}
+
+/// The pulse tests of the stations, one line each.
+fn pulses<'a>(scenario: &'a Scenario, survey: &'a Survey) -> impl Iterator<Item = String> + 'a {
+    let stations = &scenario.sim.world.stations;
+    survey.pulses.iter().map(move |pulsed| {
+        let text = pulse_text(pulsed.phase, &pulsed.test, stations);
+        text.strip_prefix("pulse test ").unwrap_or(&text).to_owned()
+    })
 }
 
 fn of_file(text: &mut Lines, survey: &Survey, shown: &str) {

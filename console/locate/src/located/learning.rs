@@ -8,7 +8,7 @@ use crate::{
     repeats::Repeats,
 };
 use flight::failure::bad_input;
-use positioning::{Calibration, Integrity, Possible, Ranging, Session, SolverKind, Unknowns};
+use positioning::{Calibration, Integrity, Possible, PulseSeries, Ranging, Session, SolverKind, Unknowns};
 
 /// Maximum number of passes over the session to estimate clock and sound errors.
 const ROUNDS: usize = 10;
@@ -22,6 +22,9 @@ const SOUND_SIGMA_RATIO: f64 = 0.05;
 const UNSEEN_SIGMA_RATIO: f64 = 0.05;
 /// The share by which ranges may be too long while the speed of sound is being estimated.
 pub(super) const MOST_TOO_LONG: f64 = 0.3;
+
+/// What is known about the whole file: its columns, its repetitions, and its pulse tests.
+pub(super) type Known<'a> = (&'a Columns, &'a Repeats, &'a PulseSeries);
 
 impl Task<'_> {
     fn finds(&self) -> bool {
@@ -38,16 +41,23 @@ impl Task<'_> {
                 self.shown
             )));
         }
+        if self.scenario.mission.locating.clocks.is_some() && columns.kind() == Kind::Differences {
+            return Err(bad_input(format!(
+                "{}: the stations of this scenario have clocks of their own, which only a mission estimates; subtract \
+                 their offsets from the arrivals, and remove clock_offset_sigma_m and clock_drift_sigma_m_per_h from [ae]",
+                self.shown
+            )));
+        }
         Ok(())
     }
 
     /// Estimates clock and sound errors from the session, if requested.
-    pub(super) fn found(&self, columns: &Columns, repeats: &Repeats) -> anyhow::Result<Option<Found>> {
+    pub(super) fn found(&self, known: Known<'_>) -> anyhow::Result<Option<Found>> {
         if !self.finds() {
             return Ok(None);
         }
-        if columns.kind() == Kind::Differences {
-            return self.scale_of_differences((columns, repeats)).map(Some);
+        if known.0.kind() == Kind::Differences {
+            return self.scale_of_differences(known).map(Some);
         }
         let unknowns = Unknowns {
             sound_sigma_ratio: if self.finds_sound_speed { SOUND_SIGMA_RATIO } else { 0.0 },
@@ -55,29 +65,26 @@ impl Task<'_> {
             offset_sigma_m: if self.finds_clock_offset { OFFSET_SIGMA_M } else { 0.0 },
         };
         let calibration = Calibration::new(&self.scenario.sim.world.stations, unknowns);
-        self.calibrated(calibration, repeats).map(|calibration| Some(Found::from(&calibration)))
+        self.calibrated(calibration, known).map(|calibration| Some(Found::from(&calibration)))
     }
 
     /// Estimates the error of the speed of sound that the locator will find on its own during the run.
-    pub(super) fn found_under_way(
-        &self,
-        columns: &Columns,
-        repeats: &Repeats,
-    ) -> anyhow::Result<Option<Found>> {
-        if columns.kind() == Kind::Differences {
+    pub(super) fn found_under_way(&self, known: Known<'_>) -> anyhow::Result<Option<Found>> {
+        if known.0.kind() == Kind::Differences {
             return Ok(None);
         }
         let calibration = Calibration::new(&self.scenario.sim.world.stations, Unknowns::default());
-        self.calibrated(calibration, repeats).map(|calibration| Some(Found::from(&calibration)))
+        self.calibrated(calibration, known).map(|calibration| Some(Found::from(&calibration)))
     }
 
     /// Repeats the estimate of clock and sound errors over the session until it no longer changes.
-    fn calibrated(&self, mut calibration: Calibration, repeats: &Repeats) -> anyhow::Result<Calibration> {
+    fn calibrated(&self, mut calibration: Calibration, known: Known<'_>) -> anyhow::Result<Calibration> {
+        let (_, repeats, pulses) = known;
         let possible = self.possible();
         for _ in 0..ROUNDS {
             let before = (calibration.scale().0, calibration.offset_m().0);
             calibration = calibration.again();
-            for moment in self.moments(repeats)? {
+            for moment in self.moments(repeats, pulses)? {
                 // A cycle without a position contributes nothing; its fix states the reason.
                 let _ = calibration.take(&self.rangings(&possible, &moment, Kind::Ranges), None);
             }
@@ -93,7 +100,7 @@ impl Task<'_> {
     }
 
     /// Estimates, from arrival differences alone, the share by which all ranges are too long.
-    fn scale_of_differences(&self, readings: (&Columns, &Repeats)) -> anyhow::Result<Found> {
+    fn scale_of_differences(&self, readings: Known<'_>) -> anyhow::Result<Found> {
         let (mut scale, mut sigma) = (0.0, f64::INFINITY);
         for _ in 0..ROUNDS {
             let found = Found::of_scale((scale, 0.0));
@@ -122,7 +129,7 @@ impl Task<'_> {
     /// Collects the residuals of all fixes, after the ranges have been corrected for the errors found.
     pub(super) fn judged(
         &self,
-        (columns, repeats): (&Columns, &Repeats),
+        (columns, repeats, pulses): Known<'_>,
         found: Option<&Found>,
     ) -> anyhow::Result<Session> {
         let kind = columns.kind();
@@ -131,7 +138,7 @@ impl Task<'_> {
         let locating = &self.scenario.mission.locating;
         let solver = if kind == Kind::Differences { SolverKind::Differences } else { locating.solver };
         let possible = self.possible();
-        for moment in self.moments(repeats)? {
+        for moment in self.moments(repeats, pulses)? {
             let mut rangings = self.rangings(&possible, &moment, kind);
             if let Some(found) = found {
                 found.corrected(&mut rangings);

@@ -1,7 +1,7 @@
 //! Events as lines of text. The log on the screen, the recording and the command line use the same words.
 
 use super::{
-    Event, EventKind, OfferStage, PlanDropped, PlanMade, PlanTaken, TetherAlarm,
+    Event, EventKind, OfferStage, PlanDropped, PlanMade, PlanTaken, TetherAlarm, pulse_text,
     severity::{self, Severity},
 };
 use crate::engine::side;
@@ -11,7 +11,7 @@ use crate::{
     phase::{Outcome, StepTo},
 };
 use planner_api::LogLevel;
-use positioning::Exclusion;
+use positioning::{Exclusion, Integrity};
 use vehicle::port::{LinkSeen, Notice};
 use world::{Station, StationId, beside_limit, tether::Certificate};
 
@@ -77,6 +77,11 @@ impl Event {
             EventKind::StationUnbiased { station } => {
                 let name = station_text(*station, stations);
                 line(Severity::Info, "ae", format!("{name} without bias again"))
+            }
+            EventKind::PulsesTested { phase, test } => {
+                let is_wrong = test.integrity == Integrity::Alarm;
+                let severity = if is_wrong { Severity::Warn } else { Severity::Info };
+                line(severity, "ae", pulse_text(*phase, test, stations))
             }
             EventKind::NotSeparable { correlation } => {
                 let text = format!(
@@ -221,6 +226,7 @@ impl Event {
             | EventKind::Estimated { .. }
             | EventKind::Protected { .. }
             | EventKind::SessionCalibrated { .. }
+            | EventKind::ClocksEstimated { .. }
             | EventKind::ObstacleMoved { .. }
             | EventKind::Commanded { .. }
             | EventKind::Snapshotted { .. }

@@ -149,6 +149,17 @@ impl EventKind {
                 [&mut both.value, &mut both.sigma].into_iter().for_each(round);
             }
             Self::NotSeparable { correlation } => round(correlation),
+            Self::PulsesTested { test, .. } => {
+                let offsets = test.offsets_m.iter_mut().map(|(_, offset)| offset);
+                let both =
+                    offsets.chain([&mut test.scale]).flat_map(|both| [&mut both.value, &mut both.sigma]);
+                both.for_each(round);
+                round(&mut test.worst.2);
+            }
+            Self::ClocksEstimated { offsets } => {
+                let numbers = offsets.iter_mut().map(|offset| &mut offset.offset_m);
+                numbers.flat_map(|both| [&mut both.value, &mut both.sigma]).for_each(round);
+            }
             Self::Estimated { pose: PoseEstimate { position, heading_rad, covariance } } => {
                 round_point(position);
                 round(heading_rad);

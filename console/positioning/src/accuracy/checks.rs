@@ -4,7 +4,7 @@
 //! Method: reliability theory (Baarda 1968). The position of every fix is free; what is left of a pattern of range
 //! errors after the best position is fitted to it decides whether the pattern shows.
 
-use super::{Forecast, Grid, NEAREST_M, adviser::along_wall, is_in_sight};
+use super::{Forecast, Grid, NEAREST_M, adviser::along_wall, is_in_sight, needed};
 use crate::{
     protection::Risk,
     quality::{LEAST_SPARED, inverse_of, largest_sigma_m},
@@ -71,8 +71,15 @@ pub struct OneMore {
 struct Heard {
     rows: Vec<Row>,
     covariance: Matrix2<f64>,
+    /// Variance of the length that all ranges share, at the best position: 0 if the time of emission is known, square
+    /// metres.
+    shared: f64,
+    /// The least number of stations for a protection level.
+    protected_from: usize,
 }
 
+/// A range. If the time of emission is unknown, direction and distance are relative to their weighted means, because only
+/// differences show.
 struct Row {
     station: StationId,
     direction: Vector2<f64>,
@@ -85,7 +92,7 @@ impl Heard {
     fn at(forecast: &Forecast, place: Point, stations: &[Station], map: &ObstacleMap) -> Option<Self> {
         let heard =
             stations.iter().filter(|s| !forecast.needs_line_of_sight || is_in_sight(map, place, s.position));
-        let rows: Vec<Row> = heard
+        let mut rows: Vec<Row> = heard
             .map(|station| {
                 let away = place - station.position;
                 let distance_m = away.norm().max(NEAREST_M);
@@ -93,10 +100,12 @@ impl Heard {
                 Row { station: station.id, direction: away / distance_m, distance_m, weight }
             })
             .collect();
+        let shared = if forecast.is_emission_unknown { centred(&mut rows) } else { 0.0 };
         let information: Matrix2<f64> =
             rows.iter().map(|row| row.direction * row.direction.transpose() * row.weight).sum();
-        let covariance = inverse_of(&information).filter(|_| rows.len() >= 3)?;
-        Some(Self { rows, covariance })
+        let needed = needed(forecast.is_emission_unknown);
+        let covariance = inverse_of(&information).filter(|_| rows.len() >= needed)?;
+        Some(Self { rows, covariance, shared, protected_from: needed + 1 })
     }
 
     /// Information about the size of a wrong station's error, about the scale of all ranges, and about both together.
@@ -105,7 +114,7 @@ impl Heard {
         let whole: f64 = self.rows.iter().map(|r| r.weight * r.distance_m * r.distance_m).sum();
         let of = |row: &Row| {
             let own = row.direction * row.weight;
-            let alone = row.weight - own.dot(&(self.covariance * own));
+            let alone = row.weight - own.dot(&(self.covariance * own)) - row.weight.powi(2) * self.shared;
             let both = row.weight * row.distance_m - own.dot(&(self.covariance * pull));
             let alone = if alone > LEAST_SPARED * row.weight { alone } else { 0.0 };
             (row.station, Pattern { alone, both })
@@ -119,11 +128,12 @@ impl Heard {
     /// The usual protection level of a fix, metres: with the deviation of one standard deviation between the fix and the
     /// position without a station.
     fn level_m(&self, risk: &Risk) -> Option<f64> {
-        let multipliers = risk.multipliers(self.rows.len(), false).filter(|_| self.rows.len() >= 4)?;
+        let multipliers =
+            risk.multipliers(self.rows.len(), false).filter(|_| self.rows.len() >= self.protected_from)?;
         let mut level_m = multipliers.fault_free * largest_sigma_m(&self.covariance);
         for row in &self.rows {
             let pull = self.covariance * row.direction;
-            let spared = 1.0 / row.weight - row.direction.dot(&pull);
+            let spared = 1.0 / row.weight - row.direction.dot(&pull) - self.shared;
             if spared <= LEAST_SPARED / row.weight {
                 return None;
             }
@@ -133,6 +143,19 @@ impl Heard {
         }
         Some(level_m).filter(|level_m| level_m.is_finite())
     }
+}
+
+/// Makes directions and distances relative to their weighted means; returns the variance of the length that all ranges
+/// share, square metres.
+fn centred(rows: &mut [Row]) -> f64 {
+    let weight: f64 = rows.iter().map(|row| row.weight).sum();
+    let direction = rows.iter().map(|row| row.direction * row.weight).sum::<Vector2<f64>>() / weight;
+    let distance_m = rows.iter().map(|row| row.distance_m * row.weight).sum::<f64>() / weight;
+    for row in rows {
+        row.direction -= direction;
+        row.distance_m -= distance_m;
+    }
+    1.0 / weight
 }
 
 /// The information that fixes contain about patterns of range errors.
@@ -198,6 +221,7 @@ impl Forecast {
     ///     timing: Timing::default(),
     ///     repetitions: 1,
     ///     needs_line_of_sight: false,
+    ///     is_emission_unknown: false,
     ///     cell_m: 0.5,
     /// };
     /// let ring = |n: u32| -> Vec<Station> {

@@ -12,6 +12,7 @@ const FORECAST: Forecast = Forecast {
     timing: Timing { jitter_m: 0.0, resolution_m: 0.0 },
     repetitions: 20,
     needs_line_of_sight: true,
+    is_emission_unknown: false,
     cell_m: 0.5,
 };
 

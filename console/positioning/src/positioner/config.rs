@@ -6,6 +6,7 @@ use crate::{
     noise::{RangeNoise, Timing},
     protection::Risk,
     solver_kind::SolverKind,
+    station_clocks::ClockConfig,
 };
 use serde::{Deserialize, Serialize};
 use world::{Boundary, Pose, Station};
@@ -42,6 +43,10 @@ pub struct PositionerConfig {
     /// The risk for which fixes state a protection level; `None` for the level of four standard deviations.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub risk: Option<Risk>,
+    /// What is known about the clocks of the stations; `None` if they share one clock. Needs
+    /// [`SolverKind::Differences`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clocks: Option<ClockConfig>,
 }
 
 impl PositionerConfig {
@@ -62,6 +67,7 @@ impl PositionerConfig {
             boundary: None,
             calibrate_sound_speed: false,
             risk: None,
+            clocks: None,
         }
     }
 }

@@ -5,11 +5,13 @@ use crate::{
     fix::{Fix, FixError, Integrity},
     positioner::{Doubt, Positioner, PositionerConfig},
     quality::largest_sigma_m,
+    solver_kind::SolverKind,
 };
 use nalgebra::Matrix2;
 use world::{Odometry, Point, RangeSet, Station, StationId, Vector};
 
-/// The least number of stations: without one of them, the others must still exclude a mirror image.
+/// The least number of stations for known times of emission: without one of them, the others must still exclude a mirror
+/// image.
 const NEEDED: usize = 4;
 /// The number of cycles in a row without a fix after which the pose counts as not protected: the level covers wrong
 /// stations, but not slip of the tracks.
@@ -29,6 +31,8 @@ const DISPROVED_AFTER: u32 = 5;
 pub struct Guard {
     risk: Risk,
     others: Vec<Other>,
+    /// The least number of stations of a level.
+    needed: usize,
     is_on_line: bool,
     /// Whether the last ranges fit the hypothesis that at most one station is wrong.
     is_explained: bool,
@@ -66,7 +70,9 @@ impl Guard {
         Self {
             risk,
             others: config.stations.iter().map(other).collect(),
-            is_on_line: is_on_line(&config.stations),
+            // The unknown time of emission takes one more.
+            needed: NEEDED + usize::from(config.solver == SolverKind::Differences),
+            is_on_line: are_on_line(&config.stations),
             is_explained: true,
             silent: 0,
         }
@@ -103,7 +109,7 @@ impl Guard {
     /// [`Unprotected`] if no level can be stated.
     pub fn level_m(&self, whole: &Positioner) -> Result<f64, Unprotected> {
         let n = self.others.len();
-        if n < NEEDED {
+        if n < self.needed {
             return Err(Unprotected::TooFewStations);
         }
         if self.is_on_line {
@@ -127,8 +133,8 @@ impl Guard {
     }
 }
 
-/// Whether all stations are nearly on one line, or in one place.
-fn is_on_line(stations: &[Station]) -> bool {
+/// Whether all stations are nearly on one line, or in one place: then every place has a mirror image.
+pub fn are_on_line(stations: &[Station]) -> bool {
     let mean = stations.iter().map(|s| s.position.coords).sum::<Vector>() / stations.len().max(1) as f64;
     let spread: Matrix2<f64> = stations
         .iter()

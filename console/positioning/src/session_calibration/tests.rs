@@ -99,6 +99,7 @@ fn late(t_s: f64) -> [f64; 6] {
 /// The design's case: a speed of sound wrong by 2 %, a bias of 15 cm from minute 10 on.
 #[test]
 fn a_wrong_speed_of_sound_and_a_station_that_becomes_late_are_found_within_60_fixes() {
+    let mut first_m = Vec::new();
     for seed in 0..40 {
         let mut run = Run::new(SessionConfig::default(), 6, 44_000 + seed);
         run.until(60.0, &|t_s| (0.02, late(t_s)));
@@ -108,9 +109,13 @@ fn a_wrong_speed_of_sound_and_a_station_that_becomes_late_are_found_within_60_fi
         assert_eq!(run.biased(), [], "{seed}");
         run.until(660.0, &|t_s| (0.02, late(t_s)));
         let found = run.biased();
-        let (t_s, station, _, since_s) = *found.first().unwrap_or_else(|| panic!("{seed}: nothing found"));
+        let (t_s, station, bias_m, since_s) =
+            *found.first().unwrap_or_else(|| panic!("{seed}: nothing found"));
         assert_eq!(station, StationId(3), "{seed}: {found:?}");
         assert!(t_s <= 660.0 && since_s <= 600.0, "{seed}: {found:?}");
+        // The size counts from the onset, not from the begin of the window.
+        assert!((bias_m - 0.15).abs() < 0.08, "{seed}: {found:?}");
+        first_m.push(bias_m);
         run.until(700.0, &|t_s| (0.02, late(t_s)));
         let biases: Vec<_> = run.calibration.biases_m().collect();
         assert!(
@@ -120,6 +125,8 @@ fn a_wrong_speed_of_sound_and_a_station_that_becomes_late_are_found_within_60_fi
         let scale = run.calibration.scale();
         assert!((scale.value - 0.02).abs() < 0.002, "{seed}: {scale:?}");
     }
+    let mean_m = first_m.iter().sum::<f64>() / first_m.len() as f64;
+    assert!((mean_m - 0.15).abs() < 0.02, "first estimates are {mean_m} m on average: {first_m:?}");
 }
 
 #[test]
@@ -254,6 +261,7 @@ fn the_least_detectable_bias_of_a_session_is_the_forecast_one() {
         timing: Timing { jitter_m: SIGMA_M, resolution_m: 0.0 },
         repetitions: 1,
         needs_line_of_sight: false,
+        is_emission_unknown: false,
         cell_m: 0.5,
     };
     let map = ObstacleMap::new(&Boundary::Circle { radius_m: RADIUS_M }, &[]);

@@ -6,7 +6,7 @@ use super::{
     decisions::{decisions, is_complete},
     located,
     model::{Document, GateItem},
-    run_part::RunPart,
+    run_part::{RunPart, pulse_tests},
     words::number_of,
 };
 use crate::{human::text::counted, record::Incident};
@@ -145,9 +145,13 @@ fn calibration(document: &Document) -> Answered {
     let mut lacks = asked(&[
         ("calibration_before", &facts.calibration_before),
         ("calibration_after", &facts.calibration_after),
-        ("station_check", &facts.station_check),
-        ("sound_speed", &facts.sound_speed),
     ]);
+    // Pulses that the stations sent in the run are such a check, if all of them agree with the survey.
+    let mut pulses = pulse_tests(document).peekable();
+    if pulses.peek().is_none() || !pulses.all(|test| test.agrees) {
+        lacks.extend(asked(&[("station_check", &facts.station_check)]));
+    }
+    lacks.extend(asked(&[("sound_speed", &facts.sound_speed)]));
     let sound = facts.sound_speed.as_ref().filter(|text| !says_nothing(text));
     lacks.extend(sound.filter(|text| !is_determined(text)).map(|text| {
         format!(

@@ -1,12 +1,14 @@
 //! The part of a report on each of its runs.
 
+use super::model::Document;
 use crate::{
     human::pre_flight,
     past_run::PastRun,
     record::{Incident, StationRecord},
 };
 use account::{Accuracy, Positioning, Summary, TakenBack, Tether};
-use mission::Outcome;
+use mission::{Outcome, event::pulse_text};
+use positioning::Integrity;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -156,10 +158,22 @@ pub struct RunPart {
     pub tether: Option<TetherPart>,
     /// The fixes, station by station.
     pub stations: Vec<StationRecord>,
+    /// The pulse tests of the stations.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pulse_tests: Vec<PulseRecord>,
     /// The incidents of the run.
     pub incidents: Vec<Incident>,
     /// The files of the run.
     pub files: Files,
+}
+
+/// A pulse test of the stations.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PulseRecord {
+    /// The result as a sentence.
+    pub found: String,
+    /// Whether the pulses agree with the survey of the stations.
+    pub agrees: bool,
 }
 
 impl RunPart {
@@ -196,6 +210,14 @@ impl RunPart {
             taken_back: summary.taken_back.clone(),
             tether: tether(past, summary),
             stations: record.stations(),
+            pulse_tests: record
+                .pulses
+                .iter()
+                .map(|(phase, test)| PulseRecord {
+                    found: pulse_text(*phase, test, &run.world.stations),
+                    agrees: matches!(test.integrity, Integrity::Ok | Integrity::Suspect),
+                })
+                .collect(),
             incidents: record.incidents(),
             files: past.files.clone(),
         })
@@ -235,4 +257,9 @@ fn tether(past: &PastRun, summary: &Summary) -> Option<TetherPart> {
         reel_off_max_m: tether.reel_off_max_m,
         truth: summary.tether,
     })
+}
+
+/// The pulse tests of all runs.
+pub(super) fn pulse_tests(document: &Document) -> impl Iterator<Item = &PulseRecord> {
+    document.runs.iter().flat_map(|run| &run.pulse_tests)
 }

@@ -1,6 +1,7 @@
 //! The fixes of a run, station by station.
 
-use positioning::Fix;
+use mission::ClockOffset;
+use positioning::{Estimated, Fix};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use world::{Point, Station, StationId};
@@ -20,6 +21,10 @@ pub struct StationRecord {
     pub residual_mean_m: Option<f64>,
     /// Root mean square of the station's residuals, metres; absent if the station was never used.
     pub residual_rms_m: Option<f64>,
+    /// Last estimate of the offset of the station's clock, relative to the mean of all stations, as a length that sound
+    /// travels, metres; absent if the stations share one clock.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clock_offset_m: Option<Estimated>,
 }
 
 #[derive(Debug, Default)]
@@ -28,6 +33,7 @@ struct Sums {
     rejected: u64,
     sum_m: f64,
     squares_m2: f64,
+    clock_offset_m: Option<Estimated>,
 }
 
 #[derive(Debug, Default)]
@@ -57,6 +63,14 @@ impl Stations {
         }
     }
 
+    pub(super) fn clocks(&mut self, offsets: &[ClockOffset]) {
+        for ClockOffset { station, offset_m } in offsets {
+            if let Some(sums) = self.sums.get_mut(station) {
+                sums.clock_offset_m = Some(*offset_m);
+            }
+        }
+    }
+
     pub(super) fn records(&self) -> Vec<StationRecord> {
         let none = Sums::default();
         let record = |station: &Station| {
@@ -69,6 +83,7 @@ impl Stations {
                 rejected: sums.rejected,
                 residual_mean_m: mean(sums.sum_m),
                 residual_rms_m: mean(sums.squares_m2).map(f64::sqrt),
+                clock_offset_m: sums.clock_offset_m,
             }
         };
         self.stations.iter().map(record).collect()

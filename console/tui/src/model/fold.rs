@@ -73,6 +73,8 @@ impl Run {
             | EventKind::ProtectionLost { .. }
             | EventKind::ProtectionRegained { .. }
             | EventKind::SessionCalibrated { .. }
+            | EventKind::ClocksEstimated { .. }
+            | EventKind::PulsesTested { .. }
             | EventKind::StationBiased { .. }
             | EventKind::StationUnbiased { .. }
             | EventKind::NotSeparable { .. }

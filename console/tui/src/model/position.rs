@@ -26,6 +26,9 @@ pub struct Position {
     /// The share by which all ranges are too long; `None` if the mission does not estimate it.
     #[serde(default)]
     pub scale: Option<positioning::Estimated>,
+    /// The clocks of the stations; empty if they share one clock.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub clocks: Vec<mission::ClockOffset>,
     /// The last fix.
     pub fix: Option<Fix>,
     /// Mission time of the fix, seconds.

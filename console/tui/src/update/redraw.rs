@@ -48,6 +48,8 @@ fn is_telemetry(kind: &EventKind) -> bool {
         EventKind::Estimated { .. }
             | EventKind::Protected { .. }
             | EventKind::SessionCalibrated { .. }
+            | EventKind::ClocksEstimated { .. }
+            | EventKind::PulsesTested { .. }
             | EventKind::Ranged { .. }
             | EventKind::Fixed { .. }
             | EventKind::Tethered { .. }

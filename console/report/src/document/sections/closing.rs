@@ -4,7 +4,7 @@ use super::super::{
     model::Document,
     page::{Block, SignatureBlock, Table, Value},
     readings::Readings,
-    run_part::RunPart,
+    run_part::{RunPart, pulse_tests},
     words::{cm, number},
 };
 
@@ -21,7 +21,7 @@ pub(in crate::document) fn equipment(document: &Document) -> Vec<Block> {
         ),
         ("Calibration before", Value::fact(facts.calibration_before.as_ref(), "calibration_before")),
         ("Calibration after", Value::fact(facts.calibration_after.as_ref(), "calibration_after")),
-        ("Stations: survey and pulse test", Value::fact(facts.station_check.as_ref(), "station_check")),
+        ("Stations: survey and pulse test", station_check(document)),
         ("Speed of sound", Value::fact(facts.sound_speed.as_ref(), "sound_speed")),
         ("Nominal thickness of the floor", Value::fact(thickness.as_ref(), "nominal_thickness_mm")),
         ("Procedure", Value::fact(facts.procedure.as_ref(), "procedure")),
@@ -29,21 +29,21 @@ pub(in crate::document) fn equipment(document: &Document) -> Vec<Block> {
     ])];
     for run in document.runs.iter().filter(|run| !run.stations.is_empty()) {
         let of = if document.runs.len() > 1 { format!(" ({})", run.run) } else { String::new() };
-        let mut table = Table::new(
-            format!("Stations and their use in the run{of}"),
-            &[
-                ("Station", "", ""),
-                ("x", "m", "r nw"),
-                ("y", "m", "r nw"),
-                ("Used", "fixes", "r"),
-                ("Rejected", "fixes", "r"),
-                ("Residual, mean", "cm", "r"),
-                ("Residual, rms", "cm", "r"),
-            ],
-        );
+        let has_clocks = run.stations.iter().any(|station| station.clock_offset_m.is_some());
+        let mut columns = vec![
+            ("Station", "", ""),
+            ("x", "m", "r nw"),
+            ("y", "m", "r nw"),
+            ("Used", "fixes", "r"),
+            ("Rejected", "fixes", "r"),
+            ("Residual, mean", "cm", "r"),
+            ("Residual, rms", "cm", "r"),
+        ];
+        columns.extend(has_clocks.then_some(("Clock offset, 95 %", "cm of sound", "r")));
+        let mut table = Table::new(format!("Stations and their use in the run{of}"), &columns);
         let residual = |m: Option<f64>| m.map_or_else(|| "\u{2013}".to_owned(), cm);
         for station in &run.stations {
-            table.row(vec![
+            let mut cells = vec![
                 station.name.clone().into(),
                 number(station.at.x, 2).into(),
                 number(station.at.y, 2).into(),
@@ -51,11 +51,27 @@ pub(in crate::document) fn equipment(document: &Document) -> Vec<Block> {
                 station.rejected.to_string().into(),
                 residual(station.residual_mean_m).into(),
                 residual(station.residual_rms_m).into(),
-            ]);
+            ];
+            if has_clocks {
+                let clock = station.clock_offset_m;
+                let words = clock.map(|clock| format!("{} ± {}", cm(clock.value), cm(2.0 * clock.sigma)));
+                cells.push(words.unwrap_or_else(|| "\u{2013}".to_owned()).into());
+            }
+            table.row(cells);
         }
         blocks.push(Block::Table(table));
     }
     blocks
+}
+
+/// Survey and pulse test of the stations: as stated, and as measured by pulses during the runs.
+fn station_check(document: &Document) -> Value {
+    let stated = document.inspection.station_check.as_ref();
+    let measured: Vec<&str> = pulse_tests(document).map(|test| test.found.as_str()).collect();
+    if measured.is_empty() {
+        return Value::fact(stated, "station_check");
+    }
+    stated.map(String::as_str).into_iter().chain(measured).collect::<Vec<_>>().join(". ").into()
 }
 
 /// The limitations of the report.

@@ -82,6 +82,7 @@ impl Setup {
             repetitions,
             noise,
             timing: sim::TimingErrors::default(),
+            clocks: sim::Clocks::default(),
             dropout_probability: 0.0,
             outages_s: Vec::new(),
             disturbances: Disturbances::default(),

@@ -32,6 +32,7 @@ impl Run {
             EventKind::ProtectionLost { .. } => self.raise_as_logged(event, Cause::NotProtected),
             EventKind::ProtectionRegained { .. } => self.clear(&Cause::NotProtected),
             EventKind::SessionCalibrated { scale } => self.position.scale = Some(*scale),
+            EventKind::ClocksEstimated { offsets } => self.position.clocks.clone_from(offsets),
             EventKind::StationBiased { station, .. } => self.raise_as_logged(event, Cause::Bias(*station)),
             EventKind::StationUnbiased { station } => self.clear(&Cause::Bias(*station)),
             EventKind::NotSeparable { .. } => self.raise_as_logged(event, Cause::NotSeparable),

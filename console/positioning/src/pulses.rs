@@ -1,0 +1,261 @@
+//! Station-to-station pulses: each station sends, the others hear (Kurz et al. 2005 describe such an automatic
+//! calibration for acoustic emission).
+//!
+//! The places of both stations are surveyed, so a pulse gives the speed of sound and the clocks without a robot: the time
+//! from the sender's clock to the receiver's clock is the distance over the speed of sound, plus the offset of the
+//! receiver, minus the offset of the sender. Pulses in both directions separate the two. The model is linear, and
+//! residuals show a station that is not at its surveyed place.
+
+use crate::{fix::Integrity, quality::integrity_of, session_calibration::Estimated};
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+use world::{RangeSet, Station, StationId};
+
+/// The largest number that is accepted as a length, metres.
+const LENGTH_LIMIT_M: f64 = 1e6;
+/// Standard deviation of the scale above which pulses do not determine it.
+const UNKNOWN_SCALE: f64 = 0.05;
+/// Standard deviation of an offset above which pulses do not determine it, metres.
+const UNKNOWN_OFFSET_M: f64 = 1.0;
+/// The least number of stations of which a wrong one can be found: the others must still check each other.
+const LEAST_TO_SUSPECT: usize = 4;
+
+/// A pulse of one station, as another station heard it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Pulse {
+    /// The station that sent.
+    pub sender: StationId,
+    /// The station that heard.
+    pub receiver: StationId,
+    /// Time from sending to arrival, each by the clock of its station, times the assumed speed of sound, metres.
+    pub length_m: f64,
+    /// Standard deviation of the length, metres.
+    pub sigma_m: f64,
+}
+
+/// Why pulses give no calibration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum PulseError {
+    /// A pulse names a station that was not surveyed.
+    #[error("station {} is not surveyed", .station.0)]
+    UnknownStation {
+        /// The station.
+        station: StationId,
+    },
+    /// A pulse cannot be used: it has the same sender and receiver, or its length or scatter is not a valid number.
+    #[error("pulse {index} has the same sender and receiver, or a length that is not a number")]
+    BadPulse {
+        /// Index of the pulse.
+        index: usize,
+    },
+    /// The pulses do not determine the speed of sound beside the clocks.
+    #[error(
+        "the pulses do not separate the speed of sound from the clocks; let every station send and every other hear"
+    )]
+    NotDetermined,
+}
+
+/// The result of a pulse test.
+///
+/// ```
+/// use positioning::{Integrity, Pulse, PulseTest};
+/// use world::{Point, Station, StationId};
+/// let places = [(10.0, 0.0), (0.0, 10.0), (-10.0, 0.0), (1.0, -10.0)];
+/// let stations: Vec<Station> = (1..)
+///     .zip(places)
+///     .map(|(id, (x, y))| Station { id: StationId(id), name: String::new(), position: Point::new(x, y) })
+///     .collect();
+/// let late_m = [0.3, -0.1, 0.0, -0.2];
+/// let mut pulses = Vec::new();
+/// for (from, sender) in stations.iter().enumerate() {
+///     for (to, receiver) in stations.iter().enumerate().filter(|(to, _)| *to != from) {
+///         let length_m = 1.02 * (sender.position - receiver.position).norm() + late_m[to] - late_m[from];
+///         pulses.push(Pulse { sender: sender.id, receiver: receiver.id, length_m, sigma_m: 0.01 });
+///     }
+/// }
+/// let test = PulseTest::new(&pulses, &stations).unwrap();
+/// assert!((test.scale.value - 0.02).abs() < 1e-9 && test.integrity == Integrity::Ok);
+/// assert!(test.offsets_m.iter().zip(late_m).all(|((_, found), late_m)| (found.value - late_m).abs() < 1e-9));
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PulseTest {
+    /// The share by which all lengths are too long.
+    pub scale: Estimated,
+    /// The offset of each station that took part, relative to their mean, metres.
+    pub offsets_m: Vec<(StationId, Estimated)>,
+    /// Whether the pulses agree with the survey.
+    pub integrity: Integrity,
+    /// If they do not: the station without which the others agree.
+    pub suspect: Option<StationId>,
+    /// The pulse with the largest residual in standard deviations: sender, receiver, and residual, metres.
+    pub worst: (StationId, StationId, f64),
+    /// The number of pulses.
+    pub pulses: usize,
+}
+
+/// A least-squares fit.
+struct Fit {
+    scale: Estimated,
+    offsets_m: Vec<Estimated>,
+    chi2: f64,
+    degrees_of_freedom: u32,
+}
+
+impl PulseTest {
+    /// Fits the speed of sound and the clocks to pulses between surveyed stations.
+    ///
+    /// # Errors
+    /// See [`PulseError`].
+    pub fn new(pulses: &[Pulse], stations: &[Station]) -> Result<Self, PulseError> {
+        check(pulses, stations)?;
+        let ids = taking_part(pulses);
+        let fit = fit(pulses, &ids, stations).ok_or(PulseError::NotDetermined)?;
+        let integrity = integrity_of(fit.chi2, fit.degrees_of_freedom);
+        let suspect = (integrity == Integrity::Alarm).then(|| suspect(pulses, &ids, stations)).flatten();
+        let residual_m = |pulse: &Pulse| {
+            let offset_m =
+                |id| ids.iter().position(|own| *own == id).map_or(0.0, |own| fit.offsets_m[own].value);
+            let distance_m = distance_m(pulse, stations) * (1.0 + fit.scale.value);
+            pulse.length_m - distance_m - offset_m(pulse.receiver) + offset_m(pulse.sender)
+        };
+        let worst = pulses
+            .iter()
+            .map(|pulse| (pulse, residual_m(pulse)))
+            .max_by(|a, b| (a.1.abs() / a.0.sigma_m).total_cmp(&(b.1.abs() / b.0.sigma_m)))
+            .ok_or(PulseError::NotDetermined)?;
+        Ok(Self {
+            scale: fit.scale,
+            offsets_m: ids.iter().copied().zip(fit.offsets_m.iter().copied()).collect(),
+            integrity,
+            suspect,
+            worst: (worst.0.sender, worst.0.receiver, worst.1),
+            pulses: pulses.len(),
+        })
+    }
+
+    /// Returns the offset of a station, metres; 0 for a station that took no part.
+    pub fn offset_m(&self, station: StationId) -> f64 {
+        self.offsets_m.iter().find(|(id, _)| *id == station).map_or(0.0, |(_, offset)| offset.value)
+    }
+}
+
+/// Pulse tests of a session, in the order of their times.
+///
+/// Between two tests, speed of sound and clocks change linearly; before the first and after the last one, they stay.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct PulseSeries {
+    /// The tests with their times, seconds.
+    pub tests: Vec<(f64, PulseTest)>,
+}
+
+impl PulseSeries {
+    /// Removes the errors at a time, seconds, from sets of ranges of a robot: `(range - offset) / (1 + scale)`.
+    pub fn correct(&self, t_s: f64, sets: &mut [RangeSet]) {
+        let Some((before, after, share)) = self.around(t_s) else { return };
+        let between = |of: &dyn Fn(&PulseTest) -> f64| (1.0 - share) * of(before) + share * of(after);
+        let by = 1.0 / (1.0 + between(&|test| test.scale.value));
+        for set in sets {
+            let offset_m = between(&|test| test.offset_m(set.station));
+            set.ranges_m.iter_mut().for_each(|range_m| *range_m = (*range_m - offset_m) * by);
+        }
+    }
+
+    /// The tests before and after a time, and the share of the way between them.
+    fn around(&self, t_s: f64) -> Option<(&PulseTest, &PulseTest, f64)> {
+        let next = self.tests.partition_point(|(at_s, _)| *at_s <= t_s);
+        let last = self.tests.len().checked_sub(1)?;
+        let (from_s, before) = &self.tests[next.saturating_sub(1)];
+        let (to_s, after) = &self.tests[next.min(last)];
+        let share = if to_s > from_s { ((t_s - from_s) / (to_s - from_s)).clamp(0.0, 1.0) } else { 0.0 };
+        Some((before, after, share))
+    }
+}
+
+fn check(pulses: &[Pulse], stations: &[Station]) -> Result<(), PulseError> {
+    for (index, pulse) in pulses.iter().enumerate() {
+        let ends = [pulse.sender, pulse.receiver];
+        if let Some(station) = ends.into_iter().find(|id| !stations.iter().any(|s| s.id == *id)) {
+            return Err(PulseError::UnknownStation { station });
+        }
+        // The comparisons also refuse NaN.
+        let is_usable =
+            pulse.length_m.abs() <= LENGTH_LIMIT_M && (1e-9..=LENGTH_LIMIT_M).contains(&pulse.sigma_m);
+        if !is_usable || pulse.sender == pulse.receiver {
+            return Err(PulseError::BadPulse { index });
+        }
+    }
+    Ok(())
+}
+
+fn taking_part(pulses: &[Pulse]) -> Vec<StationId> {
+    let mut ids: Vec<StationId> = pulses.iter().flat_map(|pulse| [pulse.sender, pulse.receiver]).collect();
+    ids.sort();
+    ids.dedup();
+    ids
+}
+
+/// Surveyed distance between sender and receiver, metres.
+fn distance_m(pulse: &Pulse, stations: &[Station]) -> f64 {
+    let at = |id| stations.iter().find(|station| station.id == id).map(|station| station.position);
+    at(pulse.sender).zip(at(pulse.receiver)).map_or(0.0, |(from, to)| (from - to).norm())
+}
+
+/// `None` if the pulses do not determine scale and offsets.
+fn fit(pulses: &[Pulse], ids: &[StationId], stations: &[Station]) -> Option<Fit> {
+    let n = 1 + ids.len();
+    let index = |id| ids.iter().position(|own| *own == id).map(|own| own + 1);
+    let (mut information, mut right) = (DMatrix::<f64>::zeros(n, n), DVector::<f64>::zeros(n));
+    let mut rows = Vec::with_capacity(pulses.len());
+    for pulse in pulses {
+        let distance_m = distance_m(pulse, stations);
+        let mut by = DVector::<f64>::zeros(n);
+        by[0] = distance_m;
+        (by[index(pulse.receiver)?], by[index(pulse.sender)?]) = (1.0, -1.0);
+        let (error_m, weight) = (pulse.length_m - distance_m, pulse.sigma_m.powi(-2));
+        information += &by * by.transpose() * weight;
+        right += &by * (error_m * weight);
+        rows.push((by, error_m, weight));
+    }
+    // The mean of the offsets is 0: no pulse shows it.
+    let mean_weight = information.diagonal().rows(1, n - 1).mean();
+    information.view_mut((1, 1), (n - 1, n - 1)).add_scalar_mut(mean_weight);
+    let covariance = information.cholesky()?.inverse();
+    let solved = &covariance * right;
+    // The pinned mean has a variance of its own, which is no uncertainty of the offsets.
+    let pinned = 1.0 / (mean_weight * ((n - 1) as f64).powi(2));
+    let estimated = |k: usize, pinned: f64| Estimated {
+        value: solved[k],
+        sigma: (covariance[(k, k)] - pinned).max(0.0).sqrt(),
+    };
+    let scale = estimated(0, 0.0);
+    let chi2 = rows.iter().map(|(by, error_m, weight)| (error_m - by.dot(&solved)).powi(2) * weight).sum();
+    let unknowns = n - 1;
+    let fit = Fit {
+        scale,
+        offsets_m: (1..n).map(|k| estimated(k, pinned)).collect(),
+        chi2,
+        degrees_of_freedom: u32::try_from(pulses.len().checked_sub(unknowns)?).ok()?,
+    };
+    let is_known = fit.scale.sigma <= UNKNOWN_SCALE
+        && fit.offsets_m.iter().all(|offset| offset.sigma <= UNKNOWN_OFFSET_M)
+        && fit.chi2.is_finite();
+    is_known.then_some(fit)
+}
+
+/// The station without whose pulses the others agree best; `None` if they never agree.
+fn suspect(pulses: &[Pulse], ids: &[StationId], stations: &[Station]) -> Option<StationId> {
+    if ids.len() < LEAST_TO_SUSPECT {
+        return None;
+    }
+    let without = |id: StationId| {
+        let others: Vec<Pulse> =
+            pulses.iter().filter(|pulse| pulse.sender != id && pulse.receiver != id).copied().collect();
+        let fit = fit(&others, &taking_part(&others), stations)?;
+        (integrity_of(fit.chi2, fit.degrees_of_freedom) != Integrity::Alarm).then_some((id, fit.chi2))
+    };
+    let agreeing = ids.iter().filter_map(|id| without(*id));
+    agreeing.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
+}
+
+#[cfg(test)]
+mod tests;
