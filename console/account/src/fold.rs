@@ -381,7 +381,10 @@ impl Fold {
         self.known.parameters = Some(run.mission.planner.parameters.clone());
         self.evidence = (!self.leaves_out_floor).then(|| Evidence::new(run));
         self.survey = (!self.leaves_out_floor).then(|| Survey::new(run)).flatten();
-        self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start));
+        // A survey drives without its tool.
+        let uses_tool = !run.mission.task.is_survey();
+        self.scanned =
+            uses_tool.then(|| Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start));
         if let Some(measured) = &run.measured {
             // Adds a located pose; the floor passed there counts only while the tool was on.
             self.known.located = Some(measured.file.clone());
