@@ -12,8 +12,9 @@ const MOST_ODDS: f32 = 6.0;
 /// Maximum distance at which scans are used, metres: farther away, an error of the heading moves an echo by more than a
 /// cell, and neighbouring rays leave gaps.
 const WITHIN_M: f64 = 6.0;
-/// Motion after which a scan shows something new: metres, radians, seconds.
-const FRESH: (f64, f64, f64) = (0.1, 0.1, 2.0);
+/// Motion after which a scan shows something new: metres, radians, seconds. A later scan from the same place shows what
+/// lost rays have hidden.
+const FRESH: (f64, f64, f64) = (0.1, 0.1, 0.5);
 /// Width of the floor beside the wall that counts as part of the wall, metres: a column nearer to the wall than this
 /// cannot be told from it.
 const WALL_M: f64 = 0.12;

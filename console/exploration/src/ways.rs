@@ -51,6 +51,11 @@ impl Exploration {
 }
 
 impl Ways<'_> {
+    /// Whether the hull has no room at the beginning, so that no way leads anywhere.
+    pub fn is_empty(&self) -> bool {
+        self.first().is_none()
+    }
+
     fn has_room(&self, cell: usize) -> bool {
         f64::from(self.spare_m[cell]) >= self.room_m
     }

@@ -23,6 +23,8 @@ use world::{Point, Readings, World, coverage::percent_text};
 
 /// Time between two reports of what has been explored, seconds.
 const TELL_S: f64 = 5.0;
+/// Number of scans before the first way: lost rays hide floor in a single one.
+const SETTLED: u32 = 5;
 /// Largest number of frontiers in a report.
 const MOST_TOLD: usize = 40;
 
@@ -34,8 +36,8 @@ pub(super) struct Surveying {
     ground: Ground,
     leg: Option<Leg>,
     choice: Choice,
-    /// Whether a scan has been used.
-    has_scan: bool,
+    /// Number of scans that have been used, up to [`SETTLED`].
+    scans: u32,
     told_s: Option<f64>,
 }
 
@@ -50,7 +52,7 @@ impl Surveying {
             ground: Ground::new(drawing.clone()),
             leg: None,
             choice: Choice::default(),
-            has_scan: false,
+            scans: 0,
             told_s: None,
         })
     }
@@ -84,10 +86,11 @@ impl Known {
         let (now_s, pose, is_lost) = (self.now_s(), self.locator.pose(), self.locator.is_lost());
         let (Some(survey), Some(perception)) = (&mut self.survey, &self.perception) else { return };
         if let Some(scan) = readings.scan.as_ref().filter(|_| perception.agrees() && !is_lost) {
-            survey.has_scan |= survey.exploration.add(scan, &perception.corrected(&pose), now_s);
+            let is_used = survey.exploration.add(scan, &perception.corrected(&pose), now_s);
+            survey.scans = (survey.scans + u32::from(is_used)).min(SETTLED);
         }
         let is_due = survey.told_s.is_none_or(|told_s| now_s - told_s >= TELL_S);
-        if !is_due || !survey.has_scan || !matches!(self.phase, Phase::Running(_) | Phase::Held(_)) {
+        if !is_due || survey.scans == 0 || !matches!(self.phase, Phase::Running(_) | Phase::Held(_)) {
             return;
         }
         survey.told_s = Some(now_s);
@@ -109,6 +112,13 @@ impl Known {
             n => format!("; {n} places not seen, beyond the tether"),
         };
         format!("back at the {place}, {share} % of the floor seen{left_out}")
+    }
+
+    /// The robot's place on the map. Scans show where the robot is on the map more exactly than its position estimate; the
+    /// way is followed there, so that the clearance is that on the map.
+    pub(super) fn place_on_map(&self) -> Point {
+        let pose = self.locator.pose();
+        self.perception.as_ref().map_or(pose.position, |perception| perception.corrected(&pose).position)
     }
 
     /// The objects among which the cable lies: the chart or, in a survey, the chart together with the map.
@@ -134,7 +144,7 @@ impl Mission {
 
     /// Reports the map of a survey that ends.
     pub(super) fn report_map(&mut self) {
-        if let Some(survey) = self.known.survey.as_ref().filter(|survey| survey.has_scan) {
+        if let Some(survey) = self.known.survey.as_ref().filter(|survey| survey.scans > 0) {
             let map = Box::new(survey.exploration.map());
             self.happened.push(EventKind::Mapped { map });
         }

@@ -1,6 +1,6 @@
 //! The choice of the next way.
 
-use super::{super::known::Known, ground::Ground, leg::Leg};
+use super::{super::known::Known, SETTLED, ground::Ground, leg::Leg};
 use crate::event::{SurveyGoal, SurveyWay};
 use exploration::Ways;
 use world::{Point, Shape, ZoneKind, polyline};
@@ -13,6 +13,9 @@ const SAME_M: f64 = 0.3;
 const MOST_TIMES: usize = 2;
 /// Time after which a goal that the tether does not reach is tried again, seconds: more of the floor is known by then.
 const AGAIN_S: f64 = 60.0;
+/// Room beside the clearance, metres, for the errors with which a way is followed: the raw scan stops the robot before it
+/// comes closer than the clearance needs.
+const SPARE_M: f64 = 0.05;
 /// Distance between places on the return path from which other ways to a goal are tried, metres.
 const STEP_M: f64 = 1.0;
 
@@ -62,14 +65,14 @@ impl Choice {
 impl Known {
     /// Whether the map shows the floor around the robot, so that a way can be chosen.
     pub(super) fn may_choose_way(&self) -> bool {
-        self.survey.as_ref().is_some_and(|survey| survey.has_scan) && !self.locator.is_lost()
+        self.survey.as_ref().is_some_and(|survey| survey.scans >= SETTLED) && !self.locator.is_lost()
     }
 
     /// The next way, if the current one has ended, leads to nothing new, or is blocked.
     ///
     /// Cost: a search over the whole map, once every few seconds and at the end of each way.
     pub(super) fn next_way(&mut self) -> Option<Chosen> {
-        let (now_s, here) = (self.now_s(), self.position());
+        let (now_s, here) = (self.now_s(), self.place_on_map());
         let survey = self.survey.as_mut()?;
         let is_done = survey.leg.as_ref().is_some_and(|leg| leg.is_done(here));
         if is_done && let Some(leg) = survey.leg.take() {
@@ -83,7 +86,11 @@ impl Known {
         self.refresh_ground();
         let solids = self.solids();
         let survey = self.survey.as_ref()?;
-        let ways = survey.exploration.ways(here, self.config.room_m(), solids.iter());
+        let ways = survey.exploration.ways(here, self.survey_room_m(), solids.iter());
+        // Without room at the robot's place, the map is not complete enough to choose a way.
+        if ways.is_empty() {
+            return None;
+        }
         let all = ways.frontiers().into_iter().map(|frontier| frontier.at);
         let open: Vec<Point> = all.filter(|goal| !survey.choice.is_tried(*goal)).collect();
         let stays = survey.leg.as_ref().is_some_and(|leg| self.is_worth_going_on(leg, &open, &ways));
@@ -107,7 +114,7 @@ impl Known {
         let hull_m = self.config.limits.radius_m;
         let places = polyline::resampled(way, 0.5 * ways.grid().cell_m);
         // The hull may stand where it has less room, and the end may be close to the wall.
-        let (here, end) = (self.position(), way.last().copied());
+        let (here, end) = (self.place_on_map(), way.last().copied());
         let is_at_end =
             |at: Point| [Some(here), end].into_iter().flatten().any(|end| (at - end).norm() < 2.0 * hull_m);
         places.iter().all(|at| is_at_end(*at) || ways.spare_at_m(*at) >= hull_m)
@@ -154,7 +161,7 @@ impl Known {
         }
         let back = tether.return_path(world, self.config.limits.radius_m)?;
         let back = polyline::resampled(&back, STEP_M);
-        let from_goal = self.survey.as_ref()?.exploration.ways(goal, self.config.room_m(), solids.iter());
+        let from_goal = self.survey.as_ref()?.exploration.ways(goal, self.survey_room_m(), solids.iter());
         (1..back.len()).find_map(|last| {
             let mut onward = from_goal.to(back[last])?;
             onward.reverse();
@@ -182,6 +189,11 @@ impl Known {
             .filter(|way| tether.is_reeled_in_along(way, world))
             .or_else(|| self.way_back().ok().map(|back| back.path).filter(|way| self.is_passable(way, ways)))
             .or_else(|| self.way_back().ok().map(|back| back.path))
+    }
+
+    /// Room for the hull's centre on the ways of a survey, metres.
+    fn survey_room_m(&self) -> f64 {
+        self.config.room_m() + SPARE_M
     }
 
     /// Everything on the chart that the hull must not touch.

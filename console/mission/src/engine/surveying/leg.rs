@@ -45,7 +45,7 @@ impl Known {
     /// Advances along the way of a survey; the command for this tick, in the form in which the robot receives it.
     pub(super) fn command_of_survey(&mut self) -> Option<Command> {
         self.keep_trail();
-        let (here, passed_s) = (self.position(), self.config.tick_s * self.briskness());
+        let (here, passed_s) = (self.place_on_map(), self.config.tick_s * self.briskness());
         let (leg, map) = (self.survey.as_mut()?.leg.as_mut()?, self.chart.map());
         leg.follower.advance(here, |at| map.clearance_m(at) >= 0.0);
         leg.at_corner.wait(&mut leg.follower, here, passed_s);
