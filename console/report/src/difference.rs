@@ -43,6 +43,34 @@ fn below(key: String, one: &Value, other: &Value) -> Option<Difference> {
             other: format!("one of length {}", others.len()),
             key,
         }),
-        _ => Some(Difference { key, one: one.to_string(), other: other.to_string() }),
+        _ => Some(Difference { key, one: brief(one), other: brief(other) }),
+    }
+}
+
+/// Maximum number of characters of a value in a message.
+const BRIEF: usize = 80;
+
+/// A value as text that fits into a message.
+fn brief(value: &Value) -> String {
+    let text = match value {
+        Value::Object(map) => map.keys().map(String::as_str).collect::<Vec<_>>().join(", "),
+        _ => value.to_string(),
+    };
+    let kept =
+        if text.chars().count() > BRIEF { text.chars().take(BRIEF).chain(['…']).collect() } else { text };
+    if value.is_object() { format!("an object with the keys {kept}") } else { kept }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn long_values_are_shortened() {
+        let [one, other] = [json!({ "a": { "b": 1, "c": 2 } }), json!({ "a": "x".repeat(100) })];
+        let found = first_difference(&one, &other).unwrap();
+        assert_eq!(found.one, "an object with the keys b, c");
+        assert_eq!(found.other.chars().count(), BRIEF + 1);
     }
 }

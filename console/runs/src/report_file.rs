@@ -229,9 +229,13 @@ impl Reported {
             Err(error) => return Some(damaged(&error)),
         };
         let other = figures.and_then(|figures| figures::difference(reported, figures));
-        other
-            .map(|difference| format!("{REPORT_FILE} was changed: {difference}"))
-            .or_else(|| self.seal_doubt())
+        match (other, self.seal_doubt()) {
+            (Some(difference), Some(_)) => Some(format!("{REPORT_FILE} was changed: {difference}")),
+            (Some(difference), None) => Some(format!(
+                "{REPORT_FILE} does not agree with the journal: {difference}; another version of tankops wrote it, or a person changed it together with its digest"
+            )),
+            (None, seal) => seal,
+        }
     }
 
     /// The reason why the lines of the report do not match the digest that it contains; `None` if they do.

@@ -2,9 +2,10 @@
 
 use account::Summary;
 use report::first_difference;
+use serde_json::Value;
 
 /// The first figure that differs between the report and the journal, with both values. Data that is not in the events
-/// is not compared.
+/// is not compared, and neither is the wording of a cause: another version of the console may have worded it.
 pub(super) fn difference(reported: Summary, computed: &Summary) -> Option<String> {
     let mut computed = Summary {
         wall_time_s: reported.wall_time_s,
@@ -20,8 +21,10 @@ pub(super) fn difference(reported: Summary, computed: &Summary) -> Option<String
     leave_out_new(&mut computed, &reported);
     // The figures are converted to text and back, like those in the report.
     let text = serde_json::to_string(&computed).ok()?;
-    let computed = serde_json::to_value(serde_json::from_str::<Summary>(&text).ok()?).ok()?;
-    let found = first_difference(&serde_json::to_value(reported).ok()?, &computed)?;
+    let mut computed = serde_json::to_value(serde_json::from_str::<Summary>(&text).ok()?).ok()?;
+    let reported = serde_json::to_value(reported).ok()?;
+    reword(&mut computed, &reported);
+    let found = first_difference(&reported, &computed)?;
     Some(format!("{} is {}; the journal gives {}", found.key, found.one, found.other))
 }
 
@@ -39,5 +42,71 @@ fn leave_out_new(computed: &mut Summary, reported: &Summary) {
     let has_no_truth = plates.all(|plate| plate.true_error_max_m.is_none());
     for plate in computed.floor.iter_mut().flat_map(|floor| &mut floor.plates).filter(|_| has_no_truth) {
         (plate.true_error_p95_m, plate.true_error_max_m) = (None, None);
+    }
+}
+
+/// Words the computed causes like the reported ones, where both state the same figures. Reason and measure of a cause say
+/// the same as its text and are compared. A cause without a measure comes from a version that did not know it.
+fn reword(computed: &mut Value, reported: &Value) {
+    match (computed, reported) {
+        (Value::Object(computed), Value::Object(reported)) => {
+            if let (Some(Value::String(ours)), Some(Value::String(theirs))) =
+                (computed.get("text"), reported.get("text"))
+            {
+                let is_older = reported.get("measure").is_some_and(Value::is_null);
+                if is_older || numbers(ours).eq(numbers(theirs)) {
+                    let theirs = Value::from(theirs.as_str());
+                    computed.insert("text".to_owned(), theirs);
+                }
+                if is_older {
+                    computed.insert("measure".to_owned(), Value::Null);
+                }
+            }
+            for (key, value) in computed {
+                reported.get(key).into_iter().for_each(|other| reword(value, other));
+            }
+        }
+        (Value::Array(computed), Value::Array(reported)) => {
+            computed.iter_mut().zip(reported).for_each(|(value, other)| reword(value, other));
+        }
+        _ => {}
+    }
+}
+
+/// The numbers in a sentence, in order.
+fn numbers(sentence: &str) -> impl Iterator<Item = &str> {
+    let runs = sentence.split(|letter: char| !letter.is_ascii_digit() && letter != '.');
+    runs.map(|run| run.trim_matches('.')).filter(|run| !run.is_empty())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    /// The cause of a missed area, with a text and its measure.
+    fn cause(text: &str, value_m: Option<f64>) -> Value {
+        let measure = value_m.map(|value_m| json!({ "value_m": value_m }));
+        json!({ "causes": [{ "reason": "not_reached", "area_m2": 1.5, "measure": measure, "text": text }] })
+    }
+
+    /// The first difference between a reported cause and the computed one.
+    fn found(reported: &Value, mut computed: Value) -> Option<String> {
+        reword(&mut computed, reported);
+        first_difference(reported, &computed).map(|found| found.key)
+    }
+
+    #[test]
+    fn other_words_for_the_same_figures_are_not_a_difference() {
+        let now = || cause("the hull stayed 0.25 m away", Some(0.25));
+        assert_eq!(found(&cause("hull 0.25 m off.", Some(0.25)), now()), None);
+        assert_eq!(
+            found(&cause("the hull stayed away", None), now()),
+            None,
+            "an older report has no measure"
+        );
+        let at = |name: &str| Some(format!("causes.0.{name}"));
+        assert_eq!(found(&cause("hull 0.26 m off.", Some(0.25)), now()), at("text"));
+        assert_eq!(found(&cause("hull 0.26 m off.", Some(0.26)), now()), at("measure.value_m"));
     }
 }
