@@ -20,6 +20,13 @@ const UNSEEN_RAD: f64 = 0.56 * TAU;
 /// means for a disc: metres, and as a share of the radius. A square of edge 0.4 m has 0.024 m.
 const SECTORS: usize = 16;
 const ROUND: (f64, f64) = (0.012, 0.03);
+/// Number of echoes from which a sector has its full weight.
+const MANY_HITS: f64 = 20.0;
+/// The part of the radius within which no scan goes through a disc, and the share of its cells that may seem free.
+const MIDDLE: f64 = 0.6;
+const HOLLOW: f64 = 0.2;
+/// Minimum radius of a circle that can be hollow, metres: errors of the pose move rays through small columns.
+const HOLLOW_M: f64 = 0.25;
 /// Maximum distance between the pieces of a column of which only two opposite sides have been seen, metres.
 const APART_M: f64 = 1.5;
 /// Standard deviation of the mean error of the poses from which an object was seen, metres.
@@ -76,12 +83,6 @@ impl Body {
         cut.into_iter().filter(|points| !points.is_empty()).map(|points| hull_of(&points)).collect()
     }
 
-    fn of(points: Vec<(Point, f64)>, noise_m: f64) -> Self {
-        let circle = fit(&points, noise_m);
-        let column = circle.filter(|circle| is_disc(&points, circle, noise_m)).map(|circle| column(&circle));
-        Self { column, circle, points }
-    }
-
     pub(crate) fn bounds(&self) -> (Point, Point) {
         let points: Vec<Point> = self.points.iter().map(|(at, _)| *at).collect();
         geometry::shape::bounds_of(&points)
@@ -93,12 +94,33 @@ impl Exploration {
     ///
     /// A column of which only opposite sides have been seen is one object, not two.
     pub fn bodies(&self) -> Vec<Body> {
-        let noise_m = self.scanning.sigma_m;
         let groups = self.groups();
         let is_real =
             |points: &Vec<(Point, f64)>| points.iter().map(|(_, hits)| hits).sum::<f64>() >= LEAST_HITS;
         let points = groups.iter().map(|cells| self.points_of(cells)).filter(is_real);
-        joined(points.map(|points| Body::of(points, noise_m)).collect(), noise_m)
+        self.joined(points.map(|points| self.body(points)).collect())
+    }
+
+    fn body(&self, points: Vec<(Point, f64)>) -> Body {
+        let circle = fit(&points, self.scanning.sigma_m);
+        let is_disc =
+            |circle: &Circle| is_disc(&points, circle, self.scanning.sigma_m) && !self.is_hollow(circle);
+        let column = circle.filter(is_disc).map(|circle| column(&circle));
+        Body { column, circle, points }
+    }
+
+    /// Whether scans have gone through the middle of a circle: the points on it then belong to several objects, or to a
+    /// wall.
+    fn is_hollow(&self, circle: &Circle) -> bool {
+        let reach_m = MIDDLE * circle.radius_m;
+        let reach = geometry::Vector::repeat(reach_m);
+        let cells = self.grid.within(circle.center - reach, circle.center + reach);
+        let (mut n, mut free) = (0.0, 0.0);
+        for cell in cells.filter(|cell| (self.grid.center(*cell) - circle.center).norm() <= reach_m) {
+            n += 1.0;
+            free += f64::from(u8::from(self.is_free(cell)));
+        }
+        circle.radius_m >= HOLLOW_M && free > HOLLOW * n
     }
 
     /// The columns that scans have shown.
@@ -144,6 +166,40 @@ impl Exploration {
         };
         all.into_iter().filter(|cell| self.is_floor[*cell]).filter_map(point).collect()
     }
+
+    /// The objects, with the pieces of one disc joined.
+    fn joined(&self, mut bodies: Vec<Body>) -> Vec<Body> {
+        let mut at = 0;
+        while at < bodies.len() {
+            let partner = (at + 1..bodies.len()).find_map(|other| {
+                let whole = self.one_disc(&bodies[at], &bodies[other])?;
+                Some((other, whole))
+            });
+            match partner {
+                Some((other, whole)) => {
+                    bodies[at] = whole;
+                    bodies.remove(other);
+                }
+                None => at += 1,
+            }
+        }
+        bodies
+    }
+
+    /// Two objects as one disc, if they are pieces of one: one of them is no disc of its own, and all points lie on a circle.
+    fn one_disc(&self, one: &Body, other: &Body) -> Option<Body> {
+        if one.column.is_some() && other.column.is_some() {
+            return None;
+        }
+        let ((low, high), (other_low, other_high)) = (one.bounds(), other.bounds());
+        let gap = (other_low - high).sup(&(low - other_high)).max();
+        if gap > APART_M {
+            return None;
+        }
+        let points: Vec<_> = one.points.iter().chain(&other.points).copied().collect();
+        let body = self.body(points);
+        body.column.is_some().then_some(body)
+    }
 }
 
 fn is_disc(points: &[(Point, f64)], circle: &Circle, noise_m: f64) -> bool {
@@ -164,7 +220,9 @@ fn is_round(points: &[(Point, f64)], circle: &Circle, noise_m: f64) -> bool {
     let seen = sectors.iter().filter(|(weight, _)| *weight > 0.0);
     let (n, squares) = seen.fold((0.0, 0.0), |(n, sum), (weight, off_m)| {
         let by_noise = (2.0 * noise_m).powi(2) / weight;
-        (n + 1.0, sum + ((off_m / weight).powi(2) - by_noise).max(0.0))
+        // A few stray echoes say little about a sector.
+        let counts = weight.min(MANY_HITS);
+        (n + counts, sum + counts * ((off_m / weight).powi(2) - by_noise).max(0.0))
     });
     let (least_m, share) = ROUND;
     n > 0.0 && (squares / n).sqrt() <= least_m + share * circle.radius_m
@@ -178,40 +236,6 @@ fn column(circle: &Circle) -> Column {
         center_sigma_m: with_pose(circle.sigma_m[0]),
         radius_sigma_m: with_pose(circle.sigma_m[1]),
     }
-}
-
-/// The objects, with the pieces of one disc joined.
-fn joined(mut bodies: Vec<Body>, noise_m: f64) -> Vec<Body> {
-    let mut at = 0;
-    while at < bodies.len() {
-        let partner = (at + 1..bodies.len()).find_map(|other| {
-            let whole = one_disc(&bodies[at], &bodies[other], noise_m)?;
-            Some((other, whole))
-        });
-        match partner {
-            Some((other, whole)) => {
-                bodies[at] = whole;
-                bodies.remove(other);
-            }
-            None => at += 1,
-        }
-    }
-    bodies
-}
-
-/// Two objects as one disc, if they are pieces of one: one of them is no disc of its own, and all points lie on a circle.
-fn one_disc(one: &Body, other: &Body, noise_m: f64) -> Option<Body> {
-    if one.column.is_some() && other.column.is_some() {
-        return None;
-    }
-    let ((low, high), (other_low, other_high)) = (one.bounds(), other.bounds());
-    let gap = (other_low - high).sup(&(low - other_high)).max();
-    if gap > APART_M {
-        return None;
-    }
-    let points: Vec<_> = one.points.iter().chain(&other.points).copied().collect();
-    let body = Body::of(points, noise_m);
-    body.column.is_some().then_some(body)
 }
 
 fn hull_of(points: &[Point]) -> Shape {

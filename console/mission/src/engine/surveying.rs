@@ -105,7 +105,7 @@ impl Known {
     pub(super) fn mapped_reason(&self, task: &SurveyTask) -> String {
         let place = if self.config.tether.is_some() { "anchor" } else { "start" };
         let share = percent_text(task.explored, 1);
-        let beyond = self.survey.as_ref().map_or(0, |survey| survey.choice.beyond(self.now_s()));
+        let beyond = self.survey.as_ref().map_or(0, |survey| survey.choice.beyond());
         let left_out = match beyond {
             0 => String::new(),
             1 => "; 1 place not seen, beyond the tether".into(),

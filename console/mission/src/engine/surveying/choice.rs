@@ -29,6 +29,7 @@ pub(super) struct Choice {
     /// The goals before the frontiers that were left at the last check, the nearest first.
     frontiers: Vec<Point>,
     checked_s: Option<f64>,
+    n_beyond: usize,
 }
 
 /// A way, with the event that reports it.
@@ -48,9 +49,9 @@ impl Choice {
         self.tried.extend([goal; MOST_TIMES]);
     }
 
-    /// Number of goals that the tether does not reach.
-    pub(super) fn beyond(&self, now_s: f64) -> usize {
-        self.beyond.iter().filter(|(_, until_s)| now_s < *until_s).count()
+    /// Number of goals that the tether did not reach when the robot began to drive back.
+    pub(super) fn beyond(&self) -> usize {
+        self.n_beyond
     }
 
     fn is_tried(&self, goal: Point) -> bool {
@@ -79,7 +80,7 @@ impl Known {
             survey.choice.tried.push(leg.goal);
         }
         let is_due = survey.choice.checked_s.is_none_or(|checked_s| now_s - checked_s >= CHECK_S);
-        if survey.leg.is_some() && !is_due {
+        if !is_done && !is_due {
             return None;
         }
         survey.choice.checked_s = Some(now_s);
@@ -97,6 +98,9 @@ impl Known {
         let chosen = if stays { None } else { self.chosen(&open, &ways, &solids) };
         let beyond = chosen.as_ref().map_or_else(Vec::new, |(_, beyond)| beyond.clone());
         let choice = &mut self.survey.as_mut()?.choice;
+        if let Some((chosen, _)) = &chosen {
+            choice.n_beyond = chosen.event.beyond_tether;
+        }
         choice.frontiers = open;
         choice.beyond.retain(|(_, until_s)| now_s < *until_s);
         choice.beyond.extend(beyond.into_iter().map(|goal| (goal, now_s + AGAIN_S)));
@@ -106,12 +110,12 @@ impl Known {
     /// Whether a way is still clear and leads to something that is worth a look.
     fn is_worth_going_on(&self, leg: &Leg, open: &[Point], ways: &Ways<'_>) -> bool {
         let is_open = leg.to != SurveyGoal::Frontier || open.iter().any(|goal| is_same(*goal, leg.goal));
-        is_open && self.is_passable(leg.remaining(), ways)
+        is_open && self.is_passable(leg.remaining(), ways, 0.0)
     }
 
-    /// Whether the hull fits everywhere along a way, according to the map.
-    fn is_passable(&self, way: &[Point], ways: &Ways<'_>) -> bool {
-        let hull_m = self.config.limits.radius_m;
+    /// Whether the hull fits everywhere along a way, with a share of the clearance, according to the map.
+    fn is_passable(&self, way: &[Point], ways: &Ways<'_>, share: f64) -> bool {
+        let hull_m = self.config.limits.radius_m + share * self.config.clearance_m;
         let places = polyline::resampled(way, 0.5 * ways.grid().cell_m);
         // The hull may stand where it has less room, and the end may be close to the wall.
         let (here, end) = (self.place_on_map(), way.last().copied());
@@ -129,16 +133,17 @@ impl Known {
         let frontiers = open.iter().map(|goal| (SurveyGoal::Frontier, *goal));
         let mut goals: Vec<(SurveyGoal, Point)> = frontiers.collect();
         goals.extend(views().filter(|(_, goal)| !survey.choice.is_tried(*goal)));
-        for (to, goal) in goals {
-            if survey.choice.is_beyond(goal, now_s) {
-                continue;
-            }
-            match self.way_within_limits(goal, ways, solids) {
-                Some(way) => return Some((chosen(to, goal, way, beyond.len()), beyond)),
-                None => beyond.push(goal),
+        // Before the robot gives up, it tries again what the tether did not reach on a map that showed less.
+        for again in [false, true] {
+            for (to, goal) in goals.iter().filter(|(_, goal)| survey.choice.is_beyond(*goal, now_s) == again)
+            {
+                match self.way_within_limits(*goal, ways, solids) {
+                    Some(way) => return Some((chosen(*to, *goal, way, beyond.len()), beyond)),
+                    None => beyond.push(*goal),
+                }
             }
         }
-        let n_beyond = survey.choice.beyond(now_s) + beyond.len();
+        let n_beyond = beyond.len();
         let home = self.config.task.end()?;
         // A robot that does not get there stands still, so that the rule for a stuck robot applies.
         if survey.choice.is_tried(home) {
@@ -148,26 +153,30 @@ impl Known {
     }
 
     /// A way to a goal on which the tether stays within its limits: straight there or, if the cable would then lie on the
-    /// wrong side of something, back along the return path first.
+    /// wrong side of something, back first: along the return path or, if the hull does not fit there, as it came.
     fn way_within_limits(&self, goal: Point, ways: &Ways<'_>, solids: &[Shape]) -> Option<Vec<Point>> {
         let direct = ways.to(goal)?;
         let Some(tether) = &self.tether else { return Some(direct) };
-        let world = self.cable_world();
-        if tether.bears_with_reserve(&direct, world) {
+        if tether.bears_with_reserve(&direct) {
             return Some(direct);
         }
         if !tether.can_reach_straight(goal) {
             return None;
         }
-        let back = tether.return_path(world, self.config.limits.radius_m)?;
-        let back = polyline::resampled(&back, STEP_M);
         let from_goal = self.survey.as_ref()?.exploration.ways(goal, self.survey_room_m(), solids.iter());
-        (1..back.len()).find_map(|last| {
-            let mut onward = from_goal.to(back[last])?;
-            onward.reverse();
-            let way: Vec<Point> = back[..=last].iter().copied().chain(onward).collect();
-            let is_way = self.is_passable(&way, ways) && tether.bears_with_reserve(&way, world);
-            is_way.then_some(way)
+        let taut = self.widest(|room_m| tether.return_path(self.cable_world(), room_m));
+        let mut driven = vec![self.place_on_map()];
+        driven.extend(tether.way_driven().iter().rev());
+        let backs = taut.into_iter().chain([driven]);
+        backs.into_iter().find_map(|back| {
+            let back = polyline::resampled(&back, STEP_M);
+            (1..back.len()).find_map(|last| {
+                let mut onward = from_goal.to(back[last])?;
+                onward.reverse();
+                let way: Vec<Point> = back[..=last].iter().copied().chain(onward).collect();
+                let is_way = self.is_passable(&way, ways, 0.5) && tether.bears_with_reserve(&way);
+                is_way.then_some(way)
+            })
         })
     }
 
@@ -184,10 +193,11 @@ impl Known {
             way
         });
         let Some(tether) = &self.tether else { return direct };
-        let world = self.cable_world();
         direct
-            .filter(|way| tether.is_reeled_in_along(way, world))
-            .or_else(|| self.way_back().ok().map(|back| back.path).filter(|way| self.is_passable(way, ways)))
+            .filter(|way| tether.is_reeled_in_along(way))
+            .or_else(|| {
+                self.way_back().ok().map(|back| back.path).filter(|way| self.is_passable(way, ways, 0.0))
+            })
             .or_else(|| self.way_back().ok().map(|back| back.path))
     }
 
