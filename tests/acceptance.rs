@@ -46,6 +46,8 @@ mod killed;
 mod located;
 #[path = "acceptance/looking_on.rs"]
 mod looking_on;
+#[path = "acceptance/mapped.rs"]
+mod mapped;
 #[path = "acceptance/packed.rs"]
 mod packed;
 #[cfg(target_os = "linux")]

@@ -420,7 +420,10 @@ impl Fold {
         self.channels = Some(Channels::new(&run.mission));
         self.evidence = (!self.leaves_out_floor).then(|| Evidence::new(run));
         self.survey = (!self.leaves_out_floor).then(|| Survey::new(run)).flatten().map(Box::new);
-        self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start));
+        // A survey drives without its tool.
+        let uses_tool = !run.mission.task.is_survey();
+        self.scanned =
+            uses_tool.then(|| Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start));
         let may_import = !self.leaves_out_floor && self.survey.is_none();
         let reads = run.mission.instrument.as_ref().is_some_and(|instrument| instrument.sampling.is_some());
         self.way = (may_import && reads).then(TrackedWay::default);

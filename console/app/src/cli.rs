@@ -16,7 +16,7 @@ pub(crate) use author::{Lang, NewPlannerArgs, NewVehicleArgs, ReplayWorkerArgs, 
 pub(crate) use campaign::{CampaignCommand, CompareArgs, Engine, OutArgs, RunCampaignArgs, WorkArgs};
 pub(crate) use changes::Changes;
 pub(crate) use console::{ConsoleArgs, ReplayArgs};
-pub(crate) use files::{FindArg, ImportArgs, LocateArgs, MapArgs};
+pub(crate) use files::{FindArg, ImportArgs, LocateArgs, MapArgs, MapOfArgs};
 pub(crate) use flight::{AccuracyArgs, PlanArgs, RunArgs, ShadowArgs};
 pub(crate) use logs::LogsArg;
 pub(crate) use past::{EventsArgs, ExportArgs, ReportArgs, RescanArgs};
@@ -55,6 +55,8 @@ pub(crate) enum Command {
     Accuracy(AccuracyArgs),
     /// Show how an occupancy map is interpreted: the floor, its outlines and convex pieces.
     Map(MapArgs),
+    /// Write the map that a survey has made, as a ROS map or as a scenario.
+    MapOf(MapOfArgs),
     /// Create a scenario from a floor drawing (DXF) or a list of columns (CSV).
     Import(ImportArgs),
     /// Create a folder for a planner of your own, ready to build and run.

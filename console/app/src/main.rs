@@ -12,6 +12,7 @@ mod input;
 mod locate;
 mod manual;
 mod map;
+mod map_of;
 mod new_planner;
 mod new_vehicle;
 mod output;
@@ -90,6 +91,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Vehicle(VehicleCommand::Simulate(args))) => vehicle::simulate(&args),
         Some(Command::Accuracy(args)) => accuracy::accuracy(&args, &plugins),
         Some(Command::Map(args)) => map::map(&args),
+        Some(Command::MapOf(args)) => map_of::map_of(&args, &plugins),
         Some(Command::Import(args)) => import::import(&args, &plugins),
         Some(Command::NewPlanner(args)) => new_planner::create(&args),
         Some(Command::Planners { json }) => planners::list(&plugins, json),

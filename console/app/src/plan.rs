@@ -25,6 +25,10 @@ use world::Point;
 /// Runs `tankops plan`.
 pub(crate) fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
+    if scenario.mission.task.is_survey() {
+        let why = "a survey has no plan, because the robot chooses its way on the map that it makes";
+        return Err(bad_input(format!("{}: {why}; run it with `tankops run`", scenario.shown_name)));
+    }
     if let Some(vehicle) = args.vehicle.wanted() {
         let info = remote::fitting(&scenario, &vehicle)?;
         warn_line(&format!(

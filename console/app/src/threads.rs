@@ -49,6 +49,7 @@ pub(crate) fn needed(command: Option<&Command>) -> usize {
         Some(
             Command::Report(_)
             | Command::CompareSurveys(_)
+            | Command::MapOf(_)
             | Command::Rescan(_)
             | Command::Recover { .. }
             | Command::Runs { .. },

@@ -23,7 +23,7 @@ pub fn config(mission: &MissionConfig) -> HostConfig {
         TaskConfig::Cover { .. } => {
             HostConfig { plan_deadline: COVER_WITHIN, memory_limit_bytes: COVER_MEMORY_BYTES, ..config }
         }
-        TaskConfig::Goto { .. } | TaskConfig::Follow { .. } => config,
+        TaskConfig::Goto { .. } | TaskConfig::Follow { .. } | TaskConfig::Survey { .. } => config,
     }
 }
 

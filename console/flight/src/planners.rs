@@ -61,11 +61,12 @@ pub fn shadowed(scenario: &Scenario, plugins: &PluginDirs) -> Vec<String> {
     twice.into_iter().map(sentence).collect()
 }
 
-/// The planners of a scenario, each with the section of the scenario that names it.
+/// The planners of a scenario (a survey has none), each with the section of the scenario that names it.
 fn chosen(scenario: &Scenario) -> impl Iterator<Item = (&'static str, &PlannerChoice)> {
     let mission = &scenario.mission;
     let fallback = mission.fallback.iter().map(|choice| ("planner.fallback", choice));
-    std::iter::once(("planner", &mission.planner)).chain(fallback)
+    let planner = (!mission.task.is_survey()).then_some(("planner", &mission.planner));
+    planner.into_iter().chain(fallback)
 }
 
 /// Checks, before a flight, that the planners of a scenario are among those found and accept their parameters.

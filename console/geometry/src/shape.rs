@@ -227,6 +227,34 @@ pub fn reflex_corners(vertices: &[Point]) -> impl Iterator<Item = usize> + '_ {
     })
 }
 
+/// Returns the convex hull of points, counter-clockwise, without collinear corners (Andrew's monotone chain).
+///
+/// ```
+/// use geometry::{Point, shape::convex_hull};
+/// let points = [(0.0, 0.0), (1.0, 0.0), (0.5, 0.2), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| Point::new(x, y));
+/// assert_eq!(convex_hull(&points).len(), 4);
+/// ```
+pub fn convex_hull(points: &[Point]) -> Vec<Point> {
+    let mut sorted = points.to_vec();
+    sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    let chain = |points: &mut dyn Iterator<Item = &Point>| {
+        let mut chain: Vec<Point> = Vec::new();
+        for point in points {
+            while let [.., a, b] = &chain[..]
+                && (b - a).perp(&(point - b)) <= 1e-9
+            {
+                chain.pop();
+            }
+            chain.push(*point);
+        }
+        chain.pop();
+        chain
+    };
+    let mut hull = chain(&mut sorted.iter());
+    hull.extend(chain(&mut sorted.iter().rev()));
+    hull
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;

@@ -208,25 +208,3 @@ pub(crate) fn round(ring: &[Point]) -> Option<(Point, f64, f64)> {
     let (least_m, largest_m) = (radii().fold(f64::INFINITY, f64::min), radii().fold(0.0, f64::max));
     (ring.len() >= MANY && largest_m - least_m < 0.005 * largest_m).then_some((center, least_m, largest_m))
 }
-
-/// The convex hull of points, counter-clockwise, without collinear corners (Andrew's monotone chain).
-pub(crate) fn hull(points: &[Point]) -> Vec<Point> {
-    let mut sorted = points.to_vec();
-    sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    let chain = |points: &mut dyn Iterator<Item = &Point>| {
-        let mut chain: Vec<Point> = Vec::new();
-        for point in points {
-            while let [.., a, b] = &chain[..]
-                && (b - a).perp(&(point - b)) <= 1e-9
-            {
-                chain.pop();
-            }
-            chain.push(*point);
-        }
-        chain.pop();
-        chain
-    };
-    let mut hull = chain(&mut sorted.iter());
-    hull.extend(chain(&mut sorted.iter().rev()));
-    hull
-}

@@ -153,6 +153,7 @@ fn task(task: &TaskConfig) -> &'static str {
         TaskConfig::Goto { .. } => "goto",
         TaskConfig::Follow { .. } => "follow",
         TaskConfig::Cover { .. } => "cover",
+        TaskConfig::Survey { .. } => "survey",
     }
 }
 

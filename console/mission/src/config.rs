@@ -36,6 +36,13 @@ pub enum TaskConfig {
         /// Distance from the anchor at which the robot counts as back, metres.
         tolerance_m: f64,
     },
+    /// Make a map of the floor from scans, and return. The mission itself drives, without a planner.
+    Survey {
+        /// Where the path ends and where the tether, if the robot has one, is attached; metres.
+        anchor: Point,
+        /// Distance from the anchor at which the robot counts as back, metres.
+        tolerance_m: f64,
+    },
 }
 
 impl TaskConfig {
@@ -44,14 +51,19 @@ impl TaskConfig {
         match self {
             Self::Goto { goal, .. } => Some(*goal),
             Self::Follow { path, .. } => path.last().copied(),
-            Self::Cover { anchor, .. } => Some(*anchor),
+            Self::Cover { anchor, .. } | Self::Survey { anchor, .. } => Some(*anchor),
         }
+    }
+
+    /// Whether the task is to make a map of the floor.
+    pub fn is_survey(&self) -> bool {
+        matches!(self, Self::Survey { .. })
     }
 
     /// Heading error above which a unicycle turns on the spot before it drives, radians.
     pub fn turn_first_rad(&self) -> f64 {
         match self {
-            Self::Cover { .. } => TURN_FIRST_IN_LANES_RAD,
+            Self::Cover { .. } | Self::Survey { .. } => TURN_FIRST_IN_LANES_RAD,
             Self::Goto { .. } | Self::Follow { .. } => TURN_FIRST_RAD,
         }
     }

@@ -28,6 +28,7 @@ mod rules;
 mod scanning;
 mod shadow;
 mod stepping;
+mod surveying;
 mod tethering;
 mod worker;
 mod workers;
@@ -158,6 +159,7 @@ impl Mission {
             readiness: self.driving.readiness(&self.known),
             trouble: self.known.trouble.as_deref(),
             is_live: self.known.config.live,
+            is_survey: self.known.config.task.is_survey(),
             from_plan_m: self.driving.course.first_from_m(&self.known),
         }
     }
@@ -179,6 +181,7 @@ impl Mission {
         let map_changed = self.look_around(input.readings);
         self.happened.extend(self.known.note_scan_fault());
         self.known.scan_from(before, &mut self.happened);
+        self.known.explore(input.readings, &mut self.happened);
         let reached = self.known.drag_tether(map_changed, input.readings, &mut self.happened);
         self.watch_tether(map_changed);
         if map_changed {
@@ -233,8 +236,7 @@ impl Mission {
             here,
             position: self.known.position_trust(),
             task: &self.known.task,
-            plan_left_m: back
-                .map_or_else(|| plan.map(|plan| plan.left_m(here)), |back| Some(back.left_m(here))),
+            plan_left_m: back.map_or_else(|| self.known.way_left_m(plan), |back| Some(back.left_m(here))),
             is_back: back.is_some_and(|back| back.is_done(here)),
             breached,
             in_zone: self.known.breached.first().map(String::as_str),

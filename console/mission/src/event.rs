@@ -17,6 +17,7 @@ mod rounding;
 mod run_opened;
 mod severity;
 mod shadow;
+mod survey;
 mod tether;
 
 pub use better_plan::{PlanDropped, PlanMade, PlanTaken};
@@ -32,6 +33,7 @@ pub(crate) use rounding::rounded_command;
 pub use run_opened::RunOpened;
 pub use severity::Severity;
 pub use shadow::{READY_AFTER, ShadowTally};
+pub use survey::{Explored, SurveyGoal, SurveyWay};
 pub use tether::{MeasuredPull, SLACK_M, TetherAlarm, TetherContact, taut_line};
 
 use crate::{
@@ -41,6 +43,7 @@ use crate::{
     planner::{Fault, PlannerChoice, PlannerInfo},
     way_back::WayBack,
 };
+use exploration::SurveyMap;
 use planner_api::{Command, Drawing, Drive, Leg, LegTag, LogLevel, PoseEstimate, Reason};
 use positioning::{Estimated, Exclusion, Fix, FixError, PulseTest, Ranging, Unprotected};
 use serde::{Deserialize, Serialize};
@@ -496,6 +499,15 @@ pub enum EventKind {
     BetterPlanTaken(PlanTaken),
     /// The better plan was dropped, either while it was being made or after it had been offered.
     BetterPlanDropped(PlanDropped),
+    /// A survey takes a way: to a frontier, or back.
+    SurveyWay(SurveyWay),
+    /// What a survey has explored so far.
+    Explored(Explored),
+    /// The map that a survey has made, at its end.
+    Mapped {
+        /// The map.
+        map: Box<SurveyMap>,
+    },
     /// The robot drives back by order, without a planner.
     ReturnBegan {
         /// The way.

@@ -75,6 +75,8 @@ pub struct Standing<'a> {
     pub trouble: Option<&'a str>,
     /// Whether the robot is a real vehicle.
     pub is_live: bool,
+    /// Whether the task is a survey, in which the mission itself drives.
+    pub is_survey: bool,
     /// For a real vehicle that has not been started: its distance from the beginning of its plan, metres; `None`
     /// without a plan.
     pub from_plan_m: Option<f64>,
@@ -140,6 +142,8 @@ pub enum Refusal {
         /// The reason, as a clause.
         why: String,
     },
+    /// A survey uses no planner.
+    NoPlannerInSurvey,
     /// A real vehicle cannot be stepped by ticks.
     StepOfVehicle,
     /// Faults can be injected only into a simulation.
@@ -198,6 +202,7 @@ impl fmt::Display for Refusal {
                 f.write_str("the ranges contradict each other; resuming requires a consistent fix")
             }
             Self::Vehicle { why } => write!(f, "the vehicle cannot be driven: {why}"),
+            Self::NoPlannerInSurvey => f.write_str("a survey drives without a planner; start it as it is"),
             Self::StepOfVehicle => f.write_str(
                 "a real vehicle cannot be stepped by ticks, because its time does not stop; step to the end of the lane \
                  or to the next event",
@@ -228,6 +233,14 @@ impl Standing<'_> {
     pub fn allows(&self, order: &Order) -> Result<(), Refusal> {
         match (order, self.phase) {
             (_, Phase::Ended(outcome)) => Err(Refusal::Ended(*outcome)),
+            (
+                Order::Plan
+                | Order::ChoosePlanner(_)
+                | Order::SetParameter { .. }
+                | Order::CheckPlanner
+                | Order::Shadow(_),
+                _,
+            ) if self.is_survey => Err(Refusal::NoPlannerInSurvey),
             (Order::Step, _) if self.is_live => Err(Refusal::StepOfVehicle),
             (Order::Inject(_), _) if self.is_live => Err(Refusal::FaultOfVehicle),
             (Order::Shadow(_) | Order::SetParameter { .. }, Phase::Running(Gait::Back)) => {

@@ -3,12 +3,14 @@
 mod corner;
 mod cover;
 mod rest;
+mod survey;
 
 pub(crate) use corner::CornerPatience;
 use cover::Cover;
 pub(crate) use cover::Joint;
 pub(crate) use geometry::PathFollower;
 pub(crate) use rest::rest_of;
+pub(crate) use survey::Survey;
 
 use crate::{ask::TaskLeft, config::TaskConfig};
 use planner_api as api;
@@ -31,6 +33,8 @@ pub(crate) enum Task {
     },
     /// Scan the floor.
     Cover(Cover),
+    /// Make a map of the floor.
+    Survey(Survey),
 }
 
 /// Progress towards a single goal.
@@ -56,6 +60,7 @@ impl Task {
             TaskConfig::Cover { anchor, regions, tolerance_m } => {
                 Self::Cover(Cover::new(*anchor, regions.clone(), *tolerance_m, start))
             }
+            TaskConfig::Survey { anchor, tolerance_m } => Self::Survey(Survey::new(*anchor, *tolerance_m)),
         }
     }
 
@@ -63,7 +68,15 @@ impl Task {
     pub(crate) fn cover(&self) -> Option<&Cover> {
         match self {
             Self::Cover(cover) => Some(cover),
-            Self::Goto(_) | Self::Follow { .. } => None,
+            Self::Goto(_) | Self::Follow { .. } | Self::Survey(_) => None,
+        }
+    }
+
+    /// The survey; `None` for other tasks.
+    pub(crate) fn survey(&mut self) -> Option<&mut Survey> {
+        match self {
+            Self::Survey(survey) => Some(survey),
+            _ => None,
         }
     }
 
@@ -74,6 +87,7 @@ impl Task {
             Self::Goto(goto) => goto.position = position,
             Self::Follow { follower, .. } => follower.advance(position, has_room),
             Self::Cover(cover) => cover.advance(position, map),
+            Self::Survey(_) => {}
         }
     }
 
@@ -83,6 +97,7 @@ impl Task {
             Self::Goto(goto) => goto.goal,
             Self::Follow { follower, .. } => follower.target(),
             Self::Cover(cover) => cover.target(),
+            Self::Survey(survey) => survey.target,
         }
     }
 
@@ -92,6 +107,7 @@ impl Task {
             Self::Goto(goto) => std::slice::from_ref(&goto.goal),
             Self::Follow { follower, .. } => follower.ahead(length_m),
             Self::Cover(cover) => cover.ahead(length_m),
+            Self::Survey(survey) => std::slice::from_ref(&survey.target),
         }
     }
 
@@ -160,6 +176,8 @@ impl Task {
         match self {
             Self::Cover(cover) => cover.is_in_the_way(shape, room_m),
             Self::Goto(_) | Self::Follow { .. } => true,
+            // A survey finds its way on its own map.
+            Self::Survey(_) => false,
         }
     }
 
@@ -176,6 +194,7 @@ impl Task {
                 TaskLeft::Follow { targets: follower.remaining().to_vec(), tolerance_m: *tolerance_m }
             }
             Self::Cover(cover) => cover.left(coverage, lane_m, tether),
+            Self::Survey(survey) => survey.left(),
         }
     }
 
@@ -188,13 +207,14 @@ impl Task {
             }
             Self::Follow { .. } => 1.0,
             Self::Cover(cover) => cover.done(),
+            Self::Survey(survey) => survey.explored,
         }
     }
 
     /// Distance along the preset path, metres; `None` without one.
     pub(crate) fn along_m(&self) -> Option<f64> {
         match self {
-            Self::Goto(_) | Self::Cover(_) => None,
+            Self::Goto(_) | Self::Cover(_) | Self::Survey(_) => None,
             Self::Follow { follower, .. } => Some(follower.along_m()),
         }
     }
@@ -202,7 +222,7 @@ impl Task {
     /// Distance from the preset path or the lanes, metres; `None` without one.
     pub(crate) fn cross_track_m(&self, position: Point) -> Option<f64> {
         match self {
-            Self::Goto(_) => None,
+            Self::Goto(_) | Self::Survey(_) => None,
             Self::Follow { follower, .. } => Some(follower.cross_track_m(position)),
             Self::Cover(cover) => cover.cross_track_m(position),
         }
@@ -214,6 +234,7 @@ impl Task {
             Self::Goto(goto) => goto.left_m() <= goto.tolerance_m,
             Self::Follow { follower, tolerance_m } => follower.is_done(position, *tolerance_m),
             Self::Cover(cover) => cover.is_done(position),
+            Self::Survey(survey) => survey.is_done(position),
         }
     }
 
@@ -223,6 +244,8 @@ impl Task {
             Self::Goto(goto) => goto.left_m(),
             Self::Follow { follower, .. } => follower.length_m() - follower.along_m(),
             Self::Cover(cover) => cover.left_m(),
+            // Each way of a survey is a task of its own; its progress is that along the way.
+            Self::Survey(_) => f64::INFINITY,
         }
     }
 }

@@ -15,6 +15,7 @@ mod certifying;
 mod driven;
 mod payout;
 mod slack;
+mod survey;
 
 pub use certifying::certify_from_start;
 pub(crate) use certifying::{ends_at_anchor, return_path_ends};

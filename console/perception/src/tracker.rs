@@ -200,6 +200,17 @@ impl Perception {
         })
     }
 
+    /// Whether the scans agree with the drawing as far as this is known: they can be used, and no verdict is pending.
+    pub fn agrees(&self) -> bool {
+        self.trouble.is_none() && !self.agreement.is_open() && !self.agreement.is_doubtful()
+    }
+
+    /// The pose of a robot with this estimated pose, corrected by what the last scan shows of the drawing.
+    pub fn corrected(&self, pose: &Pose) -> Pose {
+        let corrected = pose.tank_from_robot() * self.correction;
+        Pose { position: corrected.translation.vector.into(), heading_rad: corrected.rotation.angle() }
+    }
+
     /// Number of objects that are followed now, whether they are obstacles yet or not.
     pub fn tracks(&self) -> usize {
         self.tracks.len()

@@ -29,6 +29,7 @@ pub(crate) fn require_scans(runs: &[PastRun]) -> Result<(), String> {
     let task = match other.fold.run().map(|run| &run.mission.task) {
         Some(TaskConfig::Follow { .. }) => "its task is to follow a preset path",
         Some(TaskConfig::Goto { .. }) => "its task is to reach a goal",
+        Some(TaskConfig::Survey { .. }) => "its task is to make a map of the floor",
         _ => "its journal contains no task",
     };
     Err(format!("run {} scans no floor: {task}", other.name))

@@ -118,7 +118,7 @@ impl Planned {
     pub fn svg(&self, mission: &MissionConfig, drawing: &World) -> String {
         let preset = match &mission.task {
             TaskConfig::Follow { path, .. } => Some(path.as_slice()),
-            TaskConfig::Cover { .. } | TaskConfig::Goto { .. } => None,
+            TaskConfig::Cover { .. } | TaskConfig::Goto { .. } | TaskConfig::Survey { .. } => None,
         };
         let anchor = mission.tether.as_ref().map(|tether| tether.anchor);
         let cable = anchor.and_then(|anchor| longest_cable(anchor, drawing, &self.path)).unwrap_or_default();

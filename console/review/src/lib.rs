@@ -7,6 +7,7 @@ mod readings;
 mod register;
 mod rescan;
 mod stream;
+mod survey;
 mod track;
 mod verify;
 
@@ -15,5 +16,6 @@ pub use readings::readings;
 pub use register::register;
 pub use rescan::{MIN_AREA_M2, MissedScan, NextScan, doubt, missed_scan, rescan_of};
 pub use stream::{Selection, StreamEnd, StreamLine, printed, stream};
+pub use survey::{PastSurvey, past_survey};
 pub use track::track;
 pub use verify::{Verified, verdict, verify};

@@ -82,12 +82,17 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let task =
         sections.mission.as_ref().and_then(|s| task::task(s, floor.boundary.as_ref(), radius_m, put_down));
     require_start(&sections);
+    let is_survey = sections
+        .mission
+        .as_ref()
+        .is_some_and(|mission| mission.has("kind") && mission.word("kind") == Some("survey"));
+    require_scanner(&sections, is_survey);
     let start = start(floor.robot.as_ref(), task.as_ref());
     scatter(root, &mut floor, seed, start, task.as_ref());
     check_places(&sections, &floor, start, task.as_ref());
     let (tether, physical) = tether_of(&sections, &floor, start, task.as_ref()).unzip();
     let task = task.map(|task| back_to_the_anchor(task, tether.as_ref()));
-    let planner = root.table("planner").map(|section| (task::planner(&section), task::fallback(&section)));
+    let planner = task::planners(root, is_survey);
     let plates = if root.has("plates") { floor::plates(root, floor.boundary.as_ref()) } else { None };
     let wear = wear::wear(root, floor.boundary.as_ref(), seed);
     let checklist =
@@ -224,9 +229,21 @@ impl Floor {
 /// Complains if the start is missing from a mission that does not determine it itself.
 fn require_start(sections: &Sections<'_>) {
     let (Some(mission), Some(robot)) = (&sections.mission, &sections.robot) else { return };
-    if mission.has("kind") && matches!(mission.word("kind"), Some("goto" | "cover")) && !robot.has("start_m")
+    if mission.has("kind")
+        && matches!(mission.word("kind"), Some("goto" | "cover" | "survey"))
+        && !robot.has("start_m")
     {
         robot.require("start_m", "add start_m = [x, y] to [robot]: the place where the robot is put down");
+    }
+}
+
+/// Complains if a survey has no scanner to make its map with.
+fn require_scanner(sections: &Sections<'_>, is_survey: bool) {
+    if let Some(robot) = sections.robot.as_ref().filter(|_| is_survey) {
+        robot.require(
+            "scanner",
+            "add a section [robot.scanner]: a survey makes its map from the scans of a scanner",
+        );
     }
 }
 
@@ -235,8 +252,12 @@ fn start(robot: Option<&Robot>, task: Option<&TaskConfig>) -> Option<Pose> {
     let (robot, task) = (robot?, task?);
     let (position, ahead) = match (robot.start, task) {
         (Some(start), TaskConfig::Goto { goal, .. }) => (start, *goal - start),
-        (Some(start), TaskConfig::Cover { .. }) => (start, world::Vector::zeros()),
-        (None, TaskConfig::Goto { .. } | TaskConfig::Cover { .. }) => return None,
+        (Some(start), TaskConfig::Cover { .. } | TaskConfig::Survey { .. }) => {
+            (start, world::Vector::zeros())
+        }
+        (None, TaskConfig::Goto { .. } | TaskConfig::Cover { .. } | TaskConfig::Survey { .. }) => {
+            return None;
+        }
         (start, TaskConfig::Follow { path, .. }) => {
             let (first, second) = (*path.first()?, *path.get(1)?);
             let position = start.unwrap_or(first);
@@ -259,7 +280,7 @@ fn end_of(task: &TaskConfig) -> Option<Point> {
     match task {
         TaskConfig::Goto { goal, .. } => Some(*goal),
         TaskConfig::Follow { path, .. } => path.last().copied(),
-        TaskConfig::Cover { anchor, .. } => Some(*anchor),
+        TaskConfig::Cover { anchor, .. } | TaskConfig::Survey { anchor, .. } => Some(*anchor),
     }
 }
 
@@ -327,8 +348,11 @@ fn tether_of(
         tether::check(&section, &tether, &site, start);
     }
     let clearance_m = sections.mission.as_ref().and_then(|mission| mission.number("clearance_m"));
-    if let (Some(TaskConfig::Cover { tolerance_m, .. }), Some(robot), Some(clearance_m)) =
-        (task, &floor.robot, clearance_m)
+    if let (
+        Some(TaskConfig::Cover { tolerance_m, .. } | TaskConfig::Survey { tolerance_m, .. }),
+        Some(robot),
+        Some(clearance_m),
+    ) = (task, &floor.robot, clearance_m)
     {
         let site = Site { radius_m: robot.limits.radius_m, ..site };
         // Without anchor_m, the anchor is the robot's start.
@@ -344,6 +368,9 @@ fn back_to_the_anchor(task: TaskConfig, tether: Option<&TetherConfig>) -> TaskCo
     match (task, tether) {
         (TaskConfig::Cover { regions, tolerance_m, .. }, Some(tether)) => {
             TaskConfig::Cover { anchor: tether.anchor, regions, tolerance_m }
+        }
+        (TaskConfig::Survey { tolerance_m, .. }, Some(tether)) => {
+            TaskConfig::Survey { anchor: tether.anchor, tolerance_m }
         }
         (task, _) => task,
     }

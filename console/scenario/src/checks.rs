@@ -126,7 +126,7 @@ pub(crate) fn cell_m(mission: &Section<'_>, boundary: Option<&Boundary>) -> Opti
     }
     // Round up to millimetres, with a reserve for cells cut at the edges.
     let fits_m = ((size.x * size.y / MOST_CELLS).sqrt() * 1010.0).ceil() / 1000.0;
-    if !mission.has("cell_m") && mission.word("kind") == Some("goto") {
+    if !mission.has("cell_m") && matches!(mission.word("kind"), Some("goto" | "survey")) {
         return Some(fits_m);
     }
     let what = Complaint::TooManyCells { cells: cells as u64, limit: MOST_CELLS as u64, fits_m };

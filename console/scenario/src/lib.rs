@@ -13,6 +13,7 @@ mod inspection;
 mod instrument;
 mod layout;
 mod map;
+mod of_map;
 mod outline;
 mod planner_keys;
 mod problem;
@@ -32,6 +33,7 @@ mod vehicle;
 mod wear;
 
 pub use inspection::inspection;
+pub use of_map::cover_of_map;
 pub use problem::{Complaint, Problem, ScenarioErrors};
 pub use rescan::{Continued, rescan};
 pub use settings::Settings;

@@ -95,7 +95,7 @@ fn add_zone(document: &mut DocumentMut, zone: &Zone) {
     }
 }
 
-fn pair(x: f64, y: f64) -> Item {
+pub(crate) fn pair(x: f64, y: f64) -> Item {
     value([x, y].into_iter().collect::<Array>())
 }
 

@@ -450,7 +450,7 @@ static NOISE: &[Key] = &[
 const TOO_NEAR: &str = "a robot that is steered once per tick cannot stop closer to a point";
 
 static MISSION: &[Key] = &[
-    word("kind", &["goto", "follow", "cover"]),
+    word("kind", &["goto", "follow", "cover", "survey"]),
     point("goal_m").or_none("for `goto`"),
     key("spiral", "", Kind::Table(SPIRAL)).or_none("for `follow`: this or `path_m`"),
     key("path_m", "m", Kind::Points(2)).or_none("for `follow`: this or `spiral`"),

@@ -10,6 +10,21 @@ const MOST_POINTS: u64 = 200_000;
 /// Slack for rounded numbers in files, in metres.
 const ROUNDING_M: f64 = 1e-6;
 
+/// The keys of `[mission]` that say nothing about a survey: where to drive, and how to scan.
+const NOT_IN_A_SURVEY: [&str; 8] = [
+    "spiral",
+    "path_m",
+    "goal_m",
+    "boxes_m",
+    "overlap_m",
+    "scan_position_limit_m",
+    "guarantee",
+    "better_plan",
+];
+
+/// The name that stands in place of a planner's in a survey, in which the mission itself drives.
+const SURVEY: &str = "survey";
+
 /// Reads the task of `[mission]`. A preset path must leave room for the hull at the wall; a coverage mission ends at
 /// `start`.
 pub(crate) fn task(
@@ -32,6 +47,10 @@ pub(crate) fn task(
         complain_of_boxes_outside(section, boundary, &boxes);
         let regions = boxes.iter().map(|[low, high]| shape::rectangle(*low, *high)).collect();
         return Some(TaskConfig::Cover { anchor: start?, regions, tolerance_m: tolerance_m? });
+    }
+    if kind == "survey" {
+        section.refuse(&NOT_IN_A_SURVEY, &beside);
+        return Some(TaskConfig::Survey { anchor: start?, tolerance_m: tolerance_m? });
     }
     section.refuse(&["goal_m", "boxes_m"], &beside);
     let path = preset_path(section, boundary, radius_m)?;
@@ -112,13 +131,25 @@ fn complain_of_wall(section: &Section<'_>, name: &str, path: &[Point], walls: Op
     }
 }
 
+/// The planner of a mission, and the one that takes over after a fault. A survey has none.
+pub(crate) fn planners(
+    root: &Section<'_>,
+    is_survey: bool,
+) -> Option<(Option<PlannerChoice>, Option<PlannerChoice>)> {
+    if is_survey {
+        root.refuse(&["planner"], "mission.kind = \"survey\", because the mission itself drives");
+        return Some((Some(PlannerChoice { id: SURVEY.into(), ..PlannerChoice::default() }), None));
+    }
+    root.table("planner").map(|section| (planner(&section), fallback(&section)))
+}
+
 /// Reads a planner's id and parameters, from `[planner]` or its fallback.
-pub(crate) fn planner(section: &Section<'_>) -> Option<PlannerChoice> {
+fn planner(section: &Section<'_>) -> Option<PlannerChoice> {
     let (id, parameters) = (section.slug("id"), section.parameters("parameters"));
     Some(PlannerChoice { id: id?, parameters: parameters? })
 }
 
 /// Reads the planner that takes over after a fault; `None` if there is none, or if it is invalid.
-pub(crate) fn fallback(section: &Section<'_>) -> Option<PlannerChoice> {
+fn fallback(section: &Section<'_>) -> Option<PlannerChoice> {
     planner(&section.table("fallback")?)
 }

@@ -259,7 +259,7 @@ const MISTAKES: &[(&str, &str, &str)] = &[
     (
         "kind = \"goto\"",
         "kind = \"hover\"",
-        "7:8: mission.kind = \"hover\": must be one of goto, follow, cover",
+        "7:8: mission.kind = \"hover\": must be one of goto, follow, cover, survey",
     ),
     ("goal_m = [3, 0]", "goal_m = [6, 0]", "8:10: mission.goal_m = [6, 0]: is 1.000 m outside the tank"),
     (

@@ -17,8 +17,8 @@ mod sweep;
 
 pub use cable::Law as CableLaw;
 pub use config::{
-    AeConfig, BehindColumns, ChannelFault, Clocks, Disturbances, Mover, NoiseModel, PhysicalCable, RobotConfig,
-    SimConfig, StationFault, TimingErrors, Track,
+    AeConfig, BehindColumns, ChannelFault, Clocks, Disturbances, Mover, NoiseModel, PhysicalCable,
+    RobotConfig, SimConfig, StationFault, TimingErrors, Track,
 };
 pub use ranging::Sounder;
 pub use simulator::Simulator;

@@ -141,6 +141,7 @@ fn done(model: &Model) -> Vec<String> {
         TaskConfig::Goto { .. } => "Task: drive to the goal",
         TaskConfig::Follow { .. } => "Task: follow the preset path",
         TaskConfig::Cover { .. } => "Task: scan the floor",
+        TaskConfig::Survey { .. } => "Task: make a map of the floor",
     });
     let bases = Bases::of(&model.live);
     let ([first, second], [floor, other]) = (bases.scanned(), bases.floors);

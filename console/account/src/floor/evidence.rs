@@ -441,6 +441,6 @@ fn no_go_zones(run: &RunOpened) -> Vec<Solid> {
 fn asked(run: &RunOpened) -> Option<Vec<bool>> {
     match &run.mission.task {
         TaskConfig::Cover { regions, .. } => world::coverage::regions::cells_within(&run.floor, regions),
-        TaskConfig::Goto { .. } | TaskConfig::Follow { .. } => None,
+        TaskConfig::Goto { .. } | TaskConfig::Follow { .. } | TaskConfig::Survey { .. } => None,
     }
 }

@@ -104,6 +104,21 @@ pub(crate) struct ImportArgs {
     pub force: bool,
 }
 
+#[derive(Debug, Args)]
+pub(crate) struct MapOfArgs {
+    /// Run folder of a survey, or its name in the logs folder.
+    pub run: PathBuf,
+    /// File to write: NAME.yaml for a map of the ROS map server (with its image NAME.pgm beside it), NAME.toml for a
+    /// scenario that scans the mapped floor.
+    #[arg(short = 'o', long, value_name = "MAP")]
+    pub output: PathBuf,
+    /// Overwrite existing files.
+    #[arg(long)]
+    pub force: bool,
+    #[command(flatten)]
+    pub logs: LogsArg,
+}
+
 /// The unit of length of a drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum UnitArg {

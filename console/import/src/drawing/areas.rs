@@ -1,9 +1,12 @@
 //! Closed outlines: the shell, and objects on the floor.
 
 use super::{entities::Outline, rings};
-use crate::plan::{MOST_CORNERS, hull, round};
+use crate::plan::{MOST_CORNERS, round};
 use std::f64::consts::{PI, TAU};
-use world::{Boundary, Point, Shape, Vector, shape::ring_area_m2};
+use world::{
+    Boundary, Point, Shape, Vector,
+    shape::{convex_hull, ring_area_m2},
+};
 
 /// The largest distance in metres between the two sides of a shell, if both are drawn.
 const PLATE_M: f64 = 0.25;
@@ -88,8 +91,8 @@ impl Area {
         let n_tip = if self.half_width_m > 0.0 { N_TIP } else { 1 };
         let wide: Vec<Point> =
             self.points.iter().flat_map(|at| (0..n_tip).map(move |k| at + tip(k))).collect();
-        let vertices = of_few_corners(hull(&wide));
-        let plain_m2 = ring_area_m2(&hull(&self.points));
+        let vertices = of_few_corners(convex_hull(&wide));
+        let plain_m2 = ring_area_m2(&convex_hull(&self.points));
         let grew = plain_m2 > ring_area_m2(&self.points).abs() * (1.0 + 1e-6);
         (Shape::Polygon { vertices }, grew)
     }
@@ -112,7 +115,7 @@ fn of_few_corners(ring: Vec<Point>) -> Vec<Point> {
         let (p, q) = (reach(&a), reach(&b));
         Point::new(p * b.y - q * a.y, q * a.x - p * b.x) / a.perp(&b)
     };
-    hull(&(0..N_SIDES).map(corner).collect::<Vec<_>>())
+    convex_hull(&(0..N_SIDES).map(corner).collect::<Vec<_>>())
 }
 
 /// The convex shapes of all areas without duplicates, and the numbers, counted from 1, of those that were not convex.

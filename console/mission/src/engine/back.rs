@@ -119,7 +119,7 @@ impl Mission {
         let Some(back) = &self.known.back else { return };
         let place = back.to.word();
         let tether = self.known.tether.as_ref().filter(|_| back.to == Home::Anchor);
-        match tether.and_then(|tether| tether.left_out(self.known.chart.world())) {
+        match tether.and_then(|tether| tether.left_out(self.known.cable_world())) {
             Some(why) => {
                 self.end(
                     Outcome::Entangled,

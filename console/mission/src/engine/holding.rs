@@ -4,6 +4,7 @@ use super::{
     Mission,
     driving::{Driving, Prepare},
     rules::Verdict,
+    surveying::Surveying,
 };
 use crate::{
     event::EventKind,
@@ -23,6 +24,9 @@ impl Mission {
                 self.hold(hold);
             }
             Verdict::Resume => self.go_on(Gait::Steady),
+            Verdict::Replan(_) if self.known.survey.is_some() => {
+                self.known.survey.iter_mut().for_each(Surveying::give_up);
+            }
             Verdict::Replan(reason) => self.driving.course.want_plan(reason),
             Verdict::Done => self.end_done(),
             Verdict::Back => self.end_back(),
@@ -105,6 +109,7 @@ impl Mission {
             self.leave_way_back();
         }
         self.driving.prepare = Prepare::No;
+        self.known.survey.iter_mut().for_each(Surveying::leave_way);
         self.go_on(gait);
     }
 
@@ -120,7 +125,14 @@ impl Mission {
         if gait == Gait::Back {
             return self.drive_along_way_back();
         }
-        let Some(drive) = self.driving.send(&mut self.known, &mut self.happened) else { return Drive::STILL };
+        let drive = if self.known.survey.is_some() {
+            self.drive_survey()
+        } else {
+            let Some(drive) = self.driving.send(&mut self.known, &mut self.happened) else {
+                return Drive::STILL;
+            };
+            drive
+        };
         if gait == Gait::OneTick {
             self.hold(Hold { by: HoldReason::Stepped, resumes: Resumes::Never });
         }
@@ -128,6 +140,7 @@ impl Mission {
     }
 
     pub(super) fn end(&mut self, outcome: Outcome, reason: String) {
+        self.report_map();
         self.happened.ending = Some(EventKind::Ended { outcome, reason });
         self.known.phase = Phase::Ended(outcome);
         self.drop_preparing();

@@ -4,6 +4,7 @@ use super::{
     back::Back,
     floor::ScannedFloor,
     governing::{guarding::ScanGuard, state::Governor},
+    surveying::Surveying,
 };
 use crate::{
     channels::Channels,
@@ -15,6 +16,7 @@ use crate::{
     task::Task,
     tether::{Tether, ends_at_anchor},
 };
+use geometry::PathFollower;
 use perception::Perception;
 use planner_api::Drive;
 use world::{Floor, Point, World};
@@ -44,6 +46,8 @@ pub(super) struct Known {
     pub scan_guard: ScanGuard,
     /// The obstacles found in scans; `None` without a scanner, and if its scans serve the guard alone.
     pub perception: Option<Perception>,
+    /// The map that the mission makes; `None` unless the task is a survey.
+    pub survey: Option<Surveying>,
     /// The command at the end of the last tick.
     pub last_drive: Drive,
     /// The drive back that was ordered, until the mission is resumed.
@@ -67,6 +71,7 @@ impl Known {
             governor: Governor::new(&config, &drawing.zones),
             scan_guard: ScanGuard::default(),
             perception: config.sensor.map(Perception::new),
+            survey: Surveying::new(&config, &drawing),
             chart: Chart::new(drawing, &config, seed),
             task: Task::new(&config.task, start),
             floor: ScannedFloor::new(floor),
@@ -91,7 +96,13 @@ impl Known {
 
     /// Whether the robot moves as its planner commands.
     pub(super) fn follows_planner(&self) -> bool {
-        self.is_running() && !self.phase.is_return()
+        self.is_running() && !self.phase.is_return() && !self.config.task.is_survey()
+    }
+
+    /// Remaining length of the planner's path or of the way of a survey, metres.
+    pub(super) fn way_left_m(&self, plan: Option<&PathFollower>) -> Option<f64> {
+        let here = self.position();
+        self.survey.as_ref().map_or_else(|| plan.map(|plan| plan.left_m(here)), |survey| survey.left_m(here))
     }
 
     pub(super) fn is_waiting(&self) -> bool {

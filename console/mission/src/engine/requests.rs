@@ -86,7 +86,9 @@ impl Known {
         // In a task with lanes, the task itself tracks the progress.
         let path_ahead = match task {
             Task::Cover(_) => task.targets_ahead(AHEAD_M),
-            Task::Goto(_) | Task::Follow { .. } => plan.map_or(&[][..], |plan| plan.ahead(AHEAD_M)),
+            Task::Goto(_) | Task::Follow { .. } | Task::Survey(_) => {
+                plan.map_or(&[][..], |plan| plan.ahead(AHEAD_M))
+            }
         };
         StepAsk {
             tick: self.tick,

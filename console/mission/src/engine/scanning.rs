@@ -115,8 +115,13 @@ impl Known {
         if passage == Passage::Idle {
             return;
         }
-        let live = self.channels.live(self.floor.coverage.floor().rim_m());
-        let fresh = self.floor.coverage.not_covered_under_parts(&live, before, here);
+        // A survey drives without its tool.
+        let fresh = if self.survey.is_some() {
+            Vec::new()
+        } else {
+            let live = self.channels.live(self.floor.coverage.floor().rim_m());
+            self.floor.coverage.not_covered_under_parts(&live, before, here)
+        };
         if !fresh.is_empty() && passage == Passage::Counts {
             self.floor.coverage.apply(&fresh);
             happened.push(EventKind::Covered { runs: fresh });
@@ -141,6 +146,7 @@ impl Known {
     pub(super) fn done_reason(&self, is_plan_whole: bool) -> String {
         match &self.task {
             Task::Goto(_) | Task::Follow { .. } => "task complete".into(),
+            Task::Survey(survey) => self.mapped_reason(survey),
             Task::Cover(_) => {
                 let share = percent_text(self.floor.coverage.fraction_reachable(), 1);
                 let place = if self.config.tether.is_some() { "anchor" } else { "start" };

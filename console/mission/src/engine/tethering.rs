@@ -1,6 +1,6 @@
 //! Updates the tether in each tick, and finds the return paths along it.
 
-use super::{Mission, happened::Happened, known::Known, rules::HOME_M};
+use super::{Mission, happened::Happened, known::Known, rules::HOME_M, surveying::Surveying};
 use crate::{
     event::{EventKind, TetherAlarm},
     phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes},
@@ -15,24 +15,37 @@ impl Known {
         readings: &Readings,
         happened: &mut Happened,
     ) -> Option<TetherAlarm> {
-        let tether = self.tether.as_mut()?;
-        let world = self.chart.world();
+        self.tether.as_ref()?;
         if map_changed {
-            tether.lay_again(world);
+            self.lay_cable_again();
         }
+        let (tether, ground) = (self.tether.as_mut()?, self.survey.as_ref().map(Surveying::ground));
+        let (world, map) = match ground {
+            Some(ground) => (ground.world(), ground.map()),
+            None => (self.chart.world(), self.chart.map()),
+        };
         // If the position is lost, moving the cable would wind it round obstacles that only the estimate has passed.
         let error_m = (!self.locator.is_lost()).then(|| self.locator.error_95_m());
         if error_m.is_some() {
             tether.drag_to(self.locator.position());
         }
         tether.measure(readings, error_m, self.config.tick_s);
-        let events = tether.update(world, self.chart.map(), self.config.tick_s);
+        let events = tether.update(world, map, self.config.tick_s);
         let reached = events.iter().find_map(|event| match event {
             EventKind::TetherAlarmRaised { alarm, reached: true } => Some(alarm.clone()),
             _ => None,
         });
         happened.extend(events);
         reached
+    }
+
+    /// Lays the cable among the obstacles known now.
+    fn lay_cable_again(&mut self) {
+        if self.survey.is_some() {
+            self.refresh_ground();
+        } else if let Some(tether) = &mut self.tether {
+            tether.lay_again(self.chart.world());
+        }
     }
 
     /// Sets whether plans are run even if they are refused for the tether.
@@ -95,7 +108,7 @@ impl Mission {
     pub(super) fn end_done(&mut self) {
         let back = self.known.task_ends_at_anchor();
         let left =
-            self.known.tether.as_ref().filter(|_| back).and_then(|t| t.left_out(self.known.chart.world()));
+            self.known.tether.as_ref().filter(|_| back).and_then(|t| t.left_out(self.known.cable_world()));
         match left {
             Some(why) => self.end(Outcome::Entangled, format!("back at the anchor, but {why}")),
             None => self.end(Outcome::Complete, self.known.done_reason(self.driving.course.is_whole())),

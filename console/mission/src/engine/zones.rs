@@ -83,8 +83,8 @@ impl Known {
             return Err(format!("the robot is in the zone or too close to it: {must_keep}"));
         }
         let end = match &self.config.task {
-            TaskConfig::Cover { .. } if self.config.tether.is_some() => "anchor",
-            TaskConfig::Cover { .. } => "start",
+            TaskConfig::Cover { .. } | TaskConfig::Survey { .. } if self.config.tether.is_some() => "anchor",
+            TaskConfig::Cover { .. } | TaskConfig::Survey { .. } => "start",
             TaskConfig::Goto { .. } => "goal",
             TaskConfig::Follow { .. } => "end of the path",
         };

@@ -1,7 +1,7 @@
 //! Events as lines of text. The log on the screen, the recording and the command line use the same words.
 
 use super::{
-    Event, EventKind, OfferStage, PlanDropped, PlanMade, PlanTaken, TetherAlarm, pulse_text,
+    Event, EventKind, OfferStage, PlanDropped, PlanMade, PlanTaken, SurveyWay, TetherAlarm, pulse_text,
     severity::{self, Severity},
 };
 use crate::engine::side;
@@ -13,7 +13,7 @@ use crate::{
 use planner_api::LogLevel;
 use positioning::{Exclusion, Integrity};
 use vehicle::port::{LinkSeen, Notice};
-use world::{Station, StationId, beside_limit, tether::Certificate};
+use world::{Station, StationId, beside_limit, coverage::percent_text, tether::Certificate};
 
 /// A line of the event log: its severity, its source and its text.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -119,6 +119,19 @@ impl Event {
                 line(Severity::Info, "robot", format!("hull outside zone {zone} again"))
             }
             EventKind::ReturnBegan { way } => line(Severity::Info, "mission", way.to_string()),
+            EventKind::SurveyWay(SurveyWay { to, length_m, beyond_tether, .. }) => {
+                let left_out = match beyond_tether {
+                    0 => String::new(),
+                    n => format!(", {n} left out beyond the tether"),
+                };
+                let text = format!("survey: {length_m:.1} m to {}{left_out}", to.words());
+                line(Severity::Info, "mission", text)
+            }
+            EventKind::Mapped { map } => {
+                let share = percent_text(map.explored, 1);
+                let text = format!("map made: {share} % of the floor seen, {} columns", map.columns.len());
+                line(Severity::Info, "map", text)
+            }
             EventKind::PlannerChosen { .. }
             | EventKind::PlannerPrepared { .. }
             | EventKind::PlannerRejected { .. }
@@ -233,6 +246,7 @@ impl Event {
             | EventKind::Discarded { .. }
             | EventKind::Drawn { .. }
             | EventKind::Scalars { .. }
+            | EventKind::Explored(_)
             | EventKind::Covered { .. }
             | EventKind::Uncounted { .. }
             | EventKind::FloorChanged { .. }

@@ -6,12 +6,13 @@
 //! Plans are not rounded, because the planners' answers are replayed from the journal. Commands are rounded before they
 //! are sent ([`crate::Sending::as_sent`]).
 
-use super::{Event, EventKind, PlanMade, MeasuredPull, TetherContact};
+use super::{Event, EventKind, MeasuredPull, PlanMade, TetherContact};
 use crate::{ask::Said, way_back::WayBack};
+use exploration::Column;
 use nalgebra::SMatrix;
 use planner_api::{Command, Drawing, Drive, PoseEstimate};
 use positioning::{Exclusion, Fix, Ranging};
-use world::{Point, Pose};
+use world::{Point, Pose, Shape};
 
 /// Rounding steps per unit.
 const STEPS: f64 = 1e6;
@@ -134,6 +135,21 @@ impl EventKind {
                 path.iter_mut().for_each(round_point);
                 [length_m, clearance_m].into_iter().for_each(round);
             }
+            Self::SurveyWay(way) => {
+                way.path.iter_mut().for_each(round_point);
+                round(&mut way.length_m);
+            }
+            Self::Explored(explored) => {
+                round(&mut explored.share);
+                explored.frontiers.iter_mut().for_each(round_point);
+                explored.columns.iter_mut().for_each(round_column);
+            }
+            Self::Mapped { map } => {
+                round(&mut map.explored);
+                round_point(&mut map.grid.low);
+                map.columns.iter_mut().for_each(round_column);
+                map.others.iter_mut().for_each(round_shape);
+            }
             Self::ZoneBreached { depth_m, .. } => round(depth_m),
             Self::BetterPlanned(PlanMade { scans: Some(scans), .. }) => {
                 for scan in [&mut scans.flown, &mut scans.better] {
@@ -192,6 +208,25 @@ fn round(x: &mut f64) {
 
 fn round_point(point: &mut Point) {
     point.iter_mut().for_each(round);
+}
+
+fn round_column(Column { center, radius_m, center_sigma_m, radius_sigma_m }: &mut Column) {
+    round_point(center);
+    [radius_m, center_sigma_m, radius_sigma_m].into_iter().for_each(round);
+}
+
+fn round_shape(shape: &mut Shape) {
+    match shape {
+        Shape::Disc { center, radius_m } => {
+            round_point(center);
+            round(radius_m);
+        }
+        Shape::Polygon { vertices: points } => points.iter_mut().for_each(round_point),
+        Shape::Polyline { points, half_width_m } => {
+            points.iter_mut().for_each(round_point);
+            round(half_width_m);
+        }
+    }
 }
 
 fn round_covariance<const N: usize>(covariance: &mut SMatrix<f64, N, N>) {

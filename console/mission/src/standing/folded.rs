@@ -50,6 +50,9 @@ pub struct FoldedStanding {
     /// Whether the robot is a real vehicle.
     #[serde(default)]
     is_live: bool,
+    /// Whether the task is a survey.
+    #[serde(default)]
+    is_survey: bool,
     /// The beginning of the last plan before the start, and where a real vehicle is.
     #[serde(default)]
     first: Option<Point>,
@@ -63,8 +66,8 @@ impl FoldedStanding {
         match event {
             EventKind::RunOpened(run) => {
                 let takes_offers = run.mission.better_plan == BetterPlan::Take;
-                let is_live = run.mission.live;
-                *self = Self { ready: Ready::of(run), takes_offers, is_live, ..Self::default() };
+                let (is_live, is_survey) = (run.mission.live, run.mission.task.is_survey());
+                *self = Self { ready: Ready::of(run), takes_offers, is_live, is_survey, ..Self::default() };
             }
             EventKind::Link(link) => self.trouble = link.trouble(),
             EventKind::Stood { confirmed, after_s, moved } => {
@@ -143,6 +146,7 @@ impl FoldedStanding {
             readiness: self.ready.readiness(),
             trouble: self.trouble.as_deref().or(self.unsteady.as_deref().filter(|_| is_waiting)),
             is_live: self.is_live,
+            is_survey: self.is_survey,
             from_plan_m: self
                 .here
                 .zip(self.first)

@@ -63,6 +63,7 @@ fn standing(phase: &Phase, position: PositionTrust) -> Standing<'_> {
         trouble: None,
         from_plan_m: None,
         is_live: false,
+        is_survey: false,
     }
 }
 

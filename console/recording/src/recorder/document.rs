@@ -167,6 +167,7 @@ fn task(task: &TaskConfig) -> String {
         TaskConfig::Follow { path, .. } => {
             format!("follow {} points over {:.1} m", path.len(), world::polyline::length_m(path))
         }
+        TaskConfig::Survey { .. } => "make a map of the floor".into(),
         TaskConfig::Cover { regions, .. } if regions.is_empty() => "scan the floor".into(),
         TaskConfig::Cover { regions, .. } if regions.len() == 1 => "scan 1 area of the floor".into(),
         TaskConfig::Cover { regions, .. } => format!("scan {} areas of the floor", regions.len()),

@@ -159,7 +159,7 @@ impl Sketch {
                 let residuals = self.residuals();
                 bp::Tabs::new([cross_track, residuals, forces, figures]).into()
             }
-            (TaskConfig::Goto { .. }, None) => {
+            (TaskConfig::Goto { .. } | TaskConfig::Survey { .. }, None) => {
                 let residuals = self.residuals();
                 bp::Tabs::new([forces, figures, residuals]).into()
             }

@@ -119,7 +119,7 @@ fn draw_plates(stream: &Stream, run: &RunOpened) -> Done {
 /// The key to the colours: a row of dots below the tank.
 fn draw_key(stream: &Stream, run: &RunOpened) -> Done {
     let floor = match &run.mission.task {
-        TaskConfig::Goto { .. } => &[][..],
+        TaskConfig::Goto { .. } | TaskConfig::Survey { .. } => &[][..],
         TaskConfig::Follow { .. } => &[("scanned", style::SCANNED), ("unreachable", style::OUT_OF_REACH)],
         TaskConfig::Cover { .. } => &[
             ("scanned", style::SCANNED),
@@ -168,7 +168,7 @@ fn draw_task(stream: &Stream, run: &RunOpened) -> Done {
             stream.always(paths::PRESET, &lines([preset], style::PRESET, 0.8))
         }
         TaskConfig::Goto { goal, .. } => draw_end(stream, *goal, Some("goal")),
-        TaskConfig::Cover { anchor, .. } => {
+        TaskConfig::Cover { anchor, .. } | TaskConfig::Survey { anchor, .. } => {
             let is_apart = (anchor - run.mission.start.position).norm() >= LABEL_M;
             draw_end(stream, *anchor, is_apart.then_some("anchor"))
         }

@@ -94,7 +94,7 @@ impl<'a> Layers<'a> {
         let world = &self.run.world;
         let anchor = match (&self.run.mission.tether, &self.run.mission.task) {
             (Some(tether), _) => tether.anchor,
-            (None, TaskConfig::Cover { anchor, .. }) => *anchor,
+            (None, TaskConfig::Cover { anchor, .. } | TaskConfig::Survey { anchor, .. }) => *anchor,
             (None, _) => self.run.mission.start.position,
         };
         Fixtures {

@@ -41,7 +41,7 @@ impl TaskPart {
     pub(super) fn of(past: &PastRun) -> Option<Self> {
         let run = past.fold.run().filter(|_| !past.fold.has_floor_to_scan())?;
         match &run.mission.task {
-            TaskConfig::Cover { .. } => None,
+            TaskConfig::Cover { .. } | TaskConfig::Survey { .. } => None,
             TaskConfig::Follow { path, .. } => Some(Self::Follow {
                 preset_m: polyline::length_m(path),
                 points: path.len(),

@@ -153,6 +153,9 @@ impl Run {
             | EventKind::PlannerLogged { .. }
             | EventKind::Uncounted { .. }
             | EventKind::Scanned { .. }
+            | EventKind::SurveyWay(_)
+            | EventKind::Explored(_)
+            | EventKind::Mapped { .. }
             | EventKind::ScannerJudged { .. }
             | EventKind::ScanAided { .. }
             | EventKind::Sensed { .. } => {}
@@ -219,7 +222,7 @@ impl Run {
     fn open(&mut self, run: &RunOpened) {
         let preset_m = match &run.mission.task {
             TaskConfig::Follow { path, .. } => Some(world::polyline::length_m(path)),
-            TaskConfig::Goto { .. } | TaskConfig::Cover { .. } => None,
+            TaskConfig::Goto { .. } | TaskConfig::Cover { .. } | TaskConfig::Survey { .. } => None,
         };
         self.about = Some(About {
             scenario: run.scenario.clone(),

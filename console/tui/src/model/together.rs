@@ -73,7 +73,7 @@ impl Earlier {
         let raster = joined(&Raster::new(own.floor().clone()), &combination.kinds, &combination.scanned);
         let asked = match &mission.task {
             TaskConfig::Cover { regions, .. } => cells_within(own.floor(), regions),
-            TaskConfig::Goto { .. } | TaskConfig::Follow { .. } => None,
+            TaskConfig::Goto { .. } | TaskConfig::Follow { .. } | TaskConfig::Survey { .. } => None,
         };
         Self { runs: combination.earlier.clone(), raster, asked }
     }

@@ -239,6 +239,7 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         | Refusal::NoPlanRefused
         | Refusal::NoOffer
         | Refusal::Vehicle { .. }
+        | Refusal::NoPlannerInSurvey
         | Refusal::StepOfVehicle
         | Refusal::FaultOfVehicle
         | Refusal::ShadowHasNoPlan

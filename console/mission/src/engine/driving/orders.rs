@@ -66,7 +66,7 @@ impl Driving {
 
     /// The plan with which a start would begin the mission.
     pub(in crate::engine) fn readiness(&self, known: &Known) -> Readiness<'_> {
-        if !known.config.start_names_plan {
+        if !known.config.start_names_plan || known.config.task.is_survey() {
             return Readiness::Unseen;
         }
         if self.worker.is_being_prepared() || self.prepare > Prepare::No || self.newest_change().is_some() {

@@ -34,7 +34,7 @@ impl StuckRule {
             return None;
         }
         let tried = self.replanned_at.is_some_and(|at| (seen.here - at).norm() < SAME_PLACE_M);
-        if tried || !matches!(seen.task, Task::Cover(_)) {
+        if tried || !matches!(seen.task, Task::Cover(_) | Task::Survey(_)) {
             return Some(give_up(seen));
         }
         self.replanned_at = Some(seen.here);

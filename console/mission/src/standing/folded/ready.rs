@@ -30,7 +30,11 @@ enum State {
 
 impl Ready {
     pub(super) fn of(run: &RunOpened) -> Self {
-        let state = if run.mission.start_names_plan { State::NoPlan } else { State::Unseen };
+        let state = if run.mission.start_names_plan && !run.mission.task.is_survey() {
+            State::NoPlan
+        } else {
+            State::Unseen
+        };
         Self { state, choice: run.mission.planner.clone() }
     }
 

@@ -44,6 +44,8 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::BetterPlanTaken(_) => "better plan taken",
         EventKind::BetterPlanDropped(_) => "no better plan",
         EventKind::ReturnBegan { .. } => "drive back",
+        EventKind::SurveyWay(_) => "way of the survey",
+        EventKind::Mapped { .. } => "map made",
         EventKind::ZoneBreached { .. } => "hull in no-go zone",
         EventKind::ZoneLeft { .. } => "hull outside no-go zone",
         EventKind::ShadowBegan { .. } | EventKind::Shadowed { .. } => "planner in shadow",

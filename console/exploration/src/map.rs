@@ -1,0 +1,131 @@
+//! The result of a survey.
+
+use crate::{bodies::Column, grid::Grid, survey::Exploration};
+use geometry::{Shape, Vector};
+use serde::{Deserialize, Serialize};
+
+/// Width of the belt around a column or along the wall, metres, in which the fitted outline decides instead of single
+/// echoes.
+const BELT_M: f64 = 0.15;
+
+/// The state of a cell of the map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CellState {
+    /// Free floor.
+    Free,
+    /// Solid.
+    Solid,
+    /// Not seen.
+    Unseen,
+}
+
+impl CellState {
+    fn letter(self) -> char {
+        match self {
+            Self::Free => 'f',
+            Self::Solid => 's',
+            Self::Unseen => 'u',
+        }
+    }
+
+    fn of(letter: char) -> Option<Self> {
+        [Self::Free, Self::Solid, Self::Unseen].into_iter().find(|state| state.letter() == letter)
+    }
+}
+
+/// The map that a survey has made, tank frame.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SurveyMap {
+    /// The lattice.
+    pub grid: Grid,
+    /// The states of the cells, row by row from the lower left, each run as its length and a letter: `f` free, `s`
+    /// solid, `u` not seen.
+    pub cells: String,
+    /// The columns.
+    pub columns: Vec<Column>,
+    /// Convex outlines of the other objects; a long object has several.
+    pub others: Vec<Shape>,
+    /// Share of the floor within the wall that scans have shown, 0 to 1.
+    pub explored: f64,
+}
+
+impl SurveyMap {
+    /// The state of each cell; `None` if the text of the cells is damaged.
+    pub fn states(&self) -> Option<Vec<CellState>> {
+        let mut states = Vec::with_capacity(self.grid.len());
+        let mut length = 0_usize;
+        for letter in self.cells.chars() {
+            if let Some(digit) = letter.to_digit(10) {
+                length = length.checked_mul(10)?.checked_add(digit as usize)?;
+            } else {
+                let state = CellState::of(letter)?;
+                if length == 0 || length > self.grid.len() - states.len() {
+                    return None;
+                }
+                states.extend(std::iter::repeat_n(state, length));
+                length = 0;
+            }
+        }
+        (length == 0 && states.len() == self.grid.len()).then_some(states)
+    }
+}
+
+impl Exploration {
+    /// The map according to all scans so far. Beside a column or the wall, the fitted outline decides which cells are
+    /// free; elsewhere, the echoes.
+    pub fn map(&self) -> SurveyMap {
+        let bodies = self.bodies();
+        let columns: Vec<Column> = bodies.iter().filter_map(|body| body.column).collect();
+        let others =
+            bodies.iter().filter(|body| body.column.is_none()).flat_map(crate::Body::shapes).collect();
+        let mut states: Vec<CellState> = (0..self.grid.len()).map(|cell| self.state(cell)).collect();
+        for column in &columns {
+            let reach = Vector::repeat(column.radius_m + BELT_M);
+            for cell in self.grid.within(column.center - reach, column.center + reach) {
+                let off_m = (self.grid.center(cell) - column.center).norm() - column.radius_m;
+                if self.is_floor[cell] && off_m <= BELT_M {
+                    states[cell] = if off_m <= 0.0 { CellState::Solid } else { CellState::Free };
+                }
+            }
+        }
+        let cells = text(&states);
+        SurveyMap { grid: self.grid.clone(), cells, columns, others, explored: self.share() }
+    }
+
+    /// The state of a cell according to the echoes or, beside the wall, to the wall and the floor before it.
+    fn state(&self, cell: usize) -> CellState {
+        let at = self.grid.center(cell);
+        if self.is_floor[cell] {
+            return match self.evidence[cell].odds {
+                odds if odds < 0.0 => CellState::Free,
+                odds if odds > 0.0 => CellState::Solid,
+                _ => CellState::Unseen,
+            };
+        }
+        let wall_m = self.boundary.wall_distance_m(at);
+        let is_seen_before = || {
+            let reach = (BELT_M / self.grid.cell_m).ceil() as usize + 1;
+            self.grid.around(cell, reach).any(|beside| self.is_free(beside))
+        };
+        match wall_m {
+            wall_m if wall_m > 0.0 => {
+                if is_seen_before() {
+                    CellState::Free
+                } else {
+                    CellState::Unseen
+                }
+            }
+            wall_m if wall_m > -2.0 * self.grid.cell_m => CellState::Solid,
+            _ => CellState::Unseen,
+        }
+    }
+}
+
+/// The states as runs, each as its length and a letter.
+fn text(states: &[CellState]) -> String {
+    let mut text = String::new();
+    for run in states.chunk_by(|a, b| a == b) {
+        text += &format!("{}{}", run.len(), run[0].letter());
+    }
+    text
+}

@@ -1,0 +1,44 @@
+//! The map of a past survey.
+
+use exploration::SurveyMap;
+use flight::failure::bad_input;
+use mission::{EventKind, RunOpened};
+use recording::{Ticks, journal_of};
+use std::path::Path;
+
+/// A past survey.
+pub struct PastSurvey {
+    /// The first event of its run.
+    pub opened: RunOpened,
+    /// The map that it made.
+    pub map: SurveyMap,
+}
+
+/// The survey of the run in a folder.
+///
+/// # Errors
+/// The journal cannot be read, the run was no survey, or it ended without a map.
+pub fn past_survey(folder: &Path) -> anyhow::Result<PastSurvey> {
+    let mut ticks = Ticks::open(&journal_of(folder))?;
+    let opened = ticks.opened()?.clone();
+    let mut map = None;
+    while let Some(tick) = ticks.next_tick()? {
+        for event in tick.events() {
+            if let EventKind::Mapped { map: made } = event {
+                map = Some(SurveyMap::clone(made));
+            }
+        }
+    }
+    let name = folder.display();
+    if !opened.mission.task.is_survey() {
+        let why = "the run made no map; choose a run of a scenario with mission.kind = \"survey\"";
+        return Err(bad_input(format!("{name}: {why}")));
+    }
+    let map = map.ok_or_else(|| {
+        bad_input(format!("{name}: the survey was interrupted before it wrote its map; run the survey again"))
+    })?;
+    if map.states().is_none() {
+        return Err(bad_input(format!("{name}: the map in the journal is damaged; run the survey again")));
+    }
+    Ok(PastSurvey { opened, map })
+}
