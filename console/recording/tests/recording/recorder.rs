@@ -182,8 +182,8 @@ fn a_tethered_run_has_the_cable_in_every_tick_and_its_figures() {
     }
     // The pull changes with the length.
     let changes = |entity| rows(&content, entity, "Scalars:scalars").len();
-    assert_eq!(changes("scalars/tether_pull"), changes("scalars/tether/out"));
-    assert!(changes("scalars/tether_pull") > 2);
+    assert_eq!(changes("scalars/tether_pull/needed"), changes("scalars/tether/out"));
+    assert!(changes("scalars/tether_pull/needed") > 2);
 }
 
 #[test]

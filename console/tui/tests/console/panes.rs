@@ -3,7 +3,7 @@
 use crate::fixture::{PLAIN, RICH, Screen, TICK_S, of_run};
 use crate::screens::{drawn, text};
 use account::Summary;
-use mission::event::TetherAlarm;
+use mission::event::{MeasuredPull, TetherAlarm};
 use mission::{Event, EventKind, HoldReason, Order, Outcome, Resumes, Severity};
 use positioning::{FixError, Integrity};
 use ratatui::style::Style;
@@ -325,6 +325,33 @@ fn the_cursor_on_the_map_gives_the_reason_that_the_report_gives() {
     assert!(tui::handover::page(&screen.model).contains(&area.why().replace('<', "\\<")));
     let outside = world::Point::new(area.high.x + 50.0, area.at.y);
     assert_eq!(screen.model.live.missed_area(outside), None);
+}
+
+#[test]
+fn the_pull_the_slack_and_the_loops_of_a_tether_are_shown() {
+    let mut screen = Screen::tethered();
+    let mut cable = screen.mission.cable();
+    if let EventKind::Tethered { measured, .. } = &mut cable.kind {
+        *measured = Some(MeasuredPull { pull_n: 3.4, slack_m: 0.16 });
+    }
+    let line = [(9.4, 0.0), (4.0, 3.0), (3.0, -3.0)].map(|(x, y)| world::Point::new(x, y)).to_vec();
+    let lies = world::CableLies { line, under_hull: false, reel_pull_n: 3.4 };
+    let truth = screen.mission.now(EventKind::TetherTruth {
+        length_m: 12.0,
+        wrap_max_rad: 0.0,
+        wrap_total_rad: 0.0,
+        detour_m: 0.0,
+        lies: Some(Box::new(lies)),
+    });
+    screen.hear(RunMsg::Events(vec![cable, truth]));
+    screen.type_text("3");
+    for size in [(200, 60), (120, 36)] {
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        let shown = text(&drawn(&screen.model, RICH, size));
+        for words in ["3.4 N, 0.16 of 0.20 m", "tether, true"] {
+            assert!(shown.contains(words), "{size:?} {words}:\n{shown}");
+        }
+    }
 }
 
 #[test]
