@@ -9,7 +9,7 @@ use std::{
 };
 
 /// The crates with the written types.
-const CRATES: [(&str, &str); 12] = [
+const CRATES: [(&str, &str); 13] = [
     ("geometry", "console/geometry/src"),
     ("world", "console/world/src"),
     ("positioning", "console/positioning/src"),
@@ -19,6 +19,7 @@ const CRATES: [(&str, &str); 12] = [
     ("account", "console/account/src"),
     ("report", "console/report/src"),
     ("runs", "console/runs/src"),
+    ("exploration", "console/exploration/src"),
     ("perception", "console/perception/src"),
     ("vehicle", "console/vehicle/src"),
     ("review", "console/review/src"),
