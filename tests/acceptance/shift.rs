@@ -19,7 +19,7 @@ fn an_operators_day_ends_with_a_complete_floor_a_handover_page_and_two_verified_
         "# Handover: cover-circle",
         "HELD by operator",
         "Operator: lk",
-        "station C rejected, since",
+        "station C excluded, since",
         "reason: pump noise",
         "exclude station C by lk",
         "no-go 1: box 2.50, 1.50 to 3.00, 2.00 m",

@@ -79,7 +79,9 @@ impl Body {
             share(at.y, low.y, tiles.y) * tiles.x as usize + share(at.x, low.x, tiles.x)
         };
         let mut cut: Vec<Vec<Point>> = vec![Vec::new(); (tiles.x * tiles.y) as usize];
-        points.iter().for_each(|at| cut[tile(at)].push(*at));
+        for at in &points {
+            cut[tile(at)].push(*at);
+        }
         cut.into_iter().filter(|points| !points.is_empty()).map(|points| hull_of(&points)).collect()
     }
 
@@ -240,13 +242,11 @@ fn column(circle: &Circle) -> Column {
 
 fn hull_of(points: &[Point]) -> Shape {
     let hull = convex_hull(points);
-    match &hull[..] {
-        [_, _, _, ..] => Shape::Polygon { vertices: hull },
-        // Too few points for an area: a small disc around them.
-        _ => {
-            let center = geometry::shape::mean_of(points);
-            let radius_m = points.iter().map(|at| (at - center).norm()).fold(0.01, f64::max);
-            Shape::Disc { center, radius_m }
-        }
+    if hull.len() >= 3 {
+        return Shape::Polygon { vertices: hull };
     }
+    // Too few points for an area: a small disc around them.
+    let center = geometry::shape::mean_of(points);
+    let radius_m = points.iter().map(|at| (at - center).norm()).fold(0.01, f64::max);
+    Shape::Disc { center, radius_m }
 }

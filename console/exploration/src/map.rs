@@ -123,9 +123,6 @@ impl Exploration {
 
 /// The states as runs, each as its length and a letter.
 fn text(states: &[CellState]) -> String {
-    let mut text = String::new();
-    for run in states.chunk_by(|a, b| a == b) {
-        text += &format!("{}{}", run.len(), run[0].letter());
-    }
-    text
+    let runs = states.chunk_by(|a, b| a == b);
+    runs.flat_map(|run| [run.len().to_string(), run[0].letter().to_string()]).collect()
 }

@@ -39,7 +39,7 @@ struct Tank {
 }
 
 impl Tank {
-    fn new(radius_m: f64, shapes: Vec<Shape>, seed: u64) -> Self {
+    fn new(radius_m: f64, shapes: &[Shape], seed: u64) -> Self {
         let boundary = Boundary::Circle { radius_m };
         let columns = shapes.iter().filter_map(|shape| match shape {
             Shape::Disc { center, radius_m } => Some((*center, *radius_m)),
@@ -65,14 +65,14 @@ impl Tank {
         for _ in 0..40 * n {
             let column_m = noise.between(0.08, 0.4);
             let from_center_m = (radius_m - 0.9 - column_m) * noise.next().sqrt();
-            let at = Point::origin() + unit_vector(noise.between(0.0, 6.28)) * from_center_m;
+            let at = Point::origin() + unit_vector(noise.between(0.0, std::f64::consts::TAU)) * from_center_m;
             let is_apart = |(other, m): &(Point, f64)| (at - other).norm() > column_m + m + 0.8;
             if placed.len() < n && at.coords.norm() > column_m + 0.6 && placed.iter().all(is_apart) {
                 placed.push((at, column_m));
             }
         }
         let disc = |(center, radius_m): (Point, f64)| Shape::Disc { center, radius_m };
-        Self::new(radius_m, placed.into_iter().map(disc).collect(), seed)
+        Self::new(radius_m, &placed.into_iter().map(disc).collect::<Vec<_>>(), seed)
     }
 
     fn scan(&mut self, pose: &Pose) -> Scan {
@@ -165,7 +165,7 @@ fn random_tanks_are_explored_and_every_column_is_found() {
 fn a_crate_is_an_outline_and_no_column() {
     let vertices = geometry::shape::rectangle(Point::new(1.0, -0.4), Point::new(1.8, 0.4));
     let crate_ = Shape::Polygon { vertices };
-    let mut tank = Tank::new(4.0, vec![crate_.clone()], 3);
+    let mut tank = Tank::new(4.0, std::slice::from_ref(&crate_), 3);
     let map = tank.explore().0.map();
     assert!(map.columns.is_empty());
     let [Shape::Polygon { vertices }] = &map.others[..] else { panic!("{:?}", map.others) };
@@ -174,7 +174,7 @@ fn a_crate_is_an_outline_and_no_column() {
 
 #[test]
 fn a_column_seen_from_two_sides_only_is_one_column() {
-    let mut tank = Tank::new(6.0, vec![Shape::Disc { center: Point::new(0.0, 0.0), radius_m: 0.5 }], 5);
+    let mut tank = Tank::new(6.0, &[Shape::Disc { center: Point::new(0.0, 0.0), radius_m: 0.5 }], 5);
     let mut exploration = Exploration::new(&tank.boundary, SCANNING);
     for step in 0..20 {
         // From far away on both sides: the flanks, which the rays graze, stay unseen.
@@ -216,7 +216,7 @@ fn a_lost_ray_shows_nothing() {
 
 #[test]
 fn the_hull_keeps_away_from_shapes_that_no_scan_shows() {
-    let mut tank = Tank::new(5.0, Vec::new(), 1);
+    let mut tank = Tank::new(5.0, &[], 1);
     let (exploration, _) = tank.explore();
     let zone = Shape::Disc { center: Point::new(2.0, 0.0), radius_m: 1.0 };
     let ways = exploration.ways(Point::origin(), ROOM_M, std::iter::once(&zone));

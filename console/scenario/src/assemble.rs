@@ -82,10 +82,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let task =
         sections.mission.as_ref().and_then(|s| task::task(s, floor.boundary.as_ref(), radius_m, put_down));
     require_start(&sections);
-    let is_survey = sections
-        .mission
-        .as_ref()
-        .is_some_and(|mission| mission.has("kind") && mission.word("kind") == Some("survey"));
+    let is_survey = is_survey(&sections);
     require_scanner(&sections, is_survey);
     let start = start(floor.robot.as_ref(), task.as_ref());
     scatter(root, &mut floor, seed, start, task.as_ref());
@@ -95,14 +92,13 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let planner = task::planners(root, is_survey);
     let plates = if root.has("plates") { floor::plates(root, floor.boundary.as_ref()) } else { None };
     let wear = wear::wear(root, floor.boundary.as_ref(), seed);
-    let checklist =
-        if root.has("checklist") { root.table("checklist")?.texts("items") } else { Some(Vec::new()) };
+    let checklist = checklist(root);
     let vehicle = vehicle::vehicle(root);
     let expect = expect::expect(root);
     let inspection = inspection::section(root);
     let rest = Rest::read(&sections, &floor);
-    let cell_m = rest.as_ref().map(|rest| rest.cell_m);
-    let (instrument, channel_faults) = instrument::instrument(root, plates.as_ref(), cell_m).unzip();
+    let (instrument, channel_faults) =
+        instrument::instrument(root, plates.as_ref(), rest.as_ref().map(|rest| rest.cell_m)).unzip();
 
     let (planner, fallback) = planner?;
     let (robot, rest, start, ae, mut locating) = (floor.robot?, rest?, start?, floor.ae?, floor.locating?);
@@ -172,6 +168,15 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         expect: expect?,
         inspection: inspection?,
     })
+}
+
+fn checklist(root: &Section<'_>) -> Option<Vec<String>> {
+    if root.has("checklist") { root.table("checklist")?.texts("items") } else { Some(Vec::new()) }
+}
+
+fn is_survey(sections: &Sections<'_>) -> bool {
+    let mission = sections.mission.as_ref();
+    mission.is_some_and(|mission| mission.has("kind") && mission.word("kind") == Some("survey"))
 }
 
 /// Adds the risk that the guarantee needs. Complains if the stations do not suffice for a protection level.

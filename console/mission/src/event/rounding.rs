@@ -11,8 +11,8 @@ use crate::{ask::Said, way_back::WayBack};
 use exploration::Column;
 use nalgebra::SMatrix;
 use planner_api::{Command, Drawing, Drive, PoseEstimate};
-use positioning::{Exclusion, Fix, Ranging};
-use world::{Point, Pose, Shape};
+use positioning::{Estimated, Exclusion, Fix, Ranging};
+use world::{CableLies, Point, Pose, Shape};
 
 /// Rounding steps per unit.
 const STEPS: f64 = 1e6;
@@ -88,13 +88,13 @@ pub(crate) fn rounded_command(Command { drive, status }: Command) -> Command {
 }
 
 impl EventKind {
+    #[allow(clippy::too_many_lines, reason = "one arm for each kind of event")]
     fn round(&mut self) {
         match self {
             Self::TetherTruth { length_m, wrap_max_rad, wrap_total_rad, detour_m, lies } => {
                 [length_m, wrap_max_rad, wrap_total_rad, detour_m].into_iter().for_each(round);
                 if let Some(lies) = lies {
-                    lies.line.iter_mut().for_each(round_point);
-                    round(&mut lies.reel_pull_n);
+                    round_cable(lies);
                 }
             }
             Self::Tethered {
@@ -162,19 +162,18 @@ impl EventKind {
             Self::Protected { level_m } => level_m.iter_mut().for_each(round),
             Self::ProtectionRegained { level_m } => round(level_m),
             Self::SessionCalibrated { scale: both } | Self::StationBiased { bias_m: both, .. } => {
-                [&mut both.value, &mut both.sigma].into_iter().for_each(round);
+                round_estimated(both);
             }
             Self::NotSeparable { correlation } => round(correlation),
             Self::PulsesTested { test, .. } => {
                 let offsets = test.offsets_m.iter_mut().map(|(_, offset)| offset);
-                let both =
-                    offsets.chain([&mut test.scale]).flat_map(|both| [&mut both.value, &mut both.sigma]);
-                both.for_each(round);
+                offsets.chain([&mut test.scale]).for_each(round_estimated);
                 round(&mut test.worst.2);
             }
             Self::ClocksEstimated { offsets } => {
-                let numbers = offsets.iter_mut().map(|offset| &mut offset.offset_m);
-                numbers.flat_map(|both| [&mut both.value, &mut both.sigma]).for_each(round);
+                for offset in offsets {
+                    round_estimated(&mut offset.offset_m);
+                }
             }
             Self::Estimated { pose: PoseEstimate { position, heading_rad, covariance } } => {
                 round_point(position);
@@ -204,6 +203,15 @@ impl EventKind {
 
 fn round(x: &mut f64) {
     *x = rounded(*x);
+}
+
+fn round_estimated(Estimated { value, sigma }: &mut Estimated) {
+    [value, sigma].into_iter().for_each(round);
+}
+
+fn round_cable(lies: &mut CableLies) {
+    lies.line.iter_mut().for_each(round_point);
+    round(&mut lies.reel_pull_n);
 }
 
 fn round_point(point: &mut Point) {

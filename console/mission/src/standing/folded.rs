@@ -18,6 +18,7 @@ use world::Point;
 
 /// The standing of a mission as it follows from its events, for code that sees only the events.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
 pub struct FoldedStanding {
     /// The phase of the mission.
     pub phase: Phase,

@@ -23,8 +23,8 @@ pub(in crate::view) enum Pattern {
     Dashed,
     /// Every third dot.
     Dotted,
-    /// Every other dot.
-    Fine,
+    /// Dashes of two dots with gaps as long.
+    Stitched,
     /// A line with short strokes across it.
     Ticked,
     /// Two dots wide.
@@ -70,11 +70,10 @@ impl Pattern {
             | Self::Jagged
             | Self::Zigzag
             | Self::Rope => true,
-            Self::Beaded => step % 4 < 2,
+            Self::Beaded | Self::Stitched => step % 4 < 2,
             Self::DashDotted => step % 6 != 3 && step % 6 != 5,
             Self::Dashed => step % 5 < 3,
             Self::Dotted => step.is_multiple_of(3),
-            Self::Fine => step.is_multiple_of(2),
             Self::LongDashed => step % 8 < 5,
         }
     }
@@ -159,7 +158,7 @@ mod tests {
             Pattern::Solid,
             Pattern::Dashed,
             Pattern::Dotted,
-            Pattern::Fine,
+            Pattern::Stitched,
             Pattern::Ticked,
             Pattern::Thick,
             Pattern::LongDashed,
@@ -177,7 +176,7 @@ mod tests {
                 "⠤⠤⠤⠤",
                 "⠤⠄⠠⠤",
                 "⠄⠠ ⠄",
-                "⠄⠄⠄⠄",
+                "⠤ ⠤ ",
                 "⠤⡦⠤⢴",
                 "⣤⣤⣤⣤",
                 "⠤⠤⠄ ",
