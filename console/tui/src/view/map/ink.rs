@@ -44,7 +44,7 @@ pub(super) const OUTLINE: Ink = ink(Role::Title, Pattern::Rope, 'Z');
 /// The tether.
 pub(super) const TETHER: Ink = ink(Role::Tether, Pattern::Double, '~');
 /// A simulated tether that can be slack, as it lies on the floor.
-pub(super) const CABLE: Ink = ink(Role::Tether, Pattern::Stitched, '-');
+pub(super) const CABLE: Ink = ink(Role::Tether, Pattern::Stitched, ']');
 /// A planner drawing of a force that attracts the robot.
 pub(super) const PULL: Ink = ink(Role::Pull, Pattern::Jagged, '{');
 /// A planner drawing of a force that repels the robot.
