@@ -188,7 +188,8 @@ impl Exploration {
         bodies
     }
 
-    /// Two objects as one disc, if they are pieces of one: one of them is no disc of its own, and all points lie on a circle.
+    /// Two objects as one disc, if they are pieces of one: at least one of them is not a disc by itself, and all points
+    /// lie on a circle.
     fn one_disc(&self, one: &Body, other: &Body) -> Option<Body> {
         if one.column.is_some() && other.column.is_some() {
             return None;

@@ -5,8 +5,8 @@ use geometry::Point;
 
 /// Minimum length of a frontier, metres: the hull could not pass through a shorter one, and noise leaves short ones.
 const LEAST_M: f64 = 0.2;
-/// Number of cells around a solid cell whose unseen cells are no frontier: they are part of the object, or hidden by its
-/// edge.
+/// Number of cells around a solid cell whose unseen cells do not count as a frontier: they are part of the object, or
+/// hidden by its edge.
 const EDGE: f64 = 2.5;
 /// Number of cells by which the hull may stay short of the room that it keeps from a frontier.
 const SHORT: f64 = 2.0;

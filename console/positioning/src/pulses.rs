@@ -221,7 +221,7 @@ fn fit(pulses: &[Pulse], ids: &[StationId], stations: &[Station]) -> Option<Fit>
     information.view_mut((1, 1), (n - 1, n - 1)).add_scalar_mut(mean_weight);
     let covariance = information.cholesky()?.inverse();
     let solved = &covariance * right;
-    // The pinned mean has a variance of its own, which is no uncertainty of the offsets.
+    // The pinned mean has a variance of its own, which does not belong to the uncertainty of the offsets.
     let pinned = 1.0 / (mean_weight * ((n - 1) as f64).powi(2));
     let estimated = |k: usize, pinned: f64| Estimated {
         value: solved[k],

@@ -17,7 +17,7 @@ pub struct PastSurvey {
 /// The survey of the run in a folder.
 ///
 /// # Errors
-/// The journal cannot be read, the run was no survey, or it ended without a map.
+/// The journal cannot be read, the run was not a survey, or it ended without a map.
 pub fn past_survey(folder: &Path) -> anyhow::Result<PastSurvey> {
     let mut ticks = Ticks::open(&journal_of(folder))?;
     let opened = ticks.opened()?.clone();

@@ -51,7 +51,7 @@ fn wide_lines(look: &Look, inner: Rect) -> Vec<(u8, Line<'static>)> {
         let words = format!("{:+.2} % ±{:.2} %", 100.0 * scale.value, 200.0 * scale.sigma);
         lines.push((2, row("all ranges", (Role::Text, words))));
     }
-    // The least known clock counts: a fix is no better than the clocks of its stations.
+    // The least known clock counts, because it limits the accuracy of every fix that uses it.
     let sigmas_m = run.position.clocks.iter().map(|clock| clock.offset_m.sigma);
     if let Some(sigma_m) = sigmas_m.max_by(f64::total_cmp) {
         let words = format!("known to ±{:.2} m of sound", 2.0 * sigma_m);
