@@ -27,7 +27,7 @@ pub enum Basis {
 }
 
 /// The indication that reaches the least thickness first, and when:
-/// `years = max(0, (t - d - e - t_min) / r)` after the second survey.
+/// `years = max(0, (t - d - e - t_min) / r)` after the second survey. If several have reached it, the deepest one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Outlook {
     /// The premises.
@@ -44,6 +44,8 @@ pub struct Outlook {
     pub rate_mm_per_a: f64,
     /// Years after the second survey.
     pub years: f64,
+    /// Number of indications that have reached the least thickness by the second survey: `t - d - e <= t_min`.
+    pub reached: usize,
 }
 
 impl Outlook {
@@ -61,7 +63,16 @@ impl Outlook {
         let outlook = |(index, growth, has_rate)| {
             Self::one(premises, second, index, growth).filter(|outlook| has_rate || outlook.years <= 0.0)
         };
-        matched.chain(new).filter_map(outlook).min_by(|a, b| a.years.total_cmp(&b.years))
+        let all: Vec<Self> = matched.chain(new).filter_map(outlook).collect();
+        let reached = all.iter().filter(|one| one.spare_mm() <= 0.0).count();
+        let soonest =
+            |a: &&Self, b: &&Self| a.years.total_cmp(&b.years).then(a.spare_mm().total_cmp(&b.spare_mm()));
+        all.iter().min_by(soonest).map(|first| Self { reached, ..*first })
+    }
+
+    /// Thickness left above the least thickness, millimetres; negative if less is left.
+    fn spare_mm(&self) -> f64 {
+        self.premises.thickness_mm - self.depth_mm - self.depth_error_mm - self.premises.minimum_mm
     }
 
     fn one(premises: Premises, survey: &Survey, second: usize, growth: Option<&Growth>) -> Option<Self> {
@@ -71,10 +82,13 @@ impl Outlook {
             Some(growth) => (Basis::Matched, growth.rate_interval_mm_per_a[1]),
             None => (Basis::WholeDepth, (depth_mm + depth_error_mm) / premises.years),
         };
-        let spare_mm = premises.thickness_mm - depth_mm - depth_error_mm - premises.minimum_mm;
-        // A loss that does not grow reaches nothing, unless it is already there.
-        let is_due = spare_mm <= 0.0 || rate_mm_per_a > 0.0;
-        let years = if spare_mm <= 0.0 { 0.0 } else { spare_mm / rate_mm_per_a };
-        is_due.then_some(Self { premises, second, basis, depth_mm, depth_error_mm, rate_mm_per_a, years })
+        let outlook =
+            Self { premises, second, basis, depth_mm, depth_error_mm, rate_mm_per_a, years: 0.0, reached: 0 };
+        let spare_mm = outlook.spare_mm();
+        if spare_mm <= 0.0 {
+            return Some(outlook);
+        }
+        // A loss that does not grow reaches nothing.
+        (rate_mm_per_a > 0.0).then(|| Self { years: spare_mm / rate_mm_per_a, ..outlook })
     }
 }

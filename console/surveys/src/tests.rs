@@ -222,7 +222,8 @@ fn the_outlook_follows_its_formula_and_is_zero_where_the_least_thickness_is_reac
     let rate = (1.0 + 1.96 * 0.08_f64.sqrt()) / 4.0;
     assert!((outlook.years - (8.0 - 3.0 - 1.96 * 0.2 - 2.5) / rate).abs() < 1e-9, "{outlook:?}");
     assert_eq!(outlook.basis, Basis::Matched);
-    assert!(Outlook::of(&found, &second, 6.0).unwrap().years.abs() < 1e-12);
+    let reached = Outlook::of(&found, &second, 6.0).unwrap();
+    assert!(reached.years.abs() < 1e-12 && (outlook.reached, reached.reached) == (0, 1));
     // Without an earlier indication, the whole depth may have grown since the first survey.
     let fresh = compared(&survey(vec![]), &second);
     let outlook = Outlook::of(&fresh, &second, 2.5).unwrap();
@@ -231,4 +232,12 @@ fn the_outlook_follows_its_formula_and_is_zero_where_the_least_thickness_is_reac
     // A loss that shrank beyond its error reaches nothing.
     let slow = compared(&survey(vec![pit(1, 0.0, 0.0, 3.9)]), &second);
     assert_eq!(Outlook::of(&slow, &second, 2.5), None);
+}
+
+#[test]
+fn of_several_losses_at_the_least_thickness_the_deepest_one_governs() {
+    let second = survey(vec![pit(1, 0.0, 0.0, 4.0), pit(2, 3.0, 0.0, 7.0), pit(3, 0.0, 3.0, 5.0)]);
+    let found = compared(&survey(vec![pit(1, 0.0, 0.0, 3.0)]), &second);
+    let outlook = Outlook::of(&found, &second, 4.0).unwrap();
+    assert_eq!((outlook.second, outlook.reached, outlook.years), (1, 3, 0.0));
 }

@@ -5,6 +5,7 @@ use crate::document::{
     page::{Block, Field, Section, Share, Table, Value, Verdict, picture, section},
     words::number,
 };
+use crate::human::text::counted;
 use surveys::{Growth, Indication, SIGMAS_95, TOLERANCE_M};
 
 /// The columns of a table of rates, after the plate or the places.
@@ -217,7 +218,16 @@ fn next_inspection(comparison: &TwoSurveys) -> Vec<Block> {
         ("Years after the second survey", number(outlook.years, 2).into()),
         ("Calculated date", date.into()),
     ];
-    vec![Block::Facts(facts), label]
+    let reached = (outlook.reached > 0).then(|| {
+        let (count, mm) = (counted(outlook.reached as u64, "indication"), number(minimum_mm, 2));
+        let have = if outlook.reached == 1 { "has" } else { "have" };
+        let text = format!(
+            "By the second survey, {count} {have} already reached the least thickness of {mm} mm, with the 95 % error of \
+             the depth. Governing is the deepest one."
+        );
+        Block::Text(text)
+    });
+    reached.into_iter().chain([Block::Facts(facts), label]).collect()
 }
 
 fn error_mm(one: &Indication) -> String {
