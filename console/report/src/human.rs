@@ -39,7 +39,7 @@ pub fn human(run: &Summary) -> String {
     text.some("readings", run.readings.as_ref().map(readings));
     text.some("tether", run.tether.as_ref().map(tether));
     text.some("sandbox", run.sandbox.as_ref());
-    text.lines(run.taken_back.iter().map(|floor| ("guarantee taken back", floor.to_string())));
+    text.lines(run.taken_back.iter().map(|floor| ("in doubt", floor.to_string())));
     text.lines(run.zones_drawn.iter().map(|zone| ("zones drawn", zone.to_string())));
     text.lines(run.faults.iter().map(|fault| ("faults", fault.clone())));
     text.some("planner calls", run.planner_calls.as_ref().map(calls));

@@ -15,7 +15,8 @@ impl Text {
     }
 
     pub(crate) fn line(&mut self, label: &str, what: impl Display) {
-        writeln!(self.0, "{label:<LABEL$}{what}").expect("writing to a string");
+        let width = LABEL.max(label.len() + 1);
+        writeln!(self.0, "{label:<width$}{what}").expect("writing to a string");
     }
 
     pub(crate) fn some(&mut self, label: &str, what: Option<impl Display>) {

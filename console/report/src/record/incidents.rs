@@ -3,6 +3,7 @@
 use mission::{Event, EventKind, LogLine, Order, Severity};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use vehicle::port::{LinkState, Notice};
 use world::Station;
 
 /// Maximum number of incidents stored; a final one states how many are left out.
@@ -41,6 +42,8 @@ pub(super) struct Incidents {
     last_s: f64,
     /// Open incidents: the key of the event that ends them, and their indices.
     open: BTreeMap<String, Vec<usize>>,
+    /// The last state of the link to the vehicle; its figures are reported often, its state seldom changes.
+    link: LinkState,
     /// Number of incidents that were not stored.
     n_dropped: u64,
 }
@@ -78,6 +81,11 @@ impl Incidents {
             self.stations.clone_from(&run.world.stations);
             return;
         }
+        if let EventKind::Link(link) = &event.kind
+            && std::mem::replace(&mut self.link, link.state) == link.state
+        {
+            return;
+        }
         let Some((kind, begins, ends)) = sort(&event.kind) else { return };
         if let Some(key) = ends {
             self.end(&key, event.t_s);
@@ -102,9 +110,12 @@ impl Incidents {
     }
 }
 
-/// Classifies an event: its kind in the report (`None` if it only ends an earlier incident), the incident that it
+/// The kind of an incident in the report (empty if the event only ends an earlier incident), the incident that it
 /// starts, and the incident that it ends.
-fn sort(kind: &EventKind) -> Option<(&'static str, Option<String>, Option<String>)> {
+type Sorted = (&'static str, Option<String>, Option<String>);
+
+/// Classifies an event; `None` if it is not an incident. The list is complete, so that each new event is considered.
+fn sort(kind: &EventKind) -> Option<Sorted> {
     let key = |text: &str| Some(text.to_owned());
     Some(match kind {
         EventKind::Held { .. } => ("hold", key("hold"), key("hold")),
@@ -126,7 +137,12 @@ fn sort(kind: &EventKind) -> Option<(&'static str, Option<String>, Option<String
         EventKind::TetherAlarmCleared { alarm } => ("", None, key(alarm.word())),
         EventKind::ZoneBreached { zone, .. } => ("alarm", key(&format!("zone {zone}")), None),
         EventKind::ZoneLeft { zone } => ("", None, key(&format!("zone {zone}"))),
-        EventKind::Truth { collided: true, .. } => ("alarm", None, None),
+        EventKind::Truth { collided: true, .. } | EventKind::NotThere { .. } => ("alarm", None, None),
+        EventKind::ScannerJudged { trouble: Some(_) } => ("alarm", key("scanner"), key("scanner")),
+        EventKind::ScannerJudged { trouble: None } => ("", None, key("scanner")),
+        EventKind::ChannelsJudged(judged) if judged.dead.is_empty() => ("", None, key("channels")),
+        EventKind::ChannelsJudged(_) => ("alarm", key("channels"), key("channels")),
+        EventKind::Link(_) | EventKind::Noticed(_) | EventKind::Stood { .. } => return of_vehicle(kind),
         EventKind::PlannerFailed { fault, .. } if fault.is_no_way() => ("plan", None, None),
         EventKind::PlannerFailed { .. } => ("fault", None, None),
         EventKind::Shadowed { of } if matches!(**of, EventKind::PlannerFailed { .. }) => {
@@ -141,17 +157,86 @@ fn sort(kind: &EventKind) -> Option<(&'static str, Option<String>, Option<String
             ("station", key(&format!("station {}", station.0)), None)
         }
         EventKind::StationRestored { station } => ("", None, key(&format!("station {}", station.0))),
-        EventKind::Ordered { order: Order::NoteChecks(_) | Order::NoteOutlooks(_) } => return None,
-        EventKind::Ordered { .. } => ("order", None, None),
+        EventKind::Ordered { order } => return is_listed(order).then_some(("order", None, None)),
         EventKind::Ended { .. } => ("end", None, None),
-        _ => return None,
+        EventKind::RunOpened(_)
+        | EventKind::OrderRefused { .. }
+        | EventKind::TetherTruth { .. }
+        | EventKind::Tethered { .. }
+        | EventKind::Scanned { .. }
+        | EventKind::Truth { .. }
+        | EventKind::Ranged { .. }
+        | EventKind::Fixed { .. }
+        | EventKind::FixFailed { .. }
+        | EventKind::Estimated { .. }
+        | EventKind::Protected { .. }
+        | EventKind::SessionCalibrated { .. }
+        | EventKind::PulsesTested { .. }
+        | EventKind::ClocksEstimated { .. }
+        | EventKind::ObstacleMoved { .. }
+        | EventKind::PlannerPrepared { .. }
+        | EventKind::PlannerRejected { .. }
+        | EventKind::PlannerChosen { .. }
+        | EventKind::ParametersChanged { .. }
+        | EventKind::Commanded { .. }
+        | EventKind::SpeedLimited { .. }
+        | EventKind::MediumAwaited
+        | EventKind::MediumKnown { .. }
+        | EventKind::Drawn { .. }
+        | EventKind::Scalars { .. }
+        | EventKind::PlannerLogged { .. }
+        | EventKind::Snapshotted { .. }
+        | EventKind::Discarded { .. }
+        | EventKind::PlannerLate { .. }
+        | EventKind::ShadowBegan { .. }
+        | EventKind::Shadowed { .. }
+        | EventKind::ShadowMissed { .. }
+        | EventKind::PromotionRefused { .. }
+        | EventKind::Promoted { .. }
+        | EventKind::ShadowEnded { .. }
+        | EventKind::BetterPlanned(_)
+        | EventKind::BetterPlanTaken(_)
+        | EventKind::BetterPlanDropped(_)
+        | EventKind::SurveyWay(_)
+        | EventKind::Explored(_)
+        | EventKind::Mapped { .. }
+        | EventKind::Covered { .. }
+        | EventKind::Uncounted { .. }
+        | EventKind::FloorChanged { .. }
+        | EventKind::Progressed { .. }
+        | EventKind::Sensed { .. }
+        | EventKind::Sent { .. }
+        | EventKind::Guarded { .. }
+        | EventKind::ScanAided { .. }
+        | EventKind::PositionAwaited { .. } => return None,
     })
+}
+
+/// Classifies an event about a real vehicle.
+fn of_vehicle(kind: &EventKind) -> Option<Sorted> {
+    let (key, is_over) = match kind {
+        EventKind::Link(link) => ("link", link.state == LinkState::Up),
+        EventKind::Stood { confirmed, .. } => ("stop", *confirmed),
+        EventKind::Noticed(Notice::ClockRate { is_off, .. }) => ("clock rate", !is_off),
+        EventKind::Noticed(Notice::FaultyMessages { .. } | Notice::OtherVehicle { .. }) => {
+            return Some(("alarm", None, None));
+        }
+        _ => return None,
+    };
+    let key = || Some(key.to_owned());
+    Some(if is_over { ("", None, key()) } else { ("alarm", key(), key()) })
+}
+
+/// Whether an order is listed: the checks and forecasts of the console are not.
+fn is_listed(order: &Order) -> bool {
+    !matches!(order, Order::NoteChecks(_) | Order::NoteOutlooks(_))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mission::{HoldReason, Outcome, Resumes};
+    use mission::{HoldReason, Outcome, Resumes, event::ChannelsJudged};
+    use vehicle::port::LinkSeen;
 
     #[test]
     fn what_is_not_listed_is_counted_and_the_end_is_kept() {
@@ -165,5 +250,31 @@ mod tests {
         assert_eq!((all.len(), all[0].until_s, all[MOST - 1].until_s), (MOST + 2, Some(1.0), Some(50_000.0)));
         assert!(all[MOST].text.starts_with("further incidents: 3;") && all[MOST].needs_review());
         assert_eq!(all[MOST + 1].kind, "end");
+    }
+
+    #[test]
+    fn alarms_of_instrument_and_vehicle_are_listed_once_with_their_ends() {
+        let link = |state| EventKind::Link(LinkSeen { state, ..LinkSeen::default() });
+        let channels = |dead| EventKind::ChannelsJudged(ChannelsJudged { dead, count: 20 });
+        let stood = |confirmed| EventKind::Stood { confirmed, moved: false, after_s: 1.0 };
+        let mut incidents = Incidents::default();
+        let events = [
+            channels(vec![7]),
+            link(LinkState::Up),
+            link(LinkState::Lost),
+            link(LinkState::Lost),
+            stood(false),
+            link(LinkState::Up),
+            stood(true),
+            channels(vec![]),
+        ];
+        for (tick, kind) in events.into_iter().enumerate() {
+            incidents.apply(&Event { tick: tick as u64, t_s: tick as f64, kind });
+        }
+        let all = incidents.all();
+        let spans: Vec<_> =
+            all.iter().filter(|one| one.needs_review()).map(|one| (one.t_s, one.until_s)).collect();
+        // The last one is the missing end.
+        assert_eq!(spans, [(0.0, Some(7.0)), (2.0, Some(5.0)), (4.0, Some(6.0)), (7.0, None)], "{all:?}");
     }
 }
