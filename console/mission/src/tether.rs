@@ -120,6 +120,7 @@ impl Tether {
     /// Moves the cable to the robot's estimated position.
     pub fn drag_to(&mut self, here: Point) {
         self.driven.keep(here);
+        self.slack.keep(here);
         self.cable.drag_to(here);
         self.drag_hull(here);
     }
@@ -147,12 +148,18 @@ impl Tether {
     /// `error_m` is the position error with which the cable was laid, metres; `None` while the position is lost.
     pub fn measure(&mut self, readings: &Readings, error_m: Option<f64>, passed_s: f64) {
         let (length_m, points) = (self.cable.length_m(), self.driven.points().len());
-        let explained = error_m.map(|error_m| Explained { length_m, error_m, points });
+        let pull_ratio = self.pull_needed_n().zip(self.config.reel).map_or(0.0, |(n, reel)| n / reel.pull_n);
+        let explained = error_m.map(|error_m| Explained { length_m, error_m, points, pull_ratio });
         let excess_m = explained.and(readings.paid_out_m).map(|out_m| out_m - length_m);
         let pull_n = readings.robot_pull_n.or(readings.reel_pull_n);
         let can_be_caught = self.slack.take(excess_m, pull_n, self.config.reel.as_ref());
         let explained = explained.filter(|_| can_be_caught);
         self.payout.take(readings.paid_out_m, explained, self.config.limits.reel_length_m, passed_s);
+    }
+
+    /// The pull at the reel that taking up the cable needs, newtons; `None` if the scenario does not describe the reel.
+    fn pull_needed_n(&self) -> Option<f64> {
+        self.config.reel.map(|reel| self.cable.pull_at_anchor_n(reel.drag(self.config.friction)))
     }
 
     /// Whether more cable is out than expected from the map: the cable has caught on something unknown.
@@ -174,6 +181,11 @@ impl Tether {
         Some(way)
     }
 
+    /// The path from the robot back to shortly beyond the place where the cable last pulled; `None` unless the cable is slack.
+    pub fn way_to_tauten(&self) -> Option<Vec<Point>> {
+        self.slack.way_back()
+    }
+
     /// Updates the cable after some time has passed; returns events for the alarms that were raised or cleared.
     pub fn update(&mut self, world: &World, map: &ObstacleMap, passed_s: f64) -> Vec<EventKind> {
         let return_length_m = self.home(map).map(|way| world::polyline::length_m(&way));
@@ -189,7 +201,7 @@ impl Tether {
             wrap_max_rad: self.cable.wrap_max_rad(),
             wrap_total_rad,
             pull_factor: capstan_factor(self.config.friction, wrap_total_rad),
-            pull_n: self.config.reel.map(|reel| self.cable.pull_at_anchor_n(reel.drag(self.config.friction))),
+            pull_n: self.pull_needed_n(),
             measured: self.slack.measured(),
             return_length_m,
             bends: bends(&self.cable),

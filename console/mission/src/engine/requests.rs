@@ -37,7 +37,7 @@ impl AskedPlan {
 impl Known {
     /// The inputs of a plan from the end of a return path, or from the robot's position.
     ///
-    /// A caught cable is freed first. If a plan was refused because of the cable that is out, the planner is asked once
+    /// A caught cable is freed first, and a slack cable made taut. If a plan was refused because of the cable that is out, the planner is asked once
     /// more. This time the plan is to begin at the anchor, after a return along the cable; in this way, no planner has
     /// to know how the cable lies. The planner receives the first `n_flown` points of the path driven.
     pub(super) fn plan_ask(

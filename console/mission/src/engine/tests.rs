@@ -309,6 +309,8 @@ struct Flight {
     reel: Option<Cable>,
     /// Additional length that the reel has paid out, metres.
     caught_m: f64,
+    /// Pull of the cable at the robot, newtons.
+    pull_n: Option<f64>,
     sightings: Vec<Sighting>,
     events: Vec<Event>,
     /// Number of ticks for which an ask of this tick stays unanswered.
@@ -344,6 +346,7 @@ impl Flight {
             pressure_pa: None,
             reel: None,
             caught_m: 0.0,
+            pull_n: None,
             sightings: vec![],
             events: vec![],
             delay: Box::new(|_, _| 0),
@@ -374,6 +377,7 @@ impl Flight {
             sightings: std::mem::take(&mut self.sightings),
             contact: false,
             paid_out_m: self.reel.as_ref().map(|cable| cable.length_m() + self.caught_m),
+            robot_pull_n: self.pull_n,
             pressure_pa: self.pressure_pa,
             scan: self.scan(),
             ..Readings::default()

@@ -62,13 +62,14 @@ impl Known {
         if is_out { self.widest(|room_m| tether.return_path(self.chart.world(), room_m)) } else { None }
     }
 
-    /// The path that frees a caught cable and reels it in, with the most room; `None` if the cable is not caught.
+    /// The path that frees a caught cable and reels it in, with the most room, or the path that makes a slack cable taut;
+    /// `None` if the cable is neither.
     pub(super) fn way_out(&self) -> Option<Vec<Point>> {
-        let tether = self.tether.as_ref().filter(|tether| tether.is_snagged())?;
-        if self.plans_ways_home() {
+        let tether = self.tether.as_ref().filter(|_| self.plans_ways_home())?;
+        if tether.is_snagged() {
             self.widest(|room_m| tether.way_out(self.chart.world(), room_m))
         } else {
-            None
+            tether.way_to_tauten()
         }
     }
 

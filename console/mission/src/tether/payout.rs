@@ -9,8 +9,10 @@ use super::driven::KEPT_M;
 
 /// Excess length that errors in the map may cause, metres; the position error is added.
 const SLACK_M: f64 = 0.2;
-/// Excess length that sag and stretch may cause, as a share of the expected length.
-const SLACK_SHARE: f64 = 0.02;
+/// Least excess length that sag and stretch may cause, as a share of the expected length.
+const SAG_SHARE: f64 = 0.02;
+/// Largest sag of a simulated cable beside that of a straight one that is dragged across the floor (`docs/tuning.md`).
+const SAG_FACTOR: f64 = 1.5;
 /// Length of cable left on the reel, metres, up to which the reel counts as empty.
 const AT_END_M: f64 = 0.05;
 /// How long the excess must last before the cable counts as caught, seconds.
@@ -30,6 +32,18 @@ pub(super) struct Explained {
     pub error_m: f64,
     /// Number of points of the path driven so far.
     pub points: usize,
+    /// The pull that taking up the cable needs, as a share of the pull of the reel; 0 if it is not known.
+    pub pull_ratio: f64,
+}
+
+impl Explained {
+    /// Excess length that sag and stretch may cause, metres. A straight cable of length L that is dragged across the floor
+    /// sags by w² L³ / (24 T²), with w the friction of the floor per metre and T the pull of the reel: L / 24 times the
+    /// square of the ratio of the pulls. A reel that is too weak leaves slack, which does not pull.
+    fn sag_m(self) -> f64 {
+        let dragged = SAG_FACTOR / 24.0 * self.pull_ratio.clamp(0.0, 1.0).powi(2);
+        self.length_m * SAG_SHARE.max(dragged)
+    }
 }
 
 /// The state that follows from the encoder of the reel.
@@ -54,7 +68,7 @@ impl Payout {
     ) {
         self.measured_m = measured_m.filter(|out_m| out_m.is_finite());
         let (Some(out_m), Some(explained)) = (self.measured_m, explained) else { return };
-        let sag_m = SLACK_SHARE * explained.length_m;
+        let sag_m = explained.sag_m();
         // An empty reel can pay out no more cable, so a snag that has not been detected by then would never be detected.
         let is_at_end = out_m >= reel_length_m - AT_END_M;
         let slack_m = SLACK_M + explained.error_m + if is_at_end { 0.0 } else { sag_m };
@@ -100,12 +114,26 @@ impl Payout {
 mod tests {
     use super::*;
 
+    const EXPLAINED: Explained = Explained { length_m: 20.0, error_m: 0.1, points: 100, pull_ratio: 0.0 };
+
     /// Whether a cable counts as caught after five seconds in which this much more has been paid out than expected.
-    fn is_snagged(excess_m: f64, reel_length_m: f64) -> bool {
+    fn is_caught(explained: Explained, excess_m: f64, reel_length_m: f64) -> bool {
         let mut payout = Payout::default();
-        let explained = Explained { length_m: 20.0, error_m: 0.1, points: 100 };
         (0..50).for_each(|_| payout.take(Some(20.0 + excess_m), Some(explained), reel_length_m, 0.1));
         payout.is_snagged()
+    }
+
+    fn is_snagged(excess_m: f64, reel_length_m: f64) -> bool {
+        is_caught(EXPLAINED, excess_m, reel_length_m)
+    }
+
+    #[test]
+    fn the_sag_of_a_cable_that_the_reel_can_hardly_take_up_is_no_snag() {
+        for (pull_ratio, at_most_m) in [(0.0, 0.7), (0.5, 0.7), (0.8, 1.1), (1.0, 1.55), (9.0, 1.55)] {
+            let explained = Explained { pull_ratio, ..EXPLAINED };
+            assert!(!is_caught(explained, at_most_m - 0.01, 30.0), "{pull_ratio}");
+            assert!(is_caught(explained, at_most_m + 0.01, 30.0), "{pull_ratio}");
+        }
     }
 
     #[test]
@@ -118,7 +146,7 @@ mod tests {
     fn a_caught_cable_is_followed_back_as_far_again_as_it_was_dragged() {
         let mut payout = Payout::default();
         let taken = |payout: &mut Payout, out_m, points| {
-            let explained = Explained { length_m: 20.0, error_m: 0.1, points };
+            let explained = Explained { points, ..EXPLAINED };
             payout.take(Some(out_m), Some(explained), 99.0, 4.0);
         };
         taken(&mut payout, 20.0, 200);

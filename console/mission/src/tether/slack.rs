@@ -1,13 +1,19 @@
 //! Tells a slack cable from a caught one: both have more cable out than the map explains, but a slack cable does not pull.
 
+use super::driven::KEPT_M;
 use crate::event::{MeasuredPull, SLACK_M, TetherAlarm};
-use world::tether::Reel;
+use world::{Point, tether::Reel};
 
 /// Share of the reel's pull up to which a cable counts as slack.
 const LITTLE: f64 = 0.05;
 /// Length of cable, besides the slack, whose friction on the floor the robot may feel although the cable is slack, metres:
 /// the loop that it drags behind itself.
 const LOOP_M: f64 = 0.5;
+/// Number of points of the path before the place where the cable last pulled that the way back includes, so that the cable
+/// pulls at its end.
+const KEPT: usize = 2;
+/// Share of the largest slack above which a new plan begins with a path that takes it in.
+const TAKEN_IN: f64 = 0.5;
 /// Pull up to which a cable counts as slack if its weight and the pull of the reel are not known, newtons.
 const LITTLE_N: f64 = 0.2;
 
@@ -20,9 +26,24 @@ pub(super) struct Slack {
     loose_m: f64,
     /// Measured pull, newtons; `None` without a sensor.
     pull_n: Option<f64>,
+    /// The path driven since shortly before the cable last pulled, its points [`KEPT_M`] apart.
+    way: Vec<Point>,
 }
 
 impl Slack {
+    /// Records the robot's position.
+    pub(super) fn keep(&mut self, here: Point) {
+        if self.way.last().is_none_or(|last| (here - last).norm() >= KEPT_M) {
+            self.way.push(here);
+        }
+    }
+
+    /// The path back to shortly beyond the place where the cable last pulled; `None` unless the cable is slack. Going back takes the slack
+    /// in, and does not lead over the cable, because the robot has just driven there.
+    pub(super) fn way_back(&self) -> Option<Vec<Point>> {
+        (self.loose_m > TAKEN_IN * SLACK_M).then(|| self.way.iter().rev().copied().collect())
+    }
+
     /// Processes the cable out beyond the expected length, metres, and the pull, newtons. Returns whether the cable pulls,
     /// or its pull is not measured: only then can it be caught.
     pub(super) fn take(&mut self, excess_m: Option<f64>, pull_n: Option<f64>, reel: Option<&Reel>) -> bool {
@@ -36,6 +57,7 @@ impl Slack {
         self.pull_n = Some(pull_n);
         if pull_n > little_n {
             (self.taut_excess_m, self.loose_m) = (excess_m.or(self.taut_excess_m), 0.0);
+            self.way.drain(..self.way.len().saturating_sub(KEPT));
             return true;
         }
         if let Some(excess_m) = excess_m {
@@ -69,6 +91,24 @@ mod tests {
         robot_pull_n: None,
         pull_ratio_max: 0.8,
     };
+
+    #[test]
+    fn the_way_back_leads_to_where_the_cable_last_pulled() {
+        let mut slack = Slack::default();
+        for (cm, pull_n) in [(0, 3.0), (10, 3.0), (12, 3.0), (20, 0.0), (30, 0.0), (40, 0.0)] {
+            slack.keep(Point::new(0.01 * f64::from(cm), 0.0));
+            slack.take(Some(0.01 * f64::from(cm)), Some(pull_n), Some(&REEL));
+        }
+        let way_cm =
+            |slack: &Slack| slack.way_back().map(|way| way.iter().map(|at| (at.x * 100.0).round()).collect());
+        assert_eq!(way_cm(&slack), Some(vec![40.0, 30.0, 20.0, 10.0, 0.0]));
+        slack.take(Some(0.2), Some(0.0), Some(&REEL));
+        assert_eq!(way_cm(&slack), None, "the slack is small");
+        slack.take(Some(0.5), Some(0.0), Some(&REEL));
+        assert!(way_cm(&slack).is_some());
+        slack.take(Some(0.5), Some(3.0), Some(&REEL));
+        assert_eq!(way_cm(&slack), None, "taut");
+    }
 
     #[test]
     fn cable_without_pull_is_slack_and_cable_with_pull_may_be_caught() {

@@ -72,7 +72,7 @@ pub(super) fn guide(word: &str) -> Guide {
             remedies: const {
                 &[
                     run("Stay held (HOLD), and check the reel.", ActionId::Hold),
-                    run("Resume: continues the plan with the slack tether. Asks first.", ActionId::Resume)
+                    run("Resume: takes the slack in by driving back the way it came, then replans. Asks first.", ActionId::Resume)
                         .when(When::Held),
                     OTHER_PLANNER,
                     END,

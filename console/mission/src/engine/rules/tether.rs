@@ -1,4 +1,4 @@
-//! Holds the robot when its cable has reached a limit or is caught.
+//! Holds the robot when its cable has reached a limit, is caught or is slack.
 
 use super::seen::{SAME_PLACE_M, Seen, Verdict};
 use crate::{
@@ -39,11 +39,8 @@ impl TetherRule {
         self.waited_s = 0.0;
         let message = alarm.to_string();
         match alarm {
-            TetherAlarm::Reel { .. } => self.stop(seen, message, Outcome::Aborted),
-            // A new plan would leave the same slack: the operator must look after the reel, or drive on knowingly.
-            TetherAlarm::Slack { .. } if seen.config.attended => Verdict::Hold(held(message, Resumes::Never)),
-            TetherAlarm::Slack { .. } => {
-                Verdict::End(Outcome::Aborted, format!("unattended hold: {message}"))
+            TetherAlarm::Reel { .. } | TetherAlarm::Slack { .. } => {
+                self.stop(seen, message, Outcome::Aborted)
             }
             TetherAlarm::Wrap { .. } | TetherAlarm::WrapTotal { .. } | TetherAlarm::Snag { .. } => {
                 self.stop(seen, message, Outcome::Entangled)
@@ -55,8 +52,8 @@ impl TetherRule {
         }
     }
 
-    /// Holds a robot whose cable is at a limit or caught, and requests a new plan that begins with a path that frees the
-    /// cable. An unattended mission tries this a few times at one place, and starts counting again whenever floor has
+    /// Holds a robot whose cable is at a limit, caught or slack, and requests a new plan that begins with a path that frees
+    /// the cable or takes the slack in. An unattended mission tries this a few times at one place, and starts counting again whenever floor has
     /// been scanned in between; after that, it ends.
     fn stop(&mut self, seen: &Seen<'_>, message: String, outcome: Outcome) -> Verdict {
         let (at, scanned) = (seen.here, seen.scanned);

@@ -1,8 +1,8 @@
 //! A tether that catches on an unseen object that is not on the drawing: the reel reveals it, and the robot goes back
-//! and frees the tether.
+//! and frees the tether. A slack tether: the robot goes back until it is taut.
 
 use super::{
-    covering::covering,
+    covering::{covered, covering},
     tethered::{holds, loosely_tethered, tethered},
     *,
 };
@@ -158,4 +158,58 @@ fn a_column_found_beside_the_lanes_is_planned_for_if_the_cable_will_not_bear_it(
     let first = |wrap_max_rad| plans_for_column_across_cable(wrap_max_rad).first().cloned();
     // The remaining lanes wind the cable round the column by about 55 degrees.
     assert_eq!((first(0.5), first(1.5)), (Some(Reason::MapChanged), None));
+}
+
+/// Scans a floor with a reel that stops taking the cable up at each of these scanned shares of the floor, and runs again
+/// once the robot has gone back.
+fn scan_with_a_reel_that_stops(at_shares: &[f64]) -> Flight {
+    let anchor = covering().start.position;
+    let limits = tether::Limits { reel_length_m: 50.0, wrap_max_rad: 50.0, wrap_total_max_rad: 50.0 };
+    let config = TetherConfig { anchor, limits, friction: 0.3, reel: None, allow_uncertified: false };
+    let mut flight = Flight::new(MissionConfig { tether: Some(config), attended: false, ..covering() });
+    flight.reel = cable(anchor, &[]);
+    flight.tick(&[Order::Start]);
+    let mut stops = at_shares.iter().peekable();
+    let mut out_m: Option<f64> = None;
+    let mut went_back = false;
+    while flight.ended().is_none() && flight.events.len() < 200_000 {
+        flight.tick(&[]);
+        let taut_m = flight.reel.as_ref().unwrap().length_m();
+        if out_m.is_none() && stops.next_if(|share| covered(&flight) >= **share).is_some() {
+            (out_m, went_back) = (Some(taut_m), false);
+        }
+        out_m = out_m.map(|out_m| out_m.max(taut_m));
+        flight.caught_m = out_m.map_or(0.0, |out_m| out_m - taut_m);
+        flight.pull_n = Some(if flight.caught_m > 0.01 { 0.0 } else { 3.0 });
+        went_back |= flight.held_by().is_some();
+        if went_back && flight.caught_m <= 0.01 {
+            out_m = None;
+        }
+    }
+    flight
+}
+
+/// The first leg of each plan that was made because the robot was held, and its length in points.
+fn ways_back(flight: &Flight) -> Vec<(LegTag, usize)> {
+    let first = |event: &Event| match &event.kind {
+        EventKind::Planned { reason: Reason::Blocked, legs, return_path, .. } => {
+            legs.first().map(|leg| (leg.tag, *return_path))
+        }
+        _ => None,
+    };
+    flight.events.iter().filter_map(first).collect()
+}
+
+#[test]
+fn a_slack_cable_is_made_taut_on_the_way_back_and_the_mission_goes_on() {
+    let flight = scan_with_a_reel_that_stops(&[0.3]);
+    let ways = ways_back(&flight);
+    assert!(matches!(ways[..], [(LegTag::Retract, 3..)]), "{ways:?}");
+    assert_eq!((holds(&flight), flight.ended()), (1, Some(Outcome::Complete)));
+}
+
+#[test]
+fn a_cable_that_is_slack_for_the_third_time_at_one_place_ends_a_mission_without_an_operator() {
+    let flight = scan_with_a_reel_that_stops(&[0.3; 3]);
+    assert_eq!((ways_back(&flight).len(), flight.ended()), (2, Some(Outcome::Aborted)));
 }
