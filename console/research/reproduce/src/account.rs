@@ -67,7 +67,7 @@ pub struct Paper {
 pub const PAPERS: [Paper; 4] = [wang::PAPER, xu::PAPER, yang::PAPER, pan::PAPER];
 
 /// The studies of our own work, which show nothing of a paper.
-const OWN: [&str; 1] = ["two-surveys"];
+const OWN: [&str; 2] = ["two-surveys", "tether-physics"];
 
 const fn item(
     place: &'static str,

@@ -8,6 +8,8 @@ mod measured;
 mod rows;
 mod suite;
 
+pub(crate) use measured::{is_result, plan};
+
 use crate::study::Study;
 
 /// The studies.

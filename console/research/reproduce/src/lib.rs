@@ -15,6 +15,7 @@ mod spiral;
 mod study;
 mod surveys;
 mod table;
+mod tethers;
 mod traps;
 pub mod tune;
 

@@ -3,19 +3,20 @@
 use crate::{
     account, coverage, fields, positioning, spiral,
     study::{Gallery, Result, Study, StudyError},
-    surveys, traps,
+    surveys, tethers, traps,
 };
 use mission::spelling::nearest;
 use std::path::Path;
 
 /// Every study, by subject.
-const STUDIES: [&[Study]; 6] = [
+const STUDIES: [&[Study]; 7] = [
     spiral::STUDIES,
     traps::STUDIES,
     fields::STUDIES,
     positioning::STUDIES,
     coverage::STUDIES,
     surveys::STUDIES,
+    tethers::STUDIES,
 ];
 
 /// Every study.
@@ -53,7 +54,7 @@ pub fn list() -> String {
 /// # Errors
 /// The study has nothing to draw, or the folder cannot be created.
 pub fn gallery(study: &Study, folder: &Path) -> Result<Gallery> {
-    let without = || positioning::STUDIES.iter().chain(surveys::STUDIES);
+    let without = || positioning::STUDIES.iter().chain(surveys::STUDIES).chain(tethers::STUDIES);
     let draws = |study: &Study| without().all(|other| other.name != study.name);
     if !draws(study) {
         let drawn: Vec<String> =

@@ -8,6 +8,7 @@ use crate::discs;
 use planner_api::{Limits, Motion, Site};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use std::ops::Range;
 use world::{Boundary, Point, Vector, World, shape::rectangle};
 
 /// Width of the floor scanned in one pass, metres.
@@ -74,8 +75,13 @@ pub struct Tank {
 impl Tank {
     /// A tank of any size; one in three has its anchor at the shell.
     pub fn random(seed: u64) -> Self {
+        Self::of_radius(5.0..50.0, seed)
+    }
+
+    /// A tank whose radius is in a given range, metres; one in three has its anchor at the shell.
+    pub fn of_radius(radii_m: Range<f64>, seed: u64) -> Self {
         let mut rng = Pcg64Mcg::seed_from_u64(seed.wrapping_mul(2_654_435_761).wrapping_add(17));
-        let radius_m = rng.random_range(5.0..50.0);
+        let radius_m = rng.random_range(radii_m);
         let most = (0.09 * radius_m * radius_m) as usize;
         let n = rng.random_range(0..=120.min(most));
         let bearing_rad = rng.random_range(0.0..std::f64::consts::TAU);

@@ -74,11 +74,15 @@ pub(super) fn measure(
 }
 
 /// A planner that fails in a tank is a result; a missing planner, or refused parameters, is an error.
-fn is_result(fault: &Fault) -> bool {
+pub(crate) fn is_result(fault: &Fault) -> bool {
     !matches!(fault.cause, Cause::Refused | Cause::Planner(Code::Config))
 }
 
-fn plan(planners: &Planners, method: &Method, tank: &Tank) -> Result<Planned> {
+/// Requests a plan for a tank.
+///
+/// # Errors
+/// The planner does not exist, refuses its parameters, or fails.
+pub(crate) fn plan(planners: &Planners, method: &Method, tank: &Tank) -> Result<Planned> {
     let obstacles = tank.obstacles();
     let start = Pose { position: tank.anchor, heading_rad: 0.0 };
     let task = Task::Cover { anchor: tank.anchor, regions: &[], tether: None, tolerance_m: TOLERANCE_M };
