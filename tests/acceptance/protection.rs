@@ -163,6 +163,12 @@ fn clocks_of_their_own_are_estimated_and_the_level_contains_the_error() {
     let guaranteed_truly = number(&report["coverage"]["by_truth"]["guaranteed_truly"]);
     assert!(guaranteed_truly >= 0.9999, "{guaranteed_truly}");
     bench.prove(run);
+    let exported = bench.tankops(&["export", run.to_str().unwrap(), "--ranges", "ranges.csv"]);
+    assert!(exported.code == Some(2) && exported.err.contains("clocks of their own"), "{exported:?}");
+    let readings = bench.file("readings.csv", "t_s,station,range_m\n0,A,5\n");
+    let own = scenario("own-clocks.toml");
+    let located = bench.tankops(&["locate", readings.to_str().unwrap(), "--scenario", own.to_str().unwrap()]);
+    assert!(located.code == Some(2) && located.err.contains("clock_offset_sigma_m"), "{located:?}");
 }
 
 /// The same stations, one of which jumps: it is left out or the pose is not protected, but the level holds.

@@ -19,6 +19,7 @@ mod grown;
 mod map;
 mod ros;
 mod survey;
+mod unseen;
 mod views;
 mod ways;
 
@@ -28,6 +29,7 @@ pub use grid::Grid;
 pub use map::{CellState, SurveyMap};
 pub use ros::RosMap;
 pub use survey::{Exploration, Scanning};
+pub use unseen::Unseen;
 pub use views::View;
 pub use ways::Ways;
 
