@@ -1,10 +1,11 @@
 //! The map of a past survey.
 
 use exploration::SurveyMap;
-use flight::failure::bad_input;
+use flight::{failure::bad_input, planners::COVERAGE_PLANNER};
 use mission::{EventKind, RunOpened};
 use recording::{Ticks, journal_of};
 use runs::{Standing, standing};
+use scenario::{Scenario, cover_of_map};
 use std::path::Path;
 
 /// A past survey.
@@ -55,4 +56,20 @@ pub fn past_survey(folder: &Path) -> anyhow::Result<PastSurvey> {
         return Err(refused("the map in the journal is damaged; survey again"));
     }
     Ok(PastSurvey { opened, map })
+}
+
+/// The scenario that scans the floor that a survey has mapped, for the console; `None` for a run that was not a survey.
+///
+/// # Errors
+/// The run or its journal cannot be read, or the survey ended without a map.
+pub(crate) fn scan_of_map(folder: &Path) -> anyhow::Result<Option<Scenario>> {
+    if !Ticks::open(&journal_of(folder))?.opened()?.mission.task.is_survey() {
+        return Ok(None);
+    }
+    let survey = past_survey(folder)?;
+    let run = folder.file_name().unwrap_or_default().to_string_lossy();
+    let text = cover_of_map(&survey.opened, &run, &survey.map, COVERAGE_PLANNER)
+        .map_err(|error| bad_input(format!("{run}: {error}")))?;
+    let scenario = Scenario::parse(&text, &format!("the scan of the map of {run}"));
+    scenario.map(Some).map_err(|errors| bad_input(errors.render()))
 }
