@@ -903,7 +903,11 @@ fn too_few_stations_for_differences_or_stations_on_one_line_are_refused_with_the
         ("solver = \"nls\"", "has no effect with emission_time = \"unknown\""),
         ("aggregation = \"midrange\"", "must be \"mean\" or \"trimmed-mean\""),
         ("calibrate_sound_speed = true", "must be false with emission_time = \"unknown\""),
-        ("session_calibration = \"constant\"", "must be \"off\" with emission_time = \"unknown\""),
+        (
+            "session_calibration = \"constant\"",
+            "must be \"off\" with clock_offset_sigma_m or clock_drift_sigma_m_per_h: a bias of a station and the offset of \
+             its clock",
+        ),
     ] {
         let words = said("integrity_risk = 1e-5", &format!("integrity_risk = 1e-5\n{key}"));
         assert!(words.contains(reason), "{key}: {words}");
