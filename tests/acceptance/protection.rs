@@ -189,3 +189,27 @@ fn a_clock_that_jumps_is_covered_by_the_level() {
     assert!(compared > 5_000, "{compared}: {flown:?}");
     bench.prove(run);
 }
+
+/// The shipped scenario with stations that exchange pulses: before the start, and during the hold for an outage. The speed of
+/// sound is wrong by 2 %.
+#[test]
+fn pulses_before_the_start_and_during_a_hold_measure_speed_of_sound_and_clocks() {
+    let bench = Bench::new();
+    let flown = bench.fly(&scenario("station-pulses.toml"), &[]);
+    assert_eq!(flown.code, Some(0), "{flown:?}");
+    let run = &bench.runs()[0];
+    let events = journal(run);
+    let tests = of_kind(&events, "pulses_tested");
+    assert_eq!(tests[0]["phase"], "before", "{}", tests[0]);
+    let held: Vec<&Value> = tests.iter().filter(|test| test["phase"] == "held").copied().collect();
+    assert!(held.iter().any(|test| number(&test["t_s"]) >= 480.0), "{tests:?}");
+    for test in &tests {
+        let scale = &test["test"]["scale"];
+        let off = (number(&scale["value"]) - 0.02).abs();
+        assert!(off < 4.0 * number(&scale["sigma"]) && off < 0.005, "{test}");
+        assert_ne!(test["test"]["integrity"], "alarm", "{test}");
+    }
+    let compared = within_level(&events);
+    assert!(compared > 5_000, "{compared}");
+    bench.prove(run);
+}

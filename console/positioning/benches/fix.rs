@@ -4,8 +4,8 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::Matrix2;
 use positioning::{
-    Aggregation, Bounded, Calibration, Consensus, Differences, Ekf, FixedLag, LinearLs, MotionNoise, Nls, Particles,
-    ParticlesConfig, PositionSolver, Positioner, PositionerConfig, RangeNoise, Risk, Screened,
+    Aggregation, Bounded, Calibration, Consensus, Differences, Ekf, FixedLag, LinearLs, MotionNoise, Nls,
+    Particles, ParticlesConfig, PositionSolver, Positioner, PositionerConfig, RangeNoise, Risk, Screened,
     SessionCalibration, SessionConfig, Timing, Unknowns, WeightedLinear, protection::level_m,
 };
 use rand::{RngExt, SeedableRng};
@@ -133,10 +133,7 @@ fn filter(criterion: &mut Criterion) {
 fn emitted_before(stations: &[Station]) -> Vec<RangeSet> {
     let mut rng = rand_pcg::Pcg64::seed_from_u64(2);
     let mut range_m = |distance_m: f64| distance_m + 200.0 + 0.1 * rng.random_range(-1.7..1.7);
-    let set = |s: &Station| RangeSet {
-        station: s.id,
-        ranges_m: vec![range_m((TRUTH - s.position).norm())],
-    };
+    let set = |s: &Station| RangeSet { station: s.id, ranges_m: vec![range_m((TRUTH - s.position).norm())] };
     stations.iter().map(set).collect()
 }
 
@@ -160,12 +157,15 @@ fn differences(criterion: &mut Criterion) {
             SessionCalibration::new(SessionConfig::default(), &stations, ways, MotionNoise::default())
                 .with_free_emission();
         let mut t_s = 0.0;
-        criterion.bench_function(&format!("{n} stations, step of the session calibration, differences"), |b| {
-            b.iter(|| {
-                t_s += 1.0;
-                session.take(black_box(&sets), (TRUTH, 0.02), t_s)
-            });
-        });
+        criterion.bench_function(
+            &format!("{n} stations, step of the session calibration, differences"),
+            |b| {
+                b.iter(|| {
+                    t_s += 1.0;
+                    session.take(black_box(&sets), (TRUTH, 0.02), t_s)
+                });
+            },
+        );
     }
 }
 

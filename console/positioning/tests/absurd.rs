@@ -62,7 +62,8 @@ impl Taken {
     fn new(stations: Vec<Station>, start: Pose, excess_m: f64) -> Self {
         let is_free = excess_m > 0.0;
         let solver = if is_free { SolverKind::Differences } else { SolverKind::Nls };
-        let config = PositionerConfig { noise: NOISE, solver, ..PositionerConfig::new(stations.clone(), start) };
+        let config =
+            PositionerConfig { noise: NOISE, solver, ..PositionerConfig::new(stations.clone(), start) };
         let ways = (Aggregation::Mean, NOISE, Timing::default());
         let session =
             SessionCalibration::new(SessionConfig::default(), &stations, ways, MotionNoise::default());

@@ -883,6 +883,18 @@ fn an_unknown_time_of_emission_uses_differences_and_clocks_of_their_own_are_pass
 }
 
 #[test]
+fn stations_that_exchange_pulses_are_simulated_and_expected() {
+    let with = differences("integrity_risk = 1e-5", "integrity_risk = 1e-5\npulse_rest_s = 5")
+        .unwrap_or_else(|errors| panic!("{}", errors.render()));
+    assert!(with.mission.locating.has_pulses);
+    assert_eq!(with.sim.ae.unwrap().pulse_rest_s, Some(5.0));
+    let never = differences("integrity_risk = 1e-5", "integrity_risk = 1e-5\npulse_rest_s = 0")
+        .map(|_| ())
+        .map_err(|errors| errors.render());
+    assert!(never.as_ref().is_err_and(|words| words.contains("ae.pulse_rest_s = 0")), "{never:?}");
+}
+
+#[test]
 fn too_few_stations_for_differences_or_stations_on_one_line_are_refused_with_the_reason() {
     let said = |from: &str, to: &str| match differences(from, to) {
         Ok(_) => panic!("{to} is accepted"),

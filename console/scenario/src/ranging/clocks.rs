@@ -73,14 +73,17 @@ pub(super) fn check(section: &Section<'_>, stations: &[Station]) {
 /// Refuses a session calibration that cannot tell a bias from an unknown clock, or that cannot test any station.
 fn check_session(n: usize, has_own: bool, complain: impl Fn(&str, String)) {
     if has_own {
-        let why = "a bias of a station and the offset of its clock shift the same arrivals by the same length";
+        let why =
+            "a bias of a station and the offset of its clock shift the same arrivals by the same length";
         let keys = format!("{} or {}", CLOCK_KEYS[0], CLOCK_KEYS[1]);
         complain("session_calibration", format!("\"off\" with {keys}: {why}"));
     } else if n < LEAST_SESSION {
         let why = "without one of them, the others give no fix";
         complain(
             "session_calibration",
-            format!("\"off\" with fewer than {LEAST_SESSION} stations and emission_time = \"unknown\": {why}"),
+            format!(
+                "\"off\" with fewer than {LEAST_SESSION} stations and emission_time = \"unknown\": {why}"
+            ),
         );
     }
 }

@@ -180,9 +180,8 @@ impl Tally {
 
     /// The shares of cycles and fixes.
     fn rates(&self, block: &Block<'_>, fault: Fault) -> Vec<Row> {
-        let rate = |metric: &str, part: usize, of: usize| {
-            block.row(metric, part as f64 / of.max(1) as f64, "", of)
-        };
+        let rate =
+            |metric: &str, part: usize, of: usize| block.row(metric, part as f64 / of.max(1) as f64, "", of);
         let mut rows = vec![
             rate("beyond_rate", self.beyond, self.fixes()),
             rate("protected_rate", self.levels_m.len(), self.cycles),
