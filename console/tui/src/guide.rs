@@ -24,6 +24,7 @@ pub fn name(cause: &Cause, of: &Run) -> String {
         Cause::NotProtected => "position not protected".into(),
         Cause::Bias(id) => format!("station {} biased", of.station_name(*id).trim_start_matches("station ")),
         Cause::NotSeparable => "station bias not separable".into(),
+        Cause::Pulses => "pulse test disagrees".into(),
         Cause::NoFix => "no position fix".into(),
         Cause::DeadChannel => "channel dead".into(),
         Cause::Station(id) => {
@@ -73,6 +74,7 @@ pub fn guide(cause: &Cause) -> Guide {
         Cause::NotProtected => position::NOT_PROTECTED,
         Cause::Bias(_) => position::BIAS,
         Cause::NotSeparable => position::NOT_SEPARABLE,
+        Cause::Pulses => position::PULSES,
         Cause::NoFix => position::NO_FIX,
         Cause::Station(_) => position::STATION,
         Cause::DeadChannel => vehicle::DEAD_CHANNEL,

@@ -75,6 +75,7 @@ impl Run {
             | EventKind::SessionCalibrated { .. }
             | EventKind::ClocksEstimated { .. }
             | EventKind::PulsesTested { .. }
+            | EventKind::PulsesFailed { .. }
             | EventKind::StationBiased { .. }
             | EventKind::StationUnbiased { .. }
             | EventKind::NotSeparable { .. }

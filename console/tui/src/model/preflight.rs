@@ -1,5 +1,6 @@
 //! The pre-flight check: automatic checks, and those that the operator ticks by hand.
 
+mod pulses;
 mod scanner;
 mod vehicle;
 
@@ -101,6 +102,7 @@ impl Model {
         checks.extend(self.place_check());
         checks.extend(self.vehicle_checks());
         checks.extend(self.scanner_check());
+        checks.extend(self.pulse_check());
         checks.extend([self.station_check(), self.terminal_check()]);
         checks
     }
