@@ -1,6 +1,6 @@
 //! Floor that a survey has not seen.
 
-use crate::map::{CellState, SurveyMap};
+use crate::{cells::CellState, map::SurveyMap};
 use geometry::{Boundary, Point};
 
 /// A connected part of the floor that no scan has shown, beside floor that is free.

@@ -312,9 +312,13 @@ impl Window {
                 let by = [seen.distance_m, seen.distance_m * hours];
                 let by = (seen.direction * stretch, by, bias_m.map(|_| Column::bias(heard.station)));
                 system.range(index, by, seen.residual_m, seen.weight);
-                common.iter_mut().for_each(|common| common.range(by, seen.residual_m, seen.weight));
+                if let Some(common) = &mut common {
+                    common.range(by, seen.residual_m, seen.weight);
+                }
             }
-            common.iter().for_each(|common| system.free_length(index, common));
+            if let Some(common) = &common {
+                system.free_length(index, common);
+            }
         }
         for (index, (before, node)) in self.nodes.iter().zip(self.nodes.iter().skip(1)).enumerate() {
             let off = node.at - before.at - node.moved;

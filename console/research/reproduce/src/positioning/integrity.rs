@@ -232,7 +232,9 @@ fn draw(geometry: &Geometry, (id, is_emission_free, fault): &(&str, bool, Fault)
         let mut ranges = heard(geometry, at, &mut rng);
         let wrong = spoil(&mut ranges, (geometry, at), (*is_emission_free, *fault), &mut rng);
         let fix = if *is_emission_free {
-            ranges.iter_mut().for_each(|range| range.range_m += EXCESS_M);
+            for range in &mut ranges {
+                range.range_m += EXCESS_M;
+            }
             Screened(Differences).solve(&ranges, &geometry.stations, None)
         } else {
             Screened(Nls).solve(&ranges, &geometry.stations, None)
