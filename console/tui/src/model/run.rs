@@ -10,6 +10,7 @@ use mission::{
 use positioning::AccuracyMap;
 use serde::{Deserialize, Serialize};
 use vehicle::port::LinkSeen;
+use world::coverage::regions::cells_within;
 use world::{PlateLayout, Point, Pose, Station, StationId, World};
 
 /// Time under way, seconds, before which the average pace does not allow an estimate of the remaining time.
@@ -210,6 +211,17 @@ impl Run {
             }
         }
         ahead
+    }
+
+    /// For each cell of the floor, whether the mission did not have to scan it. Empty if the whole floor was requested,
+    /// and for a mission that does not scan.
+    pub fn not_requested(&self) -> Vec<bool> {
+        let Some((coverage, about)) = self.coverage.as_ref().zip(self.about.as_ref()) else {
+            return Vec::new();
+        };
+        let TaskConfig::Cover { regions, .. } = &about.mission.task else { return Vec::new() };
+        let requested = cells_within(coverage.floor(), regions).unwrap_or_default();
+        requested.into_iter().map(|is_requested| !is_requested).collect()
     }
 
     /// Why a planner cannot run this mission; `None` if it can.

@@ -2,6 +2,7 @@
 
 use crate::fixture::{RICH, Screen};
 use crate::overviews::ended;
+use crate::panes::missed_summary;
 use crate::screens::{drawn, text};
 use crate::sizes::SIZES;
 use account::{InDoubt, TakenBack};
@@ -70,7 +71,8 @@ fn the_alarm_of_a_biased_station_lists_the_floor_in_doubt_and_its_remedy() {
 
 #[test]
 fn the_result_lists_the_floor_in_doubt_and_how_to_scan_it_again() {
-    let (mut screen, closed) = ended();
+    let (mut screen, mut closed) = ended();
+    closed.summary.floor = missed_summary().floor;
     screen.hear(RunMsg::InDoubt(vec![in_doubt()]));
     screen.hear(RunMsg::Closed(Box::new(closed.clone())));
     for size in SIZES {

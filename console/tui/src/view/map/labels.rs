@@ -9,7 +9,7 @@ use crate::caps::Glyphs;
 use crate::model::{Overlay, Screen, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
-use crate::view::text;
+use crate::view::{missed, text};
 use account::Estimate;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -152,7 +152,7 @@ impl Board<'_, '_> {
         if ui.screen == Screen::Result {
             let most = if ui.map.zoom > 0 { MISSED.1 } else { MISSED.0 };
             for (index, area) in model.live.missed().iter().enumerate().take(most) {
-                let role = if index == ui.missed { Role::Selected } else { Role::Missed };
+                let role = if index == ui.missed { Role::Selected } else { missed::role(area) };
                 self.always(area.at, role, &(index + 1).to_string());
             }
         }

@@ -1,6 +1,6 @@
 //! The lines at the bottom of the map: the robot's position, and details about the place under the cursor.
 
-use super::plates;
+use super::{plates, shade};
 use crate::model::ui::Ui;
 use crate::theme::Role;
 use crate::view::look::Look;
@@ -70,9 +70,10 @@ fn word(look: &Look, at: Point, (class, times): (FloorClass, u32)) -> String {
             Some(area) => format!("left out: {}", briefest(area)),
             None => "to do".into(),
         },
-        FloorClass::Missed => match live.missed_area(at) {
-            Some(area) => format!("missed: {}", briefest(area)),
-            None => "missed".into(),
+        FloorClass::Missed => match (shade::why_left(look, at), live.missed_area(at)) {
+            (Some(why), _) => why.into(),
+            (None, Some(area)) => format!("missed: {}", briefest(area)),
+            (None, None) => "missed".into(),
         },
         FloorClass::Scanned => "scanned".into(),
         FloorClass::Again => format!("scanned ×{times}"),
