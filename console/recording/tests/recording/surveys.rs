@@ -1,7 +1,7 @@
 //! The map of a survey in a recording.
 
 use crate::{content::Content, recorder::recorded, recorder::rows, synthetic};
-use exploration::{CellState, Column, Grid, SurveyMap};
+use exploration::{Column, Grid, SurveyMap};
 use mission::{
     Event, EventKind, Outcome, TaskConfig,
     event::{Explored, SurveyGoal, SurveyWay},

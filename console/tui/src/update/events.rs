@@ -19,8 +19,9 @@ pub(crate) fn is_selected(model: &Model) -> Result<(), String> {
     demand(!model.ui.events.matches.is_empty(), "no event is selected")
 }
 
-/// The label of Enter on the events screen: it goes to the details and back to the list.
+/// The label of Enter on the events screen: it goes to the details and back to the list. `None` without a selected event.
 pub(crate) fn opens(model: &Model) -> Option<&'static str> {
+    model.ui.events.selected()?;
     Some(if model.ui.focus() == Pane::Detail { "list" } else { "detail" })
 }
 
