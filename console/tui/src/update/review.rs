@@ -11,10 +11,10 @@ use mission::Severity;
 pub(crate) fn opens(model: &Model) -> Option<&'static str> {
     let run = model.review.run(&model.home)?;
     let is_replayed = model.live.replay.as_ref().is_some_and(|replay| replay.name == run.name);
-    match is_replayed {
-        true => Some("show"),
-        false => offered(model, ActionId::Replay).is_ok().then_some("replay"),
+    if is_replayed {
+        return Some("show");
     }
+    offered(model, ActionId::Replay).is_ok().then_some("replay")
 }
 
 /// Replays the selected run; if it is already being replayed, shows it.

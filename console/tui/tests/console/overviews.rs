@@ -247,7 +247,8 @@ fn result() {
     let scanned = RunResult { summary: Box::new(missed_summary()), ..closed };
     screen.hear(RunMsg::Closed(Box::new(scanned)));
     screen.send(Msg::Resize { width: 60, height: 16 });
-    let pages = ["7 Result: Coverage", "7 Result: Missed:", "7 Result: Plates", "7 Result: Map", "7 Result  "];
+    let pages =
+        ["7 Result: Coverage", "7 Result: Missed:", "7 Result: Plates", "7 Result: Map", "7 Result  "];
     for page in pages {
         screen.press([tui::Key::Tab]);
         let shown = text(&drawn(&screen.model, RICH, (60, 16)));
