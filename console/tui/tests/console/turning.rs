@@ -3,10 +3,10 @@
 use crate::fixture::{RICH, Screen};
 use crate::overviews::found;
 use crate::screens::{drawn, text};
-use crate::sizes::SIZES;
+use crate::sizes::{self, SIZES};
 use mission::EventKind;
 use tui::model::home::HomeList;
-use tui::model::{Pane, ui::Arrangement};
+use tui::model::{Alarms, Pane, ui::Arrangement};
 use tui::{Key, Msg};
 
 /// The screens with a list, each with a selected row.
@@ -142,4 +142,23 @@ fn the_line_of_screens_is_shown_from_80x24() {
             assert!(has_all && line.contains(&format!("[{way} ")), "{way} {size:?}\n{text}");
         }
     }
+}
+
+#[test]
+fn without_an_alarm_the_limits_that_are_watched_are_shown_with_their_values() {
+    let mut screen = Screen::tethered();
+    screen.send(Msg::Found(Box::new(found())));
+    screen.model.live.run.alarms = Alarms::default();
+    screen.type_text("4");
+    sizes::store("alarms_quiet", &mut screen, sizes::is_log);
+    for size in [(80, 24), (120, 36), (200, 60)] {
+        let text = shown(&on(&screen, "4", size), size);
+        for words in ["Limits that are watched", "AE error", "±0.15 m", "tether", "disk space left", "200 MB"]
+        {
+            assert!(text.contains(words), "{words} at {size:?}\n{text}");
+        }
+    }
+    let large = shown(&on(&screen, "4", (200, 60)), (200, 60));
+    let blank = large.lines().filter(|row| row.replace(['│', ' '], "").is_empty()).count();
+    assert!(blank <= 20, "{blank} of 60 rows are blank\n{large}");
 }
