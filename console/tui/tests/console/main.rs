@@ -37,5 +37,6 @@ mod sizes;
 mod start;
 mod state_line;
 mod stopping;
+mod surveys;
 mod unseen;
 mod vehicle;

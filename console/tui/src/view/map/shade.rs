@@ -1,7 +1,8 @@
 //! The floor layer at the bottom of the map: scanned and unscanned floor, each with its own character and colour.
 
 use super::shapes::Window;
-use crate::model::{Raster, replay::Scans, ui::MapLayer};
+use super::survey;
+use crate::model::{Raster, replay::Scans, survey::Survey, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
 use ratatui::buffer::Buffer;
@@ -33,6 +34,10 @@ pub(crate) enum Shade {
     OnlyB,
     /// Scanned by both runs.
     Both,
+    /// In a survey: floor that no scan has shown.
+    NotSeen,
+    /// In a survey: an object that is not a column.
+    Object,
 }
 
 impl Shade {
@@ -60,6 +65,8 @@ impl Shade {
             Self::HighLevel => ('(', Role::Warn),
             Self::OnlyA => ('A', Role::Good),
             Self::OnlyB => ('B', Role::Ghost),
+            Self::NotSeen => ('\\', Role::Unreachable),
+            Self::Object => ('#', Role::Found),
         }
     }
 
@@ -135,6 +142,7 @@ pub(crate) struct Key {
     other: Option<u64>,
     before: Option<u64>,
     forecast: Option<(MapLayer, u64)>,
+    survey: Option<u64>,
     window: Window,
     /// Shade rows per character row.
     rows_per_row: u16,
@@ -142,7 +150,7 @@ pub(crate) struct Key {
 }
 
 /// The shades in the order of the legend, the most important first, each with its legend text.
-pub(super) const LEGEND: [(Shade, &str); 16] = [
+pub(super) const LEGEND: [(Shade, &str); 18] = [
     (Shade::Floor(FloorClass::Missed), "missed"),
     (Shade::NotReached, "not reached"),
     (Shade::PoorFix, "poor fix"),
@@ -159,6 +167,8 @@ pub(super) const LEGEND: [(Shade, &str); 16] = [
     (Shade::OnlyA, "only A"),
     (Shade::OnlyB, "only B"),
     (Shade::Both, "both"),
+    (Shade::NotSeen, "not seen"),
+    (Shade::Object, "object"),
 ];
 
 /// The shades that are on the map now, with their legend texts.
@@ -220,7 +230,10 @@ fn paint_cell(look: &Look, upper: Option<Shade>, lower: Option<Shade>, cell: &mu
 /// between frames.
 fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
     let (run, layers) = (look.run, look.model.ui.layers);
-    let raster = look.model.live.scanned().filter(|_| layers.shows(MapLayer::Scanned));
+    let survey = survey::shown(look);
+    // A survey scans no floor for its instrument.
+    let is_scanning = !run.is_survey() && layers.shows(MapLayer::Scanned);
+    let raster = look.model.live.scanned().filter(|_| is_scanning || survey.is_some());
     let forecasts = [MapLayer::Accuracy, MapLayer::Protection];
     let shown = forecasts.into_iter().find(|layer| layers.shows(*layer));
     // The combined map shows what all runs have scanned.
@@ -232,22 +245,24 @@ fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
         other: other.map(Raster::stamp),
         before: before.map(Raster::stamp),
         forecast: shown.map(|layer| (layer, run.accuracy_stamp)),
+        survey: survey.map(Survey::stamp),
         window,
         rows_per_row,
         has_missed,
     };
     look.cache.borrow_mut().shades(key, || {
         let dots = window.dots(rows_per_row);
+        let floor = |raster: &Raster, at, edge_m| match survey {
+            Some(survey) => survey::shade(survey, at, edge_m).filter(|_| is_floor(raster, at, edge_m)),
+            None => floor(raster, at, edge_m, has_missed),
+        };
         if let Some(layer) = shown {
-            let shade =
-                |(at, edge_m)| forecast(look, layer, at).or_else(|| floor(raster?, at, edge_m, has_missed));
+            let shade = |(at, edge_m)| forecast(look, layer, at).or_else(|| floor(raster?, at, edge_m));
             return Rc::new(dots.map(shade).collect());
         }
         let Some(raster) = raster else { return Rc::new(Painted::from_iter([])) };
         let not_reached = run.not_reached();
-        let own = |at, edge_m| {
-            floor(raster, at, edge_m, has_missed).map(|shade| shade.when(&not_reached, raster, at))
-        };
+        let own = |at, edge_m| floor(raster, at, edge_m).map(|shade| shade.when(&not_reached, raster, at));
         let shade = |(at, edge_m)| {
             if let Some(other) = other {
                 return Scans::in_square(raster, other, at, edge_m).and_then(difference);
