@@ -11,8 +11,8 @@ use nalgebra::Isometry2;
 /// Turn, radians, and drive, metres, after which a scan is compared with the earlier one.
 const TURNED_RAD: f64 = 0.5;
 const MOVED_M: f64 = 0.5;
-/// Number of rays of the earlier scan that are compared.
-const RAYS: usize = 72;
+/// Number of rays of the earlier scan that are compared; a comparison is rare, and only a few of them may hit something.
+const RAYS: usize = 360;
 /// Minimum number of rays that must say something for a comparison to count.
 const LEAST_RAYS: usize = 12;
 /// Number of comparisons before the first verdict, and the weight of a new one in the running mean.

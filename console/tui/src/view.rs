@@ -34,6 +34,7 @@ mod shadow;
 mod small_map;
 mod stations;
 mod strip;
+mod survey;
 pub(crate) mod table;
 mod tabs;
 mod tether;
@@ -165,7 +166,10 @@ pub(crate) fn mission(look: &Look, frame: &mut Frame, area: Rect, arrangement: A
 fn draw_pane(look: &Look, frame: &mut Frame, area: Rect, pane: Pane) {
     match pane {
         Pane::Map => map::draw(look, frame, area),
-        Pane::Coverage => coverage::draw(look, frame, area),
+        Pane::Coverage => match &look.run.survey {
+            Some(survey) => survey::draw(look, survey, frame, area),
+            None => coverage::draw(look, frame, area),
+        },
         Pane::Position => position::draw(look, frame, area),
         Pane::Tether => tether::draw(look, frame, area),
         Pane::Planner => planner::draw(look, frame, area),

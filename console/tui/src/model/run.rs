@@ -3,6 +3,7 @@
 use super::alarms::rule::Context;
 use super::{
     Alarms, History, Log, Planning, Position, Raster, Shadow, Tether, Trail, log::What, scanner::Scanner,
+    survey::Survey,
 };
 use mission::{
     EventKind, FoldedStanding, MissionConfig, Phase, PlannerInfo, TaskConfig, WayBack, event::TetherAlarm,
@@ -52,6 +53,9 @@ pub struct Run {
     /// The scanner.
     #[serde(default)]
     pub scanner: Scanner,
+    /// The survey; `None` unless the mission makes a map.
+    #[serde(default)]
+    pub survey: Option<Box<Survey>>,
     /// The dead channels of the instrument, in ascending order.
     #[serde(default)]
     pub dead_channels: Vec<u16>,
@@ -246,7 +250,12 @@ impl Run {
             return self.way_left_s();
         }
         let done = self.progress.as_ref()?.done;
-        let known = self.clock.moving_s > SETTLED_S && done > 0.01 && done <= 1.0 && !self.has_ended();
+        // How long a survey takes depends on what it finds.
+        let known = !self.is_survey()
+            && self.clock.moving_s > SETTLED_S
+            && done > 0.01
+            && done <= 1.0
+            && !self.has_ended();
         known.then(|| self.clock.moving_s * (1.0 - done) / done)
     }
 

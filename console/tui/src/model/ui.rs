@@ -204,11 +204,13 @@ pub enum MapLayer {
     Scan,
     /// Floor where fixes are forecast to have a large protection level, or none.
     Protection,
+    /// The map that a survey makes: floor not seen, frontiers, columns and the way.
+    Explored,
 }
 
 impl MapLayer {
     /// All layers, in the order of the layer list.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Scanned,
         Self::Trail,
         Self::Plan,
@@ -217,6 +219,7 @@ impl MapLayer {
         Self::Accuracy,
         Self::Scan,
         Self::Protection,
+        Self::Explored,
     ];
 
     /// The layer's name in the list.
@@ -230,6 +233,7 @@ impl MapLayer {
             Self::Accuracy => "accuracy forecast",
             Self::Scan => "scan points",
             Self::Protection => "protection level",
+            Self::Explored => "map of a survey",
         }
     }
 }

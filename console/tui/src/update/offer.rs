@@ -166,6 +166,11 @@ pub(crate) fn swap(model: &Model) -> Result<(), String> {
     has_planners(model)
 }
 
+/// Checks that the mission follows a plan.
+pub(crate) fn has_plan(model: &Model) -> Result<(), String> {
+    demand(!model.live.run.is_survey(), "a survey drives without a planner; start it as it is")
+}
+
 /// Checks that any planner was found.
 pub(crate) fn has_planners(model: &Model) -> Result<(), String> {
     demand(!model.console.planners.is_empty(), "no planners found yet")

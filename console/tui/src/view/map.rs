@@ -14,13 +14,14 @@ mod scan;
 mod shade;
 mod shadow;
 mod shapes;
+mod survey;
 mod thin;
 mod zone;
 
 pub(super) use ink::TRAIL;
 pub(super) use legend::of_floor as floor_legend;
 pub(super) use pattern::Pattern;
-pub(super) use pen::Pen;
+pub(super) use pen::{Pen, nearest};
 pub(super) use plates::{Key as PlateKey, PlateDrawing};
 pub(super) use shade::{Key as ShadeKey, Shades, lay, of_run as shades_of_run};
 pub(super) use shapes::{Stroke, Window};
@@ -153,6 +154,7 @@ fn draw_floor(look: &Look, frame: &mut Frame, area: Rect, window: Window) {
         pen.paths(ctx);
         pen.blocked(ctx);
         pen.drawings(ctx);
+        pen.survey(ctx);
         pen.scan(ctx);
         pen.solids(ctx, world);
         pen.tether(ctx);

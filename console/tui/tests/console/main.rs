@@ -39,6 +39,7 @@ mod sizes;
 mod start;
 mod state_line;
 mod stopping;
+mod surveys;
 mod turning;
 mod unseen;
 mod vehicle;

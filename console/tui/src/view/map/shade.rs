@@ -1,7 +1,8 @@
 //! The floor layer at the bottom of the map: scanned and unscanned floor, each with its own character and colour.
 
 use super::shapes::Window;
-use crate::model::{Raster, Run, Together, replay::Scans, ui::MapLayer};
+use super::survey;
+use crate::model::{Raster, Run, Together, replay::Scans, survey::Survey, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
 use ratatui::buffer::Buffer;
@@ -35,6 +36,10 @@ pub(crate) enum Shade {
     OnlyB,
     /// Scanned by both runs.
     Both,
+    /// In a survey: floor that no scan has shown.
+    NotSeen,
+    /// In a survey: an object that is not a column.
+    Object,
 }
 
 impl Shade {
@@ -63,6 +68,8 @@ impl Shade {
             Self::HighLevel => ('(', Role::Warn),
             Self::OnlyA => ('A', Role::Good),
             Self::OnlyB => ('B', Role::Ghost),
+            Self::NotSeen => ('\\', Role::Unreachable),
+            Self::Object => ('#', Role::Found),
         }
     }
 
@@ -178,6 +185,7 @@ pub(crate) struct Key {
     other: Option<u64>,
     before: Option<u64>,
     forecast: Option<(MapLayer, u64)>,
+    survey: Option<u64>,
     window: Window,
     /// Shade rows per character row.
     rows_per_row: u16,
@@ -194,7 +202,7 @@ impl Key {
 }
 
 /// The shades in the order of the legend, the most important first, each with its legend text.
-pub(super) const LEGEND: [(Shade, &str); 17] = [
+pub(super) const LEGEND: [(Shade, &str); 19] = [
     (Shade::Floor(FloorClass::Missed), "missed"),
     (Shade::NotReached, "not reached"),
     (Shade::NotRequested, "not requested"),
@@ -212,6 +220,8 @@ pub(super) const LEGEND: [(Shade, &str); 17] = [
     (Shade::OnlyA, "only A"),
     (Shade::OnlyB, "only B"),
     (Shade::Both, "both"),
+    (Shade::NotSeen, "not seen"),
+    (Shade::Object, "object"),
 ];
 
 /// The shades that are on the map now, with their legend texts.
@@ -286,7 +296,10 @@ fn paint_cell(look: &Look, upper: Option<Shade>, lower: Option<Shade>, cell: &mu
 /// between frames.
 fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
     let (run, layers) = (look.run, look.model.ui.layers);
-    let raster = look.model.live.scanned().filter(|_| layers.shows(MapLayer::Scanned));
+    let survey = survey::shown(look);
+    // A survey scans no floor for its instrument.
+    let is_scanning = !run.is_survey() && layers.shows(MapLayer::Scanned);
+    let raster = look.model.live.scanned().filter(|_| is_scanning || survey.is_some());
     let forecasts = [MapLayer::Accuracy, MapLayer::Protection];
     let shown = forecasts.into_iter().find(|layer| layers.shows(*layer));
     // The combined map shows what all runs have scanned.
@@ -298,6 +311,7 @@ fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
         other: other.map(Raster::stamp),
         before: before.map(Raster::stamp),
         forecast: shown.map(|layer| (layer, run.accuracy_stamp)),
+        survey: survey.map(Survey::stamp),
         window,
         rows_per_row,
         ended: Key::ended(run),
@@ -305,18 +319,22 @@ fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
     look.cache.borrow_mut().shades(key, || {
         let dots = window.dots(rows_per_row);
         let ground = raster.map(|raster| Ground::new(raster, run, look.model.live.together()));
+        let floor = |ground: &Ground<'_>, at, edge_m| match survey {
+            Some(survey) => survey::shade(survey, at, edge_m).filter(|_| is_floor(ground.raster, at, edge_m)),
+            None => ground.shade(at, edge_m),
+        };
         if let Some(layer) = shown {
-            let own = |at, edge_m| ground.as_ref().and_then(|ground| ground.shade(at, edge_m));
+            let own = |at, edge_m| ground.as_ref().and_then(|ground| floor(ground, at, edge_m));
             let shade = |(at, edge_m)| forecast(look, layer, at).or_else(|| own(at, edge_m));
             return Rc::new(dots.map(shade).collect());
         }
-        let Some(ground) = ground else { return Rc::new(Painted::from_iter([])) };
+        let Some(ground) = &ground else { return Rc::new(Painted::from_iter([])) };
         let raster = ground.raster;
         let shade = |(at, edge_m)| {
             if let Some(other) = other {
                 return Scans::in_square(raster, other, at, edge_m).and_then(difference);
             }
-            let own = ground.shade(at, edge_m);
+            let own = floor(ground, at, edge_m);
             let before = before.filter(|_| own.is_none_or(Shade::is_unscanned));
             before.and_then(|before| scanned_before(before, at, edge_m)).or(own)
         };
@@ -339,6 +357,7 @@ pub(in crate::view) fn of_run(
         other: None,
         before: None,
         forecast: None,
+        survey: None,
         window,
         rows_per_row,
         ended: Key::ended(run),
