@@ -241,7 +241,7 @@ fn draw(geometry: &Geometry, (id, is_emission_free, fault): &(&str, bool, Fault)
         };
         tally.cycles += 1;
         // Ranges that give no fix are an alarm, too.
-        tally.alarms += usize::from(fix.as_ref().map_or(true, |fix| fix.integrity == Integrity::Alarm));
+        tally.alarms += usize::from(!fix.as_ref().is_ok_and(|fix| fix.integrity != Integrity::Alarm));
         let Ok(fix) = fix else { continue };
         let left_out: Vec<StationId> = fix.excluded.iter().map(|(id, _)| *id).collect();
         tally.excluded += usize::from(!left_out.is_empty());
