@@ -500,7 +500,7 @@ fn floor_that_is_missed_beside_a_drawn_zone_is_missed_for_its_clearance() {
 fn listed_areas_leave_out_what_was_not_requested_and_end_with_what_was_not_reached() {
     let run = round_tank(0.05);
     let mut account = account(&run, &CoverageGrid::new(run.floor.clone()), &Evidence::new(&run));
-    let area = |reason, area_m2| Area { reason, area_m2, ..account.missed[0].clone() };
+    let area = |reason, area_m2| Area { area_m2, reason, ..account.missed[0].clone() };
     let missed = vec![
         area(MissReason::NotReached, 9.0),
         area(MissReason::NotAsked, 8.0),

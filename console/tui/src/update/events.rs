@@ -20,8 +20,8 @@ pub(crate) fn is_selected(model: &Model) -> Result<(), String> {
 }
 
 /// The label of Enter on the events screen: it goes to the details and back to the list.
-pub(crate) fn opens(model: &Model) -> Option<&'static str> {
-    Some(if model.ui.focus() == Pane::Detail { "list" } else { "detail" })
+pub(crate) fn opens(model: &Model) -> &'static str {
+    if model.ui.focus() == Pane::Detail { "list" } else { "detail" }
 }
 
 /// Goes to the details of the selected event, or from there back to the list; from any other screen, goes to the details.

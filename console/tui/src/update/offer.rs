@@ -45,7 +45,7 @@ pub(super) fn why_nothing_opens(model: &Model) -> Option<String> {
 pub(crate) fn other_pane(model: &Model) -> Result<(), String> {
     let turns = model.ui.screen == Screen::Home || !model.ui.panes().is_empty();
     demand(turns, "only one pane is shown at this size")?;
-    let has_detail = model.ui.focus() != Pane::List || (model.ui.screen.row().has_row)(model);
+    let has_detail = model.ui.focus() != Pane::List || (model.ui.screen.row().is_selected)(model);
     demand(has_detail, "nothing is selected, so only the list responds to keys")
 }
 
