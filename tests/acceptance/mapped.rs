@@ -36,6 +36,18 @@ fn a_survey_is_verified_and_its_map_is_covered_and_read_by_other_programs() {
     assert!(wrong.code == Some(2) && wrong.err.contains(".yaml"), "{wrong:?}");
 }
 
+#[test]
+fn a_survey_is_started_in_the_console_and_its_map_is_scanned_next() {
+    let bench = Bench::new();
+    let script = "wait until text \"Ready.\" within 1m\nspeed max\nstart\nkey enter\n\
+                  wait until screen result within 5m\nassert phase complete\n";
+    let file = bench.file("survey.txt", script);
+    let survey = scenario("survey-tank.toml");
+    let ended = bench.tankops(&["console", survey.to_str().unwrap(), "--script", file.to_str().unwrap()]);
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    bench.prove(&bench.runs()[0]);
+}
+
 /// Runs `survey-tank` with a change, and makes a scenario of its map.
 fn map_of(bench: &Bench, from: &str, to: &str) -> crate::bench::Ended {
     let text = std::fs::read_to_string(scenario("survey-tank.toml")).unwrap();
