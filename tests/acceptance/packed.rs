@@ -114,6 +114,54 @@ fn a_package_holds_readings_grid_notes_and_drawings_and_is_checked_without_the_r
         let verified = verify(&bench, "forged.zip");
         assert!(verified.code == Some(1) && verified.out.contains(why), "{why}: {verified:?}");
     }
+    // The page vouches for every other file, also for one that no other part describes.
+    let grid = content["plate-grid.csv"].clone();
+    let figures = String::from_utf8(content["report.json"].clone()).unwrap().replacen("0.", "0.9", 1);
+    let notes = format!("notes/{name}.json");
+    let changes = [
+        ("report.json", figures.into_bytes()),
+        ("plate-grid.csv", grid[..grid.len() / 2].to_vec()),
+        ("report.geojson", b"{}".to_vec()),
+        ("report.dxf", Vec::new()),
+        ("report-missed.csv", b"a,b\n".to_vec()),
+        (notes.as_str(), b"{}".to_vec()),
+        ("README.txt", b"Call this number.".to_vec()),
+    ];
+    for (file, bytes) in changes {
+        let mut forged = content.clone();
+        forged.insert(file.into(), bytes);
+        forge(&bench, "forged.zip", &forged);
+        let verified = verify(&bench, "forged.zip");
+        let why = format!("different: {file} is not the file that belongs to report.html");
+        assert!(verified.code == Some(1) && verified.out.contains(&why), "{file}: {verified:?}");
+    }
+    // Readings, list and report that were changed together.
+    let mut forged = content.clone();
+    let readings = format!("readings/{name}.parquet");
+    let (then, now) = (digest(&content[&readings]), digest(b"PAR1"));
+    forged.insert(readings.clone(), b"PAR1".to_vec());
+    for list in ["package.json", "report.json"] {
+        let text = String::from_utf8(content[list].clone()).unwrap();
+        forged.insert(list.into(), text.replace(&then, &now).into_bytes());
+    }
+    forge(&bench, "forged.zip", &forged);
+    let verified = verify(&bench, "forged.zip");
+    let why = format!("different: {readings} is not the file that belongs to report.html");
+    assert!(verified.code == Some(1) && verified.out.contains(&why), "{verified:?}");
+    for (file, why) in [
+        ("report-more.csv", "report-more.csv does not belong to the report: report.html does not state it"),
+        ("signed/revision-B.html", "signed/revision-B.html belongs to none of the signatures"),
+    ] {
+        let mut forged = content.clone();
+        forged.insert(file.into(), b"<html>".to_vec());
+        forge(&bench, "forged.zip", &forged);
+        let verified = verify(&bench, "forged.zip");
+        assert!(verified.code == Some(1) && verified.out.contains(why), "{why}: {verified:?}");
+    }
+    let mut without = content.clone();
+    without.remove("report.dxf");
+    forge(&bench, "without.zip", &without);
+    assert!(verify(&bench, "without.zip").out.contains("report.dxf is missing, but report.html states it"));
     let mut emptied = content.clone();
     emptied.insert("report.html".into(), Vec::new());
     forge(&bench, "emptied.zip", &emptied);
@@ -163,6 +211,9 @@ fn a_signed_page_is_packed_and_a_change_to_it_is_named() {
     let verified = verify(&bench, "forged.zip");
     let why = "NOT AS SIGNED: report.html was changed after L. Kern signed it as revision A";
     assert!(verified.code == Some(1) && verified.out.contains(why), "{verified:?}");
+    // Nothing says at the same time that the page is as signed.
+    assert!(!verified.out.contains("\nsigned: "), "{verified:?}");
+    assert!(verified.out.contains("NOT AS SIGNED: your register lists revision A"), "{verified:?}");
     let signatures = String::from_utf8(content["signatures.json"].clone()).unwrap();
     let signatures = signatures.replace(&digest(&content["report.html"]), &digest(page.as_bytes()));
     forged.insert("signatures.json".into(), signatures.into_bytes());

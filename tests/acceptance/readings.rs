@@ -204,3 +204,19 @@ fn text_json_csv_html_and_recording_have_the_same_findings() {
         assert_eq!(class["losses"], class["found"], "{detections}");
     }
 }
+
+#[test]
+fn a_run_without_readings_is_bad_input_and_messages_for_ros_tools_are_the_same_twice() {
+    let bench = Bench::new();
+    bench.fly(&scenario("goto-single-obstacle.toml"), &[]);
+    let run = bench.runs().pop().unwrap();
+    let name = run.to_str().unwrap();
+    let refused = bench.tankops(&["export", name, "--readings", "none.parquet"]);
+    assert!(refused.code == Some(2) && refused.err.contains("this run has no readings"), "{refused:?}");
+    let [one, other] = ["one.mcap", "other.mcap"].map(|file| {
+        let exported = bench.tankops(&["export", name, "--mcap", file]);
+        assert_eq!(exported.code, Some(0), "{exported:?}");
+        fs::read(bench.path().join(file)).unwrap()
+    });
+    assert!(one == other, "the same run gives the same bytes");
+}

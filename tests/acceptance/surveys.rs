@@ -110,6 +110,10 @@ fn surveys_that_cannot_be_compared_are_refused_with_the_reason() {
     let other = facts("inspected_on = \"2020-01-01\"");
     let why = refused(&[&first, &second, "--inspection-second", &other]);
     assert!(why.contains("on 2026-11-24") && why.contains("on 2020-01-01"), "{why}");
+    // One run twice, as if it were a later survey.
+    let later = facts("inspected_on = \"2031-01-01\"");
+    let why = refused(&[&first, &first, "--inspection-second", &later]);
+    assert!(why.contains("both surveys are one run"), "{why}");
     let [tank, other_tank] = ["one.toml", "other.toml"].map(|name| {
         let text = format!("[inspection]\ntank_id = \"{name}\"\n");
         bench.file(name, text).display().to_string()
@@ -133,4 +137,34 @@ fn surveys_that_cannot_be_compared_are_refused_with_the_reason() {
     );
     let why = refused(&[&blind, &second]);
     assert!(why.contains("has no readings of thickness: its scenario needs [instrument]"), "{why}");
+}
+
+#[test]
+fn surveys_with_changed_files_are_refused_and_a_missing_file_is_named() {
+    let bench = Bench::new();
+    let [first, second] = surveyed(&bench);
+    let compare = |file: &str| bench.tankops(&["compare-surveys", &first, &second, "-o", file]);
+    let readings = bench.path().join("logs").join(&first).join("readings.parquet");
+    let whole = fs::read(&readings).unwrap();
+    fs::remove_file(&readings).unwrap();
+    let missing = compare("missing.html");
+    let named = format!("readings.parquet of run {first} is missing");
+    assert!(missing.code == Some(0) && missing.out.contains(&named), "{missing:?}");
+    let mut changed = whole;
+    let middle = changed.len() / 2;
+    changed[middle] ^= 1;
+    fs::write(&readings, changed).unwrap();
+    let refused = compare("changed.html");
+    assert!(
+        refused.code == Some(2) && refused.err.contains("readings.parquet is not the file"),
+        "{refused:?}"
+    );
+    fs::remove_file(&readings).unwrap();
+    let run = bench.path().join("logs").join(&second);
+    let text = crate::bench::journal_text(&run);
+    let at = text.rfind("\"t_s\":").unwrap();
+    crate::bench::change_journal(&run, &format!("{} {}", &text[..at], &text[at..]));
+    let refused = compare("journal.html");
+    assert!(refused.code == Some(2) && refused.err.contains("a different journal"), "{refused:?}");
+    assert!(!bench.path().join("changed.html").exists() && !bench.path().join("journal.html").exists());
 }

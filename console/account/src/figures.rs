@@ -167,8 +167,7 @@ impl FigureId {
         let tether = config.tether.as_ref().map(|tether| tether.limits);
         let limit = match self {
             Self::PositionError => Limit::Most(config.position_limit_m),
-            Self::Clearance => Limit::Least(config.clearance_m),
-            Self::TrueClearance => Limit::Least(0.0),
+            Self::Clearance | Self::TrueClearance => Limit::Least(config.clearance_m),
             Self::SpeedSent => Limit::Most(config.limits.v_max_m_per_s),
             Self::TetherOut | Self::TrueTetherOut => Limit::Most(tether?.reel_length_m),
             Self::WrapLargest => Limit::Most(tether?.wrap_max_rad.to_degrees()),

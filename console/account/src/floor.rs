@@ -41,6 +41,9 @@ pub struct Account {
     pub whole: Shares,
     /// The floor that the tool can reach, which is either scanned or missed.
     pub reachable: Shares,
+    /// The part of the reachable floor that the mission had to scan; absent if that was all of it, and in older reports.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub requested: Option<Shares>,
     /// Scanned share of the reachable floor, from the exact area that the tool swept instead of from cells, 0 to 1.
     #[serde(default)]
     pub exact: Option<f64>,
@@ -66,6 +69,7 @@ impl Account {
         Self {
             whole: Shares::default(),
             reachable: Shares::default(),
+            requested: None,
             exact: None,
             critical_zone: CriticalZone::default(),
             plates: Vec::new(),
@@ -75,6 +79,11 @@ impl Account {
             unreachable_slivers: Slivers::default(),
             ..self
         }
+    }
+
+    /// The floor that the mission had to scan: the requested part of the reachable floor, or all of it.
+    pub fn due(&self) -> &Shares {
+        self.requested.as_ref().unwrap_or(&self.reachable)
     }
 
     /// Reachable floor that was neither requested nor scanned, square metres.
@@ -222,7 +231,7 @@ pub fn account(run: &RunOpened, scanned: &Scanned, evidence: &Evidence) -> Accou
     let grid = scanned.believed();
     let floor = grid.floor();
     let plates = plate_map(run, floor);
-    let (mut whole, mut reachable) = (Tally::default(), Tally::default());
+    let (mut whole, mut reachable, mut requested) = (Tally::default(), Tally::default(), Tally::default());
     let mut by_plate = vec![Tally::default(); plates.as_ref().map_or(0, |map| map.plates.len())];
     let covered: Vec<bool> = (0..floor.len()).map(|index| grid.is_covered(index)).collect();
     for (index, is_scanned) in covered.iter().copied().enumerate() {
@@ -231,6 +240,9 @@ pub fn account(run: &RunOpened, scanned: &Scanned, evidence: &Evidence) -> Accou
         whole.count(kind, is_scanned, is_guaranteed);
         if kind == Cell::Reachable {
             reachable.count(kind, is_scanned, is_guaranteed);
+            if evidence.is_asked(index) {
+                requested.count(kind, is_scanned, is_guaranteed);
+            }
         }
         if let Some(plate) = plates.as_ref().and_then(|map| map.plate_of(index)) {
             by_plate[plate].count(kind, is_scanned, is_guaranteed);
@@ -253,6 +265,7 @@ pub fn account(run: &RunOpened, scanned: &Scanned, evidence: &Evidence) -> Accou
         position_limit_m: run.mission.scan_limit_m(),
         whole: whole.shares(floor.cell_m2()),
         reachable: reachable.shares(floor.cell_m2()),
+        requested: (!evidence.asks_for_everything()).then(|| requested.shares(floor.cell_m2())),
         exact: evidence.exact_share(&updated_floor(run, floor, evidence, run.mission.swath_m)),
         critical_zone: CriticalZone::of(&evidence.shell(), &rim(&run.mission), plate_at),
         plates: plates

@@ -118,7 +118,8 @@ pub(crate) enum Command {
         #[command(flatten)]
         logs: LogsArg,
     },
-    /// Close a run that was killed: record the SHA-256 of its files, so that the run can be part of a signed report.
+    /// Close a run that was killed or could not be closed: complete its files from the journal and record their SHA-256, so
+    /// that the run can be part of a signed report.
     Recover {
         /// Run folder, or its name in the logs folder.
         run: PathBuf,

@@ -10,6 +10,7 @@ use flight::{
     failure::{COMPLETE, bad_input},
     texts,
 };
+use recording::READINGS_FILE;
 use report::{
     document::{Surveyed, TWO_SURVEYS_SUFFIXES, TwoSurveys, two_surveys_html, two_surveys_tables},
     print::say_line,
@@ -41,16 +42,21 @@ pub(crate) fn compare(args: &CompareSurveysArgs) -> anyhow::Result<ExitCode> {
     let runs = [args.first.clone(), args.second.clone()];
     let past = review::read_all(&runs, &args.logs.folder())?;
     let [first, second] = &past[..] else { return Err(bad_input("give two runs")) };
+    refuse_doubts([first, second])?;
     let surveyed = [
         Surveyed { past: &first.run, inspection: inspection(first, args.inspection_first.as_deref())? },
         Surveyed { past: &second.run, inspection: inspection(second, args.inspection_second.as_deref())? },
     ];
     let comparison =
         TwoSurveys::new(&surveyed, args.minimum_mm, env!("CARGO_PKG_VERSION")).map_err(bad_input)?;
-    for part in [&comparison.first, &comparison.second] {
-        for doubt in &part.doubts {
-            say_line(&format!("WARNING: run {}: {doubt}", part.run))?;
-        }
+    for run in
+        [&comparison.first, &comparison.second].into_iter().filter(|part| part.readings_sha256.is_none())
+    {
+        say_line(&format!(
+            "note: {READINGS_FILE} of run {name} is missing; the comparison was computed from the journal; `tankops export \
+             {name} --readings FILE` makes the file again",
+            name = run.run
+        ))?;
     }
     let texts: Vec<String> = match format.as_str() {
         "html" => vec![two_surveys_html(&comparison)],
@@ -62,6 +68,18 @@ pub(crate) fn compare(args: &CompareSurveysArgs) -> anyhow::Result<ExitCode> {
         say_line(&name.display().to_string())?;
     }
     Ok(ExitCode::from(COMPLETE))
+}
+
+/// Refuses runs with files that were changed: a comparison would state losses that nobody measured.
+fn refuse_doubts(past: [&Past; 2]) -> anyhow::Result<()> {
+    let doubts = past.into_iter().flat_map(|past| {
+        past.run.files.doubts.iter().map(move |doubt| format!("run {}: {doubt}", past.run.name))
+    });
+    let doubts: Vec<String> = doubts.collect();
+    if doubts.is_empty() {
+        return Ok(());
+    }
+    Err(bad_input(format!("not compared: {}; restore the original files", doubts.join("; "))))
 }
 
 /// The files of a comparison in a format.

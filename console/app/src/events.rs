@@ -3,7 +3,7 @@
 mod socket;
 
 use crate::cli::EventsArgs;
-use flight::failure::COMPLETE;
+use flight::failure::{COMPLETE, bad_input};
 use mission::EventKind;
 use recording::{JournalReader, journal_of};
 use report::print::warn_line;
@@ -17,6 +17,7 @@ use std::{
 
 /// Prints the events of a run exactly as stored in its journal, one JSON object per line.
 pub(crate) fn events(args: &EventsArgs) -> anyhow::Result<ExitCode> {
+    check_kinds(&args.kind)?;
     let folder = find(&args.run, &args.logs.folder())?;
     let selection = Selection { kinds: args.kind.clone(), from_s: args.from.unwrap_or(0.0), to_s: args.to };
     let heartbeat = Duration::from_secs_f64(args.heartbeat);
@@ -34,6 +35,18 @@ pub(crate) fn events(args: &EventsArgs) -> anyhow::Result<ExitCode> {
         };
     }
     past(JournalReader::open_near(&journal_of(&folder), selection.from_s)?, &selection)
+}
+
+/// Refuses kinds of event that no journal contains.
+fn check_kinds(kinds: &[String]) -> anyhow::Result<()> {
+    let known = EventKind::names();
+    match kinds.iter().find(|kind| !known.contains(&kind.as_str())) {
+        None => Ok(()),
+        Some(kind) => Err(bad_input(format!(
+            "--kind {kind}: unknown kind of event; the known kinds are {}",
+            known.join(", ")
+        ))),
+    }
 }
 
 /// Prints the events that are in the journal now.
@@ -78,5 +91,22 @@ fn ended(error: &io::Error) -> anyhow::Result<ExitCode> {
     match error.kind() {
         ErrorKind::BrokenPipe => Ok(ExitCode::from(COMPLETE)),
         kind => Err(io::Error::new(kind, format!("writing to stdout: {error}")).into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_unknown_kind_is_refused_with_the_known_ones() {
+        assert!(check_kinds(&["held".to_owned(), "ended".to_owned()]).is_ok());
+        let refused =
+            check_kinds(&["held".to_owned(), "nosuch".to_owned()]).expect_err("unknown").to_string();
+        assert!(
+            refused.starts_with("--kind nosuch: unknown kind of event; the known kinds are "),
+            "{refused}"
+        );
+        assert!(refused.contains(", held, ") && refused.contains("planner_chosen"), "{refused}");
     }
 }

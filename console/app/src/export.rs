@@ -55,6 +55,9 @@ fn of_journal(
     Ticks::open(&path)?.opened()?;
     let truncated = match make(&path, file) {
         Err(RecordingError::Journal(error)) => return Err(error.into()),
+        Err(error @ RecordingError::NoReadings) => {
+            return Err(bad_input(format!("{error}: {}", path.display())));
+        }
         made => made.with_context(|| format!("writing {}", file.display()))?,
     };
     let sha256 = events_sha256(&path).ok();

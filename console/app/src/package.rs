@@ -2,7 +2,7 @@
 //! without the runs.
 
 use crate::output::check_free;
-use ::package::{PackageError, Writer, is_name};
+use ::package::{Writer, is_name, sha256_of};
 use anyhow::Context;
 use command::json::pretty_json;
 use flight::failure::bad_input;
@@ -16,7 +16,7 @@ use review::package::{MANIFEST, Manifest, PAGE, SIGNATURES, readings_name, signe
 use runs::{NOTES_FILE, write_whole_with};
 use std::{
     fs::File,
-    io,
+    io::{self, Write},
     path::{Path, PathBuf},
 };
 
@@ -24,8 +24,8 @@ use std::{
 pub(crate) struct Content<'a> {
     pub(crate) document: &'a Document,
     pub(crate) past: &'a [PastRun],
-    /// The folders of the runs.
-    pub(crate) folders: &'a [PathBuf],
+    /// The files that the page of the document states.
+    pub(crate) parts: &'a Parts,
     /// All signed reports on the runs, with the one that was signed now.
     pub(crate) revisions: &'a [Revision],
 }
@@ -47,6 +47,7 @@ signed/             the pages of earlier signed reports
 package.json        the runs, with the SHA-256 of their files
 SHA256SUMS          the SHA-256 of every file here
 
+report.html states the SHA-256 of the other files, so its signature also covers them.
 To check that nothing was changed: `tankops verify FILE.zip`, or unpack and run `sha256sum -c SHA256SUMS`.
 ";
 
@@ -67,36 +68,103 @@ pub(crate) fn write(file: &Path, content: &Content<'_>) -> anyhow::Result<()> {
     Ok(say_line(&format!("{}, sha256 {sha256}", file.display()))?)
 }
 
-fn fill(out: &mut File, content: &Content<'_>) -> anyhow::Result<()> {
-    let Content { document, past, folders, revisions } = content;
-    let mut package = Writer::new(out);
-    let text = |package: &mut Writer<_>, name: &str, text: &str| -> Result<(), PackageError> {
-        package.add(name, text.as_bytes()).map(drop)
-    };
-    text(&mut package, "README.txt", README)?;
-    text(&mut package, PAGE, &html(document))?;
-    let json = match document.located {
-        Some(_) => pretty_json("the report", &located_json(document)?)?,
-        None => pretty_json("the report", document)?,
-    };
-    text(&mut package, "report.json", &json)?;
-    for (suffix, table) in csv::SUFFIXES.iter().zip(csv::tables(document, past)) {
-        text(&mut package, &format!("report{suffix}.csv"), &table)?;
+/// A file of a package.
+struct Part {
+    name: String,
+    content: Source,
+}
+
+/// Where the content of a file comes from; a long content is not kept in memory.
+enum Source {
+    Text(String),
+    PlateGrid,
+    File(PathBuf),
+}
+
+impl Part {
+    fn text(name: &str, text: String) -> Self {
+        Self { name: name.to_owned(), content: Source::Text(text) }
     }
-    text(&mut package, "report.geojson", &geojson::geojson(document, past))?;
-    text(&mut package, "report.dxf", &dxf::dxf(document, past))?;
-    if document.thickness.is_some() {
-        package.add_with("plate-grid.csv", |sink| plate_grid(past, sink).map_err(anyhow::Error::msg))?;
+
+    /// A file of a run, if it exists.
+    fn of_run(name: String, path: PathBuf) -> Option<Self> {
+        path.exists().then_some(Self { name, content: Source::File(path) })
     }
+
+    fn write(&self, past: &[PastRun], sink: &mut dyn Write) -> anyhow::Result<()> {
+        match &self.content {
+            Source::Text(text) => Ok(sink.write_all(text.as_bytes())?),
+            Source::PlateGrid => plate_grid(past, sink).map_err(anyhow::Error::msg),
+            Source::File(path) => {
+                let reading = || format!("cannot read {}", path.display());
+                let mut file = File::open(path).with_context(reading)?;
+                io::copy(&mut file, sink).map(drop).with_context(reading)
+            }
+        }
+    }
+}
+
+/// The files of a package that belong to its page.
+pub(crate) struct Parts(Vec<Part>);
+
+impl Parts {
+    /// The files of a report on some runs; `folders` are the folders of the runs.
+    pub(crate) fn of(document: &Document, past: &[PastRun], folders: &[PathBuf]) -> anyhow::Result<Self> {
+        let json = match document.located {
+            Some(_) => pretty_json("the report", &located_json(document)?)?,
+            None => pretty_json("the report", document)?,
+        };
+        let names = names(past);
+        let manifest = pretty_json("the list of the runs", &Manifest::new(document, past, &names))?;
+        let mut parts = vec![Part::text("README.txt", README.to_owned()), Part::text("report.json", json)];
+        let tables = csv::SUFFIXES.iter().zip(csv::tables(document, past));
+        parts.extend(tables.map(|(suffix, table)| Part::text(&format!("report{suffix}.csv"), table)));
+        parts.push(Part::text("report.geojson", geojson::geojson(document, past)));
+        parts.push(Part::text("report.dxf", dxf::dxf(document, past)));
+        if document.thickness.is_some() {
+            parts.push(Part { name: "plate-grid.csv".to_owned(), content: Source::PlateGrid });
+        }
+        for (run, folder) in names.iter().zip(folders) {
+            parts.extend(Part::of_run(readings_name(run), folder.join(READINGS_FILE)));
+            parts.extend(Part::of_run(format!("notes/{run}.json"), folder.join(NOTES_FILE)));
+        }
+        parts.push(Part::text(MANIFEST, manifest));
+        Ok(Self(parts))
+    }
+
+    /// The names of the files and their SHA-256, hexadecimal, for the page.
+    pub(crate) fn digests(&self, past: &[PastRun]) -> anyhow::Result<Vec<(String, String)>> {
+        let digest = |part: &Part| -> anyhow::Result<(String, String)> {
+            let sha256 = sha256_of(|sink| part.write(past, sink))?;
+            Ok((part.name.clone(), sha256))
+        };
+        self.0.iter().map(digest).collect()
+    }
+}
+
+/// The names of the runs in a package.
+fn names(past: &[PastRun]) -> Vec<String> {
     let name = |(number, past): (usize, &PastRun)| {
         if is_name(&past.name) { past.name.clone() } else { format!("run-{number}") }
     };
-    let names: Vec<String> = (1..).zip(past.iter()).map(name).collect();
-    for (run, folder) in names.iter().zip(folders.iter()) {
-        add_file(&mut package, &readings_name(run), &folder.join(READINGS_FILE))?;
-        add_file(&mut package, &format!("notes/{run}.json"), &folder.join(NOTES_FILE))?;
+    (1..).zip(past.iter()).map(name).collect()
+}
+
+fn fill(out: &mut File, content: &Content<'_>) -> anyhow::Result<()> {
+    let Content { document, past, parts, revisions } = content;
+    let mut package = Writer::new(out);
+    package.add(PAGE, html(document).as_bytes())?;
+    for part in &parts.0 {
+        let packed = package.add_with(&part.name, |sink| part.write(past, sink))?;
+        let stated = document.packed.iter().find(|(name, _)| *name == part.name);
+        if stated.is_none_or(|(_, sha256)| *sha256 != packed) {
+            return Err(bad_input(format!(
+                "{} was changed while the report was written; write the package again",
+                part.name
+            )));
+        }
     }
-    let manifest = Manifest::new(document, past, &names);
+    let manifest = Manifest::new(document, past, &names(past));
     for revision in revisions.iter().filter(|revision| !manifest.is(revision)) {
         let page = File::open(&revision.file).with_context(|| {
             format!("cannot read the signed revision {}: {}", revision.revision, revision.file)
@@ -109,20 +177,7 @@ fn fill(out: &mut File, content: &Content<'_>) -> anyhow::Result<()> {
             )));
         }
     }
-    text(&mut package, SIGNATURES, &pretty_json("the signatures", revisions)?)?;
-    text(&mut package, MANIFEST, &pretty_json("the list of the runs", &manifest)?)?;
+    package.add(SIGNATURES, pretty_json("the signatures", revisions)?.as_bytes())?;
     package.finish()?;
     Ok(())
-}
-
-/// Adds a file of a run, if it exists.
-fn add_file(package: &mut Writer<&mut File>, name: &str, path: &Path) -> anyhow::Result<()> {
-    match File::open(path) {
-        Ok(file) => {
-            package.add(name, file)?;
-            Ok(())
-        }
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
-        Err(error) => Err(error).with_context(|| format!("cannot read {}", path.display())),
-    }
 }

@@ -5,14 +5,17 @@ use crate::{
     report_file,
 };
 use ::locate::Again;
+use account::Expect;
 use command::json::pretty_json;
 use flight::failure::{COMPLETE, ENDED_OTHERWISE, bad_input};
+use mission::RunOpened;
 use planner_host::PluginDirs;
 use report::{
     PastRun, merged,
     print::{say, say_line},
 };
 use runs::{Past, find};
+use scenario::Scenario;
 use std::{path::Path, process::ExitCode};
 
 /// Runs `tankops runs`.
@@ -52,9 +55,10 @@ fn one(past: &Past, json: bool) -> anyhow::Result<String> {
 /// Runs `tankops recover`.
 pub(crate) fn recover(run: &Path, by: &str, logs: &LogsArg) -> anyhow::Result<ExitCode> {
     let folder = find(run, &logs.folder())?;
-    let recovered = runs::recover(&folder, by)?;
+    let recovered = runs::recover(&folder, by, expectations)?;
+    let missing = if recovered.missing.is_empty() { "nothing is missing" } else { "missing:" };
     say_line(&format!(
-        "{}: recovered by {}, {} UTC; missing:",
+        "{}: recovered by {}, {} UTC; {missing}",
         folder.display(),
         recovered.by,
         recovered.at
@@ -67,6 +71,14 @@ pub(crate) fn recover(run: &Path, by: &str, logs: &LogsArg) -> anyhow::Result<Ex
          signed report",
     )?;
     Ok(ExitCode::from(COMPLETE))
+}
+
+/// The expectations of the scenario in a journal; `None` if the scenario cannot be read.
+fn expectations(run: &RunOpened) -> Option<Expect> {
+    if run.measured.is_some() {
+        return Some(Expect::default());
+    }
+    Scenario::recorded(&run.scenario_toml, "the scenario in the journal").ok().map(|scenario| scenario.expect)
 }
 
 /// Runs `tankops verify`.

@@ -3,7 +3,7 @@
 use crate::{
     cli::ReportArgs,
     output::{check_free, write_file},
-    package::{self, Content},
+    package::{self, Content, Parts},
     signing::{
         Chain, refuse_doubts, refuse_not_located_again, refuse_not_recomputed, refuse_open_items,
         refuse_other_signer, seal, signature,
@@ -71,7 +71,7 @@ pub(crate) fn write(args: &ReportArgs, plugins: &PluginDirs) -> anyhow::Result<E
         revisions: chain.revisions.clone(),
         signature: signature.clone(),
     };
-    let document = Document::new(&past, context).map_err(bad_input)?;
+    let mut document = Document::new(&past, context).map_err(bad_input)?;
     if signature.is_some() {
         refuse_doubts(&chain)?;
         refuse_open_items(&document)?;
@@ -85,6 +85,11 @@ pub(crate) fn write(args: &ReportArgs, plugins: &PluginDirs) -> anyhow::Result<E
     {
         say_line(&format!("WARNING: run {}: {doubt}", past.name))?;
     }
+    let has_page = args.package.is_some() || output.is_some_and(|(_, format)| format == "html");
+    let parts = has_page.then(|| Parts::of(&document, &past, &folders)).transpose()?;
+    if let Some(parts) = &parts {
+        document.packed = parts.digests(&past)?;
+    }
     let written = output.map(|(output, format)| files(output, format, &document, &past)).transpose()?;
     for (file, text) in written.into_iter().flatten() {
         write_file("the report", &file, &text)?;
@@ -93,9 +98,9 @@ pub(crate) fn write(args: &ReportArgs, plugins: &PluginDirs) -> anyhow::Result<E
             chain.revisions.push(seal((&file, &text), &document, signature, (&folders, &past))?);
         }
     }
-    if let Some(file) = &args.package {
-        let (document, past, folders, revisions) = (&document, &past[..], &folders[..], &chain.revisions[..]);
-        package::write(file, &Content { document, past, folders, revisions })?;
+    if let Some((file, parts)) = args.package.as_ref().zip(parts.as_ref()) {
+        let (document, past, revisions) = (&document, &past[..], &chain.revisions[..]);
+        package::write(file, &Content { document, past, parts, revisions })?;
     }
     Ok(ExitCode::from(COMPLETE))
 }

@@ -14,6 +14,7 @@ use super::{
     inbox::RunOutbox,
     line::{Current, EngineHandle, Request, line},
     pace::{Pace, Reached, window},
+    watch::GRACE,
 };
 use crate::Drill;
 use account::DoubtWatch;
@@ -44,8 +45,9 @@ use tui::{RunMsg, Speed};
 /// noticed, but the events of a long wait must not fill the memory.
 const IDLE: u32 = 10;
 
-/// Time limit for closing the recording after a signal has asked the process to exit.
-const HURRY: Duration = Duration::from_millis(900);
+/// Time limit for closing the recording after a signal has asked the process to exit. On a busy machine, the writer may
+/// have to catch up; a run must not be lost for that.
+const HURRY: Duration = GRACE.saturating_sub(Duration::from_secs(1));
 
 /// A handle to the engine's thread.
 pub(super) struct Engine {

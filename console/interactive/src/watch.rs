@@ -25,8 +25,9 @@ use tui::{
     terminal::{self, Input, Keyboard, Pointer},
 };
 
-/// The time for a clean exit after a signal; once it is over, the process exits in any case.
-const GRACE: Duration = Duration::from_secs(1);
+/// The time for a clean exit after a signal, which includes closing the recording; once it is over, the process exits in
+/// any case. The robot is held at once.
+pub(crate) const GRACE: Duration = Duration::from_secs(6);
 
 /// Signals that are not meant for a console, but would end a process without a handler and leave the terminal as the
 /// screen has set it. SIGXFSZ is not listed: the failing write reports it.

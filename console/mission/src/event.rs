@@ -69,8 +69,9 @@ pub struct Event {
 }
 
 /// The kinds of event.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::VariantNames)]
 #[serde(rename_all = "snake_case", tag = "event")]
+#[strum(serialize_all = "snake_case")]
 pub enum EventKind {
     /// First event of every run: everything that is needed to repeat the run.
     RunOpened(Box<RunOpened>),
@@ -650,7 +651,28 @@ pub enum EventKind {
     },
 }
 
+impl EventKind {
+    /// The names of all kinds, as in the key `event` of a journal.
+    pub fn names() -> &'static [&'static str] {
+        <Self as strum::VariantNames>::VARIANTS
+    }
+}
+
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
 fn is_zero(n: &usize) -> bool {
     *n == 0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_names_of_the_kinds_are_those_in_a_journal() {
+        let error = serde_json::from_str::<EventKind>("{\"event\": \"nosuch\"}")
+            .expect_err("an unknown kind")
+            .to_string();
+        let known: Vec<&str> = error.split('`').skip(3).step_by(2).collect();
+        assert_eq!(known, EventKind::names(), "{error}");
+    }
 }

@@ -14,7 +14,7 @@ mod writer;
 pub use fault::{Fault, PackageError};
 pub use name::is_name;
 pub use package::{Entry, Package};
-pub use writer::Writer;
+pub use writer::{Writer, sha256_of};
 
 /// Name of the list of digests, the last entry of a package.
 pub const SUMS: &str = "SHA256SUMS";

@@ -163,3 +163,12 @@ proptest! {
         prop_assert!(Package::open(Cursor::new(&bytes[..left])).is_err());
     }
 }
+
+#[test]
+fn the_digest_of_a_content_is_that_of_its_entry() {
+    let mut writer = Writer::new(Cursor::new(Vec::new()));
+    let entry = writer.add("a.txt", &b"seen"[..]).unwrap();
+    let alone = sha256_of(|sink| sink.write_all(b"seen")).unwrap();
+    assert_eq!(entry, alone);
+    assert!(sha256_of(|_| Err("no content")).is_err());
+}

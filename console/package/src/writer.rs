@@ -50,6 +50,22 @@ impl<W: Write> Write for Sink<'_, W> {
     }
 }
 
+/// SHA-256 of the content that `fill` writes, hexadecimal: what [`Writer::add_with`] returns for this content.
+///
+/// # Errors
+/// Those of `fill`.
+pub fn sha256_of<E>(fill: impl FnOnce(&mut dyn Write) -> Result<(), E>) -> Result<String, E> {
+    let mut sink = Sink {
+        out: &mut io::sink(),
+        crc: crc32fast::Hasher::new(),
+        digest: Sha256::new(),
+        bytes: 0,
+        most_bytes: MOST_BYTES,
+    };
+    fill(&mut sink)?;
+    Ok(hex::encode(sink.digest.finalize()))
+}
+
 impl<W: Write + Seek> Writer<W> {
     /// Begins a package; `out` must be empty.
     pub fn new(out: W) -> Self {

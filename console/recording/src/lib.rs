@@ -36,7 +36,7 @@ pub use journal::{
     JournalWriter, PLAIN_JOURNAL_FILE, RecordedTick, Ticks, events_sha256, events_sha256_while, journal_of,
     read_ending,
 };
-pub use marker::{FAILURE_FILE, recorded_failure, remove_reserve};
+pub use marker::{FAILURE_FILE, recorded_failure, remove_failure, remove_reserve};
 pub use readings::{READINGS_FILE, ReadingsWriter, each_reading, export_readings};
 pub use recorder::{RECORDING_FILE, Recorder};
 pub use sink::SinkHealth;

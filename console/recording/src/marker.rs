@@ -66,6 +66,11 @@ pub fn remove_reserve(folder: &Path) {
     let _ = fs::remove_file(folder.join(RESERVE_FILE));
 }
 
+/// Removes the file that reports a failure, once the files of the run have been made again from its journal.
+pub fn remove_failure(folder: &Path) {
+    let _ = fs::remove_file(folder.join(FAILURE_FILE));
+}
+
 /// The reason why the journal or recording of the run in a folder failed, if it did.
 pub fn recorded_failure(folder: &Path) -> Option<String> {
     let mut text = Vec::new();

@@ -16,6 +16,7 @@
 
 mod cdr;
 mod ros;
+mod summary;
 
 use crate::{error::RecordingError, journal::JournalReader};
 use ::mcap::{WriteOptions, Writer, records::MessageHeader};
@@ -54,6 +55,7 @@ pub fn export_mcap(journal: &Path, file: &Path) -> Result<Option<String>, Record
         export.take(&event?).map_err(|error| write(&error))?;
     }
     export.finish().map_err(|error| write(&error))?;
+    summary::sort(file).map_err(|error| RecordingError::Write { why: error.to_string() })?;
     Ok(reader.truncated().map(str::to_owned))
 }
 

@@ -43,6 +43,13 @@ fn below(key: String, one: &Value, other: &Value) -> Option<Difference> {
             other: format!("one of length {}", others.len()),
             key,
         }),
+        (Value::String(ones), Value::String(others)) => {
+            let same = ones.chars().zip(others.chars()).take_while(|(one, other)| one == other).count();
+            // The first difference must be among the characters that are kept.
+            let from = if same > BRIEF / 2 { same - BRIEF / 4 } else { 0 };
+            let text = |text: &String| brief(&Value::from(text.chars().skip(from).collect::<String>()));
+            Some(Difference { key, one: text(ones), other: text(others) })
+        }
         _ => Some(Difference { key, one: brief(one), other: brief(other) }),
     }
 }

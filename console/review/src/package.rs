@@ -103,8 +103,8 @@ impl Manifest {
     }
 }
 
-/// Verifies a package. It is equal if every file is as `SHA256SUMS` lists it, the readings are those of the runs, the
-/// parts name one report, and the pages are those that were signed.
+/// Verifies a package. It is equal if every file is as `SHA256SUMS` and the page list it, the readings are those of the
+/// runs, the parts name one report, and the pages are those that were signed.
 ///
 /// # Errors
 /// The file cannot be read.
@@ -162,6 +162,10 @@ fn checked(input: impl Read + Seek, register: &Register) -> Result<Vec<Line>, Pa
     if let (Ok(manifest), Ok(signed)) = (&manifest, &signed) {
         lines.extend(readings(manifest, &digests));
         lines.extend(signatures(manifest, signed, &digests, register));
+        if let Ok(page) = &page {
+            let page = String::from_utf8_lossy(page);
+            lines.extend(agreement::earlier_pages((manifest, signed), &page, &digests));
+        }
     }
     let why = [manifest.err(), signed.err(), report.err(), page.err()];
     lines.extend(why.into_iter().flatten().map(Line::Different));
@@ -220,7 +224,8 @@ fn signatures(
     for revision in signed {
         let name = if manifest.is(revision) { PAGE.to_owned() } else { signed_name(revision) };
         let (letter, by, at) = (&revision.revision, &revision.signature.by, &revision.signature.at);
-        match digests.get(&name) {
+        let now = digests.get(&name);
+        match now {
             Some(now) if *now == revision.sha256 => {
                 lines.push(Line::Fine(format!("signed: revision {letter} by {by}, {at} UTC: {name}")));
             }
@@ -232,11 +237,12 @@ fn signatures(
             None => lines.push(Line::Different(format!("NOT AS SIGNED: {name}, revision {letter} by {by}, is missing"))),
         }
         lines.push(match register.numbered(&revision.number, letter) {
-            Some(entry) if entry.sha256 == revision.sha256 => {
+            Some(entry) if entry.sha256 == revision.sha256 && Some(&entry.sha256) == now => {
                 Line::Fine(format!("signed: your register lists revision {letter} with the same SHA-256"))
             }
             Some(entry) => Line::Different(format!(
-                "NOT AS SIGNED: your register lists revision {letter} by {}, {} UTC, with another SHA-256: {}",
+                "NOT AS SIGNED: your register lists revision {letter} by {}, {} UTC, with SHA-256 {}, not that of {name} \
+                 in this package",
                 entry.signature.by, entry.signature.at, entry.sha256
             )),
             None => Line::Fine(format!(

@@ -9,6 +9,7 @@
 //!
 //! The journal is read tick by tick; memory use does not grow with its length.
 
+mod difference;
 pub(crate) mod planners;
 
 use crate::{flown::Flown, register};
@@ -198,14 +199,15 @@ fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
         );
     }
     if let Some(recovered) = &findings.recovered {
-        lines.push(format!("note: the run was killed and later recovered {recovered}"));
+        lines
+            .push(format!("note: the run was not closed when it ended, and was later recovered {recovered}"));
     }
     if let Some(why) = no_end {
         lines
             .push(format!("note: the journal is incomplete ({why}); only the part that exists was compared"));
     }
-    if let Some(Difference { tick, recorded, computed }) = difference {
-        lines.push(format!("different from tick {tick} on\n  recorded: {recorded}\n  computed: {computed}"));
+    if let Some(difference) = difference {
+        lines.push(difference::text(difference));
     } else if let Some(doubt) = doubt {
         lines.push(format!("different: {doubt}; the {events} events up to tick {last_tick} were recomputed"));
     }

@@ -37,6 +37,10 @@ impl Kept {
         let folder = self.folder.display();
         match self.problem() {
             None => format!("run kept in {folder}"),
+            Some(why) if self.folder.join(JOURNAL_FILE).is_file() => format!(
+                "run NOT kept in {folder}: {why}; `tankops recover {} --by NAME` completes it from its journal",
+                self.name()
+            ),
             Some(why) => format!("run NOT kept in {folder}: {why}"),
         }
     }

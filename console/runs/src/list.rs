@@ -123,7 +123,8 @@ fn look_at(folder: &Path, budget: &Budget) -> Listed {
             let reported = Reported::read(folder).ok().flatten();
             let recovered = reported.as_ref().and_then(Reported::recovered);
             let closed = recovered.map(|Recovered { by, at, .. }| {
-                format!("killed, recovered by {by}, {at} UTC; {}", held(&summary))
+                let killed = if summary.outcome.is_none() { "killed, " } else { "" };
+                format!("{killed}recovered by {by}, {at} UTC; {}", held(&summary))
             });
             let doubt =
                 reported.as_ref().and_then(|reported| reported.recording_doubt(folder, &Now::Within(budget)));

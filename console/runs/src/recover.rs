@@ -1,59 +1,161 @@
-//! Closes a run that was killed while it was being written. The report records the digests of the existing files, who
-//! closed the run and when, and the missing parts. Neither the journal nor the recording is changed.
+//! Closes a run whose writer did not close it: the writer was killed, or could not finish in time. The report records the
+//! digests of the files, who closed the run and when, and the missing parts. A journal is never changed. If the journal
+//! contains the end of the mission, the recording and the readings are made again from it; otherwise they stay as they are.
 
 use crate::{
-    error::RunError, folder::RunFolder, past::Past, report_file::Reported, standing::held, utc_minute,
+    error::RunError, files::REPORT_FILE, folder::RunFolder, past::Past, report_file::Reported,
+    standing::held, utc_minute, whole::draft_of,
 };
-use account::{Logs, Summary};
-use recording::{JournalError, recorded_failure, remove_reserve};
+use account::{Expect, Logs, Summary};
+use mission::RunOpened;
+use recording::{
+    JournalError, READINGS_FILE, RECORDING_FILE, RecordingError, journal_of, recorded_failure,
+    remove_failure, remove_reserve, sha256,
+};
 use report::document::Recovered;
-use std::{path::Path, time::SystemTime};
+use std::{fs, io, path::Path, time::SystemTime};
 
-/// The figures that the killed process would have added at the end.
+/// The figures that the writer would have added at the end.
 const BY_THE_CLOCK: &str = "wall-clock figures: computing time, planner calls, stops";
 /// The parts that are missing from a recording that was not closed.
 const OF_RECORDING: &str = "the index of the recording, and up to 5 s of data that had not been written yet";
+/// The missing result of the scenario's expectations.
+const EXPECTATIONS: &str =
+    "the comparison with [expect]: this version of tankops cannot read the scenario of the run";
 
-/// Closes the run in a folder if its writer was killed.
+/// Closes the run in a folder if its writer did not. `expect` returns the expectations of the scenario of the run, or
+/// `None` if the scenario cannot be read.
 ///
 /// # Errors
-/// A process is still writing to the run; the run has already been closed; its journal is empty or cannot be read; or the
-/// system refuses to write the report.
-pub fn recover(folder: &Path, by: &str) -> Result<Recovered, RunError> {
+/// A process is still writing to the run; the run has already been closed; a file was changed since then; the journal is
+/// empty or cannot be read; or the system refuses to write a file.
+pub fn recover(
+    folder: &Path,
+    by: &str,
+    expect: impl FnOnce(&RunOpened) -> Option<Expect>,
+) -> Result<Recovered, RunError> {
     let run = RunFolder::take(folder)?;
-    refuse_closed(folder)?;
+    let unclosed = unclosed(folder)?;
     let past = Past::read(folder).map_err(|error| explained(error, folder))?;
-    let recovered =
-        Recovered { by: by.to_owned(), at: utc_minute(SystemTime::now()), missing: missing(folder, &past) };
-    let files = &past.run.files;
-    let summary = Summary {
-        events_sha256: files.journal_sha256.clone(),
-        recording_sha256: files.recording_sha256.clone(),
-        // No other process holds the lock.
-        logs: Some(Logs { is_open: false, ..past.run.logs.clone() }),
-        ..past.run.summary.clone()
+    if let Some(doubt) = unclosed
+        .as_ref()
+        .and_then(|report| report.reported.journal_doubt(past.run.files.journal_sha256.as_deref()))
+    {
+        return Err(refused(folder, &format!("{doubt}; restore the journal")));
+    }
+    let by_the_clock = unclosed.as_ref().map(|report| &*report.summary);
+    let is_whole = past.run.summary.outcome.is_some();
+    let expect = if is_whole { expect(&past.opened) } else { None };
+    let missing = missing(folder, &past, (by_the_clock, expect.as_ref()));
+    let recovered = Recovered { by: by.to_owned(), at: utc_minute(SystemTime::now()), missing };
+    let made = if is_whole { Some(made_again(folder, &past)?) } else { None };
+    let summary = closed(&past, made, by_the_clock);
+    let summary = match expect {
+        Some(expect) => expect.evaluated(summary),
+        None => summary,
     };
-    // The draft left behind by the killed writer is reused.
+    // The draft left behind by the writer is reused.
     run.write_report_of(&summary, Some(&recovered))?;
     remove_reserve(folder);
+    if is_whole {
+        remove_failure(folder);
+    }
     Ok(recovered)
 }
 
-/// Refuses a run that already has a report.
-fn refuse_closed(folder: &Path) -> Result<(), RunError> {
-    let refused = |why: String| Err(RunError::Refused(format!("{why}: {}", folder.display())));
-    match Reported::read(folder) {
-        Ok(None) => Ok(()),
-        Ok(Some(report)) => refused(match report.recovered() {
-            Some(Recovered { by, at, .. }) => {
-                format!("the run was already recovered by {by}, {at} UTC; nothing was changed")
-            }
-            None => {
-                "the run has a report, so it was closed when it ended; there is nothing to recover".into()
-            }
-        }),
-        Err(why) => refused(format!("the run was closed when it ended, and {why}; restore the file")),
+/// The figures of the report; `made` are the digests of the recording and the readings if they were made again.
+fn closed(past: &Past, made: Option<[Option<String>; 2]>, by_the_clock: Option<&Summary>) -> Summary {
+    let files = &past.run.files;
+    let clock = by_the_clock.cloned().unwrap_or_default();
+    // No other process holds the lock.
+    let logs = Logs { is_open: false, ..past.run.logs.clone() };
+    let logs = match &made {
+        // The recording may have been missing before.
+        Some(_) => Logs { error: None, recording: Some(recording_of(past)), ..logs },
+        None => logs,
+    };
+    let [recording_sha256, readings_sha256] = made.unwrap_or_else(|| [files.recording_sha256.clone(), None]);
+    Summary {
+        events_sha256: files.journal_sha256.clone(),
+        recording_sha256,
+        readings_sha256,
+        wall_time_s: clock.wall_time_s,
+        planner_calls: clock.planner_calls,
+        stops: clock.stops,
+        logs: Some(logs),
+        ..past.run.summary.clone()
     }
+}
+
+/// The path of the recording, beside the journal.
+fn recording_of(past: &Past) -> String {
+    let journal = past.run.logs.journal.as_deref().unwrap_or_default();
+    Path::new(journal).with_file_name(RECORDING_FILE).display().to_string()
+}
+
+/// Makes the recording and the readings of a run again from its journal, and returns their SHA-256; that of the readings
+/// is absent if the run has none.
+fn made_again(folder: &Path, past: &Past) -> Result<[Option<String>; 2], RunError> {
+    let recording = replaced(folder, RECORDING_FILE, recording::export)?;
+    let has_readings = past.run.fold.survey().is_some();
+    let readings = has_readings.then(|| replaced(folder, READINGS_FILE, recording::export_readings));
+    Ok([Some(recording), readings.transpose()?])
+}
+
+/// Replaces a file in the folder of a run by one that is made from its journal; returns its SHA-256, hexadecimal. If this
+/// fails, the file is as it was.
+fn replaced(
+    folder: &Path,
+    name: &str,
+    make: fn(&Path, &Path) -> Result<Option<String>, RecordingError>,
+) -> Result<String, RunError> {
+    let (file, journal) = (folder.join(name), journal_of(folder));
+    let draft = draft_of(&file);
+    let writing = || format!("writing {}", file.display());
+    match fs::remove_file(&draft) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => {
+            return Err(RunError::during(writing())(error));
+        }
+        _ => {}
+    }
+    let replace = || {
+        make(&journal, &draft)?;
+        fs::rename(&draft, &file).map_err(RunError::during(writing()))?;
+        sha256(&file).map_err(RunError::during(writing()))
+    };
+    replace().inspect_err(|_: &RunError| drop(fs::remove_file(&draft)))
+}
+
+/// A report whose writer could not close the run, with the figures that only the writer knew.
+struct Unclosed {
+    reported: Reported,
+    summary: Box<Summary>,
+}
+
+/// The report of a run that was not closed; `None` without a report. Refuses a run that was closed.
+fn unclosed(folder: &Path) -> Result<Option<Unclosed>, RunError> {
+    let refused = |why: &str| Err(refused(folder, why));
+    let reported = match Reported::read(folder) {
+        Ok(None) => return Ok(None),
+        Ok(Some(reported)) => reported,
+        Err(why) => {
+            return refused(&format!("the run was closed when it ended, and {why}; restore the file"));
+        }
+    };
+    if let Some(Recovered { by, at, .. }) = reported.recovered() {
+        return refused(&format!("the run was already recovered by {by}, {at} UTC; nothing was changed"));
+    }
+    match reported.unclosed() {
+        Ok(Some(summary)) => Ok(Some(Unclosed { reported, summary })),
+        Ok(None) => {
+            refused("the run has a report, so it was closed when it ended; there is nothing to recover")
+        }
+        Err(why) => refused(&format!("{why}; restore {REPORT_FILE}")),
+    }
+}
+
+fn refused(folder: &Path, why: &str) -> RunError {
+    RunError::Refused(format!("{why}: {}", folder.display()))
 }
 
 /// The reason why nothing can be recovered from a journal.
@@ -67,20 +169,27 @@ fn explained(error: RunError, folder: &Path) -> RunError {
     }
 }
 
-/// The parts that are missing from a run.
-fn missing(folder: &Path, past: &Past) -> Vec<String> {
+/// The parts that are missing from a run; `known` are the figures that the writer had added, and the expectations of the
+/// scenario, as far as they are known.
+fn missing(folder: &Path, past: &Past, known: (Option<&Summary>, Option<&Expect>)) -> Vec<String> {
     let run = &past.run;
+    let (by_the_clock, expect) = known;
     let mut missing = Vec::new();
     if run.summary.outcome.is_none() {
         let torn = run.logs.error.as_ref().map(|why| format!(" ({why})")).unwrap_or_default();
         missing.push(format!("the end of the mission: {}{torn}", held(&run.summary)));
+        missing.push(match run.files.recording_sha256 {
+            Some(_) => OF_RECORDING.to_owned(),
+            None => "the recording".to_owned(),
+        });
+        missing
+            .extend(recorded_failure(folder).map(|why| format!("the data that could not be written: {why}")));
+    } else if expect.is_none() {
+        missing.push(EXPECTATIONS.to_owned());
     }
-    missing.push(match run.files.recording_sha256 {
-        Some(_) => OF_RECORDING.to_owned(),
-        None => "the recording".to_owned(),
-    });
-    missing.push(BY_THE_CLOCK.to_owned());
-    missing.extend(recorded_failure(folder).map(|why| format!("the data that could not be written: {why}")));
+    if by_the_clock.is_none() {
+        missing.push(BY_THE_CLOCK.to_owned());
+    }
     missing
 }
 

@@ -28,7 +28,7 @@ pub(crate) struct ReportFile<'a> {
     pub journal_bytes: Option<u64>,
     /// Absent if the recording no longer exists.
     pub recording_bytes: Option<u64>,
-    /// How the run was closed if its writer was killed.
+    /// How the run was closed if its writer did not close it.
     #[serde(skip_serializing_if = "Option::is_none")]
     recovered: Option<&'a Recovered>,
     /// SHA-256 of all lines of the file except this one.
@@ -161,9 +161,23 @@ impl Reported {
         self.source.run.as_deref()
     }
 
-    /// How the run was closed if its writer was killed.
+    /// How the run was closed if its writer did not close it.
     pub(crate) fn recovered(&self) -> Option<&Recovered> {
         self.source.recovered.as_ref()
+    }
+
+    /// The figures of the report if its writer could not close the run: the report itself states that a file is incomplete.
+    /// `None` if the run was closed.
+    ///
+    /// # Errors
+    /// The report was changed, or cannot be read; the reason as a sentence.
+    pub(crate) fn unclosed(&self) -> Result<Option<Box<Summary>>, String> {
+        let summary: Box<Summary> = serde_json::from_str(&self.text).map_err(|error| damaged(&error))?;
+        let is_incomplete = summary.logs.as_ref().is_some_and(|logs| logs.error.is_some());
+        if summary.events_sha256.is_some() && !is_incomplete {
+            return Ok(None);
+        }
+        self.seal_doubt().map_or(Ok(Some(summary)), Err)
     }
 
     /// The digest of the journal from which the report was made.

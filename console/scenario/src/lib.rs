@@ -5,6 +5,7 @@
 //! key, value and remedy; [`ScenarioErrors::render`] formats them. Settings from the command line are written into the
 //! text before it is parsed, so the resulting text alone reproduces the scenario.
 
+mod as_written;
 mod assemble;
 mod checks;
 mod expect;
@@ -90,9 +91,11 @@ impl Scenario {
         let shown_name =
             if is_stdin(path) { "standard input".to_owned() } else { path.display().to_string() };
         let text = read_text(path).map_err(|what| ScenarioErrors::of_file(&shown_name, what))?;
-        let (text, shown_name) = with_settings(&text, &shown_name, settings)?;
+        let (changed, shown_name) = with_settings(&text, &shown_name, settings)?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        Self::parse(&map::put_in(&text, &shown_name, folder)?, &shown_name)
+        let parsed =
+            map::put_in(&changed, &shown_name, folder).and_then(|text| Self::parse(&text, &shown_name));
+        parsed.map_err(|errors| settled(&text, settings, errors))
     }
 
     /// Parses a scenario; `shown_name` is its name in messages.
@@ -133,9 +136,14 @@ impl Scenario {
     /// # Errors
     /// All problems in the scenario or the settings.
     pub fn parse_with(text: &str, shown_name: &str, settings: &Settings) -> Result<Self, ScenarioErrors> {
-        let (text, shown_name) = with_settings(text, shown_name, settings)?;
-        Self::parse(&text, &shown_name)
+        let (changed, shown_name) = with_settings(text, shown_name, settings)?;
+        Self::parse(&changed, &shown_name).map_err(|errors| settled(text, settings, errors))
     }
+}
+
+/// The problems of a changed text with the lines of the text as it was written.
+fn settled(text: &str, settings: &Settings, errors: ScenarioErrors) -> ScenarioErrors {
+    if settings.is_empty() { errors } else { as_written::as_written(text, errors) }
 }
 
 /// Applies settings to a text; returns the changed text with its name for messages.

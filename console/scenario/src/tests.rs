@@ -205,6 +205,20 @@ fn settings_that_do_not_fit_are_named_in_the_message() {
 }
 
 #[test]
+fn an_option_that_adds_a_wrong_key_is_named_instead_of_a_line_that_the_file_does_not_have() {
+    let lines = SMALL.lines().count();
+    let settings = |set: &str| Settings { set: vec![set.into()], ..Settings::default() };
+    let errors = Scenario::parse_with(SMALL, "x.toml", &settings("nosuch.key=2")).expect_err("no such key");
+    let text = errors.render();
+    assert!(text.starts_with("error: x.toml with --set nosuch.key=2: nosuch"), "{text}");
+    // The line of another problem is that of the file, although an option added a line above it.
+    let wrong = format!("{SMALL}\n[expect]\nnosuch = 1\n");
+    let errors = Scenario::parse_with(&wrong, "x.toml", &settings("k_rep=2")).expect_err("no such key");
+    let text = errors.render();
+    assert!(text.contains(&format!("k_rep=2:{}:1: expect.nosuch = 1: unknown key", lines + 3)), "{text}");
+}
+
+#[test]
 fn an_error_shows_file_line_column_key_value_and_remedy() {
     let text = SMALL.replace("radius_m = 5", "radius_m = 0  # empty");
     let shown = errors(&text).render();

@@ -157,7 +157,7 @@ pub fn guide(cause: &Cause) -> Guide {
 pub fn effect(alarm: &Alarm, of: &Run) -> String {
     let guide = meaning(&alarm.cause, of);
     if !alarm.is_active() {
-        return "None any more: the cause is gone.".into();
+        return remains(&alarm.cause).into();
     }
     let hold = match of.phase() {
         _ if guide.holds.is_empty() => "",
@@ -170,6 +170,25 @@ pub fn effect(alarm: &Alarm, of: &Run) -> String {
     };
     let sentences = [hold, guide.effect].into_iter().filter(|sentence| !sentence.is_empty());
     sentences.collect::<Vec<_>>().join(" ")
+}
+
+/// The consequence of an alarm after its cause is gone, with the next step.
+fn remains(cause: &Cause) -> &'static str {
+    match cause {
+        Cause::DeadChannel => {
+            "The cause is gone. Floor that the channel passed while it was dead stays missed floor until it is rescanned. \
+             After the mission, press <rescan> on the screen Result: it makes a mission for the missed floor."
+        }
+        Cause::PositionLost | Cause::Contradiction => {
+            "The cause is gone. Floor that the tool passed meanwhile did not count as scanned: the missed floor is on the \
+             screen Result."
+        }
+        Cause::Bias(_) => {
+            "The cause is gone. Floor whose guarantee was taken back stays in doubt until it is rescanned. After the \
+             mission, press <rescan> on the screen Result."
+        }
+        _ => "None any more: the cause is gone.",
+    }
 }
 
 /// The remedies that apply to an alarm now.
@@ -203,6 +222,19 @@ mod tests {
             let name = name(&cause, &Run::default());
             assert!(!name.is_empty() && name.len() <= 31, "{name} fits into a table of 80 columns");
         }
+    }
+
+    #[test]
+    fn an_alarm_that_cost_floor_says_so_after_its_cause_is_gone() {
+        for cause in [Cause::DeadChannel, Cause::Bias(StationId(1))] {
+            let words = remains(&cause);
+            assert!(
+                words.contains("until it is rescanned") && words.contains("<rescan> on the screen Result"),
+                "{words}"
+            );
+            assert!(!words.contains("None any more"), "{words}");
+        }
+        assert_eq!(remains(&Cause::Disk), "None any more: the cause is gone.");
     }
 
     #[test]

@@ -448,6 +448,34 @@ fn floor_that_was_not_requested_is_never_one_area_with_floor_that_was() {
     assert!((account.not_asked_m2() + asked_m2 - reachable_m2).abs() < 0.02, "{:?}", account.missed);
 }
 
+#[test]
+fn shares_of_the_requested_floor_do_not_count_floor_beside_it() {
+    let mut run = round_tank(0.05);
+    let whole = account(&run, &CoverageGrid::new(run.floor.clone()), &Evidence::new(&run));
+    assert!(whole.requested.is_none() && whole.due() == &whole.reachable, "all of it was requested");
+    let regions = vec![world::coverage::regions::square(Point::new(0.0, -2.0), 2.0)];
+    run.mission.task = mission::TaskConfig::Cover { anchor: Point::origin(), regions, tolerance_m: 0.3 };
+    let within = |place: Point| place.x.abs() < 1.0 && (place.y + 2.0).abs() < 1.0;
+    let evidence = Evidence::new(&run);
+    let of = |is_scanned: &dyn Fn(usize) -> bool| {
+        let mut grid = CoverageGrid::new(run.floor.clone());
+        grid.apply(&runs_of((0..run.floor.len()).filter(|cell| is_scanned(*cell))));
+        account(&run, &grid, &evidence).requested.expect("a part was requested")
+    };
+    // Everything north of the square, and its western half.
+    let half = of(&|cell| {
+        let place = run.floor.center(cell);
+        place.y > -1.0 || within(place) && place.x < 0.0
+    });
+    assert!((half.area_m2 - 4.0).abs() < 1e-9 && (half.scanned - 0.5).abs() < 1e-9, "{half:?}");
+    assert!((half.percent.scanned, half.percent.missed) == (50.0, 50.0), "{half:?}");
+    // All of the square but one cell of 1600: 100.0 is stated only if nothing is left.
+    let first = (0..run.floor.len()).find(|cell| within(run.floor.center(*cell)));
+    let left = of(&|cell| Some(cell) != first);
+    assert!((left.percent.scanned, left.percent.missed) == (99.9, 0.1), "{left:?}");
+    assert!(of(&|_| true).percent.scanned >= 100.0);
+}
+
 /// The unreachable areas of a floor after a box has been closed as a no-go zone.
 fn out_of_reach_with(run: &RunOpened, zone: &world::Shape) -> Vec<Area<OutOfReach>> {
     let mut evidence = Evidence::new(run);

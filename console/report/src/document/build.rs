@@ -132,6 +132,7 @@ impl Document {
             indications,
             thickness: read,
             gate: Vec::new(),
+            packed: Vec::new(),
             pictures,
             scenario: past[0].fold.run().unwrap_or(run).scenario.clone(),
             size: gate::size(run),

@@ -7,7 +7,11 @@ use super::{
     model::Document,
 };
 use crate::human::text::counted;
+use account::Account;
 use mission::Outcome;
+
+/// The smallest area of missed floor that needs a decision, square metres; smaller areas are not listed.
+const LEAST_M2: f64 = 0.01;
 
 /// Returns the decisions that a document requires.
 pub(super) fn decisions(document: &Document) -> Vec<Decision> {
@@ -52,13 +56,9 @@ pub(super) fn decisions(document: &Document) -> Vec<Decision> {
             answer: facts.critical_zone_accepted.clone(),
         });
     }
-    if let Some(largest) = floor.missed.first() {
-        let (count, area_m2) = (counted(floor.missed.len() as u64, "missed area"), largest.area_m2);
+    if let Some(what) = missed(floor) {
         decisions.push(Decision {
-            what: format!(
-                "{count} of at least 0.01 m², the largest {area_m2:.2} m²: accept, re-scan, or inspect by \
-                 hand."
-            ),
+            what,
             section: 3,
             key: "missed_accepted",
             item: MISSED,
@@ -66,6 +66,22 @@ pub(super) fn decisions(document: &Document) -> Vec<Decision> {
         });
     }
     decisions
+}
+
+/// The floor that was missed although the mission had to scan it, with what to do; `None` if it is less than 0.01 m².
+fn missed(floor: &Account) -> Option<String> {
+    let largest = floor.missed.first()?;
+    let what = match &floor.requested {
+        Some(requested) => {
+            let missed_m2 = requested.missed * requested.area_m2;
+            (missed_m2 >= LEAST_M2).then(|| format!("{missed_m2:.2} m² of the requested floor was missed"))?
+        }
+        None => {
+            let count = counted(floor.missed.len() as u64, "missed area");
+            format!("{count} of at least {LEAST_M2} m², the largest {:.2} m²", largest.area_m2)
+        }
+    };
+    Some(format!("{what}: accept, re-scan, or inspect by hand."))
 }
 
 /// Whether the last run completed its task.

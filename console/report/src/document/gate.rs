@@ -314,14 +314,10 @@ fn hashes(document: &Document) -> Answered {
             lacks.push(format!("{}: its folder was renamed; rename it back to {then}", run.run));
         }
         if files.are_as_reported.is_none() {
-            let close = if run.outcome.is_none() {
-                format!("; if it was killed, `tankops recover {} --by NAME` closes it", run.run)
-            } else {
-                String::new()
-            };
             lacks.push(format!(
-                "{}: its report.json is missing, so the files cannot be checked{close}",
-                run.run
+                "{name}: its report.json is missing or states no digests, so the files cannot be checked; \
+                 `tankops recover {name} --by NAME` closes the run",
+                name = run.run
             ));
         }
         if files.recording_sha256.is_none() {
@@ -333,7 +329,7 @@ fn hashes(document: &Document) -> Answered {
     }
     let recovered = |run: &RunPart| {
         let recovered = run.files.recovered.as_ref()?;
-        Some(format!("{} was killed and later closed {recovered}", run.run))
+        Some(format!("{} was not closed when it ended, and was later closed {recovered}", run.run))
     };
     let bound = "SHA-256 of journal and recording unchanged since the run was closed; report.json agrees \
         with the journal";

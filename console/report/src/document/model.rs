@@ -60,6 +60,10 @@ pub struct Document {
     pub follow_ups: Vec<FollowUp>,
     /// The items that must be answered before the report can be signed.
     pub gate: Vec<GateItem>,
+    /// The other files of a package of this report: names and SHA-256, hexadecimal. The page states them; empty if they
+    /// are not known.
+    #[serde(skip)]
+    pub packed: Vec<(String, String)>,
     #[serde(skip)]
     pub(crate) pictures: Pictures,
     /// Name of the scenario of the first run.

@@ -12,7 +12,7 @@ use positioning::Integrity;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// The recovery of a run whose recording process was killed. The digests in the report identify the files of the run.
+/// The recovery of a run that its recording process did not close. The digests in the report identify the files of the run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Recovered {
     /// The person who recovered the run.
@@ -25,7 +25,11 @@ pub struct Recovered {
 
 impl fmt::Display for Recovered {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "by {}, {} UTC; missing: {}", self.by, self.at, self.missing.join("; "))
+        write!(f, "by {}, {} UTC; ", self.by, self.at)?;
+        if self.missing.is_empty() {
+            return f.write_str("nothing is missing");
+        }
+        write!(f, "missing: {}", self.missing.join("; "))
     }
 }
 

@@ -181,6 +181,50 @@ fn a_run_that_was_cut_off_and_gaps_block_the_signature_until_they_are_decided() 
     assert!(html(&decided).contains("the rest by hand"), "printed");
 }
 
+#[test]
+fn a_report_on_a_part_of_the_floor_states_its_share_and_does_not_call_the_rest_missed() {
+    let mut run = round_tank(0.1);
+    let square = |half_m: f64| vec![world::coverage::regions::square(Point::origin(), half_m)];
+    let TaskConfig::Cover { regions, .. } = &mut run.mission.task else { panic!("the task is to scan") };
+    *regions = square(2.0);
+    let is_in = |floor: &Floor, cell: usize, half_m: f64| {
+        let place = floor.center(cell);
+        place.x.abs() < half_m && place.y.abs() < half_m
+    };
+    let floor = run.floor.clone();
+    let missed = |half_m: f64| -> Vec<Point> {
+        let others = (0..floor.len()).filter(|cell| !is_in(&floor, *cell, half_m));
+        others.map(|cell| floor.center(cell)).collect()
+    };
+    // Everything that was requested, and nothing else.
+    let all = Document::new(&[past_of(run.clone(), &missed(1.0))], Context::default()).unwrap();
+    let requested = all.floor.requested.expect("a part was requested");
+    assert!((requested.area_m2 - 4.0).abs() < 1e-9 && requested.percent.scanned >= 100.0, "{requested:?}");
+    let page = html(&all);
+    assert!(page.contains("of the requested floor") && page.contains("Requested floor"), "page");
+    assert!(!page.contains("inspect by hand"), "nothing requested was missed");
+    let json = serde_json::to_value(&all).unwrap();
+    assert!((json["floor"]["requested"]["area_m2"].as_f64().unwrap() - 4.0).abs() < 1e-9, "{json}");
+    let some = Document::new(&[past_of(run, &missed(0.5))], Context::default()).unwrap();
+    let page = html(&some);
+    assert!(page.contains("3.00 m² of the requested floor was missed: accept, re-scan, or inspect by hand."));
+    assert!(page.contains("3.000 m² was requested. The other"), "page");
+    let lacks = &some.gate[5].missing;
+    assert!(lacks.contains(&"inspection.missed_accepted".to_owned()), "{lacks:?}");
+}
+
+#[test]
+fn the_page_states_the_other_files_and_their_list_is_read_back() {
+    let mut document = document(Inspection::default());
+    assert!(stated_files(&html(&document)).is_empty());
+    let files = [("report.json", "0123456789abcdef".repeat(4)), ("notes/a_b-1.json", "f".repeat(64))];
+    document.packed = files.map(|(name, sha256)| (name.to_owned(), sha256)).to_vec();
+    let stated: Vec<(String, String)> = stated_files(&html(&document)).into_iter().collect();
+    let mut expected = document.packed.clone();
+    expected.sort();
+    assert_eq!(stated, expected);
+}
+
 /// Two runs, each with a found obstacle and a track.
 fn two_runs() -> [PastRun; 2] {
     two_runs_of([round_tank(0.1), round_tank(0.1)])

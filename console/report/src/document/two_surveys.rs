@@ -161,8 +161,8 @@ impl TwoSurveys {
     /// which the date of the next inspection is calculated.
     ///
     /// # Errors
-    /// A run has no readings of an instrument or no date, the second survey is not later, the tanks differ, or the least
-    /// thickness is not below the nominal one.
+    /// A run has no readings of an instrument or no date, the second survey is not later or is the same run, the tanks
+    /// differ, or the least thickness is not below the nominal one.
     pub fn new(surveyed: &[Surveyed<'_>; 2], minimum_mm: Option<f64>, version: &str) -> Result<Self, String> {
         let [a, b] = surveyed.each_ref().map(|one| joined_or_located(std::slice::from_ref(one.past)));
         let (a, b) = (a?, b?);
@@ -185,6 +185,12 @@ impl TwoSurveys {
         let tested_again = |place| second.is_tested(place);
         let found = compare([&first.survey, &second.survey], years, [&tested, &tested_again])
             .map_err(|why| refused(&why, [&first.part, &second.part]))?;
+        if first.part.journal_sha256.is_some() && first.part.journal_sha256 == second.part.journal_sha256 {
+            return Err(format!(
+                "both surveys are one run: {} and {} have the same journal; give the runs of two surveys",
+                first.part.run, second.part.run
+            ));
+        }
         let outlook = minimum_mm.and_then(|mm| Outlook::of(&found, &second.survey, mm));
         let due = outlook.map(|outlook| due(outlook, &second));
         let (of_first, of_second) = (&first.survey.indications, &second.survey.indications);

@@ -18,6 +18,7 @@ pub(crate) fn lines(account: &Account) -> Vec<(&'static str, String)> {
         ("floor", format!("whole floor {}", shares(&account.whole))),
         ("floor", format!("reachable floor {}", shares(&account.reachable))),
     ];
+    lines.extend(account.requested.iter().map(|part| ("floor", format!("requested floor {}", shares(part)))));
     lines.extend(account.exact.map(|share| ("floor", exact(share))));
     lines.extend([("floor", critical_zone(account))]);
     lines.extend(arcs(account).into_iter().map(|line| ("floor", line)));

@@ -1,9 +1,31 @@
 //! Whether the parts of a package state the same. Whoever changes one part and renews the list of digests must not get away
 //! with it.
 
-use super::{Line, Manifest, PAGE, PackedRun, VERSION};
+use super::{Line, Manifest, PAGE, PackedRun, SIGNATURES, VERSION, signed_name};
+use package::SUMS;
+use report::document::{Revision, stated_files};
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The folder of the pages of earlier signed reports.
+const SIGNED: &str = "signed/";
+
+/// Checks that the page states each earlier signed report, and that each page in `signed/` belongs to a signature.
+pub(super) fn earlier_pages(
+    (manifest, signed): (&Manifest, &[Revision]),
+    page: &str,
+    digests: &BTreeMap<String, String>,
+) -> Vec<Line> {
+    let page: String = page.split_whitespace().collect();
+    let earlier = || signed.iter().filter(|revision| !manifest.is(revision));
+    let unstated = earlier().filter(|revision| !page.contains(&revision.sha256)).map(|revision| {
+        format!("{PAGE} does not state the SHA-256 of the signed revision {}", revision.revision)
+    });
+    let names: BTreeSet<String> = earlier().map(signed_name).collect();
+    let extra = digests.keys().filter(|name| name.starts_with(SIGNED) && !names.contains(*name));
+    let extra = extra.map(|name| format!("{name} belongs to none of the signatures in {SIGNATURES}"));
+    unstated.chain(extra).map(|what| Line::Different(format!("different: {what}"))).collect()
+}
 
 /// The parts of a package that name the report and its runs.
 pub(super) struct Parts<'a> {
@@ -26,13 +48,15 @@ impl Parts<'_> {
             ))];
         }
         let found: Vec<String> =
-            self.report_of_manifest().into_iter().chain(self.on_page()).chain(self.readings()).collect();
+            [self.report_of_manifest(), self.on_page(), self.readings(), self.files()].concat();
         if found.is_empty() {
             let runs = self.manifest.runs.len();
             let runs = if runs == 1 { "its run".to_owned() } else { format!("its {runs} runs") };
-            return vec![Line::Fine(format!(
-                "equal: page, report.json and package.json name one report and {runs}"
-            ))];
+            let files = stated_files(self.page).len();
+            return vec![
+                Line::Fine(format!("equal: page, report.json and package.json name one report and {runs}")),
+                Line::Fine(format!("equal: {files} files have the SHA-256 that {PAGE} states")),
+            ];
         }
         found.into_iter().map(|what| Line::Different(format!("different: {what}"))).collect()
     }
@@ -98,6 +122,29 @@ impl Parts<'_> {
             missing.map(|run| format!("{PAGE} does not state the SHA-256 of the journal of run {}", run.run)),
         );
         found
+    }
+
+    /// Compares the other files with the list on the page, which is the only part that a signature covers.
+    fn files(&self) -> Vec<String> {
+        let stated = stated_files(self.page);
+        if stated.is_empty() {
+            return vec![format!(
+                "{PAGE} does not state the SHA-256 of the other files, so nothing vouches for them; make the package again \
+                 from the runs"
+            )];
+        }
+        let is_other = |name: &str| ![PAGE, SIGNATURES, SUMS].contains(&name) && !name.starts_with(SIGNED);
+        let others = self.digests.iter().filter(|(name, _)| is_other(name));
+        let found = others.filter_map(|(name, now)| match stated.get(name) {
+            Some(then) if then == now => None,
+            Some(then) => Some(format!(
+                "{name} is not the file that belongs to {PAGE}: the page states SHA-256 {then}, found {now}"
+            )),
+            None => Some(format!("{name} does not belong to the report: {PAGE} does not state it")),
+        });
+        let missing = stated.keys().filter(|name| !self.digests.contains_key(*name));
+        let missing = missing.map(|name| format!("{name} is missing, but {PAGE} states it"));
+        found.chain(missing).collect()
     }
 
     /// Checks that each file of readings belongs to one run, and that each run with readings has its file.

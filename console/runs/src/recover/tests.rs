@@ -4,12 +4,16 @@ use super::*;
 use recording::JOURNAL_FILE;
 use std::fs;
 
+fn write_report(folder: &Path, summary: &Summary) {
+    RunFolder::take(folder).unwrap().write_report(summary).unwrap();
+}
+
 #[test]
 fn what_cannot_be_recovered_is_refused_and_nothing_is_changed() {
     let logs = tempfile::tempdir().unwrap();
     let run = RunFolder::create(logs.path(), "demo", "rpf", 1).unwrap();
     let folder = run.path().to_owned();
-    let refused = || recover(&folder, "L. Kern").unwrap_err();
+    let refused = || recover(&folder, "L. Kern", |_| None).unwrap_err();
     fs::write(folder.join(JOURNAL_FILE), "").unwrap();
     let names = || {
         let mut names: Vec<_> =
@@ -22,8 +26,14 @@ fn what_cannot_be_recovered_is_refused_and_nothing_is_changed() {
     drop(run);
     assert!(refused().to_string().contains("there is nothing to recover, and the folder can be removed"));
     assert_eq!(names(), before);
-    fs::write(folder.join("report.json"), r#"{"events_sha256": null}"#).unwrap();
+    write_report(&folder, &Summary { events_sha256: Some("c10".into()), ..Summary::default() });
     assert!(refused().to_string().starts_with("the run has a report, so it was closed when it ended"));
+    // A report that states that the run was not closed does not stop the recovery; the journal is read.
+    write_report(&folder, &Summary::default());
+    assert!(refused().to_string().contains("there is nothing to recover, and the folder can be removed"));
+    let text = fs::read_to_string(folder.join("report.json")).unwrap();
+    fs::write(folder.join("report.json"), text.replace("\"ticks\": null", "\"ticks\": 9")).unwrap();
+    assert!(refused().to_string().contains("was changed after the run ended"), "{}", refused());
     fs::write(folder.join("report.json"), "{").unwrap();
     assert!(refused().to_string().contains("report.json is damaged"), "{}", refused());
     assert!(refused().is_input());

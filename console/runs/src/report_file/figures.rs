@@ -1,6 +1,6 @@
 //! Compares the figures of a report with those derived from its journal.
 
-use account::Summary;
+use account::{Account, Figure, FigureId, Limit, Summary};
 use report::first_difference;
 use serde_json::Value;
 
@@ -28,10 +28,20 @@ pub(super) fn difference(reported: Summary, computed: &Summary) -> Option<String
     Some(format!("{} is {}; the journal gives {}", found.key, found.one, found.other))
 }
 
-/// Leaves out the figures that older reports do not have.
+/// Leaves out the figures that older reports do not have, and the limit that they state differently: the true clearance
+/// was compared with 0.
 fn leave_out_new(computed: &mut Summary, reported: &Summary) {
+    let older = Some(Limit::Least(0.0));
+    let is_older = |figure: &Figure| figure.id == FigureId::TrueClearance && figure.limit == older;
+    if reported.extremes.iter().any(is_older) {
+        let figures = computed.extremes.iter_mut().filter(|figure| figure.id == FigureId::TrueClearance);
+        figures.for_each(|figure| figure.limit = older);
+    }
     if reported.extremes.is_empty() {
         computed.extremes.clear();
+    }
+    if let (Some(computed), Some(Account { requested: None, .. })) = (&mut computed.floor, &reported.floor) {
+        computed.requested = None;
     }
     let mut plates = reported.floor.iter().flat_map(|floor| &floor.plates);
     let is_older = plates.all(|plate| plate.error_max_m.is_none());

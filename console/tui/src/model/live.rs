@@ -1,7 +1,7 @@
 //! The open run, and the communication between the operator and its mission.
 
 use super::{Combination, Earlier, Health, Plans, Preflight, Raster, Replay, Run, Speed, Together, WhatIf};
-use account::{Account, Area, Estimate, InDoubt, LeftOut, MissReason, Summary, TakenBack};
+use account::{Account, Area, Estimate, InDoubt, LeftOut, MissReason, Shares, Summary, TakenBack};
 use mission::{Order, Phase, WayBack, ZoneCost};
 use serde::{Deserialize, Serialize};
 use world::Point;
@@ -220,17 +220,10 @@ impl Live {
         }
     }
 
-    /// The part of the reachable floor that was requested of this run: its area in square metres and its scanned share.
-    /// `None` if all of it was requested, or if the account is not known.
-    ///
-    /// Floor that was scanned without being requested counts as requested.
-    pub fn requested(&self) -> Option<(f64, f64)> {
-        let floor = self.result.as_ref()?.summary.floor.as_ref()?;
-        let not_asked_m2 = floor.not_asked_m2();
-        let reachable = Some(floor).filter(|_| not_asked_m2 > 0.0)?.reachable;
-        let requested_m2 = reachable.area_m2 - not_asked_m2;
-        let scanned_m2 = reachable.area_m2 * reachable.scanned;
-        (requested_m2 > 0.0).then(|| (requested_m2, (scanned_m2 / requested_m2).min(1.0)))
+    /// The part of the reachable floor that was requested of this run. `None` if all of it was requested, or if the
+    /// account is not known.
+    pub fn requested(&self) -> Option<&Shares> {
+        self.result.as_ref()?.summary.floor.as_ref()?.requested.as_ref()
     }
 
     /// Whether the run has ended and did not have to scan, so that its result says nothing about the floor.

@@ -98,8 +98,7 @@ impl Earlier {
     }
 
     /// Two shares: of the floor that the re-scan was to scan, as far as the re-scan alone has scanned it, and of the
-    /// reachable floor, as far as all runs together have scanned it. Floor that the re-scan has scanned without being asked
-    /// to counts as requested, as in the result.
+    /// reachable floor, as far as all runs together have scanned it.
     ///
     /// Cost: a look at every cell.
     pub fn shares(&self, own: &Raster) -> [Shares; 2] {
@@ -107,7 +106,7 @@ impl Earlier {
         let (mut requested, mut all) = (Counts::default(), Counts::default());
         for cell in 0..own.floor().len() {
             let (kind, is_scanned) = (own.floor().kind(cell), own.is_scanned(cell));
-            if kind == Cell::Reachable && (is_scanned || is_asked(cell)) {
+            if kind == Cell::Reachable && is_asked(cell) {
                 requested.add(kind, is_scanned);
             }
             let kind = match self.raster.floor().kind(cell) {
@@ -161,6 +160,10 @@ mod tests {
             asked: Some((0..floor.len()).map(|cell| cell >= half as usize).collect()),
         };
         let percent = |own: &Raster| earlier.shares(own).map(|shares| shares.percent.scanned);
+        // Floor scanned on the way, which was not requested, does not count.
+        let mut beside = own.clone();
+        beside.apply(&[CellRun(0, half)]);
+        assert!(percent(&beside)[0].abs() < 1e-9, "{:?}", percent(&beside));
         let [requested, all] = percent(&own);
         assert!(requested.abs() < 1e-9 && (all - 50.0).abs() < 2.0, "{requested} {all}");
         let quarter = half + half / 2;

@@ -2,6 +2,7 @@
 
 use super::super::{
     model::Document,
+    packed,
     page::{Block, SignatureBlock, Table, Value},
     readings::Readings,
     run_part::{RunPart, pulse_tests},
@@ -252,7 +253,7 @@ pub(in crate::document) fn provenance(document: &Document) -> Vec<Block> {
                 format!("tankops verify {} recomputes the run and compares every event", run.run).into(),
             ),
         ];
-        facts.extend(files.recovered.as_ref().map(|how| ("Killed, recovered", how.to_string().into())));
+        facts.extend(files.recovered.as_ref().map(|how| ("Recovered", how.to_string().into())));
         blocks.push(Block::Facts(facts));
         let hashes = [
             ("Journal SHA-256", &files.journal_sha256),
@@ -265,6 +266,7 @@ pub(in crate::document) fn provenance(document: &Document) -> Vec<Block> {
             run.drivers.iter().map(|driver| ("Planner SHA-256".to_owned(), grouped(&driver.sha256)));
         blocks.push(Block::Hashes(stated.chain(planners).collect()));
     }
+    blocks.extend(packed::blocks(&document.packed));
     blocks
 }
 
@@ -298,7 +300,7 @@ fn of_readings(run: &RunPart, readings: &Readings, journal: String) -> [Block; 2
 }
 
 /// A digest in groups of eight characters.
-fn grouped(hash: &str) -> String {
+pub(in crate::document) fn grouped(hash: &str) -> String {
     let chars: Vec<char> = hash.chars().collect();
     chars.chunks(8).map(|group| group.iter().collect::<String>()).collect::<Vec<_>>().join(" ")
 }

@@ -125,16 +125,17 @@ fn fields(document: &Document) -> Vec<Field> {
 fn verdict(document: &Document) -> Verdict {
     let floor = &document.floor;
     let last = document.runs.last();
-    let (scanned, sure) =
-        (floor.reachable.percent.scanned, floor.reachable.percent.guaranteed.unwrap_or(0.0));
+    let due = floor.due();
+    let (scanned, sure) = (due.percent.scanned, due.percent.guaranteed.unwrap_or(0.0));
+    let of = if floor.requested.is_some() { "requested" } else { "reachable" };
     let zone = if floor.critical_zone.done { "complete" } else { "not complete" };
-    let missed_m2 = floor.reachable.missed * floor.reachable.area_m2;
+    let missed_m2 = due.missed * due.area_m2;
     if is_complete(document) {
-        let is_all = floor.reachable.missed < 0.005 && floor.critical_zone.done;
+        let is_all = due.missed < 0.005 && floor.critical_zone.done;
         return Verdict {
             class: if is_all { "" } else { "part" },
             lead: format!(
-                "{scanned:.1} % of the reachable floor was scanned; {sure:.1} % is guaranteed, allowing for \
+                "{scanned:.1} % of the {of} floor was scanned; {sure:.1} % is guaranteed, allowing for \
                  the position error. The critical zone along the shell is {zone}."
             ),
             cause: String::new(),
@@ -146,12 +147,13 @@ fn verdict(document: &Document) -> Verdict {
         Some(other) => format!("the mission ended early ({})", other.word().replace('_', " ")),
     };
     let recovered = last.and_then(|run| run.files.recovered.as_ref());
-    let recovered = recovered.map(|how| format!("the run was killed and later closed {how}"));
+    let recovered =
+        recovered.map(|how| format!("the run was not closed when it ended, and was later closed {how}"));
     let reason = last.and_then(|run| run.reason.clone()).or(recovered);
     Verdict {
         class: "bad",
         lead: format!(
-            "Not complete: {end}. {scanned:.1} % of the reachable floor was scanned; {missed_m2:.1} m² was \
+            "Not complete: {end}. {scanned:.1} % of the {of} floor was scanned; {missed_m2:.1} m² was \
              not."
         ),
         cause: reason.map(|reason| format!("Cause: {reason}.")).unwrap_or_default(),
@@ -162,8 +164,19 @@ fn shares(document: &Document) -> Vec<Share> {
     let (whole, reachable) = (&document.floor.whole, &document.floor.reachable);
     let m2 = |share: f64, of: &Shares| format!("{:.1}", share * of.area_m2);
     let sure = reachable.guaranteed.unwrap_or(0.0);
-    vec![
-        Share {
+    // The table below has the whole floor too.
+    let first = match &document.floor.requested {
+        Some(requested) => Share {
+            value: format!("{:.1}", requested.percent.scanned),
+            unit: "%",
+            of: "of the requested floor",
+            about: format!(
+                "{} of {:.1} m² of reachable floor that the mission had to scan",
+                m2(requested.scanned, requested),
+                requested.area_m2
+            ),
+        },
+        None => Share {
             value: format!("{:.1}", whole.percent.scanned),
             unit: "%",
             of: "of the whole floor",
@@ -173,6 +186,9 @@ fn shares(document: &Document) -> Vec<Share> {
                 whole.area_m2
             ),
         },
+    };
+    vec![
+        first,
         Share {
             value: format!("{:.1}", reachable.percent.scanned),
             unit: "%",
@@ -213,9 +229,9 @@ fn bases(document: &Document) -> Table {
         columns.insert(6, ("Not testable", "%", "r"));
     }
     let mut table = Table::new("", &columns);
-    for (name, shares) in
-        [("Whole floor", &document.floor.whole), ("Reachable floor", &document.floor.reachable)]
-    {
+    let requested = document.floor.requested.as_ref().map(|requested| ("Requested floor", requested));
+    let floors = [("Whole floor", &document.floor.whole), ("Reachable floor", &document.floor.reachable)];
+    for (name, shares) in floors.into_iter().chain(requested) {
         let p = &shares.percent;
         let tenth = |value: f64| Value::from(format!("{value:.1}"));
         let mut row = vec![

@@ -63,10 +63,19 @@ pub(super) fn missed(document: &Document) -> Vec<Block> {
         floor.slivers.area_m2,
         if floor.slivers.count > 0 { format!(", {}", floor.slivers.why()) } else { String::new() }
     );
+    let others = floor.requested.as_ref().map(|requested| {
+        let requested_m2 = requested.missed * requested.area_m2;
+        Block::Note(format!(
+            "Of this floor, {requested_m2:.3} m² was requested. The other {:.3} m² was not requested, so the mission did \
+             not have to scan it.",
+            missed_m2 - requested_m2
+        ))
+    });
     let is_some = !table.rows.is_empty();
     blocks.extend(is_some.then_some(Block::Table(table)));
     blocks.extend(shortly(small, listed.len() + 1));
     blocks.push(Block::Note(total));
+    blocks.extend(others);
     blocks.push(Block::Table(unreachable(document)));
     blocks.push(Block::Note(balance(document)));
     blocks

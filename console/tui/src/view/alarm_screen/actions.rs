@@ -82,7 +82,8 @@ pub(in crate::view) fn list(look: &Look, cause: &Cause, selected: usize, columns
     }
     let advice = advice(look, cause).into_iter();
     below.extend(advice.flat_map(|words| rows("·", Role::Text, &words, room)));
-    let effect = look.run.alarms.get(cause).map_or_else(String::new, |alarm| effect(alarm, look.run));
+    let effect =
+        look.run.alarms.get(cause).map_or_else(String::new, |alarm| look.keys(&effect(alarm, look.run)));
     below.extend(paragraph(Role::Dim, &format!("{} {effect}", meaning(cause, look.run).cause), room));
     // If space is short, the last lines about the alarm are dropped, never an action.
     below.truncate(usize::from(look.model.ui.height).saturating_sub(FRAME + steps.len()));

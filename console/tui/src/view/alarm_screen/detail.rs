@@ -32,7 +32,8 @@ pub(super) fn cause(look: &Look, alarm: &Alarm, columns: usize, rows: usize) -> 
 
 fn fields_of(look: &Look, alarm: &Alarm) -> Vec<Field> {
     let guide = meaning(&alarm.cause, look.run);
-    let mut fields: Vec<Field> = vec![("Cause", guide.cause.into()), ("Effect", effect(alarm, look.run))];
+    let mut fields: Vec<Field> =
+        vec![("Cause", guide.cause.into()), ("Effect", look.keys(&effect(alarm, look.run)))];
     fields.push(("Message", text::capitalized(&alarm.text)));
     if let Some((_, text)) = &alarm.fallen {
         fields.push(("Then", text::capitalized(text)));

@@ -204,8 +204,9 @@ fn estimated_clearance(summary: &Summary) -> Option<f64> {
 fn requested(model: &Model) -> Vec<String> {
     let live = &model.live;
     let own = live.result.as_ref().and_then(|result| result.summary.floor.as_ref());
-    let own = live.requested().zip(own).map(|((area_m2, scanned), own)| {
-        let (scanned, area_m2) = (text::percent(scanned), text::number(area_m2, 1));
+    let own = live.requested().zip(own).map(|(requested, own)| {
+        let scanned = text::number(requested.percent.scanned, 1);
+        let area_m2 = text::number(requested.area_m2, 1);
         match live.together() {
             Some(_) => format!("This run scanned {scanned} % of the requested {area_m2} m²."),
             None => format!(

@@ -43,11 +43,7 @@ fn bases(model: &Model, result: &RunResult, columns: usize) -> Vec<Parts> {
     let mut rows = vec![vec![(Role::Dim, at.head())]];
     rows.push(at.row("reachable", &account.reachable));
     rows.push(at.row("whole floor", &account.whole));
-    if let Some((area_m2, scanned)) = model.live.requested() {
-        let scanned = (1000.0 * scanned).round() / 10.0;
-        let percent = Percent { scanned, missed: 100.0 - scanned, ..Percent::default() };
-        rows.push(at.row("requested", &Shares { area_m2, percent, ..Shares::default() }));
-    }
+    rows.extend(model.live.requested().map(|shares| at.row("requested", shares)));
     if let Some(all) = model.live.together() {
         rows.push(at.row("all, reach.", &all.floor.reachable));
         rows.push(at.row("all, whole", &all.floor.whole));
