@@ -1,6 +1,6 @@
 //! Floor whose guarantee was taken back, because a station was found wrong.
 
-use crate::Fold;
+use crate::{Fold, clock};
 use mission::{Event, EventKind};
 use serde::{Deserialize, Serialize};
 use world::Point;
@@ -25,8 +25,9 @@ impl std::fmt::Display for TakenBack {
         let Self { station, bias_m, since_s, until_s, area_m2 } = self;
         write!(
             f,
-            "{area_m2:.1} m² scanned from {since_s:.0} s to {until_s:.0} s: the ranges of station {station} were \
-             wrong by {bias_m:+.2} m"
+            "{area_m2:.1} m² scanned from T+{} to T+{}: the ranges of station {station} were wrong by {bias_m:+.2} m",
+            clock(*since_s),
+            clock(*until_s),
         )
     }
 }

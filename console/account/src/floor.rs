@@ -93,6 +93,14 @@ impl Account {
         areas.map(|area| area.area_m2).chain(specks.map(|cause| cause.area_m2)).sum()
     }
 
+    /// Requested floor that was not scanned, in the order in which lists and maps number it: largest area first; areas
+    /// that were not reached because the mission ended come last.
+    pub fn listed(&self) -> Vec<&Area<MissReason>> {
+        let requested = || self.missed.iter().filter(|area| area.reason != MissReason::NotAsked);
+        let was_ahead = |area: &&Area<MissReason>| area.reason == MissReason::NotReached;
+        requested().filter(|area| !was_ahead(area)).chain(requested().filter(was_ahead)).collect()
+    }
+
     /// Whether this is the account of a floor that no mission had to scan.
     pub fn is_of_no_scan(&self) -> bool {
         self.whole.area_m2 <= 0.0

@@ -18,6 +18,7 @@ use crate::{
     turning::Turning,
     vehicle::VehicleRecord,
 };
+use exploration::SurveyMap;
 use mission::{
     Cause, Channels, Event, EventKind, FoldedStanding, Guarantee, Order, Outcome, ParamKind, ParamValue,
     Parameters, Passage, PlannerChoice, PlannerInfo, TaskConfig,
@@ -52,6 +53,9 @@ pub struct Fold {
     run: Option<Box<RunOpened>>,
     evidence: Option<Evidence>,
     survey: Option<Box<Survey>>,
+    /// The map that the mission has made, and the number of places that the tether did not reach.
+    map: Option<Box<SurveyMap>>,
+    beyond_tether: usize,
     /// The channels of the instrument; `None` before the run is opened.
     channels: Option<Channels>,
     /// The way of a tool whose readings may be imported; `None` for any other run.
@@ -108,6 +112,8 @@ impl Fold {
             EventKind::Ordered { order: Order::NoteChecks(checks) } => self.known.checks.clone_from(checks),
             EventKind::PositionLost { .. } => self.accuracy.lost(event.t_s),
             EventKind::PositionRegained { .. } => self.accuracy.regained(event.t_s),
+            EventKind::SurveyWay(way) => self.beyond_tether = way.beyond_tether,
+            EventKind::Mapped { map } => self.map = Some(map.clone()),
             EventKind::Covered { runs } => self.scanned.iter_mut().for_each(|scanned| scanned.believe(runs)),
             EventKind::Planned { path, complete, cuts, .. } if !self.is_preset() => {
                 self.evidence.iter_mut().for_each(|evidence| evidence.plan(path, cuts, *complete));
@@ -374,6 +380,16 @@ impl Fold {
     pub fn has_floor_to_scan(&self) -> bool {
         let scans = |run: &RunOpened| matches!(run.mission.task, TaskConfig::Cover { .. });
         self.run.as_ref().is_some_and(|run| scans(run) || run.measured.is_some())
+    }
+
+    /// The map that the mission has made; `None` before the end of a survey, and for other missions.
+    pub fn map(&self) -> Option<&SurveyMap> {
+        self.map.as_deref()
+    }
+
+    /// Number of places that a survey left out because the tether did not reach them, according to its last way.
+    pub fn beyond_tether(&self) -> usize {
+        self.beyond_tether
     }
 
     /// The found obstacles, which are not on the drawing.

@@ -46,6 +46,11 @@ fn runs_under(
     parts.iter().filter_map(under).flatten().collect()
 }
 
+/// An error in whole millimetres, rounded as it is printed, so that a figure per cell and the same figure per run agree.
+pub(crate) fn nearest_mm(error_m: f64) -> u16 {
+    (1000.0 * error_m).round().clamp(0.0, f64::from(u16::MAX)) as u16
+}
+
 /// Milliseconds, within the bounds of the record.
 fn milliseconds(t_s: f64) -> u32 {
     (t_s * 1000.0).clamp(0.0, f64::from(NOT_GUARANTEED - 1)) as u32
@@ -83,7 +88,7 @@ impl Passes {
                 believed.is_covered(cell) && believed.floor().is_floor(cell)
             });
         }
-        let error_mm = (1000.0 * error_m).ceil().min(f64::from(NEVER - 1)) as u16;
+        let error_mm = nearest_mm(error_m).min(NEVER - 1);
         for run in cells {
             self.error_mm[run.range()].iter_mut().for_each(|mm| *mm = (*mm).min(error_mm));
         }

@@ -1,5 +1,6 @@
 //! The true position error on each cell of the floor.
 
+use crate::passes::nearest_mm;
 use world::CellRun;
 
 /// The error of a cell that the tool never passed.
@@ -27,7 +28,7 @@ impl TrueErrors {
 
     /// Adds the error on the latest true movement, metres.
     pub(crate) fn note(&mut self, error_m: f64) {
-        let error_mm = (1000.0 * error_m).ceil().min(f64::from(NEVER - 1)) as u16;
+        let error_mm = nearest_mm(error_m).min(NEVER - 1);
         for run in std::mem::take(&mut self.latest) {
             for mm in &mut self.largest_mm[run.range()] {
                 *mm = if *mm == NEVER { error_mm } else { error_mm.max(*mm) };
@@ -63,16 +64,16 @@ mod tests {
     fn each_cell_keeps_its_largest_error_in_any_order_and_in_any_run() {
         let mut errors = TrueErrors::new(6);
         errors.pass(cells(0, 3));
-        errors.note(0.1201);
+        errors.note(0.1204);
         errors.pass(cells(2, 2));
         errors.note(0.05);
         errors.note(9.0);
         let found = |errors: &TrueErrors| (0..6).map(|cell| errors.mm(cell)).collect::<Vec<_>>();
-        assert_eq!(found(&errors), [Some(121), Some(121), Some(121), Some(50), None, None]);
+        assert_eq!(found(&errors), [Some(120), Some(120), Some(120), Some(50), None, None]);
         let mut other = TrueErrors::new(6);
         other.pass(cells(3, 2));
         other.note(0.08);
         errors.join(&other);
-        assert_eq!(found(&errors), [Some(121), Some(121), Some(121), Some(80), Some(80), None]);
+        assert_eq!(found(&errors), [Some(120), Some(120), Some(120), Some(80), Some(80), None]);
     }
 }

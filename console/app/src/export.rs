@@ -78,7 +78,13 @@ fn readings(folder: &Path, parquet: &Path) -> anyhow::Result<()> {
 
 fn ranges(folder: &Path, csv: &Path) -> anyhow::Result<()> {
     let path = journal_of(folder);
-    let stations = Ticks::open(&path)?.opened()?.world.stations.clone();
+    let opened = Ticks::open(&path)?.opened()?.clone();
+    if opened.mission.locating.clocks.is_some() {
+        let why = "its stations have clocks of their own, so what they measure are not ranges; the journal \
+                   contains what was received";
+        return Err(bad_input(format!("{}: {why}", folder.display())));
+    }
+    let stations = opened.world.stations;
     let refused =
         |error: &std::io::Error| bad_input(format!("cannot write the readings: {error}: {}", csv.display()));
     let file = BufWriter::new(File::create_new(csv).map_err(|error| refused(&error))?);

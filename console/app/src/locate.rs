@@ -134,6 +134,13 @@ pub(crate) fn locate(args: &LocateArgs) -> anyhow::Result<ExitCode> {
             scenario.shown_name
         )));
     }
+    if scenario.mission.locating.clocks.is_some() {
+        return Err(bad_input(format!(
+            "{}: ae.clock_offset_sigma_m or ae.clock_drift_sigma_m_per_h: `locate` cannot estimate clocks of the stations; \
+             subtract their offsets from the arrivals, and remove these keys",
+            scenario.shown_name
+        )));
+    }
     let readings = input::file(&args.readings)?;
     let task = Task {
         file: readings.path(),

@@ -58,9 +58,13 @@ fn scenario(args: &MapOfArgs, survey: &PastSurvey, run: &str, plugins: &PluginDi
     let planner = planners::suited_to_coverage(&found).map_or(COVERAGE_PLANNER, |info| &info.id);
     let shown = output.display().to_string();
     let text = cover_of_map(&survey.opened, run, &survey.map, planner)
-        .map_err(|error| bad_input(format!("the scenario in the journal of {run} is damaged: {error}")))?;
+        .map_err(|error| bad_input(format!("{run}: {error}")))?;
     // Do not write a scenario that the scenario reader would refuse.
-    Scenario::parse(&text, &shown).map_err(|errors| bad_input(errors.render()))?;
+    Scenario::parse(&text, &shown).map_err(|errors| {
+        let remedy = "change these keys in the scenario of the survey, and survey again; or write the map with the \
+                      suffix .yaml";
+        bad_input(format!("{shown} was not written, because it would be refused:\n{}\n{remedy}", errors.render()))
+    })?;
     write_file("the scenario", output, &text)?;
     say(&format!("{shown}: {}, planner {planner}\n", human(survey)))?;
     let quoted = |path: &Path| shell(&path.display().to_string());

@@ -48,6 +48,11 @@ pub struct Column {
 }
 
 impl Column {
+    /// The 95 % errors of the centre, along its worse axis, and of the radius, metres.
+    pub fn errors_95_m(&self) -> [f64; 2] {
+        [self.center_sigma_m, self.radius_sigma_m].map(|sigma_m| 1.96 * sigma_m)
+    }
+
     /// The column as a shape.
     pub fn shape(&self) -> Shape {
         Shape::Disc { center: self.center, radius_m: self.radius_m }

@@ -68,6 +68,16 @@ impl Grid {
         self.low + Vector::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell_m
     }
 
+    /// The cells that share an edge with a cell.
+    pub(crate) fn beside(&self, index: usize) -> impl Iterator<Item = usize> + '_ {
+        let (column, row) = (index % self.columns, index / self.columns);
+        let left = (column > 0).then(|| index - 1);
+        let right = (column + 1 < self.columns).then(|| index + 1);
+        let below = (row > 0).then(|| index - self.columns);
+        let above = (row + 1 < self.rows).then(|| index + self.columns);
+        [left, right, below, above].into_iter().flatten()
+    }
+
     /// The cells within `reach` cells of a cell along x and y, the cell itself included.
     pub(crate) fn around(&self, index: usize, reach: usize) -> impl Iterator<Item = usize> + '_ {
         let (column, row) = (index % self.columns, index / self.columns);

@@ -11,7 +11,9 @@
 
 mod beams;
 mod bodies;
+mod cells;
 mod circle;
+mod difference;
 mod distances;
 mod frontiers;
 mod grid;
@@ -19,15 +21,19 @@ mod grown;
 mod map;
 mod ros;
 mod survey;
+mod unseen;
 mod views;
 mod ways;
 
 pub use bodies::{Body, Column};
+pub use cells::{CellState, changes, runs};
+pub use difference::Fate;
 pub use frontiers::Frontier;
 pub use grid::Grid;
-pub use map::{CellState, SurveyMap};
+pub use map::SurveyMap;
 pub use ros::RosMap;
 pub use survey::{Exploration, Scanning};
+pub use unseen::Unseen;
 pub use views::View;
 pub use ways::Ways;
 

@@ -1,37 +1,17 @@
 //! The result of a survey.
 
-use crate::{bodies::Column, grid::Grid, survey::Exploration};
+use crate::{
+    bodies::Column,
+    cells::{self, CellState},
+    grid::Grid,
+    survey::Exploration,
+};
 use geometry::{Shape, Vector};
 use serde::{Deserialize, Serialize};
 
 /// Width of the belt around a column or along the wall, metres, in which the fitted outline decides instead of single
 /// echoes.
 const BELT_M: f64 = 0.15;
-
-/// The state of a cell of the map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum CellState {
-    /// Free floor.
-    Free,
-    /// Solid.
-    Solid,
-    /// Not seen.
-    Unseen,
-}
-
-impl CellState {
-    fn letter(self) -> char {
-        match self {
-            Self::Free => 'f',
-            Self::Solid => 's',
-            Self::Unseen => 'u',
-        }
-    }
-
-    fn of(letter: char) -> Option<Self> {
-        [Self::Free, Self::Solid, Self::Unseen].into_iter().find(|state| state.letter() == letter)
-    }
-}
 
 /// The map that a survey has made, tank frame.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -53,20 +33,13 @@ impl SurveyMap {
     /// The state of each cell; `None` if the text of the cells is damaged.
     pub fn states(&self) -> Option<Vec<CellState>> {
         let mut states = Vec::with_capacity(self.grid.len());
-        let mut length = 0_usize;
-        for letter in self.cells.chars() {
-            if let Some(digit) = letter.to_digit(10) {
-                length = length.checked_mul(10)?.checked_add(digit as usize)?;
-            } else {
-                let state = CellState::of(letter)?;
-                if length == 0 || length > self.grid.len() - states.len() {
-                    return None;
-                }
-                states.extend(std::iter::repeat_n(state, length));
-                length = 0;
+        for (cells, state) in cells::runs(&self.cells, self.grid.len())? {
+            if cells.start != states.len() {
+                return None;
             }
+            states.extend(std::iter::repeat_n(state, cells.len()));
         }
-        (length == 0 && states.len() == self.grid.len()).then_some(states)
+        (states.len() == self.grid.len()).then_some(states)
     }
 }
 
@@ -78,8 +51,14 @@ impl Exploration {
         let columns: Vec<Column> = bodies.iter().filter_map(|body| body.column).collect();
         let others =
             bodies.iter().filter(|body| body.column.is_none()).flat_map(crate::Body::shapes).collect();
+        let cells = cells::text(&self.states(&columns));
+        SurveyMap { grid: self.grid.clone(), cells, columns, others, explored: self.share() }
+    }
+
+    /// The state of each cell, row by row from the lower left; `columns` are those of [`Exploration::columns`].
+    pub fn states(&self, columns: &[Column]) -> Vec<CellState> {
         let mut states: Vec<CellState> = (0..self.grid.len()).map(|cell| self.state(cell)).collect();
-        for column in &columns {
+        for column in columns {
             let reach = Vector::repeat(column.radius_m + BELT_M);
             for cell in self.grid.within(column.center - reach, column.center + reach) {
                 let off_m = (self.grid.center(cell) - column.center).norm() - column.radius_m;
@@ -88,8 +67,7 @@ impl Exploration {
                 }
             }
         }
-        let cells = text(&states);
-        SurveyMap { grid: self.grid.clone(), cells, columns, others, explored: self.share() }
+        states
     }
 
     /// The state of a cell according to the echoes or, beside the wall, to the wall and the floor before it.
@@ -119,10 +97,4 @@ impl Exploration {
             _ => CellState::Unseen,
         }
     }
-}
-
-/// The states as runs, each as its length and a letter.
-fn text(states: &[CellState]) -> String {
-    let runs = states.chunk_by(|a, b| a == b);
-    runs.flat_map(|run| [run.len().to_string(), run[0].letter().to_string()]).collect()
 }

@@ -1,6 +1,6 @@
 //! The map in the format of the ROS map server.
 
-use crate::map::{CellState, SurveyMap};
+use crate::{cells::CellState, map::SurveyMap};
 use std::fmt::Write;
 
 /// The greys of free, solid and unseen cells, as map savers write them.

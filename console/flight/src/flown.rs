@@ -40,7 +40,7 @@ impl Forked {
     /// Creates a forecast of how the flight would continue. Its tank contains only what the mission knows, and no faults
     /// are injected. The first order to the forecast must choose a planner.
     pub fn flight(&self, scenario: &Scenario) -> Flight {
-        let Fork { mission, world, pose, cable } = self.fork.clone();
+        let Fork { mission, world, pose, cable, clocks_m } = self.fork.clone();
         let ae = scenario.sim.ae.clone().map(|ae| {
             let disturbances = Disturbances { faults: Vec::new(), ..ae.disturbances };
             AeConfig { outages_s: Vec::new(), disturbances, ..ae }
@@ -57,7 +57,13 @@ impl Forked {
             ..scenario.sim.clone()
         };
         Flight {
-            vehicle: Box::new(Simulated::new(Simulator::resumed(config, scenario.seed, pose, cable))),
+            vehicle: Box::new(Simulated::new(Simulator::resumed(
+                config,
+                scenario.seed,
+                pose,
+                cable,
+                &clocks_m,
+            ))),
             watch: None,
             mission,
             tick: 0,

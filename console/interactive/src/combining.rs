@@ -83,6 +83,7 @@ pub(super) fn combined(
         floor: merged.floor,
         kinds: merged.kinds,
         scanned: merged.scanned,
+        not_requested: merged.not_requested,
     }))
 }
 

@@ -200,11 +200,14 @@ impl EngineThread {
         idle.any(|worker| self.host.has_ended_idle(worker))
     }
 
-    /// Whether ticks pass without orders: the mission is under way, a planner is being prepared, or a real vehicle is
-    /// watched.
+    /// Whether ticks pass without orders: the mission is under way, a planner is being prepared, the first scan has not
+    /// arrived, or a real vehicle is watched.
     fn is_under_way(&self) -> bool {
         match self.flight.phase() {
-            Phase::Waiting => self.flight.mission().awaits() != Awaits::Nothing || self.flight.is_live(),
+            Phase::Waiting => {
+                let mission = self.flight.mission();
+                mission.awaits() != Awaits::Nothing || mission.awaits_scan() || self.flight.is_live()
+            }
             Phase::Running(_) | Phase::Held(_) => true,
             Phase::Ended(_) => false,
         }

@@ -144,7 +144,7 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
     // Survey the plugins while the scenario is read and its floor is laid out.
     let dirs = plugins.clone();
     let survey = thread::Builder::new().name("survey".into()).spawn(move || planners::found(&dirs))?;
-    let opening = Opening::of(options)?;
+    let opening = Opening::of(options, &config.scenarios)?;
     let found = survey.join().map_err(|_| anyhow::anyhow!("the plugin survey panicked"))?;
     let (outbox, inbox) = inbox();
     let tools = Tools {
@@ -221,7 +221,10 @@ enum Opening {
 }
 
 impl Opening {
-    fn of(Options { scenario, settings, logs, view, replay, .. }: &Options) -> anyhow::Result<Self> {
+    fn of(
+        Options { scenario, settings, logs, view, replay, .. }: &Options,
+        folders: &[PathBuf],
+    ) -> anyhow::Result<Self> {
         if let Some(Replay { run, with }) = replay {
             let name = |run: &PathBuf| {
                 let folder = runs::find(run, logs)?;
@@ -234,13 +237,22 @@ impl Opening {
             return Ok(Self::View(runs::find(run, logs)?));
         }
         let (source, scenario) = match scenario {
-            Some(path) => (Source::File(path.display().to_string()), scenarios::read(path, settings)?),
+            Some(path) => (listed(path, folders), scenarios::read(path, settings)?),
             None => (Source::Demo, scenarios::demo(settings)?),
         };
         check_logs(logs)?;
         let flight = Flight::for_operator(&scenario);
         Ok(Self::Mission(source, Box::new((scenario, flight))))
     }
+}
+
+/// A scenario file under the name that the home screen lists: in one of its folders, however the path was typed.
+fn listed(path: &Path, folders: &[PathBuf]) -> Source {
+    let whole = path.canonicalize().ok();
+    let is_same = |listed: &PathBuf| listed.canonicalize().is_ok_and(|listed| Some(listed) == whole);
+    let name = path.file_name().unwrap_or_default();
+    let found = folders.iter().map(|folder| folder.join(name)).find(is_same);
+    Source::File(found.as_deref().unwrap_or(path).display().to_string())
 }
 
 /// Refuses a run whose journal has a different version: a replay cannot show it.

@@ -156,6 +156,9 @@ pub struct Locating {
     /// [`SolverKind::Differences`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clocks: Option<OwnClocks>,
+    /// Whether the stations exchange pulses before the start and while the robot stands still.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub has_pulses: bool,
 }
 
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "signature required by serde")]
@@ -177,6 +180,7 @@ impl Default for Locating {
             risk: None,
             session: None,
             clocks: None,
+            has_pulses: false,
         }
     }
 }

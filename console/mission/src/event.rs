@@ -45,7 +45,7 @@ use crate::{
 };
 use exploration::SurveyMap;
 use planner_api::{Command, Drawing, Drive, Leg, LegTag, LogLevel, PoseEstimate, Reason};
-use positioning::{Estimated, Exclusion, Fix, FixError, PulseTest, Ranging, Unprotected};
+use positioning::{Estimated, Exclusion, Fix, FixError, PulseError, PulseTest, Ranging, Unprotected};
 use serde::{Deserialize, Serialize};
 use vehicle::port::{LinkSeen, Notice};
 use world::tether::Certificate;
@@ -226,6 +226,13 @@ pub enum EventKind {
         phase: PulsePhase,
         /// The result.
         test: PulseTest,
+    },
+    /// The pulses of the stations give no calibration.
+    PulsesFailed {
+        /// The part of the run.
+        phase: PulsePhase,
+        /// The reason.
+        why: PulseError,
     },
     /// The clocks of the stations. Only in missions whose stations share no common clock.
     ClocksEstimated {

@@ -1,6 +1,7 @@
 //! The robot's estimated position, and whether it is reliable.
 
 mod protection;
+mod pulses;
 mod scan_aid;
 mod session;
 
@@ -12,16 +13,17 @@ use perception::Matched;
 use planner_api::PoseEstimate;
 use positioning::{
     Agreement, Doubt, Exclusion, Fix, FixError, Impossible, Integrity, MotionNoise, Positioner,
-    PositionerConfig, RangeNoise, Sides,
+    PositionerConfig, RangeNoise, Sides, StationClocks,
 };
 use protection::Protection;
+use pulses::PulseTests;
 use scan_aid::ScanAid;
 use session::Session;
 use std::{
     collections::{BTreeMap, BTreeSet},
     mem::discriminant,
 };
-use world::{Point, Pose, RangeSet, Readings, StationId, World};
+use world::{Point, Pose, PulseSet, RangeSet, Readings, StationId, World};
 
 /// The positioner, together with the stations in use and the reliability of the position so far.
 ///
@@ -32,9 +34,11 @@ pub struct Locator {
     /// The protection of the pose; `None` if the scenario states no risk.
     protection: Option<Protection>,
     scan_aid: ScanAid,
+    pulses: PulseTests,
     /// The calibration from the last fixes; `None` if the scenario asks for none.
     session: Option<Session>,
     limit_m: f64,
+    tick_s: f64,
     /// The largest speed and turn rate of the robot, metres and radians per second.
     fastest: [f64; 2],
     /// Stations that the operator has excluded.
@@ -75,10 +79,12 @@ impl Locator {
         };
         Self {
             protection: locating.risk.map(|risk| Protection::new(&positioner, risk)),
+            pulses: PulseTests::new(locating, positioner.noise, &drawing.stations),
             session: locating.session.map(|how| Session::new(how, &positioner, config.tick_s)),
             positioner: Positioner::new(positioner),
             scan_aid: ScanAid::default(),
             limit_m: config.position_limit_m,
+            tick_s: config.tick_s,
             fastest: [config.limits.v_max_m_per_s, config.limits.w_max_rad_per_s],
             unused: BTreeSet::new(),
             left_out: BTreeMap::new(),
@@ -145,6 +151,7 @@ impl Locator {
         self.positioner.predict(&readings.odometry);
         self.protection.iter_mut().for_each(|protection| protection.guard.predict(&readings.odometry));
         let mut events: Vec<EventKind> = aided.into_iter().collect();
+        events.extend(self.test_stations(&readings.pulses));
         if readings.ranging_cycle {
             events.extend(self.cycle(readings));
         }
@@ -154,9 +161,24 @@ impl Locator {
         events
     }
 
+    /// Evaluates the pulses that the stations exchanged.
+    fn test_stations(&mut self, pulses: &[PulseSet]) -> Option<EventKind> {
+        let (event, agreeing) = self.pulses.take(pulses)?;
+        if let Some(test) = &agreeing {
+            self.positioner.take_pulses(test);
+            self.protection.iter_mut().for_each(|protection| protection.guard.take_pulses(test));
+            self.pulses.doubt().into_iter().for_each(|doubt| self.doubt(doubt));
+        }
+        Some(event)
+    }
+
     fn cycle(&mut self, readings: &Readings) -> Vec<EventKind> {
         let heard = readings.ranges.iter().filter(|set| !self.unused.contains(&set.station));
         let mut heard: Vec<RangeSet> = heard.cloned().collect();
+        if !heard.is_empty() {
+            self.pulses.note_ranges();
+        }
+        self.pulses.correct(&mut heard);
         let mut events = Vec::new();
         if let Some(session) = &mut self.session {
             let estimate = self.positioner.estimate();
@@ -188,6 +210,14 @@ impl Locator {
             }
         }
         events
+    }
+
+    /// The estimated clock of each station: its offset and the change of the offset in an hour, metres; empty if they share
+    /// one clock.
+    pub(crate) fn clocks_m(&self) -> Vec<(StationId, f64, f64)> {
+        let clocks = self.positioner.clocks().map(StationClocks::clocks_m).unwrap_or_default();
+        let per_hour = 3600.0 / self.tick_s;
+        clocks.into_iter().map(|(id, offset_m, drift_m)| (id, offset_m, drift_m * per_hour)).collect()
     }
 
     /// The clocks of the stations; `None` if they share one clock.

@@ -1,6 +1,11 @@
 //! Checks whether scans can come from the scanner in the tank as drawn.
 
-use crate::{Trouble, rays::Rays, uncertain::Uncertain};
+use crate::{
+    Shown, Trouble,
+    pairs::{Pairs, Way},
+    rays::Rays,
+    uncertain::Uncertain,
+};
 use geometry::{Boundary, Vector};
 use nalgebra::UnitComplex;
 use std::f64::consts::PI;
@@ -70,6 +75,8 @@ pub(crate) struct Agreement {
     fits: [Share; WAYS],
     /// For the same, of all rays that must hit something, the share that fit.
     scores: [Share; WAYS],
+    /// The agreement with earlier scans.
+    pairs: Pairs,
 }
 
 /// The counts of one comparison.
@@ -92,7 +99,11 @@ impl Agreement {
     ) {
         self.scans = self.scans.wrapping_add(1);
         let is_due = self.echoes.compared < AT_ONCE || self.is_doubtful || self.scans.is_multiple_of(LATER);
-        if !is_due || pose.point_m2(0.0).sqrt() > LOST_M {
+        if pose.point_m2(0.0).sqrt() > LOST_M {
+            return;
+        }
+        self.pairs.compare(rays, pose, range_m);
+        if !is_due {
             return;
         }
         let count = |least: usize| counts(rays, (boundary, map), pose, range_m, (rays.len() / least).max(1));
@@ -130,10 +141,15 @@ impl Agreement {
         let is_better = |(other, as_it_is): (f64, f64)| as_it_is < WRONG && other > MUCH_BETTER * as_it_is;
         let fits = |way: usize, fit| fit > Some(RIGHT) && scores[way].zip(scores[0]).is_some_and(is_better);
         if fits(1, mirrored) && mirrored >= turned {
-            return Some(Trouble::Mirrored);
+            return Some(Trouble::Mirrored { by: Shown::Drawing });
         }
         if fits(2, turned) {
-            return Some(Trouble::Backwards);
+            return Some(Trouble::Backwards { by: Shown::Drawing });
+        }
+        match self.pairs.wrong() {
+            Some(Way::Mirrored) => return Some(Trouble::Mirrored { by: Shown::Motion }),
+            Some(Way::Backwards) => return Some(Trouble::Backwards { by: Shown::Motion }),
+            Some(Way::AsItIs) | None => {}
         }
         if let Some(share) = self.echoes.known().filter(|share| *share < NOTHING) {
             return Some(Trouble::NoEcho { share });

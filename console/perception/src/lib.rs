@@ -19,6 +19,7 @@ mod groups;
 mod layout;
 mod matching;
 mod outline;
+mod pairs;
 mod rays;
 mod sensor;
 mod through;
@@ -33,7 +34,7 @@ pub use outline::change_m;
 pub use sensor::Sensor;
 pub use track::OUT_OF_SIGHT_S;
 pub use tracker::{FIRST_ID, Looked, Perception, Seen, View};
-pub use trouble::Trouble;
+pub use trouble::{Shown, Trouble};
 
 #[cfg(test)]
 mod tests;

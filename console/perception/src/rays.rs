@@ -106,6 +106,25 @@ impl Rays {
         self.step_rad.abs()
     }
 
+    /// Direction of a ray in the robot frame.
+    pub(crate) fn in_robot(&self, ray: usize) -> Vector {
+        self.in_robot[ray]
+    }
+
+    /// Position of the sensor in the robot frame, metres.
+    pub(crate) fn sensor(&self) -> Vector {
+        self.sensor
+    }
+
+    /// The ray nearest to a direction in the robot frame; `None` if the direction is outside the field of view.
+    pub(crate) fn nearest(&self, direction: Vector) -> Option<usize> {
+        let angle_rad = direction.y.atan2(direction.x) - self.first_rad;
+        let around = TAU / self.step_rad.abs();
+        let ray = (angle_rad / self.step_rad).rem_euclid(around).round();
+        let ray = if self.is_round() { ray.rem_euclid(around.round()) } else { ray };
+        (ray < self.len() as f64).then_some(ray as usize)
+    }
+
     /// Position of the sensor in the tank.
     pub(crate) fn eye(&self) -> Point {
         self.eye
@@ -203,6 +222,17 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn every_ray_is_the_nearest_to_its_own_direction() {
+        let partly = Scanner { rays: 90, field_of_view_rad: 4.0, heading_rad: 1.0, ..Scanner::default() };
+        for scanner in [Scanner::default(), partly] {
+            let rays = rays(&scanner, &Pose::new(1.0, -2.0, 2.0));
+            assert!((0..rays.len()).all(|ray| rays.nearest(rays.in_robot(ray)) == Some(ray)), "{scanner:?}");
+        }
+        let behind = rays(&partly, &Pose::new(0.0, 0.0, 0.0)).nearest(geometry::unit_vector(1.0 + 3.1));
+        assert_eq!(behind, None);
     }
 
     #[test]

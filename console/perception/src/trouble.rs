@@ -2,6 +2,25 @@
 
 use std::fmt;
 
+/// What shows that the directions of a scan are wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shown {
+    /// The drawing.
+    Drawing,
+    /// Earlier scans and the motion of the robot since then.
+    Motion,
+}
+
+impl Shown {
+    /// What the scan fits only if its directions are corrected, in a sentence.
+    fn words(self) -> &'static str {
+        match self {
+            Self::Drawing => "the drawing",
+            Self::Motion => "the motion of the robot",
+        }
+    }
+}
+
 /// The reason why scans cannot be used. Its text is a clause that ends with what to check.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Trouble {
@@ -30,10 +49,16 @@ pub enum Trouble {
         /// The share of them that have an echo, 0 to 1.
         share: f64,
     },
-    /// The scan fits the drawing only if it is mirrored.
-    Mirrored,
-    /// The scan fits the drawing only if it is rotated by half a turn.
-    Backwards,
+    /// The scan fits only if it is mirrored.
+    Mirrored {
+        /// What shows this.
+        by: Shown,
+    },
+    /// The scan fits only if it is rotated by half a turn.
+    Backwards {
+        /// What shows this.
+        by: Shown,
+    },
     /// Hardly any of the rays fit the drawing.
     Misfit {
         /// The share of them that fit, 0 to 1.
@@ -82,13 +107,15 @@ impl fmt::Display for Trouble {
                 "only {} % of the rays that must hit the wall or a column have an echo; check the scanner",
                 percent(share)
             ),
-            Self::Mirrored => write!(
+            Self::Mirrored { by } => write!(
                 f,
-                "the scan fits the drawing only if it is mirrored; check the direction of its angles"
+                "the scan fits {} only if it is mirrored; check the direction of its angles",
+                by.words()
             ),
-            Self::Backwards => write!(
+            Self::Backwards { by } => write!(
                 f,
-                "the scan fits the drawing only if it is rotated by half a turn; check how the scanner is mounted"
+                "the scan fits {} only if it is rotated by half a turn; check how the scanner is mounted",
+                by.words()
             ),
             Self::Misfit { share } => write!(
                 f,

@@ -1,11 +1,11 @@
 //! Measures the time of fixes from 60 ranges, of fixes from eight stations of which some are wrong, of protection
-//! levels, of the session calibration, and of filter steps.
+//! levels and the session calibration (with known and unknown times of emission), and of filter steps.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::Matrix2;
 use positioning::{
-    Aggregation, Bounded, Calibration, Consensus, Ekf, FixedLag, LinearLs, MotionNoise, Nls, Particles,
-    ParticlesConfig, PositionSolver, Positioner, PositionerConfig, RangeNoise, Risk, Screened,
+    Aggregation, Bounded, Calibration, Consensus, Differences, Ekf, FixedLag, LinearLs, MotionNoise, Nls,
+    Particles, ParticlesConfig, PositionSolver, Positioner, PositionerConfig, RangeNoise, Risk, Screened,
     SessionCalibration, SessionConfig, Timing, Unknowns, WeightedLinear, protection::level_m,
 };
 use rand::{RngExt, SeedableRng};
@@ -129,6 +129,46 @@ fn filter(criterion: &mut Criterion) {
     });
 }
 
+/// Ranges of one repetition whose time of emission is unknown: all are 200 m too long, with an error of 10 cm each.
+fn emitted_before(stations: &[Station]) -> Vec<RangeSet> {
+    let mut rng = rand_pcg::Pcg64::seed_from_u64(2);
+    let mut range_m = |distance_m: f64| distance_m + 200.0 + 0.1 * rng.random_range(-1.7..1.7);
+    let set = |s: &Station| RangeSet { station: s.id, ranges_m: vec![range_m((TRUTH - s.position).norm())] };
+    stations.iter().map(set).collect()
+}
+
+/// The design's limits also hold for differences of arrivals.
+fn differences(criterion: &mut Criterion) {
+    let timing = Timing { jitter_m: 0.1, resolution_m: 0.0 };
+    let noise = RangeNoise::Gaussian { sigma_ratio: 1e-4 };
+    for n in [6, 8] {
+        let (stations, risk) = (ring(n), Risk::default());
+        let sets = emitted_before(&stations);
+        let mut rangings = Aggregation::Mean.aggregate(&sets, &noise).expect("usable ranges");
+        timing.apply(&mut rangings, &noise, 200.0);
+        criterion.bench_function(&format!("{n} stations, fix of differences with protection level"), |b| {
+            b.iter(|| {
+                let fix = Differences.solve(black_box(&rangings), &stations, None).expect("a fix");
+                level_m(&fix, &stations, &risk, true)
+            });
+        });
+        let ways = (Aggregation::Mean, noise, timing);
+        let mut session =
+            SessionCalibration::new(SessionConfig::default(), &stations, ways, MotionNoise::default())
+                .with_free_emission();
+        let mut t_s = 0.0;
+        criterion.bench_function(
+            &format!("{n} stations, step of the session calibration, differences"),
+            |b| {
+                b.iter(|| {
+                    t_s += 1.0;
+                    session.take(black_box(&sets), (TRUTH, 0.02), t_s)
+                });
+            },
+        );
+    }
+}
+
 /// The design allows 2 us for a fix with its level, and 200 us for a step of the session calibration.
 fn integrity(criterion: &mut Criterion) {
     for n in [6, 8] {
@@ -154,5 +194,5 @@ fn integrity(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, fixes, eight_stations, integrity, filter);
+criterion_group!(benches, fixes, eight_stations, integrity, differences, filter);
 criterion_main!(benches);

@@ -2,7 +2,7 @@
 
 use crate::{
     anchor::{Anchor, anchored},
-    fix::{Fix, FixError, PositionSolver, Prior, Ranging},
+    fix::{Fix, FixError, Integrity, PositionSolver, Prior, Ranging},
     linear::conditioning,
     quality::{assess, integrity_of},
 };
@@ -21,8 +21,8 @@ const SETTLED_M: f64 = 1e-9;
 /// length.
 ///
 /// The scatter of a range is the given share of the range, scaled to the true distance. A search on differences of
-/// distances can end in a valley behind a station, so several starts are tried and the best result is used. A prior is
-/// only one of the starts.
+/// distances can end in a valley behind a station, so several starts are tried and the best result is used, unless five
+/// or more stations agree with the result of the first start. A prior is only one of the starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Differences;
 
@@ -36,9 +36,8 @@ impl PositionSolver for Differences {
         if anchors.len() < NEEDED {
             return Err(FixError::TooFewStations { have: anchors.len(), need: NEEDED });
         }
-        let found = starts(&anchors, prior)
-            .filter_map(|start| descend(&anchors, start))
-            .min_by(|a, b| a.cost.total_cmp(&b.cost))
+        let found = near(&anchors)
+            .or_else(|| best(&anchors, prior))
             .ok_or(FixError::NotConverged { iterations: MAX_ITERATIONS })?;
         let ranges: Vec<Anchor> = anchors.iter().map(|a| a.at_range(a.range_m - found.excess_m)).collect();
         if ranges.iter().any(|a| a.range_m <= 0.0) {
@@ -68,6 +67,21 @@ struct Minimum {
     excess_m: f64,
     cost: f64,
     covariance: Matrix3<f64>,
+}
+
+/// Returns the minimum from the solution of the squared equations, if it fits the ranges and cannot have a mirror image
+/// that fits better: with five stations, at least two differences check the position.
+fn near(anchors: &[Anchor]) -> Option<Minimum> {
+    let spare = anchors.len().checked_sub(NEEDED).filter(|spare| *spare > 0)?;
+    let found = descend(anchors, squared(anchors)?)?;
+    let degrees_of_freedom = u32::try_from(spare + 1).ok()?;
+    (integrity_of(found.cost, degrees_of_freedom) == Integrity::Ok).then_some(found)
+}
+
+/// Returns the least minimum of all starts.
+fn best(anchors: &[Anchor], prior: Option<Prior>) -> Option<Minimum> {
+    let minima = starts(anchors, prior).filter_map(|start| descend(anchors, start));
+    minima.min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
 
 /// Returns the starts: the solution of the squared equations, the prior, the centre of the stations, and points
@@ -149,7 +163,10 @@ fn slope(anchors: &[Anchor], state: &Vector3<f64>) -> Slope {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Nls, Screened, fix::Integrity};
+    use crate::{
+        Nls, Screened,
+        draws::{Draws, ring},
+    };
     use proptest::prelude::*;
     use world::StationId;
 
@@ -185,6 +202,37 @@ mod tests {
             let found_m = common_excess_m(&fix, &heard(at, excess_m), &stations()).unwrap();
             prop_assert!((found_m - excess_m).abs() < 1e-5);
         }
+    }
+
+    /// Stations on a ring with uneven gaps, and ranges with errors of 1 %, some of them with one wrong station.
+    #[test]
+    fn stations_that_agree_with_the_first_start_agree_with_the_best_one() {
+        let mut draws = Draws::new(0.0, 1, 45);
+        let (mut first, mut elsewhere) = (0, Vec::new());
+        for k in 0..20_000u32 {
+            let n = 5 + k % 4;
+            let mut stations = ring(n, 10.0);
+            for station in &mut stations {
+                let turn = nalgebra::Rotation2::new(0.8 * draws.even() / f64::from(n));
+                station.position = turn * station.position;
+            }
+            let at = draws.on_disc() * 0.95;
+            let mut ranges: Vec<Ranging> = stations
+                .iter()
+                .map(|s| (s.id, (at - s.position).norm() + 0.1 * draws.bell() + 180.0))
+                .map(|(id, range_m)| Ranging { timing_sigma_m: 0.1, ..Ranging::single(id, range_m, 0.1) })
+                .collect();
+            if k % 3 == 0 {
+                ranges[(k % n) as usize].range_m += draws.even();
+            }
+            let anchors = anchored(&ranges, &stations).unwrap();
+            let (Some(near), Some(best)) = (near(&anchors), best(&anchors, None)) else { continue };
+            first += 1;
+            if (near.position - best.position).norm() > 1e-4 {
+                elsewhere.push((n, at, near.position, best.position));
+            }
+        }
+        assert!(first > 15_000 && elsewhere.is_empty(), "{first}: {elsewhere:?}");
     }
 
     #[test]

@@ -11,6 +11,7 @@ use crate::{
     fix::{Exclusion, Fix, FixError, Integrity, Prior, Ranging, ellipse_95},
     possible::{Impossible, Possible},
     protection,
+    pulses::PulseTest,
     session::{CommonError, shift_by},
     sides::{Sides, both, is_behind},
     solver_kind::SolverKind,
@@ -169,6 +170,11 @@ impl Positioner {
     /// radians); returns whether the pose agrees with the estimate. A pose that does not is not used.
     pub fn take_pose(&mut self, pose: &Pose, covariance: &Matrix3<f64>) -> bool {
         self.filter.update_pose(pose, covariance).accepted
+    }
+
+    /// Takes the clocks of the stations from a pulse test; changes nothing if the stations share one clock.
+    pub fn take_pulses(&mut self, test: &PulseTest) {
+        self.clocks.iter_mut().for_each(|clocks| clocks.take_pulses(test));
     }
 
     /// Processes a ranging cycle: computes a fix from the ranges, and updates the estimate with it unless its

@@ -34,7 +34,8 @@ pub struct Pulse {
 }
 
 /// Why pulses give no calibration.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum PulseError {
     /// A pulse names a station that was not surveyed.
     #[error("station {} is not surveyed", .station.0)]

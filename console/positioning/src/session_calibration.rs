@@ -1,6 +1,6 @@
 //! Calibrates the speed of sound and the stations during a mission, from the last fixes and the motion between them.
 //!
-//! The unknowns are the position of each of the last fixes, the scale of all ranges (constant, or linear in time), and
+//! The unknowns are the position of each of the last fixes, its time of emission if that is unknown, the scale of all ranges (constant, or linear in time), and
 //! the biases of stations that were found wrong. A bounded number of Gauss-Newton steps per cycle fits them to the
 //! ranges and to the odometry between the fixes. All biases at once cannot be told from a shift of the whole path, so a
 //! bias is tested one station at a time, beside a free scale: its size over its standard deviation decides (Baarda
@@ -14,6 +14,7 @@ use crate::{
     aggregate::Aggregation,
     calibration::MOST_SCALE,
     ekf::MotionNoise,
+    fix::Ranging,
     noise::{RangeNoise, Timing},
 };
 use serde::{Deserialize, Serialize};
@@ -141,6 +142,7 @@ pub struct SessionCalibration {
     /// Motion since the last fix: the displacement, and the length of the way, metres.
     moved: (Vector, f64),
     is_separable: bool,
+    is_emission_free: bool,
 }
 
 impl SessionCalibration {
@@ -163,7 +165,14 @@ impl SessionCalibration {
             motion,
             moved: (Vector::zeros(), 0.0),
             is_separable: true,
+            is_emission_free: false,
         }
+    }
+
+    /// Takes the time of each emission as unknown: all ranges of a cycle are too long by one unknown length.
+    #[must_use]
+    pub fn with_free_emission(self) -> Self {
+        Self { is_emission_free: true, ..self }
     }
 
     /// Adds the motion of a tick, which begins with this heading, radians.
@@ -208,7 +217,7 @@ impl SessionCalibration {
     /// Adds the uncorrected ranges of a cycle at time `t_s`, seconds, near a position with a heading error of this
     /// standard deviation, radians. Returns what changed.
     ///
-    /// A cycle with an unusable range, with fewer than three stations, or at a time that is not later than the last one
+    /// A cycle with an unusable range, with fewer than three stations (four if emission times are unknown), or at a time that is not later than the last one
     /// changes nothing.
     pub fn take(&mut self, sets: &[RangeSet], near: (Point, f64), t_s: f64) -> Vec<News> {
         let Some(node) = self.node(sets, near, t_s) else { return Vec::new() };
@@ -231,21 +240,36 @@ impl SessionCalibration {
     fn node(&self, sets: &[RangeSet], (near, heading_sigma_rad): (Point, f64), t_s: f64) -> Option<Node> {
         let is_later = self.window.last_s().is_none_or(|last_s| t_s > last_s);
         let mut ranges = self.aggregation.aggregate(sets, &self.noise).ok().filter(|_| is_later)?;
-        self.timing.apply(&mut ranges, &self.noise, 0.0);
+        let excess_m = if self.is_emission_free { Some(self.excess_m(&ranges, near)?) } else { None };
+        self.timing.apply(&mut ranges, &self.noise, excess_m.unwrap_or(0.0));
         let heard = ranges.iter().filter_map(|range| {
             let station = self.stations.iter().position(|station| station.id == range.station)?;
-            Some(window::Heard {
-                station,
-                at: self.stations[station].position,
-                range_m: range.range_m,
-                sigma_m: range.sigma_m,
-            })
+            let at = self.stations[station].position;
+            // The scatter belongs to the distance, not to the excess.
+            let sigma_m = if self.is_emission_free {
+                range.sigma_at_m((near - at).norm().max(window::NEAREST_M))
+            } else {
+                range.sigma_m
+            };
+            Some(window::Heard { station, at, range_m: range.range_m, sigma_m })
         });
         let (moved, way_m) = self.moved;
         let sigma_m = way_m * self.motion.sigma_per_m.hypot(heading_sigma_rad);
         let biases_m: Vec<f64> =
             self.known.iter().map(|known| known.bias_m.map_or(0.0, |b| b.value)).collect();
-        Node::new(t_s, near, heard.collect(), (moved, sigma_m))?.settled(self.scale.value, &biases_m)
+        let node = Node::new(t_s, (near, excess_m), heard.collect(), (moved, sigma_m))?;
+        node.settled(self.scale.value, &biases_m)
+    }
+
+    /// The median length by which ranges exceed the distances from a place, metres; `None` without any range.
+    fn excess_m(&self, ranges: &[Ranging], near: Point) -> Option<f64> {
+        let excess_m = |range: &Ranging| {
+            let station = self.stations.iter().find(|station| station.id == range.station)?;
+            Some(range.range_m - (near - station.position).norm())
+        };
+        let mut all: Vec<f64> = ranges.iter().filter_map(excess_m).collect();
+        all.sort_by(f64::total_cmp);
+        all.get(all.len() / 2).copied()
     }
 
     /// Compares the largest correlation with its limit.

@@ -11,6 +11,7 @@
 use crate::{
     anchor::{Anchor, anchored},
     fix::{Fix, Ranging},
+    pulses::PulseTest,
     quality::{ALARM_Z, chi_squared_quantile},
     session::position_by_range,
     session_calibration::Estimated,
@@ -71,6 +72,8 @@ pub struct StationClocks {
     moved: (Vector, f64),
     /// Ticks since the last cycle.
     ticks: u32,
+    /// Standard deviation of an offset before the mission, metres.
+    offset_sigma_m: f64,
 }
 
 impl StationClocks {
@@ -91,6 +94,7 @@ impl StationClocks {
             covariance: DMatrix::from_diagonal(&variances),
             moved: (Vector::zeros(), 0.0),
             ticks: 0,
+            offset_sigma_m: config.offset_sigma_m,
         }
     }
 
@@ -119,6 +123,16 @@ impl StationClocks {
             let variance: f64 = pairs.map(|(i, j)| part(i) * covariance(i, j) * part(j)).sum();
             (station.id, Estimated { value, sigma: variance.max(0.0).sqrt() })
         })
+    }
+
+    /// The present offset of each station, metres, and its change in a tick, metres.
+    pub fn clocks_m(&self) -> Vec<(StationId, f64, f64)> {
+        let n = self.stations.len();
+        let of = |(index, station): (usize, &Station)| {
+            let (offset_m, drift_m) = (self.state[OFFSETS + index], self.state[OFFSETS + n + index]);
+            (station.id, offset_m + f64::from(self.ticks) * drift_m, drift_m)
+        };
+        self.stations.iter().enumerate().map(of).collect()
     }
 
     /// Returns ranges without the offsets of their stations.
@@ -170,6 +184,47 @@ impl StationClocks {
         }
     }
 
+    /// Takes the offsets that a pulse test has measured, relative to their mean. Offsets that contradict the estimate
+    /// replace it: the pulses measure the clocks alone.
+    pub fn take_pulses(&mut self, test: &PulseTest) {
+        self.advance();
+        // The ranges are corrected by the speed of sound, so the offsets are, too.
+        let by = 1.0 / (1.0 + test.scale.value);
+        let measured: Vec<(usize, Estimated)> = test
+            .offsets_m
+            .iter()
+            .filter_map(|(id, offset)| Some((OFFSETS + self.index(*id)?, *offset)))
+            .map(|(index, offset)| (index, Estimated { value: offset.value * by, sigma: offset.sigma * by }))
+            .collect();
+        let jumped = || {
+            let mut jumped = self.clone();
+            for (index, _) in &measured {
+                jumped.covariance[(*index, *index)] += self.offset_sigma_m.powi(2);
+            }
+            jumped.measured(&measured)
+        };
+        if let Some(met) = self.measured(&measured).or_else(jumped) {
+            *self = met;
+        }
+    }
+
+    /// Returns the estimate after an update with differences of offsets from the first one; `None` if they contradict it.
+    fn measured(&self, offsets: &[(usize, Estimated)]) -> Option<Self> {
+        let ((own, first), others) = offsets.split_first()?;
+        let n = others.len();
+        let mut by_state = DMatrix::zeros(n, self.state.len());
+        let mut noise = DMatrix::from_element(n, n, first.sigma.powi(2));
+        let mut error = DVector::zeros(n);
+        for (row, (index, offset)) in others.iter().enumerate() {
+            (by_state[(row, *index)], by_state[(row, *own)]) = (1.0, -1.0);
+            noise[(row, row)] += offset.sigma.powi(2);
+            error[row] = offset.value - first.value - (self.state[*index] - self.state[*own]);
+        }
+        let (met, score) = self.corrected_by(&self.state, (&error, &by_state, &noise))?;
+        let limit = chi_squared_quantile(ALARM_Z, u32::try_from(n).ok().filter(|n| *n > 0)?);
+        (score <= limit).then_some(met)
+    }
+
     fn index(&self, id: StationId) -> Option<usize> {
         self.stations.iter().position(|station| station.id == id)
     }
@@ -212,18 +267,30 @@ impl StationClocks {
         let (mut met, mut score) = (self.clone(), 0.0);
         for _ in 0..ROUNDS {
             let (error, by_state, noise) = self.differences(anchors, &met.state)?;
-            let expected = &by_state * &self.covariance * by_state.transpose() + &noise;
-            let inverse = expected.cholesky()?.inverse();
-            let error = error - &by_state * (&self.state - &met.state);
-            let gain = &self.covariance * by_state.transpose() * &inverse;
-            let rest = DMatrix::identity(self.state.len(), self.state.len()) - &gain * &by_state;
-            score = error.dot(&(&inverse * &error));
-            met.state = &self.state + &gain * error;
-            // The Joseph form stays positive where the short form may not.
-            met.covariance = &rest * &self.covariance * rest.transpose() + &gain * noise * gain.transpose();
+            (met, score) = self.corrected_by(&met.state, (&error, &by_state, &noise))?;
         }
+        (score <= limit).then_some((met, score))
+    }
+
+    /// A Kalman update with a measurement that is linearised at a state: its error there, its derivatives by the state,
+    /// and its covariance. Returns the new estimate, and the squared error in units of its variance.
+    fn corrected_by(
+        &self,
+        at: &DVector<f64>,
+        (error, by_state, noise): (&DVector<f64>, &DMatrix<f64>, &DMatrix<f64>),
+    ) -> Option<(Self, f64)> {
+        let expected = by_state * &self.covariance * by_state.transpose() + noise;
+        let inverse = expected.cholesky()?.inverse();
+        let error = error - by_state * (&self.state - at);
+        let gain = &self.covariance * by_state.transpose() * &inverse;
+        let rest = DMatrix::identity(self.state.len(), self.state.len()) - &gain * by_state;
+        let score = error.dot(&(&inverse * &error));
+        let mut met = self.clone();
+        met.state = &self.state + &gain * error;
+        // The Joseph form stays positive where the short form may not.
+        met.covariance = &rest * &self.covariance * rest.transpose() + &gain * noise * gain.transpose();
         let is_sound = met.state.iter().chain(met.covariance.iter()).all(|number| number.is_finite());
-        (is_sound && score <= limit).then_some((met, score))
+        is_sound.then_some((met, score))
     }
 
     /// The differences of all ranges from the first one: their errors at a state, their derivatives by the state, and

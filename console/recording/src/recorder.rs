@@ -15,6 +15,7 @@ mod series;
 mod states;
 pub(crate) mod stream;
 pub(crate) mod style;
+mod survey;
 mod table;
 mod tables;
 mod tick;

@@ -12,6 +12,8 @@ mod hostile;
 mod journal;
 #[path = "recording/recorder.rs"]
 mod recorder;
+#[path = "recording/surveys.rs"]
+mod surveys;
 #[path = "recording/synthetic.rs"]
 mod synthetic;
 #[path = "recording/thread.rs"]

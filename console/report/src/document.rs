@@ -25,6 +25,7 @@ mod run_part;
 mod sections;
 mod shapes;
 mod signed;
+mod survey;
 mod task;
 mod thickness;
 mod two_surveys;
@@ -40,6 +41,7 @@ pub use packed::stated_files;
 pub use readings::{Located, Readings};
 pub use run_part::{Driver, Files, PulseRecord, Recovered, RunPart, TetherPart};
 pub use signed::{Revision, Signature, SignedRun};
+pub use survey::{ColumnPart, DrawnAs, Instead, MapPart, NotFound};
 pub use task::TaskPart;
 pub use two_surveys::{
     Due, Grown, Single, SurveyPart, Surveyed, TWO_SURVEYS_SUFFIXES, TwoSurveys, two_surveys_html,

@@ -111,13 +111,18 @@ pub(crate) fn found_name(name: &str, run: usize, runs: usize) -> String {
 /// Computes what one run scanned.
 fn alone(past: &PastRun) -> Result<Joined<'_>, String> {
     let PastRun { name, fold, .. } = past;
-    let found = fold.scanned().zip(fold.evidence()).zip(fold.run());
+    // A survey drives without its tool.
+    let nothing = |run: &RunOpened| {
+        let mission = &run.mission;
+        mission
+            .task
+            .is_survey()
+            .then(|| Cow::Owned(Scanned::new(run.floor.clone(), mission.tool(), mission.start)))
+    };
+    let scanned = |run| fold.scanned().map(Cow::Borrowed).or_else(|| nothing(run));
+    let found = fold.run().and_then(|run| Some((scanned(run)?, fold.evidence()?, run)));
     found
-        .map(|((scanned, evidence), run)| Joined {
-            run,
-            scanned: Cow::Borrowed(scanned),
-            evidence: Cow::Borrowed(evidence),
-        })
+        .map(|(scanned, evidence, run)| Joined { run, scanned, evidence: Cow::Borrowed(evidence) })
         .ok_or_else(|| format!("run {name} scans no floor: its task is to reach a goal"))
 }
 

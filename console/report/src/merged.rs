@@ -24,6 +24,9 @@ pub struct Merged {
     /// The cells that count as scanned, in the order of the floor's cells; not part of the file.
     #[serde(skip)]
     pub scanned: Vec<CellRun>,
+    /// The cells that none of the runs had to scan, in the order of the floor's cells; not part of the file.
+    #[serde(skip)]
+    pub not_requested: Vec<CellRun>,
     /// The kinds of the cells of the joined floor: obstacles found and zones drawn in any run are applied; not part of the
     /// file.
     #[serde(skip)]
@@ -70,10 +73,12 @@ pub fn merged(runs: &[PastRun]) -> Result<Merged, String> {
     let grid = all.scanned.believed();
     let scanned = runs_of((0..grid.floor().len()).filter(|index| grid.is_covered(*index)));
     let kinds = grid.floor().kinds();
+    let not_requested = runs_of((0..grid.floor().len()).filter(|index| !all.evidence.is_asked(*index)));
     Ok(Merged {
         coverage: all.scanned.coverage(true),
         floor: all.account(runs),
         scanned,
+        not_requested,
         kinds,
         runs: listed,
     })

@@ -12,7 +12,7 @@ use incidents::Incidents;
 use mission::{Event, EventKind, PlannerInfo, event::PulsePhase};
 use planner_api::LegTag;
 use positioning::{
-    PulseTest,
+    PulseError, PulseTest,
     fix::{ellipse_95, position_covariance},
 };
 use stations::Stations;
@@ -67,7 +67,7 @@ pub struct Record {
     truth: Option<(u64, Pose)>,
     stations: Stations,
     /// The pulse tests of the stations.
-    pub pulses: Vec<(PulsePhase, PulseTest)>,
+    pub pulses: Vec<(PulsePhase, Result<PulseTest, PulseError>)>,
     incidents: Incidents,
 }
 
@@ -134,7 +134,8 @@ impl Record {
                 self.planners.push((**info).clone());
             }
             EventKind::Fixed { fix } => self.stations.fix(fix),
-            EventKind::PulsesTested { phase, test } => self.pulses.push((*phase, test.clone())),
+            EventKind::PulsesTested { phase, test } => self.pulses.push((*phase, Ok(test.clone()))),
+            EventKind::PulsesFailed { phase, why } => self.pulses.push((*phase, Err(*why))),
             EventKind::ClocksEstimated { offsets } => self.stations.clocks(offsets),
             _ => {}
         }

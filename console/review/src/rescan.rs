@@ -1,10 +1,10 @@
 //! A mission that re-scans floor missed by past runs.
 
-use crate::past::read_all;
+use crate::{past::read_all, survey::scan_of_map};
 use anyhow::Context;
 use flight::failure::bad_input;
 use report::{PastRun, Rescan};
-use runs::Past;
+use runs::{Past, find};
 use scenario::{Continued, Scenario};
 use std::path::{Path, PathBuf};
 
@@ -64,11 +64,17 @@ fn continued(run: &PastRun) -> anyhow::Result<Continued<'_>> {
     Ok(Continued { name: &run.name, journal_sha256 })
 }
 
-/// The re-scan scenario for the console.
+/// The next scan after some runs, for the console: a re-scan of the floor that they missed or, after a survey, a scan of
+/// the floor that it mapped.
 ///
 /// # Errors
-/// See [`missed_scan`]; also if a journal was changed, or if there is no floor to re-scan.
+/// See [`missed_scan`]; also if a journal was changed, if there is no floor to re-scan, or if a survey made no map.
 pub fn rescan_of(runs: &[String], logs: &Path) -> anyhow::Result<Scenario> {
+    if let [run] = runs
+        && let Some(scan) = scan_of_map(&find(Path::new(run), logs)?)?
+    {
+        return Ok(scan);
+    }
     let runs: Vec<PathBuf> = runs.iter().map(PathBuf::from).collect();
     let past = read_all(&runs, logs)?;
     past.iter().map(doubt).collect::<anyhow::Result<Vec<_>>>()?;

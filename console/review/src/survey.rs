@@ -1,9 +1,11 @@
 //! The map of a past survey.
 
 use exploration::SurveyMap;
-use flight::failure::bad_input;
+use flight::{failure::bad_input, planners::COVERAGE_PLANNER};
 use mission::{EventKind, RunOpened};
 use recording::{Ticks, journal_of};
+use runs::{Standing, standing};
+use scenario::{Scenario, cover_of_map};
 use std::path::Path;
 
 /// A past survey.
@@ -17,7 +19,8 @@ pub struct PastSurvey {
 /// The survey of the run in a folder.
 ///
 /// # Errors
-/// The journal cannot be read, the run was not a survey, or it ended without a map.
+/// The journal cannot be read or is not as its report states, the run is in progress or was not a survey, or it ended
+/// without a map.
 pub fn past_survey(folder: &Path) -> anyhow::Result<PastSurvey> {
     let mut ticks = Ticks::open(&journal_of(folder))?;
     let opened = ticks.opened()?.clone();
@@ -30,15 +33,43 @@ pub fn past_survey(folder: &Path) -> anyhow::Result<PastSurvey> {
         }
     }
     let name = folder.display();
+    let refused = |why: &str| bad_input(format!("{name}: {why}"));
     if !opened.mission.task.is_survey() {
         let why = "the run made no map; choose a run of a scenario with mission.kind = \"survey\"";
-        return Err(bad_input(format!("{name}: {why}")));
+        return Err(refused(why));
+    }
+    match standing(folder) {
+        Standing::Running if map.is_none() => {
+            return Err(refused("the survey is in progress; end it, or wait until it has ended"));
+        }
+        // A robot must not drive by a map that a person may have changed.
+        Standing::JournalOnly { doubt: Some(doubt), .. } => {
+            return Err(refused(&format!("{doubt}; restore the files of the run, or survey again")));
+        }
+        _ => {}
     }
     let map = map.ok_or_else(|| {
-        bad_input(format!("{name}: the survey was interrupted before it wrote its map; run the survey again"))
+        let why = ticks.no_end().unwrap_or_else(|| "the survey ended without a map".into());
+        refused(&format!("the journal contains no map: {why}; survey again"))
     })?;
     if map.states().is_none() {
-        return Err(bad_input(format!("{name}: the map in the journal is damaged; run the survey again")));
+        return Err(refused("the map in the journal is damaged; survey again"));
     }
     Ok(PastSurvey { opened, map })
+}
+
+/// The scenario that scans the floor that a survey has mapped, for the console; `None` for a run that was not a survey.
+///
+/// # Errors
+/// The run or its journal cannot be read, or the survey ended without a map.
+pub(crate) fn scan_of_map(folder: &Path) -> anyhow::Result<Option<Scenario>> {
+    if !Ticks::open(&journal_of(folder))?.opened()?.mission.task.is_survey() {
+        return Ok(None);
+    }
+    let survey = past_survey(folder)?;
+    let run = folder.file_name().unwrap_or_default().to_string_lossy();
+    let text = cover_of_map(&survey.opened, &run, &survey.map, COVERAGE_PLANNER)
+        .map_err(|error| bad_input(format!("{run}: {error}")))?;
+    let scenario = Scenario::parse(&text, &format!("the scan of the map of {run}"));
+    scenario.map(Some).map_err(|errors| bad_input(errors.render()))
 }

@@ -23,12 +23,17 @@ pub(crate) fn ae(section: &Section<'_>) -> Option<AeConfig> {
     let (noise, timing, clocks) = (noise(section), timing(section), clocks::true_clocks(section));
     let dropout_probability = section.number("dropout_probability");
     let (outages_s, disturbances) = (section.times("outages_s"), disturbances(section));
+    let pulse_rest_s = section.has("pulse_rest_s").then(|| section.number("pulse_rest_s"));
     Some(AeConfig {
         period_s: period_s?,
         repetitions: repetitions? as u32,
         noise: noise?,
         timing: timing?,
         clocks: clocks?,
+        pulse_rest_s: match pulse_rest_s {
+            Some(rest_s) => Some(rest_s?),
+            None => None,
+        },
         dropout_probability: dropout_probability?,
         outages_s: outages_s?,
         disturbances: disturbances?,
@@ -80,6 +85,7 @@ pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig, stations: &[Station
         risk: risk(section),
         session: session(section, calibrate_sound_speed?, stations.len()),
         clocks: clocks::expected(ae.clocks),
+        has_pulses: ae.pulse_rest_s.is_some(),
         repetitions: ae.repetitions,
         needs_line_of_sight: !matches!(behind, BehindColumns::Heard | BehindColumns::Creeping),
     })

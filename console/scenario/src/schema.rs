@@ -401,6 +401,7 @@ static AE: &[Key] = &[
     word("emission_time", &["known", "unknown"]).or_word("known"),
     number("clock_offset_sigma_m", "m", at_least(0.0).up_to(20.0)).or(0.0),
     number("clock_drift_sigma_m_per_h", "m/h", at_least(0.0).up_to(10.0)).or(0.0),
+    number("pulse_rest_s", "s", above(0.0).up_to(3600.0)).or_none("the stations exchange no pulses"),
     word("solver", &["linear", "weighted-linear", "nls", "bounded", "consensus"]).or_word("nls"),
     word("aggregation", &["mean", "midrange", "trimmed-mean", "posterior"]).or_word("mean"),
     key("calibrate_sound_speed", "", Kind::Flag).or_flag(false),

@@ -897,6 +897,18 @@ fn an_unknown_time_of_emission_uses_differences_and_clocks_of_their_own_are_pass
 }
 
 #[test]
+fn stations_that_exchange_pulses_are_simulated_and_expected() {
+    let with = differences("integrity_risk = 1e-5", "integrity_risk = 1e-5\npulse_rest_s = 5")
+        .unwrap_or_else(|errors| panic!("{}", errors.render()));
+    assert!(with.mission.locating.has_pulses);
+    assert_eq!(with.sim.ae.unwrap().pulse_rest_s, Some(5.0));
+    let never = differences("integrity_risk = 1e-5", "integrity_risk = 1e-5\npulse_rest_s = 0")
+        .map(|_| ())
+        .map_err(|errors| errors.render());
+    assert!(never.as_ref().is_err_and(|words| words.contains("ae.pulse_rest_s = 0")), "{never:?}");
+}
+
+#[test]
 fn too_few_stations_for_differences_or_stations_on_one_line_are_refused_with_the_reason() {
     let said = |from: &str, to: &str| match differences(from, to) {
         Ok(_) => panic!("{to} is accepted"),
@@ -917,7 +929,11 @@ fn too_few_stations_for_differences_or_stations_on_one_line_are_refused_with_the
         ("solver = \"nls\"", "has no effect with emission_time = \"unknown\""),
         ("aggregation = \"midrange\"", "must be \"mean\" or \"trimmed-mean\""),
         ("calibrate_sound_speed = true", "must be false with emission_time = \"unknown\""),
-        ("session_calibration = \"constant\"", "must be \"off\" with emission_time = \"unknown\""),
+        (
+            "session_calibration = \"constant\"",
+            "must be \"off\" with clock_offset_sigma_m or clock_drift_sigma_m_per_h: a bias of a station and the offset of \
+             its clock",
+        ),
     ] {
         let words = said("integrity_risk = 1e-5", &format!("integrity_risk = 1e-5\n{key}"));
         assert!(words.contains(reason), "{key}: {words}");

@@ -146,6 +146,10 @@ pub struct AeConfig {
     /// The time of emission, and the clocks of the stations.
     #[serde(default, skip_serializing_if = "Clocks::is_common")]
     pub clocks: Clocks,
+    /// How long the robot must stand still before the stations exchange pulses, seconds; they also do at the start.
+    /// `None`: they never do.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pulse_rest_s: Option<f64>,
     /// Probability that a station is not heard in a cycle, 0 to 1.
     pub dropout_probability: f64,
     /// Intervals of mission time in which there are no ranges, seconds: start, end.

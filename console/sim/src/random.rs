@@ -35,6 +35,8 @@ pub(crate) struct RandomStreams {
     pub scanner: Pcg64,
     /// Times of emission, and clocks of the stations.
     pub clocks: Pcg64,
+    /// Errors of the pulses that stations exchange.
+    pub pulses: Pcg64,
 }
 
 impl RandomStreams {
@@ -51,6 +53,7 @@ impl RandomStreams {
             pressure: stream(8),
             scanner: stream(9),
             clocks: stream(10),
+            pulses: stream(11),
         }
     }
 }

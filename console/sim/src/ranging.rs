@@ -1,15 +1,18 @@
 //! Acoustic-emission ranging: the timing of the cycles, and the ranges that they give.
 
 mod path;
+mod pulses;
 
 use crate::{
     config::{AeConfig, StationFault, TimingErrors},
     random::{RandomStreams, normal, reported_m},
 };
 use path::Propagation;
+use pulses::Rest;
 use rand::RngExt;
 use rand_distr::{Distribution, Exp1};
-use world::{Point, RangeSet, Station, Vector, World};
+use rand_pcg::Pcg64;
+use world::{Point, RangeSet, Station, StationId, Vector, World};
 
 /// Tolerance for deciding whether the time is a multiple of the period, as a share of the period.
 const SLACK: f64 = 1e-6;
@@ -31,6 +34,7 @@ pub struct Sounder {
     propagation: Propagation,
     streams: RandomStreams,
     ended: f64,
+    rest: Rest,
 }
 
 /// The error of a station's clock, as a length that sound travels.
@@ -61,7 +65,16 @@ impl Sounder {
         };
         let clocks = stations.iter().map(clock).collect();
         let propagation = Propagation::new(world);
-        Self { config, stations, clocks, propagation, streams, ended: 0.0 }
+        Self { config, stations, clocks, propagation, streams, ended: 0.0, rest: Rest::default() }
+    }
+
+    /// Sets the clocks of stations: the offset of each and its change in an hour, metres.
+    pub(crate) fn set_clocks(&mut self, clocks_m: &[(StationId, f64, f64)]) {
+        for (station, clock) in self.stations.iter().zip(&mut self.clocks) {
+            if let Some((_, offset_m, drift_m_per_h)) = clocks_m.iter().find(|(id, ..)| *id == station.id) {
+                *clock = Clock { offset_m: *offset_m, drift_m_per_h: *drift_m_per_h };
+            }
+        }
     }
 
     /// Adds a fault of a station to the faults in the configuration.
@@ -149,16 +162,16 @@ fn measure(
         if let Some(path) = path.filter(|_| is_heard) {
             let scale = 1.0 + what.sound_speed_error_ratio;
             let range_m = path.length_m * (1.0 + error) * scale + excess_range_m + ping_late_m + late_m;
-            ranges_m.push(reported_m(timed_m(config.timing, range_m, streams)));
+            ranges_m.push(reported_m(timed_m(config.timing, range_m, &mut streams.timing)));
         }
     }
     RangeSet { station: station.id, ranges_m }
 }
 
 /// Adds the timing errors to a range, metres.
-fn timed_m(timing: TimingErrors, range_m: f64, streams: &mut RandomStreams) -> f64 {
+fn timed_m(timing: TimingErrors, range_m: f64, rng: &mut Pcg64) -> f64 {
     let TimingErrors { jitter_m, resolution_m } = timing;
-    let jittered_m = if jitter_m > 0.0 { range_m + jitter_m * normal(&mut streams.timing) } else { range_m };
+    let jittered_m = if jitter_m > 0.0 { range_m + jitter_m * normal(rng) } else { range_m };
     if resolution_m > 0.0 { (jittered_m / resolution_m).round() * resolution_m } else { jittered_m }
 }
 
@@ -171,7 +184,7 @@ fn exponential(streams: &mut RandomStreams) -> f64 {
 mod tests {
     use super::*;
     use crate::{BehindColumns, Clocks, Disturbances, NoiseModel};
-    use world::{Boundary, Obstacle, ObstacleId, Shape, StationId};
+    use world::{Boundary, Obstacle, ObstacleId, Shape};
 
     fn config() -> AeConfig {
         AeConfig {
@@ -180,6 +193,7 @@ mod tests {
             noise: NoiseModel::Uniform { ratio: 0.05 },
             timing: TimingErrors::default(),
             clocks: Clocks::default(),
+            pulse_rest_s: None,
             dropout_probability: 0.0,
             outages_s: vec![],
             disturbances: Disturbances::default(),
@@ -324,6 +338,19 @@ mod tests {
         let moved = disturbed(Disturbances { survey_sigma_m: 0.1, ..Disturbances::default() }, &[]);
         let errors = [1, 2, 3].map(|station| excess(&moved, station)[0]);
         assert!(errors.iter().all(|e| e.abs() > 1e-6 && e.abs() < 0.5), "{errors:?}");
+    }
+
+    #[test]
+    fn a_forecast_continues_given_clocks_and_draws_the_others() {
+        let clocks = Clocks { offset_sigma_m: 2.0, drift_sigma_m_per_h: 0.5, ..Clocks::default() };
+        let config = AeConfig { noise: NoiseModel::None, clocks, repetitions: 1, ..config() };
+        let mut sounder = Sounder::new(config, &tank(&[]), 5);
+        let before = sounder.cycle(0.0, Point::origin());
+        sounder.set_clocks(&[(StationId(2), 0.7, -0.36)]);
+        let (now, later) = (sounder.cycle(0.0, Point::origin()), sounder.cycle(100.0, Point::origin()));
+        assert!((excess(&now, 2)[0] - 0.7).abs() < 1e-9, "{now:?}");
+        assert!((excess(&later, 2)[0] - 0.69).abs() < 1e-9, "{later:?}");
+        assert_eq!((excess(&now, 1), excess(&now, 3)), (excess(&before, 1), excess(&before, 3)));
     }
 
     #[test]

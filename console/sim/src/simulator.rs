@@ -39,6 +39,8 @@ pub struct Simulator {
     odometry: Odometry,
     in_contact: bool,
     collided: bool,
+    /// Whether the robot did not move in the last tick.
+    is_at_rest: bool,
     tick: u64,
 }
 
@@ -60,6 +62,7 @@ impl Simulator {
             odometry: Odometry::default(),
             in_contact: false,
             collided: false,
+            is_at_rest: true,
             tick: 0,
             config,
         };
@@ -69,11 +72,20 @@ impl Simulator {
     }
 
     /// Creates a robot at rest at any place, with its cable in a given position, as at the start of a forecast.
-    pub fn resumed(config: SimConfig, seed: u64, pose: Pose, cable: Option<Cable>) -> Self {
+    /// `clocks_m` gives the offset of the clock of each station and its change in an hour, metres; other clocks are drawn at
+    /// random.
+    pub fn resumed(
+        config: SimConfig,
+        seed: u64,
+        pose: Pose,
+        cable: Option<Cable>,
+        clocks_m: &[(StationId, f64, f64)],
+    ) -> Self {
         let robot = RobotConfig { start: pose, ..config.robot.clone() };
         let mut simulator = Self::new(SimConfig { robot, ..config }, seed);
         simulator.laid = Laid::along(cable.as_ref(), &simulator.config);
         simulator.cable = cable;
+        simulator.sounder.iter_mut().for_each(|sounder| sounder.set_clocks(clocks_m));
         simulator
     }
 
@@ -83,6 +95,8 @@ impl Simulator {
         let t_s = self.tick as f64 * self.config.tick_s.max(0.0);
         let at = self.pose.position;
         let ranges = self.sounder.as_mut().and_then(|sounder| sounder.due_cycle(t_s, at));
+        let is_at_rest = self.is_at_rest;
+        let pulses = self.sounder.as_mut().map(|sounder| sounder.due_pulses(t_s, is_at_rest));
         let pressure_pa = self.config.robot.pressure.map(|sensor| {
             let mean_pa = sensor.expected_pa(Medium::at(&world.zones, at));
             bounded(mean_pa + sensor.sigma_pa * normal(&mut self.streams.pressure))
@@ -100,6 +114,7 @@ impl Simulator {
         Readings {
             ranging_cycle: ranges.is_some(),
             ranges: ranges.unwrap_or_default(),
+            pulses: pulses.unwrap_or_default(),
             odometry: self.odometry,
             unmeasured_s: 0.0,
             sightings,
@@ -116,6 +131,7 @@ impl Simulator {
     /// Advances the true state by one tick.
     pub fn act(&mut self, drive: Drive) {
         self.update_mode();
+        let before = self.pose;
         let by_tracks = self.tracks.drive(drive, &self.pose);
         let driven = Arc { way_m: by_tracks.way_m * (1.0 - self.draw_slip()), ..by_tracks };
         let reached = sweep(&self.map, self.radius_m(), &self.pose, &driven);
@@ -131,6 +147,7 @@ impl Simulator {
             (self.cable, self.laid) = (cable, laid);
             reached.pose
         };
+        self.is_at_rest = self.pose == before;
         self.odometry = self.measure_odometry(&by_tracks);
         let touched_before = self.in_contact;
         let is_hit = self.move_obstacles();

@@ -25,6 +25,7 @@ fn combination(cells: usize) -> Combination {
         floor: serde_json::from_value(floor).expect("an account"),
         kinds: Vec::new(),
         scanned: vec![CellRun(0, (cells / 2) as u32)],
+        not_requested: Vec::new(),
     }
 }
 

@@ -1,6 +1,7 @@
 //! What each alarm means and what the operator can do about it.
 
 mod console;
+mod drawing;
 mod position;
 mod remedy;
 mod tether;
@@ -14,7 +15,7 @@ use crate::screens::Screen;
 use crate::view::text;
 use mission::Phase;
 use positioning::Exclusion;
-use remedy::{END, HOLD, OTHER_PLANNER, PARAMETERS, PLAN_AGAIN, RESUME, SHOW, check, run};
+use remedy::{END, OTHER_PLANNER, PARAMETERS, PLAN_AGAIN, RESUME, SHOW, check, run};
 
 /// The name of an alarm in a table, short enough for one row.
 pub fn name(cause: &Cause, of: &Run) -> String {
@@ -24,6 +25,7 @@ pub fn name(cause: &Cause, of: &Run) -> String {
         Cause::NotProtected => "position not protected".into(),
         Cause::Bias(id) => format!("station {} biased", of.station_name(*id).trim_start_matches("station ")),
         Cause::NotSeparable => "station bias not separable".into(),
+        Cause::Pulses => "pulse test disagrees".into(),
         Cause::NoFix => "no position fix".into(),
         Cause::DeadChannel => "channel dead".into(),
         Cause::Station(id) => {
@@ -73,6 +75,7 @@ pub fn guide(cause: &Cause) -> Guide {
         Cause::NotProtected => position::NOT_PROTECTED,
         Cause::Bias(_) => position::BIAS,
         Cause::NotSeparable => position::NOT_SEPARABLE,
+        Cause::Pulses => position::PULSES,
         Cause::NoFix => position::NO_FIX,
         Cause::Station(_) => position::STATION,
         Cause::DeadChannel => vehicle::DEAD_CHANNEL,
@@ -83,27 +86,8 @@ pub fn guide(cause: &Cause) -> Guide {
         Cause::Frames => console::FRAMES,
         Cause::RecorderLag => console::RECORDER_LAG,
         Cause::Disk => console::DISK,
-        Cause::Map => Guide {
-            cause: "Unknown obstacle: the robot detects something that is not on the drawing.",
-            holds: "",
-            effect: "Planners avoid it. The floor under it is not counted; floor that it blocks becomes \
-            unreachable.",
-            remedies: const { &[SHOW, check("Check what it is: nozzle, sump, debris."), HOLD] },
-        },
-        Cause::NotThere(_) => Guide {
-            cause: "The scanner sees through the place of an obstacle: it was removed, has moved, or is drawn in the \
-            wrong place; or the robot's position is wrong.",
-            holds: "",
-            effect: "Planners still avoid its place, so the floor around it may stay unscanned.",
-            remedies: const {
-                &[
-                    SHOW,
-                    check("Check on site that the obstacle was removed or moved."),
-                    check("If other obstacles are displaced too, check the position of the robot."),
-                    check("Correct the drawing before the next mission."),
-                ]
-            },
-        },
+        Cause::Map => drawing::UNKNOWN,
+        Cause::NotThere(_) => drawing::NOT_THERE,
         Cause::Tether(word) => tether::guide(word),
         Cause::Link => vehicle::LINK,
         Cause::Vehicle => vehicle::VEHICLE,

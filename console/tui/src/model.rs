@@ -29,6 +29,7 @@ pub mod scanner;
 pub mod setting;
 pub mod shadow;
 pub mod step;
+pub mod survey;
 pub mod tether;
 pub mod together;
 pub mod trail;

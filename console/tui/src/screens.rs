@@ -8,7 +8,7 @@ use crate::actions::{Action, ActionId, action};
 use crate::keys::Key;
 use crate::model::{Model, Pane, ui::Arrangement};
 use crate::update::{Effect, act, alarms, events, go, offer, place, review};
-use crate::view::{self, look::Look};
+use crate::view::{self, look::Look, scroll::Extent};
 use ratatui::{Frame, layout::Rect};
 use serde::{Deserialize, Serialize};
 
@@ -55,6 +55,11 @@ pub(crate) struct Row {
     pub enter: fn(&mut Model) -> Vec<Effect>,
     /// Moves the selection down by the given number of lines.
     pub select: fn(&mut Model, isize),
+    /// Whether a row of the screen's list is selected, so that its details can be shown.
+    pub has_selection: fn(&Model) -> bool,
+    /// How much of the details of the selected row is visible in the area of the screen; `None` if the screen shows no
+    /// such pane.
+    pub detail: fn(&Look, Rect) -> Option<Extent>,
     /// The filter of the screen's list; `None` if it uses the event filter.
     pub filter: Option<Filter>,
     /// The run to which a command on this screen applies.
@@ -79,6 +84,8 @@ const fn row(go: Action, name: &'static str, contexts: &'static [&'static [Conte
         opens: |_| None,
         enter: |_| Vec::new(),
         select: |_, _| {},
+        has_selection: |_| false,
+        detail: |_, _| None,
         filter: None,
         run: go::open_run,
         lists_runs: false,
@@ -109,13 +116,14 @@ const ROWS: &[Row] = &[
               &[On(Screen::Mission), Map, Pan, Cursor],
               &[Replay, Map, Pan], &[Replay, Map, Rows], &[Replay, Map], &[Replay, Map, Pan, Cursor]], view::mission) },
     Row { first: ActionId::Acknowledge, opens: |m| m.selected_alarm().map(|_| "actions"), enter: alarms::open_actions, select: alarms::select,
+        has_selection: |m| m.selected_alarm().is_some(), detail: view::alarm_screen::extent,
         ..row(shows(Screen::Alarms, "alarms", "Screen 4: what is wrong, what to do", &[Key::Char('4')]), "Alarms",
             &[&[On(Screen::Alarms), Rows]], view::alarm_screen::draw) },
-    Row { opens: |m| Some(if m.ui.events.is_open { "close detail" } else { "detail" }), enter: events::enter,
-        select: |m, by| m.ui.events.select(by),
+    Row { opens: events::opens, enter: events::enter, select: |m, by| m.ui.events.select(by), has_selection: |m| m.ui.events.selected().is_some(), detail: view::events::extent,
         ..row(shows(Screen::Events, "events", "Screen 5: what happened", &[Key::Char('5')]), "Events",
             &[&[On(Screen::Events), Rows]], view::events::screen) },
-    Row { lists_runs: true, opens: |_| Some("replay"), enter: review::enter, select: |m, by| m.review.select(&m.home, by),
+    Row { lists_runs: true, opens: review::opens, enter: review::enter, select: |m, by| m.review.select(&m.home, by),
+        has_selection: |m| m.review.run(&m.home).is_some(), detail: view::review::extent,
         filter: Some((|m| &m.review.filter, |m| &mut m.review.filter)),
         run: |m| m.review.run(&m.home).map(|run| run.name.clone()),
         ..row(shows(Screen::Review, "review", "Screen 6: past runs: replay, compare", &[Key::Char('6')]), "Review",
@@ -124,7 +132,7 @@ const ROWS: &[Row] = &[
         ..row(shows(Screen::Result, "result", "Screen 7: what was achieved", &[Key::Char('7')])
                 .when(|m| offer::demand(m.live.result.is_some(), "no run has ended yet")), "Result",
             &[&[On(Screen::Result), Map, Rows], &[On(Screen::Result), Map, Pan, Cursor]], view::result::draw) },
-    Row { first: ActionId::Reload, select: act::select_plugin,
+    Row { first: ActionId::Reload, select: act::select_plugin, has_selection: act::has_plugin, detail: view::plugins::extent,
         ..row(shows(Screen::Plugins, "plugins", "Screen 8: plugins and their planners", &[Key::Char('8')]), "Plugins",
             &[&[On(Screen::Plugins), Rows]], view::plugins::draw) },
 ];

@@ -61,6 +61,8 @@ roles! {
     Confirm 'c',
     /// Floor that has been scanned.
     Scanned '%',
+    /// The background of lines on scanned floor.
+    Ground 'q',
     /// Partially scanned floor.
     Partly ':',
     /// Floor that has been scanned more than once.
@@ -242,12 +244,12 @@ fn sixteen(role: Role, name: ThemeName) -> Option<Color> {
 fn sixteen_on_dark(role: Role) -> Option<Color> {
     match role {
         Role::Good | Role::Run => Some(Color::Green),
-        Role::Watch | Role::Key | Role::Focus => Some(Color::Cyan),
+        Role::Watch | Role::Key | Role::Focus | Role::Overlap => Some(Color::Cyan),
         Role::Warn | Role::Hold | Role::Confirm => Some(Color::Yellow),
         Role::Crit | Role::Push | Role::Missed | Role::Obstacle | Role::NoGo => Some(Color::LightRed),
-        Role::Scanned => Some(Color::Blue),
+        Role::Scanned => Some(Color::LightBlue),
+        Role::Ground => Some(Color::Blue),
         Role::Partly | Role::Unreachable | Role::Margin | Role::Plate => Some(Color::DarkGray),
-        Role::Overlap => Some(Color::LightBlue),
         Role::Found | Role::Drawn | Role::Ghost | Role::Untestable => Some(Color::LightMagenta),
         Role::Tether => Some(Color::White),
         Role::Station | Role::Trail => Some(Color::LightCyan),

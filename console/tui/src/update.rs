@@ -79,12 +79,18 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
         Msg::Measured(measured) => health::take(model, measured),
         Msg::Run(id, msg) => effects = hear::hear(model, id, msg),
         Msg::Presets(presets) => model.console.presets = presets,
-        Msg::Found(found) => model.home.found = Some(*found),
+        Msg::Found(found) => {
+            let is_first = model.home.found.replace(*found).is_none();
+            if is_first {
+                go::select_open(model);
+            }
+        }
         Msg::Glimpsed(key, found) => model.home.glimpses.take(key, found),
         Msg::Done(job, result) => effects = go::done(model, &job, result),
         Msg::Planners { found, refused } => take_planners(model, found, refused),
         Msg::Notice { severity, text } => news(model, &Cause::Console, severity, text),
     }
+    model.ui.without_scan = model.live.is_without_scan();
     events::refresh(model);
     unseen::note(model, question_before.as_ref());
     effects.extend(setting::follow(model, estimates_before));
@@ -189,7 +195,7 @@ fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
             let accept = find::row(ActionId::Accept);
             let is_accept = accept.is_some_and(|row| model.console.keys.of(row).contains(&key));
             let why = offer::why_nothing_opens(model).filter(|_| is_accept);
-            let why = why.map_or_else(|| format!("key {key} does nothing here; <help>: keys"), str::to_owned);
+            let why = why.unwrap_or_else(|| format!("key {key} does nothing here; <help>: keys"));
             let why = model.console.keys.spelled(&why);
             model.hint(why);
         }
@@ -210,7 +216,7 @@ fn resize(model: &mut Model, width: u16, height: u16) {
     (model.ui.width, model.ui.height) = (width, height);
     let whole = matches!(model.ui.arrangement(), Arrangement::Wide | Arrangement::Narrow);
     let turns = whole || model.ui.screen == Screen::Plan;
-    if turns && !model.ui.panes().is_empty() && !model.ui.panes().contains(&model.ui.pane) {
+    if turns && !model.ui.panes().is_empty() && !model.ui.panes().contains(&model.ui.focus()) {
         model.ui.pane = model.ui.first_pane();
     }
 }

@@ -28,11 +28,13 @@ mod readable;
 pub(crate) mod result;
 pub(crate) mod review;
 mod run_details;
+pub(crate) mod scroll;
 mod setting;
 mod shadow;
 mod small_map;
 mod stations;
 mod strip;
+mod survey;
 pub(crate) mod table;
 mod tabs;
 mod tether;
@@ -47,7 +49,7 @@ pub(crate) use confirm::question;
 pub(crate) use coverage::Bases;
 pub(crate) use next::{by_command, standing};
 
-use crate::caps::{Caps, Glyphs};
+use crate::caps::{Caps, Colours, Glyphs};
 use crate::layout::{self, Shown};
 use crate::model::{Model, Overlay, Pane, ui::Arrangement};
 use crate::theme::Theme;
@@ -119,12 +121,21 @@ pub(crate) fn body(model: &Model, area: Rect) -> Rect {
     parts(model, area)[2]
 }
 
+/// How many rows the details of the selected row can be scrolled at most, at the size of the screen.
+pub(crate) fn most_scrolled(model: &Model) -> usize {
+    let caps = Caps { colours: Colours::True, glyphs: Glyphs::Braille, ssh: false };
+    let (theme, cache) = (Theme::new(model.ui.theme, &caps), RefCell::default());
+    let look = Look { model, run: &model.live.run, caps, theme: &theme, cache: &cache };
+    let area = body(model, Rect::new(0, 0, model.ui.width, model.ui.height));
+    (model.ui.screen.row().detail)(&look, area).map_or(0, scroll::Extent::most)
+}
+
 /// Draws a screen between the top lines and the two bottom lines, which every screen has. Returns the rows of the notice.
 fn framed(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) -> u16 {
     let [top, screens, body, notice, next, keys] = parts(look.model, area);
     top::draw(look, frame, top);
     if tabs::has_row(area) {
-        tabs::draw(look, frame, screens, tabs::Form::Names);
+        tabs::draw(look, frame, screens);
     }
     notice::draw(look, frame, notice);
     if look.model.ui.overlay == Overlay::WhatIf {
@@ -155,7 +166,10 @@ pub(crate) fn mission(look: &Look, frame: &mut Frame, area: Rect, arrangement: A
 fn draw_pane(look: &Look, frame: &mut Frame, area: Rect, pane: Pane) {
     match pane {
         Pane::Map => map::draw(look, frame, area),
-        Pane::Coverage => coverage::draw(look, frame, area),
+        Pane::Coverage => match &look.run.survey {
+            Some(survey) => survey::draw(look, survey, frame, area),
+            None => coverage::draw(look, frame, area),
+        },
         Pane::Position => position::draw(look, frame, area),
         Pane::Tether => tether::draw(look, frame, area),
         Pane::Planner => planner::draw(look, frame, area),
@@ -171,6 +185,8 @@ fn draw_pane(look: &Look, frame: &mut Frame, area: Rect, pane: Pane) {
         | Pane::Parameters
         | Pane::Checks
         | Pane::Figures
-        | Pane::Plates => {}
+        | Pane::Plates
+        | Pane::List
+        | Pane::Detail => {}
     }
 }

@@ -32,7 +32,7 @@ pub use geometry::{self, Amphibious, Boundary, Pace, Point, Pose, Shape, Vector,
 pub use medium::{Medium, Mode, PressureSensor, SensedMedium};
 pub use obstacles::{Near, ObstacleMap};
 pub use plates::{DeadBands, DrawnPlate, NO_PLATE, Plate, PlateKind, PlateLayout, PlateMap, RegularPlates};
-pub use readings::{Odometry, RangeSet, Readings, Sighting};
+pub use readings::{Odometry, PulseSet, RangeSet, Readings, Sighting};
 pub use scan::{NO_ECHO, Scan};
 pub use scanner::Scanner;
 pub use tank::{Obstacle, ObstacleId, Station, StationId, World, Zone, ZoneKind};

@@ -16,6 +16,18 @@ pub struct RangeSet {
     pub ranges_m: Vec<f64>,
 }
 
+/// The repeated pulses of one station, as another one heard them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PulseSet {
+    /// The station that sent.
+    pub sender: StationId,
+    /// The station that heard.
+    pub receiver: StationId,
+    /// For each pulse, the time from sending to arrival, each by the clock of its station, times the assumed speed of
+    /// sound, metres.
+    pub lengths_m: Vec<f64>,
+}
+
 /// Motion since the last tick from track encoders and gyro, robot frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Odometry {
@@ -48,6 +60,9 @@ pub struct Readings {
     pub ranges: Vec<RangeSet>,
     /// Whether a ranging cycle ended in this tick, with or without ranges.
     pub ranging_cycle: bool,
+    /// Pulses that the stations exchanged since the last tick.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pulses: Vec<PulseSet>,
     /// Motion since the last tick.
     pub odometry: Odometry,
     /// Time for which the motion is unknown because odometry is missing, seconds; 0 in a simulation.

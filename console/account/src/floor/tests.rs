@@ -523,3 +523,20 @@ fn floor_that_is_missed_beside_a_drawn_zone_is_missed_for_its_clearance() {
     let measure = reasons.measure(&CoverageGrid::new(run.floor.clone()), MissReason::Clearance, &[cell]);
     assert!(measure.expect("a number").near.expect("a name").contains("no-go 1"));
 }
+
+#[test]
+fn listed_areas_leave_out_what_was_not_requested_and_end_with_what_was_not_reached() {
+    let run = round_tank(0.05);
+    let mut account = account(&run, &CoverageGrid::new(run.floor.clone()), &Evidence::new(&run));
+    let area = |reason, area_m2| Area { area_m2, reason, ..account.missed[0].clone() };
+    let missed = vec![
+        area(MissReason::NotReached, 9.0),
+        area(MissReason::NotAsked, 8.0),
+        area(MissReason::Clearance, 7.0),
+        area(MissReason::NotReached, 6.0),
+        area(MissReason::Wrap, 5.0),
+    ];
+    account.missed = missed;
+    let listed: Vec<f64> = account.listed().iter().map(|area| area.area_m2).collect();
+    assert_eq!(listed, [7.0, 5.0, 9.0, 6.0]);
+}

@@ -31,6 +31,11 @@ impl Mission {
         }
     }
 
+    /// Whether no scan has arrived yet, although the robot moves only with one.
+    pub fn awaits_scan(&self) -> bool {
+        self.known.awaits_scan()
+    }
+
     /// Whether a planner is being opened or is making a plan, even if the robot is not waiting for it.
     pub fn is_preparing(&self) -> bool {
         let preparing = self.preparing.as_ref().map(|preparing| &preparing.worker);

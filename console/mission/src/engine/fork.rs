@@ -2,7 +2,7 @@
 
 use super::Mission;
 use crate::config::BetterPlan;
-use world::{Pose, World, tether::Cable};
+use world::{Pose, StationId, World, tether::Cable};
 
 /// A copy of the mission, with everything needed to start a simulation of its continuation.
 #[derive(Clone)]
@@ -16,6 +16,9 @@ pub struct Fork {
     pub pose: Pose,
     /// The estimated geometry of the cable; `None` without a tether.
     pub cable: Option<Cable>,
+    /// The estimated clock of each station: its offset and the change of the offset in an hour, metres. Empty if the
+    /// stations share one clock.
+    pub clocks_m: Vec<(StationId, f64, f64)>,
 }
 
 impl Mission {
@@ -40,6 +43,7 @@ impl Mission {
             world: mission.known.chart.world().clone(),
             pose: Pose { position: estimate.position, heading_rad: estimate.heading_rad },
             cable: mission.known.tether.as_ref().map(|tether| tether.cable().clone()),
+            clocks_m: mission.known.locator.clocks_m(),
             mission,
         }
     }

@@ -15,7 +15,7 @@ use crate::{
     task::Survey as SurveyTask,
 };
 use choice::Choice;
-use exploration::{Exploration, Scanning};
+use exploration::{CellState, Exploration, Scanning};
 use ground::Ground;
 use leg::Leg;
 use planner_api::Drive;
@@ -39,6 +39,8 @@ pub(super) struct Surveying {
     /// Number of scans that have been used, up to [`SETTLED`].
     scans: u32,
     told_s: Option<f64>,
+    /// The states of the cells in the last report.
+    told: Vec<CellState>,
 }
 
 impl Surveying {
@@ -47,8 +49,10 @@ impl Surveying {
         let sensor = config.sensor.filter(|_| config.task.is_survey())?;
         let scanning =
             Scanning { sigma_m: sensor.sigma_m, range_m: sensor.range_m, hull_m: config.limits.radius_m };
+        let exploration = Exploration::new(&drawing.boundary, scanning);
         Some(Self {
-            exploration: Exploration::new(&drawing.boundary, scanning),
+            told: vec![CellState::Unseen; exploration.grid().len()],
+            exploration,
             ground: Ground::new(drawing.clone()),
             leg: None,
             choice: Choice::default(),
@@ -98,7 +102,10 @@ impl Known {
         let columns = survey.exploration.columns();
         let frontiers = survey.choice.frontiers().iter().copied().take(MOST_TOLD).collect();
         self.task.survey().into_iter().for_each(|task| task.explored = share);
-        happened.push(EventKind::Explored(Explored { share, frontiers, columns }));
+        let states = survey.exploration.states(&columns);
+        let cells = exploration::changes(&survey.told, &states);
+        survey.told = states;
+        happened.push(EventKind::Explored(Explored { share, frontiers, columns, cells }));
     }
 
     /// Why a survey counts as done, as a sentence.

@@ -70,7 +70,7 @@ impl Event {
                 let value_m = bias_m.value;
                 let deed = if *is_corrected { "corrected" } else { "not used" };
                 let text = format!(
-                    "{name} {deed}: ranges wrong by {value_m:+.2} m; floor in doubt since {since_s:.0} s"
+                    "{name} {deed}: ranges wrong by {value_m:+.2} m; floor in doubt since T+{since_s:.0} s"
                 );
                 line(Severity::Warn, "ae", text)
             }
@@ -82,6 +82,9 @@ impl Event {
                 let is_wrong = test.integrity == Integrity::Alarm;
                 let severity = if is_wrong { Severity::Warn } else { Severity::Info };
                 line(severity, "ae", pulse_text(*phase, test, stations))
+            }
+            EventKind::PulsesFailed { phase, why } => {
+                line(Severity::Warn, "ae", format!("pulse test {} failed: {why}", phase.words()))
             }
             EventKind::NotSeparable { correlation } => {
                 let text = format!(

@@ -17,6 +17,15 @@ pub enum SurveyGoal {
 }
 
 impl SurveyGoal {
+    /// The goal in a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Frontier => "frontier",
+            Self::View => "object",
+            Self::Home => "end",
+        }
+    }
+
     /// The goal in a sentence.
     pub fn words(self) -> &'static str {
         match self {
@@ -50,6 +59,10 @@ pub struct Explored {
     pub frontiers: Vec<Point>,
     /// The columns found so far.
     pub columns: Vec<Column>,
+    /// The cells of the map whose state has changed since the report before, as text (see [`exploration::changes`]); before
+    /// the first report, no cell has been seen. The lattice is [`exploration::Grid::of`] the wall.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub cells: String,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]

@@ -3,7 +3,7 @@
 use crate::event::EventKind;
 use positioning::{
     CommonError, Doubt, Estimate, Exclusion, Fix, News, OnBias, PositionerConfig, SessionCalibration,
-    SessionConfig,
+    SessionConfig, SolverKind,
 };
 use world::{Odometry, RangeSet};
 
@@ -20,9 +20,11 @@ pub(super) struct Session {
 impl Session {
     /// Creates the calibration for the positioner with this configuration.
     pub(super) fn new(config: SessionConfig, positioner: &PositionerConfig, tick_s: f64) -> Self {
-        let PositionerConfig { stations, aggregation, noise, timing, odometry, .. } = positioner;
+        let PositionerConfig { stations, aggregation, noise, timing, odometry, solver, .. } = positioner;
         let ways = (*aggregation, *noise, *timing);
-        let calibration = SessionCalibration::new(config, stations, ways, *odometry);
+        let plain = SessionCalibration::new(config, stations, ways, *odometry);
+        let is_free = *solver == SolverKind::Differences;
+        let calibration = if is_free { plain.with_free_emission() } else { plain };
         Self { calibration, on_bias: config.on_bias, tick_s, ticks: 0 }
     }
 

@@ -51,9 +51,37 @@ fn a_scanner_that_sees_only_a_few_columns_is_judged_too() {
         drive.perception.trouble()
     };
     assert_eq!(judged(&|_| {}), None);
-    assert_eq!(judged(&|scan| scan.ranges_mm.0.reverse()), Some(Trouble::Mirrored));
-    assert_eq!(judged(&|scan| scan.ranges_mm.0.rotate_left(180)), Some(Trouble::Backwards));
+    assert_eq!(judged(&|scan| scan.ranges_mm.0.reverse()), Some(Trouble::Mirrored { by: Shown::Drawing }));
+    assert_eq!(
+        judged(&|scan| scan.ranges_mm.0.rotate_left(180)),
+        Some(Trouble::Backwards { by: Shown::Drawing })
+    );
     assert_eq!(judged(&|scan| scan.ranges_mm.0.fill(world::NO_ECHO)), Some(Trouble::NoEcho { share: 0.0 }));
+}
+
+/// In a round tank without a drawing, only the motion of the robot shows that the directions of its scans are wrong.
+#[test]
+fn scans_that_contradict_the_motion_are_named_without_a_drawing() {
+    let real = vec![column(1, 2.0, 2.0, 0.2), column(2, -3.0, 0.0, 0.25), column(3, 0.5, -2.5, 0.3)];
+    let turn = (0..60).map(|k| Pose::new(0.0, 0.0, 0.05 * f64::from(k)));
+    let along = |k: u32| Point::origin() + geometry::unit_vector(2.95) * (0.04 * f64::from(k));
+    let drive = (0..60).map(|k| Pose::new(along(k).x, along(k).y, 2.95));
+    let way: Vec<Pose> = turn.chain(drive).collect();
+    let judged = |spoil: &dyn Fn(&mut Scan)| {
+        let mut drive = Drive::new(real.clone(), Vec::new());
+        // The wall is beyond the range of the scanner.
+        drive.boundary = Boundary::Circle { radius_m: 12.0 };
+        for pose in &way {
+            let mut scan = scan_of(&drive.scanner, &drive.boundary, &drive.real, pose, drive.tick);
+            spoil(&mut scan);
+            drive.take(&scan, pose);
+        }
+        drive.perception.trouble()
+    };
+    assert_eq!(judged(&|_| {}), None);
+    let by = Shown::Motion;
+    assert_eq!(judged(&|scan| scan.ranges_mm.0.reverse()), Some(Trouble::Mirrored { by }));
+    assert_eq!(judged(&|scan| scan.ranges_mm.0.rotate_left(180)), Some(Trouble::Backwards { by }));
 }
 
 /// A drive with a scanner that no scenario describes, in a tank whose wall is beyond the scanner's range.
@@ -155,8 +183,8 @@ fn scans_that_become_wrong_under_way_are_named_and_chart_nothing() {
     let drawn = vec![column(1, 2.0, 2.0, 0.2), column(2, -3.0, 0.0, 0.25)];
     let pose = Pose::new(-3.5, -0.8, 0.0);
     for (spoil, wanted) in [
-        ((|scan| scan.ranges_mm.0.reverse()) as fn(&mut Scan), Trouble::Mirrored),
-        (|scan| scan.ranges_mm.0.rotate_left(180), Trouble::Backwards),
+        ((|scan| scan.ranges_mm.0.reverse()) as fn(&mut Scan), Trouble::Mirrored { by: Shown::Drawing }),
+        (|scan| scan.ranges_mm.0.rotate_left(180), Trouble::Backwards { by: Shown::Drawing }),
     ] {
         let mut drive = Drive::new(drawn.clone(), drawn.clone());
         for tick in 0..60 {

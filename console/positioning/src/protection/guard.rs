@@ -4,6 +4,7 @@ use super::{Risk, Unprotected};
 use crate::{
     fix::{Fix, FixError, Integrity},
     positioner::{Doubt, Positioner, PositionerConfig},
+    pulses::PulseTest,
     quality::largest_sigma_m,
     solver_kind::SolverKind,
 };
@@ -91,6 +92,11 @@ impl Guard {
     /// Reduces the trust in the following cycles; see [`Positioner::doubt`].
     pub fn doubt(&mut self, doubt: Doubt) {
         self.others.iter_mut().for_each(|other| other.positioner.doubt(doubt));
+    }
+
+    /// Takes the clocks of the stations from a pulse test; see [`Positioner::take_pulses`].
+    pub fn take_pulses(&mut self, test: &PulseTest) {
+        self.others.iter_mut().for_each(|other| other.positioner.take_pulses(test));
     }
 
     /// Processes a ranging cycle. `whole` is the fix from all stations.

@@ -41,11 +41,38 @@ pub(super) struct System {
     right: DVector<f64>,
 }
 
+/// The sums over the ranges of a fix that eliminate a length which all of them share.
+#[derive(Debug)]
+pub(super) struct Common {
+    weight: f64,
+    residual: f64,
+    by_position: Vector2<f64>,
+    shared: DVector<f64>,
+}
+
 /// A solution for some of the shared errors.
 #[derive(Debug)]
 pub(super) struct Solved {
     pub step: DVector<f64>,
     covariance: DMatrix<f64>,
+}
+
+impl Common {
+    /// Adds a range; the arguments are those of [`System::range`].
+    pub(super) fn range(
+        &mut self,
+        (by_position, by, bias): (Vector2<f64>, [f64; 2], Option<Column>),
+        residual: f64,
+        weight: f64,
+    ) {
+        self.weight += weight;
+        self.residual += weight * residual;
+        self.by_position += by_position * weight;
+        let own = bias.map(|Column(column)| (column, 1.0));
+        for (column, by) in [(0, by[0]), (1, by[1])].into_iter().chain(own) {
+            self.shared[column] += by * weight;
+        }
+    }
 }
 
 impl Solved {
@@ -95,6 +122,29 @@ impl System {
                 self.shared[(i, j)] += a * b * weight;
             }
         }
+    }
+
+    /// The sums for a fix without any range.
+    pub(super) fn common(&self) -> Common {
+        let shared = DVector::zeros(self.right.len());
+        Common { weight: 0.0, residual: 0.0, by_position: Vector2::zeros(), shared }
+    }
+
+    /// Eliminates an unknown length that all ranges of a fix share, such as the time of emission.
+    pub(super) fn free_length(&mut self, fix: usize, common: &Common) {
+        let Common { weight, residual, by_position, shared } = common;
+        // The comparison also holds for a fix without a range.
+        if *weight <= 0.0 {
+            return;
+        }
+        let block = &mut self.blocks[fix];
+        block.information -= by_position * by_position.transpose() / *weight;
+        block.right -= by_position * (residual / weight);
+        for (own, shared) in block.shared.iter_mut().zip(shared.iter()) {
+            *own = [own[0] - by_position.x * shared / weight, own[1] - by_position.y * shared / weight];
+        }
+        self.right -= shared * (residual / weight);
+        self.shared -= shared * shared.transpose() / *weight;
     }
 
     /// Adds the motion between a fix and the next one, by which the positions are `off`.

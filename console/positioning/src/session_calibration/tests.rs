@@ -23,6 +23,8 @@ struct Run {
     t_s: f64,
     draws: Draws,
     news: Vec<(f64, News)>,
+    /// Whether the time of each emission is unknown.
+    is_free: bool,
 }
 
 impl Run {
@@ -36,13 +38,29 @@ impl Run {
         let calibration = SessionCalibration::new(config, &stations, ways, MotionNoise::default());
         let at = Point::new(-12.0, -10.0);
         let draws = Draws::new(0.0, 1, seed);
-        Self { stations, calibration, at, heading_rad: 0.0, t_s: 0.0, draws, news: Vec::new() }
+        Self {
+            stations,
+            calibration,
+            at,
+            heading_rad: 0.0,
+            t_s: 0.0,
+            draws,
+            news: Vec::new(),
+            is_free: false,
+        }
+    }
+
+    fn free(config: SessionConfig, n: u32, seed: u64) -> Self {
+        let run = Self::new(config, n, seed);
+        Self { calibration: run.calibration.with_free_emission(), is_free: true, ..run }
     }
 
     fn sets(&mut self, scale: f64, biases_m: &[f64]) -> Vec<RangeSet> {
         let draws = &mut self.draws;
+        // The emission is up to 250 m of sound before the readings.
+        let excess_m = if self.is_free { 150.0 + 100.0 * draws.even().abs() } else { 0.0 };
         let set = |(station, bias_m): (&Station, &f64)| {
-            let range_m = (self.at - station.position).norm() * (1.0 + scale) + bias_m;
+            let range_m = ((self.at - station.position).norm() + excess_m) * (1.0 + scale) + bias_m;
             RangeSet { station: station.id, ranges_m: vec![range_m + SIGMA_M * draws.bell()] }
         };
         self.stations.iter().zip(biases_m).map(set).collect()
@@ -96,46 +114,60 @@ fn late(t_s: f64) -> [f64; 6] {
     [0.0, 0.0, if t_s > 600.0 { 0.15 } else { 0.0 }, 0.0, 0.0, 0.0]
 }
 
-/// The design's case: a speed of sound wrong by 2 %, a bias of 15 cm from minute 10 on.
+/// The design's case: a speed of sound wrong by 2 %, a bias of 15 cm from minute 10 on. Returns the detected bias, metres;
+/// `None` if another station was named first.
+fn found_within_60_fixes(mut run: Run, seed: u64) -> Option<f64> {
+    run.until(60.0, &|t_s| (0.02, late(t_s)));
+    let scale = run.calibration.scale();
+    let most = if run.is_free { 4e-3 } else { 1e-3 };
+    assert!((scale.value - 0.02).abs() < 5.0 * scale.sigma && scale.sigma < most, "{seed}: {scale:?}");
+    run.until(600.0, &|t_s| (0.02, late(t_s)));
+    assert_eq!(run.biased(), [], "{seed}");
+    run.until(660.0, &|t_s| (0.02, late(t_s)));
+    let found = run.biased();
+    let right = found.iter().find(|(_, station, ..)| *station == StationId(3));
+    let (t_s, _, bias_m, since_s) = *right.unwrap_or_else(|| panic!("{seed}: {found:?}"));
+    assert!(t_s <= 660.0 && since_s <= 600.0, "{seed}: {found:?}");
+    if found[0].1 != StationId(3) {
+        return None;
+    }
+    // The size counts from the onset, not from the begin of the window.
+    assert!((bias_m - 0.15).abs() < 0.08, "{seed}: {found:?}");
+    run.until(700.0, &|t_s| (0.02, late(t_s)));
+    let biases: Vec<_> = run.calibration.biases_m().collect();
+    assert!(
+        matches!(biases[..], [(StationId(3), bias_m)] if (bias_m.value - 0.15).abs() < 0.08),
+        "{seed}: {biases:?}"
+    );
+    let scale = run.calibration.scale();
+    // Beside a bias, differences show less of the scale.
+    let limit = if run.is_free { (5.0 * scale.sigma).min(0.04) } else { 0.002 };
+    assert!((scale.value - 0.02).abs() < limit, "{seed}: {scale:?}");
+    Some(bias_m)
+}
+
+/// Ranges name the right station at once in every session, differences in at least 95 %.
 #[test]
 fn a_wrong_speed_of_sound_and_a_station_that_becomes_late_are_found_within_60_fixes() {
-    let mut first_m = Vec::new();
-    for seed in 0..40 {
-        let mut run = Run::new(SessionConfig::default(), 6, 44_000 + seed);
-        run.until(60.0, &|t_s| (0.02, late(t_s)));
-        let scale = run.calibration.scale();
-        assert!((scale.value - 0.02).abs() < 5.0 * scale.sigma && scale.sigma < 1e-3, "{seed}: {scale:?}");
-        run.until(600.0, &|t_s| (0.02, late(t_s)));
-        assert_eq!(run.biased(), [], "{seed}");
-        run.until(660.0, &|t_s| (0.02, late(t_s)));
-        let found = run.biased();
-        let (t_s, station, bias_m, since_s) =
-            *found.first().unwrap_or_else(|| panic!("{seed}: nothing found"));
-        assert_eq!(station, StationId(3), "{seed}: {found:?}");
-        assert!(t_s <= 660.0 && since_s <= 600.0, "{seed}: {found:?}");
-        // The size counts from the onset, not from the begin of the window.
-        assert!((bias_m - 0.15).abs() < 0.08, "{seed}: {found:?}");
-        first_m.push(bias_m);
-        run.until(700.0, &|t_s| (0.02, late(t_s)));
-        let biases: Vec<_> = run.calibration.biases_m().collect();
-        assert!(
-            matches!(biases[..], [(StationId(3), bias_m)] if (bias_m.value - 0.15).abs() < 0.08),
-            "{seed}: {biases:?}"
-        );
-        let scale = run.calibration.scale();
-        assert!((scale.value - 0.02).abs() < 0.002, "{seed}: {scale:?}");
+    for (begun, least) in [(Run::new as fn(SessionConfig, u32, u64) -> Run, 40), (Run::free, 38)] {
+        let first_m: Vec<f64> = (44_000..44_040)
+            .filter_map(|seed| found_within_60_fixes(begun(SessionConfig::default(), 6, seed), seed))
+            .collect();
+        assert!(first_m.len() >= least, "{} of 40", first_m.len());
+        let mean_m = first_m.iter().sum::<f64>() / first_m.len() as f64;
+        assert!((mean_m - 0.15).abs() < 0.02, "first estimates are {mean_m} m on average: {first_m:?}");
     }
-    let mean_m = first_m.iter().sum::<f64>() / first_m.len() as f64;
-    assert!((mean_m - 0.15).abs() < 0.02, "first estimates are {mean_m} m on average: {first_m:?}");
 }
 
 #[test]
 fn sound_stations_are_not_blamed_in_an_hour() {
-    for seed in 0..10 {
-        let mut run = Run::new(SessionConfig::default(), 6, 55_000 + seed);
-        run.at.y = -18.0;
-        run.until(1_800.0, &|_| (-0.01, none()));
-        assert_eq!(run.biased(), [], "{seed}");
+    for (begun, seeds) in [(Run::new as fn(SessionConfig, u32, u64) -> Run, 0..10), (Run::free, 0..10)] {
+        for seed in seeds {
+            let mut run = begun(SessionConfig::default(), 6, 55_000 + seed);
+            run.at.y = -18.0;
+            run.until(1_800.0, &|_| (-0.01, none()));
+            assert_eq!(run.biased(), [], "{seed}, {}", run.is_free);
+        }
     }
 }
 
@@ -216,8 +248,11 @@ fn absurd_input_stays_finite_and_sound_ranges_recover() {
             run.stations.iter().map(same).collect()
         },
     ];
-    for (index, input) in absurd.iter().enumerate() {
-        let mut run = Run::new(SessionConfig::default(), 6, 5);
+    let begun: [fn(SessionConfig, u32, u64) -> Run; 2] = [Run::new, Run::free];
+    for (index, (begin, input)) in
+        begun.iter().flat_map(|begin| absurd.iter().map(move |input| (begin, input))).enumerate()
+    {
+        let mut run = begin(SessionConfig::default(), 6, 5);
         run.until(60.0, &|_| (0.01, none()));
         for cycle in 0..100 {
             // Every second time repeats.
@@ -229,14 +264,14 @@ fn absurd_input_stays_finite_and_sound_ranges_recover() {
         }
         run.until(run.t_s + 130.0, &|_| (0.01, none()));
         let scale = run.calibration.scale();
-        assert!((scale.value - 0.01).abs() < 0.002, "{index}: {scale:?}");
+        let most = if run.is_free { 0.006 } else { 0.002 };
+        assert!((scale.value - 0.01).abs() < most, "{index}: {scale:?}");
         assert_eq!(run.calibration.biases_m().count(), 0, "{index}: {:?}", run.news);
     }
 }
 
-/// The score of the worst station in a session of 60 fixes at places that no odometry connects.
-fn score_of(places: &[Point], station: usize, bias_m: f64, seed: u64) -> f64 {
-    let mut run = Run::new(SessionConfig::default(), 6, seed);
+/// The score of a station in a session of 60 fixes at places that no odometry connects.
+fn score_of(mut run: Run, places: &[Point], station: usize, bias_m: f64) -> f64 {
     let mut biases_m = none();
     biases_m[station] = bias_m;
     for place in places {
@@ -256,23 +291,32 @@ fn score_of(places: &[Point], station: usize, bias_m: f64, seed: u64) -> f64 {
 fn the_least_detectable_bias_of_a_session_is_the_forecast_one() {
     let (stations, mut draws) = (ring(6, RADIUS_M), Draws::new(0.0, 1, 12));
     let places: Vec<Point> = (0..60).map(|_| draws.on_disc() * 1.6).collect();
-    let forecast = Forecast {
-        noise: RangeNoise::Gaussian { sigma_ratio: 1e-6 },
-        timing: Timing { jitter_m: SIGMA_M, resolution_m: 0.0 },
-        repetitions: 1,
-        needs_line_of_sight: false,
-        is_emission_unknown: false,
-        cell_m: 0.5,
-    };
     let map = ObstacleMap::new(&Boundary::Circle { radius_m: RADIUS_M }, &[]);
-    let least_m = forecast.session_checks(&places, &stations, &map).unwrap().detectable_m.unwrap();
-    // The forecast is that of the worst station: the one that is noticed least.
-    let noticed = |station: usize, bias_m: f64| {
-        let hits = (0..500).filter(|seed| score_of(&places, station, bias_m, 9_000 + seed) > 3.29).count();
-        hits as f64 / 500.0
-    };
-    let shares: Vec<f64> = (0..6).map(|station| noticed(station, least_m)).collect();
-    let worst = (0..6).min_by(|a, b| shares[*a].total_cmp(&shares[*b])).unwrap();
-    let (below, above) = (noticed(worst, 0.9 * least_m), noticed(worst, 1.1 * least_m));
-    assert!(below < 0.8 && above > 0.8, "{below} at 0.9 times {least_m} m, {above} at 1.1 times");
+    for is_free in [false, true] {
+        let begun = if is_free { Run::free } else { Run::new };
+        let forecast = Forecast {
+            noise: RangeNoise::Gaussian { sigma_ratio: 1e-6 },
+            timing: Timing { jitter_m: SIGMA_M, resolution_m: 0.0 },
+            repetitions: 1,
+            needs_line_of_sight: false,
+            is_emission_unknown: is_free,
+            cell_m: 0.5,
+        };
+        let least_m = forecast.session_checks(&places, &stations, &map).unwrap().detectable_m.unwrap();
+        // The forecast is that of the worst station: the one that is noticed least.
+        let noticed = |station: usize, bias_m: f64| {
+            let score = |seed: u64| {
+                score_of(begun(SessionConfig::default(), 6, 9_000 + seed), &places, station, bias_m)
+            };
+            let hits = (0..500_u64).filter(|seed| score(*seed) > 3.29).count();
+            hits as f64 / 500.0
+        };
+        let shares: Vec<f64> = (0..6).map(|station| noticed(station, least_m)).collect();
+        let worst = (0..6).min_by(|a, b| shares[*a].total_cmp(&shares[*b])).unwrap();
+        let (below, above) = (noticed(worst, 0.9 * least_m), noticed(worst, 1.1 * least_m));
+        assert!(
+            below < 0.8 && above > 0.8,
+            "{below} at 0.9 times {least_m} m, {above} at 1.1 times, unknown emission: {is_free}"
+        );
+    }
 }

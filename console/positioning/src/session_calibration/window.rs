@@ -25,10 +25,10 @@ const HUBER: f64 = 3.0;
 const OUTLIER: f64 = 30.0;
 /// Largest distance of a fix from the expected position, metres: ranges that lead further away cannot be right.
 const FARTHEST_M: f64 = 5.0;
-/// The least number of ranges of a fix.
+/// The least number of ranges of a fix; an unknown time of emission needs one more.
 const LEAST_RANGES: usize = 3;
 /// The shortest distance to a station that is used, metres.
-const NEAREST_M: f64 = 0.05;
+pub(super) const NEAREST_M: f64 = 0.05;
 
 /// A range of a fix.
 #[derive(Debug, Clone)]
@@ -46,6 +46,9 @@ pub(super) struct Heard {
 pub(super) struct Node {
     t_s: f64,
     at: Point,
+    /// The length by which all ranges are too long because the time of emission is unknown, metres; `None` if it is
+    /// known.
+    excess_m: Option<f64>,
     heard: Vec<Heard>,
     moved: Vector,
     moved_sigma_m: f64,
@@ -60,10 +63,11 @@ struct Seen {
 }
 
 impl Heard {
-    fn seen(&self, from: Point, stretch: f64, bias_m: f64) -> Seen {
+    /// Returns the range as seen from a place, without an excess length, metres.
+    fn seen(&self, from: Point, stretch: f64, excess_m: f64) -> Seen {
         let away = from - self.at;
         let distance_m = away.norm().max(NEAREST_M);
-        let residual_m = self.range_m - distance_m * stretch - bias_m;
+        let residual_m = self.range_m - distance_m * stretch - excess_m;
         Seen {
             direction: away / distance_m,
             distance_m,
@@ -80,17 +84,29 @@ fn weight(size: f64, sigma: f64) -> f64 {
 }
 
 impl Node {
-    /// `None` if the time, the place or the motion is not a number, or too few stations were heard.
+    /// `excess_m` is an estimate of the length by which all ranges are too long, metres, if the time of emission is
+    /// unknown.
+    ///
+    /// `None` if the time, the place, the excess or the motion is not a number, or too few stations were heard.
     pub(super) fn new(
         t_s: f64,
-        at: Point,
+        (at, excess_m): (Point, Option<f64>),
         heard: Vec<Heard>,
         (moved, sigma_m): (Vector, f64),
     ) -> Option<Self> {
-        let numbers = [t_s, at.x, at.y, moved.x, moved.y, sigma_m];
+        let numbers = [t_s, at.x, at.y, excess_m.unwrap_or(0.0), moved.x, moved.y, sigma_m];
         let moved_sigma_m = sigma_m.hypot(MOTION_SIGMA_M);
-        let is_usable = heard.len() >= LEAST_RANGES && numbers.iter().all(|number| number.is_finite());
-        is_usable.then_some(Self { t_s, at, heard, moved, moved_sigma_m })
+        let node = Self { t_s, at, excess_m, heard, moved, moved_sigma_m };
+        (node.has_enough() && numbers.iter().all(|number| number.is_finite())).then_some(node)
+    }
+
+    fn has_enough(&self) -> bool {
+        self.heard.len() >= LEAST_RANGES + usize::from(self.excess_m.is_some())
+    }
+
+    /// Returns a range as seen from the position of the fix.
+    fn seen(&self, heard: &Heard, stretch: f64, bias_m: f64) -> Seen {
+        heard.seen(self.at, stretch, bias_m + self.excess_m.unwrap_or(0.0))
     }
 
     /// Returns the fix at the position that fits its ranges best, without outliers; `None` if too few ranges are left or
@@ -98,22 +114,37 @@ impl Node {
     pub(super) fn settled(mut self, scale: f64, biases_m: &[f64]) -> Option<Self> {
         let expected = self.at;
         for _ in 0..SETTLING_ROUNDS {
-            let (mut information, mut pull) = (Matrix2::zeros(), Vector2::zeros());
-            for heard in &self.heard {
-                let seen = heard.seen(self.at, 1.0 + scale, biases_m[heard.station]);
-                information += seen.direction * seen.direction.transpose() * seen.weight;
-                pull += seen.direction * (seen.weight * seen.residual_m);
-            }
-            self.at += information.try_inverse()? * pull;
+            self.step(1.0 + scale, biases_m)?;
         }
-        let at = self.at;
         let fits = |heard: &Heard| {
-            let residual_m = heard.seen(at, 1.0 + scale, biases_m[heard.station]).residual_m;
-            residual_m.abs() <= OUTLIER * heard.sigma_m.hypot(SCALE_SIGMA * heard.range_m / OUTLIER)
+            let distance_m = heard.range_m - self.excess_m.unwrap_or(0.0);
+            let residual_m = self.seen(heard, 1.0 + scale, biases_m[heard.station]).residual_m;
+            residual_m.abs() <= OUTLIER * heard.sigma_m.hypot(SCALE_SIGMA * distance_m / OUTLIER)
         };
-        self.heard.retain(fits);
-        let is_near = (at - expected).norm() <= FARTHEST_M;
-        (is_near && self.heard.len() >= LEAST_RANGES).then_some(self)
+        let heard = self.heard.iter().filter(|heard| fits(heard)).cloned().collect();
+        let is_near = (self.at - expected).norm() <= FARTHEST_M;
+        Some(Self { heard, ..self }).filter(|node| is_near && node.has_enough())
+    }
+
+    /// Moves the position, and the excess if it is unknown, by a Gauss-Newton step.
+    fn step(&mut self, stretch: f64, biases_m: &[f64]) -> Option<()> {
+        let (mut information, mut pull) = (Matrix2::zeros(), Vector2::zeros());
+        let (mut common, mut residual, mut weight) = (Vector2::zeros(), 0.0, 0.0);
+        for heard in &self.heard {
+            let seen = self.seen(heard, stretch, biases_m[heard.station]);
+            information += seen.direction * seen.direction.transpose() * seen.weight;
+            pull += seen.direction * (seen.weight * seen.residual_m);
+            common += seen.direction * seen.weight;
+            (residual, weight) = (residual + seen.weight * seen.residual_m, weight + seen.weight);
+        }
+        if self.excess_m.is_some() {
+            information -= common * common.transpose() / weight;
+            pull -= common * (residual / weight);
+        }
+        let step = information.try_inverse()? * pull;
+        self.at += step;
+        self.excess_m = self.excess_m.map(|excess_m| excess_m + (residual - common.dot(&step)) / weight);
+        Some(())
     }
 }
 
@@ -190,6 +221,7 @@ impl Window {
         columns.extend(active.iter().map(|(station, _)| Column::bias(*station)));
         let mut found = None;
         for _ in 0..ROUNDS {
+            self.centre();
             let mut system = self.system();
             system.eliminate();
             let solved = system.solve(&columns)?;
@@ -205,6 +237,7 @@ impl Window {
             }
             found = Some((system, solved));
         }
+        self.centre();
         let (system, solved) = found?;
         let first = columns.len() - active.len();
         let bias = |(index, (station, _)): (usize, &(usize, f64))| {
@@ -222,7 +255,10 @@ impl Window {
             biases_m: active.iter().enumerate().filter_map(bias).collect(),
             tests: (0..n_stations).map(test).collect(),
         };
-        let is_sound = self.nodes.iter().all(|node| node.at.x.is_finite() && node.at.y.is_finite());
+        let is_finite = |node: &Node| {
+            node.at.iter().all(|number| number.is_finite()) && node.excess_m.is_none_or(f64::is_finite)
+        };
+        let is_sound = self.nodes.iter().all(is_finite);
         if !(is_sound && self.scale.is_finite() && self.drift.is_finite()) {
             // The next fixes begin again.
             *self = Self::new(self.most, self.is_linear);
@@ -231,9 +267,36 @@ impl Window {
         Some(fitted)
     }
 
+    /// Sets the unknown excess of each fix to the one that fits its ranges best.
+    fn centre(&mut self) {
+        let excess_m = |node: &Node| {
+            let (mut sum, mut information) = (0.0, 0.0);
+            let stretch = self.stretch_at(node.t_s);
+            for heard in &node.heard {
+                let bias_m = self.bias_at(heard.station, node.t_s).unwrap_or(0.0);
+                let seen = node.seen(heard, stretch, bias_m);
+                (sum, information) = (sum + seen.weight * seen.residual_m, information + seen.weight);
+            }
+            node.excess_m.map(|excess_m| excess_m + sum / information)
+        };
+        let found: Vec<Option<f64>> = self.nodes.iter().map(excess_m).collect();
+        for (node, excess_m) in self.nodes.iter_mut().zip(found) {
+            node.excess_m = excess_m;
+        }
+    }
+
+    /// The factor between distances and ranges at a time, seconds.
+    fn stretch_at(&self, t_s: f64) -> f64 {
+        1.0 + self.scale + self.drift * self.hours_at(t_s)
+    }
+
+    /// A time relative to the last fix, hours.
+    fn hours_at(&self, t_s: f64) -> f64 {
+        (t_s - self.last_s().unwrap_or(0.0)) / 3600.0
+    }
+
     /// The linearised equations at the present estimates.
     fn system(&self) -> System {
-        let last_s = self.last_s().unwrap_or(0.0);
         let mut system = System::new(self.nodes.len(), self.biases.len());
         system.prior(Column::SCALE, self.scale, SCALE_SIGMA);
         system.prior(Column::DRIFT, self.drift, DRIFT_SIGMA);
@@ -241,14 +304,20 @@ impl Window {
             system.prior(Column::bias(station), bias.map_or(0.0, |(bias_m, _)| bias_m), BIAS_SIGMA_M);
         }
         for (index, node) in self.nodes.iter().enumerate() {
-            let hours = (node.t_s - last_s) / 3600.0;
-            let stretch = 1.0 + self.scale + self.drift * hours;
+            let (hours, stretch) = (self.hours_at(node.t_s), self.stretch_at(node.t_s));
+            let mut common = node.excess_m.map(|_| system.common());
             for heard in &node.heard {
                 let bias_m = self.bias_at(heard.station, node.t_s);
-                let seen = heard.seen(node.at, stretch, bias_m.unwrap_or(0.0));
+                let seen = node.seen(heard, stretch, bias_m.unwrap_or(0.0));
                 let by = [seen.distance_m, seen.distance_m * hours];
-                let bias = bias_m.map(|_| Column::bias(heard.station));
-                system.range(index, (seen.direction * stretch, by, bias), seen.residual_m, seen.weight);
+                let by = (seen.direction * stretch, by, bias_m.map(|_| Column::bias(heard.station)));
+                system.range(index, by, seen.residual_m, seen.weight);
+                if let Some(common) = &mut common {
+                    common.range(by, seen.residual_m, seen.weight);
+                }
+            }
+            if let Some(common) = &common {
+                system.free_length(index, common);
             }
         }
         for (index, (before, node)) in self.nodes.iter().zip(self.nodes.iter().skip(1)).enumerate() {
@@ -276,12 +345,11 @@ impl Window {
     pub(super) fn change(&self, station: usize) -> (f64, f64) {
         let (mut sum, mut information) = (0.0, 0.0);
         let mut best = (self.first_s(), 0.0);
-        let last_s = self.last_s().unwrap_or(0.0);
         for node in self.nodes.iter().rev() {
-            let stretch = 1.0 + self.scale + self.drift * (node.t_s - last_s) / 3600.0;
+            let stretch = self.stretch_at(node.t_s);
             let bias_m = self.bias_at(station, node.t_s).unwrap_or(0.0);
             for heard in node.heard.iter().filter(|heard| heard.station == station) {
-                let seen = heard.seen(node.at, stretch, bias_m);
+                let seen = node.seen(heard, stretch, bias_m);
                 (sum, information) = (sum + seen.weight * seen.residual_m, information + seen.weight);
             }
             let score = if information > 0.0 { sum.abs() / information.sqrt() } else { 0.0 };

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::{
-    Guard, Positioner, PositionerConfig, RangeNoise, Risk, SolverKind, Timing,
+    Guard, Positioner, PositionerConfig, Pulse, RangeNoise, Risk, SolverKind, Timing,
     draws::{Draws, ring},
 };
 use proptest::prelude::*;
@@ -198,6 +198,42 @@ fn absurd_input_stays_finite_and_sound_ranges_recover() {
         let level_m = run.guard.level_m(&run.whole).unwrap();
         assert!(run.error_m() < level_m && run.error_m() < 0.4, "{index}: {} m, {level_m} m", run.error_m());
     }
+}
+
+/// Pulses between all stations of a run, with errors of one standard deviation.
+fn exchange(run: &mut Run, scale: f64) -> PulseTest {
+    let (stations, offsets_m) = (run.config.stations.clone(), run.offsets_m());
+    let mut pulses = Vec::new();
+    for (from, sender) in stations.iter().enumerate() {
+        for (to, receiver) in stations.iter().enumerate().filter(|(to, _)| *to != from) {
+            let way_m = (1.0 + scale) * (sender.position - receiver.position).norm();
+            let length_m = way_m + offsets_m[to] - offsets_m[from] + SIGMA_M * run.draws.bell();
+            pulses.push(Pulse { sender: sender.id, receiver: receiver.id, length_m, sigma_m: SIGMA_M });
+        }
+    }
+    PulseTest::new(&pulses, &stations).unwrap()
+}
+
+#[test]
+fn a_pulse_test_sets_the_clocks_before_the_first_range_and_after_all_of_them_have_jumped() {
+    let mut run = Run::new(6, 12);
+    for jumps in [false, true] {
+        if jumps {
+            (0..50).for_each(|_| run.cycle(&[]));
+            let jumped: Vec<f64> = run.offsets_m.iter().map(|offset_m| offset_m + run.draws.bell()).collect();
+            run.offsets_m = jumped;
+        }
+        let test = exchange(&mut run, 0.0);
+        run.whole.take_pulses(&test);
+        let found: Vec<Estimated> = run.whole.clocks().unwrap().offsets_m().map(|(_, o)| o).collect();
+        for (found, true_m) in found.iter().zip(run.offsets_m()) {
+            let off_m = (found.value - true_m).abs();
+            assert!(off_m < 4.5 * found.sigma && found.sigma < 0.04, "{jumps}: {found:?}, {true_m}");
+        }
+    }
+    // The next ranges fit.
+    run.cycle(&[]);
+    assert!(run.error_m() < 0.3, "{} m", run.error_m());
 }
 
 proptest! {

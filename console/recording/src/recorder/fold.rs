@@ -11,6 +11,7 @@ use super::{
     states::States,
     stream::{At, Stream},
     style,
+    survey::Survey,
     table::Table,
     tick::Tick,
 };
@@ -38,6 +39,8 @@ struct Opened {
     drawings: Drawings,
     /// `None` if scanning is not the task of the mission.
     raster: Option<Raster>,
+    /// `None` unless the mission makes a map.
+    survey: Option<Survey>,
     accounting: Accounting,
     /// Width and height of the floor in cells.
     size: (usize, usize),
@@ -122,7 +125,7 @@ impl Opened {
             corrosion::open(stream, run, sampling)?;
         }
         let (low, high) = run.world.boundary.bounds();
-        let scans = !matches!(run.mission.task, TaskConfig::Goto { .. });
+        let scans = matches!(run.mission.task, TaskConfig::Follow { .. } | TaskConfig::Cover { .. });
         let opened = Self {
             tick: Tick::first(
                 at,
@@ -134,6 +137,7 @@ impl Opened {
             drawings: Drawings::new((high.x - low.x).min(high.y - low.y)),
             rangings: Rangings::new(),
             residuals: Residuals::open(stream, &run.world.stations)?,
+            survey: Survey::open(stream, run)?,
             raster: scans.then(|| Raster::open(stream, run)).transpose()?,
             accounting: Accounting::open(run, at),
             size: (run.floor.width, run.floor.height),
@@ -148,6 +152,7 @@ impl Opened {
 
     fn apply(&mut self, event: &Event, at: At, stream: &Stream) -> Done {
         self.states.apply(stream, &event.kind, at)?;
+        self.survey.iter_mut().try_for_each(|survey| survey.apply(&event.kind, stream, at))?;
         match &event.kind {
             EventKind::Covered { runs } => self.raster.iter_mut().for_each(|raster| raster.mark(runs)),
             EventKind::FloorChanged { changes } => {

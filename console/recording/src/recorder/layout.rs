@@ -107,9 +107,14 @@ impl Sketch {
         } else {
             self.plot("Error (pink), 95 % (blue) [m]", &[paths::ERROR, paths::ERROR_95], None)
         };
-        let scans = !matches!(run.mission.task, TaskConfig::Goto { .. });
-        let covered =
-            scans.then(|| self.plot("Reachable floor scanned [%]", &[paths::COVERED], Some([0.0, 105.0])));
+        let share = match run.mission.task {
+            TaskConfig::Goto { .. } => None,
+            TaskConfig::Survey { .. } => Some(("Floor explored [%]", paths::EXPLORED_SHARE)),
+            TaskConfig::Follow { .. } | TaskConfig::Cover { .. } => {
+                Some(("Reachable floor scanned [%]", paths::COVERED))
+            }
+        };
+        let covered = share.map(|(name, figure)| self.plot(name, &[figure], Some([0.0, 105.0])));
         let speed = self.plot("Speed (green), sent (blue) [m/s]", &[paths::SPEED, paths::SPEED_SENT], None);
         let clearance = self.plot("Clearance [m]", &[paths::CLEARANCE], None);
         let planning = self.planning(&run.mission);

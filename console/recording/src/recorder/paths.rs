@@ -52,6 +52,10 @@ pub(crate) const TETHER_ANCHOR: &str = "map/world/tether/anchor";
 pub(crate) const TETHER_CABLE: &str = "map/world/tether/cable";
 pub(crate) const TETHER_CONTACTS: &str = "map/world/tether/contacts";
 pub(crate) const COVERAGE: &str = "map/world/coverage";
+/// The map of a survey: its cells, columns and frontiers.
+pub(crate) const EXPLORED: &str = "map/world/explored";
+pub(crate) const COLUMNS: &str = "map/world/explored_columns";
+pub(crate) const FRONTIERS: &str = "map/world/frontiers";
 pub(crate) const CORROSION: &str = "map/world/corrosion";
 
 pub(crate) const SCALARS: &str = "scalars";
@@ -59,6 +63,7 @@ pub(crate) const ERROR: &str = "scalars/position_error";
 pub(crate) const ERROR_95: &str = "scalars/position_error_95";
 pub(crate) const PROTECTION: &str = "scalars/protection_level";
 pub(crate) const COVERED: &str = "scalars/coverage_reachable";
+pub(crate) const EXPLORED_SHARE: &str = "scalars/explored";
 pub(crate) const SPEED: &str = "scalars/speed";
 pub(crate) const SPEED_SENT: &str = "scalars/speed_commanded";
 pub(crate) const CLEARANCE: &str = "scalars/clearance";

@@ -119,7 +119,8 @@ fn draw_plates(stream: &Stream, run: &RunOpened) -> Done {
 /// The key to the colours: a row of dots below the tank.
 fn draw_key(stream: &Stream, run: &RunOpened) -> Done {
     let floor = match &run.mission.task {
-        TaskConfig::Goto { .. } | TaskConfig::Survey { .. } => &[][..],
+        TaskConfig::Goto { .. } => &[][..],
+        TaskConfig::Survey { .. } => &[("explored", style::SCANNED), ("columns", style::FOUND)],
         TaskConfig::Follow { .. } => &[("scanned", style::SCANNED), ("unreachable", style::OUT_OF_REACH)],
         TaskConfig::Cover { .. } => &[
             ("scanned", style::SCANNED),
@@ -192,7 +193,7 @@ fn style_moving(stream: &Stream, run: &RunOpened) -> Done {
         &heading.with_colors([style::color(style::TRUE)]).with_radii([style::on_screen(2.0)]),
     )?;
     stream.always(paths::HULL, &lines([circle(Point::origin(), radius_m, 32)], style::TRUE, 1.5))?;
-    if !matches!(run.mission.task, TaskConfig::Goto { .. }) {
+    if matches!(run.mission.task, TaskConfig::Follow { .. } | TaskConfig::Cover { .. }) {
         let half_m = (run.mission.swath_m / 2.0) as f32;
         let swath = match run.mission.tool() {
             Tool::Bar { .. } => vec![[0.0, -half_m], [0.0, half_m]],

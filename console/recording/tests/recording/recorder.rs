@@ -31,7 +31,7 @@ fn record_and_merge(path: &Path, events: &[Event], step: Duration, until: Option
     recorder.finish(&account.summary(), until).expect("room on the disk");
 }
 
-fn recorded(events: &[Event]) -> Content {
+pub(crate) fn recorded(events: &[Event]) -> Content {
     let folder = tempdir().expect("a folder");
     let path = folder.path().join("recording.rrd");
     record(&path, events, Duration::ZERO);
@@ -42,7 +42,11 @@ fn count(events: &[Event], wanted: fn(&EventKind) -> bool) -> usize {
     events.iter().filter(|event| wanted(&event.kind)).count()
 }
 
-fn rows<'a>(content: &'a Content, entity: &str, component: &str) -> &'a [(Vec<(String, i64)>, String)] {
+pub(crate) fn rows<'a>(
+    content: &'a Content,
+    entity: &str,
+    component: &str,
+) -> &'a [(Vec<(String, i64)>, String)] {
     let key = (entity.to_owned(), component.to_owned());
     content.get(&key).unwrap_or_else(|| panic!("no {component} at {entity}")).as_slice()
 }

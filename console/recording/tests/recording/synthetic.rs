@@ -322,7 +322,7 @@ fn ask(tick: u64) -> AskId {
     AskId { worker: WorkerId(1), n: tick as u32 + 1 }
 }
 
-fn opened() -> RunOpened {
+pub(crate) fn opened() -> RunOpened {
     let world = tank();
     let preset: Vec<_> = (0..400).map(|k| spiral_pose(f64::from(k) * 0.4).position).collect();
     let start = spiral_pose(0.0);

@@ -51,6 +51,24 @@ center_m = [-1.5, 1.4]
 radius_m = 0.3
 "#;
 
+/// A survey of the same tank. The robot starts in the middle, and only the wall is drawn: no drawing can show that the
+/// scans are mirrored or rotated.
+fn survey() -> String {
+    let (tank, _) = TANK.split_once("[[obstacles]]").expect("a column");
+    let tank = tank
+        .replace("start_m = [-3.5, -0.8]", "start_m = [0.0, 0.0]")
+        .replace("[planner]\nid = \"ahead\"\n", "")
+        .replace(
+            "kind = \"goto\"\ngoal_m = [3.0, -0.8]\ntime_limit_s = 120.0",
+            "kind = \"survey\"\ntime_limit_s = 600.0",
+        );
+    let columns = [(1.9, 1.3), (-2.4, 1.9), (0.6, -2.7), (-2.9, -1.6)];
+    let column = |(x, y): (f64, f64)| {
+        format!("[[obstacles]]\nkind = \"circle\"\ncenter_m = [{x}, {y}]\nradius_m = 0.25\nknown = false\n")
+    };
+    columns.into_iter().map(column).fold(tank, |text, column| text + &column)
+}
+
 /// What happens to the lines of the readings.
 type Spoil = fn(&mut Value);
 
@@ -135,7 +153,11 @@ impl Answers for Ahead {
 
 /// A flight over a wire on which the readings can be spoiled, and its switch.
 fn flight(spoil: Spoil) -> (Flight, Arc<AtomicBool>) {
-    let scenario = Scenario::parse(TANK, "spoiled").expect("a scenario");
+    flight_of(TANK, spoil)
+}
+
+fn flight_of(text: &str, spoil: Spoil) -> (Flight, Arc<AtomicBool>) {
+    let scenario = Scenario::parse(text, "spoiled").unwrap_or_else(|errors| panic!("{}", errors.render()));
     let (inner, info) = Loopback::of(&scenario).expect("a vehicle that fits the protocol");
     let is_on = Arc::new(AtomicBool::default());
     let info = VehicleInfo { has: vec!["odometry".into(), "scan".into()], ..info };
@@ -213,5 +235,32 @@ fn every_kind_of_spoiled_scan_holds_the_robot_under_way() {
             panic!("{why}: {hold:?}")
         };
         assert!(message.contains(why), "{why}: {message}");
+    }
+}
+
+/// Number of ticks within which a survey is held. That the directions are wrong shows only after some turns and drives.
+const SURVEY_HELD_WITHIN: usize = 600;
+
+#[test]
+fn every_kind_of_spoiled_scan_holds_a_survey() {
+    for (spoil, why) in KINDS {
+        let (mut flight, is_on) = flight_of(&survey(), spoil);
+        let mut planner = Ahead::default();
+        for tick in 0..30 {
+            let orders = if tick == 5 { vec![Order::Start] } else { Vec::new() };
+            flight.tick(&orders, &mut planner);
+        }
+        assert!(matches!(flight.phase(), Phase::Running(_)), "{why}: {:?}", flight.phase());
+        is_on.store(true, Ordering::Relaxed);
+        let is_held = |_: &usize| {
+            flight.tick(&[], &mut planner);
+            !matches!(flight.phase(), Phase::Running(_))
+        };
+        let after = (0..SURVEY_HELD_WITHIN).find(is_held);
+        let Phase::Held(hold) = flight.phase() else { panic!("{why}: {:?}", flight.phase()) };
+        let (HoldReason::Guard { message } | HoldReason::Vehicle { message }) = &hold.by else {
+            panic!("{why} after {after:?} ticks: {hold:?}")
+        };
+        assert!(message.contains(why), "{why} after {after:?} ticks: {message}");
     }
 }

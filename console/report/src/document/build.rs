@@ -10,6 +10,7 @@ use super::{
     run_part::RunPart,
     shapes::Shapes,
     signed::{Revision, Signature},
+    survey,
     task::TaskPart,
     thickness,
 };
@@ -103,6 +104,12 @@ impl Document {
         if located.is_some() {
             pictures.coverage = located::map(&layers, past, &indications, tool_is_known);
         }
+        let task = past.last().and_then(TaskPart::of);
+        if let Some(TaskPart::Survey { map: Some(part) }) = &task {
+            let map = past.last().and_then(|past| past.fold.map());
+            pictures.coverage =
+                map.and_then(|map| survey::picture(&layers, map, part)).unwrap_or(pictures.coverage);
+        }
         if let Some((judge, read)) = judge.as_ref().zip(read.as_ref()) {
             pictures.corrosion = thickness::map(&layers, judge, read);
         }
@@ -131,7 +138,7 @@ impl Document {
             size: gate::size(run),
             shapes,
             is_to_scan,
-            task: past.last().and_then(TaskPart::of),
+            task,
             is_whole_floor: evidence.asks_for_everything(),
         };
         document.gate = gate::gate(&document);

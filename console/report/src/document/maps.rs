@@ -105,7 +105,6 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
         r##"<circle cx="3.5" cy="2" r="1" fill="#fff" stroke="#1C2731" stroke-width=".35"/>"##,
         r#"<circle cx="3.5" cy="2" r=".35"/>"#
     );
-    let anchor = r##"<path d="M2.2,3L4.8,3L3.5,.7z" fill="#fff" stroke="#1C2731" stroke-width=".35"/>"##;
     let found = format!(r#"fill="url(#cfound)" stroke="{solid}" stroke-width=".3""#);
     let mut entries = vec![
         legend(filled(colour::ONCE), "scanned once", m2_of(FloorClass::Scanned)),
@@ -116,7 +115,7 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
         legend(dot(&format!(r#"fill="{solid}""#)), "obstacle on the drawing", String::new()),
         legend(dot(&found), "obstacle found during the run", String::new()),
         legend(swatch(station), "station of the position system", String::new()),
-        legend(swatch(anchor), anchor_words(&layers.run.mission), String::new()),
+        start_or_anchor(&layers.run.mission),
     ];
     if layers.has_untestable() {
         let area = m2_of(FloorClass::Untestable);
@@ -157,6 +156,12 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
         "Floor scanned, according to the estimated position; {overlap} % of it more than once.{missed}{note}"
     );
     (Figure { caption, svg: sheet.svg("Coverage map", "full"), legend: entries }, shown)
+}
+
+/// The legend of the mark of the anchor or, without a tether, of the start.
+pub(super) fn start_or_anchor(mission: &MissionConfig) -> Legend {
+    let mark = r##"<path d="M2.2,3L4.8,3L3.5,.7z" fill="#fff" stroke="#1C2731" stroke-width=".35"/>"##;
+    legend(swatch(mark), anchor_words(mission), String::new())
 }
 
 /// The label of the anchor mark; without a tether the mark shows the start.

@@ -217,9 +217,15 @@ impl RunPart {
             pulse_tests: record
                 .pulses
                 .iter()
-                .map(|(phase, test)| PulseRecord {
-                    found: pulse_text(*phase, test, &run.world.stations),
-                    agrees: matches!(test.integrity, Integrity::Ok | Integrity::Suspect),
+                .map(|(phase, test)| match test {
+                    Ok(test) => PulseRecord {
+                        found: pulse_text(*phase, test, &run.world.stations),
+                        agrees: matches!(test.integrity, Integrity::Ok | Integrity::Suspect),
+                    },
+                    Err(why) => PulseRecord {
+                        found: format!("pulse test {} failed: {why}", phase.words()),
+                        agrees: false,
+                    },
                 })
                 .collect(),
             incidents: record.incidents(),

@@ -5,6 +5,7 @@ pub(super) mod floor;
 mod front;
 mod missed;
 pub(super) mod runs;
+mod survey;
 mod task;
 mod thickness;
 

@@ -1,6 +1,6 @@
 //! A task other than scanning the floor.
 
-use super::run_part::RunPart;
+use super::{run_part::RunPart, survey::MapPart};
 use crate::past_run::PastRun;
 use account::Tracking;
 use mission::TaskConfig;
@@ -34,6 +34,11 @@ pub enum TaskPart {
         /// How closely the true path followed the preset path; absent outside simulation.
         tracking: Option<Tracking>,
     },
+    /// Make a map of the floor.
+    Survey {
+        /// The map; absent if the run ended before it had made one.
+        map: Option<MapPart>,
+    },
 }
 
 impl TaskPart {
@@ -41,7 +46,8 @@ impl TaskPart {
     pub(super) fn of(past: &PastRun) -> Option<Self> {
         let run = past.fold.run().filter(|_| !past.fold.has_floor_to_scan())?;
         match &run.mission.task {
-            TaskConfig::Cover { .. } | TaskConfig::Survey { .. } => None,
+            TaskConfig::Cover { .. } => None,
+            TaskConfig::Survey { .. } => Some(Self::Survey { map: MapPart::of(past) }),
             TaskConfig::Follow { path, .. } => Some(Self::Follow {
                 preset_m: polyline::length_m(path),
                 points: path.len(),
@@ -80,6 +86,15 @@ impl TaskPart {
                     ("rmse_m", tracking.as_ref().and_then(|tracking| tracking.rmse_m)),
                 ]
             }
+            Self::Survey { map: None } => Vec::new(),
+            Self::Survey { map: Some(map) } => vec![
+                ("explored_percent", Some(percent(map.explored))),
+                ("columns", Some(map.columns.len() as f64)),
+                ("columns_not_drawn", Some(map.not_drawn() as f64)),
+                ("drawn_not_found", Some(map.not_found.len() as f64)),
+                ("column_moved_max_m", map.moved_max_m()),
+                ("places_beyond_tether", Some(map.beyond_tether as f64)),
+            ],
         };
         let of_run = [
             ("path_m", run.and_then(|run| run.path_length_m)),
@@ -97,6 +112,7 @@ impl TaskPart {
             Self::Follow { preset_m, points, .. } => {
                 format!("follow a preset path of {points} points ({preset_m:.1} m)")
             }
+            Self::Survey { .. } => "make a map of the floor".into(),
         }
     }
 }

@@ -503,6 +503,72 @@ fn a_run_that_was_not_there_to_scan_missed_no_floor_in_any_format() {
     }
 }
 
+/// A survey of the round tank whose drawing shows three objects: one is found 5 cm to the east, one is not there, and one
+/// has not been seen.
+fn surveyed(has_map: bool) -> PastRun {
+    let disc = |id: u32, x: f64, y: f64| Obstacle {
+        id: ObstacleId(id),
+        name: format!("C{id}"),
+        shape: Shape::Disc { center: Point::new(x, y), radius_m: 0.2 },
+        known: true,
+    };
+    let mut run = round_tank(0.1);
+    run.mission.task = TaskConfig::Survey { anchor: Point::new(-1.75, 0.0), tolerance_m: 0.2 };
+    run.world.obstacles = vec![disc(1, -1.0, 0.0), disc(2, -1.0, 1.0), disc(3, 1.0, 0.0)];
+    let grid = exploration::Grid::of(&run.world.boundary);
+    let column = |x: f64, y: f64| exploration::Column {
+        center: Point::new(x, y),
+        radius_m: 0.21,
+        center_sigma_m: 0.01,
+        radius_sigma_m: 0.005,
+    };
+    let cells: String =
+        (0..grid.len()).map(|cell| if grid.center(cell).x < 0.0 { "1f" } else { "1u" }).collect();
+    let columns = vec![column(-0.95, 0.0), column(-0.5, -1.0)];
+    let map = Box::new(exploration::SurveyMap { grid, cells, columns, others: Vec::new(), explored: 0.5 });
+    let mut past = past_of(run, &[]);
+    if has_map {
+        past.fold.apply(&Event { tick: 1, t_s: 0.1, kind: EventKind::Mapped { map } });
+        past.summary = past.fold.summary();
+    }
+    past
+}
+
+#[test]
+fn a_survey_is_reported_with_its_map_its_columns_and_the_difference_to_the_drawing() {
+    let runs = [surveyed(true)];
+    let document = Document::new(&runs, Context::default()).unwrap();
+    let page = html(&document);
+    for words in [
+        "make a map of the floor",
+        "3 objects on the drawing: 1 found as columns, 2 not. 1 column on the map not on the drawing.",
+        "C1: 5.0 cm from its drawn place (+5.0 cm east, 0.0 cm north), radius +1.0 cm",
+        "free floor: the object is not there",
+        "not seen: the drawing was not checked here",
+        "on the drawing, but not there",
+        "Map made by the survey",
+    ] {
+        assert!(page.contains(words), "{words}: {page}");
+    }
+    let json: serde_json::Value = serde_json::from_str(&serde_json::to_string(&document).unwrap()).unwrap();
+    let map = &json["task"]["map"];
+    assert_eq!((&json["task"]["kind"], &map["drawn"]), (&"survey".into(), &3.into()));
+    assert_eq!(map["columns"][0]["drawn"]["name"], "C1");
+    assert_eq!(map["columns"][1].get("drawn"), None);
+    assert_eq!(map["not_found"][0]["instead"], "free_floor");
+    let tables = csv::tables(&document, &runs);
+    assert!(
+        tables[0].contains("explored_percent,50") && tables[0].contains("columns_not_drawn,1"),
+        "{tables:?}"
+    );
+}
+
+#[test]
+fn a_survey_that_made_no_map_says_so() {
+    let page = html(&Document::new(&[surveyed(false)], Context::default()).unwrap());
+    assert!(page.contains("The run ended before it had made a map."), "{page}");
+}
+
 #[test]
 fn a_run_that_was_not_there_to_scan_is_reported_alone() {
     let mut run = round_tank(0.1);

@@ -90,11 +90,24 @@ impl Sheet {
         tolerance: f64,
         style: &str,
     ) {
-        let path = outlines(floor, is_in, tolerance);
+        self.grid((floor.origin, floor.cell_m), (floor.width, floor.height), is_in, tolerance, style);
+    }
+
+    /// Adds cells of a grid with these attributes; the grid is given by its south-west corner and the edge of a cell, in
+    /// metres, and by its width and height in cells.
+    pub(crate) fn grid(
+        &mut self,
+        (low, cell_m): (Point, f64),
+        size: (usize, usize),
+        is_in: impl Fn(usize) -> bool,
+        tolerance: f64,
+        style: &str,
+    ) {
+        let path = outlines(size, is_in, tolerance);
         if path.is_empty() {
             return;
         }
-        let (edge, corner) = (floor.cell_m * self.scale, self.at(floor.origin));
+        let (edge, corner) = (cell_m * self.scale, self.at(low));
         self.draw(format_args!(
             r#"<path transform="matrix({edge:.5} 0 0 {:.5} {:.3} {:.3})" vector-effect="non-scaling-stroke" d="{path}" {style}/>"#,
             -edge, corner.x, corner.y

@@ -7,12 +7,12 @@ use world::{Floor, Point};
 /// A corner of a cell: column and row, counted from the south-west corner of the grid.
 pub(super) type Corner = (i32, i32);
 
-/// Returns the outlines of the selected cells as path data in units of cells: x to the right, y up from the
-/// south-west corner of the grid. Points closer than `tolerance` cells to the simplified outline are dropped; 0 keeps
-/// every corner.
-pub(crate) fn outlines(floor: &Floor, is_in: impl Fn(usize) -> bool, tolerance: f64) -> String {
+/// Returns the outlines of the selected cells of a grid, given by its width and height in cells, as path data in units
+/// of cells: x to the right, y up from the south-west corner of the grid. Points closer than `tolerance` cells to the
+/// simplified outline are dropped; 0 keeps every corner.
+pub(crate) fn outlines(size: (usize, usize), is_in: impl Fn(usize) -> bool, tolerance: f64) -> String {
     let mut path = String::new();
-    for ring in rings((floor.width, floor.height), is_in) {
+    for ring in rings(size, is_in) {
         write_ring(&mut path, &simplified(&ring, tolerance));
     }
     path
@@ -238,12 +238,12 @@ mod tests {
     fn outlines_enclose_as_many_cells_as_there_are_holes_left_out_and_touching_cells_apart() {
         let floor = floor();
         let ring = |cell: usize| (2..7).contains(&(cell % 10)) && (2..7).contains(&(cell / 10)) && cell != 44;
-        assert_eq!(signed_area(&outlines(&floor, ring, 0.0)), 24);
+        assert_eq!(signed_area(&outlines((floor.width, floor.height), ring, 0.0)), 24);
         let touching = |cell: usize| cell == 11 || cell == 22;
-        let path = outlines(&floor, touching, 0.0);
+        let path = outlines((floor.width, floor.height), touching, 0.0);
         assert_eq!((path.matches('M').count(), signed_area(&path)), (2, 2), "{path}");
-        assert_eq!(outlines(&floor, |_| false, 0.0), "");
-        assert_eq!(outlines(&floor, |_| true, 0.75), "M0 0h10v10h-10z");
+        assert_eq!(outlines((floor.width, floor.height), |_| false, 0.0), "");
+        assert_eq!(outlines((floor.width, floor.height), |_| true, 0.75), "M0 0h10v10h-10z");
     }
 
     #[test]

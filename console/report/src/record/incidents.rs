@@ -1,6 +1,7 @@
 //! The incidents of a run, for people; alarms and holds have a start and an end.
 
 use mission::{Event, EventKind, LogLine, Order, Severity};
+use positioning::Integrity;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use vehicle::port::{LinkState, Notice};
@@ -142,6 +143,12 @@ fn sort(kind: &EventKind) -> Option<Sorted> {
         EventKind::ScannerJudged { trouble: None } => ("", None, key("scanner")),
         EventKind::ChannelsJudged(judged) if judged.dead.is_empty() => ("", None, key("channels")),
         EventKind::ChannelsJudged(_) => ("alarm", key("channels"), key("channels")),
+        EventKind::PulsesTested { test, .. } if test.integrity != Integrity::Alarm => {
+            ("", None, key("pulses"))
+        }
+        EventKind::PulsesTested { .. } | EventKind::PulsesFailed { .. } => {
+            ("alarm", key("pulses"), key("pulses"))
+        }
         EventKind::Link(_) | EventKind::Noticed(_) | EventKind::Stood { .. } => return of_vehicle(kind),
         EventKind::PlannerFailed { fault, .. } if fault.is_no_way() => ("plan", None, None),
         EventKind::PlannerFailed { .. } => ("fault", None, None),
@@ -171,7 +178,6 @@ fn sort(kind: &EventKind) -> Option<Sorted> {
         | EventKind::Estimated { .. }
         | EventKind::Protected { .. }
         | EventKind::SessionCalibrated { .. }
-        | EventKind::PulsesTested { .. }
         | EventKind::ClocksEstimated { .. }
         | EventKind::ObstacleMoved { .. }
         | EventKind::PlannerPrepared { .. }

@@ -11,6 +11,9 @@ use world::Station;
 const LEAST_STATIONS: usize = 4;
 /// The least number of stations for a protection level from differences: the others must still give a fix without one.
 const LEAST_PROTECTED: usize = 5;
+/// The least number of stations of a session calibration from differences: without one of them, the others must still
+/// give a fix.
+const LEAST_SESSION: usize = 5;
 
 /// The keys that describe the clocks of the stations.
 const CLOCK_KEYS: [&str; 2] = ["clock_offset_sigma_m", "clock_drift_sigma_m_per_h"];
@@ -63,8 +66,25 @@ pub(super) fn check(section: &Section<'_>, stations: &[Station]) {
         complain("calibrate_sound_speed", "false with emission_time = \"unknown\"".into());
     }
     if section.word("session_calibration").is_some_and(|model| model != "off") {
-        let must_be = "\"off\" with emission_time = \"unknown\": it needs distances";
-        complain("session_calibration", must_be.into());
+        check_session(n, has_own, complain);
+    }
+}
+
+/// Refuses a session calibration that cannot tell a bias from an unknown clock, or that cannot test any station.
+fn check_session(n: usize, has_own: bool, complain: impl Fn(&str, String)) {
+    if has_own {
+        let why =
+            "a bias of a station and the offset of its clock shift the same arrivals by the same length";
+        let keys = format!("{} or {}", CLOCK_KEYS[0], CLOCK_KEYS[1]);
+        complain("session_calibration", format!("\"off\" with {keys}: {why}"));
+    } else if n < LEAST_SESSION {
+        let why = "without one of them, the others give no fix";
+        complain(
+            "session_calibration",
+            format!(
+                "\"off\" with fewer than {LEAST_SESSION} stations and emission_time = \"unknown\": {why}"
+            ),
+        );
     }
 }
 

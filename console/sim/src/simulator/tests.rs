@@ -69,6 +69,7 @@ fn config() -> SimConfig {
             noise: NoiseModel::Uniform { ratio: 0.05 },
             timing: TimingErrors::default(),
             clocks: Clocks::default(),
+            pulse_rest_s: None,
             dropout_probability: 0.1,
             outages_s: vec![(3.0, 4.0)],
             disturbances: Disturbances::default(),
@@ -156,6 +157,7 @@ proptest! {
             period_s: n(10), repetitions: 2, noise: NoiseModel::Gaussian { sigma_ratio: n(11) },
             timing: TimingErrors { jitter_m: n(12), resolution_m: n(13) }, dropout_probability: n(5),
             clocks: Clocks { is_emission_unknown: true, offset_sigma_m: n(12), drift_sigma_m_per_h: n(13) },
+            pulse_rest_s: None,
             outages_s: vec![(n(6), n(7))],
             disturbances: Disturbances {
                 outlier_probability: n(8), outlier_factor: n(9), excess_range_mean_m: n(10), nlos_probability: n(11),

@@ -26,6 +26,11 @@ pub fn commands() -> impl Iterator<Item = &'static Action> {
     ACTIONS.iter().filter(|action| action.is_command())
 }
 
+/// The keys that work in these contexts without being commands: they move through a list or open its selected line.
+pub fn keys_of(contexts: &[Context]) -> impl Iterator<Item = &'static Action> {
+    ACTIONS.iter().filter(move |action| !action.is_command() && action.works_in(contexts))
+}
+
 /// The command with exactly this name or synonym.
 pub fn named(word: &str) -> Option<&'static Action> {
     let word = squashed(word);

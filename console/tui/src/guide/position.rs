@@ -64,6 +64,18 @@ pub(super) const NOT_SEPARABLE: Guide = Guide {
     remedies: &[wait("Wait until the robot has moved on."), HOLD],
 };
 
+pub(super) const PULSES: Guide = Guide {
+    cause: "The pulses that the stations exchanged do not fit their surveyed places: a station is not where it was \
+    surveyed, or its sensor or channel is faulty. Or too few pulses were heard for a result.",
+    holds: "",
+    effect: "The pulses do not correct the ranges: the last test that agreed stays in use.",
+    remedies: &[
+        check("Check the place and the sensor of the station that the log names."),
+        check("Exclude this station: `:exclude` and its name."),
+        HOLD,
+    ],
+};
+
 pub(super) const NO_FIX: Guide = Guide {
     cause: "No position can be computed from the ranges of this cycle: too few stations were heard, or they \
     are all on one line.",

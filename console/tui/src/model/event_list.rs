@@ -1,4 +1,4 @@
-//! The list of events: the lines that pass the filter, the selected line, and whether its detail is open.
+//! The list of events: the lines that pass the filter, and the selected line.
 
 use super::log::matches::Matches;
 use serde::{Deserialize, Serialize};
@@ -10,8 +10,6 @@ pub struct EventList {
     pub matches: Matches,
     /// The number of the selected line; `None` to follow the newest one.
     pub at: Option<u64>,
-    /// Whether the detail of the event is open.
-    pub is_open: bool,
 }
 
 impl EventList {

@@ -75,6 +75,7 @@ impl Run {
             | EventKind::SessionCalibrated { .. }
             | EventKind::ClocksEstimated { .. }
             | EventKind::PulsesTested { .. }
+            | EventKind::PulsesFailed { .. }
             | EventKind::StationBiased { .. }
             | EventKind::StationUnbiased { .. }
             | EventKind::NotSeparable { .. }
@@ -167,6 +168,7 @@ impl Run {
         }
         self.read_figures(&event.kind);
         self.scanned(event);
+        self.surveyed(event);
         if let (Some(number), Some(cause)) = (line, Cause::of(&event.kind)) {
             let place = self.log.get(number).and_then(|entry| self.place_of(&entry.what));
             self.alarms.note(&cause, number, place);

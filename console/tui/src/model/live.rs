@@ -202,12 +202,9 @@ impl Live {
         (is_current || *self.run.phase() != Phase::Waiting).then_some(left_out)
     }
 
-    /// Reachable floor that was requested but not scanned, largest area first; areas that were not reached because the
-    /// mission ended come last.
+    /// Requested floor that was not scanned, in the order in which it is numbered.
     pub fn missed(&self) -> Vec<&Area<MissReason>> {
-        let asked = || self.areas().filter(|area| area.reason != MissReason::NotAsked);
-        let is_missed = |area: &&Area<MissReason>| area.reason != MissReason::NotReached;
-        asked().filter(is_missed).chain(asked().filter(|area| !is_missed(area))).collect()
+        self.floor().map(Account::listed).unwrap_or_default()
     }
 
     /// The floor whose guarantee was taken back until the moment that is shown, oldest first. The report of a replayed run
@@ -227,6 +224,12 @@ impl Live {
     /// account is not known.
     pub fn requested(&self) -> Option<&Shares> {
         self.result.as_ref()?.summary.floor.as_ref()?.requested.as_ref()
+    }
+
+    /// Whether the run has ended and did not have to scan, so that its result says nothing about the floor.
+    pub fn is_without_scan(&self) -> bool {
+        let has_floor = self.floor().is_some_and(|floor| !floor.is_of_no_scan());
+        self.result.is_some() && !self.run.covers() && !has_floor
     }
 
     /// Reachable floor that was neither requested nor scanned, square metres.

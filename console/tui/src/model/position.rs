@@ -29,6 +29,9 @@ pub struct Position {
     /// The clocks of the stations; empty if they share one clock.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub clocks: Vec<mission::ClockOffset>,
+    /// The last pulse test of the stations, or why it gave no result; `None` if there was none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pulses: Option<Result<(mission::event::PulsePhase, positioning::PulseTest), String>>,
     /// The last fix.
     pub fix: Option<Fix>,
     /// Mission time of the fix, seconds.

@@ -1,6 +1,8 @@
 //! The pre-flight check: automatic checks, and those that the operator ticks by hand.
 
+mod pulses;
 mod scanner;
+mod survey;
 mod vehicle;
 
 use super::{Model, ui::Arrangement};
@@ -96,11 +98,15 @@ impl Model {
 
     /// The checks that need only the model.
     fn own_checks(&self) -> Vec<Check> {
-        let mut checks = vec![self.planner_check(), self.plan_check()];
-        checks.extend(self.tether_check());
+        let mut checks = if self.live.run.is_survey() {
+            self.survey_checks()
+        } else {
+            [self.planner_check(), self.plan_check()].into_iter().chain(self.tether_check()).collect()
+        };
         checks.extend(self.place_check());
         checks.extend(self.vehicle_checks());
         checks.extend(self.scanner_check());
+        checks.extend(self.pulse_check());
         checks.extend([self.station_check(), self.terminal_check()]);
         checks
     }
@@ -209,6 +215,10 @@ impl Model {
     fn station_check(&self) -> Check {
         let stations = self.live.run.about.as_ref().map_or(0, |about| about.world.stations.len());
         let limit_m = self.live.run.about.as_ref().map_or(f64::NAN, |about| about.mission.position_limit_m);
+        let of_survey = self.live.run.is_survey().then(|| self.stations_on_the_floor(stations));
+        if let Some(check) = of_survey.flatten() {
+            return check;
+        }
         let (outcome, found) = match self.live.estimate() {
             _ if stations < LEAST_STATIONS => {
                 (CheckOutcome::Warning, format!("{stations}: position from odometry alone"))

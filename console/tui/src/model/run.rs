@@ -3,6 +3,7 @@
 use super::alarms::rule::Context;
 use super::{
     Alarms, History, Log, Planning, Position, Raster, Shadow, Tether, Trail, log::What, scanner::Scanner,
+    survey::Survey,
 };
 use mission::{
     EventKind, FoldedStanding, MissionConfig, Phase, PlannerInfo, TaskConfig, WayBack, event::TetherAlarm,
@@ -10,6 +11,7 @@ use mission::{
 use positioning::AccuracyMap;
 use serde::{Deserialize, Serialize};
 use vehicle::port::LinkSeen;
+use world::coverage::regions::cells_within;
 use world::{PlateLayout, Point, Pose, Station, StationId, World};
 
 /// Time under way, seconds, before which the average pace does not allow an estimate of the remaining time.
@@ -51,6 +53,9 @@ pub struct Run {
     /// The scanner.
     #[serde(default)]
     pub scanner: Scanner,
+    /// The survey; `None` unless the mission makes a map.
+    #[serde(default)]
+    pub survey: Option<Box<Survey>>,
     /// The dead channels of the instrument, in ascending order.
     #[serde(default)]
     pub dead_channels: Vec<u16>,
@@ -212,6 +217,17 @@ impl Run {
         ahead
     }
 
+    /// For each cell of the floor, whether the mission did not have to scan it. Empty if the whole floor was requested,
+    /// and for a mission that does not scan.
+    pub fn not_requested(&self) -> Vec<bool> {
+        let Some((coverage, about)) = self.coverage.as_ref().zip(self.about.as_ref()) else {
+            return Vec::new();
+        };
+        let TaskConfig::Cover { regions, .. } = &about.mission.task else { return Vec::new() };
+        let requested = cells_within(coverage.floor(), regions).unwrap_or_default();
+        requested.into_iter().map(|is_requested| !is_requested).collect()
+    }
+
     /// Why a planner cannot run this mission; `None` if it can.
     pub fn cannot_fly(&self, planner: &PlannerInfo) -> Option<&'static str> {
         if self.covers() { planner.why_no_coverage() } else { None }
@@ -234,7 +250,12 @@ impl Run {
             return self.way_left_s();
         }
         let done = self.progress.as_ref()?.done;
-        let known = self.clock.moving_s > SETTLED_S && done > 0.01 && done <= 1.0 && !self.has_ended();
+        // How long a survey takes depends on what it finds.
+        let known = !self.is_survey()
+            && self.clock.moving_s > SETTLED_S
+            && done > 0.01
+            && done <= 1.0
+            && !self.has_ended();
         known.then(|| self.clock.moving_s * (1.0 - done) / done)
     }
 

@@ -27,6 +27,9 @@ pub struct Combination {
     pub kinds: Vec<KindRun>,
     /// The cells that any of the runs scanned.
     pub scanned: Vec<CellRun>,
+    /// The cells that none of the runs had to scan.
+    #[serde(default)]
+    pub not_requested: Vec<CellRun>,
 }
 
 /// The combined scan of several runs, ready for drawing.
@@ -38,13 +41,29 @@ pub struct Together {
     pub floor: Account,
     /// The floor that any of the runs scanned; `None` if the re-scan scans no floor.
     pub raster: Option<Raster>,
+    /// The cells that none of the runs had to scan.
+    #[serde(default)]
+    not_requested: Vec<CellRun>,
 }
 
 impl Together {
     /// Adds what the earlier runs found and scanned to the floor of the re-scan.
-    pub fn new(Combination { earlier, floor, kinds, scanned }: Combination, own: Option<&Raster>) -> Self {
+    pub fn new(combination: Combination, own: Option<&Raster>) -> Self {
+        let Combination { earlier, floor, kinds, scanned, not_requested } = combination;
         let raster = own.map(|own| joined(own, &kinds, &scanned));
-        Self { earlier, floor, raster }
+        Self { earlier, floor, raster, not_requested }
+    }
+
+    /// For each cell of the floor, whether none of the runs had to scan it. Empty if the whole floor was requested.
+    pub fn not_requested(&self) -> Vec<bool> {
+        let cells = self.raster.as_ref().filter(|_| !self.not_requested.is_empty());
+        let mut marked = vec![false; cells.map_or(0, |raster| raster.floor().len())];
+        for CellRun(first, count) in &self.not_requested {
+            let end = (*first as usize).saturating_add(*count as usize).min(marked.len());
+            let first = (*first as usize).min(end);
+            marked[first..end].fill(true);
+        }
+        marked
     }
 
     /// The runs before the re-scan, in words: `the run before it`.

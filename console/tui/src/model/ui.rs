@@ -33,9 +33,15 @@ pub struct Ui {
     /// The index of the selected plate in the list on the result screen, most missed first.
     #[serde(default)]
     pub plate: usize,
-    /// The number of rows by which the active pane of text is scrolled on the result screen.
+    /// The number of rows by which the pane of text is scrolled that responds to the arrow keys.
     #[serde(default)]
     pub scrolled: usize,
+    /// Whether the open mission does not scan, so that its result has no panes about the floor.
+    #[serde(default)]
+    pub without_scan: bool,
+    /// On a screen with a list, whether the arrow keys apply to the details of the selected row.
+    #[serde(default)]
+    pub in_detail: bool,
     /// The index of the selected area in the list of what the plan leaves out.
     #[serde(default)]
     pub left_out: usize,
@@ -72,6 +78,8 @@ impl Default for Ui {
             missed: 0,
             plate: 0,
             scrolled: 0,
+            without_scan: false,
+            in_detail: false,
             left_out: 0,
             plugin: 0,
             cursor: None,
@@ -122,6 +130,10 @@ pub enum Pane {
     Figures,
     /// The result screen: the plates.
     Plates,
+    /// A screen with a list: the list.
+    List,
+    /// A screen with a list: the details of the selected row.
+    Detail,
 }
 
 impl Pane {
@@ -136,6 +148,10 @@ impl Pane {
     /// narrow one, the plates and the map take the place of others.
     pub const RESULT_PAGES: [Self; 5] =
         [Self::Figures, Self::Coverage, Self::Missed, Self::Plates, Self::Map];
+    /// The panes of the result of a mission that does not scan, in Tab order.
+    pub const RESULT_WITHOUT_SCAN: [Self; 2] = [Self::Figures, Self::Map];
+    /// The panes of a screen with a list, in Tab order. A small terminal shows one at a time.
+    pub const OF_LIST: [Self; 2] = [Self::List, Self::Detail];
     /// The panes of the result screen on a wide terminal, in Tab order: the plates take the place of the map.
     pub const RESULT_WHOLE: [Self; 4] = [Self::Figures, Self::Coverage, Self::Missed, Self::Plates];
 }
@@ -188,11 +204,13 @@ pub enum MapLayer {
     Scan,
     /// Floor where fixes are forecast to have a large protection level, or none.
     Protection,
+    /// The map that a survey makes: floor not seen, frontiers, columns and the way.
+    Explored,
 }
 
 impl MapLayer {
     /// All layers, in the order of the layer list.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Scanned,
         Self::Trail,
         Self::Plan,
@@ -201,6 +219,7 @@ impl MapLayer {
         Self::Accuracy,
         Self::Scan,
         Self::Protection,
+        Self::Explored,
     ];
 
     /// The layer's name in the list.
@@ -214,6 +233,7 @@ impl MapLayer {
             Self::Accuracy => "accuracy forecast",
             Self::Scan => "scan points",
             Self::Protection => "protection level",
+            Self::Explored => "map of a survey",
         }
     }
 }
@@ -465,14 +485,34 @@ impl Ui {
             self.back.push(self.screen);
         }
         self.screen = screen;
+        self.turn_to_list();
         if screen == Screen::Result {
             self.pane = self.first_pane();
-        } else if !self.panes().is_empty() && !self.panes().contains(&self.pane) {
+        } else if matches!(screen, Screen::Plan | Screen::Mission)
+            && !self.panes().is_empty()
+            && !self.panes().contains(&self.pane)
+        {
             self.pane = Pane::Map;
         }
         if screen == Screen::Mission {
             // The pane beside the map shows the newest events, whatever was selected on the events screen.
             self.events.at = None;
+        }
+    }
+
+    /// Makes the arrow keys apply to the list of a screen with a list.
+    pub(crate) fn turn_to_list(&mut self) {
+        if std::mem::take(&mut self.in_detail) {
+            self.scrolled = 0;
+        }
+    }
+
+    /// The pane to which the arrow keys apply.
+    pub fn focus(&self) -> Pane {
+        match self.panes() {
+            [Pane::List, ..] if self.in_detail => Pane::Detail,
+            [Pane::List, ..] => Pane::List,
+            _ => self.pane,
         }
     }
 
@@ -512,8 +552,16 @@ impl Ui {
             (Screen::Plan, Arrangement::Wide) => return &[Pane::Map, Pane::LeftOut],
             (Screen::Plan, Arrangement::Narrow) => return &Pane::PLAN_PARTS,
             (Screen::Plan, Arrangement::Paged) => return &Pane::PLAN_PAGES,
+            (Screen::Result, Arrangement::Wide | Arrangement::Narrow | Arrangement::Paged)
+                if self.without_scan =>
+            {
+                return &Pane::RESULT_WITHOUT_SCAN;
+            }
             (Screen::Result, Arrangement::Wide) => return &Pane::RESULT_WHOLE,
             (Screen::Result, Arrangement::Narrow | Arrangement::Paged) => return &Pane::RESULT_PAGES,
+            (Screen::Alarms | Screen::Events | Screen::Review | Screen::Plugins, arrangement) => {
+                return if arrangement == Arrangement::Strip { &[] } else { &Pane::OF_LIST };
+            }
             (Screen::Mission, _) => {}
             _ => return &[],
         }

@@ -22,12 +22,13 @@ pub(super) fn rgb(role: Role, name: ThemeName) -> Rgb {
         Role::Watch | Role::Key | Role::Focus | Role::Plate => [0x5c_c8d8, 0x0b_6e8a, 0x00_e5ff],
         Role::Warn | Role::Hold | Role::Confirm => [0xe0_b040, 0x8a_5a00, 0xff_d000],
         Role::Crit | Role::Push | Role::Missed => [0xff_6b60, 0xc0_1c28, 0xff_8a80],
-        Role::Scanned => [0x1a_4a68, 0xb6_dcf2, 0x00_3a94],
-        Role::Overlap => [0x2e_749c, 0x7f_bde6, 0x2a_6ad0],
-        Role::Unreachable | Role::Margin => [0x6c_6c6c, 0x9a_9a9a, 0x80_8080],
-        Role::Untestable => [0x7a_64a0, 0xb3_9ddb, 0x9a_7ad0],
+        Role::Scanned => [0x2f_7fb0, 0x4f_92be, 0x2a_62d0],
+        Role::Ground => [0x1a_4a68, 0xb6_dcf2, 0x00_3a94],
+        Role::Overlap => [0x58_aee0, 0x2f_6f9f, 0x6a_a4ff],
+        Role::Unreachable | Role::Margin => [0x78_7878, 0x8a_8a8a, 0x80_8080],
+        Role::Untestable => [0x9a_7ad0, 0x90_70c8, 0x9a_7ad0],
         Role::Ghost => [0xc7_9bff, 0x6a_3fb5, 0xd9_b3ff],
-        Role::Partly => [0x26_323a, 0xdf_ebf2, 0x00_1d4a],
+        Role::Partly => [0x5f_8296, 0x74_8e9d, 0x5a_6f94],
         Role::Trail | Role::Station => [0x82_cdeb, 0x0a_5a8a, 0x7f_e8ff],
         Role::Plan | Role::Target => [0xd6_af5f, 0x7d_4e00, 0xff_d000],
         Role::Tether => [0xfa_faeb, 0x00_0000, 0xff_ffff],
@@ -162,8 +163,25 @@ mod tests {
     fn lines_can_be_seen_on_scanned_floor() {
         for name in ThemeName::ALL {
             for role in [Role::Trail, Role::Plan, Role::Tether, Role::Obstacle, Role::Found, Role::Ghost] {
-                let contrast = contrast(rgb(role, name), rgb(Role::Scanned, name));
+                let contrast = contrast(rgb(role, name), rgb(Role::Ground, name));
                 assert!(contrast >= 3.4, "{role:?} in {name:?}: {contrast:.2}");
+            }
+        }
+    }
+
+    #[test]
+    fn floor_on_the_map_stands_out_from_the_background() {
+        for (name, colours) in ThemeName::ALL.into_iter().flat_map(|name| {
+            [Colours::Sixteen, Colours::Indexed, Colours::True].map(|colours| (name, colours))
+        }) {
+            let theme = Theme::new(name, &Caps { colours, glyphs: Glyphs::Braille, ssh: false });
+            let [lightest, darkest] = backgrounds(name);
+            let grounds = if colours == Colours::Sixteen { [lightest; 2] } else { [lightest, darkest] };
+            let fills = Role::ALL.into_iter().filter(|role| is_fill(*role) && *role != Role::Ground);
+            for (role, ground) in fills.flat_map(|role| grounds.map(|ground| (role, ground))) {
+                let Some(fill) = shown(theme.color(role)) else { continue };
+                let contrast = contrast(fill, ground);
+                assert!(contrast >= 3.0, "{role:?} in {name:?}, {colours:?}: {contrast:.2} on {ground:?}");
             }
         }
     }
@@ -172,6 +190,7 @@ mod tests {
         matches!(
             role,
             Role::Scanned
+                | Role::Ground
                 | Role::Partly
                 | Role::Overlap
                 | Role::Unreachable

@@ -7,10 +7,12 @@ use super::overlay::{self, ask, open};
 use super::send::{hold_now, send};
 use super::{palette, remedies, replay};
 use crate::actions::{ActionId, Deed, find};
+use crate::model::home::HomeList;
 use crate::model::planner_list::PlannerLine;
 use crate::model::plugins::plugins;
 use crate::model::ui::{Ask, Purpose};
 use crate::model::{Model, Overlay, Pane, Screen, Speed};
+use crate::view;
 use mission::{Order, Severity};
 
 /// Seconds within which a second Ctrl-C asks whether to quit the console.
@@ -175,14 +177,18 @@ pub(crate) fn turn_to(model: &mut Model, by: isize) {
         model.home.list = model.home.list.turned(by);
         return;
     }
-    let panes = model.ui.panes();
-    let at = panes.iter().position(|pane| *pane == model.ui.pane).unwrap_or(0);
+    let (panes, focus) = (model.ui.panes(), model.ui.focus());
+    let at = panes.iter().position(|pane| *pane == focus).unwrap_or(0);
     let next = (at as isize + by).rem_euclid(panes.len().max(1) as isize) as usize;
     turn_to_pane(model, panes.get(next).copied().unwrap_or(Pane::Map));
 }
 
 /// Goes to the pane with a number, from 1.
 pub(crate) fn turn_to_number(model: &mut Model, number: u8) {
+    if model.ui.screen == Screen::Home {
+        model.home.list = HomeList::ALL[usize::from(number).clamp(1, HomeList::ALL.len()) - 1];
+        return;
+    }
     let panes = model.ui.numbered_panes();
     if let Some(pane) = usize::from(number).checked_sub(1).and_then(|index| panes.get(index)) {
         turn_to_pane(model, *pane);
@@ -190,8 +196,12 @@ pub(crate) fn turn_to_number(model: &mut Model, number: u8) {
 }
 
 /// Moves the focus to a pane; a pane of text begins at its top.
-fn turn_to_pane(model: &mut Model, pane: Pane) {
-    (model.ui.pane, model.ui.scrolled) = (pane, 0);
+pub(super) fn turn_to_pane(model: &mut Model, pane: Pane) {
+    model.ui.scrolled = 0;
+    match pane {
+        Pane::List | Pane::Detail => model.ui.in_detail = pane == Pane::Detail,
+        pane => model.ui.pane = pane,
+    }
 }
 
 /// Moves the selection down by `by` lines in the list that responds to the arrow keys.
@@ -200,9 +210,21 @@ pub(crate) fn select(model: &mut Model, by: isize) {
         return;
     }
     match model.ui.overlay {
+        Overlay::None if model.ui.focus() == Pane::Detail => scroll(model, by),
         Overlay::None => (model.ui.screen.row().select)(model, by),
         _ => overlay::select(model, by),
     }
+}
+
+/// Scrolls the details of the selected row down by `by` rows.
+fn scroll(model: &mut Model, by: isize) {
+    let most = view::most_scrolled(model);
+    model.ui.scrolled = model.ui.scrolled.min(most).saturating_add_signed(by).min(most);
+}
+
+/// Whether any plugin is listed.
+pub(crate) fn has_plugin(model: &Model) -> bool {
+    !plugins(&model.console, &model.live.run).is_empty()
 }
 
 /// Moves the selection down by `by` plugins.

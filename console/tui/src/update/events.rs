@@ -1,10 +1,11 @@
 //! The operator's actions on events.
 
+use super::act::turn_to_pane;
 use super::message::Effect;
 use super::offer::{demand, on_screen, refuse};
 use super::{place, typing};
 use crate::model::log::filter::{with_debug, with_least};
-use crate::model::{Model, Overlay, Screen};
+use crate::model::{Model, Overlay, Pane, Screen};
 use mission::Severity;
 
 /// Updates the list of events for the current log and filter.
@@ -18,22 +19,33 @@ pub(crate) fn is_selected(model: &Model) -> Result<(), String> {
     demand(!model.ui.events.matches.is_empty(), "no event is selected")
 }
 
-/// Opens or closes the detail of an event; from any other screen, opens it.
+/// The label of Enter on the events screen: it goes to the details and back to the list. `None` without a selected event.
+pub(crate) fn opens(model: &Model) -> Option<&'static str> {
+    model.ui.events.selected()?;
+    Some(if model.ui.focus() == Pane::Detail { "list" } else { "detail" })
+}
+
+/// Goes to the details of the selected event, or from there back to the list; from any other screen, goes to the details.
 pub(crate) fn enter(model: &mut Model) -> Vec<Effect> {
     let Some(selected) = model.ui.events.selected() else {
         return refuse(model, "no event is selected".into());
     };
-    let is_shown = model.ui.screen == Screen::Events && model.ui.events.is_open;
+    let is_in_detail = model.ui.screen == Screen::Events && model.ui.focus() == Pane::Detail;
     // The open event stays selected while new ones arrive.
-    (model.ui.events.at, model.ui.events.is_open) = (Some(selected), !is_shown);
+    model.ui.events.at = Some(selected);
     model.ui.go(Screen::Events);
+    turn_to_pane(model, if is_in_detail { Pane::List } else { Pane::Detail });
     Vec::new()
 }
 
-/// Closes the detail of an event; returns whether one was open.
+/// Goes from the details of an event back to the list; returns whether the arrow keys applied to the details.
 pub(super) fn close(model: &mut Model) -> bool {
-    let is_shown = model.ui.overlay == Overlay::None && model.ui.screen == Screen::Events;
-    is_shown && std::mem::take(&mut model.ui.events.is_open)
+    let is_in_detail = model.ui.focus() == Pane::Detail;
+    let is_shown = model.ui.overlay == Overlay::None && model.ui.screen == Screen::Events && is_in_detail;
+    if is_shown {
+        turn_to_pane(model, Pane::List);
+    }
+    is_shown
 }
 
 /// Selects the next or previous event of the same kind.

@@ -1,7 +1,7 @@
 //! Moves between screens and opens what is listed on them: scenarios, past runs, background work.
 
 use super::message::{Effect, Job};
-use super::offer::{nothing_under_way, refuse};
+use super::offer::{nothing_under_way, offered, refuse};
 use super::{news, replay};
 use crate::actions::ActionId;
 use crate::model::home::HomeList;
@@ -30,23 +30,48 @@ fn looked(screen: Screen) -> Vec<Effect> {
     if screen.row().lists_runs { vec![Effect::Look] } else { Vec::new() }
 }
 
-/// The effect of Enter on the home screen, in a word or two; `None` if nothing is selected.
+/// The effect of Enter on the home screen, in a word or two; `None` if nothing is selected, or if it cannot be opened now.
 pub(crate) fn opens_at_home(model: &Model) -> Option<&'static str> {
     let home = &model.home;
+    let if_possible = |word| why_not_open(model).is_none().then_some(word);
     match home.list {
         HomeList::Scenarios => {
             let entry = home.selected_scenario()?;
             let is_shown = is_open_mission(model, entry) && model.live.is_under_way();
-            Some(if is_shown { "show" } else { "open" })
+            if is_shown { Some("show") } else { if_possible("open") }
         }
         HomeList::Runs => {
             let is_open = selected_run(model)? == result_name(model).unwrap_or_default();
-            Some(if is_open { "result" } else { "replay" })
+            if is_open { Some("result") } else { if_possible("replay") }
         }
         HomeList::Attention => {
             home.found.as_ref().filter(|found| !found.attention.is_empty())?;
             Some(if home.is_read { "close text" } else { "full text" })
         }
+    }
+}
+
+/// Why the selected item on the home screen cannot be opened now; `None` if it can.
+pub(super) fn why_not_open(model: &Model) -> Option<String> {
+    match model.home.list {
+        HomeList::Scenarios => match model.home.selected_scenario() {
+            None => Some("no scenario is listed".into()),
+            Some(entry) => match entry.briefly() {
+                Some(why) => Some(format!("{} cannot be opened: {why}", entry.name)),
+                None => nothing_under_way(model).err(),
+            },
+        },
+        HomeList::Runs => offered(model, ActionId::Replay).err(),
+        HomeList::Attention => None,
+    }
+}
+
+/// Puts the selection of the home screen on the open scenario.
+pub(super) fn select_open(model: &mut Model) {
+    let listed = model.home.scenarios();
+    let open = listed.iter().position(|entry| model.live.source.as_ref() == Some(&entry.source));
+    if let Some(index) = open {
+        model.home.scenario = index;
     }
 }
 
@@ -61,18 +86,19 @@ pub(crate) fn open_selected(model: &mut Model) -> Vec<Effect> {
             return Vec::new();
         }
     }
-    let Some(entry) = home.selected_scenario() else {
-        return refuse(model, "no scenario is listed".into());
-    };
-    if let Some(why) = entry.briefly() {
-        let why = format!("{} cannot be opened: {why}", entry.name);
-        return refuse(model, why);
+    match home.selected_scenario() {
+        Some(entry) if is_open_mission(model, entry) && model.live.is_under_way() => {
+            go(model, Screen::Mission)
+        }
+        Some(entry) if why_not_open(model).is_none() => {
+            let source = entry.source.clone();
+            open(model, source, None)
+        }
+        _ => {
+            let why = why_not_open(model).unwrap_or_default();
+            refuse(model, why)
+        }
     }
-    if is_open_mission(model, entry) && model.live.is_under_way() {
-        return go(model, Screen::Mission);
-    }
-    let source = entry.source.clone();
-    open(model, source, None)
 }
 
 /// Whether a scenario is that of the open mission, which has not ended.

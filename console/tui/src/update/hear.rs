@@ -39,8 +39,8 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
                 return what_if::forget(model);
             }
             let has_opened = events.iter().any(|event| matches!(event.kind, EventKind::RunOpened(_)));
-            // The operator must see the plan before anything moves.
-            return if has_opened && model.live.waits() {
+            // The operator must see the plan before anything moves; a survey has none.
+            return if has_opened && model.live.waits() && !model.live.run.is_survey() {
                 vec![Effect::Order(Order::Plan)]
             } else {
                 Vec::new()

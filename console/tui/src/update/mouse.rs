@@ -75,7 +75,12 @@ fn focus(model: &mut Model, list: Rows) -> bool {
         Rows::Runs => HomeList::Runs,
         Rows::Attention => HomeList::Attention,
         Rows::LeftOut => return std::mem::replace(&mut model.ui.pane, Pane::LeftOut) != Pane::LeftOut,
-        Rows::Alarms | Rows::Events | Rows::Plugins | Rows::Missed | Rows::Past => return false,
+        Rows::Alarms | Rows::Events | Rows::Plugins | Rows::Past => {
+            let was_in_detail = model.ui.in_detail;
+            model.ui.turn_to_list();
+            return was_in_detail;
+        }
+        Rows::Missed => return false,
     };
     std::mem::replace(&mut model.home.list, wanted) != wanted
 }

@@ -1,12 +1,14 @@
 //! Checks which actions are possible now, with the reason if one is not. The footer and the keys use the
 //! same checks.
 
-use super::go::named_run;
+use super::go::{self, named_run};
 use super::look_only::{allowed, no_orders};
 use super::message::Effect;
 use super::{place, replay};
 use crate::actions::{ActionId, find};
-use crate::model::{Model, Overlay, Screen, ui::Ask};
+use crate::model::home::HomeList;
+use crate::model::ui::{Arrangement, Ask};
+use crate::model::{Model, Overlay, Pane, Screen};
 use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
 
 /// Checks that an action is possible now.
@@ -24,15 +26,17 @@ pub(crate) fn accept(model: &Model) -> Result<(), String> {
         return demand(model.n_by_hand() > 0, "this scenario has no manual checks");
     }
     let opens = (model.ui.screen.row().opens)(model).is_some();
-    let why = why_nothing_opens(model).unwrap_or("nothing to open here");
-    demand(model.ui.overlay != Overlay::None || opens, why)
+    let why = why_nothing_opens(model).unwrap_or_else(|| "nothing to open here".into());
+    demand(model.ui.overlay != Overlay::None || opens, &why)
 }
 
 /// Why Enter opens nothing on a screen where it sometimes does, as a clause.
-pub(super) fn why_nothing_opens(model: &Model) -> Option<&'static str> {
+pub(super) fn why_nothing_opens(model: &Model) -> Option<String> {
     match model.ui.screen {
-        Screen::Plan => Some(place::why_no_area(model)),
-        Screen::Mission => Some("nothing to open in this pane; <next-pane>: next pane, to the events"),
+        Screen::Home => go::why_not_open(model),
+        Screen::Review => offered(model, ActionId::Replay).err(),
+        Screen::Plan => Some(place::why_no_area(model).into()),
+        Screen::Mission => Some("nothing to open in this pane; <next-pane>: next pane, to the events".into()),
         _ => None,
     }
 }
@@ -40,14 +44,21 @@ pub(super) fn why_nothing_opens(model: &Model) -> Option<&'static str> {
 /// Checks that there is another pane to switch to.
 pub(crate) fn other_pane(model: &Model) -> Result<(), String> {
     let turns = model.ui.screen == Screen::Home || !model.ui.panes().is_empty();
-    demand(turns, "only one pane is shown at this size")
+    demand(turns, "only one pane is shown at this size")?;
+    let has_detail = model.ui.focus() != Pane::List || (model.ui.screen.row().has_selection)(model);
+    demand(has_detail, "nothing is selected, so only the list responds to keys")
 }
 
 /// Checks that the screen shows numbered panes, and that one of them has this number.
 pub(crate) fn pane(model: &Model, number: u8) -> Result<(), String> {
-    let panes = model.ui.numbered_panes();
-    demand(!panes.is_empty(), "panes have keys of their own only from 120x30; <next-pane>: next pane")?;
-    demand(usize::from(number) <= panes.len(), "no pane has this key on this screen")
+    let is_wide = model.ui.arrangement() == Arrangement::Wide;
+    let panes = match model.ui.screen {
+        Screen::Home if is_wide => HomeList::ALL.len(),
+        _ => model.ui.numbered_panes().len(),
+    };
+    demand(panes > 0, "panes have keys of their own only from 120x30; <next-pane>: next pane")?;
+    demand(usize::from(number) <= panes, "no pane has this key on this screen")?;
+    other_pane(model)
 }
 
 /// Checks that a mission is open.
@@ -153,6 +164,11 @@ pub(crate) fn swap(model: &Model) -> Result<(), String> {
         accepted(model, &Order::ChoosePlanner(choice))?;
     }
     has_planners(model)
+}
+
+/// Checks that the mission follows a plan.
+pub(crate) fn has_plan(model: &Model) -> Result<(), String> {
+    demand(!model.live.run.is_survey(), "a survey drives without a planner; start it as it is")
 }
 
 /// Checks that any planner was found.

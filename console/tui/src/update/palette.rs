@@ -67,9 +67,12 @@ pub fn values(model: &Model, action: &Action) -> Vec<String> {
 /// The commands that match the typed text, best first; if nothing is typed, in groups.
 fn ranked(model: &Model, palette: &Palette, typed: &str) -> Vec<&'static Action> {
     if typed.is_empty() {
-        // The list of keys shows what works here.
-        let is_listed = |action: &&Action| !palette.help || offered(model, action.id).is_ok();
-        let mut all: Vec<&Action> = find::commands().filter(is_listed).collect();
+        // The list of keys shows what works here, and all keys of this screen.
+        let is_own = |action: &Action| action.works_in(&[Context::On(model.ui.screen)]);
+        let is_listed =
+            |action: &&Action| !palette.help || is_own(action) || offered(model, action.id).is_ok();
+        let keys = find::keys_of(screens::contexts(model)).filter(|_| palette.help);
+        let mut all: Vec<&Action> = keys.chain(find::commands()).filter(is_listed).collect();
         all.sort_by_key(|action| group(model, action));
         return all;
     }

@@ -50,6 +50,7 @@ fn is_telemetry(kind: &EventKind) -> bool {
             | EventKind::SessionCalibrated { .. }
             | EventKind::ClocksEstimated { .. }
             | EventKind::PulsesTested { .. }
+            | EventKind::PulsesFailed { .. }
             | EventKind::Ranged { .. }
             | EventKind::Fixed { .. }
             | EventKind::Tethered { .. }

@@ -7,6 +7,16 @@ use crate::actions::ActionId;
 use crate::model::Model;
 use mission::Severity;
 
+/// The label of Enter: `None` if the selected run cannot be replayed now.
+pub(crate) fn opens(model: &Model) -> Option<&'static str> {
+    let run = model.review.run(&model.home)?;
+    let is_replayed = model.live.replay.as_ref().is_some_and(|replay| replay.name == run.name);
+    if is_replayed {
+        return Some("show");
+    }
+    offered(model, ActionId::Replay).is_ok().then_some("replay")
+}
+
 /// Replays the selected run; if it is already being replayed, shows it.
 pub(crate) fn enter(model: &mut Model) -> Vec<Effect> {
     let selected = model.review.run(&model.home).map(|run| run.name.clone());

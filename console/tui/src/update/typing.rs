@@ -15,6 +15,11 @@ pub fn is_typing(model: &Model) -> bool {
 
 /// Passes a key to the open input line; returns whether there is one and it uses the key.
 pub(super) fn press(model: &mut Model, key: Key) -> bool {
+    // In a line without text, these keys go through the list.
+    let is_empty = matches!(&model.ui.overlay, Overlay::Commands(palette) if palette.line.text().is_empty());
+    if is_empty && matches!(key, Key::Home | Key::End) {
+        return false;
+    }
     edit(model, |line| line.press(key)).unwrap_or(false)
 }
 

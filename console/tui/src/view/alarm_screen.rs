@@ -5,20 +5,23 @@ mod before;
 mod detail;
 mod rows;
 mod table;
+mod watched;
 
 pub(super) use actions::list as action_list;
 
 use super::charts::{self, Series};
 use super::look::{Look, fill};
+use super::scroll::{self, Extent};
 use super::small_map::{self, SmallMap};
 use super::{events, text};
 use crate::model::history::HISTORY_S;
 use crate::model::ui::Arrangement;
-use crate::model::{Alarm, Model, Overlay, Screen};
+use crate::model::{Alarm, Model, Overlay, Pane, Screen};
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
+use world::Point;
 
 /// Width of the detail pane when the actions are beside it, columns.
 const DETAIL: u16 = 72;
@@ -38,7 +41,7 @@ const BESIDE: (u16, u16) = (170, 40);
 
 pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     match (look.model.selected_alarm(), arrangement) {
-        (Some(alarm), Arrangement::Wide) if area.width >= BESIDE.0 && area.height >= BESIDE.1 => {
+        (Some(alarm), Arrangement::Wide) if is_large(area) => {
             beside(look, frame, area, alarm);
         }
         (Some(alarm), Arrangement::Wide) => wide(look, frame, area, alarm),
@@ -49,18 +52,81 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     }
 }
 
-/// Without an alarm in the table, the rest of the screen shows the last warnings.
+/// Without an alarm in the table, the rest of the screen shows the limits that are watched and the last warnings; a
+/// large screen also shows the curves of the figures and the tank.
 fn quiet(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     let rows = if area.height > TABLE { TABLE - 2 } else { area.height };
     let [list, below] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(area);
     table::draw(look, frame, list, arrangement);
-    if below.height > 0 {
-        before::warnings(look, frame, below);
+    let has_room = matches!(arrangement, Arrangement::Wide | Arrangement::Narrow);
+    let [left, right] = Layout::horizontal([
+        Constraint::Fill(1),
+        Constraint::Length(if is_large(area) { rows::WIDTH - 20 } else { 0 }),
+    ])
+    .areas(below);
+    let needed = if has_room { watched::rows(look) } else { 0 };
+    let [limits, warnings] = Layout::vertical([Constraint::Length(needed), Constraint::Fill(1)]).areas(left);
+    if needed > 0 {
+        watched::draw(look, frame, limits);
+    }
+    if warnings.height > 0 {
+        before::warnings(look, frame, warnings);
+    }
+    if right.width > 0 {
+        watched::curves(look, frame, right);
     }
 }
 
-/// On a small screen, the actions and the cause of the selected alarm are below the table.
+/// How much of the details of the selected alarm is visible.
+pub(crate) fn extent(look: &Look, area: Rect) -> Option<Extent> {
+    let alarm = look.model.selected_alarm()?;
+    let arrangement = look.model.ui.arrangement();
+    Some(match arrangement {
+        Arrangement::Wide if is_large(area) => {
+            let len = detail::lines(look, alarm, usize::from(right_of(area).width) - 2).len();
+            Extent { shown: len, len }
+        }
+        Arrangement::Wide => {
+            let (about, len) = detail_rows(look, area, alarm);
+            Extent { shown: usize::from(about.saturating_sub(2)), len }
+        }
+        Arrangement::Narrow | Arrangement::Paged | Arrangement::Strip => {
+            let least = if arrangement == Arrangement::Narrow { least_table(look) } else { 0 };
+            let shown = usize::from(area.height.saturating_sub(least + 2));
+            let len = whole(look, alarm, area).len();
+            Extent { shown: shown.min(len), len }
+        }
+    })
+}
+
+/// Whether the screen has room for the details of an alarm beside the table.
+fn is_large(area: Rect) -> bool {
+    area.width >= BESIDE.0 && area.height >= BESIDE.1
+}
+
+/// The part of a large screen beside the table.
+fn right_of(area: Rect) -> Rect {
+    Layout::horizontal([Constraint::Length(rows::WIDTH + 2), Constraint::Fill(1)]).areas::<2>(area)[1]
+}
+
+/// The least rows of the table on a narrow screen.
+fn least_table(look: &Look) -> u16 {
+    TABLE.min(table::rows(look, Arrangement::Narrow))
+}
+
+/// The details of an alarm and the actions on it.
+fn whole(look: &Look, alarm: &Alarm, area: Rect) -> Vec<Line<'static>> {
+    let columns = usize::from(area.width) - 2;
+    [detail::lines(look, alarm, columns), actions::lines(look, alarm, columns)].concat()
+}
+
+/// On a small screen, the actions and the cause of the selected alarm are below the table; the operator turns to the
+/// whole details.
 fn paged(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
+    if look.model.ui.focus() == Pane::Detail {
+        let title = detail::title(look, alarm);
+        return scroll::draw(look, frame, area, (&title, ""), whole(look, alarm, area));
+    }
     let rows = table::rows(look, Arrangement::Paged).min(PAGED_TABLE);
     let [list, below] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(area);
     table::draw(look, frame, list, Arrangement::Paged);
@@ -68,7 +134,8 @@ fn paged(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
     let mut lines = detail::cause(look, alarm, columns, PAGED_CAUSE);
     lines.extend(actions::briefly(look, alarm, columns));
     let title = detail::title(look, alarm);
-    fill(frame, below, look.block(Role::Border, &title, &look.keys("<accept> all")), lines);
+    let keys = look.keys("<accept> actions  <next-pane> pane");
+    fill(frame, below, look.pane(Pane::Detail, &title, &keys), lines);
 }
 
 /// Whether the screen itself shows the actions, so that no overlay is needed.
@@ -79,8 +146,8 @@ pub(super) fn shows_actions(model: &Model) -> bool {
 
 /// Table and events on the left; the alarm with its actions, its chart and its place on the right.
 fn beside(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
-    let [left, right] =
-        Layout::horizontal([Constraint::Length(rows::WIDTH + 2), Constraint::Fill(1)]).areas(area);
+    let right = right_of(area);
+    let left = Rect { width: area.width - right.width, ..area };
     let wanted = table::rows(look, Arrangement::Wide).max(TABLE).min(left.height - EVENTS);
     let [list, below] = Layout::vertical([Constraint::Length(wanted), Constraint::Fill(1)]).areas(left);
     table::draw(look, frame, list, Arrangement::Wide);
@@ -101,7 +168,16 @@ fn beside(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
     draw_detail(look, frame, about, alarm, detail);
     fill(frame, steps, actions_block(look, alarm, "Actions"), actions);
     draw_chart(look, frame, curve, alarm);
-    draw_place(look, frame, map, alarm);
+    draw_place(look, frame, map, alarm.place);
+}
+
+/// The rows of the pane with the details of an alarm below the table, including the frame, and the rows of the details.
+fn detail_rows(look: &Look, area: Rect, alarm: &Alarm) -> (u16, usize) {
+    let detail = detail::lines(look, alarm, usize::from(DETAIL) - 2).len();
+    let actions = actions::lines(look, alarm, usize::from(area.width.saturating_sub(DETAIL)) - 2);
+    let chart = if is_charted(alarm) { CHART.0 } else { 0 };
+    let about = (detail as u16 + 2).max(actions.len() as u16 + 2 + chart);
+    (about.min(area.height.saturating_sub(EVENTS + TABLE)), detail)
 }
 
 fn wide(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
@@ -109,8 +185,7 @@ fn wide(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
     let actions = actions::lines(look, alarm, usize::from(area.width.saturating_sub(DETAIL)) - 2);
     let chart = if is_charted(alarm) { CHART.0 } else { 0 };
     let table = table::rows(look, Arrangement::Wide).max(TABLE);
-    let about = (detail.len() as u16 + 2).max(actions.len() as u16 + 2 + chart);
-    let about = about.min(area.height.saturating_sub(EVENTS + TABLE));
+    let about = detail_rows(look, area, alarm).0;
     let table = table.min(area.height.saturating_sub(EVENTS + about));
     let [list, middle, below] =
         Layout::vertical([Constraint::Length(table), Constraint::Length(about), Constraint::Fill(1)])
@@ -130,30 +205,44 @@ fn wide(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
 fn narrow(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
     let columns = usize::from(area.width) - 2;
     let actions = actions::lines(look, alarm, columns);
-    let least = TABLE.min(table::rows(look, Arrangement::Narrow));
+    let least = least_table(look);
+    if look.model.ui.focus() == Pane::Detail {
+        let [list, below] = Layout::vertical([Constraint::Length(least), Constraint::Fill(1)]).areas(area);
+        table::draw(look, frame, list, Arrangement::Narrow);
+        let title = detail::title(look, alarm);
+        return scroll::draw(look, frame, below, (&title, ""), whole(look, alarm, area));
+    }
     let rows = usize::from(area.height.saturating_sub(least + 2)).saturating_sub(actions.len());
     let mut lines = detail::lines(look, alarm, columns);
+    let is_cut = lines.len() > rows;
     lines.truncate(rows);
     lines.extend(actions);
     let rows = lines.len() as u16 + 2;
     let [list, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(area);
     table::draw(look, frame, list, Arrangement::Narrow);
-    fill(frame, below, actions_block(look, alarm, &detail::title(look, alarm)), lines);
+    let more = if is_cut { look.keys("  <next-pane> pane: all") } else { String::new() };
+    let note = format!("{}{more}", actions_note(look, alarm));
+    fill(frame, below, look.pane(Pane::Detail, &detail::title(look, alarm), &note), lines);
 }
 
 fn draw_detail(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm, lines: Vec<Line<'_>>) {
     let map = alarm.place.map_or_else(String::new, |_| look.keys("<show-place> map"));
-    fill(frame, area, look.block(Role::Border, &detail::title(look, alarm), &map), lines);
+    scroll::draw(look, frame, area, (&detail::title(look, alarm), &map), lines);
+}
+
+/// The keys that run the actions.
+fn actions_note(look: &Look, alarm: &Alarm) -> String {
+    let is_open = matches!(look.model.ui.overlay, Overlay::Remedies { .. });
+    match (actions::keys(look, &alarm.cause), is_open) {
+        (Some(keys), true) => format!("{keys} run"),
+        (Some(keys), false) => format!("{}, then {keys}", look.keys("<accept>")),
+        (None, _) => "advice only".to_owned(),
+    }
 }
 
 fn actions_block<'t>(look: &Look, alarm: &Alarm, title: &str) -> ratatui::widgets::Block<'t> {
     let is_open = matches!(look.model.ui.overlay, Overlay::Remedies { .. });
-    let note = match (actions::keys(look, &alarm.cause), is_open) {
-        (Some(keys), true) => format!("{keys} run"),
-        (Some(keys), false) => format!("{}, then {keys}", look.keys("<accept>")),
-        (None, _) => "advice only".to_owned(),
-    };
-    look.block(if is_open { Role::Focus } else { Role::Border }, title, &note)
+    look.block(if is_open { Role::Focus } else { Role::Border }, title, &actions_note(look, alarm))
 }
 
 /// Whether the figure of an alarm can be drawn as a curve.
@@ -178,12 +267,12 @@ fn draw_chart(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
     charts::figure(look, frame, area, &series);
 }
 
-/// The place of an alarm on a small map.
-fn draw_place(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
-    let Some(map) = SmallMap::of_run(look.run) else { return };
+/// The place of an alarm, if there is one, and the robot on a small map.
+fn draw_place(look: &Look, frame: &mut Frame, area: Rect, place: Option<Point>) {
+    let Some(map) = SmallMap::of_run(look.run, look.model.live.together()) else { return };
     let robot = look.run.position.pose.as_ref().map(|pose| pose.position);
     let map = robot.into_iter().fold(map, |map, at| map.marked(at, Role::Robot, "@"));
-    let (map, title) = match alarm.place {
+    let (map, title) = match place {
         Some(place) => (map.marked(place, Role::Warn, "X"), format!("Place  X {}", text::place(place))),
         None => (map, "Tank".to_owned()),
     };

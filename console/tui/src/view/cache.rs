@@ -20,6 +20,8 @@ pub struct Cache {
     shares: Option<((u64, u64), Shares)>,
     rescan: Option<((u64, u64), [account::Shares; 2])>,
     places: Places,
+    /// Whether a title of this frame names the screen.
+    is_titled: bool,
 }
 
 /// The places in the last frame that respond to the mouse.
@@ -44,9 +46,15 @@ impl Cache {
         &self.places
     }
 
-    /// Clears the places at the beginning of a frame.
+    /// Forgets the places and titles of the last frame.
     pub(super) fn clear_places(&mut self) {
         self.places = Places::default();
+        self.is_titled = false;
+    }
+
+    /// Whether the next title is the first one of the frame.
+    pub(super) fn is_first_title(&mut self) -> bool {
+        !std::mem::replace(&mut self.is_titled, true)
     }
 
     /// Records the area of the map.

@@ -5,7 +5,7 @@ use super::field::field;
 use super::lists::place_cursor;
 use super::look::Look;
 use super::next::{self, Clauses};
-use super::{coverage, setting, text};
+use super::{coverage, setting, survey, text};
 use crate::guide;
 use crate::model::ui::{Ask, Shelving};
 use crate::model::zone_draft::Form;
@@ -151,7 +151,8 @@ fn asked_with(model: &Model, has_progress: bool) -> Option<Vec<String>> {
             vec![question, "No motion yet.".into()]
         }
         Overlay::Finish { selected: 0 } => {
-            let scanned = coverage::Bases::of(&model.live).sentence();
+            let done = survey::sentence(model);
+            let scanned = done.unwrap_or_else(|| coverage::Bases::of(&model.live).sentence());
             vec!["End the mission here? <accept>: end, <cancel>: stay held.".into(), scanned]
         }
         Overlay::Finish { .. } | Overlay::Confirm(Ask::DriveBack) => {
@@ -254,6 +255,9 @@ pub(super) fn resumes(resumption: &Resumption) -> String {
 /// Who drives a robot that resumes, and along which plan, as a sentence.
 fn moves(model: &Model) -> String {
     let run = &model.live.run;
+    if run.is_survey() {
+        return "The survey chooses its way again.".into();
+    }
     let planning = &run.planning;
     let planner = text::fit(run.planner_id().unwrap_or("unknown"), 18);
     let plan = planning.plan.as_ref();
@@ -309,6 +313,9 @@ fn drawing(form: Form) -> String {
 /// The plan to be started, as the end of a sentence: its length, time and planner, and whether it is certified for the
 /// tether.
 pub(super) fn promised(model: &Model) -> String {
+    if model.live.run.is_survey() {
+        return "a survey, which chooses its ways itself; time not known".into();
+    }
     let time =
         model.live.estimate().map_or_else(|| "time unknown".to_owned(), |estimate| clock(estimate.time_s));
     let length = match &model.live.run.planning.plan {

@@ -3,11 +3,10 @@
 mod facts;
 
 use super::fields::{self, Field};
-use super::look::{Look, fill};
-use super::text;
+use super::look::Look;
+use super::{scroll, text};
 use crate::model::alarms::State;
 use crate::model::{Cause, Entry};
-use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -23,9 +22,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, (number, entry): 
     let title = format!("T+{}.{}  {}", text::clock(entry.t_s), tenths(entry.t_s), facts::title(&entry.what));
     let note = "<show-place> map  <copy> copy  <next-like> <previous-like> same kind";
     let note = if area.width >= 70 { look.keys(note) } else { String::new() };
-    let block = look.block(Role::Border, &title, &note);
-    let columns = usize::from(block.inner(area).width);
-    fill(frame, area, block, lines(look, (number, entry), columns));
+    let columns = usize::from(area.width.saturating_sub(2));
+    scroll::draw(look, frame, area, (&title, &note), lines(look, (number, entry), columns));
 }
 
 /// The rows that the detail needs, including the frame.

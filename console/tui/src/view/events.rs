@@ -1,6 +1,7 @@
 //! Events, newest first: the pane of the mission screen, and the events screen.
 
 use super::look::{Look, Parts, fill};
+use super::scroll::{self, Extent};
 use super::small_map::{self, SmallMap};
 use super::{event_detail, table, text};
 use crate::model::log::filter::{Filter, without_least};
@@ -14,10 +15,12 @@ use mission::Severity;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::Modifier;
-use ratatui::text::Line;
+use ratatui::text::{Line, Span};
 
 /// Examples of filter terms.
-const TERMS: &str = "   sev>=watch source=ae,tether station=C t>00:05 \"two words\" -text";
+const TERMS: &str = "sev>=watch source=ae,tether station=C t>00:05 \"two words\" -text";
+/// The front of the line with the filter.
+const FILTER: &str = " filter  ";
 /// The minimum width at which each event states how long ago it happened, and the width of that column.
 const AGED: usize = 100;
 const AGE: usize = 11;
@@ -67,37 +70,66 @@ fn nothing(look: &Look) -> Option<Line<'static>> {
     Some(look.line([(Role::Dim, format!(" {words}"))]))
 }
 
-/// Draws the events screen.
-pub(crate) fn screen(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
-    let events = &look.model.ui.events;
-    let selected = events.selected().filter(|_| events.is_open);
-    let open = selected.and_then(|number| Some((number, look.run.log.get(number)?)));
-    let area = place(look, frame, area, selected.or_else(|| events.selected()));
-    let Some((number, entry)) = open else { return list(look, frame, area) };
-    if arrangement == Arrangement::Paged {
-        return event_detail::draw(look, frame, area, (number, entry));
-    }
-    let rows = event_detail::rows(look, (number, entry), area.width).min(area.height.saturating_sub(LIST));
-    let [above, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(area);
-    list(look, frame, above);
-    event_detail::draw(look, frame, below, (number, entry));
+/// The parts of the events screen.
+struct Divided<'a> {
+    list: Option<Rect>,
+    /// The selected event with its number, and the area for its details.
+    detail: Option<(Rect, (u64, &'a Entry))>,
+    /// The map with the place of the event, if there is room for it.
+    map: Option<(Rect, SmallMap<'a>)>,
 }
 
-/// Draws the place of an event on a small map if there is room for one; returns the remaining area.
-fn place(look: &Look, frame: &mut Frame, area: Rect, number: Option<u64>) -> Rect {
-    let entry = number.and_then(|number| look.run.log.get(number));
-    let map = SmallMap::of_run(look.run).filter(|_| area.width >= BESIDE.0 && area.height >= BESIDE.1);
-    let Some((map, entry)) = map.zip(entry) else { return area };
-    let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(MAP)]).areas(area);
+/// Divides the screen. The details of the selected event are below the list; a small screen shows one of them at a time.
+fn divided<'a>(look: &Look<'a>, area: Rect) -> Divided<'a> {
+    let ui = &look.model.ui;
+    let selected = ui.events.selected().and_then(|number| Some((number, look.run.log.get(number)?)));
+    let Some(event) = selected else { return Divided { list: Some(area), detail: None, map: None } };
+    if ui.arrangement() == Arrangement::Paged {
+        let is_list = ui.focus() == Pane::List;
+        return Divided { list: is_list.then_some(area), detail: Some((area, event)), map: None };
+    }
+    let map = SmallMap::of_run(look.run, look.model.live.together());
+    let map = map.filter(|_| area.width >= BESIDE.0 && area.height >= BESIDE.1);
+    let beside = if map.is_some() { MAP } else { 0 };
+    let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(beside)]).areas(area);
+    // While the arrow keys apply to the list, it keeps at least half of the rows.
+    let most = if ui.focus() == Pane::Detail { LIST } else { left.height.div_ceil(2) };
+    let rows = event_detail::rows(look, event, left.width).min(left.height.saturating_sub(most));
+    let [above, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(left);
+    Divided { list: Some(above), detail: Some((below, event)), map: map.map(|map| (right, map)) }
+}
+
+/// Draws the events screen.
+pub(crate) fn screen(look: &Look, frame: &mut Frame, area: Rect, _: Arrangement) {
+    let divided = divided(look, area);
+    if let Some(area) = divided.list {
+        list(look, frame, area);
+    }
+    if let Some((area, event)) = divided.detail.filter(|(area, _)| divided.list != Some(*area)) {
+        event_detail::draw(look, frame, area, event);
+        if let Some((area, map)) = divided.map {
+            place(look, frame, area, (map, event.1));
+        }
+    }
+}
+
+/// How much of the details of the selected event is visible.
+pub(crate) fn extent(look: &Look, area: Rect) -> Option<Extent> {
+    let (area, event) = divided(look, area).detail?;
+    let rows = event_detail::rows(look, event, area.width).saturating_sub(2);
+    Some(scroll::extent(area, rows.into()))
+}
+
+/// Draws the place of an event on a small map.
+fn place(look: &Look, frame: &mut Frame, area: Rect, (map, entry): (SmallMap, &Entry)) {
     let (map, title) = match look.run.place_of(&entry.what) {
         Some(at) => (map.marked(at, role(entry.severity), "X"), format!("Place  X {}", text::place(at))),
         None => (map, "This event has no place".to_owned()),
     };
     let block = look.block(Role::Border, &title, &format!("T+{}", text::clock(entry.t_s)));
-    let inner = block.inner(right);
-    frame.render_widget(block, right);
+    let inner = block.inner(area);
+    frame.render_widget(block, area);
     small_map::draw(look, frame, inner, &map);
-    left
 }
 
 fn list(look: &Look, frame: &mut Frame, area: Rect) {
@@ -106,7 +138,7 @@ fn list(look: &Look, frame: &mut Frame, area: Rect) {
     let shows_debug = events.matches.filter().shows_debug();
     let note = if shows_debug { "planner messages shown" } else { "planner messages hidden" };
     let note = if area.width >= 76 { note } else { "" };
-    let block = look.block(Role::Focus, &title, note);
+    let block = look.pane(Pane::List, &title, note);
     let inner = block.inner(area);
     let columns = usize::from(inner.width);
     let mut lines = filter_lines(look, columns);
@@ -139,16 +171,43 @@ fn filter_lines(look: &Look, columns: usize) -> Vec<Line<'static>> {
         return Vec::new();
     }
     let filter = ui.events.matches.filter();
-    let clear = if is_typed { "" } else { "<cancel>: clear  " };
-    let mut line = look.line([(Role::Key, look.keys(&format!(" filter  {clear}")))]);
-    line.spans.extend(pieces(&ui.needle, filter).into_iter().map(|(is_bad, piece)| {
+    let clear = if is_typed { String::new() } else { look.keys("<cancel>: clear  ") };
+    let whole = text::width(&ui.needle) + text::width(&clear) + text::width(FILTER);
+    let clear = if whole > columns { String::new() } else { clear };
+    let front = look.span(Role::Key, format!("{FILTER}{clear}"));
+    let pieces = pieces(&ui.needle, filter).into_iter().map(|(is_bad, piece)| {
         let span = look.span(if is_bad { Role::Warn } else { Role::Title }, piece);
         if is_bad { span.patch_style(Modifier::UNDERLINED) } else { span }
-    }));
-    let why = filter.problems.first().map(|problem| (Role::Warn, format!("   ^ {}", problem.why)));
+    });
+    let lines = broken(std::iter::once(front).chain(pieces), columns);
+    let why = filter.problems.first().map(|problem| (Role::Warn, format!("^ {}", problem.why)));
     let hint = why.or_else(|| is_typed.then(|| (Role::Dim, TERMS.to_owned())));
-    let hint = hint.map(|(role, text)| look.line([(role, text::fit(&text, columns))]));
-    std::iter::once(line).chain(hint).collect()
+    let hints = hint.into_iter().flat_map(|(role, words)| {
+        let lines = text::wrap(&words, columns.saturating_sub(3)).into_iter();
+        lines.map(move |line| (role, format!("   {line}")))
+    });
+    let hints: Vec<Line> = hints.map(|part| look.line([part])).collect();
+    lines.into_iter().chain(hints).collect()
+}
+
+/// Spans in lines of a width; the lines after the first one are indented.
+fn broken(spans: impl Iterator<Item = Span<'static>>, columns: usize) -> Vec<Line<'static>> {
+    let indent = text::width(FILTER);
+    let (mut lines, mut used) = (vec![Line::default()], 0);
+    for span in spans {
+        for letter in span.content.chars() {
+            let width = text::width(&letter.to_string());
+            if used + width > columns {
+                lines.push(Line::from(" ".repeat(indent)));
+                used = indent;
+            }
+            used += width;
+            if let Some(line) = lines.last_mut() {
+                line.push_span(Span::styled(letter.to_string(), span.style));
+            }
+        }
+    }
+    lines
 }
 
 /// Splits a filter into valid and invalid pieces.
@@ -184,7 +243,7 @@ fn listed_row(listed: &Listed, columns: usize) -> Parts {
     parts
 }
 
-/// A log line: as many clauses as fit in a given width.
+/// A log line, cut to a given width.
 pub(super) fn row(entry: &Entry, columns: usize) -> Parts {
     counted_row(entry, entry.count, columns)
 }
@@ -199,7 +258,7 @@ fn counted_row(entry: &Entry, times: u32, columns: usize) -> Parts {
         (Role::Dim, front),
         (role(entry.severity), severity),
         (Role::Dim, format!(" {source}")),
-        (Role::Text, text::clauses(&entry.text, room)),
+        (Role::Text, text::fit(&entry.text, room)),
         (Role::Dim, again),
     ]
 }

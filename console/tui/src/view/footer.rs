@@ -70,7 +70,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
 /// The columns that remain for a notice beside the keys that are always shown, except the key of the help.
 pub(super) fn room(model: &Model, columns: usize) -> usize {
     let mut always = lasting(model, 0);
-    always.retain(|hint| hint.id != ActionId::Help);
+    // A message stays for a few seconds only.
+    always.retain(|hint| !matches!(hint.id, ActionId::Help | ActionId::NextPane));
     columns.saturating_sub(width(&always) + GAP)
 }
 
@@ -101,9 +102,10 @@ fn lasting(model: &Model, columns: usize) -> Vec<Hint> {
     hints
 }
 
-/// Whether an action is the only way to the other panes, because only one pane is shown at a time.
+/// Whether an action is the only way to the other panes, because the panes have no keys of their own.
 fn is_way_on(model: &Model, id: ActionId) -> bool {
-    id == ActionId::NextPane && model.ui.arrangement() == Arrangement::Paged
+    let is_small = matches!(model.ui.arrangement(), Arrangement::Paged | Arrangement::Narrow);
+    id == ActionId::NextPane && is_small
 }
 
 /// How soon a key is left out, from the last one to the first.
@@ -114,8 +116,9 @@ fn weight(model: &Model, id: ActionId) -> u8 {
         ActionId::Cancel if model.ui.overlay != Overlay::None => 1,
         id if model.ui.screen.row().first == id => 1,
         ActionId::Help => 2,
-        id if is_way_on(model, id) => 3,
-        ActionId::Back | ActionId::Abort => 4,
+        ActionId::Abort => 3,
+        id if is_way_on(model, id) => 4,
+        ActionId::Back => 4,
         _ => 5,
     }
 }

@@ -13,6 +13,7 @@ use crate::model::Model;
 use crate::model::home::{Found, HomeList};
 use crate::model::ui::Arrangement;
 use crate::theme::Role;
+use crate::update::Rows;
 use mission::Severity;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -121,6 +122,17 @@ fn border(look: &Look, list: HomeList) -> Role {
     if look.model.home.list == list { Role::Focus } else { Role::Border }
 }
 
+/// The key of a list on a wide screen, for its title.
+fn key(look: &Look, list: Rows) -> String {
+    let index = match list {
+        Rows::Runs => HomeList::Runs,
+        Rows::Attention => HomeList::Attention,
+        _ => HomeList::Scenarios,
+    };
+    let is_wide = look.model.ui.arrangement() == Arrangement::Wide;
+    if is_wide { look.nth_key(index as usize) } else { String::new() }
+}
+
 /// The filter of the lists, or the keys for filtering and for switching between them. Where only one list is shown, the
 /// number of points that need attention.
 fn note(look: &Look, list: HomeList) -> String {
@@ -129,8 +141,9 @@ fn note(look: &Look, list: HomeList) -> String {
     let is_alone = look.model.ui.arrangement() == Arrangement::Paged;
     let is_focused = look.model.home.list == list;
     match look.model.home.filter.as_str() {
-        "" if is_focused && is_alone && open > 0 => look.keys(&format!("attention {open}, <next-pane> list")),
-        _ if !is_focused => look.keys("<next-pane> list"),
+        "" if is_focused && is_alone && open > 0 => look.keys(&format!("attention {open}, <next-pane> pane")),
+        _ if !is_focused && look.model.ui.arrangement() == Arrangement::Wide => String::new(),
+        _ if !is_focused => look.keys("<next-pane> pane"),
         "" => look.keys("<filter> filter"),
         filter => look.keys(&format!("filter `{}`  <cancel> clear", text::fit(filter, 20))),
     }

@@ -28,6 +28,8 @@ const WIDTH: u16 = 78;
 const WIDE: u16 = 116;
 /// Width of the map beside the side panes on a wide terminal, columns.
 const MAP: u16 = 70;
+/// The least columns of the screen that stay visible on each side of a list.
+const BESIDE: u16 = 4;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     // The keys, and the line above them, stay visible.
@@ -41,7 +43,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         Overlay::Parameters { .. } => WIDE,
         _ => WIDTH,
     };
-    let columns = area.width.min(widest);
+    // A strip of the screen that is too narrow to be read is covered, too.
+    let columns = if area.width < widest + 2 * BESIDE { area.width } else { widest };
     let list = match &look.model.ui.overlay {
         Overlay::Commands(palette) => commands::list(look, palette, columns),
         Overlay::Planners { purpose, selected, is_unfolded } => {

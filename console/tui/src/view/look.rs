@@ -4,7 +4,7 @@ use super::cache::Cache;
 use super::text;
 use crate::actions::{ActionId, find};
 use crate::caps::{Caps, Colours, Glyphs};
-use crate::model::{Model, Pane, Run};
+use crate::model::{Model, Pane, Run, ui::Arrangement};
 use crate::theme::{Role, Theme};
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -23,6 +23,9 @@ pub(crate) struct Look<'a> {
     pub theme: &'a Theme,
     pub cache: &'a RefCell<Cache>,
 }
+
+/// Columns of the frame around a title and its note.
+const TITLE_FRAME: usize = 10;
 
 /// The pieces of a line, with their roles.
 pub(crate) type Parts = Vec<(Role, String)>;
@@ -60,20 +63,25 @@ impl Look<'_> {
     /// the arrow keys apply to the pane.
     pub(crate) fn pane<'t>(&self, pane: Pane, title: &str, note: &str) -> Block<'t> {
         let panes = self.model.ui.panes();
-        let focus = self.model.ui.pane == pane && panes.contains(&pane);
+        let focus = self.model.ui.focus() == pane && panes.contains(&pane);
         let title = &format!("{}{title}", self.pane_key(pane));
         match (focus, panes.len()) {
             (true, _) => self.block(Role::Focus, title, note),
             // With one pane, or none that could have the focus, every title is bold.
-            (false, 0 | 1) => self.frame(Role::Border, (Role::Title, &format!(" {title} ")), note),
-            (false, _) => self.frame(Role::Border, (Role::Text, &format!(" {title} ")), note),
+            (false, 0 | 1) => self.frame(Role::Border, (Role::Title, " ", title), note),
+            (false, _) => self.frame(Role::Border, (Role::Text, " ", title), note),
         }
     }
 
     /// The key of a pane that has one, for its title.
     pub(crate) fn pane_key(&self, pane: Pane) -> String {
         let index = self.model.ui.numbered_panes().iter().position(|other| *other == pane);
-        let action = index.and_then(|index| find::row(ActionId::Pane(index as u8 + 1)));
+        index.map_or_else(String::new, |index| self.nth_key(index))
+    }
+
+    /// The key of the pane or list with an index, from 0, for its title.
+    pub(crate) fn nth_key(&self, index: usize) -> String {
+        let action = find::row(ActionId::Pane(index as u8 + 1));
         let key = action.and_then(|action| self.model.console.keys.of(action).first());
         key.map_or_else(String::new, |key| format!("{key} "))
     }
@@ -83,23 +91,50 @@ impl Look<'_> {
         if border == Role::Focus {
             return self.focused(border, title, note);
         }
-        self.frame(border, (Role::Title, &format!(" {title} ")), note)
+        self.frame(border, (Role::Title, " ", title), note)
     }
 
     /// A frame with its own border around the pane to which the arrow keys apply.
     pub(crate) fn focused<'t>(&self, border: Role, title: &str, note: &str) -> Block<'t> {
-        self.frame(border, (Role::Title, &format!("▸ {title} ")), note)
+        self.frame(border, (Role::Title, "▸ ", title), note)
     }
 
     /// A frame around a list that lies over the screen.
     pub(crate) fn list_block<'t>(&self, title: &str, note: &str) -> Block<'t> {
-        self.frame(Role::Focus, (Role::Title, &format!(" {title} ")), note)
+        self.bordered(Role::Focus, (Role::Title, format!(" {title} ")), note)
     }
 
-    fn frame<'t>(&self, border: Role, (role, title): (Role, &str), note: &str) -> Block<'t> {
+    /// A frame around a pane; on a small screen, the first title names the screen.
+    fn frame<'t>(&self, border: Role, (role, mark, title): (Role, &str, &str), note: &str) -> Block<'t> {
+        let named = self.named(title);
+        let columns = usize::from(self.model.ui.width);
+        let is_tight = named.is_some()
+            && text::width(named.as_deref().unwrap_or(title)) + text::width(note) + TITLE_FRAME > columns;
+        let title = format!("{mark}{} ", named.as_deref().unwrap_or(title));
+        self.bordered(border, (role, title), if is_tight { "" } else { note })
+    }
+
+    /// The first title of a small screen with the digit and the name of the screen; `None` for any other title.
+    fn named(&self, title: &str) -> Option<String> {
+        let ui = &self.model.ui;
+        if title.is_empty()
+            || ui.arrangement() != Arrangement::Paged
+            || !self.cache.borrow_mut().is_first_title()
+        {
+            return None;
+        }
+        let (digit, name) = (ui.screen.digit(), ui.screen.name());
+        Some(if title.starts_with(name) {
+            format!("{digit} {title}")
+        } else {
+            format!("{digit} {name}: {title}")
+        })
+    }
+
+    fn bordered<'t>(&self, border: Role, (role, title): (Role, String), note: &str) -> Block<'t> {
         let block = Block::bordered()
             .border_style(self.theme.style(border))
-            .title_top(Line::from(vec![Span::raw("─"), self.span(role, title.to_owned())]));
+            .title_top(Line::from(vec![Span::raw("─"), self.span(role, title)]));
         if note.is_empty() {
             block
         } else {

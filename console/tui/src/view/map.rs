@@ -14,14 +14,16 @@ mod scan;
 mod shade;
 mod shadow;
 mod shapes;
+mod survey;
 mod thin;
 mod zone;
 
 pub(super) use ink::TRAIL;
+pub(super) use legend::of_floor as floor_legend;
 pub(super) use pattern::Pattern;
-pub(super) use pen::Pen;
+pub(super) use pen::{Pen, nearest};
 pub(super) use plates::{Key as PlateKey, PlateDrawing};
-pub(super) use shade::{Key as ShadeKey, Shades};
+pub(super) use shade::{Key as ShadeKey, Shades, lay, of_run as shades_of_run};
 pub(super) use shapes::{Stroke, Window};
 
 use super::look::{Look, Parts};
@@ -90,20 +92,18 @@ fn critical<'a>(look: &Look<'a>) -> Option<&'a str> {
         .then_some(&worst.text)
 }
 
-/// Draws the floor with its legend. The legend is placed where the map is blank. Entries that do not fit there are
-/// written in lines below the floor, which is then drawn smaller.
+/// Draws the floor with its legend in one place: where the map is blank beside the floor or, if it does not fit there, in
+/// lines below the floor, which is then drawn smaller.
 fn floor_and_legend(look: &Look, frame: &mut Frame, area: Rect) {
     let Some(window) = window(look, area) else { return };
-    let entries = legend::entries(look, window);
-    let placed = legend::Placed::new(look, window, &entries);
-    let rows = legend::rows(&placed.left_over, area);
+    let placed = legend::Placed::new(look, window, legend::entries(look, window));
+    let rows = legend::rows(&placed.below, area);
     let [floor, lines] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(area);
     let Some(window) = self::window(look, floor) else { return };
-    let placed = if rows > 0 { legend::Placed::new(look, window, &entries) } else { placed };
     draw_floor(look, frame, floor, window);
     legend::draw(look, frame, floor, &placed);
-    let left_over = legend::fitting(look, &placed.left_over, (rows, usize::from(lines.width)));
-    legend::draw_lines(look, frame, lines, &left_over);
+    let below = legend::fitting(look, &placed.below, (rows, usize::from(lines.width)));
+    legend::draw_lines(look, frame, lines, &below);
     look.cache.borrow_mut().place_map(floor, window);
 }
 
@@ -154,6 +154,7 @@ fn draw_floor(look: &Look, frame: &mut Frame, area: Rect, window: Window) {
         pen.paths(ctx);
         pen.blocked(ctx);
         pen.drawings(ctx);
+        pen.survey(ctx);
         pen.scan(ctx);
         pen.solids(ctx, world);
         pen.tether(ctx);

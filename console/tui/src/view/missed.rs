@@ -16,16 +16,16 @@ pub(super) fn account<'a>(look: &Look<'a>) -> Option<&'a Account> {
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let Some(account) = account(look) else { return };
+    let listed = account.listed();
     let block = look.pane(
         Pane::Missed,
-        &format!("Missed areas  {}{}", account.missed.len(), small(account)),
+        &format!("Missed areas  {}{}", listed.len(), small(account)),
         &look.keys("<result> result"),
     );
     let inner = block.inner(area);
     let columns = usize::from(inner.width).saturating_sub(2);
-    let mut lines: Vec<_> = account
-        .missed
-        .iter()
+    let mut lines: Vec<_> = listed
+        .into_iter()
         .map(|area| look.line([(Role::Text, format!(" {}", row(area, columns)))]))
         .take(usize::from(inner.height))
         .collect();
@@ -56,6 +56,12 @@ pub(super) fn small(floor: &Account) -> String {
         slivers if slivers.count == 0 => String::new(),
         slivers => format!(" (+ {} under 0.01 m², {} m²)", slivers.count, text::number(slivers.area_m2, 2)),
     }
+}
+
+/// The role of the number of an area on a map and of its line in a list: nothing went wrong in an area that was not
+/// reached because the mission ended.
+pub(super) fn role(area: &Area<MissReason>) -> Role {
+    if area.reason == MissReason::NotReached { Role::Dim } else { Role::Missed }
 }
 
 /// The main reason for a missed area, and the number of further reasons.

@@ -158,6 +158,9 @@ pub(crate) fn standing(model: &Model) -> Vec<String> {
 /// The keys for what can be done after a mission has ended.
 fn more(model: &Model) -> impl Iterator<Item = String> {
     let keys: &[&str] = match model.ui.screen {
+        Screen::Result if model.live.run.is_survey() => {
+            &["<rescan>: plan a scan of this map.", "<home>: home."]
+        }
         Screen::Result if model.live.missed().is_empty() && model.live.in_doubt().is_empty() => {
             &["<again>: replan.", "<home>: home."]
         }
@@ -233,7 +236,8 @@ fn idle(model: &Model) -> Clauses {
     if model.live.preflight.is_starting {
         return (Role::Title, vec!["Checking before the start...".into()]);
     }
-    let is_opened = model.planner().is_some() || model.live.run.planning.fault.is_some();
+    let is_opened =
+        model.live.run.is_survey() || model.planner().is_some() || model.live.run.planning.fault.is_some();
     let is_preparing = match model.live.run.standing.standing().readiness {
         Readiness::Preparing => true,
         // The plan is requested as soon as the run is open.
@@ -302,6 +306,11 @@ fn doing(model: &Model) -> Clauses {
         return (Role::Title, vec!["Waiting for first command.".into()]);
     };
     let done = text::percent(progress.done);
+    if let Some(survey) = &run.survey {
+        let next = survey.way.as_ref().map_or("looking for a way", |way| way.to.words());
+        let explored = survey.share.map_or_else(|| "-".into(), text::percent);
+        return (Role::Title, vec![format!("Next: {next}."), format!("{explored} % of the floor explored.")]);
+    }
     let plan = run.planning.plan.as_ref();
     if let Some((lead, left_m)) = plan.and_then(|plan| plan.lead_left_m(progress)) {
         let why = match lead {

@@ -1,17 +1,19 @@
 //! The details of a past run: figures, holds, alarms, notes and a small map.
 
 use super::fields::{self, Field};
-use super::look::{Look, Parts, fill};
+use super::look::{Look, Parts};
+use super::scroll::{self, Extent};
 use super::small_map::{self, SmallMap};
 use super::text;
 use crate::guide;
 use crate::model::ui::Arrangement;
 use crate::model::{Glimpse, PastRun, Run, Together};
 use crate::theme::Role;
-use account::{MissReason, Summary};
+use account::{Account, Summary};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
+use ratatui::widgets::Block;
 use std::cmp::Reverse;
 
 /// Width of the figure names, columns.
@@ -25,12 +27,15 @@ const BELOW: u16 = 9;
 /// The number of missed areas that are marked on the map.
 const MARKED: usize = 9;
 
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, run: &PastRun) {
-    let began = if run.began.is_empty() { String::new() } else { format!("  {} UTC", run.began) };
-    let scenario = name(run);
-    let block = look.block(Role::Border, &format!("{scenario}{began}"), "");
-    let inner = block.inner(area);
-    frame.render_widget(block, area);
+/// The details of a run, the area for them, and the area for the map.
+struct Divided<'a> {
+    lines: Vec<Line<'static>>,
+    text: Rect,
+    map: Option<(Rect, SmallMap<'a>)>,
+}
+
+fn divided<'a>(look: &Look<'a>, area: Rect, run: &PastRun) -> Divided<'a> {
+    let inner = Block::bordered().inner(area);
     let glimpse = look.model.home.glimpses.of(&run.name).and_then(|found| found.as_ref().ok());
     let map = glimpse.and_then(|glimpse| map(glimpse));
     let beside = map.is_some() && is_beside(inner, |columns| lines(look, run, columns).len());
@@ -39,13 +44,26 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, run: &PastRun) {
     let [left, right] = Layout::horizontal([Constraint::Length(figures), Constraint::Fill(1)]).areas(inner);
     let rows = (lines.len() as u16).min(left.height);
     let [text, below] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(left);
-    fill(frame, text, ratatui::widgets::Block::new(), lines);
-    if let Some(map) = map {
-        if beside {
-            small_map::draw(look, frame, right, &map);
-        } else if below.height >= BELOW {
-            small_map::draw(look, frame, below, &map);
-        }
+    let place = if beside { right } else { below };
+    let map = map.filter(|_| beside || below.height >= BELOW).map(|map| (place, map));
+    Divided { lines, text, map }
+}
+
+/// How much of the details of a run is visible in the area of their pane.
+pub(super) fn extent(look: &Look, area: Rect, run: &PastRun) -> Extent {
+    let divided = divided(look, area, run);
+    Extent { shown: divided.text.height.into(), len: divided.lines.len() }
+}
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, run: &PastRun) {
+    let began = if run.began.is_empty() { String::new() } else { format!("  {} UTC", run.began) };
+    let title = format!("{}{began}", name(run));
+    let Divided { lines, text, map } = divided(look, area, run);
+    let extent = Extent { shown: text.height.into(), len: lines.len() };
+    frame.render_widget(scroll::block(look, (&title, ""), (area.width, extent)), area);
+    scroll::lines(look, frame, text, lines);
+    if let Some((area, map)) = map {
+        small_map::draw(look, frame, area, &map);
     }
 }
 
@@ -170,7 +188,7 @@ fn figures(summary: &Summary, together: Option<&Together>) -> Vec<Field> {
         fields.push(("tether", format!("{} out, wrap {wrap}°", metres(tether.tether_length_max_m, 1))));
     }
     if let Some(floor) = together.map(|all| &all.floor).or(summary.floor.as_ref()) {
-        let missed: Vec<_> = floor.missed.iter().filter(|area| area.reason != MissReason::NotAsked).collect();
+        let missed = floor.listed();
         let area_m2: f64 = missed.iter().map(|area| area.area_m2).sum();
         let small = super::missed::small(floor);
         fields.push((
@@ -209,17 +227,13 @@ fn events(run: &Run, summary: Option<&Summary>) -> Vec<Field> {
 
 /// The map of a run with its largest missed areas.
 fn map(glimpse: &Glimpse) -> Option<SmallMap<'_>> {
-    let mut map = SmallMap::of_run(&glimpse.run)?;
     let together = glimpse.together();
-    map.scanned = map
-        .scanned
-        .map(|(own, has_ended)| (together.and_then(|all| all.raster.as_ref()).unwrap_or(own), has_ended));
+    let mut map = SmallMap::of_run(&glimpse.run, together)?;
     let own = || glimpse.summary.as_ref().and_then(|summary| summary.floor.as_ref());
     let floor = together.map(|all| &all.floor).or_else(own);
-    let missed = floor.into_iter().flat_map(|floor| &floor.missed);
-    let listed = missed.filter(|area| area.reason != MissReason::NotAsked).take(MARKED);
-    for (index, area) in listed.enumerate() {
-        map = map.marked(area.at, Role::Missed, &(index + 1).to_string());
+    let listed = floor.map(Account::listed).unwrap_or_default();
+    for (index, area) in listed.into_iter().take(MARKED).enumerate() {
+        map = map.marked(area.at, super::missed::role(area), &(index + 1).to_string());
     }
     Some(map)
 }

@@ -5,7 +5,7 @@ mod along;
 mod checks;
 mod left_out;
 mod parameters;
-mod promise;
+pub(super) mod promise;
 mod state;
 
 use super::look::{Look, fill};

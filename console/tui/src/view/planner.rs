@@ -62,6 +62,10 @@ fn rows_of(look: &Look, wide: bool, room: usize) -> Vec<(u8, &'static str, Value
         (4, if wide { "cross-track" } else { "off path" }, (Role::Text, cross_track(run, room))),
         (5, "plan", (Role::Text, plan(run))),
     ]);
+    if run.is_survey() {
+        // The pane about the survey shows its way.
+        rows.retain(|(_, label, _)| !matches!(*label, "plan" | "cross-track" | "off path"));
+    }
     rows
 }
 
@@ -75,6 +79,9 @@ fn better(look: &Look, offer: &Offer, room: usize) -> Value {
 }
 
 fn planner(look: &Look) -> Value {
+    if look.run.is_survey() {
+        return (Role::Title, "the mission itself drives".into());
+    }
     match (look.model.planner(), look.run.planner_id()) {
         (Some(info), _) => {
             let changed = parameter::changed(info, look.run.planning.choice.as_ref());

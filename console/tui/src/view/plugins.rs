@@ -2,10 +2,11 @@
 //! files.
 
 use super::look::{Look, Parts, fill};
+use super::scroll::{self, Extent};
 use super::{table, text};
-use crate::model::parameter;
 use crate::model::plugins::{Plugin, PluginState, plugins};
 use crate::model::ui::Arrangement;
+use crate::model::{Pane, parameter};
 use crate::theme::Role;
 use crate::update::Rows;
 use mission::{ParamInfo, PlannerInfo, Sandbox};
@@ -19,40 +20,128 @@ const ALLOWED: usize = 26;
 const LEAST: usize = 60;
 /// The number of digits shown of a hash.
 const HASH: usize = 12;
+/// Width of a state and of the version of the interface, and the least width for names of planners, columns.
+const STATE: usize = 9;
+const ABI: usize = 5;
+const NAMES: usize = 24;
+/// Rows of the list of files beside those of the files: the frame, the headings and a blank.
+const FRAME: u16 = 4;
+/// Width of the last changes, columns.
+const CHANGES: u16 = 50;
 
-pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+/// The areas of the files, of the details of the selected one, and of the last changes. A small screen shows one of
+/// them at a time.
+fn divided(look: &Look, area: Rect, files: usize) -> [Option<Rect>; 3] {
+    let is_detail = look.model.ui.focus() == Pane::Detail;
+    match look.model.ui.arrangement() {
+        Arrangement::Paged if is_detail => return [None, Some(area), None],
+        Arrangement::Paged | Arrangement::Strip => return [Some(area), None, None],
+        Arrangement::Narrow | Arrangement::Wide => {}
+    }
+    let rows = (files as u16).saturating_add(FRAME).min(area.height / 2).max(5);
+    let [above, below] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(area);
+    let beside = if look.model.ui.arrangement() == Arrangement::Wide { CHANGES } else { 0 };
+    let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(beside)]).areas(below);
+    [Some(above), Some(left), (beside > 0).then_some(right)]
+}
+
+pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, _: Arrangement) {
     let found = plugins(&look.model.console, look.run);
     let selected = look.model.ui.plugin.min(found.len().saturating_sub(1));
-    let rows = (found.len() as u16 + 3).min(area.height / 2).max(5);
-    let [above, below] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(area);
-    files(look, frame, above, (&found, selected));
-    let Some(plugin) = found.get(selected) else { return };
-    if arrangement == Arrangement::Wide {
-        let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(50)]).areas(below);
-        detail(look, frame, left, plugin);
-        changes(look, frame, right);
-    } else {
-        detail(look, frame, below, plugin);
+    let [above, left, right] = divided(look, area, found.len());
+    if let Some(area) = above {
+        files(look, frame, area, (&found, selected));
     }
+    let Some(plugin) = found.get(selected) else { return };
+    if let Some(area) = left {
+        let lines = about(look, area, plugin).into_iter().map(|parts| look.line(parts)).collect();
+        scroll::draw(look, frame, area, (plugin.file, ""), lines);
+    }
+    if let Some(area) = right {
+        changes(look, frame, area);
+    }
+}
+
+/// How much of the details of the selected file is visible.
+pub(crate) fn extent(look: &Look, area: Rect) -> Option<Extent> {
+    let found = plugins(&look.model.console, look.run);
+    let plugin = found.get(look.model.ui.plugin.min(found.len().saturating_sub(1)))?;
+    // A small screen shows the details when the operator turns to them.
+    let area = divided(look, area, found.len())[1].unwrap_or(area);
+    Some(scroll::extent(area, about(look, area, plugin).len()))
 }
 
 fn files(look: &Look, frame: &mut Frame, area: Rect, (found, selected): (&[Plugin<'_>], usize)) {
     let planners = text::counted(look.model.console.planners.len(), "planner");
     let title = format!("Plugins  {planners} in {}", text::counted(found.len(), "file"));
-    let block = look.block(Role::Focus, &title, &look.keys("<reload> reload"));
+    let block = look.pane(Pane::List, &title, &look.keys("<reload> reload"));
     let inner = block.inner(area);
-    let columns = usize::from(inner.width);
-    let name = 30.min(columns / 3);
-    let rows = found.iter().map(|plugin| row(plugin, name, columns)).collect();
-    table::place(look, inner, Rows::Plugins, table::window(selected, found.len(), usize::from(inner.height)));
-    let mut lines = table::rows(look, rows, Some(selected), (columns, usize::from(inner.height)));
-    if lines.is_empty() {
-        lines.push(look.line([(
+    let columns = Columns::of(found, usize::from(inner.width));
+    let rows: Vec<Parts> = found.iter().map(|plugin| columns.row(plugin)).collect();
+    let height = usize::from(inner.height).saturating_sub(1);
+    let place = Rect { y: inner.y + 1, height: height as u16, ..inner };
+    let shown = table::window(selected, found.len(), height);
+    table::place(look, place, Rows::Plugins, shown.clone());
+    let mut lines = vec![look.line([(Role::Dim, columns.head())])];
+    lines.extend(table::rows(look, rows, Some(selected), (usize::from(inner.width), height)));
+    if found.is_empty() {
+        lines = vec![look.line([(
             Role::Warn,
             " No plugins found; `tankops planners` shows where tankops looks for them.".into(),
-        )]));
+        )])];
     }
     fill(frame, area, block, lines);
+    table::bar(look, frame, place, &shown, found.len());
+}
+
+/// The widths of the columns of the files; 0 for a column that does not fit.
+#[derive(Clone, Copy)]
+struct Columns {
+    name: usize,
+    hash: usize,
+    /// What is left for the names of the planners.
+    rest: usize,
+}
+
+impl Columns {
+    /// A name may take half of the width; the hash is left out first.
+    fn of(found: &[Plugin<'_>], room: usize) -> Self {
+        let widest = found.iter().map(|plugin| text::width(plugin.file)).max().unwrap_or(0).max(4) + 1;
+        let name = widest.min(room / 2);
+        let left = room.saturating_sub(1 + name + STATE + ABI);
+        let hash = if left >= HASH + 2 + NAMES { HASH + 2 } else { 0 };
+        Self { name, hash, rest: left.saturating_sub(hash) }
+    }
+
+    fn head(self) -> String {
+        let hash = if self.hash > 0 { "sha256" } else { "" };
+        [
+            format!(" {}", text::column("file", self.name)),
+            text::column("state", STATE),
+            text::column("ABI", ABI),
+            text::column(hash, self.hash),
+            "planners".to_owned(),
+        ]
+        .concat()
+    }
+
+    fn row(self, plugin: &Plugin<'_>) -> Parts {
+        let mut parts = vec![
+            (Role::Text, text::column(&text::fit(plugin.file, self.name - 1), self.name)),
+            (role(plugin.state), text::column(plugin.state.word(), STATE)),
+        ];
+        let words = match plugin.planners.first() {
+            None => text::clauses(plugin.reason, ABI + self.hash + self.rest),
+            Some(first) => {
+                let ids: Vec<&str> = plugin.planners.iter().map(|info| info.id.as_str()).collect();
+                let hash = first.sha256.get(..HASH).unwrap_or(&first.sha256);
+                let hash = if self.hash > 0 { text::column(hash, self.hash) } else { String::new() };
+                format!("{}{hash}{}", text::column(&first.abi, ABI), text::names(&ids, self.rest))
+            }
+        };
+        parts.push((Role::Text, words));
+        parts
+    }
 }
 
 fn role(state: PluginState) -> Role {
@@ -64,61 +153,40 @@ fn role(state: PluginState) -> Role {
     }
 }
 
-fn row(plugin: &Plugin<'_>, name: usize, columns: usize) -> Parts {
-    let mut parts = vec![
-        (Role::Text, text::column(&text::fit(plugin.file, name - 1), name)),
-        (role(plugin.state), text::column(plugin.state.word(), 9)),
-    ];
-    let rest = columns.saturating_sub(name + 9 + 1);
-    let words = match plugin.planners.first() {
-        None => text::clauses(plugin.reason, rest),
-        Some(first) => {
-            let ids: Vec<&str> = plugin.planners.iter().map(|info| info.id.as_str()).collect();
-            let hash = first.sha256.get(..HASH).unwrap_or(&first.sha256);
-            let about = format!("{:<5}{hash:<13} ", first.abi);
-            let room = rest.saturating_sub(text::width(&about));
-            about + &text::names(&ids, room)
-        }
-    };
-    parts.push((Role::Text, words));
-    parts
+/// All about a file and its planners. A large screen has room for a line about each parameter, or for two parameters in
+/// a line.
+fn about(look: &Look, area: Rect, plugin: &Plugin<'_>) -> Vec<Parts> {
+    let (columns, height) =
+        (usize::from(area.width).saturating_sub(3), usize::from(area.height).saturating_sub(2));
+    let most = if columns >= 2 * LEAST { 2 } else { 1 };
+    let in_tables = |tables: usize| about_in(look, plugin, (tables, columns));
+    (1..most).map(in_tables).find(|rows| rows.len() <= height).unwrap_or_else(|| in_tables(most))
 }
 
-fn detail(look: &Look, frame: &mut Frame, area: Rect, plugin: &Plugin<'_>) {
-    let block = look.block(Role::Border, plugin.file, "");
-    let columns = usize::from(block.inner(area).width).saturating_sub(1);
+fn about_in(look: &Look, plugin: &Plugin<'_>, (tables, columns): (usize, usize)) -> Vec<Parts> {
     let wrapped = |role: Role, words: &str| -> Vec<Parts> {
         text::wrap(words, columns).into_iter().map(|line| vec![(role, format!(" {line}"))]).collect()
     };
-    let about = |tables: usize| {
-        let mut rows = wrapped(role(plugin.state), &look.keys(state_words(plugin.state)));
-        if !plugin.reason.is_empty() {
-            rows.extend(wrapped(Role::Warn, plugin.reason));
+    let mut rows = wrapped(role(plugin.state), &look.keys(state_words(plugin.state)));
+    if !plugin.reason.is_empty() {
+        rows.extend(wrapped(Role::Warn, plugin.reason));
+    }
+    for info in &plugin.planners {
+        rows.push(vec![
+            (Role::Title, format!(" {} {}", info.id, info.version)),
+            (Role::Dim, format!("  {}", abilities(info))),
+        ]);
+        if let Some(sandbox) = &info.sandbox {
+            let role = if *sandbox == Sandbox::Full { Role::Dim } else { Role::Warn };
+            rows.extend(wrapped(role, &format!("sandbox: {sandbox}")));
         }
-        for info in &plugin.planners {
-            rows.push(vec![
-                (Role::Title, format!(" {} {}", info.id, info.version)),
-                (Role::Dim, format!("  {}", abilities(info))),
-            ]);
-            if let Some(sandbox) = &info.sandbox {
-                let role = if *sandbox == Sandbox::Full { Role::Dim } else { Role::Warn };
-                rows.extend(wrapped(role, &format!("sandbox: {sandbox}")));
-            }
-            rows.extend(wrapped(Role::Text, &info.about));
-            if tables == 0 {
-                rows.extend(wrapped(Role::Dim, &parameters(&info.parameters)));
-            } else {
-                rows.extend(parameter_rows(&info.parameters, tables, columns));
-            }
+        rows.extend(wrapped(Role::Text, &info.about));
+        if info.parameters.is_empty() {
+            rows.extend(wrapped(Role::Dim, "no parameters"));
         }
-        rows
-    };
-    // A large screen has room for a line about each parameter, or for two parameters in a line.
-    let height = usize::from(block.inner(area).height);
-    let most = if columns >= 2 * LEAST { 2 } else { 1 };
-    let mut tables = (1..=most).map(&about);
-    let rows = tables.find(|rows| rows.len() <= height).unwrap_or_else(|| about(0));
-    fill(frame, area, block, rows.into_iter().map(|parts| look.line(parts)).collect());
+        rows.extend(parameter_rows(&info.parameters, tables, columns));
+    }
+    rows
 }
 
 fn state_words(state: PluginState) -> &'static str {
@@ -133,11 +201,6 @@ fn state_words(state: PluginState) -> &'static str {
 fn abilities(info: &PlannerInfo) -> String {
     let abilities = [(info.covers, "coverage"), (info.snapshots, "keeps its state")];
     abilities.iter().filter(|(has, _)| *has).map(|(_, word)| *word).collect::<Vec<_>>().join(", ")
-}
-
-fn parameters(infos: &[ParamInfo]) -> String {
-    let keys: Vec<&str> = infos.iter().map(|info| info.key.as_str()).collect();
-    if keys.is_empty() { "no parameters".into() } else { format!("parameters: {}", keys.join(", ")) }
 }
 
 /// The parameters in `tables` columns, to be read downwards.

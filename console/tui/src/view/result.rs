@@ -7,8 +7,9 @@ mod missed;
 pub(super) mod plates;
 
 use super::look::{Look, Parts, fill};
-use super::{map, table, text};
-use crate::model::{Model, Pane, RunResult, ui::Arrangement};
+use super::{charts, map, table, text};
+use crate::model::ui::{Arrangement, Chart};
+use crate::model::{Model, Pane, RunResult};
 use crate::theme::Role;
 use mission::Outcome;
 use ratatui::Frame;
@@ -22,6 +23,8 @@ const LARGE: u16 = 170;
 const MISSED: [u16; 3] = [8, 10, 20];
 /// Rows of the panes above the list of missed areas while the list has the focus.
 const ABOVE_MISSED: u16 = 8;
+/// Minimum rows of a curve, including the frame.
+const CURVE: u16 = 7;
 /// The share of the side panes' rows that the floor shares get beside figures that need more than the rest: one part in
 /// this many.
 const FLOOR_PART: u16 = 3;
@@ -31,6 +34,9 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, _: Arrangement) {
         let block = look.block(Role::Border, "Result", "");
         return fill(frame, area, block, vec![look.line([(Role::Dim, " No run has ended yet.".into())])]);
     };
+    if look.model.ui.without_scan && look.model.ui.arrangement() != Arrangement::Paged {
+        return without_scan(look, frame, area, result);
+    }
     for (pane, area) in placed(look.model, area, result) {
         match pane {
             Pane::Map => map::draw(look, frame, area),
@@ -40,6 +46,38 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, _: Arrangement) {
             _ => figures::draw(look, frame, area, result),
         }
     }
+}
+
+/// The result of a mission that does not scan: the map, the figures, and their curves below them.
+fn without_scan(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
+    let (figures, curves) = beside_map(look.model, area, result);
+    let map = Rect { width: area.width - figures.width, ..area };
+    map::draw(look, frame, map);
+    figures::draw(look, frame, figures, result);
+    let tether = look.run.tether.is_some();
+    let shown = [Chart::Error, Chart::TetherOut, Chart::Wrap].into_iter();
+    let shown = shown.filter(|chart| *chart == Chart::Error || tether);
+    let shown: Vec<Chart> = shown.take(usize::from(curves.height / CURVE)).collect();
+    let areas = Layout::vertical(shown.iter().map(|_| Constraint::Fill(1))).split(curves);
+    for (chart, area) in shown.iter().zip(areas.iter()) {
+        charts::draw(look, frame, *area, *chart);
+    }
+}
+
+/// The areas of the figures and of their curves beside the map of a mission that does not scan. Figures that leave too
+/// little room for a curve get all rows.
+fn beside_map(model: &Model, area: Rect, result: &RunResult) -> (Rect, Rect) {
+    let size = match model.ui.arrangement() {
+        Arrangement::Wide if area.width >= LARGE => 2,
+        Arrangement::Wide => 1,
+        _ => 0,
+    };
+    let side = SIDE[size];
+    let [_, side] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(side)]).areas(area);
+    let wanted = figures::rows(model, result, side.width.saturating_sub(2)) + 2;
+    let rows = if wanted + CURVE > side.height { side.height } else { wanted };
+    let [figures, curves] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(side);
+    (figures, curves)
 }
 
 /// The panes and their areas. The pane that responds to the arrow keys gets the rows that it needs; on a small screen, it
@@ -125,7 +163,12 @@ fn beside_plates(model: &Model, area: Rect, result: &RunResult, missed_rows: u16
 pub(crate) fn most_scrolled(model: &Model, pane: Pane) -> usize {
     let Some(result) = &model.live.result else { return 0 };
     let area = super::body(model, Rect::new(0, 0, model.ui.width, model.ui.height));
-    let shown = placed(model, area, result).into_iter().find(|(other, _)| *other == pane);
+    let is_alone = model.ui.arrangement() == Arrangement::Paged;
+    let shown = if model.ui.without_scan && !is_alone {
+        Some((pane, beside_map(model, area, result).0))
+    } else {
+        placed(model, area, result).into_iter().find(|(other, _)| *other == pane)
+    };
     shown.map_or(0, |(_, area)| {
         let columns = area.width.saturating_sub(2);
         let rows = match pane {
@@ -175,10 +218,11 @@ fn scrolled(
 }
 
 /// The title of the figures.
-fn title(result: &RunResult) -> String {
+fn title(model: &Model, result: &RunResult) -> String {
     let ending =
         result.summary.outcome.map_or_else(|| "CUT OFF".into(), |outcome| outcome.word().to_uppercase());
-    format!("Result  {ending}")
+    let task = if model.ui.without_scan { ", not a scan" } else { "" };
+    format!("Result  {ending}{task}")
 }
 
 /// The role of the result's title.
@@ -186,7 +230,9 @@ fn role(result: &RunResult) -> Role {
     if result.summary.outcome == Some(Outcome::Complete) { Role::Good } else { Role::Warn }
 }
 
-/// The next page of a small screen, as a note in a title.
+/// The way to the other panes where they have no keys of their own, as a note in a title.
 fn next_page(look: &Look) -> String {
-    if look.model.ui.panes().is_empty() { String::new() } else { look.keys("<next-pane> next") }
+    let is_numbered = !look.model.ui.numbered_panes().is_empty();
+    let is_alone = is_numbered || look.model.ui.panes().is_empty();
+    if is_alone { String::new() } else { look.keys("<next-pane> pane") }
 }

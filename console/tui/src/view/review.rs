@@ -3,10 +3,11 @@
 mod compare;
 
 use super::look::{Look, Parts, fill};
+use super::scroll::Extent;
 use super::{past_run, run_details, table, text};
 use crate::model::replay::Other;
 use crate::model::ui::Arrangement;
-use crate::model::{Glimpse, PastRun, Replay};
+use crate::model::{Glimpse, Pane, PastRun, Replay};
 use crate::theme::Role;
 use crate::update::Rows;
 use ratatui::Frame;
@@ -20,18 +21,55 @@ const ABOUT: u16 = 56;
 const LARGE: u16 = 170;
 const DETAIL: u16 = 88;
 
+/// How much of the details of the selected run is visible.
+pub(crate) fn extent(look: &Look, area: Rect) -> Option<Extent> {
+    let run = look.model.review.run(&look.model.home)?;
+    Some(past_run::extent(look, detail(look, area)?, run))
+}
+
+/// The area of the selected run's details; `None` if a comparison takes their place.
+fn detail(look: &Look, area: Rect) -> Option<Rect> {
+    let arrangement = look.model.ui.arrangement();
+    if arrangement == Arrangement::Paged {
+        return Some(area);
+    }
+    if arrangement == Arrangement::Wide && area.width >= LARGE {
+        return Some(
+            Layout::horizontal([Constraint::Fill(1), Constraint::Length(DETAIL)]).areas::<2>(area)[1],
+        );
+    }
+    let [_, below] =
+        Layout::vertical([Constraint::Fill(1), Constraint::Length(rows(look, area, arrangement))])
+            .areas(area);
+    match compared(look) {
+        Some(_) if arrangement == Arrangement::Wide => {
+            Some(Layout::horizontal([Constraint::Length(ABOUT), Constraint::Fill(1)]).areas::<2>(below)[0])
+        }
+        Some(_) => None,
+        None => Some(below),
+    }
+}
+
+/// The rows below the list. A small screen shows one pane at a time.
+fn rows(look: &Look, area: Rect, arrangement: Arrangement) -> u16 {
+    match arrangement {
+        Arrangement::Wide => BELOW.0,
+        _ if compared(look).is_some() => BELOW.0.min(area.height.saturating_sub(6)),
+        Arrangement::Narrow => BELOW.1,
+        Arrangement::Paged | Arrangement::Strip => 0,
+    }
+}
+
 pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+    if arrangement == Arrangement::Paged && look.model.ui.focus() == Pane::Detail {
+        return about(look, frame, area);
+    }
     if arrangement == Arrangement::Wide && area.width >= LARGE {
         let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(DETAIL)]).areas(area);
         large(look, frame, left);
         return about(look, frame, right);
     }
-    let rows = match arrangement {
-        Arrangement::Wide => BELOW.0,
-        _ if compared(look).is_some() => BELOW.0.min(area.height.saturating_sub(6)),
-        Arrangement::Narrow => BELOW.1,
-        Arrangement::Paged | Arrangement::Strip => 0,
-    };
+    let rows = rows(look, area, arrangement);
     let [list, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(area);
     runs(look, frame, list);
     match compared(look) {
@@ -93,7 +131,7 @@ fn runs(look: &Look, frame: &mut Frame, area: Rect) {
         listed.iter().map(|run| row(run, mark(model.live.replay.as_deref(), run), widths)).collect();
     let selected = review.selected.min(rows.len().saturating_sub(1));
     let shown = table::window(selected, rows.len(), height);
-    let block = look.block(Role::Focus, &format!("Runs  {}", table::counted(&shown, rows.len())), &note);
+    let block = look.pane(Pane::List, &format!("Runs  {}", table::counted(&shown, rows.len())), &note);
     let place = Rect { y: inner.y + 1, height: inner.height.saturating_sub(1), ..inner };
     table::place(look, place, Rows::Past, shown.clone());
     let mut lines: Vec<ratatui::text::Line> = vec![look.line(head(widths))];
@@ -194,5 +232,5 @@ fn about(look: &Look, frame: &mut Frame, area: Rect) {
         return past_run::draw(look, frame, area, run);
     }
     let lines = vec![look.line([(Role::Dim, " No run is selected.".into())])];
-    fill(frame, area, look.block(Role::Border, "Selected run", ""), lines);
+    fill(frame, area, look.pane(Pane::Detail, "Selected run", ""), lines);
 }

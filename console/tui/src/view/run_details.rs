@@ -24,8 +24,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, glimpse: &Glimpse
         let wanted = u16::try_from(listed).unwrap_or(u16::MAX).saturating_add(FRAME);
         if listed == 0 { 0 } else { wanted.min(area.height / 3).max(PANE) }
     };
-    let rows =
-        floor.map_or([0, 0], |floor| [rows(requested(floor).count().max(1)), rows(floor.plates.len())]);
+    let rows = floor.map_or([0, 0], |floor| [rows(floor.listed().len().max(1)), rows(floor.plates.len())]);
     let [above, middle, below] =
         Layout::vertical([Constraint::Length(rows[0]), Constraint::Length(rows[1]), Constraint::Fill(1)])
             .areas(area);
@@ -68,13 +67,8 @@ fn error(run: &Run) -> Series<'_> {
     }
 }
 
-/// The requested areas that were missed.
-fn requested(floor: &Account) -> impl Iterator<Item = &Area<MissReason>> {
-    floor.missed.iter().filter(|area| area.reason != MissReason::NotAsked)
-}
-
 fn missed(look: &Look, frame: &mut Frame, area: Rect, floor: &Account) {
-    let listed: Vec<&Area<MissReason>> = requested(floor).collect();
+    let listed: Vec<&Area<MissReason>> = floor.listed();
     let inner = look.block(Role::Border, "", "").inner(area);
     let columns = usize::from(inner.width);
     let shown = listed.len().min(usize::from(inner.height));

@@ -2,25 +2,27 @@
 //! places.
 
 use super::look::Look;
-use super::map::{Pen, TRAIL, Window};
-use crate::model::{Raster, Run};
+use super::map::{self, Pen, Shades, TRAIL, Window};
+use crate::model::{Run, Together};
 use crate::theme::Role;
 use ratatui::Frame;
-use ratatui::layout::Rect;
+use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
 use ratatui::widgets::canvas::{Canvas, Context};
-use world::{FloorClass, Point, World};
+use world::{Point, World};
 
 /// Margin around the tank, as a factor of its size.
 const MARGIN: f64 = 1.06;
 /// Smallest area in which a tank is recognisable, columns and rows.
 const LEAST: (u16, u16) = (16, 6);
+/// Rows of the map for each line of its legend.
+const ROWS_PER_LINE: u16 = 4;
 
 /// The contents of a small map.
 pub(super) struct SmallMap<'a> {
     pub world: &'a World,
-    /// The scanned floor, and whether unscanned floor counts as missed.
-    pub scanned: Option<(&'a Raster, bool)>,
+    /// The run whose floor is shown, and the scan of all runs if it is a re-scan.
+    pub floor: Option<(&'a Run, Option<&'a Together>)>,
     pub trail: &'a [Point],
     /// Places with the text that marks them.
     pub marks: Vec<(Point, Role, String)>,
@@ -29,14 +31,13 @@ pub(super) struct SmallMap<'a> {
 impl<'a> SmallMap<'a> {
     /// The tank alone.
     pub(super) fn of(world: &'a World) -> Self {
-        Self { world, scanned: None, trail: &[], marks: Vec::new() }
+        Self { world, floor: None, trail: &[], marks: Vec::new() }
     }
 
     /// The tank of a run with its floor and trail; `None` until the run is opened.
-    pub(super) fn of_run(run: &'a Run) -> Option<Self> {
+    pub(super) fn of_run(run: &'a Run, together: Option<&'a Together>) -> Option<Self> {
         let world = &run.about.as_ref()?.world;
-        let scanned = run.coverage.as_ref().map(|raster| (raster, run.has_missed()));
-        Some(Self { world, scanned, trail: run.trail.points(), marks: Vec::new() })
+        Some(Self { world, floor: Some((run, together)), trail: run.trail.points(), marks: Vec::new() })
     }
 
     /// The same map with a marked place.
@@ -47,9 +48,15 @@ impl<'a> SmallMap<'a> {
     }
 }
 
-/// Draws a small map; draws nothing if the area is too small for one.
+/// Draws a small map with its legend below it; draws nothing if the area is too small for a map.
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, map: &SmallMap) {
     let Some(window) = window(map.world, area) else { return };
+    let shades = |window| map::shades_of_run(look, map.floor?, window);
+    let legend = |shades: Shades| map::floor_legend(shades, usize::from(area.width).saturating_sub(1));
+    let legend = shades(window).map(legend).unwrap_or_default();
+    let rows = (legend.len() as u16).min(area.height / ROWS_PER_LINE);
+    let [area, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(area);
+    let Some(window) = self::window(map.world, area) else { return };
     let pen = Pen { look: *look, window };
     let canvas = Canvas::default().marker(pen.marker()).x_bounds(window.x).y_bounds(window.y).paint(|ctx| {
         pen.no_go(ctx, map.world);
@@ -59,8 +66,12 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, map: &SmallMap) {
         signs(look, ctx, map);
     });
     frame.render_widget(canvas, area);
-    if let Some((raster, has_ended)) = map.scanned {
-        shade(look, frame, area, (window, raster, has_ended));
+    if let Some(shades) = shades(window) {
+        map::lay(look, &shades, area, frame.buffer_mut());
+    }
+    for (line, place) in legend.into_iter().zip(below.rows()) {
+        let indented = std::iter::once((Role::Text, " ".to_owned())).chain(line);
+        frame.render_widget(look.line(indented), place);
     }
 }
 
@@ -84,24 +95,5 @@ fn signs(look: &Look, ctx: &mut Context<'_>, map: &SmallMap) {
     }
     for (at, role, text) in &map.marks {
         print(*at, *role, text);
-    }
-}
-
-/// Shades the floor where nothing else is drawn.
-fn shade(look: &Look, frame: &mut Frame, area: Rect, (window, raster, has_ended): (Window, &Raster, bool)) {
-    let cells = (0..area.height).flat_map(|row| (0..area.width).map(move |column| (column, row)));
-    for (column, row) in cells {
-        let cell = &mut frame.buffer_mut()[(area.x + column, area.y + row)];
-        if cell.symbol() != " " {
-            continue;
-        }
-        let class = raster.class_in(window.middle_of(column, row), 1.5 * window.column_m, has_ended);
-        let (sign, role) = match class {
-            Some(FloorClass::Scanned | FloorClass::Again) => ('▒', Role::Scanned),
-            Some(FloorClass::Partial) => ('░', Role::Partly),
-            Some(FloorClass::Missed) => ('▓', Role::Missed),
-            _ => continue,
-        };
-        cell.set_char(sign).set_fg(look.theme.color(role));
     }
 }

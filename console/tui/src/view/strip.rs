@@ -1,6 +1,6 @@
 //! The control strip, for a terminal too small for a map: state, alarm, position, and the most important keys.
 
-use super::look::{Look, ranked};
+use super::look::{Look, Parts, ranked};
 use super::next::Clauses;
 use super::{confirm, coverage, footer, next, notice, position, text, top};
 use crate::model::log::Entry;
@@ -38,7 +38,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     if is_asked {
         add(0, wrapped(look, &confirm::clauses(look.model), columns));
     }
-    add(1, vec![state(look)]);
+    add(1, vec![state(look, columns)]);
     add(3, alarm(look, columns));
     if !is_asked {
         add(1, wrapped(look, &next::clauses(look.model), columns));
@@ -128,24 +128,43 @@ fn way(look: &Look) -> Option<String> {
     Some(format!(" path {done} % done, planner {}", look.run.planner_id().unwrap_or("-")))
 }
 
-fn state(look: &Look) -> Line<'static> {
+/// The state and, if they fit, the counts of the alarms.
+fn state(look: &Look, columns: usize) -> Line<'static> {
+    let mut parts = plain_state(look);
+    parts.extend(counts(look, columns).unwrap_or_default());
+    look.line(parts)
+}
+
+fn plain_state(look: &Look) -> Parts {
     let mut parts = vec![(Role::Text, " ".to_owned())];
     parts.extend(top::state(look.model));
     parts.push((Role::Text, " ".into()));
     parts.extend(top::time(look.model));
-    look.line(parts)
+    parts
 }
 
-/// The worst alarm in full, after the counts.
+/// The counts of the open alarms behind the state; `None` if they do not fit there.
+fn counts(look: &Look, columns: usize) -> Option<Parts> {
+    let width = |parts: &Parts| parts.iter().map(|(_, text)| text::width(text)).sum::<usize>();
+    let room = columns.saturating_sub(width(&plain_state(look)));
+    let forms = [top::Counts::Short, top::Counts::Worst]
+        .map(|form| [vec![(Role::Text, "  ".to_owned())], top::alarms(look.model, form)].concat());
+    forms.into_iter().find(|parts| width(parts) <= room)
+}
+
+/// The worst alarm in full, after the counts if these are not behind the state.
 fn alarm(look: &Look, columns: usize) -> Vec<Line<'static>> {
     let Some(alarm) = look.run.alarms.worst() else { return Vec::new() };
-    let mut counts = vec![(Role::Text, " ".to_owned())];
-    counts.extend(top::alarms(look.model, false));
+    let mut counts = match counts(look, columns) {
+        Some(_) => Vec::new(),
+        None => [vec![(Role::Text, " ".to_owned())], top::alarms(look.model, top::Counts::Worst)].concat(),
+    };
     let used: usize = counts.iter().map(|(_, text)| text::width(text)).sum();
     let mut words = text::wrap(&alarm.text, columns.saturating_sub(used + 1)).into_iter();
-    counts.push((Role::Text, format!(" {}", words.next().unwrap_or_default())));
+    let role = if counts.is_empty() { super::events::role(alarm.severity) } else { Role::Text };
+    counts.push((role, format!(" {}", words.next().unwrap_or_default())));
     let indent = " ".repeat(used + 1);
-    let more = words.map(|words| look.line([(Role::Text, format!("{indent}{words}"))]));
+    let more = words.map(|words| look.line([(role, format!("{indent}{words}"))]));
     std::iter::once(look.line(counts)).chain(more).collect()
 }
 

@@ -29,7 +29,7 @@ fn note(look: &Look) -> &'static str {
     match look.run.tether.as_ref().and_then(|tether| tether.certified) {
         Some(true) => "plan certified",
         Some(false) => "NOT certified",
-        None if *look.run.phase() == Phase::Waiting => "",
+        None if *look.run.phase() == Phase::Waiting || look.run.is_survey() => "",
         None => "no certified plan",
     }
 }

@@ -1,7 +1,6 @@
 //! The top line: who is in control, what is running, whether it is being recorded, and the alarms.
 
 use super::look::{Look, Parts};
-use super::tabs::{self, Form};
 use super::text;
 use crate::model::{Model, Recording, ui::Arrangement};
 use crate::theme::Role;
@@ -21,8 +20,12 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let sum = |parts: &Parts| parts.iter().map(|(_, text)| text::width(text)).sum::<usize>();
     let fixed = 1 + 3 * gap.len() + sum(&state) + sum(&time);
     let columns = usize::from(area.width).saturating_sub(fixed);
-    let alarms_in = |long| Some(alarms(model, long)).filter(|alarms| sum(alarms) + names.width() <= columns);
-    let alarms = alarms_in(area.width >= LONG_ALARMS).unwrap_or_else(|| alarms(model, false));
+    let alarms_in =
+        |counts, names: usize| Some(alarms(model, counts)).filter(|alarms| sum(alarms) + names <= columns);
+    let alarms = alarms_in(Counts::Long, names.width())
+        .filter(|_| area.width >= LONG_ALARMS)
+        .or_else(|| alarms_in(Counts::Short, text::width(&names.scenario)))
+        .unwrap_or_else(|| alarms(model, Counts::Worst));
     let room = columns.saturating_sub(sum(&alarms));
     let scenario = text::fit(&names.scenario, room);
     let mut room = room - text::width(&scenario);
@@ -32,9 +35,6 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         room -= if fits { columns } else { 0 };
         fits
     };
-    let form_width = |form| tabs::width(model, form);
-    let has_screen = !tabs::has_row(frame.area()) && fits(form_width(Form::Current) + 1);
-    let more = form_width(Form::Digits) - form_width(Form::Current);
     let mut planner = names.planner.clone();
     if !planner.is_empty() {
         planner.insert_str(0, gap);
@@ -44,7 +44,6 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     }
     let has_version = wide && !planner.is_empty() && fits(text::width(&names.version));
     let has_size = wide && fits(text::width(&names.size));
-    let form = if has_screen && fits(more) { Form::Digits } else { Form::Current };
     let blank = || vec![(Role::Text, gap.to_owned())];
     let named = vec![
         (Role::Text, if has_size { scenario + &names.size } else { scenario }),
@@ -53,14 +52,6 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let line =
         [vec![(Role::Text, " ".into())], state, blank(), named, blank(), time, blank(), alarms].concat();
     frame.render_widget(look.line(line), area);
-    if has_screen {
-        tabs::draw(look, frame, right_of(area, form_width(form) as u16), form);
-    }
-}
-
-fn right_of(area: Rect, width: u16) -> Rect {
-    let width = width.min(area.width);
-    Rect { x: area.right() - width, width, ..area }
 }
 
 /// The names of the scenario and the planner.
@@ -164,29 +155,51 @@ fn recording(model: &Model) -> (Role, String) {
     }
 }
 
-/// The number of open alarms of each severity, marked if any of them are unacknowledged.
-pub(super) fn alarms(model: &Model, long: bool) -> Parts {
+/// How the open alarms are written in the top line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Counts {
+    /// The number of each severity, and how many of them are unacknowledged.
+    Long,
+    /// The number of each severity, and whether any alarm is unacknowledged.
+    Short,
+    /// The number of the most severe ones and of all others.
+    Worst,
+}
+
+/// The open alarms.
+pub(super) fn alarms(model: &Model, counts: Counts) -> Parts {
     let alarms = &model.live.run.alarms;
     if alarms.open().next().is_none() {
         return vec![(Role::Dim, "no alarm".into())];
     }
-    let counted = [
-        (Severity::Crit, Role::Crit, "crit", "C"),
-        (Severity::Warn, Role::Warn, "warn", "W"),
-        (Severity::Watch, Role::Watch, "watch", "w"),
+    let severities = [
+        (Severity::Crit, Role::Crit, "crit"),
+        (Severity::Warn, Role::Warn, "warn"),
+        (Severity::Watch, Role::Watch, "watch"),
     ];
-    let mut parts = vec![(Role::Title, if long { "ALARM".into() } else { "!".into() })];
-    for (severity, role, word, letter) in counted {
-        let count = alarms.count(severity);
-        let words = match (long, alarms.unacknowledged(severity)) {
-            (true, 0) => format!("{count} {word}"),
-            (true, open) => format!("{count} {word} ({open} unacknowledged)"),
-            (false, 0) => format!("{count}{letter}"),
-            (false, _) => format!("{count}{letter}*"),
+    let open = severities.into_iter().filter(|(severity, ..)| alarms.count(*severity) > 0);
+    let most = if counts == Counts::Worst { 1 } else { severities.len() };
+    let mut parts: Parts = if counts == Counts::Long { vec![(Role::Title, "ALARM ".into())] } else { vec![] };
+    for (severity, role, word) in open.clone().take(most) {
+        let words = match alarms.unacknowledged(severity) {
+            new if new > 0 && counts == Counts::Long => {
+                format!("{} {word} ({new} unacknowledged)", alarms.count(severity))
+            }
+            _ => format!("{} {word}", alarms.count(severity)),
         };
-        if count > 0 {
-            parts.extend([(Role::Text, " ".into()), (role, words)]);
-        }
+        parts.extend([(role, words), (Role::Text, " ".into())]);
     }
+    let others: usize = open.clone().skip(most).map(|(severity, ..)| alarms.count(severity)).sum();
+    if others > 0 {
+        parts.push((Role::Text, format!("+{others} ")));
+    }
+    let is_new = open.clone().any(|(severity, ..)| alarms.unacknowledged(severity) > 0);
+    if is_new && counts != Counts::Long {
+        parts.push((Role::Title, "unack ".into()));
+    }
+    if let Some((_, last)) = parts.last_mut() {
+        last.truncate(last.trim_end().len());
+    }
+    parts.retain(|(_, text)| !text.is_empty());
     parts
 }

@@ -2,6 +2,7 @@
 
 use crate::fixture::{RICH, Screen};
 use crate::overviews::ended;
+use crate::panes::missed_summary;
 use crate::screens::{drawn, text};
 use crate::sizes::SIZES;
 use account::{InDoubt, TakenBack};
@@ -70,7 +71,8 @@ fn the_alarm_of_a_biased_station_lists_the_floor_in_doubt_and_its_remedy() {
 
 #[test]
 fn the_result_lists_the_floor_in_doubt_and_how_to_scan_it_again() {
-    let (mut screen, closed) = ended();
+    let (mut screen, mut closed) = ended();
+    closed.summary.floor = missed_summary().floor;
     screen.hear(RunMsg::InDoubt(vec![in_doubt()]));
     screen.hear(RunMsg::Closed(Box::new(closed.clone())));
     for size in SIZES {
@@ -81,12 +83,12 @@ fn the_result_lists_the_floor_in_doubt_and_how_to_scan_it_again() {
         let shown = shown(&mut screen, size);
         assert!(shown.contains("IN DOUBT: 41.9 m²"), "{size:?}\n{shown}");
         // Only at the smallest size does the pane have the rows for itself.
-        let whole = "IN DOUBT: 41.9 m² scanned from 540 s to 633 s: the ranges of station S2 were wrong by +0.15 m, around \
+        let whole = "IN DOUBT: 41.9 m² scanned from T+00:09:00 to T+00:10:33: the ranges of station S2 were wrong by +0.15 m, around \
                      3.20, -1.50 m. r: re-scan it.";
         assert!(size != SIZES[0] || flat(&shown).contains(whole), "{shown}");
     }
     let page = tui::handover::page(&screen.model);
-    assert!(page.contains("- In doubt: 41.9 m² scanned from 540 s"), "{page}");
+    assert!(page.contains("- In doubt: 41.9 m² scanned from T+00:09:00"), "{page}");
     // Of a replayed run, the report states the floor; it is in doubt from the moment on at which the bias was found.
     let (mut replayed, mut closed) = ended();
     closed.summary.taken_back = vec![TakenBack { until_s: 100.0, ..in_doubt().floor }, in_doubt().floor];

@@ -145,7 +145,7 @@ fn a_breach_of_a_zone_is_a_critical_alarm_and_says_why_the_robot_is_held() {
     let held = screen.mission.held(HoldReason::ZoneBreached { zone: "no-go 1".into() });
     screen.hear(RunMsg::Events(vec![breached, held]));
     let text = shown(&screen, (120, 36));
-    assert!(text.contains("HELD: hull in a no-go zone") && text.contains("! 1C*"), "{text}");
+    assert!(text.contains("HELD: hull in a no-go zone") && text.contains("1 crit 2 watch unack"), "{text}");
     let state = text.lines().find(|line| line.starts_with(" HELD")).unwrap();
     assert!(state.contains(":return: drive back. X: end mission.") && !state.contains("resume"), "{state}");
     screen.type_text("4");

@@ -150,7 +150,7 @@ fn an_event_that_is_read_stays_selected_while_others_come() {
 fn the_next_and_previous_event_of_the_same_kind_are_found() {
     let mut screen = with_events();
     screen.type_text("/S2 rejected");
-    screen.press([Key::Enter, Key::Enter]);
+    screen.press([Key::Enter]);
     let text = |screen: &Screen| {
         let number = screen.model.ui.events.selected().unwrap();
         screen.model.live.run.log.get(number).unwrap().text.clone()
@@ -184,7 +184,7 @@ fn the_events_pane_of_the_mission_opens_the_whole_event() {
     let mut screen = Screen::running();
     screen.press([Key::Tab, Key::Down, Key::Enter]);
     assert_eq!(screen.model.ui.screen, tui::model::Screen::Events);
-    assert!(screen.model.ui.events.is_open && screen.model.ui.events.newer() == 1);
+    assert!(screen.model.ui.focus() == tui::model::Pane::Detail && screen.model.ui.events.newer() == 1);
 }
 
 #[test]
@@ -210,7 +210,7 @@ fn every_event_with_a_line_is_described_field_by_field() {
     events.push(mission.held(HoldReason::Stuck { message: "no progress".into() }));
     screen.hear(RunMsg::Events(events));
     screen.type_text("5");
-    screen.press([Key::End, Key::Enter]);
+    screen.press([Key::End]);
     let total = screen.model.live.run.log.len();
     assert!(total > 14);
     for _ in 0..total {

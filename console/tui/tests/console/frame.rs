@@ -53,9 +53,13 @@ fn every_size_says_which_screen_it_is_and_the_name_of_the_scenario() {
     for size in SIZES {
         for name in Name::ALL {
             let mut screen = Screen::running();
+            screen.send(Msg::Resize { width: size.0, height: size.1 });
             screen.model.ui.go(name);
             let top = top(&screen, size);
-            assert!(top.contains(&format!("[{} {}]", name.digit(), name.name())), "{size:?}\n{top}");
+            let named = format!("{} {}", name.digit(), name.name());
+            // A small screen has no line of screens; its title names it.
+            let named = if size.0 < 80 { named } else { format!("[{named}]") };
+            assert!(top.contains(&named), "{size:?}\n{top}");
             assert!(top.contains("tank-07"), "{size:?}\n{top}");
         }
     }
@@ -72,7 +76,7 @@ fn a_long_name_is_whole_and_the_alarms_are_short_before_it_is_cut() {
     for size in [(80, 24), (120, 36), (200, 60)] {
         let top = top(&screen, size);
         assert!(top.contains("cover-unknown-columns"), "{size:?}\n{top}");
-        let alarms = if size.0 < 160 { "! 1C* 2w*" } else { "1 crit (1 unacknowledged)" };
+        let alarms = if size.0 < 160 { "1 crit 2 watch unack" } else { "1 crit (1 unacknowledged)" };
         assert!(top.contains(alarms), "{size:?}\n{top}");
     }
 }
@@ -82,6 +86,7 @@ fn a_notice_stands_beside_the_keys_if_it_fits_and_is_kept() {
     let mut screen = Screen::held();
     screen.send(Msg::Notice { severity: Severity::Info, text: "preset saved".into() });
     for size in SIZES {
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
         let shown = text(&drawn(&screen.model, RICH, size));
         let last = shown.lines().last().unwrap_or_default();
         assert!(last.contains("space resume…") && last.trim_end().ends_with("Preset saved"), "{last}");

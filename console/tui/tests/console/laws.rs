@@ -380,11 +380,11 @@ fn nothing_but_style_is_lost_without_colour() {
         .hear(RunMsg::Health(Health { recording: Recording::Failed("full".into()), ..Health::default() }));
     let cases: Vec<(&str, Screen, &[&str])> = vec![
         ("idle", Screen::idle(), &["■ IDLE", "REC●", "Press S"]),
-        ("running", Screen::running(), &["▶ RUN", "2w", "rejected: 0.42", "found"]),
+        ("running", Screen::running(), &["▶ RUN", "2 watch", "rejected: 0.42", "found"]),
         ("held", Screen::held(), &["‖ HOLD", "HELD by operator"]),
-        ("lost", lost, &["‖ HOLD", "LOST", "1C*", "CRIT"]),
-        ("failed", failed, &["‖ HOLD", "FAILED", "1C*", "CRIT"]),
-        ("unrecorded", unrecorded, &["REC✗", "1C*", "recording failed"]),
+        ("lost", lost, &["‖ HOLD", "LOST", "1 crit", "CRIT"]),
+        ("failed", failed, &["‖ HOLD", "FAILED", "1 crit", "CRIT"]),
+        ("unrecorded", unrecorded, &["REC✗", "1 crit", "recording failed"]),
     ];
     for (name, screen, words) in cases {
         for size in [(80, 24), (120, 36)] {

@@ -355,7 +355,7 @@ fn floor_that_was_not_reached_differs_from_missed_floor() {
     screen.hear(RunMsg::Events(vec![ended]));
     screen.send(Msg::Resize { width: 120, height: 36 });
     let shown = text(&drawn(&screen.model, RICH, (120, 36)));
-    assert!(shown.contains("not reached") && shown.contains('∙') && shown.contains("missed"), "{shown}");
+    assert!(shown.contains("not reached") && shown.contains('◦') && shown.contains("missed"), "{shown}");
     let ahead = screen.model.live.run.not_reached();
     assert!(ahead.iter().any(|is| *is) && ahead.iter().any(|is| !*is));
     assert!(shown.contains("standing"), "an ended robot has no speed: {shown}");

@@ -29,7 +29,7 @@ fn with_mouse(mut screen: Screen) -> Screen {
 #[test]
 fn a_click_reads_the_map_where_it_was_made() {
     let mut screen = with_mouse(Screen::running());
-    let Target::Map(place) = at(&screen, (120, 36), 34, 14) else { panic!("the map is there") };
+    let Target::Map(place) = at(&screen, (120, 36), 34, 13) else { panic!("the map is there") };
     assert!(place.x.abs() < 0.5 && place.y.abs() < 0.9, "the middle of the tank: {place}");
     screen.send(Msg::Mouse(Mouse::Click(Target::Map(Point::new(9.0, 2.0)))));
     let text = text(&drawn(&screen.model, RICH, (120, 36)));
@@ -95,9 +95,9 @@ fn a_click_selects_a_line_and_a_second_one_opens_it() {
     screen.press([Key::Esc, Key::Char('5')]);
     let click = row(&screen, Rows::Events, 3);
     screen.send(click.clone());
-    assert_eq!((screen.model.ui.events.newer(), screen.model.ui.events.is_open), (3, false));
+    assert_eq!((screen.model.ui.events.newer(), screen.model.ui.focus()), (3, tui::model::Pane::List));
     screen.send(click);
-    assert!(screen.model.ui.events.is_open);
+    assert_eq!(screen.model.ui.focus(), tui::model::Pane::Detail);
     screen.type_text("8");
     let click = row(&screen, Rows::Plugins, 1);
     assert_eq!((screen.send(click.clone()), screen.send(click)), (vec![], vec![]));

@@ -132,7 +132,7 @@ fn glimpse(screen: &Screen) -> tui::model::Glimpse {
 fn home() {
     let mut screen = Screen::idle();
     screen.send(Msg::Found(Box::new(found())));
-    screen.type_text("1jj");
+    screen.type_text("1gjj");
     // A large screen shows the last run of the selected scenario.
     let asked = screen.send(Msg::Resize { width: 200, height: 60 });
     let key = ("20261122T040049Z-cover-unknown-columns".to_owned(), "aborted".to_owned());
@@ -242,10 +242,13 @@ fn preflight() {
 
 #[test]
 fn result() {
-    let mut screen = ended().0;
+    let (mut screen, closed) = ended();
     sizes::store("result", &mut screen, sizes::is_log);
+    let scanned = RunResult { summary: Box::new(missed_summary()), ..closed };
+    screen.hear(RunMsg::Closed(Box::new(scanned)));
     screen.send(Msg::Resize { width: 60, height: 16 });
-    let pages = ["Coverage", "Missed:", "Plates", "Map", "Result"];
+    let pages =
+        ["7 Result: Coverage", "7 Result: Missed:", "7 Result: Plates", "7 Result: Map", "7 Result  "];
     for page in pages {
         screen.press([tui::Key::Tab]);
         let shown = text(&drawn(&screen.model, RICH, (60, 16)));
@@ -335,6 +338,7 @@ fn result_of_a_rescan() {
         floor: all,
         kinds: Vec::new(),
         scanned,
+        not_requested: Vec::new(),
     }))));
     for size in [(60, 16), (80, 24), (120, 36), (200, 60)] {
         let shown = text(&drawn(&screen.model, RICH, size)).split_whitespace().collect::<Vec<_>>().join(" ");

@@ -87,7 +87,7 @@ fn a_mission_without_a_scan_says_so() {
         screen.send(Msg::Resize { width, height });
         let shown = shown(&screen, (width, height));
         assert!(
-            shown.contains("this mission does not scan") && !shown.contains("Missed: no area"),
+            shown.contains("Result  COMPLETE, not a scan") && !shown.contains("Missed: no area"),
             "{shown}"
         );
     }

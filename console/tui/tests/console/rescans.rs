@@ -18,7 +18,7 @@ fn as_rescan(mut screen: Screen, share: f64) -> Screen {
     let earlier = vec![BEFORE.to_owned()];
     screen.hear(RunMsg::Continues(Ok(Continued { runs: earlier.clone(), left_at: None })));
     let floor = missed_summary().floor.unwrap();
-    let read = Combination { earlier, floor, kinds: Vec::new(), scanned };
+    let read = Combination { earlier, floor, kinds: Vec::new(), scanned, not_requested: Vec::new() };
     screen.hear(RunMsg::ScannedBefore(Ok(Box::new(read))));
     screen
 }
@@ -87,7 +87,13 @@ fn a_replay_of_a_re_scan_shows_what_was_scanned_before_it() {
     let coverage = early.model.live.run.coverage.take();
     let floor = missed_summary().floor.unwrap();
     let scanned = vec![CellRun(0, 1000)];
-    let read = Combination { earlier: vec![BEFORE.into()], floor, kinds: Vec::new(), scanned };
+    let read = Combination {
+        earlier: vec![BEFORE.into()],
+        floor,
+        kinds: Vec::new(),
+        scanned,
+        not_requested: Vec::new(),
+    };
     early.hear(RunMsg::ScannedBefore(Ok(Box::new(read))));
     assert!(early.model.live.scanned_before.is_none(), "its own floor is not known yet");
     early.model.live.run.coverage = coverage;

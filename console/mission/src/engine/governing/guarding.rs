@@ -127,6 +127,11 @@ impl Known {
         guard.age_s += self.config.tick_s;
     }
 
+    /// Whether the guard waits for its first scan.
+    pub(in crate::engine) fn awaits_scan(&self) -> bool {
+        self.config.guard_reaction_s.is_some() && !self.scan_guard.has_scan
+    }
+
     /// Limits a command by the scan; the robot must be able to stop before it touches any scanned point.
     pub(in crate::engine) fn guarded(&mut self, command: Command) -> Command {
         let Some(reaction_s) = self.config.guard_reaction_s else { return command };

@@ -7,7 +7,7 @@ use super::{
         task::TaskPart,
         words::number,
     },
-    closing, floor, runs,
+    closing, floor, runs, survey,
 };
 use account::{Tracking, clock};
 use mission::Outcome;
@@ -76,7 +76,8 @@ pub(super) fn shares(document: &Document, task: &TaskPart) -> Vec<Share> {
                 ),
             ]
         }
-        TaskPart::Follow { .. } => Vec::new(),
+        TaskPart::Follow { .. } | TaskPart::Survey { map: None } => Vec::new(),
+        TaskPart::Survey { map: Some(map) } => survey::shares(map),
         TaskPart::Goto { left_m, left_true_m, tolerance_m, .. } => {
             let run = document.runs.last();
             let by = if left_true_m.is_some() {
@@ -117,12 +118,22 @@ fn scope(document: &Document, task: &TaskPart) -> Vec<Block> {
 
 /// The figures of the task, and the map.
 fn figures(document: &Document, task: &TaskPart) -> Vec<Block> {
+    let rows = rows(document, task).into_iter().map(|(name, value, note)| [name.to_owned(), value, note]);
+    let rows: Vec<[String; 3]> = rows.collect();
+    if let TaskPart::Survey { map } = task {
+        return survey::blocks(document, map.as_ref(), rows);
+    }
+    vec![Block::Table(figures_table(rows)), Block::Wide(picture(&document.pictures.coverage))]
+}
+
+/// The table of figures: name, value and note.
+pub(super) fn figures_table(rows: Vec<[String; 3]>) -> Table {
     let mut table =
         Table::new("Figures of the task", &[("Figure", "", ""), ("Value", "", "r nw"), ("", "", "full")]);
-    for (name, value, note) in rows(document, task) {
-        table.row(vec![name.into(), value.into(), Value::from(note)]);
+    for row in rows {
+        table.row(row.map(Value::from).into());
     }
-    vec![Block::Table(table), Block::Wide(picture(&document.pictures.coverage))]
+    table
 }
 
 fn rows(document: &Document, task: &TaskPart) -> Vec<(&'static str, String, String)> {
@@ -169,6 +180,28 @@ fn rows(document: &Document, task: &TaskPart) -> Vec<(&'static str, String, Stri
                 rows.extend(tracking.rmse_m.map(|m| {
                     ("RMS error", metres(m, 3), "from the preset points, in their order".to_owned())
                 }));
+            }
+            rows
+        }
+        TaskPart::Survey { map: None } => Vec::new(),
+        TaskPart::Survey { map: Some(map) } => {
+            let seen = format!("{} %", per_cent(map.explored));
+            let mut rows = vec![
+                (
+                    "Floor explored",
+                    seen,
+                    "of the floor within the wall; the inside of a column is never seen".into(),
+                ),
+                ("Columns on the map", map.columns.len().to_string(), none()),
+                (
+                    "Other objects on the map",
+                    map.objects.to_string(),
+                    "outlines; a long object has several".into(),
+                ),
+            ];
+            if map.beyond_tether > 0 {
+                let n = map.beyond_tether.to_string();
+                rows.push(("Places not seen", n, "the tether does not reach them".into()));
             }
             rows
         }

@@ -1,7 +1,9 @@
-//! Protection levels against true errors: without a fault and with one wrong station, in random geometries.
+//! Protection levels against true errors: without a fault and with one wrong station, in random geometries, from ranges
+//! and from differences between arrivals.
 
 use super::setup::{RADIUS_M, on_disc, rng};
 use crate::study::{Block, Job, Result, Row, Sample, Study};
+use nalgebra::{Matrix3, Vector3};
 use positioning::{
     Differences, Fix, Integrity, Nls, PositionSolver, Ranging, Risk, Screened, protection::level_m,
 };
@@ -14,16 +16,22 @@ use world::{Point, Station, StationId};
 
 pub(super) const STUDY: Study = Study {
     name: "integrity",
-    about: "protection levels against true errors, without a fault and with one wrong station, in 40 random \
-            geometries; a draw is 1000 fixes in each",
+    about: "protection levels against true errors, without a fault and with one wrong station, from ranges and from \
+            differences, each in 40 random geometries; a draw is 1000 fixes in each",
     layouts: 25,
     run,
 };
 
-/// Number of geometries.
+/// Number of geometries for ranges.
 const GEOMETRIES: usize = 40;
 /// Numbers of stations; every geometry has one of them.
 const STATIONS: [u32; 4] = [4, 5, 6, 8];
+/// Number of further geometries, which only differences use, because they need five stations.
+const FURTHER: usize = 10;
+/// Number of stations of the further geometries.
+const FURTHER_STATIONS: u32 = 7;
+/// The least number of stations for a level from differences.
+const LEAST_FOR_DIFFERENCES: usize = 5;
 /// Number of fixes of a draw.
 const FIXES: usize = 1_000;
 /// Standard deviation of a range, metres.
@@ -35,25 +43,56 @@ const HULL_M: f64 = 0.5;
 /// Least distance between two stations, as a share of the distance in an even ring.
 const LEAST_APART: f64 = 0.3;
 
-/// What is measured, and whether a station is wrong.
-const METHODS: [(&str, bool, bool); 4] = [
-    ("ranges", false, false),
-    ("ranges/one-fault", false, true),
-    ("differences", true, false),
-    ("differences/one-fault", true, true),
+/// The length by which all ranges are too long if the time of emission is unknown, metres.
+const EXCESS_M: f64 = 200.0;
+/// The error that a single test at a false alarm rate of 0.1 % detects in 80 % of the cases, in standard deviations of
+/// the test (Baarda 1968).
+const DETECTABLE: f64 = 4.13;
+/// The share of a range's variance that must remain in its residual for the other ranges to check it.
+const LEAST_SPARED: f64 = 1e-6;
+
+/// The error of a station.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Fault {
+    None,
+    /// One station is wrong by up to [`MOST_WRONG`] standard deviations.
+    Any,
+    /// One station is wrong by twice the least error that one fix detects at this place.
+    TwiceDetectable,
+}
+
+/// What is measured, whether the time of emission is unknown, and which station is wrong.
+const METHODS: [(&str, bool, Fault); 6] = [
+    ("ranges", false, Fault::None),
+    ("ranges/one-fault", false, Fault::Any),
+    ("ranges/twice-detectable", false, Fault::TwiceDetectable),
+    ("differences", true, Fault::None),
+    ("differences/one-fault", true, Fault::Any),
+    ("differences/twice-detectable", true, Fault::TwiceDetectable),
 ];
 
 struct Geometry {
     id: String,
     stations: Vec<Station>,
+    /// Whether only differences use it.
+    is_further: bool,
+}
+
+impl Geometry {
+    /// Whether a method measures in this geometry.
+    fn suits(&self, is_emission_free: bool) -> bool {
+        if is_emission_free { self.stations.len() >= LEAST_FOR_DIFFERENCES } else { !self.is_further }
+    }
 }
 
 fn geometries() -> Vec<Geometry> {
-    (0..GEOMETRIES).map(|k| geometry(k, STATIONS[k % STATIONS.len()])).collect()
+    let first = (0..GEOMETRIES).map(|k| geometry(k, STATIONS[k % STATIONS.len()], false));
+    let further = (GEOMETRIES..GEOMETRIES + FURTHER).map(|k| geometry(k, FURTHER_STATIONS, true));
+    first.chain(further).collect()
 }
 
 /// Stations at random places on the shell that are not too close to each other.
-fn geometry(index: usize, n: u32) -> Geometry {
+fn geometry(index: usize, n: u32, is_further: bool) -> Geometry {
     let mut rng = rng(index as u64, 441);
     let least = LEAST_APART * TAU / f64::from(n);
     let mut angles: Vec<f64> = Vec::new();
@@ -69,13 +108,19 @@ fn geometry(index: usize, n: u32) -> Geometry {
         name: format!("S{id}"),
         position: Point::new(RADIUS_M * angle.cos(), RADIUS_M * angle.sin()),
     };
-    Geometry { id: format!("{n}-stations/{index:02}"), stations: (1..).zip(&angles).map(station).collect() }
+    let stations = (1..).zip(&angles).map(station).collect();
+    Geometry { id: format!("{n}-stations/{index:02}"), stations, is_further }
 }
 
-/// The results of many fixes.
+/// The results of many cycles.
 #[derive(Default, Serialize, Deserialize)]
 struct Tally {
-    fixes: usize,
+    cycles: usize,
+    /// Cycles with an alarm, or without a fix.
+    alarms: usize,
+    /// Fixes from which the solver left out a station, and those from which it left out the wrong one.
+    excluded: usize,
+    named: usize,
     /// Fixes with an error beyond their level.
     beyond: usize,
     errors_m: Vec<f32>,
@@ -85,7 +130,6 @@ struct Tally {
 
 impl Tally {
     fn add(&mut self, error_m: f64, level: Option<f64>) {
-        self.fixes += 1;
         self.errors_m.push(error_m as f32);
         if let Some(level_m) = level {
             self.levels_m.push(level_m as f32);
@@ -95,11 +139,19 @@ impl Tally {
 
     fn join<'a>(all: impl Iterator<Item = &'a Self>) -> Self {
         all.fold(Self::default(), |mut sum, one| {
-            (sum.fixes, sum.beyond) = (sum.fixes + one.fixes, sum.beyond + one.beyond);
+            sum.cycles += one.cycles;
+            sum.alarms += one.alarms;
+            sum.excluded += one.excluded;
+            sum.named += one.named;
+            sum.beyond += one.beyond;
             sum.errors_m.extend(&one.errors_m);
             sum.levels_m.extend(&one.levels_m);
             sum
         })
+    }
+
+    fn fixes(&self) -> usize {
+        self.errors_m.len()
     }
 
     fn level_m(&self) -> Option<f64> {
@@ -115,16 +167,29 @@ impl Tally {
         self.level_m().zip(self.error_p99_9_m()).map(|(level_m, error_m)| level_m / error_m)
     }
 
-    /// The rows of these fixes; the error is that of all fixes, the level that of the protected ones.
-    fn rows(&self, block: &Block<'_>) -> Vec<Row> {
-        let share = |part: usize| part as f64 / self.fixes.max(1) as f64;
-        vec![
-            block.row("beyond_rate", share(self.beyond), "", self.fixes),
-            block.row("protected_rate", share(self.levels_m.len()), "", self.fixes),
+    /// The rows of these cycles; the error is that of all fixes, the level that of the protected ones.
+    fn rows(&self, block: &Block<'_>, fault: Fault) -> Vec<Row> {
+        let mut rows = self.rates(block, fault);
+        rows.extend([
             block.row("level_median", self.level_m(), "m", self.levels_m.len()),
-            block.row("error_p99_9", self.error_p99_9_m(), "m", self.fixes),
-            block.row("level_to_error", self.level_to_error(), "", self.fixes),
-        ]
+            block.row("error_p99_9", self.error_p99_9_m(), "m", self.fixes()),
+            block.row("level_to_error", self.level_to_error(), "", self.fixes()),
+        ]);
+        rows
+    }
+
+    /// The shares of cycles and fixes.
+    fn rates(&self, block: &Block<'_>, fault: Fault) -> Vec<Row> {
+        let rate =
+            |metric: &str, part: usize, of: usize| block.row(metric, part as f64 / of.max(1) as f64, "", of);
+        let mut rows = vec![
+            rate("beyond_rate", self.beyond, self.fixes()),
+            rate("protected_rate", self.levels_m.len(), self.cycles),
+            rate("alarm_rate", self.alarms, self.cycles),
+            rate("excluded_rate", self.excluded, self.cycles),
+        ];
+        rows.extend((fault != Fault::None).then(|| rate("named_rate", self.named, self.cycles)));
+        rows
     }
 }
 
@@ -135,30 +200,28 @@ fn run(job: &Job<'_>) -> Result<Vec<Row>> {
         Ok(methods.iter().map(|method| draw(geometry, method, *seed)).collect::<Vec<Tally>>())
     })?;
     let mut rows = Vec::new();
-    for (m, (method, ..)) in methods.iter().enumerate() {
+    for (m, (method, _, fault)) in methods.iter().enumerate() {
         let of_case: Vec<Tally> =
             done.iter().map(|draws| Tally::join(draws.iter().map(|draw| &draw[m]))).collect();
-        for (geometry, tally) in cases.iter().zip(&of_case).filter(|(_, tally)| tally.fixes > 0) {
-            rows.extend(tally.rows(&job.block(&geometry.id, method, "")));
+        for (geometry, tally) in cases.iter().zip(&of_case).filter(|(_, tally)| tally.cycles > 0) {
+            rows.extend(tally.rows(&job.block(&geometry.id, method, ""), *fault));
         }
-        let all = Tally::join(of_case.iter());
         let block =
             job.block("all", method, "with a fault: 1e-5 over the probability that this station is wrong");
-        let allowed = if method.ends_with("fault") { 1e-5 / Risk::default().prior() } else { 1e-5 };
+        let allowed = if *fault == Fault::None { 1e-5 } else { 1e-5 / Risk::default().prior() };
         let ratios: Sample = of_case.iter().filter_map(Tally::level_to_error).collect();
-        rows.push(block.row("beyond_rate", all.beyond as f64 / all.fixes.max(1) as f64, "", all.fixes));
-        rows.push(block.row("beyond_allowed", allowed, "", all.fixes));
+        rows.extend(Tally::join(of_case.iter()).rates(&block, *fault));
+        rows.push(block.row("beyond_allowed", allowed, "", 1));
         rows.push(block.row("level_to_error_median", ratios.median(), "", ratios.len()));
         rows.push(block.row("level_to_error_max", ratios.max(), "", ratios.len()));
     }
     Ok(rows)
 }
 
-/// One draw; without fixes if the geometry has too few stations for a level.
-fn draw(geometry: &Geometry, (id, is_emission_free, is_wrong): &(&str, bool, bool), seed: u64) -> Tally {
+/// One draw; without cycles in a geometry that does not suit the method.
+fn draw(geometry: &Geometry, (id, is_emission_free, fault): &(&str, bool, Fault), seed: u64) -> Tally {
     let mut tally = Tally::default();
-    let n = geometry.stations.len();
-    if *is_emission_free && n < 5 {
+    if !geometry.suits(*is_emission_free) {
         return tally;
     }
     let purpose =
@@ -167,21 +230,64 @@ fn draw(geometry: &Geometry, (id, is_emission_free, is_wrong): &(&str, bool, boo
     for _ in 0..FIXES {
         let at = on_disc(&mut rng) * (1.0 - HULL_M / RADIUS_M);
         let mut ranges = heard(geometry, at, &mut rng);
-        if *is_wrong {
-            let bias_m = SIGMA_M * rng.random_range(-MOST_WRONG..=MOST_WRONG);
-            ranges[rng.random_range(0..n)].range_m += bias_m;
-        }
+        let wrong = spoil(&mut ranges, (geometry, at), (*is_emission_free, *fault), &mut rng);
         let fix = if *is_emission_free {
+            for range in &mut ranges {
+                range.range_m += EXCESS_M;
+            }
             Screened(Differences).solve(&ranges, &geometry.stations, None)
         } else {
             Screened(Nls).solve(&ranges, &geometry.stations, None)
         };
+        tally.cycles += 1;
         // Ranges that give no fix are an alarm, too.
+        tally.alarms += usize::from(!fix.as_ref().is_ok_and(|fix| fix.integrity != Integrity::Alarm));
         let Ok(fix) = fix else { continue };
-        let level = level(&fix, geometry, *is_emission_free);
-        tally.add((fix.position - at).norm(), level);
+        let left_out: Vec<StationId> = fix.excluded.iter().map(|(id, _)| *id).collect();
+        tally.excluded += usize::from(!left_out.is_empty());
+        tally.named += usize::from(wrong.is_some() && left_out.first().copied() == wrong);
+        tally.add((fix.position - at).norm(), level(&fix, geometry, *is_emission_free));
     }
     tally
+}
+
+/// Makes the range of a station wrong; returns the station.
+fn spoil(
+    ranges: &mut [Ranging],
+    (geometry, at): (&Geometry, Point),
+    (is_emission_free, fault): (bool, Fault),
+    rng: &mut Pcg64,
+) -> Option<StationId> {
+    let n = ranges.len();
+    let (index, bias_m) = match fault {
+        Fault::None => return None,
+        Fault::Any => {
+            let bias_m = SIGMA_M * rng.random_range(-MOST_WRONG..=MOST_WRONG);
+            (rng.random_range(0..n), bias_m)
+        }
+        Fault::TwiceDetectable => {
+            let (index, is_long) = (rng.random_range(0..n), rng.random::<bool>());
+            let detectable_m = detectable_m(&geometry.stations, at, index, is_emission_free)?;
+            (index, 2.0 * detectable_m * if is_long { 1.0 } else { -1.0 })
+        }
+    };
+    // A range stays longer than zero.
+    ranges[index].range_m = (ranges[index].range_m + bias_m).max(0.01);
+    Some(ranges[index].station)
+}
+
+/// The least error of the range of a station that one fix detects, metres; `None` if the others cannot check it.
+fn detectable_m(stations: &[Station], at: Point, index: usize, is_emission_free: bool) -> Option<f64> {
+    let by = |station: &Station| {
+        let away = (at - station.position).normalize();
+        Vector3::new(away.x, away.y, f64::from(u8::from(is_emission_free)))
+    };
+    let mut information: Matrix3<f64> = stations.iter().map(|s| by(s) * by(s).transpose()).sum();
+    // A known time of emission has a column of zeros.
+    information[(2, 2)] += f64::from(u8::from(!is_emission_free));
+    let own = by(&stations[index]);
+    let spared = 1.0 - own.dot(&(information.try_inverse()? * own));
+    (spared > LEAST_SPARED).then(|| DETECTABLE * SIGMA_M / spared.sqrt())
 }
 
 /// The level of a fix without an alarm.
@@ -208,10 +314,21 @@ mod tests {
     #[test]
     fn every_geometry_has_its_own_stations_and_the_same_draw_gives_the_same_figures() {
         let all = geometries();
-        assert_eq!(all.len(), GEOMETRIES);
+        for is_emission_free in [false, true] {
+            assert_eq!(all.iter().filter(|one| one.suits(is_emission_free)).count(), GEOMETRIES);
+        }
         assert!(all.windows(2).all(|pair| pair[0].stations != pair[1].stations));
         let [first, again] = [0, 0].map(|_| draw(&all[2], &METHODS[1], 7));
         assert_eq!((first.errors_m, first.levels_m), (again.errors_m, again.levels_m));
-        assert!(draw(&all[0], &METHODS[2], 7).fixes == 0, "differences need five stations");
+        assert!(draw(&all[0], &METHODS[3], 7).cycles == 0, "differences need five stations");
+    }
+
+    #[test]
+    fn the_station_that_is_wrong_by_twice_the_detectable_error_is_named_by_most_fixes_of_eight_stations() {
+        let all = geometries();
+        for method in [&METHODS[2], &METHODS[5]] {
+            let tally = draw(&all[3], method, 7);
+            assert!(tally.named > 900 && tally.cycles == FIXES, "{}: {}", method.0, tally.named);
+        }
     }
 }

@@ -83,6 +83,7 @@ impl Setup {
             noise,
             timing: sim::TimingErrors::default(),
             clocks: sim::Clocks::default(),
+            pulse_rest_s: None,
             dropout_probability: 0.0,
             outages_s: Vec::new(),
             disturbances: Disturbances::default(),

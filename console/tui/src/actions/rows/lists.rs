@@ -36,4 +36,8 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::Last, "last", "Go to the last line", &[Key::End, Key::Char('G')], &[Context::Rows]).looks(|m| select(m, isize::MAX)),
     action(ActionId::Up, "up", "Select the line above", &[Key::Up], &[Context::Commands]).repeats().looks(|m| select(m, -1)),
     action(ActionId::Down, "down", "Select the line below", &[Key::Down], &[Context::Commands]).repeats().looks(|m| select(m, 1)),
+    action(ActionId::PageUp, "page-up", "Ten lines up", &[Key::PageUp], &[Context::Commands]).repeats().looks(|m| select(m, -PAGE)),
+    action(ActionId::PageDown, "page-down", "Ten lines down", &[Key::PageDown], &[Context::Commands]).repeats().looks(|m| select(m, PAGE)),
+    action(ActionId::First, "first", "Go to the first line", &[Key::Home], &[Context::Commands]).looks(|m| select(m, isize::MIN)),
+    action(ActionId::Last, "last", "Go to the last line", &[Key::End], &[Context::Commands]).looks(|m| select(m, isize::MAX)),
 ];

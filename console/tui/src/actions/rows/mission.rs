@@ -58,10 +58,10 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::Preflight, "preflight", "Run the pre-flight checks", &[Key::Char('A')], &[On(Screen::Plan), On(Screen::Mission)]).label("pre-flight").reaches(Reach::Mission)
         .when(|m| demand(m.live.waits(), "checks can only be run before the start")).does(preflight::open),
     action(ActionId::Compare, "compare", "Compare with another planner's plan", &[Key::Char('c')], &[On(Screen::Plan)]).label("compare").args(&[may("planner", Kind::Planner)]).reaches(Reach::Mission)
-        .when(|m| demand(m.live.waits(), "plans can only be compared before the start").and(offer::has_planners(m))).does(|m| act::choose(m, Purpose::Compare)),
+        .when(|m| demand(m.live.waits(), "plans can only be compared before the start").and(offer::has_plan(m)).and(offer::has_planners(m))).does(|m| act::choose(m, Purpose::Compare)),
     action(ActionId::Preflight, "check-again", "Check again", &[Key::Char('r')], &[Context::Preflight]).label("check again").reaches(Reach::Mission)
         .when(|m| demand(m.live.waits(), "checks can only be run before the start")).does(preflight::open),
     action(ActionId::PlanAgain, "plan-again", "Replan", &[], &[On(Screen::Plan)]).reaches(Reach::Mission)
-        .when(|m| demand(m.live.waits(), "no mission is waiting to start")).does(|_| vec![Effect::Order(Order::Plan)]),
+        .when(|m| demand(m.live.waits(), "no mission is waiting to start").and(offer::has_plan(m))).does(|_| vec![Effect::Order(Order::Plan)]),
     action(ActionId::CancelPlan, "cancel-plan", "Cancel planning or comparison", &[Key::Esc], &[On(Screen::Plan)]).label("cancel").reaches(Reach::Mission).when(offer::cancel_plan).does(overlay::cancel_plan),
 ];

@@ -17,6 +17,8 @@ pub enum Cause {
     Bias(world::StationId),
     /// A bias of a station and a wrong speed of sound cannot be told apart.
     NotSeparable,
+    /// The pulses that the stations exchanged contradict their survey, or give no result.
+    Pulses,
     /// No position can be computed from the ranges.
     NoFix,
     /// A station is not used in the fix.
@@ -84,6 +86,7 @@ impl Cause {
                 Self::Bias(*station)
             }
             EventKind::NotSeparable { .. } | EventKind::Separable => Self::NotSeparable,
+            EventKind::PulsesTested { .. } | EventKind::PulsesFailed { .. } => Self::Pulses,
             EventKind::FixFailed { .. } => Self::NoFix,
             EventKind::ChannelsJudged(_) => Self::DeadChannel,
             EventKind::ObstacleFound { .. } => Self::Map,
@@ -115,6 +118,7 @@ impl Cause {
             Self::NotProtected => "not_protected".into(),
             Self::Bias(id) => format!("bias {}", id.0),
             Self::NotSeparable => "not_separable".into(),
+            Self::Pulses => "pulses".into(),
             Self::NoFix => "no_fix".into(),
             Self::DeadChannel => "dead_channel".into(),
             Self::Station(id) => format!("station {}", id.0),
@@ -178,6 +182,7 @@ impl Cause {
             Self::NotProtected,
             Self::Bias(world::StationId(1)),
             Self::NotSeparable,
+            Self::Pulses,
             Self::NoFix,
             Self::DeadChannel,
             Self::Station(world::StationId(1)),
@@ -214,6 +219,7 @@ impl Cause {
                 | Self::NotProtected
                 | Self::Bias(_)
                 | Self::NotSeparable
+                | Self::Pulses
                 | Self::NoFix
                 | Self::DeadChannel
                 | Self::Station(_)

@@ -3,6 +3,7 @@
 use crate::model::{Cause, Change, Run, Withdrawn, position};
 use mission::{Channels, Event, EventKind, Passage, Severity};
 use planner_api::PoseEstimate;
+use positioning::Integrity;
 use world::Pose;
 
 impl Run {
@@ -33,6 +34,18 @@ impl Run {
             EventKind::ProtectionRegained { .. } => self.clear(&Cause::NotProtected),
             EventKind::SessionCalibrated { scale } => self.position.scale = Some(*scale),
             EventKind::ClocksEstimated { offsets } => self.position.clocks.clone_from(offsets),
+            EventKind::PulsesTested { phase, test } => {
+                self.position.pulses = Some(Ok((*phase, test.clone())));
+                if test.integrity == Integrity::Alarm {
+                    self.raise_as_logged(event, Cause::Pulses);
+                } else {
+                    self.clear(&Cause::Pulses);
+                }
+            }
+            EventKind::PulsesFailed { why, .. } => {
+                self.position.pulses = Some(Err(why.to_string()));
+                self.raise_as_logged(event, Cause::Pulses);
+            }
             EventKind::StationBiased { station, .. } => self.raise_as_logged(event, Cause::Bias(*station)),
             EventKind::StationUnbiased { station } => self.clear(&Cause::Bias(*station)),
             EventKind::NotSeparable { .. } => self.raise_as_logged(event, Cause::NotSeparable),

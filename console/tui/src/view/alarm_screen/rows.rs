@@ -131,7 +131,7 @@ fn double(look: &Look, alarm: &Alarm, room: usize) -> Vec<Parts> {
     let name = room.saturating_sub(5 + text::width(&state) + 1);
     let first = vec![
         (role(alarm), format!("{} ", sign(alarm))),
-        (Role::Text, text::column(&text::wording(what(look, alarm), name), name + 1)),
+        (Role::Text, text::column(&text::fit(&short_name(look, alarm), name), name + 1)),
         (Role::Text, state),
     ];
     let times = if alarm.count > 1 { format!(" {}×", alarm.count) } else { String::new() };
@@ -143,7 +143,14 @@ fn double(look: &Look, alarm: &Alarm, room: usize) -> Vec<Parts> {
     let limit = limit(alarm);
     let limit = if limit.is_empty() { limit } else { format!(", limit {limit}") };
     let figures = format!("   T+{}{times}{now}{limit}", text::clock(alarm.since_s));
-    vec![first, vec![(Role::Dim, text::clauses(&figures, room.saturating_sub(1)))]]
+    let room = room.saturating_sub(1);
+    let mut rows = vec![first, vec![(Role::Dim, text::clauses(&figures, room))]];
+    if let State::Shelved(shelf) = &alarm.state {
+        let words = format!("shelved until T+{}: {}", text::clock(shelf.until_s), shelf.reason);
+        let lines = text::wrap(&words, room.saturating_sub(3)).into_iter();
+        rows.extend(lines.map(|line| vec![(Role::Dim, format!("   {line}"))]));
+    }
+    rows
 }
 
 /// The role of the severity of an alarm.
@@ -217,6 +224,12 @@ fn acknowledged(alarm: &Alarm) -> String {
         Some(by) => format!("ACTIVE, ack {by}"),
         None => "ACTIVE, ack".to_owned(),
     }
+}
+
+/// The name of an alarm; that of a shelved one without the reason, which has its own line.
+fn short_name(look: &Look, alarm: &Alarm) -> String {
+    let [long, short] = what(look, alarm);
+    if matches!(alarm.state, State::Shelved(_)) { short } else { long }
 }
 
 /// The name of an alarm, once with the reason why the alarm is shelved or with the time that it lasted, and once without

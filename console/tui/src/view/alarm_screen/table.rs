@@ -2,9 +2,9 @@
 
 use super::rows::{self, Form};
 use crate::actions::ActionId;
-use crate::model::Alarm;
 use crate::model::alarms::State;
 use crate::model::ui::Arrangement;
+use crate::model::{Alarm, Pane};
 use crate::theme::Role;
 use crate::update::{Rows, offered};
 use crate::view::look::{Look, fill};
@@ -26,9 +26,9 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     let table = look.run.alarms.table();
     let selected = table.iter().position(|alarm| chosen == Some(&alarm.cause)).unwrap_or(0);
     let line = places.get(selected).copied().unwrap_or(0);
-    // The second line of a row must not be cut off.
+    // The other lines of a row must not be cut off.
     let last = places.get(selected + 1).map_or(lines.len(), |next| *next).saturating_sub(1).max(line);
-    let shown = table::window(last.min(line + 1), lines.len(), height);
+    let shown = table::window(last.min(line + height.saturating_sub(1)), lines.len(), height);
     let visible: Vec<usize> = (0..places.len()).filter(|index| shown.contains(&places[*index])).collect();
     for index in &visible {
         let row = Rect { y: inner.y + (places[*index] - shown.start) as u16, height: 1, ..inner };
@@ -36,7 +36,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     }
     let range = visible.first().map_or(0..0, |first| *first..first + visible.len());
     let title = title(&table, &range);
-    let block = look.block(Role::Focus, &title, &note(look, arrangement));
+    let block = look.pane(Pane::List, &title, &note(look, arrangement));
     let lines = lines.into_iter().enumerate().filter(|(index, _)| shown.contains(index));
     fill(frame, area, block, lines.map(|(_, line)| line).collect());
 }

@@ -6,10 +6,10 @@ use crate::view::fields::Field;
 use crate::view::text;
 use mission::{
     EventKind, PlannerChoice, PlannerInfo, Resumes,
-    event::{Effort, PlanDropped, PlanMade, PlanTaken, TetherAlarm},
+    event::{Effort, PlanDropped, PlanMade, PlanTaken, PulsePhase, TetherAlarm},
 };
 use planner_api::Reason;
-use positioning::{Exclusion, FixError, Ranging};
+use positioning::{Exclusion, FixError, PulseTest, Ranging};
 use vehicle::port::LinkSeen;
 use world::{Obstacle, Shape, StationId, tether::Certificate};
 
@@ -31,6 +31,8 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::StationBiased { .. } => "station biased",
         EventKind::StationUnbiased { .. } => "station without bias",
         EventKind::NotSeparable { .. } => "bias not separable",
+        EventKind::PulsesTested { .. } => "pulse test",
+        EventKind::PulsesFailed { .. } => "pulse test failed",
         EventKind::Separable => "bias separable again",
         EventKind::RangesInconsistent { .. } => "ranges contradict each other",
         EventKind::RangesConsistent => "ranges agree again",
@@ -132,10 +134,14 @@ fn of_event(run: &Run, event: &Occurrence) -> Vec<Field> {
         EventKind::StationBiased { station, bias_m, since_s, is_corrected } => vec![
             ("station", station_text(run, *station)),
             ("bias", format!("{:+.2} m, σ {:.2} m", bias_m.value, bias_m.sigma)),
-            ("in doubt", format!("floor scanned since {since_s:.0} s")),
+            ("in doubt", format!("floor scanned since T+{}", text::clock(*since_s))),
             ("ranges", if *is_corrected { "corrected" } else { "not used" }.to_owned()),
         ],
         EventKind::StationUnbiased { station } => vec![("station", station_text(run, *station))],
+        EventKind::PulsesTested { phase, test } => pulse_facts(run, *phase, test),
+        EventKind::PulsesFailed { phase, why } => {
+            vec![("when", phase.words().to_owned()), ("reason", why.to_string())]
+        }
         EventKind::NotSeparable { correlation } => vec![("correlation", text::number(*correlation, 2))],
         EventKind::RangesInconsistent { chi2, degrees_of_freedom } => {
             let limit = positioning::alarm_limit((*degrees_of_freedom).max(1));
@@ -332,6 +338,20 @@ fn obstacle_facts(obstacle: &Obstacle) -> Vec<Field> {
         ("form", form),
         ("drawing", "not on the drawing".into()),
     ]
+}
+
+fn pulse_facts(run: &Run, phase: PulsePhase, test: &PulseTest) -> Vec<(&'static str, String)> {
+    let scale = &test.scale;
+    let share = format!("{:+.2} %, σ {:.2} %", 100.0 * scale.value, 100.0 * scale.sigma);
+    let mut facts =
+        vec![("when", phase.words().to_owned()), ("pulses", test.pulses.to_string()), ("ranges", share)];
+    let offset = |(id, offset): &(StationId, positioning::Estimated)| {
+        let name = station_text(run, *id);
+        ("clock", format!("{name} {:+.2} m, σ {:.2} m", offset.value, offset.sigma))
+    };
+    facts.extend(test.offsets_m.iter().map(offset));
+    facts.extend(test.suspect.map(|id| ("contradicts", station_text(run, id))));
+    facts
 }
 
 fn resumed(resumes: Resumes) -> String {

@@ -40,7 +40,8 @@ impl Pane<'_> {
         let (columns, height) =
             (usize::from(inner.width), usize::from(inner.height.saturating_sub(heads + below)));
         let shown = table::window(self.selected.unwrap_or(0), self.rows.len(), height);
-        let title = format!("{}  {}", self.title, table::counted(&shown, self.rows.len()));
+        let key = super::key(look, self.list);
+        let title = format!("{key}{}  {}", self.title, table::counted(&shown, self.rows.len()));
         let block = look.block(self.border, &title, &self.note);
         let place = Rect { y: inner.y + heads, height: height as u16, ..inner };
         table::place(look, place, self.list, shown.clone());

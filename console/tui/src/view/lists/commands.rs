@@ -128,10 +128,16 @@ fn command_row(look: &Look, action: &Action, columns: u16) -> Row {
     let risk = if now { action.risk.word() } else { "-" };
     vec![
         (Role::Key, text::column(action.name, name)),
-        (role, text::column(&look.keys(action.about), about)),
+        (role, text::column(&about_of(look, action), about)),
         (Role::Key, text::column(&look.model.console.keys.text(action), KEYS)),
         (role, risk.into()),
     ]
+}
+
+/// What an action does; for Enter, on the screen that is shown.
+fn about_of(look: &Look, action: &Action) -> String {
+    let opens = (look.model.ui.screen.row().opens)(look.model).filter(|_| action.id == ActionId::Accept);
+    opens.map_or_else(|| look.keys(action.about), |word| format!("Open the selected line: {word}"))
 }
 
 /// The reason why the selected command is not possible now.
@@ -203,7 +209,7 @@ fn rules(keys: &Keymap, columns: usize) -> Vec<Row> {
         lists.as_str(),
         "HOLD never asks first; commands marked MOVES or ENDS do.",
         "In text fields, space types a space; <interrupt>: HOLD.",
-        "Alarms: C crit, W warn, w watch, * not acknowledged.",
+        "Alarms: unack: not acknowledged.",
     ]
     .into_iter()
     .take(few)

@@ -4,12 +4,13 @@
 use super::course::{self, Track};
 use super::ink::{self, Ink};
 use super::shapes::Window;
+use super::survey;
 use super::thin::{Thin, Thinning};
 use crate::caps::Glyphs;
 use crate::model::{Overlay, Screen, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
-use crate::view::text;
+use crate::view::{missed, text};
 use account::Estimate;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -56,6 +57,7 @@ pub(super) fn draw(look: &Look, window: Window, area: Rect, buffer: &mut Buffer)
     board.wound();
     board.stations();
     board.missed();
+    board.frontiers();
     board.targets();
     board.lanes();
 }
@@ -96,7 +98,11 @@ impl Board<'_, '_> {
 
     fn solids(&mut self) {
         let look = self.look;
-        for obstacle in look.run.about.iter().flat_map(|about| &about.world.obstacles) {
+        for (index, column) in survey::shown(&look).iter().flat_map(|survey| &survey.columns).enumerate() {
+            self.if_free(column.center, Role::Found, &(index + 1).to_string(), 0);
+        }
+        let obstacles = look.run.about.iter().flat_map(|about| &about.world.obstacles);
+        for obstacle in obstacles.filter(|obstacle| !survey::is_mapped(&look, obstacle)) {
             let (role, mark) = if obstacle.known { (Role::Obstacle, "#") } else { (Role::Found, "?") };
             let center = obstacle.shape.center();
             let named = format!("{mark}{}", obstacle.name);
@@ -152,9 +158,15 @@ impl Board<'_, '_> {
         if ui.screen == Screen::Result {
             let most = if ui.map.zoom > 0 { MISSED.1 } else { MISSED.0 };
             for (index, area) in model.live.missed().iter().enumerate().take(most) {
-                let role = if index == ui.missed { Role::Selected } else { Role::Missed };
+                let role = if index == ui.missed { Role::Selected } else { missed::role(area) };
                 self.always(area.at, role, &(index + 1).to_string());
             }
+        }
+    }
+
+    fn frontiers(&mut self) {
+        for at in survey::frontiers(&self.look) {
+            self.if_free(*at, Role::Watch, survey::FRONTIER, 0);
         }
     }
 

@@ -3,7 +3,7 @@
 mod lines;
 mod marks;
 
-use super::shade::{self, Shade};
+use super::shade::{self, Shade, Shades};
 use super::shapes::Window;
 use crate::theme::Role;
 use crate::view::look::{Look, Parts};
@@ -18,9 +18,7 @@ const MARK: usize = 3;
 /// Columns kept free beside the wall: west of it, and east of it, where the names of stations end.
 const BESIDE: (f64, f64) = (1.0, 3.0);
 /// Rows of the map for each line of the legend below the floor.
-const ROWS_PER_LINE: u16 = 5;
-/// The entries on each side of the floor fill at most one row in this number of rows.
-const SHARE: u16 = 3;
+const ROWS_PER_LINE: u16 = 4;
 /// Blanks between entries in a line.
 const GAP: &str = "  ";
 
@@ -42,45 +40,47 @@ impl Entry {
     }
 }
 
-/// The places of the entries beside the floor (column, row and index), and the entries that have no place there.
+/// The place of the legend: beside the floor, with the column, the row and the entry, or in lines below it.
 pub(super) struct Placed {
     beside: Vec<(u16, u16, Entry)>,
-    /// The entries that do not fit beside the floor.
-    pub left_over: Vec<Entry>,
+    /// The entries that are written below the floor: all of them, or none.
+    pub below: Vec<Entry>,
 }
 
 impl Placed {
-    /// Places the classes of floor in the west and the marks in the east, from the north, where the map is blank.
-    pub(super) fn new(look: &Look, window: Window, (floor, marks): &(Vec<Entry>, Vec<Entry>)) -> Self {
+    /// Places all entries in one column in the west, where the map is blank, or else in the east. If they fit on neither
+    /// side, all of them are written below the floor.
+    pub(super) fn new(look: &Look, window: Window, entries: Vec<Entry>) -> Self {
         let blanks: Vec<(u16, u16)> = look.run.about.as_ref().map_or_else(Vec::new, |about| {
             (0..window.size.1).map(|row| blank(&about.world.boundary, window, row)).collect()
         });
-        let (mut next, mut free) = ([0, 0], [usize::from(window.size.1 / SHARE); 2]);
-        let (mut beside, mut left_over) = (Vec::new(), Vec::new());
-        let wanted = floor.iter().map(|entry| (0, entry)).chain(marks.iter().map(|entry| (1, entry)));
-        for (side, entry) in wanted {
-            let room =
-                |side: usize, row: usize| usize::from(if side == 0 { blanks[row].0 } else { blanks[row].1 });
-            let place = [side, 1 - side].into_iter().filter(|side| free[*side] > 0).find_map(|side| {
-                let row = (next[side]..blanks.len()).find(|row| room(side, *row) >= entry.width())?;
-                Some((side, row))
-            });
-            let Some((side, row)) = place else {
-                left_over.push(entry.clone());
-                continue;
-            };
-            (next[side], free[side]) = (row + 1, free[side] - 1);
-            let column = if side == 0 { 0 } else { window.size.0 - entry.width() as u16 };
-            beside.push((column, row as u16, entry.clone()));
+        let width = entries.iter().map(Entry::width).max().unwrap_or(0) as u16;
+        let west: Vec<u16> = blanks.iter().map(|(west, _)| *west).collect();
+        let east: Vec<u16> = blanks.iter().map(|(_, east)| *east).collect();
+        let sides = [(west, 0), (east, window.size.0.saturating_sub(width))];
+        for (room, column) in sides {
+            if let Some(rows) = rows_for(&entries, &room) {
+                let placed = rows.into_iter().zip(entries);
+                return Self {
+                    beside: placed.map(|(row, entry)| (column, row, entry)).collect(),
+                    below: Vec::new(),
+                };
+            }
         }
-        // The marks in the east begin in the same column.
-        let east = beside.iter().filter(|(column, ..)| *column > 0).map(|(column, ..)| *column).min();
-        for (column, row, entry) in beside.iter_mut().filter(|(column, ..)| *column > 0) {
-            let first = window.size.0 - blanks[usize::from(*row)].1;
-            *column = east.unwrap_or(*column).max(first).min(window.size.0 - entry.width() as u16);
-        }
-        Self { beside, left_over }
+        Self { beside: Vec::new(), below: entries }
     }
+}
+
+/// The rows for the entries in a column, given the blank columns of each row; `None` if they do not all fit.
+fn rows_for(entries: &[Entry], room: &[u16]) -> Option<Vec<u16>> {
+    let width = entries.iter().map(Entry::width).max().unwrap_or(0);
+    // The column is not torn apart: it is in the first rows that follow each other.
+    let fits = |first: &usize| {
+        let rows = room.get(*first..first + entries.len());
+        rows.is_some_and(|rows| rows.iter().all(|room| usize::from(*room) >= width))
+    };
+    let first = (0..room.len()).find(fits)?;
+    Some((first..first + entries.len()).map(|row| row as u16).collect())
 }
 
 /// The columns west and east of the wall in which a row of the map is blank.
@@ -102,9 +102,9 @@ fn blank(boundary: &Boundary, window: Window, row: u16) -> (u16, u16) {
     (columns(west - window.x[0], BESIDE.0), columns(window.x[1] - east, BESIDE.1))
 }
 
-/// The number of lines below the floor for entries that do not fit beside it.
-pub(super) fn rows(left_over: &[Entry], area: Rect) -> u16 {
-    (lines(left_over, usize::from(area.width)).len() as u16).min(area.height / ROWS_PER_LINE)
+/// The number of lines below the floor for entries.
+pub(super) fn rows(below: &[Entry], area: Rect) -> u16 {
+    (lines(below, usize::from(area.width)).len() as u16).min(area.height / ROWS_PER_LINE)
 }
 
 /// The entries that fit in a number of lines below the floor; if not all of them fit, the last one names the key that
@@ -125,8 +125,12 @@ pub(super) fn fitting(look: &Look, left_over: &[Entry], (rows, columns): (u16, u
 
 /// The whole legend, in lines of a given width.
 pub(super) fn in_lines(look: &Look, window: Window, columns: usize) -> Vec<Parts> {
-    let (floor, marks) = entries(look, window);
-    let entries: Vec<Entry> = floor.into_iter().chain(marks).collect();
+    lines(&entries(look, window), columns).into_iter().map(line_parts).collect()
+}
+
+/// The legend of shades, in lines of a given width.
+pub(in crate::view) fn of_floor(shades: Shades, columns: usize) -> Vec<Parts> {
+    let entries: Vec<Entry> = shade::occurring(shades).map(of_shade).collect();
     lines(&entries, columns).into_iter().map(line_parts).collect()
 }
 
@@ -167,20 +171,19 @@ pub(super) fn draw_lines(look: &Look, frame: &mut Frame, area: Rect, left_over: 
     }
 }
 
-/// The entries for what the map shows now, the most important first: the classes of floor; and lines and marks.
-pub(super) fn entries(look: &Look, window: Window) -> (Vec<Entry>, Vec<Entry>) {
-    let entry = |(shade, word): (Shade, &'static str)| Entry {
-        role: shade.role(),
-        mark: shade_mark(shade),
-        word: word.into(),
-    };
-    let floor = shade::shown(look, window).map(entry).collect();
+/// The entries for what the map shows now, the most important first: the classes of floor, then lines and marks.
+pub(super) fn entries(look: &Look, window: Window) -> Vec<Entry> {
+    let floor = shade::shown(look, window).map(of_shade);
     let lines = lines::shown(look, window).into_iter();
     let marks = marks::places(look, window)
         .into_iter()
         .chain(marks::shown(look, window))
         .chain(lines::drawings(look, window));
-    (floor, lines.chain(marks).collect())
+    floor.chain(lines).chain(marks).collect()
+}
+
+fn of_shade((shade, word): (Shade, &'static str)) -> Entry {
+    Entry { role: shade.role(), mark: shade_mark(shade), word: word.into() }
 }
 
 fn shade_mark(shade: Shade) -> String {

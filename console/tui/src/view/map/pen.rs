@@ -135,7 +135,7 @@ pub(super) fn within(path: &[Point], length_m: f64) -> &[Point] {
 }
 
 /// The index of the path point nearest to a place; 0 if the path is empty.
-pub(super) fn nearest(path: &[Point], place: Point) -> usize {
+pub(in crate::view) fn nearest(path: &[Point], place: Point) -> usize {
     let distance = |point: &Point| (point - place).norm_squared();
     let best = path.iter().enumerate().min_by(|one, other| distance(one.1).total_cmp(&distance(other.1)));
     best.map_or(0, |(index, _)| index)

@@ -1,6 +1,6 @@
 //! The lines at the bottom of the map: the robot's position, and details about the place under the cursor.
 
-use super::plates;
+use super::{plates, shade, survey};
 use crate::model::ui::Ui;
 use crate::theme::Role;
 use crate::view::look::Look;
@@ -35,17 +35,24 @@ pub(super) fn cursor(look: &Look, ui: &Ui, width: u16) -> Option<(Role, String)>
 
 /// The floor there: its plate, its class, and the expected error of a fix.
 pub(super) fn floor(look: &Look, at: Point) -> String {
+    if let Some(survey) = survey::shown(look) {
+        return format!("{}  {}", survey.word_at(at), fix_error(look, at));
+    }
     let raster = look.model.live.scanned();
     let class = raster.and_then(|raster| raster.class_at(at, look.run.has_missed()));
     let Some((class, times)) = class else { return "no floor".into() };
     let plate = plates::name_at(look, at).map_or_else(String::new, |name| format!("{name}  "));
+    format!("{plate}{}  {}", word(look, at, (class, times)), fix_error(look, at))
+}
+
+/// The forecast error of a fix.
+fn fix_error(look: &Look, at: Point) -> String {
     let forecast = look.run.accuracy.as_ref().and_then(|map| map.at(at));
-    let error = match forecast.map(|forecast| forecast.error_95_m) {
+    match forecast.map(|forecast| forecast.error_95_m) {
         Some(Some(error_m)) => format!("AE ±{} m{}", text::number(error_m, 2), level(look, at)),
         Some(None) => "AE no fix".into(),
         None => "AE -".into(),
-    };
-    format!("{plate}{}  {error}", word(look, at, (class, times)))
+    }
 }
 
 /// The forecast protection level of a fix, if the scenario states a risk.
@@ -70,9 +77,10 @@ fn word(look: &Look, at: Point, (class, times): (FloorClass, u32)) -> String {
             Some(area) => format!("left out: {}", briefest(area)),
             None => "to do".into(),
         },
-        FloorClass::Missed => match live.missed_area(at) {
-            Some(area) => format!("missed: {}", briefest(area)),
-            None => "missed".into(),
+        FloorClass::Missed => match (shade::why_left(look, at), live.missed_area(at)) {
+            (Some(why), _) => why.into(),
+            (None, Some(area)) => format!("missed: {}", briefest(area)),
+            (None, None) => "missed".into(),
         },
         FloorClass::Scanned => "scanned".into(),
         FloorClass::Again => format!("scanned ×{times}"),

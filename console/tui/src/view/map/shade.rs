@@ -1,7 +1,8 @@
 //! The floor layer at the bottom of the map: scanned and unscanned floor, each with its own character and colour.
 
 use super::shapes::Window;
-use crate::model::{Raster, replay::Scans, ui::MapLayer};
+use super::survey;
+use crate::model::{Raster, Run, Together, replay::Scans, survey::Survey, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
 use ratatui::buffer::Buffer;
@@ -17,6 +18,8 @@ pub(crate) enum Shade {
     Floor(FloorClass),
     /// Floor to which the rest of the plan led when the mission ended.
     NotReached,
+    /// Floor that the mission did not have to scan, and did not scan.
+    NotRequested,
     /// Scanned by a run before this re-scan, and not by the re-scan.
     Before,
     /// Forecast: the error of a fix exceeds the limit here, or no fix is possible.
@@ -33,6 +36,10 @@ pub(crate) enum Shade {
     OnlyB,
     /// Scanned by both runs.
     Both,
+    /// In a survey: floor that no scan has shown.
+    NotSeen,
+    /// In a survey: an object that is not a column.
+    Object,
 }
 
 impl Shade {
@@ -52,7 +59,8 @@ impl Shade {
             Self::Floor(FloorClass::Unreachable) => ('/', Role::Unreachable),
             Self::Floor(FloorClass::Margin) => ('-', Role::Margin),
             Self::Floor(FloorClass::Untestable) => ('[', Role::Untestable),
-            Self::NotReached => ('∙', Role::Dim),
+            Self::NotReached => ('◦', Role::Dim),
+            Self::NotRequested => ('⋅', Role::Dim),
             Self::Before => ('+', Role::Dim),
             Self::PoorFix => ('$', Role::Crit),
             Self::WeakFix => ('_', Role::Warn),
@@ -60,6 +68,8 @@ impl Shade {
             Self::HighLevel => ('(', Role::Warn),
             Self::OnlyA => ('A', Role::Good),
             Self::OnlyB => ('B', Role::Ghost),
+            Self::NotSeen => ('\\', Role::Unreachable),
+            Self::Object => ('#', Role::Found),
         }
     }
 
@@ -73,26 +83,66 @@ impl Shade {
         self.look().1
     }
 
-    /// This shade at a point, where missed floor counts as not reached if the rest of the plan led there.
-    fn when(self, not_reached: &[bool], raster: &Raster, at: Point) -> Self {
-        let is_ahead =
-            || raster.floor().cell_at(at).and_then(|cell| not_reached.get(cell)).is_some_and(|is| *is);
-        if self == Self::Floor(FloorClass::Missed) && is_ahead() { Self::NotReached } else { self }
-    }
-
     /// Whether this run has left the floor unscanned although it could have been scanned.
     fn is_unscanned(self) -> bool {
-        matches!(self, Self::NotReached | Self::Floor(FloorClass::Missed))
+        matches!(self, Self::NotReached | Self::NotRequested | Self::Floor(FloorClass::Missed))
     }
 
     /// Whether a character is drawn instead of a filled half of a cell.
     fn is_drawn(self) -> bool {
-        matches!(self, Self::NotReached | Self::Before)
+        matches!(self, Self::NotReached | Self::NotRequested | Self::Before)
     }
 
     /// The role for the background on which lines are drawn.
     fn ground(self) -> Option<Role> {
-        matches!(self, Self::Floor(FloorClass::Scanned | FloorClass::Again)).then_some(Role::Scanned)
+        matches!(self, Self::Floor(FloorClass::Scanned | FloorClass::Again)).then_some(Role::Ground)
+    }
+}
+
+/// The floor of a run, and why parts of it were left unscanned.
+struct Ground<'a> {
+    raster: &'a Raster,
+    has_missed: bool,
+    not_reached: Vec<bool>,
+    not_requested: Vec<bool>,
+}
+
+impl<'a> Ground<'a> {
+    /// The floor of a run or, for a re-scan, the floor of all runs together.
+    fn new(raster: &'a Raster, run: &Run, together: Option<&Together>) -> Self {
+        // Only floor that was missed is divided by reason.
+        let has_missed = run.has_missed();
+        let not_requested = || together.map_or_else(|| run.not_requested(), Together::not_requested);
+        let if_missed = |cells: &dyn Fn() -> Vec<bool>| if has_missed { cells() } else { Vec::new() };
+        Self {
+            raster,
+            has_missed,
+            not_reached: if_missed(&|| run.not_reached()),
+            not_requested: if_missed(&not_requested),
+        }
+    }
+
+    /// The shade of the floor in a square around a point. Floor that was missed is divided: the mission did not have to
+    /// scan it, or the rest of the plan led there.
+    fn shade(&self, at: Point, edge_m: f64) -> Option<Shade> {
+        let shade = Shade::of(self.raster.class_in(at, edge_m, self.has_missed)?)?;
+        let cell = self.raster.floor().cell_at(at);
+        let is_in = |cells: &[bool]| cell.and_then(|cell| cells.get(cell)).is_some_and(|is| *is);
+        Some(match shade {
+            Shade::Floor(FloorClass::Missed) if is_in(&self.not_requested) => Shade::NotRequested,
+            Shade::Floor(FloorClass::Missed) if is_in(&self.not_reached) => Shade::NotReached,
+            shade => shade,
+        })
+    }
+}
+
+/// Why the floor at a place was left unscanned by the open run, in words; `None` if it was missed.
+pub(super) fn why_left(look: &Look, at: Point) -> Option<&'static str> {
+    let together = look.model.live.together();
+    match Ground::new(look.model.live.scanned()?, look.run, together).shade(at, 0.0)? {
+        Shade::NotRequested => Some("not requested"),
+        Shade::NotReached => Some("not reached: mission ended"),
+        _ => None,
     }
 }
 
@@ -135,16 +185,27 @@ pub(crate) struct Key {
     other: Option<u64>,
     before: Option<u64>,
     forecast: Option<(MapLayer, u64)>,
+    survey: Option<u64>,
     window: Window,
     /// Shade rows per character row.
     rows_per_row: u16,
-    has_missed: bool,
+    /// The last tick and the length of the plan in points, once the run has missed floor: they tell runs apart that
+    /// scanned the same cells.
+    ended: Option<(u64, usize)>,
+}
+
+impl Key {
+    fn ended(run: &Run) -> Option<(u64, usize)> {
+        let plan = run.planning.plan.as_ref();
+        run.has_missed().then(|| (run.clock.tick, plan.map_or(0, |plan| plan.path.len())))
+    }
 }
 
 /// The shades in the order of the legend, the most important first, each with its legend text.
-pub(super) const LEGEND: [(Shade, &str); 16] = [
+pub(super) const LEGEND: [(Shade, &str); 19] = [
     (Shade::Floor(FloorClass::Missed), "missed"),
     (Shade::NotReached, "not reached"),
+    (Shade::NotRequested, "not requested"),
     (Shade::PoorFix, "poor fix"),
     (Shade::WeakFix, "weak fix"),
     (Shade::NotProtected, "not protected"),
@@ -159,18 +220,33 @@ pub(super) const LEGEND: [(Shade, &str); 16] = [
     (Shade::OnlyA, "only A"),
     (Shade::OnlyB, "only B"),
     (Shade::Both, "both"),
+    (Shade::NotSeen, "not seen"),
+    (Shade::Object, "object"),
 ];
 
 /// The shades that are on the map now, with their legend texts.
 pub(super) fn shown(look: &Look, window: Window) -> impl Iterator<Item = (Shade, &'static str)> {
-    let shades = shades(look, window, if look.is_plain() { 1 } else { 2 });
+    occurring(shades(look, window, rows_per_row(look)))
+}
+
+/// The shades that occur, with their legend texts.
+pub(super) fn occurring(shades: Shades) -> impl Iterator<Item = (Shade, &'static str)> {
     LEGEND.into_iter().enumerate().filter(move |(line, _)| shades.occurs[*line]).map(|(_, entry)| entry)
+}
+
+/// The number of shades in the height of a character: halves need colours.
+fn rows_per_row(look: &Look) -> u16 {
+    if look.is_plain() { 1 } else { 2 }
 }
 
 /// Paints the floor where nothing else is drawn, and the background under lines.
 pub(super) fn paint(look: &Look, window: Window, area: Rect, buffer: &mut Buffer) {
+    lay(look, &shades(look, window, rows_per_row(look)), area, buffer);
+}
+
+/// Paints shades where nothing else is drawn, and the background under lines.
+pub(in crate::view) fn lay(look: &Look, shades: &Painted, area: Rect, buffer: &mut Buffer) {
     let halves = !look.is_plain();
-    let shades = shades(look, window, if halves { 2 } else { 1 });
     let columns = usize::from(area.width);
     for (row, y) in (area.top()..area.bottom()).enumerate() {
         for (column, x) in (area.left()..area.right()).enumerate() {
@@ -220,47 +296,85 @@ fn paint_cell(look: &Look, upper: Option<Shade>, lower: Option<Shade>, cell: &mu
 /// between frames.
 fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
     let (run, layers) = (look.run, look.model.ui.layers);
-    let raster = look.model.live.scanned().filter(|_| layers.shows(MapLayer::Scanned));
+    let survey = survey::shown(look);
+    // A survey scans no floor for its instrument.
+    let is_scanning = !run.is_survey() && layers.shows(MapLayer::Scanned);
+    let raster = look.model.live.scanned().filter(|_| is_scanning || survey.is_some());
     let forecasts = [MapLayer::Accuracy, MapLayer::Protection];
     let shown = forecasts.into_iter().find(|layer| layers.shows(*layer));
     // The combined map shows what all runs have scanned.
     let before = look.model.live.scanned_before.as_ref().filter(|_| look.model.live.together().is_none());
     let before = before.map(|before| &before.raster);
-    let (other, has_missed) = (compared(look).filter(|_| shown.is_none()), run.has_missed());
+    let other = compared(look).filter(|_| shown.is_none());
     let key = Key {
         raster: raster.map(Raster::stamp),
         other: other.map(Raster::stamp),
         before: before.map(Raster::stamp),
         forecast: shown.map(|layer| (layer, run.accuracy_stamp)),
+        survey: survey.map(Survey::stamp),
         window,
         rows_per_row,
-        has_missed,
+        ended: Key::ended(run),
     };
     look.cache.borrow_mut().shades(key, || {
         let dots = window.dots(rows_per_row);
+        let ground = raster.map(|raster| Ground::new(raster, run, look.model.live.together()));
+        let floor = |ground: &Ground<'_>, at, edge_m| match survey {
+            Some(survey) => survey::shade(survey, at, edge_m).filter(|_| is_floor(ground.raster, at, edge_m)),
+            None => ground.shade(at, edge_m),
+        };
         if let Some(layer) = shown {
-            let shade =
-                |(at, edge_m)| forecast(look, layer, at).or_else(|| floor(raster?, at, edge_m, has_missed));
+            let own = |at, edge_m| ground.as_ref().and_then(|ground| floor(ground, at, edge_m));
+            let shade = |(at, edge_m)| forecast(look, layer, at).or_else(|| own(at, edge_m));
             return Rc::new(dots.map(shade).collect());
         }
-        let Some(raster) = raster else { return Rc::new(Painted::from_iter([])) };
-        let not_reached = run.not_reached();
-        let own = |at, edge_m| {
-            floor(raster, at, edge_m, has_missed).map(|shade| shade.when(&not_reached, raster, at))
-        };
+        let Some(ground) = &ground else { return Rc::new(Painted::from_iter([])) };
+        let raster = ground.raster;
         let shade = |(at, edge_m)| {
             if let Some(other) = other {
                 return Scans::in_square(raster, other, at, edge_m).and_then(difference);
             }
-            let own = own(at, edge_m);
+            let own = floor(ground, at, edge_m);
             let before = before.filter(|_| own.is_none_or(Shade::is_unscanned));
             before.and_then(|before| scanned_before(before, at, edge_m)).or(own)
         };
-        // Half a character that is partly beyond the wall stays blank; a whole character there belongs to the wall.
-        let is_inside = |at, edge_m| rows_per_row == 1 || is_floor(raster, at, edge_m);
-        let shade = |(at, edge_m)| shade((at, edge_m)).filter(|_| is_inside(at, edge_m));
-        Rc::new(dots.map(shade).collect())
+        let is_inside = |at, edge_m| is_inside(raster, rows_per_row, (at, edge_m));
+        Rc::new(dots.map(|dot| shade(dot).filter(|_| is_inside(dot.0, dot.1))).collect())
     })
+}
+
+/// The shades of the floor of a run that need not be the open one, without forecasts and comparisons; `together` is the
+/// scan of all runs of a re-scan.
+pub(in crate::view) fn of_run(
+    look: &Look,
+    (run, together): (&Run, Option<&Together>),
+    window: Window,
+) -> Option<Shades> {
+    let raster = together.and_then(|all| all.raster.as_ref()).or(run.coverage.as_ref())?;
+    let rows_per_row = rows_per_row(look);
+    let key = Key {
+        raster: Some(raster.stamp()),
+        other: None,
+        before: None,
+        forecast: None,
+        survey: None,
+        window,
+        rows_per_row,
+        ended: Key::ended(run),
+    };
+    let make = || {
+        let ground = Ground::new(raster, run, together);
+        let shade =
+            |(at, edge_m)| ground.shade(at, edge_m).filter(|_| is_inside(raster, rows_per_row, (at, edge_m)));
+        Rc::new(window.dots(rows_per_row).map(shade).collect())
+    };
+    Some(look.cache.borrow_mut().shades(key, make))
+}
+
+/// Whether a dot is shaded: half a character that is partly beyond the wall stays blank; a whole character there belongs to
+/// the wall.
+fn is_inside(raster: &Raster, rows_per_row: u16, (at, edge_m): (Point, f64)) -> bool {
+    rows_per_row == 1 || is_floor(raster, at, edge_m)
 }
 
 /// The floor of the run with which the replay is compared, if the difference is shown.
@@ -287,10 +401,6 @@ fn difference(scans: Scans) -> Option<Shade> {
         Scans::OnlyB => Some(Shade::OnlyB),
         Scans::Both => Some(Shade::Both),
     }
-}
-
-fn floor(raster: &Raster, at: Point, edge_m: f64, has_missed: bool) -> Option<Shade> {
-    raster.class_in(at, edge_m, has_missed).and_then(Shade::of)
 }
 
 /// The shade of floor that a run before a re-scan has scanned.

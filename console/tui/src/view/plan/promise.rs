@@ -71,6 +71,24 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     along::draw(look, frame, below);
 }
 
+/// A figure with a limit, as it is now.
+pub(in crate::view) struct Watched {
+    pub label: &'static str,
+    pub now: String,
+    pub limit: String,
+}
+
+/// The figures that have a limit and a current value.
+pub(in crate::view) fn watched(run: &Run) -> Vec<Watched> {
+    let mission = run.about.as_ref().map(|about| &about.mission);
+    let of = |figure: Figure| {
+        let limit = figure.said((figure.limit)(mission?)?);
+        let [now, _] = (figure.now)(run)?;
+        Some(Watched { label: figure.label, now, limit })
+    };
+    FIGURES.into_iter().filter_map(of).collect()
+}
+
 /// The contents of the second column.
 enum Second<'a> {
     /// The current figures, once the mission has started.

@@ -8,8 +8,15 @@ use mission::Phase;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
+/// What takes the place of a plan in a survey.
+const SURVEY: &str = "A survey has no plan: it drives from frontier to frontier until the floor is explored.";
+
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
-    let keys = ["<planner> planner  <compare> compare", "<planner> <compare>"];
+    let keys = if look.run.is_survey() {
+        [""; 2]
+    } else {
+        ["<planner> planner  <compare> compare", "<planner> <compare>"]
+    };
     let keys = keys.map(|keys| look.keys(keys));
     let room = usize::from(area.width).saturating_sub(12);
     let block = look.pane(Pane::Plan, "Plan", &text::wording(keys, room));
@@ -38,7 +45,9 @@ fn about_plan(look: &Look, columns: usize) -> Vec<Parts> {
     let mut rows = wrapped(progress(look), columns);
     rows.extend(resumption(look).into_iter().flat_map(|words| wrapped((Role::Text, words), columns)));
     rows.extend(certificate(look, columns).map(one));
-    rows.push(one((Role::Text, text::wording(planner(look), columns))));
+    if !look.run.is_survey() {
+        rows.push(one((Role::Text, text::wording(planner(look), columns))));
+    }
     rows
 }
 
@@ -84,6 +93,7 @@ fn progress(look: &Look) -> (Role, String) {
             (Role::Watch, format!("{}{what}", busy.how_far()))
         }
         (None, Some(plan)) => ready(look, plan.complete),
+        (None, None) if look.run.is_survey() => (Role::Text, SURVEY.into()),
         (None, None) => (Role::Dim, "No plan.".into()),
     }
 }
@@ -116,6 +126,9 @@ fn resumption(look: &Look) -> Option<String> {
 
 fn certificate(look: &Look, columns: usize) -> Option<(Role, String)> {
     look.run.about.as_ref()?.mission.tether.as_ref()?;
+    if look.run.is_survey() {
+        return Some((Role::Text, "tether limits checked before each way".into()));
+    }
     let tether = look.run.tether.as_ref();
     Some(match tether.and_then(|tether| tether.certified) {
         Some(true) => {

@@ -42,7 +42,7 @@ pub(super) fn rows(model: &Model, result: &RunResult, columns: u16) -> u16 {
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
     let lines = lines(look.model, result, usize::from(area.width.saturating_sub(2)));
-    super::scrolled(look, frame, (Pane::Figures, area), (role(result), &title(result)), lines);
+    super::scrolled(look, frame, (Pane::Figures, area), (role(result), &title(look.model, result)), lines);
 }
 
 /// The reason for the end, unmet expectations, the figures, the errors against the true position, and the worst values;

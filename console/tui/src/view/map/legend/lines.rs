@@ -3,7 +3,7 @@
 use super::super::course::{self, Course};
 use super::super::ink::{self, Ink};
 use super::super::shapes::Window;
-use super::super::{drawn, labels, zone};
+use super::super::{drawn, labels, survey, zone};
 use super::{Entry, MARK};
 use crate::model::Screen;
 use crate::update::zones;
@@ -20,7 +20,9 @@ pub(super) type IsDrawn = fn(&Look, Option<&Course>) -> bool;
 pub(super) const LINES: [(Ink, &str, IsDrawn); 14] = [
     (ink::BLOCKED, "blocked", |look, _| !zone::blocked(look).is_empty()),
     (ink::OUTLINE, "new zone", |look, _| zones::drawn(look.model).is_some()),
-    (ink::LEG, "this leg", |_, course| course.is_some_and(|course| course.leg.0 < course.leg.1)),
+    (ink::LEG, "this leg", |look, course| {
+        !survey::way(look).is_empty() || course.is_some_and(|course| course.leg.0 < course.leg.1)
+    }),
     (ink::PLAN, "plan", |look, course| is_ahead(look, course, ink::PLAN)),
     (ink::AHEAD, "plan", |look, course| is_ahead(look, course, ink::AHEAD)),
     (ink::WAY, "way between", |look, course| {

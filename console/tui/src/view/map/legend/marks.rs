@@ -2,7 +2,7 @@
 
 use super::super::pattern::braille;
 use super::super::shapes::Window;
-use super::super::{course, labels, plates, scan};
+use super::super::{course, labels, plates, scan, survey};
 use super::{Entry, MARK};
 use crate::model::{Screen, ui::MapLayer};
 use crate::theme::Role;
@@ -24,8 +24,12 @@ pub(super) fn shown(look: &Look, window: Window) -> Vec<Entry> {
     let seen = |at: Point| window.cell_of(at).is_some();
     let [hatched, outline] = fixed(look.caps.glyphs.has_dots()).map(|(mark, _)| mark);
     let obstacle = |known: bool| {
-        about.world.obstacles.iter().any(|obstacle| obstacle.known == known && seen(obstacle.shape.center()))
+        let mut shown = about.world.obstacles.iter().filter(|obstacle| !survey::is_mapped(look, obstacle));
+        shown.any(|obstacle| obstacle.known == known && seen(obstacle.shape.center()))
     };
+    let columns =
+        survey::shown(look).filter(|survey| survey.columns.iter().any(|column| seen(column.center)));
+    let frontier = survey::frontiers(look).iter().any(|at| seen(*at));
     let no_go = about.world.zones.iter().any(|zone| zone.kind == ZoneKind::NoGo && seen(zone.shape.center()));
     let station = ui.layers.shows(MapLayer::Stations)
         && about.world.stations.iter().any(|station| seen(station.position));
@@ -34,6 +38,8 @@ pub(super) fn shown(look: &Look, window: Window) -> Vec<Entry> {
     let change_over = course::change_over(look).is_some_and(seen);
     let marks = [
         (no_go, Role::NoGo, hatched, "no-go zone"),
+        (frontier, Role::Watch, survey::FRONTIER.into(), "frontier"),
+        (columns.is_some(), Role::Found, columns.map_or_else(String::new, survey::numbers), "column"),
         (obstacle(false), Role::Found, "?".to_owned(), "found"),
         (obstacle(true), Role::Obstacle, "#".into(), "obstacle"),
         (target, Role::Target, "×".into(), "target"),

@@ -1,0 +1,175 @@
+//! Pulse tests of the stations during a mission, and the corrections that they give.
+
+use crate::{
+    config::Locating,
+    event::{EventKind, PulsePhase},
+};
+use positioning::{CommonError, Doubt, Integrity, Pulse, PulseSeries, PulseTest, RangeNoise, Timing};
+use world::{PulseSet, RangeSet, Station};
+
+/// The pulse tests so far.
+#[derive(Clone)]
+pub(super) struct PulseTests {
+    stations: Vec<Station>,
+    noise: RangeNoise,
+    timing: Timing,
+    /// Whether ranges are corrected by the last test. A calibration from the ranges of the robot takes precedence.
+    corrects: bool,
+    /// Whether the clocks of the stations are estimated: then a test only corrects the speed of sound.
+    has_clocks: bool,
+    has_ranged: bool,
+    /// The last test that agreed with the survey.
+    last: PulseSeries,
+}
+
+impl PulseTests {
+    /// Creates the tests of surveyed stations; `noise` is the scatter of single ranges.
+    pub(super) fn new(locating: &Locating, noise: RangeNoise, stations: &[Station]) -> Self {
+        Self {
+            stations: stations.to_vec(),
+            noise,
+            timing: locating.timing,
+            corrects: locating.session.is_none() && !locating.calibrate_sound_speed,
+            has_clocks: locating.clocks.is_some(),
+            has_ranged: false,
+            last: PulseSeries::default(),
+        }
+    }
+
+    /// Notes that ranges of the robot have come.
+    pub(super) fn note_ranges(&mut self) {
+        self.has_ranged = true;
+    }
+
+    /// Evaluates an exchange of pulses; returns its event, and the test if it agrees with the survey.
+    pub(super) fn take(&mut self, sets: &[PulseSet]) -> Option<(EventKind, Option<PulseTest>)> {
+        if sets.is_empty() {
+            return None;
+        }
+        let phase = if self.has_ranged { PulsePhase::Held } else { PulsePhase::Before };
+        let pulses: Vec<Pulse> = sets.iter().filter_map(|set| self.pulse(set)).collect();
+        let test = match PulseTest::new(&pulses, &self.stations) {
+            Ok(test) => test,
+            Err(why) => return Some((EventKind::PulsesFailed { phase, why }, None)),
+        };
+        let agrees = test.integrity != Integrity::Alarm;
+        if agrees && self.corrects {
+            self.last = PulseSeries { tests: vec![(0.0, self.to_correct(&test))] };
+        }
+        let agreeing = agrees.then(|| test.clone());
+        Some((EventKind::PulsesTested { phase, test }, agreeing))
+    }
+
+    /// The part of a test that corrects ranges.
+    fn to_correct(&self, test: &PulseTest) -> PulseTest {
+        let mut test = test.clone();
+        if self.has_clocks {
+            test.offsets_m.clear();
+        }
+        test
+    }
+
+    /// Removes the errors that the last test has measured from ranges.
+    pub(super) fn correct(&self, sets: &mut [RangeSet]) {
+        self.last.correct(0.0, sets);
+    }
+
+    /// The error that corrected ranges probably still have; `None` if they are not corrected.
+    pub(super) fn doubt(&self) -> Option<Doubt> {
+        let (_, test) = self.last.tests.last()?;
+        let errors = [CommonError::Share(test.scale.sigma), CommonError::default()];
+        Some(Doubt { likely_errors: errors, ..Doubt::default() })
+    }
+
+    /// The mean of repeated pulses; `None` without any.
+    fn pulse(&self, set: &PulseSet) -> Option<Pulse> {
+        let n = set.lengths_m.len() as f64;
+        let length_m = set.lengths_m.iter().sum::<f64>() / n;
+        let at = |id| self.stations.iter().find(|station| station.id == id).map(|station| station.position);
+        let distance_m = at(set.sender).zip(at(set.receiver)).map_or(0.0, |(from, to)| (from - to).norm());
+        let share_m = self.noise.sigma_ratio() * distance_m;
+        let sigma_m = (share_m / n.sqrt()).hypot(self.timing.mean_sigma_m(share_m, n));
+        (n > 0.0).then_some(Pulse { sender: set.sender, receiver: set.receiver, length_m, sigma_m })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use positioning::SessionConfig;
+    use world::{Point, StationId};
+
+    fn stations() -> Vec<Station> {
+        let places = [(10.0, 0.0), (0.0, 10.0), (-10.0, 0.0), (1.0, -10.0)];
+        (1..)
+            .zip(places)
+            .map(|(id, (x, y))| Station {
+                id: StationId(id),
+                name: String::new(),
+                position: Point::new(x, y),
+            })
+            .collect()
+    }
+
+    /// Pulses of stations whose clocks are late, metres, while the sound is 2 % slower than assumed.
+    fn exchange(late_m: [f64; 4]) -> Vec<PulseSet> {
+        let all = stations();
+        let pairs = all.iter().zip(late_m).flat_map(|from| all.iter().zip(late_m).map(move |to| (from, to)));
+        pairs
+            .filter(|((from, _), (to, _))| from.id != to.id)
+            .map(|((from, sent_m), (to, heard_m))| PulseSet {
+                sender: from.id,
+                receiver: to.id,
+                lengths_m: vec![1.02 * (from.position - to.position).norm() + heard_m - sent_m; 3],
+            })
+            .collect()
+    }
+
+    fn tests(session: Option<SessionConfig>) -> PulseTests {
+        let locating = Locating { session, ..Locating::default() };
+        PulseTests::new(&locating, RangeNoise::Gaussian { sigma_ratio: 0.001 }, &stations())
+    }
+
+    fn range() -> Vec<RangeSet> {
+        vec![RangeSet { station: StationId(1), ranges_m: vec![10.2 + 0.3] }]
+    }
+
+    #[test]
+    fn the_last_exchange_corrects_speed_of_sound_and_clocks() {
+        let mut tests = tests(None);
+        assert!(tests.take(&[]).is_none() && tests.doubt().is_none());
+        let (event, agreeing) = tests.take(&exchange([0.3, -0.1, 0.0, -0.2])).unwrap();
+        assert!(matches!(event, EventKind::PulsesTested { phase: PulsePhase::Before, .. }), "{event:?}");
+        assert!(agreeing.is_some() && tests.doubt().is_some());
+        let mut ranges = range();
+        tests.correct(&mut ranges);
+        assert!((ranges[0].ranges_m[0] - 10.0).abs() < 1e-6, "{ranges:?}");
+        tests.note_ranges();
+        let (event, _) = tests.take(&exchange([0.0; 4])).unwrap();
+        assert!(matches!(event, EventKind::PulsesTested { phase: PulsePhase::Held, .. }), "{event:?}");
+    }
+
+    #[test]
+    fn beside_a_session_calibration_pulses_correct_nothing() {
+        let mut tests = tests(Some(SessionConfig::default()));
+        assert!(tests.take(&exchange([0.3, -0.1, 0.0, -0.2])).is_some());
+        let mut ranges = range();
+        tests.correct(&mut ranges);
+        assert_eq!(ranges, range());
+    }
+
+    #[test]
+    fn pulses_that_contradict_the_survey_or_show_too_little_correct_nothing() {
+        let mut moved = exchange([0.0; 4]);
+        let near = moved.iter_mut().filter(|set| set.sender == StationId(2) || set.receiver == StationId(2));
+        near.for_each(|set| set.lengths_m.iter_mut().for_each(|length_m| *length_m += 1.0));
+        let mut tests = tests(None);
+        let (event, agreeing) = tests.take(&moved).unwrap();
+        assert!(matches!(event, EventKind::PulsesTested { .. }) && agreeing.is_none(), "{event:?}");
+        let (event, agreeing) = tests.take(&moved[..1]).unwrap();
+        assert!(matches!(event, EventKind::PulsesFailed { .. }) && agreeing.is_none(), "{event:?}");
+        let mut ranges = range();
+        tests.correct(&mut ranges);
+        assert_eq!(ranges, range());
+    }
+}

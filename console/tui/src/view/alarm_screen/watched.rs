@@ -1,0 +1,73 @@
+//! What the screen shows while the table lists no alarm: the limits that are watched, with the values now, and their
+//! curves.
+
+use crate::model::health::{DISK_MB, RECORDER_LAG};
+use crate::model::ui::Chart;
+use crate::theme::Role;
+use crate::view::look::{Look, Parts, fill};
+use crate::view::plan::promise::{Watched, watched};
+use crate::view::{charts, text};
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+
+/// Widths of a label, of a value and of a limit, columns.
+const LABEL: usize = 18;
+const VALUE: usize = 18;
+const LIMIT: usize = 14;
+/// Rows of a curve, including the frame.
+const CURVE: u16 = 10;
+
+/// The rows that the limits need, including the frame and the headings.
+pub(super) fn rows(look: &Look) -> u16 {
+    all(look).len() as u16 + 3
+}
+
+/// The figures of the mission, then those of the console.
+fn all(look: &Look) -> Vec<Watched> {
+    let model = look.model;
+    let moves = model.live.may_move();
+    let free = model.home.found.as_ref().and_then(|found| found.free_bytes);
+    let disk = free.map(|bytes| Watched {
+        label: "disk space left",
+        now: format!("{} MB", bytes / 1_000_000),
+        limit: format!("{} MB", text::number(DISK_MB.of(moves).alarm, 0)),
+    });
+    let lag = Watched {
+        label: "ticks to record",
+        now: model.live.health.recorder_lag.to_string(),
+        limit: text::number(RECORDER_LAG.of(moves).alarm, 0),
+    };
+    let of_console = disk.into_iter().chain(model.live.run.about.is_some().then_some(lag));
+    watched(look.run).into_iter().chain(of_console).collect()
+}
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
+    let head = row("figure", "now", "alarm at", Role::Dim);
+    let rows = all(look).into_iter().map(|figure| row(figure.label, &figure.now, &figure.limit, Role::Text));
+    let lines = std::iter::once(head).chain(rows).map(|parts| look.line(parts)).collect();
+    fill(frame, area, look.block(Role::Border, "Limits that are watched", ""), lines);
+}
+
+fn row(label: &str, now: &str, limit: &str, role: Role) -> Parts {
+    vec![
+        (Role::Dim, format!(" {}", text::column(label, LABEL))),
+        (role, format!("{now:>VALUE$}")),
+        (Role::Dim, format!("{limit:>LIMIT$}")),
+    ]
+}
+
+/// The curves of the figures with their limits, and the robot in the tank.
+pub(super) fn curves(look: &Look, frame: &mut Frame, area: Rect) {
+    let tether = look.run.tether.is_some();
+    let shown = [Chart::Error, Chart::Residual, Chart::TetherOut, Chart::Wrap];
+    let shown = shown.into_iter().filter(|chart| tether || matches!(chart, Chart::Error | Chart::Residual));
+    let shown: Vec<Chart> = shown.take(usize::from(area.height / CURVE).saturating_sub(1)).collect();
+    let rows = Layout::vertical(shown.iter().map(|_| Constraint::Length(CURVE)).chain([Constraint::Fill(1)]))
+        .split(area);
+    for (chart, area) in shown.iter().zip(rows.iter()) {
+        charts::draw(look, frame, *area, *chart);
+    }
+    if let Some(area) = rows.last() {
+        super::draw_place(look, frame, *area, None);
+    }
+}

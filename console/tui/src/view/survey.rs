@@ -1,0 +1,132 @@
+//! The survey pane: how much of the floor is explored, what is left to explore, and the columns found.
+
+use super::look::{Look, fill, ranked};
+use super::text;
+use crate::model::survey::Survey;
+use crate::model::{Model, Pane};
+use crate::theme::Role;
+use exploration::Column;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+use world::{Point, polyline};
+
+/// Width of a label and of the bar on a narrow screen, columns.
+const LABEL: usize = 11;
+const BAR: usize = 8;
+/// The minimum width at which the pane uses full words, columns.
+const WIDE: usize = 40;
+
+pub(super) fn draw(look: &Look, survey: &Survey, frame: &mut Frame, area: Rect) {
+    let block = look.pane(Pane::Coverage, "Survey", "");
+    let inner = block.inner(area);
+    let (columns, rows) = (usize::from(inner.width), usize::from(inner.height));
+    let mut lines = ranked(summary(look, survey, columns), rows);
+    let room = rows.saturating_sub(lines.len());
+    lines.extend(found(survey, room, columns).into_iter().map(|row| look.line([(Role::Text, row)])));
+    fill(frame, area, block, lines);
+}
+
+/// The rows about the floor and the way.
+fn summary(look: &Look, survey: &Survey, columns: usize) -> Vec<(u8, Line<'static>)> {
+    let share = survey.share.map_or_else(|| "-".into(), text::percent);
+    let bar = |width: usize| text::bar(survey.share.unwrap_or(0.0), width);
+    let here = look.run.position.pose.map(|pose| pose.position);
+    let label = if columns >= WIDE { LABEL } else { LABEL - 1 };
+    let room = columns.saturating_sub(label + 2);
+    let row = |rank: u8, name: &str, value: String| {
+        (rank, look.line([(Role::Dim, format!(" {name:<label$}")), (Role::Text, value)]))
+    };
+    let explored = if columns >= WIDE {
+        vec![
+            row(0, "explored", format!("{share} % of the floor")),
+            (4, look.line([(Role::Good, format!(" {}", bar(columns.saturating_sub(2))))])),
+        ]
+    } else {
+        let bar = (Role::Good, format!(" {}", bar(BAR)));
+        vec![(0, look.line([bar, (Role::Text, format!(" {share} % explored"))]))]
+    };
+    let mut lines = explored;
+    lines.push(row(1, "frontiers", frontiers(survey, here, room)));
+    lines.push(row(2, "way", way(look, survey, here, room)));
+    let beyond = survey.way.as_ref().map_or(0, |way| way.beyond_tether);
+    if beyond > 0 {
+        lines.push(row(4, "left out", format!("{} beyond the tether", text::counted(beyond, "place"))));
+    }
+    lines.push(row(
+        3,
+        "columns",
+        text::wording(
+            [
+                format!("{0} found; ± is the 95 % error", survey.columns.len()),
+                format!("{} found", survey.columns.len()),
+            ],
+            room,
+        ),
+    ));
+    lines
+}
+
+/// The number of frontiers, and the nearest one.
+fn frontiers(survey: &Survey, here: Option<Point>, room: usize) -> String {
+    let n = survey.frontiers.len();
+    let Some(nearest) = survey.frontiers.first() else { return "none left".into() };
+    if survey.share.is_none() {
+        return "-".into();
+    }
+    let at = text::place(*nearest);
+    let away = here
+        .map_or_else(String::new, |here| format!(", {} m away", text::number((nearest - here).norm(), 1)));
+    text::wording([format!("{n}, next {at}{away}"), format!("{n}, next {at}"), n.to_string()], room)
+}
+
+/// What is left of the way, and where it leads.
+fn way(look: &Look, survey: &Survey, here: Option<Point>, room: usize) -> String {
+    let Some(way) = &survey.way else {
+        return if look.run.has_ended() { "ended".into() } else { "-".into() };
+    };
+    let left_m = here.map_or(way.length_m, |here| polyline::length_m(rest(&way.path, here)));
+    let left = format!("{} m", text::number(left_m, 1));
+    text::wording(
+        [format!("{left} to {}", way.to.words()), format!("{left} to {}", way.to.word()), left],
+        room,
+    )
+}
+
+/// The part of a way that begins at its place nearest to the robot.
+pub(in crate::view) fn rest(path: &[Point], here: Point) -> &[Point] {
+    let nearest = super::map::nearest(path, here);
+    path.get(nearest..).unwrap_or_default()
+}
+
+/// The columns, one in a row, as on the map; if they do not fit, the last row states how many are left out.
+fn found(survey: &Survey, rows: usize, width: usize) -> Vec<String> {
+    let all = survey.columns.iter().enumerate();
+    let mut lines: Vec<String> = all.take(rows).map(|(index, column)| row(index, column, width)).collect();
+    let left_out = survey.columns.len() - lines.len();
+    if left_out > 0 && lines.pop().is_some() {
+        lines.push(format!(" and {} more, on the map", left_out + 1));
+    }
+    lines
+}
+
+/// A column: its number on the map, its centre and its radius, with their 95 % errors.
+fn row(index: usize, column: &Column, width: usize) -> String {
+    let place = text::place(column.center);
+    let radius = text::number(column.radius_m, 2);
+    let [center_m, radius_m] = column.errors_95_m().map(|error_m| text::number(error_m, 2));
+    let number = format!(" {:>2}", index + 1);
+    let wordings = [
+        format!("{number}  {place} ±{center_m} m  radius {radius} ±{radius_m} m"),
+        format!("{number}  {place} ±{center_m}, r {radius} ±{radius_m}"),
+        format!("{number} {place} r {radius} ±{center_m}"),
+    ];
+    text::wording(wordings, width)
+}
+
+/// How much of the floor has been explored, as a sentence; `None` unless the mission is a survey.
+pub(super) fn sentence(model: &Model) -> Option<String> {
+    let survey = model.live.run.survey.as_ref()?;
+    let share = survey.share.map_or_else(|| "-".into(), text::percent);
+    Some(format!("{share} % of the floor explored, {} found.", text::counted(survey.columns.len(), "column")))
+}
