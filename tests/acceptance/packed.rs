@@ -48,6 +48,54 @@ const CONTRADICTIONS: [(&str, &str, &str, &str); 7] = [
     ("report.json", "\"signature\": null", "\"signature\": 1", "different signatures"),
 ];
 
+/// Changes files of a package and the digests that other parts state: the page names each change.
+fn forgeries_are_named_by_the_page(bench: &Bench, name: &str, content: &BTreeMap<String, Vec<u8>>) {
+    // The page vouches for every other file, also for one that no other part describes.
+    let grid = content["plate-grid.csv"].clone();
+    let figures = String::from_utf8(content["report.json"].clone()).unwrap().replacen("0.", "0.9", 1);
+    let notes = format!("notes/{name}.json");
+    let changes = [
+        ("report.json", figures.into_bytes()),
+        ("plate-grid.csv", grid[..grid.len() / 2].to_vec()),
+        ("report.geojson", b"{}".to_vec()),
+        ("report.dxf", Vec::new()),
+        ("report-missed.csv", b"a,b\n".to_vec()),
+        (notes.as_str(), b"{}".to_vec()),
+        ("README.txt", b"Call this number.".to_vec()),
+    ];
+    for (file, bytes) in changes {
+        let mut forged = content.clone();
+        forged.insert(file.into(), bytes);
+        forge(bench, "forged.zip", &forged);
+        let verified = verify(bench, "forged.zip");
+        let why = format!("different: {file} is not the file that belongs to report.html");
+        assert!(verified.code == Some(1) && verified.out.contains(&why), "{file}: {verified:?}");
+    }
+    // Readings, list and report that were changed together.
+    let mut forged = content.clone();
+    let readings = format!("readings/{name}.parquet");
+    let (then, now) = (digest(&content[&readings]), digest(b"PAR1"));
+    forged.insert(readings.clone(), b"PAR1".to_vec());
+    for list in ["package.json", "report.json"] {
+        let text = String::from_utf8(content[list].clone()).unwrap();
+        forged.insert(list.into(), text.replace(&then, &now).into_bytes());
+    }
+    forge(bench, "forged.zip", &forged);
+    let verified = verify(bench, "forged.zip");
+    let why = format!("different: {readings} is not the file that belongs to report.html");
+    assert!(verified.code == Some(1) && verified.out.contains(&why), "{verified:?}");
+    for (file, why) in [
+        ("report-more.csv", "report-more.csv does not belong to the report: report.html does not state it"),
+        ("signed/revision-B.html", "signed/revision-B.html belongs to none of the signatures"),
+    ] {
+        let mut forged = content.clone();
+        forged.insert(file.into(), b"<html>".to_vec());
+        forge(bench, "forged.zip", &forged);
+        let verified = verify(bench, "forged.zip");
+        assert!(verified.code == Some(1) && verified.out.contains(why), "{why}: {verified:?}");
+    }
+}
+
 #[test]
 fn a_package_holds_readings_grid_notes_and_drawings_and_is_checked_without_the_runs() {
     let bench = Bench::new();
@@ -114,50 +162,7 @@ fn a_package_holds_readings_grid_notes_and_drawings_and_is_checked_without_the_r
         let verified = verify(&bench, "forged.zip");
         assert!(verified.code == Some(1) && verified.out.contains(why), "{why}: {verified:?}");
     }
-    // The page vouches for every other file, also for one that no other part describes.
-    let grid = content["plate-grid.csv"].clone();
-    let figures = String::from_utf8(content["report.json"].clone()).unwrap().replacen("0.", "0.9", 1);
-    let notes = format!("notes/{name}.json");
-    let changes = [
-        ("report.json", figures.into_bytes()),
-        ("plate-grid.csv", grid[..grid.len() / 2].to_vec()),
-        ("report.geojson", b"{}".to_vec()),
-        ("report.dxf", Vec::new()),
-        ("report-missed.csv", b"a,b\n".to_vec()),
-        (notes.as_str(), b"{}".to_vec()),
-        ("README.txt", b"Call this number.".to_vec()),
-    ];
-    for (file, bytes) in changes {
-        let mut forged = content.clone();
-        forged.insert(file.into(), bytes);
-        forge(&bench, "forged.zip", &forged);
-        let verified = verify(&bench, "forged.zip");
-        let why = format!("different: {file} is not the file that belongs to report.html");
-        assert!(verified.code == Some(1) && verified.out.contains(&why), "{file}: {verified:?}");
-    }
-    // Readings, list and report that were changed together.
-    let mut forged = content.clone();
-    let readings = format!("readings/{name}.parquet");
-    let (then, now) = (digest(&content[&readings]), digest(b"PAR1"));
-    forged.insert(readings.clone(), b"PAR1".to_vec());
-    for list in ["package.json", "report.json"] {
-        let text = String::from_utf8(content[list].clone()).unwrap();
-        forged.insert(list.into(), text.replace(&then, &now).into_bytes());
-    }
-    forge(&bench, "forged.zip", &forged);
-    let verified = verify(&bench, "forged.zip");
-    let why = format!("different: {readings} is not the file that belongs to report.html");
-    assert!(verified.code == Some(1) && verified.out.contains(&why), "{verified:?}");
-    for (file, why) in [
-        ("report-more.csv", "report-more.csv does not belong to the report: report.html does not state it"),
-        ("signed/revision-B.html", "signed/revision-B.html belongs to none of the signatures"),
-    ] {
-        let mut forged = content.clone();
-        forged.insert(file.into(), b"<html>".to_vec());
-        forge(&bench, "forged.zip", &forged);
-        let verified = verify(&bench, "forged.zip");
-        assert!(verified.code == Some(1) && verified.out.contains(why), "{why}: {verified:?}");
-    }
+    forgeries_are_named_by_the_page(&bench, &name, &content);
     let mut without = content.clone();
     without.remove("report.dxf");
     forge(&bench, "without.zip", &without);

@@ -150,7 +150,8 @@ fn a_station_that_becomes_wrong_is_found_and_its_floor_loses_the_guarantee() {
     assert_eq!(flown.code, Some(0), "{flown:?}");
     let run = &bench.runs()[0];
     let events = journal(run);
-    found_within_60_fixes(&events, 0.002);
+    scale_is_found(&events, 0.002);
+    bias_is_found(&events);
     let taken = &report["taken_back"];
     assert!(taken[0]["station"] == "B" && number(&taken[0]["area_m2"]) > 1.0, "{taken}");
     // The guarantee of the rest holds.

@@ -49,7 +49,7 @@ pub struct Fold {
     tethered: Option<Tethered>,
     /// The tool of located readings; `None` for a mission.
     tool: Option<ToolTrack>,
-    figures: Figures,
+    figures: Box<Figures>,
     run: Option<Box<RunOpened>>,
     evidence: Option<Evidence>,
     survey: Option<Box<Survey>>,

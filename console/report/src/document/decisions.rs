@@ -71,15 +71,12 @@ pub(super) fn decisions(document: &Document) -> Vec<Decision> {
 /// The floor that was missed although the mission had to scan it, with what to do; `None` if it is less than 0.01 m².
 fn missed(floor: &Account) -> Option<String> {
     let largest = floor.missed.first()?;
-    let what = match &floor.requested {
-        Some(requested) => {
-            let missed_m2 = requested.missed * requested.area_m2;
-            (missed_m2 >= LEAST_M2).then(|| format!("{missed_m2:.2} m² of the requested floor was missed"))?
-        }
-        None => {
-            let count = counted(floor.missed.len() as u64, "missed area");
-            format!("{count} of at least {LEAST_M2} m², the largest {:.2} m²", largest.area_m2)
-        }
+    let what = if let Some(requested) = &floor.requested {
+        let missed_m2 = requested.missed * requested.area_m2;
+        (missed_m2 >= LEAST_M2).then(|| format!("{missed_m2:.2} m² of the requested floor was missed"))?
+    } else {
+        let count = counted(floor.missed.len() as u64, "missed area");
+        format!("{count} of at least {LEAST_M2} m², the largest {:.2} m²", largest.area_m2)
     };
     Some(format!("{what}: accept, re-scan, or inspect by hand."))
 }
