@@ -5,7 +5,7 @@ use super::message::Effect;
 use super::offer::{accepted, offered, refuse};
 use super::overlay::{self, ask, open};
 use super::send::{hold_now, send};
-use super::{palette, remedies, replay};
+use super::{alarms, palette, remedies, replay};
 use crate::actions::{ActionId, Deed, find};
 use crate::model::home::HomeList;
 use crate::model::planner_list::PlannerLine;
@@ -28,6 +28,9 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         return Vec::new();
     }
     if let Err(why) = offered(model, id) {
+        if id == ActionId::Shelve && alarms::refuse_on_line(model, &why) {
+            return Vec::new();
+        }
         return refuse(model, why);
     }
     match (id, find::row(id).map(|action| action.deed)) {

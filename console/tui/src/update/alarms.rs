@@ -97,6 +97,16 @@ pub(crate) fn shelve(model: &mut Model) -> Vec<Effect> {
     note(model, Noted::Unshelved { alarm: cause.key(), text })
 }
 
+/// Opens the input line with the reason why the selected alarm cannot be shelved, so that the minutes that the operator
+/// types next, and Enter, do not reach keys that move the robot. Returns whether an alarm is selected.
+pub(super) fn refuse_on_line(model: &mut Model, why: &str) -> bool {
+    let is_shown = model.ui.screen == Screen::Alarms && model.ui.overlay == Overlay::None;
+    let Some(alarm) = model.selected_alarm().filter(|_| is_shown) else { return false };
+    let (cause, refusal) = (alarm.cause.clone(), Some(why.to_owned()));
+    model.ui.overlay = Overlay::Shelve(Shelving { cause, line: LineEdit::default(), refusal });
+    true
+}
+
 /// Shelves an alarm as typed, or shows why the input was refused.
 pub(super) fn take_shelving(model: &mut Model, shelving: Shelving) -> Vec<Effect> {
     let typed = parse_shelving(shelving.line.text());

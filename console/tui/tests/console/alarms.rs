@@ -206,6 +206,24 @@ fn an_alarm_is_shelved_with_minutes_and_a_reason_and_comes_back() {
 }
 
 #[test]
+fn what_is_typed_for_an_alarm_that_cannot_be_shelved_does_not_move_the_robot() {
+    let mut screen = Screen::held();
+    let station = world::StationId(4);
+    hear(&mut screen, EventKind::StationRestored { station });
+    screen.type_text("4");
+    screen.model.ui.alarm = Some(Cause::Station(station));
+    for key in "d10 ".chars() {
+        screen.press([Key::Char(key)]);
+    }
+    screen.press(ENTER);
+    let overlay = &screen.model.ui.overlay;
+    assert!(matches!(overlay, Overlay::Shelve(shelving) if shelving.refusal.is_some()), "{overlay:?}");
+    assert!(matches!(screen.model.ui.screen, SHOWN) && !screen.model.live.run.is_running());
+    screen.press([Key::Esc]);
+    assert_eq!(screen.model.ui.overlay, Overlay::None);
+}
+
+#[test]
 fn a_command_shelves_the_named_alarm_or_the_selected_one() {
     let line = |screen: &mut Screen, line: &str| {
         screen.model.console.notice = None;
@@ -238,12 +256,18 @@ fn a_command_shelves_the_named_alarm_or_the_selected_one() {
 #[test]
 fn what_is_critical_or_over_cannot_be_shelved() {
     let mut screen = troubled();
+    let refusal = |screen: &Screen| match &screen.model.ui.overlay {
+        Overlay::Shelve(shelving) => shelving.refusal.clone(),
+        _ => None,
+    };
     screen.type_text("d");
-    assert_eq!(notice(&screen), "a CRIT alarm cannot be shelved");
+    assert_eq!(refusal(&screen).as_deref(), Some("a CRIT alarm cannot be shelved"));
+    screen.press([Key::Esc]);
     screen.press([Key::Down; 2]);
     screen.type_text("d");
-    assert_eq!(notice(&screen), "cleared alarms are acknowledged (a), not shelved");
-    assert_eq!(screen.model.ui.overlay, Overlay::None);
+    assert_eq!(refusal(&screen).as_deref(), Some("cleared alarms are acknowledged (a), not shelved"));
+    let said = shown(&screen, (80, 24));
+    assert!(said.contains("REFUSED: cleared alarms are acknowledged"), "{said}");
 }
 
 #[test]
