@@ -7,7 +7,7 @@ use crate::actions::{Action, ActionId, context::Context, find};
 use crate::guide;
 use crate::keys::Key;
 use crate::model::step::{Deed, Step};
-use crate::model::{Cause, Model, Overlay};
+use crate::model::{Alarm, Cause, Model, Overlay};
 use crate::screens;
 use mission::Order;
 use positioning::Exclusion;
@@ -65,7 +65,8 @@ fn station(model: &Model, cause: &Cause) -> Option<Step> {
     let excluded = run.position.fix.iter().flat_map(|fix| &fix.excluded);
     let (id, why) = match cause {
         Cause::Station(id) => (*id, String::new()),
-        Cause::Contradiction => {
+        // Once the ranges agree again, every station may be sound.
+        Cause::Contradiction if run.alarms.get(cause).is_some_and(Alarm::is_active) => {
             let (id, residual_m) = largest_residual(model)?;
             (id, format!(" (largest residual, {residual_m:+.2} m)"))
         }

@@ -118,10 +118,17 @@ fn ready(look: &Look, is_complete: bool) -> (Role, String) {
     (role, words)
 }
 
-/// Where the plan of a re-scan begins to scan, and what it scans a second time.
+/// Where a plan for a part of the floor begins to scan, and what it scans besides: of a re-scan, for the second time.
 fn resumption(look: &Look) -> Option<String> {
     let resumption = look.model.live.left_out()?.resumption?;
-    Some(format!("R {}", text::capitalized(&confirm::resumes(&resumption))))
+    if look.model.live.scanned_before.is_some() {
+        return Some(format!("R {}", text::capitalized(&confirm::resumes(&resumption))));
+    }
+    let (at, again_m2) = (text::place(resumption.at), text::number(resumption.again_m2, 1));
+    let after_m = text::number(resumption.after_m, 1);
+    Some(format!(
+        "R The scan begins at {at}, after {after_m} m; {again_m2} m² that were not requested are scanned, too."
+    ))
 }
 
 fn certificate(look: &Look, columns: usize) -> Option<(Role, String)> {
