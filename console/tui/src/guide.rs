@@ -194,8 +194,9 @@ fn remains(cause: &Cause) -> &'static str {
 /// The remedies that apply to an alarm now.
 pub fn remedies<'a>(cause: &Cause, of: &'a Run) -> impl Iterator<Item = &'static Remedy> + use<'a> {
     let is_active = of.alarms.get(cause).is_none_or(Alarm::is_active);
-    // A wait is over when its cause is gone.
-    let applies = move |remedy: &&Remedy| remedy.when.holds(of) && (is_active || remedy.action.is_some());
+    // When the cause is gone, a wait is over, and the alarm is no reason to end the mission.
+    let stays = |remedy: &Remedy| remedy.action.is_some_and(|action| action != ActionId::Abort);
+    let applies = move |remedy: &&Remedy| remedy.when.holds(of) && (is_active || stays(remedy));
     meaning(cause, of).remedies.iter().filter(applies)
 }
 

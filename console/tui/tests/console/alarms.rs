@@ -206,6 +206,15 @@ fn an_alarm_is_shelved_with_minutes_and_a_reason_and_comes_back() {
 }
 
 #[test]
+fn an_alarm_that_has_cleared_is_no_reason_to_end_the_mission() {
+    let mut screen = troubled();
+    let ends = |screen: &Screen| shown(screen, (120, 36)).contains("End the mission");
+    assert!(ends(&screen), "{}", shown(&screen, (120, 36)));
+    screen.press([Key::Down; 2]);
+    assert!(!ends(&screen), "{}", shown(&screen, (120, 36)));
+}
+
+#[test]
 fn what_is_typed_for_an_alarm_that_cannot_be_shelved_does_not_move_the_robot() {
     let mut screen = Screen::held();
     let station = world::StationId(4);
