@@ -37,9 +37,9 @@ fn a_survey_is_verified_and_its_map_is_covered_and_read_by_other_programs() {
 }
 
 #[test]
-fn a_survey_is_started_in_the_console_and_its_map_is_scanned_next() {
+fn a_survey_is_started_in_the_console_and_is_verified() {
     let bench = Bench::new();
-    let script = "wait until text \"Ready.\" within 1m\nspeed max\nstart\nkey enter\n\
+    let script = "wait until text \"to start.\" within 1m\nspeed max\nstart\nkey enter\n\
                   wait until screen result within 5m\nassert phase complete\n";
     let file = bench.file("survey.txt", script);
     let survey = scenario("survey-tank.toml");
