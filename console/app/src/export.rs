@@ -80,8 +80,7 @@ fn ranges(folder: &Path, csv: &Path) -> anyhow::Result<()> {
     let path = journal_of(folder);
     let opened = Ticks::open(&path)?.opened()?.clone();
     if opened.mission.locating.clocks.is_some() {
-        let why = "its stations have clocks of their own, so what they measure are not ranges; the journal \
-                   contains what was received";
+        let why = "its stations have clocks of their own, so they measure no ranges; the journal contains the arrivals";
         return Err(bad_input(format!("{}: {why}", folder.display())));
     }
     let stations = opened.world.stations;

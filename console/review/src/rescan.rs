@@ -68,7 +68,7 @@ fn continued(run: &PastRun) -> anyhow::Result<Continued<'_>> {
 /// the floor that it mapped.
 ///
 /// # Errors
-/// See [`missed_scan`]; also if a journal was changed, if there is no floor to re-scan, or if a survey made no map.
+/// See [`missed_scan`]. Other causes: a journal was changed, no floor is left to re-scan, or a survey has no map.
 pub fn rescan_of(runs: &[String], logs: &Path) -> anyhow::Result<Scenario> {
     if let [run] = runs
         && let Some(scan) = scan_of_map(&find(Path::new(run), logs)?)?

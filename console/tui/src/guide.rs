@@ -194,7 +194,7 @@ fn remains(cause: &Cause) -> &'static str {
 /// The remedies that apply to an alarm now.
 pub fn remedies<'a>(cause: &Cause, of: &'a Run) -> impl Iterator<Item = &'static Remedy> + use<'a> {
     let is_active = of.alarms.get(cause).is_none_or(Alarm::is_active);
-    // When the cause is gone, a wait is over, and the alarm is no reason to end the mission.
+    // A cleared alarm needs neither patience nor the end of the mission.
     let stays = |remedy: &Remedy| remedy.action.is_some_and(|action| action != ActionId::Abort);
     let applies = move |remedy: &&Remedy| remedy.when.holds(of) && (is_active || stays(remedy));
     meaning(cause, of).remedies.iter().filter(applies)
