@@ -26,6 +26,8 @@ pub struct Expect {
     pub coverage_truth_min: Option<f64>,
     /// Minimum share of the whole floor scanned.
     pub coverage_whole_min: Option<f64>,
+    /// Minimum share of the floor within the wall that a survey has seen.
+    pub explored_min: Option<f64>,
     /// Largest share of the scanned floor that was scanned more than once.
     pub overlap_max: Option<f64>,
     /// Minimum tracking precision.
@@ -143,6 +145,7 @@ impl Expect {
                 coverage.and_then(|c| c.by_truth).map(|truth| truth.reachable),
             ),
             ("coverage_whole_min", AtLeast, self.coverage_whole_min, coverage.map(|c| c.whole)),
+            ("explored_min", AtLeast, self.explored_min, run.explored),
             ("overlap_max", AtMost, self.overlap_max, coverage.and_then(|c| c.overlap)),
             ("precision_min", AtLeast, self.precision_min, tracking.map(|t| t.precision)),
             ("recall_min", AtLeast, self.recall_min, tracking.map(|t| t.recall)),

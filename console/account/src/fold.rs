@@ -297,6 +297,7 @@ impl Fold {
             turns: self.has_heading().then(|| self.turning.turns()),
             rotation_turns: self.has_heading().then(|| self.turning.rotation_turns()),
             tether: self.tether(),
+            explored: self.map.as_ref().map(|map| map.explored),
             tracking: self.tracker.as_ref().and_then(Tracker::tracking),
             accuracy: self.claimed.statement(self.scan_limit_m()).map(|accuracy| summary::Accuracy {
                 protection: self.protection.statement(self.is_guaranteed_by_protection()),

@@ -58,6 +58,9 @@ pub struct Summary {
     pub collisions: Option<u64>,
     /// Number of found obstacles that are not on the drawing.
     pub obstacles_found: u64,
+    /// Share of the floor within the wall that a survey has seen, 0 to 1; absent for other missions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub explored: Option<f64>,
     /// The figures that have a worst value: that value with its time and place, the last value, and the limit; empty for
     /// located readings.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

@@ -5,6 +5,10 @@ use nalgebra::Isometry2;
 use std::f64::consts::TAU;
 use world::{NO_ECHO, Scan, scan::is_round};
 
+/// Number of rays on each side of a ray without an echo that have none either if the ray shows free floor. Of rays lost
+/// one by one, five in a row are so rare that they leave no trace in a map.
+const SILENT: isize = 2;
+
 /// The rays of a scan, tank frame.
 pub(crate) struct Beams {
     /// Place of the sensor when it made the scan.
@@ -55,18 +59,20 @@ impl Beams {
     }
 
     /// The distance up to which a ray shows free floor. A ray without an echo may have been lost; it shows free floor
-    /// only if the rays beside it have no echo either.
+    /// only if [`SILENT`] rays on each side have no echo either.
     fn clear_m_of(&self, ranges: &[u16], ray: usize, range_m: Option<f64>) -> f64 {
-        let n = ranges.len();
         match ranges[ray] {
             NO_ECHO => {
-                let beside = [ray.checked_sub(1).or(self.is_round.then_some(n - 1)), Some(ray + 1)];
-                let is_silent = |at: Option<usize>| match at {
-                    Some(at) if at < n => ranges[at] == NO_ECHO,
-                    Some(_) if self.is_round => ranges[0] == NO_ECHO,
-                    _ => true,
+                let n = ranges.len() as isize;
+                let is_silent = |offset: isize| {
+                    let beside = ray as isize + offset;
+                    if self.is_round {
+                        ranges[beside.rem_euclid(n) as usize] == NO_ECHO
+                    } else {
+                        !(0..n).contains(&beside) || ranges[beside as usize] == NO_ECHO
+                    }
                 };
-                if beside.into_iter().all(is_silent) { range_m.unwrap_or(0.0) } else { f64::INFINITY }
+                if (-SILENT..=SILENT).all(is_silent) { range_m.unwrap_or(0.0) } else { f64::INFINITY }
             }
             mm => f64::from(mm) / 1000.0,
         }

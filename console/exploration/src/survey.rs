@@ -90,6 +90,7 @@ impl Exploration {
         let range_m = self.scanning.range_m.or(scan.range_max_m);
         let beams = Beams::new(scan, pose, range_m, (self.scanning.hull_m, within_m));
         self.clear(&beams, within_m);
+        self.stand_at(pose.position);
         for hit in &beams.hits {
             let Some(cell) = self.grid.index(*hit) else { continue };
             let offset = hit - self.grid.center(cell);
@@ -110,6 +111,18 @@ impl Exploration {
                 && far_m <= within_m
                 && beams.clear_towards_m(to).is_some_and(|clear_m| far_m < clear_m - short_m)
             {
+                evidence[cell].add(CLEAR);
+            }
+        }
+    }
+
+    /// The floor under the hull is free, even if no ray goes there.
+    fn stand_at(&mut self, at: Point) {
+        let hull_m = self.scanning.hull_m;
+        let reach = geometry::Vector::repeat(hull_m);
+        let (grid, evidence) = (&self.grid, &mut self.evidence);
+        for cell in grid.within(at - reach, at + reach) {
+            if self.is_floor[cell] && (grid.center(cell) - at).norm() <= hull_m {
                 evidence[cell].add(CLEAR);
             }
         }

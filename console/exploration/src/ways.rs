@@ -53,28 +53,41 @@ impl Exploration {
 impl Ways<'_> {
     /// Whether the hull has no room at the beginning, so that no way leads anywhere.
     pub fn is_empty(&self) -> bool {
-        self.first().is_none()
+        self.firsts().is_empty()
     }
 
     fn has_room(&self, cell: usize) -> bool {
         f64::from(self.spare_m[cell]) >= self.room_m
     }
 
-    /// The cell where the ways begin: the nearest one with room.
-    fn first(&self) -> Option<usize> {
+    /// The cells where the ways begin, each with its distance: those with room that the hull can enter without coming
+    /// nearer to anything than it is; without such a cell, the nearest one with room. Several, because the nearest one may be
+    /// in a pocket from which no way leads on.
+    fn firsts(&self) -> Vec<(usize, f64)> {
         let grid = &self.of.grid;
         let near = geometry::Vector::repeat(ASIDE_M);
         let away_m = |cell: usize| (grid.center(cell) - self.from).norm();
-        let near = grid.within(self.from - near, self.from + near);
-        let roomy = near.filter(|cell| self.has_room(*cell) && away_m(*cell) <= ASIDE_M);
-        roomy.min_by(|a, b| away_m(*a).total_cmp(&away_m(*b)).then(a.cmp(b)))
+        let roomy = grid.within(self.from - near, self.from + near).filter(|cell| self.has_room(*cell));
+        let mut roomy: Vec<(usize, f64)> =
+            roomy.map(|cell| (cell, away_m(cell))).filter(|(_, away_m)| *away_m <= ASIDE_M).collect();
+        let has_m = self.spare_at_m(self.from) - grid.cell_m;
+        let enters = |(cell, _): &(usize, f64)| self.keeps_m(self.from, grid.center(*cell), has_m);
+        let entered: Vec<(usize, f64)> = roomy.iter().copied().filter(enters).collect();
+        if entered.is_empty() {
+            roomy.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+            roomy.truncate(1);
+            return roomy;
+        }
+        entered
     }
 
     fn search(&mut self) {
-        let Some(first) = self.first() else { return };
         let mut queue: BinaryHeap<Due> = BinaryHeap::new();
-        self.cost_m[first] = 0.0;
-        queue.push(Reverse((0, first as u32)));
+        for (first, away_m) in self.firsts() {
+            let cost_m = (away_m * (1.0 + TIGHT)) as f32;
+            self.cost_m[first] = cost_m;
+            queue.push(Reverse((units(cost_m), first as u32)));
+        }
         while let Some(Reverse((cost, cell))) = queue.pop() {
             let cell = cell as usize;
             if cost > units(self.cost_m[cell]) {
@@ -171,10 +184,15 @@ impl Ways<'_> {
 
     /// Whether the hull has room everywhere on a segment.
     pub fn is_clear(&self, from: Point, to: Point) -> bool {
+        self.keeps_m(from, to, self.room_m)
+    }
+
+    /// Whether the hull's centre keeps a distance, metres, from everything that is not known to be free on a segment.
+    fn keeps_m(&self, from: Point, to: Point, least_m: f64) -> bool {
         let n = ((to - from).norm() / (0.5 * self.of.grid.cell_m)).ceil().max(1.0) as u32;
         (0..=n).all(|k| {
             let at = from + (to - from) * (f64::from(k) / f64::from(n));
-            self.of.grid.index(at).is_some_and(|cell| self.has_room(cell))
+            self.of.grid.index(at).is_some_and(|cell| f64::from(self.spare_m[cell]) >= least_m)
         })
     }
 

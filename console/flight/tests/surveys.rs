@@ -176,11 +176,14 @@ fn overlap(world: &World, map: &SurveyMap) -> f64 {
     both / either
 }
 
-/// Seeds of the tanks; `SURVEY_SEEDS=300..310` chooses others.
-fn seeds() -> std::ops::Range<u64> {
+/// Seeds of the tanks; `SURVEY_SEEDS=300..310` chooses others. In the tank of seed 9118, no frontier could be reached at
+/// first from the place where the robot began to drive back; in that of seed 9113, lost rays made a column hollow.
+fn seeds() -> Vec<u64> {
     let chosen = std::env::var("SURVEY_SEEDS").ok();
     let range = chosen.as_deref().and_then(|text| text.split_once(".."));
-    range.map_or(1..4, |(first, end)| first.parse().unwrap()..end.parse().unwrap())
+    range.map_or(vec![1, 2, 9113, 9118], |(first, end)| {
+        (first.parse().unwrap()..end.parse().unwrap()).collect()
+    })
 }
 
 #[test]
@@ -191,7 +194,7 @@ fn random_tanks_are_mapped() {
         println!("seed {seed}: {result:?}");
         (seed, scenario, result)
     };
-    let threads: Vec<_> = seeds().map(|seed| std::thread::spawn(move || each(seed))).collect();
+    let threads: Vec<_> = seeds().into_iter().map(|seed| std::thread::spawn(move || each(seed))).collect();
     for (seed, scenario, result) in threads.into_iter().map(|thread| thread.join().unwrap()) {
         assert_eq!(
             result.outcome.as_ref().map(|outcome| outcome.0),
@@ -208,6 +211,31 @@ fn random_tanks_are_mapped() {
             assert!(result.cable.1 <= limits.wrap_max_rad, "{seed}: {result:?}");
         }
     }
+}
+
+/// A scanner that looks forward only: the robot first turns once around. Without room for the hull anywhere, it ends with
+/// the reason.
+#[test]
+fn a_scanner_with_a_narrow_view_is_turned_around_first() {
+    let narrow = tank(1).replace("rays = 360\n", "rays = 90\nfield_of_view_deg = 90.0\n");
+    let scenario = parsed(&narrow);
+    let result = Result::of(&scenario, &flown(&scenario));
+    assert_eq!(result.outcome.as_ref().map(|outcome| outcome.0), Some(Outcome::Complete), "{result:?}");
+    assert!(result.explored > 0.95 && result.collisions == 0, "{result:?}");
+    let posts: String = (0..8)
+        .map(|k| {
+            let (sin, cos) = (TAU * f64::from(k) / 8.0).sin_cos();
+            let at = format!("[{:.3}, {:.3}]", 0.4 * cos, 0.4 * sin);
+            format!("[[obstacles]]\nkind = \"circle\"\ncenter_m = {at}\nradius_m = 0.06\nknown = false\n\n")
+        })
+        .collect();
+    let events = flown(&parsed(&tank(1).replacen("[robot]", &format!("{posts}[robot]"), 1)));
+    let end = events.iter().find_map(|event| match &event.kind {
+        EventKind::Ended { outcome, reason } => Some((*outcome, reason.clone())),
+        _ => None,
+    });
+    let (outcome, reason) = end.unwrap();
+    assert!(outcome == Outcome::Stuck && reason.contains("no free floor with room for the hull"), "{reason}");
 }
 
 #[test]

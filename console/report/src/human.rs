@@ -332,8 +332,10 @@ fn during(run: &Summary) -> Option<String> {
     if run.planners.len() > 1 {
         parts.push(format!("planners {}", run.planners.join(", ")));
     }
+    // The objects of a survey are those of its map.
     parts.extend(
-        (run.obstacles_found > 0).then(|| format!("{} found", counted(run.obstacles_found, "obstacle"))),
+        (run.obstacles_found > 0 && run.explored.is_none())
+            .then(|| format!("{} found", counted(run.obstacles_found, "obstacle"))),
     );
     parts.extend((run.holds > 0).then(|| counted(run.holds, "hold")));
     (!parts.is_empty()).then(|| parts.join(", "))

@@ -24,6 +24,10 @@ use world::{Boundary, Obstacle, Point, Pose, Station, World};
 /// m, but its actual error was 0.063 m.
 const LEAST_CLEARANCE_M: f64 = 0.08;
 
+/// Distance, in metres, by which the scanner of a survey must see beyond the room that the hull keeps: the robot drives to
+/// places from which it sees new floor, and places closer together than 0.3 m count as one.
+const SURVEY_SIGHT_M: f64 = 0.5;
+
 /// Distance, in metres, within which a start counts as being at the first path point.
 const ON_PATH_M: f64 = 1e-3;
 
@@ -69,7 +73,6 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let name = root.slug("name");
     let about = if root.has("about") { root.text("about") } else { Some(String::new()) };
     let seed = root.whole("seed").map(|seed| seed as u64);
-    check_continued(root);
     let sections = Sections {
         root,
         robot: root.table_or_empty("robot"),
@@ -83,6 +86,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         sections.mission.as_ref().and_then(|s| task::task(s, floor.boundary.as_ref(), radius_m, put_down));
     require_start(&sections);
     let is_survey = is_survey(&sections);
+    check_continued(root, is_survey);
     require_scanner(&sections, is_survey);
     let start = start(floor.robot.as_ref(), task.as_ref());
     scatter(root, &mut floor, seed, start, task.as_ref());
@@ -94,9 +98,12 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let wear = wear::wear(root, floor.boundary.as_ref(), seed);
     let checklist = checklist(root);
     let vehicle = vehicle::vehicle(root);
-    let expect = expect::expect(root);
+    let expect = expect::expect(root, is_survey);
     let inspection = inspection::section(root);
     let rest = Rest::read(&sections, &floor);
+    if is_survey {
+        check_scanner_range(&sections, &floor, rest.as_ref());
+    }
     let (instrument, channel_faults) =
         instrument::instrument(root, plates.as_ref(), rest.as_ref().map(|rest| rest.cell_m)).unzip();
 
@@ -195,7 +202,13 @@ fn sensor(robot: &Robot) -> Option<Sensor> {
 }
 
 /// Checks the digests of the runs that a re-scan continues. Only reports use these digests.
-fn check_continued(root: &Section<'_>) {
+fn check_continued(root: &Section<'_>, is_survey: bool) {
+    if is_survey {
+        root.refuse(
+            &["continues_sha256"],
+            "mission.kind = \"survey\", because only a re-scan continues runs",
+        );
+    }
     let digests = if root.has("continues_sha256") { root.texts("continues_sha256") } else { None };
     let is_digest = |text: &String| {
         text.len() == 64 && text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
@@ -249,6 +262,21 @@ fn require_scanner(sections: &Sections<'_>, is_survey: bool) {
             "scanner",
             "add a section [robot.scanner]: a survey makes its map from the scans of a scanner",
         );
+    }
+}
+
+/// Complains about a scanner that sees hardly farther than the room that the hull keeps: a survey would not progress.
+fn check_scanner_range(sections: &Sections<'_>, floor: &Floor, rest: Option<&Rest>) {
+    let (Some(section), Some(robot), Some(rest)) = (&sections.robot, &floor.robot, rest) else { return };
+    let Some(scanner) = &robot.scanner else { return };
+    let least_m = robot.limits.radius_m + rest.clearance_m + SURVEY_SIGHT_M;
+    if scanner.range_m < least_m {
+        let must_be = format!(
+            "a scanner with range_m = {least_m:.3} or more in a survey (now {}): radius_m + clearance_m + \
+             {SURVEY_SIGHT_M} m, so that the robot sees floor beyond the room of its hull",
+            scanner.range_m
+        );
+        section.complain("scanner", Complaint::OutOfRange(must_be));
     }
 }
 

@@ -4,9 +4,29 @@ use super::section::Section;
 use account::Expect;
 use mission::Outcome;
 
+/// The bounds on figures of a scan or of a preset path, which a survey does not have.
+const NOT_IN_A_SURVEY: [&str; 8] = [
+    "coverage_reachable_min",
+    "coverage_truth_min",
+    "coverage_whole_min",
+    "overlap_max",
+    "precision_min",
+    "recall_min",
+    "rmse_max_m",
+    "cross_track_rmse_max_m",
+];
+
 /// Reads `[expect]`; without this section there are no bounds.
-pub(crate) fn expect(root: &Section<'_>) -> Option<Expect> {
+pub(crate) fn expect(root: &Section<'_>, is_survey: bool) -> Option<Expect> {
     let section = root.table_or_empty("expect")?;
+    if is_survey {
+        section.refuse(
+            &NOT_IN_A_SURVEY,
+            "mission.kind = \"survey\", because a survey does not have this figure",
+        );
+    } else {
+        section.refuse(&["explored_min"], "a mission that is not a survey, because it makes no map");
+    }
     let outcome = section.word("outcome").map(|word| match word {
         "complete" => Outcome::Complete,
         "stuck" => Outcome::Stuck,
@@ -24,6 +44,7 @@ pub(crate) fn expect(root: &Section<'_>) -> Option<Expect> {
         coverage_reachable_min: section.number("coverage_reachable_min"),
         coverage_truth_min: section.number("coverage_truth_min"),
         coverage_whole_min: section.number("coverage_whole_min"),
+        explored_min: section.number("explored_min"),
         overlap_max: section.number("overlap_max"),
         precision_min: section.number("precision_min"),
         recall_min: section.number("recall_min"),

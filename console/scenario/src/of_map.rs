@@ -22,8 +22,9 @@ pub enum MapError {
     /// The scenario would treat floor that the survey did not see as free floor.
     #[error(
         "{all_m2:.1} m² of floor beside the way of the robot were not seen, the largest part ({part_m2:.1} m²) around \
-         {x:.1}, {y:.1} m; a scenario would treat them as free floor. Write the map with the suffix .yaml, where floor \
-         that was not seen is solid, or survey again"
+         {}, {} m; a scenario would treat them as free floor. Write the map with the suffix .yaml, where floor \
+         that was not seen is solid, or survey again",
+        tenth(*x), tenth(*y)
     )]
     Unseen {
         /// Area that was not seen, square metres.
@@ -146,6 +147,11 @@ fn around(vertices: &[Point]) -> Shape {
     let center = Point::from(sum / vertices.len().max(1) as f64);
     let radius_m = vertices.iter().map(|at| (at - center).norm()).fold(0.01, f64::max);
     Shape::Disc { center, radius_m }
+}
+
+/// A coordinate to a tenth of a metre; zero is never negative.
+fn tenth(m: f64) -> String {
+    format!("{:.1}", (m * 10.0).round() / 10.0 + 0.0)
 }
 
 /// Rounded to millimetres.

@@ -507,6 +507,7 @@ static EXPECT: &[Key] = &[
     number("coverage_reachable_min", "", SHARE).or_none(NO_BOUND),
     number("coverage_truth_min", "", SHARE).or_none(NO_BOUND),
     number("coverage_whole_min", "", SHARE).or_none(NO_BOUND),
+    number("explored_min", "", SHARE).or_none(NO_BOUND),
     number("overlap_max", "", at_least(0.0)).or_none(NO_BOUND),
     number("precision_min", "", SHARE).or_none(NO_BOUND),
     number("recall_min", "", SHARE).or_none(NO_BOUND),

@@ -939,3 +939,22 @@ fn too_few_stations_for_differences_or_stations_on_one_line_are_refused_with_the
         assert!(words.contains(reason), "{key}: {words}");
     }
 }
+
+#[test]
+fn keys_without_meaning_in_a_survey_are_refused() {
+    let survey = include_str!("../../../scenarios/survey-tank.toml");
+    let words = |text: &str| match Scenario::parse(text, "x.toml") {
+        Ok(_) => panic!("accepted:\n{text}"),
+        Err(errors) => errors.render(),
+    };
+    let expecting = |key: &str| survey.replace("[expect]\n", &format!("[expect]\n{key} = 0.9\n"));
+    for key in ["coverage_truth_min", "overlap_max", "recall_min"] {
+        assert!(words(&expecting(key)).contains(&format!("expect.{key}")), "{}", words(&expecting(key)));
+    }
+    assert!(Scenario::parse(&expecting("explored_min"), "x.toml").is_ok());
+    assert!(words(&format!("{SMALL}\n[expect]\nexplored_min = 0.9\n")).contains("expect.explored_min"));
+    let continued = format!("continues_sha256 = [\"{}\"]\n{survey}", "0".repeat(64));
+    assert!(words(&continued).contains("continues_sha256"), "{}", words(&continued));
+    let short = words(&survey.replace("range_m = 8.0\nrate_hz", "range_m = 0.5\nrate_hz"));
+    assert!(short.contains("range_m = 0.800 or more in a survey (now 0.5)"), "{short}");
+}

@@ -18,13 +18,18 @@ use choice::Choice;
 use exploration::{CellState, Exploration, Scanning};
 use ground::Ground;
 use leg::Leg;
-use planner_api::Drive;
+use planner_api::{Command, Drive};
+use std::f64::consts::TAU;
 use world::{Point, Readings, World, coverage::percent_text};
 
 /// Time between two reports of what has been explored, seconds.
 const TELL_S: f64 = 5.0;
 /// Number of scans before the first way: lost rays hide floor in a single one.
 const SETTLED: u32 = 5;
+/// Turn rate at which the robot looks for floor on which a way can begin, radians per second, and the angle after which
+/// it has seen everything around it.
+const SEARCH_RAD_PER_S: f64 = 0.5;
+const SEARCHED_RAD: f64 = 1.1 * TAU;
 /// Largest number of frontiers in a report.
 const MOST_TOLD: usize = 40;
 
@@ -41,6 +46,9 @@ pub(super) struct Surveying {
     told_s: Option<f64>,
     /// The states of the cells in the last report.
     told: Vec<CellState>,
+    /// Angle by which the robot has turned on the spot in order to see floor on which a way can begin, radians; `None` if
+    /// a way can begin at its place.
+    searched_rad: Option<f64>,
 }
 
 impl Surveying {
@@ -58,6 +66,7 @@ impl Surveying {
             choice: Choice::default(),
             scans: 0,
             told_s: None,
+            searched_rad: None,
         })
     }
 
@@ -74,7 +83,7 @@ impl Surveying {
     /// Gives up the way that the robot takes, and its goal.
     pub(super) fn give_up(&mut self) {
         if let Some(leg) = self.leg.take() {
-            self.choice.give_up(leg.goal);
+            self.choice.give_up(&leg);
         }
     }
 
@@ -111,7 +120,8 @@ impl Known {
     /// Why a survey counts as done, as a sentence.
     pub(super) fn mapped_reason(&self, task: &SurveyTask) -> String {
         let place = if self.config.tether.is_some() { "anchor" } else { "start" };
-        let share = percent_text(task.explored, 1);
+        let explored = self.survey.as_ref().map_or(task.explored, |survey| survey.exploration.share());
+        let share = percent_text(explored, 1);
         let beyond = self.survey.as_ref().map_or(0, |survey| survey.choice.beyond());
         let left_out = match beyond {
             0 => String::new(),
@@ -119,6 +129,25 @@ impl Known {
             n => format!("; {n} places not seen, beyond the tether"),
         };
         format!("back at the {place}, {share} % of the floor seen{left_out}")
+    }
+
+    /// Notes whether the map shows no floor with room for the hull at the robot's place.
+    fn mark_shut_in(&mut self, is_shut_in: bool) {
+        if let Some(survey) = &mut self.survey {
+            survey.searched_rad = is_shut_in.then(|| survey.searched_rad.unwrap_or(0.0));
+        }
+        if let Some(task) = self.task.survey() {
+            task.is_shut_in = is_shut_in;
+        }
+    }
+
+    /// The command of a robot whose scanner does not show floor on which a way can begin: it turns on the spot, once
+    /// around, because a scanner with a narrow field of view has to be pointed everywhere.
+    fn look_around(&mut self) -> Option<Command> {
+        let rate_rad_per_s = SEARCH_RAD_PER_S.min(self.config.limits.w_max_rad_per_s);
+        let searched_rad = self.survey.as_mut()?.searched_rad.as_mut().filter(|rad| **rad < SEARCHED_RAD)?;
+        *searched_rad += rate_rad_per_s * self.config.tick_s;
+        Some(self.sending().as_sent(Command::twist(0.0, rate_rad_per_s)))
     }
 
     /// The robot's place on the map. Scans show where the robot is on the map more exactly than its position estimate; the
@@ -141,7 +170,8 @@ impl Mission {
             return Drive::STILL;
         }
         self.choose_way();
-        let Some(wanted) = self.known.command_of_survey() else { return Drive::STILL };
+        let wanted = self.known.command_of_survey().or_else(|| self.known.look_around());
+        let Some(wanted) = wanted else { return Drive::STILL };
         let (sent, limits) = self.known.made_safe(wanted);
         let asked = (sent != wanted).then_some(wanted);
         self.happened.push(EventKind::Commanded { ask: None, command: sent, asked });
@@ -161,6 +191,7 @@ impl Mission {
     fn choose_way(&mut self) {
         let Some(chosen) = self.known.next_way() else { return };
         self.rules.stuck.restart();
+        self.known.mark_shut_in(false);
         if let Some(task) = self.known.task.survey() {
             (task.target, task.is_over) = (chosen.leg.goal, chosen.event.to == SurveyGoal::Home);
         }

@@ -14,11 +14,13 @@ pub(crate) struct Survey {
     pub explored: f64,
     /// Whether nothing is left to explore, so that the robot drives back.
     pub is_over: bool,
+    /// Whether the map shows no floor with room for the hull at the robot's place, so that no way begins there.
+    pub is_shut_in: bool,
 }
 
 impl Survey {
     pub(super) fn new(anchor: Point, tolerance_m: f64) -> Self {
-        Self { anchor, tolerance_m, target: anchor, explored: 0.0, is_over: false }
+        Self { anchor, tolerance_m, target: anchor, explored: 0.0, is_over: false, is_shut_in: false }
     }
 
     /// The drive back, in the form that planners receive. Planners are not asked during a survey.

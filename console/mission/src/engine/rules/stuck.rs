@@ -9,6 +9,10 @@ use crate::{
 use planner_api::Reason;
 use world::{Point, coverage::percent_text};
 
+/// What stops a survey that cannot choose a way, and the remedy.
+const SHUT_IN: &str = "; the scans show no free floor with room for the hull around the robot: check range and mounting of \
+                       the scanner, or start where there is more room";
+
 /// Watches the progress of the task.
 #[derive(Clone)]
 pub(in crate::engine) struct StuckRule {
@@ -56,7 +60,10 @@ impl StuckRule {
 /// An operator may find a way out; in an unattended mission, the mission ends.
 fn give_up(seen: &Seen<'_>) -> Verdict {
     let (here, done) = (seen.here, percent_text(seen.task.done(), 0));
-    let message = format!("no progress at {:.2}, {:.2} m, {done} % done", here.x, here.y);
+    let mut message = format!("no progress at {:.2}, {:.2} m, {done} % done", here.x, here.y);
+    if matches!(seen.task, Task::Survey(survey) if survey.is_shut_in) {
+        message += SHUT_IN;
+    }
     if seen.config.attended {
         Verdict::Hold(Hold { by: HoldReason::Stuck { message }, resumes: Resumes::Never })
     } else {

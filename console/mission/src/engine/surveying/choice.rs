@@ -1,6 +1,6 @@
 //! The choice of the next way.
 
-use super::{super::known::Known, SETTLED, ground::Ground, leg::Leg};
+use super::{super::known::Known, SETTLED, Surveying, ground::Ground, leg::Leg};
 use crate::event::{SurveyGoal, SurveyWay};
 use exploration::Ways;
 use world::{Point, Shape, ZoneKind, polyline};
@@ -18,12 +18,17 @@ const AGAIN_S: f64 = 60.0;
 const SPARE_M: f64 = 0.05;
 /// Distance between places on the return path from which other ways to a goal are tried, metres.
 const STEP_M: f64 = 1.0;
+/// Remaining length of the way back, metres, below which goals that the tether did not reach are tried once more: almost
+/// all of the tether is reeled in by then.
+const LAST_M: f64 = 1.0;
 
 /// What is left to choose from.
 #[derive(Clone, Default)]
 pub(super) struct Choice {
     /// Goals that the robot has reached, or could not reach; once for each time.
     tried: Vec<Point>,
+    /// Number of times that the robot has driven back in vain.
+    times_back: usize,
     /// Goals beyond the tether, each with the mission time from which it is tried again.
     beyond: Vec<(Point, f64)>,
     /// The goals before the frontiers that were left at the last check, the nearest first.
@@ -44,9 +49,17 @@ impl Choice {
         &self.frontiers
     }
 
-    /// Leaves a goal out from now on.
-    pub(super) fn give_up(&mut self, goal: Point) {
-        self.tried.extend([goal; MOST_TIMES]);
+    /// Leaves the goal of a way out from now on.
+    pub(super) fn give_up(&mut self, leg: &Leg) {
+        (0..MOST_TIMES).for_each(|_| self.note_end(leg));
+    }
+
+    /// Notes that a way has ended. The end of the survey counts by itself: frontiers may lie near it.
+    fn note_end(&mut self, leg: &Leg) {
+        match leg.to {
+            SurveyGoal::Home => self.times_back += 1,
+            SurveyGoal::Frontier | SurveyGoal::View => self.tried.push(leg.goal),
+        }
     }
 
     /// Number of goals that the tether did not reach when the robot began to drive back.
@@ -60,6 +73,15 @@ impl Choice {
 
     fn is_beyond(&self, goal: Point, now_s: f64) -> bool {
         self.beyond.iter().any(|(beyond, until_s)| is_same(*beyond, goal) && now_s < *until_s)
+    }
+}
+
+impl Surveying {
+    /// The goals in the order in which they are tried: open frontiers, then the hidden sides of objects.
+    fn goals(&self, open: &[Point], ways: &Ways<'_>) -> Vec<(SurveyGoal, Point)> {
+        let frontiers = open.iter().map(|goal| (SurveyGoal::Frontier, *goal));
+        let views = self.exploration.views(ways).into_iter().map(|view| (SurveyGoal::View, view.at));
+        frontiers.chain(views.filter(|(_, goal)| !self.choice.is_tried(*goal))).collect()
     }
 }
 
@@ -77,7 +99,7 @@ impl Known {
         let survey = self.survey.as_mut()?;
         let is_done = survey.leg.as_ref().is_some_and(|leg| leg.is_done(here));
         if is_done && let Some(leg) = survey.leg.take() {
-            survey.choice.tried.push(leg.goal);
+            survey.choice.note_end(&leg);
         }
         let is_due = survey.choice.checked_s.is_none_or(|checked_s| now_s - checked_s >= CHECK_S);
         if !is_done && !is_due {
@@ -89,21 +111,34 @@ impl Known {
         let survey = self.survey.as_ref()?;
         let ways = survey.exploration.ways(here, self.survey_room_m(), solids.iter());
         // Without room at the robot's place, the map is not complete enough to choose a way.
-        if ways.is_empty() {
+        let is_shut_in = ways.is_empty();
+        if is_shut_in {
+            self.mark_shut_in(survey.leg.is_none());
             return None;
         }
         let all = ways.frontiers().into_iter().map(|frontier| frontier.at);
         let open: Vec<Point> = all.filter(|goal| !survey.choice.is_tried(*goal)).collect();
-        let stays = survey.leg.as_ref().is_some_and(|leg| self.is_worth_going_on(leg, &open, &ways));
-        let chosen = if stays { None } else { self.chosen(&open, &ways, &solids) };
+        let leg = survey.leg.as_ref();
+        let stays = leg.is_some_and(|leg| self.is_worth_going_on(leg, &open, &ways));
+        let chosen = match leg.filter(|_| stays) {
+            Some(leg) if leg.to == SurveyGoal::Home => self.chosen_on_way_home(leg, &open, &ways, &solids),
+            Some(_) => None,
+            None => self.chosen(&open, &ways, &solids),
+        };
+        let given_up = leg.filter(|leg| leg.to != SurveyGoal::Home).map(|leg| leg.goal);
         let beyond = chosen.as_ref().map_or_else(Vec::new, |(_, beyond)| beyond.clone());
         let choice = &mut self.survey.as_mut()?.choice;
         if let Some((chosen, _)) = &chosen {
             choice.n_beyond = chosen.event.beyond_tether;
+            // Counts as tried, so that the robot does not turn back to the same goal again and again.
+            choice.tried.extend(given_up.filter(|_| chosen.event.to == SurveyGoal::Home));
         }
         choice.frontiers = open;
         choice.beyond.retain(|(_, until_s)| now_s < *until_s);
         choice.beyond.extend(beyond.into_iter().map(|goal| (goal, now_s + AGAIN_S)));
+        if chosen.is_none() {
+            self.mark_shut_in(!stays);
+        }
         chosen.map(|(chosen, _)| chosen)
     }
 
@@ -124,15 +159,32 @@ impl Known {
         places.iter().all(|at| is_at_end(*at) || ways.spare_at_m(*at) >= hull_m)
     }
 
+    /// The way to a goal that could not be reached from the place where the robot began to drive back, with the goals that
+    /// the tether still does not reach. Goals are tried directly and, near the end of the way back, in every way.
+    fn chosen_on_way_home(
+        &self,
+        leg: &Leg,
+        open: &[Point],
+        ways: &Ways<'_>,
+        solids: &[Shape],
+    ) -> Option<(Chosen, Vec<Point>)> {
+        if leg.left_m(self.place_on_map()) <= LAST_M {
+            return self.chosen(open, ways, solids).filter(|(chosen, _)| chosen.event.to != SurveyGoal::Home);
+        }
+        let direct = self.survey.as_ref()?.goals(open, ways).into_iter().find_map(|(to, goal)| {
+            let way = ways.to(goal)?;
+            let bears = self.tether.as_ref().is_none_or(|tether| tether.bears_with_reserve(&way));
+            bears.then(|| chosen(to, goal, way, 0))
+        });
+        direct.map(|chosen| (chosen, Vec::new()))
+    }
+
     /// The way to the first goal that the tether reaches, or else the way back; with the goals that it does not reach.
     fn chosen(&self, open: &[Point], ways: &Ways<'_>, solids: &[Shape]) -> Option<(Chosen, Vec<Point>)> {
         let survey = self.survey.as_ref()?;
         let now_s = self.now_s();
         let mut beyond = Vec::new();
-        let views = || survey.exploration.views(ways).into_iter().map(|view| (SurveyGoal::View, view.at));
-        let frontiers = open.iter().map(|goal| (SurveyGoal::Frontier, *goal));
-        let mut goals: Vec<(SurveyGoal, Point)> = frontiers.collect();
-        goals.extend(views().filter(|(_, goal)| !survey.choice.is_tried(*goal)));
+        let goals = survey.goals(open, ways);
         // Before the robot gives up, it tries again what the tether did not reach on a map that showed less.
         for again in [false, true] {
             for (to, goal) in goals.iter().filter(|(_, goal)| survey.choice.is_beyond(*goal, now_s) == again)
@@ -146,7 +198,7 @@ impl Known {
         let n_beyond = beyond.len();
         let home = self.config.task.end()?;
         // A robot that does not get there stands still, so that the rule for a stuck robot applies.
-        if survey.choice.is_tried(home) {
+        if survey.choice.times_back >= MOST_TIMES {
             return None;
         }
         Some((chosen(SurveyGoal::Home, home, self.way_home(home, ways)?, n_beyond), beyond))
